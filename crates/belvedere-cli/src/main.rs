@@ -1,0 +1,2 @@
+//! The belvedere command line.
+fn main() {}

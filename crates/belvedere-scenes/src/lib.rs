@@ -1,0 +1,1 @@
+//! Simulated towns with exact meshes, and simulated laser scans of them.

@@ -1,0 +1,244 @@
+//! Point clouds: f32 positions relative to an f64 origin, with the attributes a laser file carries as columns.
+
+use crate::crs::Crs;
+use crate::{Error, Result};
+
+/// A point cloud.
+///
+/// Positions are metres, x east, y north, z up, relative to `origin`; f32 holds a tenth of a millimetre within a
+/// kilometre of the origin, whereas projected coordinates in f32 would be off by centimetres. Every attribute that is
+/// present has one value per point.
+#[derive(Clone, Debug, Default)]
+pub struct PointCloud {
+    /// Where local (0, 0, 0) lies, in metres (file coordinates times [`Crs::metres_per_unit`]).
+    pub origin: [f64; 3],
+    /// Local positions, (N, 3), metres.
+    pub positions: Vec<[f32; 3]>,
+    /// What else is known of each point.
+    pub attributes: Attributes,
+    /// Local positions of the scanner set-ups that [`Attributes::scanner_index`] refers to, (S, 3), metres.
+    pub scanner_positions: Vec<[f32; 3]>,
+    /// Reference system and unit of the file.
+    pub crs: Crs,
+}
+
+/// Attributes of the points of a [`PointCloud`], each with one value per point where present.
+#[derive(Clone, Debug, Default)]
+pub struct Attributes {
+    /// Unit normals as given by the file, (N, 3); (0, 0, 0) where the file has none for a point.
+    pub normals: Option<Vec<[f32; 3]>>,
+    /// ASPRS class.
+    pub classification: Option<Vec<u8>>,
+    /// GPS time in seconds, see [`Attributes::gps_time_kind`].
+    pub gps_time: Option<Vec<f64>>,
+    /// What the GPS times count from.
+    pub gps_time_kind: GpsTimeKind,
+    /// Which return of its pulse a point is, from 1.
+    pub return_number: Option<Vec<u8>>,
+    /// How many returns its pulse had.
+    pub return_count: Option<Vec<u8>>,
+    /// Scan angle in radians.
+    pub scan_angle: Option<Vec<f32>>,
+    /// Flight line.
+    pub point_source_id: Option<Vec<u16>>,
+    /// Channel of a multi-channel scanner.
+    pub scanner_channel: Option<Vec<u8>>,
+    /// LAS flags: 1 synthetic, 2 key point, 4 withheld, 8 overlap.
+    pub flags: Option<Vec<u8>>,
+    /// Intensity.
+    pub intensity: Option<Vec<u16>>,
+    /// Red, green, blue.
+    pub color: Option<Vec<[u16; 3]>>,
+    /// Index into [`PointCloud::scanner_positions`]; `u16::MAX` where unknown.
+    pub scanner_index: Option<Vec<u16>>,
+}
+
+/// What GPS times count from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GpsTimeKind {
+    /// Seconds since Sunday midnight (LAS global encoding bit 0 clear).
+    #[default]
+    SecondsOfWeek,
+    /// GPS time minus 1e9 s (LAS global encoding bit 0 set).
+    AdjustedStandard,
+}
+
+/// Applies a macro to every per-point column.
+macro_rules! for_each_column {
+    ($apply:ident) => {
+        $apply!(
+            normals,
+            classification,
+            gps_time,
+            return_number,
+            return_count,
+            scan_angle,
+            point_source_id,
+            scanner_channel,
+            flags,
+            intensity,
+            color,
+            scanner_index
+        )
+    };
+}
+
+impl Attributes {
+    /// The attributes of the points at `indices`, in that order. Columns shorter than an index asks for are dropped.
+    #[must_use]
+    pub fn select(&self, indices: &[u32]) -> Self {
+        let mut selected = Self { gps_time_kind: self.gps_time_kind, ..Self::default() };
+        macro_rules! select_columns {
+            ($($column:ident),*) => {$(
+                selected.$column = self.$column.as_ref().and_then(|values| {
+                    indices.iter().map(|&i| values.get(i as usize).copied()).collect()
+                });
+            )*};
+        }
+        for_each_column!(select_columns);
+        selected
+    }
+
+    /// Appends `other`, which belongs to `other_count` points, to these of `count` points. A column that only one of
+    /// the two has is dropped, and its name returned.
+    pub fn append(&mut self, count: usize, other: Self, other_count: usize) -> Vec<&'static str> {
+        let mut dropped = Vec::new();
+        if count == 0 {
+            *self = other;
+            return dropped;
+        }
+        if other_count == 0 {
+            return dropped;
+        }
+        if self.gps_time_kind != other.gps_time_kind && self.gps_time.is_some() {
+            self.gps_time = None;
+        }
+        macro_rules! append_columns {
+            ($($column:ident),*) => {$(
+                match (&mut self.$column, other.$column) {
+                    (Some(mine), Some(theirs)) => mine.extend(theirs),
+                    (None, None) => {}
+                    _ => {
+                        self.$column = None;
+                        dropped.push(stringify!($column));
+                    }
+                }
+            )*};
+        }
+        for_each_column!(append_columns);
+        dropped
+    }
+
+    /// Name and length of every column present.
+    #[must_use]
+    pub fn columns(&self) -> Vec<(&'static str, usize)> {
+        let mut columns = Vec::new();
+        macro_rules! list_columns {
+            ($($column:ident),*) => {$(
+                if let Some(values) = &self.$column {
+                    columns.push((stringify!($column), values.len()));
+                }
+            )*};
+        }
+        for_each_column!(list_columns);
+        columns
+    }
+}
+
+impl PointCloud {
+    /// A cloud without attributes from coordinates in metres, (N, 3), f64; the origin is chosen near their centre.
+    ///
+    /// Rows that are not finite are left out; their number is returned beside the cloud.
+    #[must_use]
+    pub fn from_coordinates(coordinates: &[[f64; 3]]) -> (Self, usize) {
+        let origin = centre_rounded(coordinates.iter().copied());
+        let positions: Vec<[f32; 3]> =
+            coordinates.iter().filter(|c| c.iter().all(|v| v.is_finite())).map(|&c| to_local(c, origin)).collect();
+        let left_out = coordinates.len() - positions.len();
+        (Self { origin, positions, ..Self::default() }, left_out)
+    }
+
+    /// Number of points.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether there is no point at all.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    /// Lowest and highest local corner, or `None` without points.
+    #[must_use]
+    pub fn bounds(&self) -> Option<([f32; 3], [f32; 3])> {
+        let first = *self.positions.first()?;
+        Some(self.positions.iter().fold((first, first), |(low, high), p| {
+            (std::array::from_fn(|i| low[i].min(p[i])), std::array::from_fn(|i| high[i].max(p[i])))
+        }))
+    }
+
+    /// Coordinates of a local position in the unit and reference system of the file.
+    #[must_use]
+    pub fn to_file_coordinates(&self, local: [f32; 3]) -> [f64; 3] {
+        let scale = self.crs.metres_per_unit_xyz();
+        std::array::from_fn(|i| (f64::from(local[i]) + self.origin[i]) / scale[i])
+    }
+
+    /// Local position of coordinates in the unit and reference system of the file.
+    #[must_use]
+    pub fn from_file_coordinates(&self, file: [f64; 3]) -> [f32; 3] {
+        let scale = self.crs.metres_per_unit_xyz();
+        to_local(std::array::from_fn(|i| file[i] * scale[i]), self.origin)
+    }
+
+    /// The points at `indices`, in that order, with their attributes. Indices out of range are left out.
+    #[must_use]
+    pub fn select(&self, indices: &[u32]) -> Self {
+        Self {
+            origin: self.origin,
+            positions: indices.iter().filter_map(|&i| self.positions.get(i as usize).copied()).collect(),
+            attributes: self.attributes.select(indices),
+            scanner_positions: self.scanner_positions.clone(),
+            crs: self.crs.clone(),
+        }
+    }
+
+    /// Checks that every column has one value per point and every position is finite.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] for the first column whose length differs, [`Error::InvalidParameter`] for a position
+    /// that is not finite.
+    pub fn validate(&self) -> Result<()> {
+        let expected = self.len();
+        if let Some((what, found)) = self.attributes.columns().into_iter().find(|&(_, length)| length != expected) {
+            return Err(Error::LengthMismatch { what, expected, found });
+        }
+        if let Some(p) = self.positions.iter().find(|p| p.iter().any(|v| !v.is_finite())) {
+            return Err(Error::InvalidParameter { name: "position", value: format!("{p:?}"), expected: "finite" });
+        }
+        Ok(())
+    }
+}
+
+/// `coordinates − origin`, subtracted in f64.
+#[must_use]
+#[expect(clippy::cast_possible_truncation, reason = "f32 relative to a near origin is the agreed representation")]
+pub fn to_local(coordinates: [f64; 3], origin: [f64; 3]) -> [f32; 3] {
+    std::array::from_fn(|i| (coordinates[i] - origin[i]) as f32)
+}
+
+/// Middle of the bounding box of the finite `coordinates`, rounded to whole metres so that it prints short; zero if
+/// there is none.
+pub fn centre_rounded(coordinates: impl Iterator<Item = [f64; 3]>) -> [f64; 3] {
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for c in coordinates.filter(|c| c.iter().all(|v| v.is_finite())) {
+        for i in 0..3 {
+            low[i] = low[i].min(c[i]);
+            high[i] = high[i].max(c[i]);
+        }
+    }
+    std::array::from_fn(|i| if low[i] <= high[i] { (low[i] / 2.0 + high[i] / 2.0).round() } else { 0.0 })
+}

@@ -1,0 +1,45 @@
+//! The balls themselves, as columns.
+
+/// Value of [`MedialBalls::touch`] for a ball that never shrank.
+pub const NO_TOUCH: u32 = u32::MAX;
+
+/// Which side of the surface a ball lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Inside the scene: centre = p − r·n for the outward normal n.
+    Interior,
+    /// In free space: centre = p + r·n.
+    Exterior,
+}
+
+/// Medial balls, one per row.
+///
+/// A ball is tangent at its source point p and touches a second point q. One that met no second point kept its initial
+/// radius: its touch is [`NO_TOUCH`], it says nothing about the scene and is never used for visibility.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MedialBalls {
+    /// Centres, (B, 3), local metres.
+    pub centers: Vec<[f32; 3]>,
+    /// Radii, (B), metres.
+    pub radii: Vec<f32>,
+    /// Index of the point p each ball is tangent at, (B).
+    pub source: Vec<u32>,
+    /// Index of the second point q each ball touches, or [`NO_TOUCH`], (B).
+    pub touch: Vec<u32>,
+    /// Separation angle ∠pcq in radians, (B); NaN for a ball that never shrank.
+    pub separation_angles: Vec<f32>,
+}
+
+impl MedialBalls {
+    /// Number of balls.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.radii.len()
+    }
+
+    /// Whether there is no ball.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.radii.is_empty()
+    }
+}

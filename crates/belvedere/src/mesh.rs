@@ -1,0 +1,28 @@
+//! Triangle meshes: city models to orient normals with, exact scenes, query objects.
+
+use crate::crs::Crs;
+
+/// A triangle mesh in metres.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Vertices, (V, 3), metres (file coordinates times the unit of `crs`), f64 because there is no local origin.
+    pub vertices: Vec<[f64; 3]>,
+    /// Corners of each triangle, counter-clockwise seen from outside, (T, 3), indices into `vertices`.
+    pub triangles: Vec<[u32; 3]>,
+    /// Object each triangle belongs to, (T), index into `object_names`; empty where the file knows no objects.
+    pub objects: Vec<u32>,
+    /// Name of each object.
+    pub object_names: Vec<String>,
+    /// Reference system of the file.
+    pub crs: Crs,
+}
+
+impl Mesh {
+    /// Corners of triangle `index`, or `None` where it or one of its vertices does not exist.
+    #[must_use]
+    pub fn corners(&self, index: usize) -> Option<[[f64; 3]; 3]> {
+        let [a, b, c] = *self.triangles.get(index)?;
+        let vertex = |i: u32| self.vertices.get(i as usize).copied();
+        Some([vertex(a)?, vertex(b)?, vertex(c)?])
+    }
+}

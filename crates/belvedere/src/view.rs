@@ -1,0 +1,172 @@
+//! Views: from where, in which direction, and how densely a scene is looked at.
+
+use crate::{Error, Result};
+
+/// Most pixels a view may have, so that a mistyped pixel size is an error and not a crash: 16 Gi bytes of f32.
+pub const MAX_PIXEL_COUNT: usize = 1 << 32;
+
+/// Position and orientation of a viewer in local coordinates.
+///
+/// `right`, `down` and `forward` are orthonormal and right-handed: `right × down = forward`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewFrame {
+    /// The upper left corner of the picture plane for a parallel view, local metres.
+    pub eye: [f64; 3],
+    /// Unit vector along the rows of the picture.
+    pub right: [f64; 3],
+    /// Unit vector along the columns of the picture, downward.
+    pub down: [f64; 3],
+    /// Unit vector of sight.
+    pub forward: [f64; 3],
+}
+
+/// How space is projected onto the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Projection {
+    /// Parallel rays along `forward`.
+    Orthographic {
+        /// The paper's s: pixels per metre, the same in both directions.
+        pixels_per_metre: f64,
+    },
+}
+
+/// A view: frame, projection and picture size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Position and orientation.
+    pub frame: ViewFrame,
+    /// Projection.
+    pub projection: Projection,
+    /// Width and height in pixels.
+    pub size_px: [usize; 2],
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn normalized(v: [f64; 3]) -> Option<[f64; 3]> {
+    let length = dot(v, v).sqrt();
+    (length.is_finite() && length > 0.0).then(|| v.map(|x| x / length))
+}
+
+impl ViewFrame {
+    /// Coordinates of a local position in this frame: along right, down and forward, metres.
+    #[must_use]
+    pub fn view_from_local(&self, local: [f32; 3]) -> [f64; 3] {
+        let d: [f64; 3] = std::array::from_fn(|i| f64::from(local[i]) - self.eye[i]);
+        [dot(self.right, d), dot(self.down, d), dot(self.forward, d)]
+    }
+
+    /// Local position of coordinates along right, down and forward.
+    #[must_use]
+    pub fn local_from_view(&self, view: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|i| {
+            self.eye[i] + view[0] * self.right[i] + view[1] * self.down[i] + view[2] * self.forward[i]
+        })
+    }
+}
+
+/// Unit vector from the scene to the sun, for an azimuth clockwise from grid north and an elevation, radians.
+#[must_use]
+pub fn to_sun(azimuth: f64, elevation: f64) -> [f64; 3] {
+    [azimuth.sin() * elevation.cos(), azimuth.cos() * elevation.cos(), elevation.sin()]
+}
+
+impl View {
+    /// The paper's viewport: `p0` is the upper left corner, `vx` spans the rows and `vy` the columns (their lengths give
+    /// the size of the picture), `pixels_per_metre` is s. The line of sight is `vx × vy`.
+    ///
+    /// `p0` is local; all lengths are metres.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where a value is not finite, a vector has no length, the two are not at right angles
+    /// (to a thousandth), or the picture would be empty or have more than [`MAX_PIXEL_COUNT`] pixels.
+    ///
+    /// # Source
+    /// Peters, Ledoux & Biljecki 2015, section 3.2 and Figure 3.
+    pub fn from_viewport(p0: [f64; 3], vx: [f64; 3], vy: [f64; 3], pixels_per_metre: f64) -> Result<Self> {
+        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let (Some(right), Some(down)) = (normalized(vx), normalized(vy)) else {
+            return invalid("viewport vector", format!("{vx:?}, {vy:?}"), "finite and longer than zero");
+        };
+        if !p0.iter().all(|v| v.is_finite()) {
+            return invalid("viewport corner", format!("{p0:?}"), "finite");
+        }
+        if dot(right, down).abs() > 1e-3 {
+            return invalid("viewport vectors", format!("{vx:?}, {vy:?}"), "at right angles to each other");
+        }
+        if !(pixels_per_metre.is_finite() && pixels_per_metre > 0.0) {
+            return invalid("pixels per metre", pixels_per_metre.to_string(), "finite and above zero");
+        }
+        let Some(forward) = normalized(cross(right, down)) else {
+            return invalid("viewport vectors", format!("{vx:?}, {vy:?}"), "at right angles to each other");
+        };
+        let down = cross(forward, right);
+        let size = |v: [f64; 3]| (dot(v, v).sqrt() * pixels_per_metre - 1e-6).ceil().max(1.0);
+        let (width, height) = (size(vx), size(vy));
+        if !(width * height <= MAX_PIXEL_COUNT as f64) {
+            return invalid("picture size", format!("{width} x {height} pixels"), "at most 4294967296 pixels");
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked against MAX_PIXEL_COUNT")]
+        let size_px = [width as usize, height as usize];
+        Ok(Self {
+            frame: ViewFrame { eye: p0, right, down, forward },
+            projection: Projection::Orthographic { pixels_per_metre },
+            size_px,
+        })
+    }
+
+    /// A parallel view along `forward` (local, any length) that just holds the local box from `low` to `high`, with
+    /// square pixels of `pixel_size` metres. The picture's up is the world's up, or north when looking straight down or
+    /// up. The picture plane touches the box, so that every point of the box has a depth of zero or more.
+    ///
+    /// # Errors
+    /// As [`View::from_viewport`].
+    pub fn parallel(forward: [f64; 3], low: [f64; 3], high: [f64; 3], pixel_size: f64) -> Result<Self> {
+        let Some(forward) = normalized(forward) else {
+            return Err(Error::InvalidParameter {
+                name: "view direction",
+                value: format!("{forward:?}"),
+                expected: "finite and longer than zero",
+            });
+        };
+        if !(pixel_size.is_finite() && pixel_size > 0.0) {
+            return Err(Error::InvalidParameter {
+                name: "pixel size",
+                value: pixel_size.to_string(),
+                expected: "above zero metres",
+            });
+        }
+        // within a thousandth of straight up or down there is no usable sideways vector from the world's up
+        let up = if forward[2].abs() < 1.0 - 1e-6 { [0.0, 0.0, 1.0] } else { [0.0, 1.0, 0.0] };
+        let right = normalized(cross(forward, up)).unwrap_or([1.0, 0.0, 0.0]);
+        let down = cross(forward, right);
+        let mut least = [f64::INFINITY; 3];
+        let mut most = [f64::NEG_INFINITY; 3];
+        for corner in 0..8 {
+            let p: [f64; 3] = std::array::from_fn(|i| if corner >> i & 1 == 0 { low[i] } else { high[i] });
+            for (axis, v) in [right, down, forward].into_iter().enumerate() {
+                least[axis] = least[axis].min(dot(v, p));
+                most[axis] = most[axis].max(dot(v, p));
+            }
+        }
+        let eye = std::array::from_fn(|i| least[0] * right[i] + least[1] * down[i] + least[2] * forward[i]);
+        // half a pixel of room keeps points on the rim of the box inside the picture
+        let span = |axis: usize| (most[axis] - least[axis]).max(0.0) + 0.5 * pixel_size;
+        Self::from_viewport(eye, right.map(|v| v * span(0)), down.map(|v| v * span(1)), 1.0 / pixel_size)
+    }
+
+    /// Pixels per metre of a parallel view.
+    #[must_use]
+    pub fn pixels_per_metre(&self) -> f64 {
+        match self.projection {
+            Projection::Orthographic { pixels_per_metre } => pixels_per_metre,
+        }
+    }
+}
