@@ -1,1 +1,12 @@
-//! To be written.
+//! Surface normals: estimated from neighbourhoods, then oriented outward.
+
+pub mod estimate;
+
+/// Unit normals of the points of a cloud, not yet oriented.
+#[derive(Clone, Debug, Default)]
+pub struct Normals {
+    /// Unit vectors, (N, 3); (0, 0, 0) where the neighbourhood determines no plane.
+    pub vectors: Vec<[f32; 3]>,
+    /// How well each is determined, (N), 0 to 1: one minus the ratio of the two smallest eigenvalues of the neighbourhood.
+    pub quality: Vec<f32>,
+}
