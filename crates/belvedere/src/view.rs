@@ -2,8 +2,8 @@
 
 use crate::{Error, Result};
 
-/// Most pixels a view may have, so that a mistyped pixel size is an error and not a crash: 16 Gi bytes of f32.
-pub const MAX_PIXEL_COUNT: usize = 1 << 32;
+/// Most pixels a view may have, so that a mistyped pixel size is an error and not a crash: 4 GiB of f32.
+pub const MAX_PIXEL_COUNT: usize = 1 << 30;
 
 /// Position and orientation of a viewer in local coordinates.
 ///
@@ -111,7 +111,7 @@ impl View {
         let size = |v: [f64; 3]| (dot(v, v).sqrt() * pixels_per_metre - 1e-6).ceil().max(1.0);
         let (width, height) = (size(vx), size(vy));
         if !(width * height <= MAX_PIXEL_COUNT as f64) {
-            return invalid("picture size", format!("{width} x {height} pixels"), "at most 4294967296 pixels");
+            return invalid("picture size", format!("{width} x {height} pixels"), "at most 1073741824 pixels");
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked against MAX_PIXEL_COUNT")]
         let size_px = [width as usize, height as usize];

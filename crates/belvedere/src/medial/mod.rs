@@ -1,5 +1,8 @@
 //! Medial balls: the volume of a scene as a union of balls that touch its surface.
 
 pub mod balls;
+pub mod feature_size;
+pub mod shrinking_ball;
 
 pub use balls::{MedialBalls, NO_TOUCH, Side};
+pub use shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};

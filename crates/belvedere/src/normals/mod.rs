@@ -1,6 +1,9 @@
 //! Surface normals: estimated from neighbourhoods, then oriented outward.
 
 pub mod estimate;
+pub mod orient;
+
+pub use orient::OrientedCloud;
 
 /// Unit normals of the points of a cloud, not yet oriented.
 #[derive(Clone, Debug, Default)]

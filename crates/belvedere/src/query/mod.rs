@@ -1,1 +1,5 @@
-//! To be written.
+//! Queries: which targets can be seen.
+
+pub mod points;
+
+pub use points::{Answer, AnswerCounts, query_points, random_targets};
