@@ -1,9 +1,7 @@
-use belvedere::{medial::*, neighbors::NeighborIndex, normals::OrientedCloud, progress::Progress};
-fn cpu() -> f64 {
-    let s = std::fs::read_to_string("/proc/self/stat").unwrap();
-    let v: Vec<&str> = s.rsplit(')').next().unwrap().split_whitespace().collect();
-    (v[11].parse::<f64>().unwrap() + v[12].parse::<f64>().unwrap()) / 100.0
-}
+use belvedere::{
+    depth::*, medial::*, neighbors::NeighborIndex, normals::OrientedCloud, progress::Progress, query::*, view::*,
+};
+use std::time::Instant;
 fn read(p: &str) -> Vec<[f32; 3]> {
     let v: Vec<f32> = npyz::NpyFile::new(std::fs::File::open(p).unwrap()).unwrap().into_vec().unwrap();
     v.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect()
@@ -11,25 +9,30 @@ fn read(p: &str) -> Vec<[f32; 3]> {
 fn main() {
     let d = "/work/shared/reference/delft1/";
     let (c, n) = (read(&format!("{d}coords.npy")), read(&format!("{d}normals.npy")));
-    let t = cpu();
     let index = NeighborIndex::new(&c).unwrap();
-    println!("index {:.2}", cpu() - t);
-    let t = cpu();
-    let e =
-        belvedere::normals::estimate::estimate(&c, &index, belvedere::normals::estimate::Neighborhood::Fixed { k: 10 })
-            .unwrap();
-    println!("normals {:.2} {}", cpu() - t, e.quality[0]);
     let cloud = OrientedCloud::new(c, n);
-    for p in
-        [ShrinkParams::angles(), ShrinkParams { initial_radius: 50.0, ..ShrinkParams::angles() }, ShrinkParams::tau()]
-    {
-        for side in [Side::Interior, Side::Exterior] {
-            let t = cpu();
-            let (b, r) = shrink(&cloud, &index, side, &p, Progress::none()).unwrap();
-            println!("{p:?} {side:?} {:.2} s {r:?}", cpu() - t);
-            let mut rr: Vec<f32> = (0..b.len()).filter(|&i| b.touch[i] != NO_TOUCH).map(|i| b.radii[i]).collect();
-            rr.sort_by(f32::total_cmp);
-            println!("radii {:?}", [0.01, 0.1, 0.5, 0.9, 0.99, 1.0].map(|q| rr[((rr.len() - 1) as f64 * q) as usize]));
+    for p in [ShrinkParams::angles(), ShrinkParams::tau()] {
+        let (b, _) = shrink(&cloud, &index, Side::Interior, &p, Progress::none()).unwrap();
+        for (az, el) in [(0.0f64, 90.0f64), (180.0, 35.0), (240.0, 12.0)] {
+            let f = to_sun(az.to_radians(), el.to_radians()).map(|v| -v);
+            let v = View::parallel(f, [0.0, 0.0, 0.0], [192.0, 229.3, 20.4], 0.25).unwrap();
+            for prof in [Profile::Sphere, Profile::PaperCone] {
+                for it in [ItemBuffer::Without, ItemBuffer::With] {
+                    let t = Instant::now();
+                    let m = depth_map(&b, &v, prof, it).unwrap();
+                    let e = t.elapsed();
+                    let q = random_targets([0.0; 3], [192.0, 229.3, 20.4], 1000000, 1);
+                    let t = Instant::now();
+                    let a = query_points(&m, &q, 0.1);
+                    println!(
+                        "{az} {el} {prof:?} {it:?} {:?} map {:?} query {:?} {:?}",
+                        v.size_px,
+                        e,
+                        t.elapsed(),
+                        AnswerCounts::of(&a)
+                    );
+                }
+            }
         }
     }
 }

@@ -43,7 +43,7 @@ pub(super) fn draw<S: Shape>(
         for column in 0..width.div_ceil(TILE) {
             let mut tile = Tile::new(column, row, scale);
             let with_items = nearest.is_some();
-            tile.draw::<S>(&splats, lists.of_tile(&splats, column, row), with_items);
+            tile.draw::<S>(&splats, &lists.of_tile(&splats, column, row), with_items);
             tile.store(depth, nearest.as_deref_mut(), width);
         }
     };
@@ -141,32 +141,46 @@ impl TileLists {
         Self { columns, starts, listed, wide, scale }
     }
 
-    /// The splats of one tile, nearest first, equally near ones by row of the ball.
-    fn of_tile(&self, splats: &[Splat], column: usize, row: usize) -> Vec<u32> {
+    /// The splats of one tile, nearest first, equally near ones by row of the ball: places in `splats` in the low half of
+    /// each key.
+    fn of_tile(&self, splats: &[Splat], column: usize, row: usize) -> Vec<u64> {
         let tile = row * self.columns + column;
-        let mut list = self.listed[self.starts[tile]..self.starts[tile + 1]].to_vec();
+        let listed = &self.listed[self.starts[tile]..self.starts[tile + 1]];
         let touches = |from: usize, center: f32, reach: f32| {
             let from = from as f32 * TILE as f32;
             center + reach > from && center - reach < from + TILE as f32
         };
-        list.extend(self.wide.iter().filter(|&&i| {
+        let wide = self.wide.iter().filter(|&&i| {
             let splat = &splats[i as usize];
             let reach = splat.radius / self.scale.units_per_pixel;
             touches(column, splat.x, reach) && touches(row, splat.y, reach)
-        }));
-        list.sort_unstable_by(|&a, &b| {
-            let (a, b) = (&splats[a as usize], &splats[b as usize]);
-            a.near().total_cmp(&b.near()).then(a.ball.cmp(&b.ball))
         });
-        list
+        // splats are in the order of their balls, so a key of depth and place sorts by depth and ball
+        let mut keys: Vec<u64> = listed
+            .iter()
+            .chain(wide)
+            .map(|&i| u64::from(ascending_bits(splats[i as usize].near())) << 32 | u64::from(i))
+            .collect();
+        keys.sort_unstable();
+        keys
     }
 }
 
-/// First and one past the last pixel whose centre may lie within `reach` of `center`.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the picture")]
+/// Bits that ascend as the value does, below zero too.
+fn ascending_bits(value: f32) -> u32 {
+    let bits = value.to_bits();
+    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
+}
+
+/// First and one past the last pixel whose centre may lie within `reach` of `center`; one or two pixels too many at most.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates and is clamped to the picture")]
 fn pixel_range(center: f32, reach: f32, size: usize) -> [usize; 2] {
-    let limit = |v: f32| v.clamp(0.0, size as f32) as usize;
-    [limit((center - reach - 0.5).floor()), limit((center + reach + 0.5).ceil())]
+    let end = center + reach + 1.5;
+    if end < 1.0 {
+        return [0, 0];
+    }
+    // a cast rounds towards zero, which is down for what is not negative
+    [((center - reach - 0.5).max(0.0) as usize).min(size), (end as usize).min(size)]
 }
 
 struct Tile {
@@ -197,9 +211,9 @@ impl Tile {
         }
     }
 
-    fn draw<S: Shape>(&mut self, splats: &[Splat], nearest_first: Vec<u32>, with_items: bool) {
-        for (drawn, i) in nearest_first.into_iter().enumerate() {
-            let splat = &splats[i as usize];
+    fn draw<S: Shape>(&mut self, splats: &[Splat], nearest_first: &[u64], with_items: bool) {
+        for (drawn, &key) in nearest_first.iter().enumerate() {
+            let splat = &splats[key as u32 as usize];
             // finding the farthest depth of the whole tile costs as much as a few balls
             if drawn % 32 == 31 && splat.near() > self.farthest_of_all() {
                 return;
@@ -287,19 +301,20 @@ impl Tile {
         }
     }
 
+    #[inline(always)]
     fn draw_rows_with_items<S: Shape>(&mut self, splat: &Splat, first_column: usize, rows: std::ops::Range<usize>) {
         let dx = self.offsets(splat, first_column);
         for row in rows {
             let dy = ((self.top + row) as f32 + 0.5 - splat.y) * self.units_per_pixel;
-            for (lane, dx) in dx.into_iter().enumerate() {
-                let at = row * TILE + first_column + lane;
+            let first = row * TILE + first_column;
+            let depths = &mut self.depth[first..][..BLOCK];
+            let balls = &mut self.nearest[first..][..BLOCK];
+            for ((pixel, ball), dx) in depths.iter_mut().zip(balls).zip(dx) {
                 let depth = S::depth(splat, dx, dy);
-                if depth < self.depth[at]
-                    || (depth == self.depth[at] && depth.is_finite() && splat.ball < self.nearest[at])
-                {
-                    self.depth[at] = depth;
-                    self.nearest[at] = splat.ball;
-                }
+                // no short circuit: every lane does the same
+                let wins = (depth < *pixel) | ((depth == *pixel) & (splat.ball < *ball) & (depth < f32::INFINITY));
+                *pixel = if wins { depth } else { *pixel };
+                *ball = if wins { splat.ball } else { *ball };
             }
         }
     }

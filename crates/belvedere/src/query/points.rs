@@ -65,14 +65,18 @@ pub fn query_points(map: &DepthMap, targets: &[[f32; 3]], depth_bias: f32) -> Ve
         .with_min_len(CHUNK)
         .map(|&target| {
             let [x, y, z] = map.view.frame.view_from_local(target);
-            let (x, y) = ((x * pixels_per_metre).floor(), (y * pixels_per_metre).floor());
+            let (x, y) = (x * pixels_per_metre, y * pixels_per_metre);
             #[expect(clippy::cast_possible_truncation, reason = "the depth map holds f32")]
             let z = z as f32;
             // beside the picture, or not a number
             if !(x >= 0.0 && y >= 0.0 && z + depth_bias >= least_depth) {
                 return Answer::OutsideView;
             }
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; saturates")]
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "not negative: rounds down, saturates"
+            )]
             match map.depth.get(x as usize, y as usize) {
                 None => Answer::OutsideView,
                 Some(depth) if z < depth + depth_bias => Answer::Visible,
