@@ -17,6 +17,7 @@ pub mod progress;
 pub mod query;
 pub mod random;
 pub mod raster;
+pub mod summary;
 pub mod trajectory;
 pub mod view;
 

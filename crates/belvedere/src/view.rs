@@ -78,6 +78,14 @@ pub fn to_sun(azimuth: f64, elevation: f64) -> [f64; 3] {
     [azimuth.sin() * elevation.cos(), azimuth.cos() * elevation.cos(), elevation.sin()]
 }
 
+/// Pixel size, metres, that suits a scene between two corners: 0.25 m, half the usual spacing of airborne scans, or a
+/// thousandth of the extent where the scene is a small object.
+#[must_use]
+pub fn default_pixel_size(low: [f64; 3], high: [f64; 3]) -> f64 {
+    let extent = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+    if extent > 0.0 { (extent / 1000.0).min(0.25) } else { 0.25 }
+}
+
 impl View {
     /// The paper's viewport: `p0` is the upper left corner, `vx` spans the rows and `vy` the columns (their lengths give
     /// the size of the picture), `pixels_per_metre` is s. The line of sight is `vx × vy`.

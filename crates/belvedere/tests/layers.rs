@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// Level of each module of the core; a module imports from lower levels, or from its own folder.
-const LEVELS: [(&str, u8); 18] = [
+const LEVELS: [(&str, u8); 19] = [
     ("error", 0),
     ("crs", 0),
     ("cloud", 0),
@@ -13,6 +13,7 @@ const LEVELS: [(&str, u8); 18] = [
     ("trajectory", 0),
     ("random", 0),
     ("progress", 0),
+    ("summary", 0),
     ("neighbors", 1),
     ("io", 1),
     ("clean", 2),
