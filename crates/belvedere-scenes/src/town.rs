@@ -27,7 +27,8 @@ pub struct TownParams {
     /// Direction of the streets, radians counter-clockwise from east, 0 to π/4. Default 0.14: walls that run along the rows
     /// of a raster flatter every raster method.
     pub street_angle: f64,
-    /// Width of the streets between the blocks, metres, 4 to 20. Default 9.
+    /// Width of the streets between the blocks, metres, 4 to 12: wider ones would push the houses of the smallest town into
+    /// each other. Default 9.
     pub street_width: f64,
 }
 
@@ -55,7 +56,7 @@ impl TownParams {
 
 /// Least side of the ground, metres.
 const MIN_EXTENT: f64 = 100.0;
-/// Distance between block centres that the streets aim for, metres.
+/// Least distance between block centres, metres, where there are more than two by two.
 const BLOCK_PITCH: f64 = 52.0;
 /// Half the side of the square within a block that the block plans are drawn for, metres.
 const PLAN_HALF_SIDE: f64 = 20.0;
@@ -65,6 +66,8 @@ const RIM: f64 = 4.0;
 const BURIED: f64 = 1.0;
 /// Least gap between a crown and a building or another crown, metres.
 const CROWN_GAP: f64 = 0.3;
+/// Ground per tree that is tried in gardens, m²: about half of the tries find room.
+const AREA_PER_GARDEN_TREE: f64 = 130.0;
 /// Distance between street trees, metres.
 const STREET_TREE_SPACING: f64 = 11.0;
 
@@ -90,7 +93,7 @@ pub fn town(params: &TownParams) -> Scene {
     // The turned grid of blocks has to fit into the upright square.
     let (sin, cos) = params.street_angle.sin_cos();
     let side = (extent - 2.0 * RIM) / (sin.abs() + cos.abs());
-    let blocks_across = ((side + params.street_width) / BLOCK_PITCH).round().max(2.0);
+    let blocks_across = ((side + params.street_width) / BLOCK_PITCH).floor().max(2.0);
     let pitch = (side + params.street_width) / blocks_across;
     let block_side = pitch - params.street_width;
 
@@ -106,9 +109,14 @@ pub fn town(params: &TownParams) -> Scene {
             _ => site.detached_houses(&plan),
         }
     }
-    // Last, so that gardens and street trees give way to houses and not the other way round.
-    site.garden_trees(&centre, side, extent);
-    site.street_trees(&centre, &positions, pitch, side, extent);
+    // After the houses, so that trees give way to them; gardens last, so that they leave the streets free.
+    let streets: Vec<f64> = positions.iter().skip(1).map(|&block| block - pitch / 2.0).collect();
+    site.street_trees(&centre, &streets, side, extent);
+    for &street in &streets {
+        site.take(centre.moved(0.0, street, 0.0), side, params.street_width);
+        site.take(centre.moved(street, 0.0, 0.0), params.street_width, side);
+    }
+    site.garden_trees(centre.origin, extent);
     site.scene
 }
 
@@ -261,28 +269,26 @@ impl Site {
         }
     }
 
-    /// Trees at random places that are free, about one per 300 m².
-    fn garden_trees(&mut self, centre: &Placement, side: f64, extent: f64) {
-        let mut tries = side * side / 150.0;
-        while tries > 0.0 {
-            let point =
-                centre.at(self.random.between(-side / 2.0, side / 2.0), self.random.between(-side / 2.0, side / 2.0));
-            self.plant(point, centre.origin, extent);
-            tries -= 1.0;
-        }
-    }
-
-    /// A row of trees along one side of each street between the blocks.
-    fn street_trees(&mut self, centre: &Placement, positions: &[f64], pitch: f64, side: f64, extent: f64) {
-        for &block in positions.iter().skip(1) {
-            let across = block - pitch / 2.0 + 1.5;
+    /// A row of trees along the middle of each street between the blocks, `streets` away from the centre.
+    fn street_trees(&mut self, centre: &Placement, streets: &[f64], side: f64, extent: f64) {
+        for &street in streets {
             let mut along = -side / 2.0 + STREET_TREE_SPACING / 2.0;
             while along < side / 2.0 {
                 let shift = self.random.between(-0.8, 0.8);
-                self.plant(centre.at(across, along + shift), centre.origin, extent);
-                self.plant(centre.at(along + shift, across), centre.origin, extent);
+                self.plant(centre.at(street, along + shift), centre.origin, extent);
+                self.plant(centre.at(along + shift, street), centre.origin, extent);
                 along += STREET_TREE_SPACING;
             }
+        }
+    }
+
+    /// Trees at random places that are free: in gardens, courtyards and the green belt about the town.
+    fn garden_trees(&mut self, centre: [f64; 2], extent: f64) {
+        let mut area_left = extent * extent;
+        while area_left > 0.0 {
+            let point = centre.map(|c| c + self.random.between(-extent / 2.0, extent / 2.0));
+            self.plant(point, centre, extent);
+            area_left -= AREA_PER_GARDEN_TREE;
         }
     }
 

@@ -23,6 +23,9 @@ pub const CONTACT: f64 = 1e-6;
 /// The tree works in f32. A ray enters it at the box of the scene, so no number exceeds the size of the scene, and the
 /// slab test errs by a few units of 6e-8 of that. A hundred times more costs nothing and loses no triangle.
 const BOX_PADDING: f64 = 1e-5;
+/// Least padding, and how much farther than asked the tree looks, metres: it passes over boxes that a ray leaves, or
+/// stops before, within its first 0.1 mm.
+const TREE_SLACK: f64 = 1e-3;
 
 /// Where a ray meets a scene first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +86,7 @@ impl Truth {
             return Self { triangles, centre: [0.0; 3], half_size: [0.0; 3], tree: CwBvh::default() };
         }
         let centre: [f64; 3] = std::array::from_fn(|i| low[i] / 2.0 + high[i] / 2.0);
-        let padding = BOX_PADDING * length(sub(high, low)).max(CONTACT);
+        let padding = (BOX_PADDING * length(sub(high, low))).max(TREE_SLACK);
         let half_size = std::array::from_fn(|i| (high[i] - low[i]) / 2.0 + padding);
         for triangle in &mut triangles {
             triangle.corners = triangle.corners.map(|corner| sub(corner, centre));
@@ -95,7 +98,7 @@ impl Truth {
     }
 
     /// First triangle within `max_range` metres (may be infinite) from `origin` along `direction`, whose length does not
-    /// matter, or `None` where there is none. A direction of zero or non-finite length meets nothing. Surfaces nearer than
+    /// matter, or `None` where there is none. A direction of zero or non-finite length, like any other NaN, meets nothing. Surfaces nearer than
     /// [`CONTACT`] to the origin are passed over.
     #[must_use]
     pub fn first_hit(&self, origin: [f64; 3], direction: [f64; 3], max_range: f64) -> Option<Hit> {
@@ -158,7 +161,7 @@ impl Truth {
                 return f32::INFINITY;
             }
             best = Some(hit);
-            round_up(range - entry.start)
+            tree_reach(range - entry.start)
         });
         best
     }
@@ -177,7 +180,7 @@ impl Truth {
     /// The part of a ray inside the box of the scene, as the tree takes it, or `None` where it misses the box.
     fn enter(&self, local: [f64; 3], direction: [f64; 3], min_range: f64, max_range: f64) -> Option<Entry> {
         let (mut start, mut end) = (min_range, max_range);
-        if self.triangles.is_empty() || !local.iter().all(|v| v.is_finite()) {
+        if self.triangles.is_empty() || max_range.is_nan() || !local.iter().all(|v| v.is_finite()) {
             return None;
         }
         for axis in 0..3 {
@@ -188,15 +191,16 @@ impl Truth {
             start = start.max(a.min(b));
             end = end.min(a.max(b));
         }
-        if start.is_nan() || end.is_nan() || start > end {
+        if start > end {
             return None;
         }
+        // −0 + 0 = +0: the tree takes the slope of −0 for negative but its sign for positive, and would miss every box.
+        let tree_direction = to_f32(direction).map(|component| component + 0.0);
         let ray = Ray::new(
             to_f32(add_scaled(local, direction, start)).into(),
-            to_f32(direction).into(),
+            tree_direction.into(),
             0.0,
-            // The padding of the boxes must not hide a triangle at the very end from the tree.
-            round_up(end - start),
+            tree_reach(end - start),
         );
         Some(Entry { ray, start })
     }
@@ -238,8 +242,8 @@ fn to_f32(local: [f64; 3]) -> [f32; 3] {
     local.map(|v| v as f32)
 }
 
-/// A range for the search tree, not less than `range`, so that it still looks into boxes that start there.
+/// How far the search tree must look to find every box with a triangle within `range`.
 #[expect(clippy::cast_possible_truncation, reason = "rounded up on purpose")]
-fn round_up(range: f64) -> f32 {
-    (range as f32).next_up().max(f32::MIN_POSITIVE)
+fn tree_reach(range: f64) -> f32 {
+    ((range + TREE_SLACK) as f32).next_up()
 }
