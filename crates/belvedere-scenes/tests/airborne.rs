@@ -1,5 +1,7 @@
 //! The simulated scan: on the mesh, in step with its path, as dense as real ones, the same for the same seed.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests may panic like the tests themselves")]
+
 use std::collections::HashMap;
 
 use belvedere_scenes::{
