@@ -1,1 +1,43 @@
 //! Simulated towns with exact meshes, and simulated laser scans of them.
+//!
+//! Tests and demonstrations need scenes whose answers are known. This crate makes a town out of triangles
+//! ([`town`]), answers exactly what blocks what in it ([`Truth`]), and flies a laser scanner over it
+//! ([`scan_airborne`]). It knows no other crate of the project: what comes out are plain columns and meshes.
+//!
+//! ```
+//! use belvedere_scenes::{AirborneParams, TownParams, Truth, scan_airborne, town};
+//!
+//! let scene = town(&TownParams::default());
+//! let scan = scan_airborne(&scene, &AirborneParams { pulses_per_m2: 0.5, ..AirborneParams::default() });
+//! let truth = Truth::new(&scene);
+//! let to_sun = [0.5, -0.5, 0.4];
+//! let shaded = truth.occluded_towards_each(&scan.exact_positions, to_sun);
+//! assert_eq!(shaded.len(), scan.len());
+//! ```
+//!
+//! Coordinates are absolute everywhere: metres, f64, x east, y north, z up, in a projected frame such as the Dutch
+//! national grid. Everything follows from the parameters alone, seeds included, with the same bits for any number of
+//! threads; between platforms the last bits may differ where the mathematical library does.
+
+mod airborne;
+mod beam;
+mod flight;
+mod obj;
+mod random;
+mod scan;
+mod scene;
+mod solids;
+mod terrain;
+mod town;
+mod trees;
+mod truth;
+mod vector;
+
+pub use airborne::{AirborneParams, scan_airborne};
+pub use beam::BeamParams;
+pub use scan::{Scan, ScanReport, SensorPath};
+pub use scene::{Material, Part, Scene};
+pub use solids::{Placement, extruded, l_shaped_ridged, ridged};
+pub use terrain::Terrain;
+pub use town::{TownParams, town};
+pub use truth::{CONTACT, Hit, Truth};

@@ -1,0 +1,136 @@
+//! What a simulated scan hands out: returns as columns, and the path of the scanner.
+
+use std::fmt::Write as _;
+
+/// A simulated laser scan. Columns have one value per return, ordered by strip, time and return number.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scan {
+    /// East, metres, absolute, with noise.
+    pub x: Vec<f64>,
+    /// North, metres, absolute, with noise.
+    pub y: Vec<f64>,
+    /// Height, metres, with noise.
+    pub z: Vec<f64>,
+    /// Adjusted standard GPS time (GPS seconds minus 1e9), increasing from pulse to pulse; all returns of a pulse share it.
+    pub gps_time: Vec<f64>,
+    /// Which return of its pulse a point is, from 1, by increasing range.
+    pub return_number: Vec<u8>,
+    /// How many returns its pulse has.
+    pub return_count: Vec<u8>,
+    /// Angle of the pulse from nadir in degrees, negative to the left of the flight direction (LAS 1.4).
+    pub scan_angle_deg: Vec<f32>,
+    /// Strip, from 1.
+    pub point_source_id: Vec<u16>,
+    /// ASPRS class of the surface: 2 ground, 5 high vegetation, 6 building.
+    pub classification: Vec<u8>,
+    /// Strength of the echo, grows with reflectance, share of the beam and steepness of incidence; arbitrary unit.
+    pub intensity: Vec<u16>,
+    /// Truth: index of the triangle of the scene that sent the echo back.
+    pub triangle: Vec<u32>,
+    /// Truth: the point without noise, on that triangle, (N, 3), metres, absolute.
+    pub exact_positions: Vec<[f64; 3]>,
+    /// Path of the scanner over all strips.
+    pub sensor_path: SensorPath,
+    /// What became of the pulses.
+    pub report: ScanReport,
+}
+
+/// Counts of a scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ScanReport {
+    /// Pulses sent.
+    pub pulses: u64,
+    /// Pulses that met the scene but were lost as drop-outs.
+    pub dropped_pulses: u64,
+    /// Pulses that passed the rim of the scene.
+    pub missed_pulses: u64,
+    /// Echoes left out because they were too weak or came after the last one the scanner records.
+    pub dropped_echoes: u64,
+}
+
+/// Positions of a scanner at increasing times.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SensorPath {
+    /// Adjusted standard GPS time of each position, seconds, strictly increasing.
+    pub times: Vec<f64>,
+    /// Positions, (M, 3), metres, absolute, without noise.
+    pub positions: Vec<[f64; 3]>,
+}
+
+impl SensorPath {
+    /// CSV text: the header `time,x,y,z`, then a line per position with microseconds and millimetres.
+    #[must_use]
+    pub fn to_csv(&self) -> String {
+        let mut text = String::from("time,x,y,z\n");
+        for (time, [x, y, z]) in self.times.iter().zip(&self.positions) {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{time:.6},{x:.3},{y:.3},{z:.3}");
+        }
+        text
+    }
+}
+
+/// One return, the row of a [`Scan`].
+pub(crate) struct Return {
+    pub(crate) position: [f64; 3],
+    pub(crate) gps_time: f64,
+    pub(crate) return_number: u8,
+    pub(crate) return_count: u8,
+    pub(crate) scan_angle_deg: f32,
+    pub(crate) point_source_id: u16,
+    pub(crate) classification: u8,
+    pub(crate) intensity: u16,
+    pub(crate) triangle: u32,
+    pub(crate) exact_position: [f64; 3],
+}
+
+impl Scan {
+    /// Number of returns.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Whether there is no return at all.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    pub(crate) fn push(&mut self, r: Return) {
+        self.x.push(r.position[0]);
+        self.y.push(r.position[1]);
+        self.z.push(r.position[2]);
+        self.gps_time.push(r.gps_time);
+        self.return_number.push(r.return_number);
+        self.return_count.push(r.return_count);
+        self.scan_angle_deg.push(r.scan_angle_deg);
+        self.point_source_id.push(r.point_source_id);
+        self.classification.push(r.classification);
+        self.intensity.push(r.intensity);
+        self.triangle.push(r.triangle);
+        self.exact_positions.push(r.exact_position);
+    }
+
+    /// Appends returns, path and counts of `later`.
+    pub(crate) fn append(&mut self, mut later: Self) {
+        self.x.append(&mut later.x);
+        self.y.append(&mut later.y);
+        self.z.append(&mut later.z);
+        self.gps_time.append(&mut later.gps_time);
+        self.return_number.append(&mut later.return_number);
+        self.return_count.append(&mut later.return_count);
+        self.scan_angle_deg.append(&mut later.scan_angle_deg);
+        self.point_source_id.append(&mut later.point_source_id);
+        self.classification.append(&mut later.classification);
+        self.intensity.append(&mut later.intensity);
+        self.triangle.append(&mut later.triangle);
+        self.exact_positions.append(&mut later.exact_positions);
+        self.sensor_path.times.append(&mut later.sensor_path.times);
+        self.sensor_path.positions.append(&mut later.sensor_path.positions);
+        self.report.pulses += later.report.pulses;
+        self.report.dropped_pulses += later.report.dropped_pulses;
+        self.report.missed_pulses += later.report.missed_pulses;
+        self.report.dropped_echoes += later.report.dropped_echoes;
+    }
+}

@@ -1,0 +1,172 @@
+//! A scene: the exact triangles that a simulated scanner sees.
+
+use crate::vector::{add, cross, dot, scale, sub};
+
+/// What a triangle is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Material {
+    /// Bare ground.
+    Terrain,
+    /// Sloped or flat roof.
+    Roof,
+    /// Wall of a building, and its underside below the ground.
+    Facade,
+    /// Outer hull of the leaves of a tree.
+    TreeCrown,
+    /// Stem of a tree.
+    Trunk,
+}
+
+impl Material {
+    /// Every material.
+    pub const ALL: [Self; 5] = [Self::Terrain, Self::Roof, Self::Facade, Self::TreeCrown, Self::Trunk];
+
+    /// Standard class of a laser point on this material: 2 ground, 5 high vegetation, 6 building (ASPRS LAS 1.4, table 17).
+    #[must_use]
+    pub fn asprs_class(self) -> u8 {
+        match self {
+            Self::Terrain => 2,
+            Self::Roof | Self::Facade => 6,
+            Self::TreeCrown | Self::Trunk => 5,
+        }
+    }
+
+    /// Lower-case name without blanks, as the OBJ text uses it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Terrain => "terrain",
+            Self::Roof => "roof",
+            Self::Facade => "facade",
+            Self::TreeCrown => "tree_crown",
+            Self::Trunk => "trunk",
+        }
+    }
+
+    /// Share of the light that a surface facing the laser (near infrared) sends back, 0 to 1: typical values, for
+    /// plausible intensities only.
+    pub(crate) fn reflectance(self) -> f64 {
+        match self {
+            Self::Terrain => 0.25,
+            Self::Roof => 0.2,
+            Self::Facade => 0.35,
+            Self::TreeCrown => 0.5,
+            Self::Trunk => 0.3,
+        }
+    }
+}
+
+/// A piece of surface with a material per triangle: what the shape functions make and [`Scene::add_object`] takes.
+#[derive(Clone, Debug, Default)]
+pub struct Part {
+    /// Vertices, (V, 3), metres, absolute.
+    pub vertices: Vec<[f64; 3]>,
+    /// Corners of each triangle, counter-clockwise seen from outside, (T, 3), indices into `vertices`.
+    pub triangles: Vec<[u32; 3]>,
+    /// Material of each triangle, (T).
+    pub materials: Vec<Material>,
+}
+
+impl Part {
+    /// Adds a flat convex polygon, corners counter-clockwise seen from outside, as a fan about its first corner.
+    pub(crate) fn add_polygon(&mut self, corners: &[usize], material: Material) {
+        if let [first, rest @ ..] = corners {
+            for edge in rest.windows(2) {
+                self.triangles.push([index_u32(*first), index_u32(edge[0]), index_u32(edge[1])]);
+                self.materials.push(material);
+            }
+        }
+    }
+
+    /// The same surface, all of `material`.
+    #[must_use]
+    pub fn with_material(mut self, material: Material) -> Self {
+        self.materials.fill(material);
+        self
+    }
+
+    /// Volume enclosed, m³: positive for a closed surface whose triangles are counter-clockwise seen from outside.
+    /// Without meaning for an open surface.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        // Measured from a vertex: from the zero of a projected grid the terms would be 1e16 m³ and cancel badly.
+        let Some(&reference) = self.vertices.first() else { return 0.0 };
+        let corner = |i: u32| self.vertices.get(i as usize).map_or([0.0; 3], |&v| sub(v, reference));
+        self.triangles.iter().map(|&[a, b, c]| dot(corner(a), cross(corner(b), corner(c))) / 6.0).sum()
+    }
+}
+
+/// A scene of triangles, grouped in named objects.
+///
+/// Buildings and trees consist of closed solids; the solids of one object may overlap (a trunk reaches into its crown).
+/// The terrain is a sheet that ends at the rim of the scene.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Vertices, (V, 3), metres, absolute (the projected frame, not local).
+    pub vertices: Vec<[f64; 3]>,
+    /// Corners of each triangle, counter-clockwise seen from outside, (T, 3), indices into `vertices`.
+    pub triangles: Vec<[u32; 3]>,
+    /// Material of each triangle, (T).
+    pub materials: Vec<Material>,
+    /// Object of each triangle, (T), index into `object_names`; the triangles of one object are neighbours.
+    pub objects: Vec<u32>,
+    /// Name of each object, such as `building 3`.
+    pub object_names: Vec<String>,
+}
+
+impl Scene {
+    /// Appends an object made of `parts`.
+    pub fn add_object(&mut self, name: impl Into<String>, parts: &[Part]) {
+        let object = index_u32(self.object_names.len());
+        self.object_names.push(name.into());
+        for part in parts {
+            let first = index_u32(self.vertices.len());
+            self.vertices.extend_from_slice(&part.vertices);
+            self.triangles.extend(part.triangles.iter().map(|t| t.map(|corner| corner + first)));
+            self.materials.extend_from_slice(&part.materials);
+            self.objects.extend(std::iter::repeat_n(object, part.triangles.len()));
+        }
+    }
+
+    /// Corners of triangle `index`, or `None` where it or one of its vertices does not exist.
+    #[must_use]
+    pub fn corners(&self, index: usize) -> Option<[[f64; 3]; 3]> {
+        let [a, b, c] = *self.triangles.get(index)?;
+        let vertex = |i: u32| self.vertices.get(i as usize).copied();
+        Some([vertex(a)?, vertex(b)?, vertex(c)?])
+    }
+
+    /// Lowest and highest corner of the box around all vertices, or `None` without any.
+    #[must_use]
+    pub fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
+        let first = *self.vertices.first()?;
+        Some(self.vertices.iter().fold((first, first), |(low, high), v| {
+            (std::array::from_fn(|i| low[i].min(v[i])), std::array::from_fn(|i| high[i].max(v[i])))
+        }))
+    }
+
+    /// Mean height of the terrain vertices in metres; of all vertices where there is no terrain, 0 for an empty scene.
+    #[must_use]
+    pub fn mean_ground_height(&self) -> f64 {
+        let mean = |corners: &mut dyn Iterator<Item = u32>| {
+            let (sum, count) = corners
+                .filter_map(|i| self.vertices.get(i as usize))
+                .fold((0.0, 0_u32), |(sum, count), v| (sum + v[2], count + 1));
+            (count > 0).then(|| sum / f64::from(count))
+        };
+        let ground = self.triangles.iter().zip(&self.materials).filter(|&(_, &m)| m == Material::Terrain);
+        mean(&mut ground.flat_map(|(t, _)| *t))
+            .or_else(|| mean(&mut self.triangles.iter().flat_map(|t| *t)))
+            .unwrap_or(0.0)
+    }
+}
+
+/// Middle of two points.
+pub(crate) fn middle(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    scale(add(a, b), 0.5)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a scene of four billion vertices would not fit into memory")]
+pub(crate) fn index_u32(index: usize) -> u32 {
+    index as u32
+}
