@@ -1,2 +1,35 @@
-//! The belvedere command line.
-fn main() {}
+//! The belvedere command line: parse, call the core, write, report.
+
+mod arguments;
+mod commands;
+mod pipeline;
+mod progress;
+mod summary;
+
+use clap::{CommandFactory, FromArgMatches};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let matches = arguments::Cli::command().get_matches();
+    let cli = match arguments::Cli::from_arg_matches(&matches) {
+        Ok(cli) => cli,
+        Err(error) => error.exit(),
+    };
+    match commands::run(&cli) {
+        Ok(summary) => summary.print(&cli.global),
+        Err(error) => {
+            // a reader that stops listening, such as `head`, is not a failure of ours
+            if is_broken_pipe(&error) {
+                return ExitCode::SUCCESS;
+            }
+            summary::print_error(&error);
+            if error.downcast_ref::<arguments::Usage>().is_some() { ExitCode::from(2) } else { ExitCode::FAILURE }
+        }
+    }
+}
+
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| {
+        cause.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
+    })
+}

@@ -1,0 +1,409 @@
+//! What can be typed: flags as entered. What they build is made in `pipeline` and in each command.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Wrong usage that only shows once arguments are combined: exit status 2.
+#[derive(Debug)]
+pub(crate) struct Usage(pub(crate) String);
+
+impl std::fmt::Display for Usage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Usage {}
+
+/// Visibility analysis directly on point clouds.
+///
+/// A point cloud becomes a union of medial balls; the balls block lines of sight; a depth map answers what is visible.
+/// No city model, no raster of heights: balconies, trees, bridges and facades count.
+///
+/// Start with `belvedere demo`, then `belvedere info FILE` on a cloud of your own.
+#[derive(Parser)]
+#[command(name = "belvedere", version, max_term_width = 110, arg_required_else_help = true, propagate_version = true)]
+pub(crate) struct Cli {
+    #[command(flatten)]
+    pub(crate) global: Global,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Everywhere")]
+pub(crate) struct Global {
+    /// Threads to work with; results are the same for any number [default: all processors]
+    #[arg(long, global = true, value_name = "N")]
+    pub(crate) threads: Option<usize>,
+    /// Seed of everything random
+    #[arg(long, global = true, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Print the summary as one JSON object
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    /// Say how long each stage takes
+    #[arg(short, long, global = true)]
+    pub(crate) verbose: bool,
+    /// Print nothing but errors
+    #[arg(long, global = true, conflicts_with = "verbose")]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Simulate a small town and run everything on it; needs no input
+    #[command(after_help = "Example:\n  belvedere demo -o demo")]
+    Demo(Demo),
+    /// Tell what is in a point cloud, what is missing, and what can be done with it
+    #[command(after_help = "Example:\n  belvedere demo -o demo\n  belvedere info demo/town.laz")]
+    Info(Info),
+    /// Estimate and orient normals
+    #[command(
+        after_help = "Examples:\n  belvedere normals demo/town.laz --orient trajectory=demo/trajectory.csv -o demo/normals.laz\n  belvedere normals FOLDER --neighbors 10 -o FOLDER      coords.npy to normals.npy, as masbcpp's compute_normals"
+    )]
+    Normals(Normals),
+    /// Shrink medial balls
+    #[command(
+        after_help = "Examples:\n  belvedere balls demo/town.laz --orient trajectory=demo/trajectory.csv -o demo/balls.npz\n  belvedere balls FOLDER -o FOLDER                 coords.npy and normals.npy to ma_*.npy, as masbcpp's compute_ma\n  belvedere balls FOLDER --simplify 0.4 -o FOLDER  also lfs.npy and decimate_lfs.npy, as masbcpp's simplify"
+    )]
+    Balls(Balls),
+    /// Draw how far one sees along each pixel of a view
+    #[command(
+        name = "depth-map",
+        after_help = "Examples:\n  belvedere depth-map demo/town.laz --sun 235,30 -o demo/seen-from-the-sun.png\n  belvedere depth-map demo/balls.npz --viewport \"154940,463060,60 120,0,0 0,-120,0 4\" -o demo/from-above.tif"
+    )]
+    DepthMap(DepthMap),
+    /// Answer which targets are visible in a view
+    #[command(
+        after_help = "Answers: 0 blocked, 1 visible, 3 outside the view (2 is kept for answers not borne out by measured free space).\n\nExamples:\n  belvedere query demo/town.laz --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/balls.npz --sun 235,30 --random 1000000 -o demo/answers.npy"
+    )]
+    Query(Query),
+    /// Print a completion script for a shell
+    #[command(after_help = "Example:\n  belvedere completions bash > belvedere.bash")]
+    Completions {
+        /// Shell to complete for
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page
+    #[command(after_help = "Example:\n  belvedere man > belvedere.1")]
+    Man,
+}
+
+#[derive(Args)]
+pub(crate) struct Demo {
+    /// Folder for clouds, balls, maps and pictures; made if it is not there
+    #[arg(short, long, value_name = "DIR", default_value = "demo")]
+    pub(crate) output: PathBuf,
+    /// Side of the town in metres
+    #[arg(long, value_name = "M", default_value_t = 120.0)]
+    pub(crate) extent: f64,
+}
+
+#[derive(Args)]
+pub(crate) struct Info {
+    #[command(flatten)]
+    pub(crate) input: CloudInput,
+}
+
+#[derive(Args)]
+pub(crate) struct Normals {
+    #[command(flatten)]
+    pub(crate) input: CloudInput,
+    #[command(flatten)]
+    pub(crate) cleaning: Cleaning,
+    #[command(flatten)]
+    pub(crate) orienting: Orienting,
+    /// Cloud with normals as attributes (.laz .las .ply .csv), or a folder for coords.npy and normals.npy
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Args)]
+pub(crate) struct Balls {
+    #[command(flatten)]
+    pub(crate) input: CloudInput,
+    #[command(flatten)]
+    pub(crate) cleaning: Cleaning,
+    #[command(flatten)]
+    pub(crate) orienting: Orienting,
+    #[command(flatten)]
+    pub(crate) shrinking: Shrinking,
+    /// Side to make balls on; a folder always gets both [default: interior]
+    #[arg(long, value_enum, default_value_t = SideChoice::Interior, hide_default_value = true)]
+    pub(crate) side: SideChoice,
+    /// Ball file (.npz .ply .laz .las), or a folder for masbcpp's ma_coords_*.npy and ma_qidx_*.npy (one row per input
+    /// point: nothing is cleaned away, and the method is `angles` unless said otherwise)
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    /// In a folder: write NaN as centre of balls that never shrank
+    #[arg(long)]
+    pub(crate) nan: bool,
+    /// In a folder: also write the local feature size (lfs.npy) and which points a thinning to this share of it keeps
+    /// (decimate_lfs.npy)
+    #[arg(long, value_name = "EPSILON")]
+    pub(crate) simplify: Option<f32>,
+    /// Side of the cells that thinning counts points in, in metres
+    #[arg(long, value_name = "M", default_value_t = 0.5, requires = "simplify")]
+    pub(crate) cell_size: f32,
+}
+
+#[derive(Args)]
+pub(crate) struct DepthMap {
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
+    #[command(flatten)]
+    pub(crate) view: ViewChoice,
+    /// Depth in metres as .tif or .npy, or a picture as .png
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    /// Also write which ball each pixel shows (.tif or .npy; 4294967295 where none)
+    #[arg(long, value_name = "OUT")]
+    pub(crate) balls_id: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct Query {
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
+    #[command(flatten)]
+    pub(crate) view: ViewChoice,
+    #[command(flatten)]
+    pub(crate) targets: Targets,
+    /// Metres a target may lie behind the depth of its pixel and still count as visible [default: 0.05 and half the
+    /// pixel's diagonal; 0 with --profile paper-cone]
+    #[arg(long, value_name = "M")]
+    pub(crate) bias: Option<f32>,
+    /// Targets with their answer (.csv .laz .las .ply), or the answers alone (.npy, u8)
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Args)]
+pub(crate) struct CloudInput {
+    /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .npy): several files, or a folder, make one cloud; a
+    /// folder with coords.npy is masbcpp's
+    #[arg(value_name = "CLOUD", required = true)]
+    pub(crate) clouds: Vec<PathBuf>,
+    /// Reference system in place of the file's, as EPSG:CODE or WKT
+    #[arg(long, value_name = "CRS")]
+    pub(crate) crs: Option<String>,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Cleaning")]
+pub(crate) struct Cleaning {
+    /// Keep noise (classes 7 and 18) and withheld points
+    #[arg(long)]
+    pub(crate) keep_noise: bool,
+    /// Keep points at or within a millimetre of another
+    #[arg(long)]
+    pub(crate) keep_duplicates: bool,
+    /// Keep points that are alone
+    #[arg(long)]
+    pub(crate) keep_isolated: bool,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Normals")]
+pub(crate) struct Orienting {
+    /// Neighbours that make a normal, or `adaptive` (the paper: 6)
+    #[arg(long, value_name = "K", default_value = "16")]
+    pub(crate) neighbors: NeighborChoice,
+    /// How normals know what is outside: auto (the file's normals, else its scanner positions, else up), given, up,
+    /// scanner (from the file), scanner=X,Y,Z, trajectory=FILE (.csv .txt .sbet), mesh=FILE (.obj .ply .json)
+    #[arg(long, value_name = "HOW", default_value = "auto")]
+    pub(crate) orient: OrientChoice,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Balls")]
+pub(crate) struct Shrinking {
+    /// tau: no point lies deeper in a ball than --penetration; angles: the paper's (masbcpp's) heuristics [default: tau;
+    /// angles when a folder is written]
+    #[arg(long, value_enum)]
+    pub(crate) method: Option<MethodChoice>,
+    /// Radius balls start with, in metres [default: 30 for tau, 200 for angles]
+    #[arg(long, value_name = "M")]
+    pub(crate) initial_radius: Option<f32>,
+    /// Depth to which a point may enter a ball, in metres [default: 0.05]
+    #[arg(long, value_name = "M")]
+    pub(crate) penetration: Option<f32>,
+    /// The paper's t_a in degrees [default: 32]
+    #[arg(long, value_name = "DEG")]
+    pub(crate) first_angle: Option<f64>,
+    /// The paper's t_b in degrees [default: 20]
+    #[arg(long, value_name = "DEG")]
+    pub(crate) next_angle: Option<f64>,
+}
+
+/// A cloud to make balls from, or a ball file.
+#[derive(Args)]
+pub(crate) struct SceneInput {
+    #[command(flatten)]
+    pub(crate) input: CloudInput,
+    #[command(flatten)]
+    pub(crate) cleaning: Cleaning,
+    #[command(flatten)]
+    pub(crate) orienting: Orienting,
+    #[command(flatten)]
+    pub(crate) shrinking: Shrinking,
+    /// Surface that stands for a ball: the sphere, or the cone of the paper's Algorithm 1
+    #[arg(long, value_enum, default_value_t = ProfileChoice::Sphere, help_heading = "Balls")]
+    pub(crate) profile: ProfileChoice,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "View (one of)")]
+#[group(required = true, multiple = false, id = "view")]
+pub(crate) struct ViewKind {
+    /// The paper's p0, v_x, v_y and s: upper left corner, row and column vectors in file coordinates (their lengths are the
+    /// size), pixels per unit; one looks along v_x x v_y
+    #[arg(long, value_name = "\"X,Y,Z X,Y,Z X,Y,Z S\"", allow_hyphen_values = true)]
+    pub(crate) viewport: Option<ViewportChoice>,
+    /// Parallel view from the sun: azimuth clockwise from grid north, elevation above the horizon, in degrees
+    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true)]
+    pub(crate) sun: Option<Numbers<2>>,
+    /// Parallel view along a direction
+    #[arg(long, value_name = "DX,DY,DZ", allow_hyphen_values = true)]
+    pub(crate) direction: Option<Numbers<3>>,
+}
+
+#[derive(Args)]
+pub(crate) struct ViewChoice {
+    #[command(flatten)]
+    pub(crate) kind: ViewKind,
+    /// Pixel size of --sun and --direction in metres [default: 0.25, finer for small objects]
+    #[arg(long, value_name = "M", conflicts_with = "viewport")]
+    pub(crate) pixel: Option<f64>,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Targets (one of)")]
+#[group(required = true, multiple = false)]
+pub(crate) struct Targets {
+    /// Points from a file of any cloud format, in the coordinates of the scene's file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) targets: Option<PathBuf>,
+    /// Points spread evenly at random over the bounding box of the cloud
+    #[arg(long, value_name = "N")]
+    pub(crate) random: Option<usize>,
+    /// The points of the cloud themselves, all of them and in their order
+    #[arg(long = "self")]
+    pub(crate) own: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]
+pub(crate) enum SideChoice {
+    /// Inside the scene: these block lines of sight
+    Interior,
+    /// In free space
+    Exterior,
+}
+
+#[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]
+pub(crate) enum MethodChoice {
+    /// Bounded penetration
+    Tau,
+    /// The paper's separation angles
+    Angles,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum ProfileChoice {
+    /// The sphere itself
+    Sphere,
+    /// The paper's Algorithm 1 to the letter
+    PaperCone,
+}
+
+#[derive(Clone, Copy)]
+pub(crate) enum NeighborChoice {
+    Fixed(usize),
+    Adaptive,
+}
+
+impl FromStr for NeighborChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "adaptive" => Ok(Self::Adaptive),
+            _ => text.parse().map(Self::Fixed).map_err(|_| "not a number of neighbours or `adaptive`".to_owned()),
+        }
+    }
+}
+
+#[derive(Clone)]
+pub(crate) enum OrientChoice {
+    Auto,
+    Given,
+    Up,
+    Scanner,
+    ScannerAt([f64; 3]),
+    Trajectory(PathBuf),
+    Mesh(PathBuf),
+}
+
+impl FromStr for OrientChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            None => match text {
+                "auto" => Ok(Self::Auto),
+                "given" => Ok(Self::Given),
+                "up" => Ok(Self::Up),
+                "scanner" => Ok(Self::Scanner),
+                _ => Err("use auto, given, up, scanner, scanner=X,Y,Z, trajectory=FILE or mesh=FILE".to_owned()),
+            },
+            Some(("scanner", position)) => Ok(Self::ScannerAt(position.parse::<Numbers<3>>()?.0)),
+            Some(("trajectory", file)) => Ok(Self::Trajectory(file.into())),
+            Some(("mesh", file)) => Ok(Self::Mesh(file.into())),
+            Some(_) => Err("use scanner=X,Y,Z, trajectory=FILE or mesh=FILE".to_owned()),
+        }
+    }
+}
+
+/// Numbers separated by commas.
+#[derive(Clone, Copy)]
+pub(crate) struct Numbers<const N: usize>(pub(crate) [f64; N]);
+
+impl<const N: usize> FromStr for Numbers<N> {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<f64> = text
+            .split(',')
+            .map(|part| part.trim().parse().map_err(|_| format!("{part:?} is not a number")))
+            .collect::<Result<_, _>>()?;
+        if let Some(bad) = numbers.iter().find(|v| !v.is_finite()) {
+            return Err(format!("{bad} is not finite"));
+        }
+        numbers.try_into().map(Self).map_err(|_| format!("expected {N} numbers separated by commas"))
+    }
+}
+
+/// The paper's viewport in file coordinates.
+#[derive(Clone, Copy)]
+pub(crate) struct ViewportChoice {
+    pub(crate) p0: [f64; 3],
+    pub(crate) vx: [f64; 3],
+    pub(crate) vy: [f64; 3],
+    pub(crate) pixels_per_unit: f64,
+}
+
+impl FromStr for ViewportChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts: Vec<&str> = text.split_whitespace().collect();
+        let [p0, vx, vy, s] = parts[..] else {
+            return Err("expected four parts separated by blanks: px,py,pz vx,vy,vz wx,wy,wz s".to_owned());
+        };
+        let triple = |text: &str| text.parse::<Numbers<3>>().map(|n| n.0);
+        let [pixels_per_unit] = s.parse::<Numbers<1>>()?.0;
+        Ok(Self { p0: triple(p0)?, vx: triple(vx)?, vy: triple(vy)?, pixels_per_unit })
+    }
+}

@@ -1,0 +1,95 @@
+//! `belvedere balls`.
+
+use super::extension;
+use crate::arguments::{Balls, Cleaning, Global, MethodChoice, SideChoice, Usage};
+use crate::pipeline::{self, Prepared};
+use crate::progress::Stages;
+use crate::summary::{Summary, percent};
+use anyhow::Result;
+use belvedere::PointCloud;
+use belvedere::io::{MasbcppFolder, write_balls, write_masbcpp};
+use belvedere::medial::feature_size::{FeatureSizeParams, SimplifyParams, local_feature_size, simplify};
+use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkParams, Side};
+
+pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
+    let is_folder = extension(&arguments.output).is_empty();
+    if !is_folder && (arguments.nan || arguments.simplify.is_some()) {
+        return Err(Usage("--nan and --simplify write into a folder: give -o a name without extension".to_owned()).into());
+    }
+    let method = if is_folder { MethodChoice::Angles } else { MethodChoice::Tau };
+    let params = arguments.shrinking.params(method)?;
+    let mut stages = Stages::new(global);
+    let mut summary = Summary::default();
+    let cloud = pipeline::read(&arguments.input, &mut stages, &mut summary)?;
+    let nothing = Cleaning::nothing();
+    let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
+    let prepared = pipeline::prepare(&cloud, cleaning, &arguments.orienting, &mut stages, &mut summary)?;
+    if is_folder {
+        write_folder(arguments, global, &cloud, &prepared, &params, &mut stages, &mut summary)?;
+    } else {
+        let side = match arguments.side {
+            SideChoice::Interior => Side::Interior,
+            SideChoice::Exterior => Side::Exterior,
+        };
+        let balls = pipeline::shrink_side(&prepared, side, &params, &mut stages, &mut summary)?.shrunk();
+        let provenance = [
+            ("program", concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned()),
+            ("side", format!("{side:?}").to_lowercase()),
+            ("parameters", format!("{params:?}")),
+            ("input", arguments.input.clouds.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(" ")),
+        ];
+        let bounds = pipeline::bounds_of(&cloud)?;
+        let saved = pipeline::saved(balls, (&cloud.origin, &cloud.crs), bounds, provenance);
+        stages.run("writing", 0, |_| write_balls(&arguments.output, &saved))?;
+    }
+    summary.add("written", arguments.output.display().to_string());
+    summary.add_seconds(stages.into_seconds());
+    Ok(summary)
+}
+
+fn write_folder(
+    arguments: &Balls,
+    global: &Global,
+    cloud: &PointCloud,
+    prepared: &Prepared,
+    params: &ShrinkParams,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<()> {
+    let interior = pipeline::shrink_side(prepared, Side::Interior, params, stages, summary)?;
+    let exterior = pipeline::shrink_side(prepared, Side::Exterior, params, stages, summary)?;
+    let mut folder = MasbcppFolder::default();
+    let centers = |balls: &MedialBalls| {
+        let mut centers = pipeline::file_coordinates(cloud, &balls.centers);
+        if arguments.nan {
+            centers.iter_mut().zip(&balls.touch).filter(|(_, t)| **t == NO_TOUCH).for_each(|(c, _)| *c = [f32::NAN; 3]);
+        }
+        centers
+    };
+    // NO_TOUCH has the bits of -1
+    let touch = |balls: &MedialBalls| balls.touch.iter().map(|t| t.cast_signed()).collect::<Vec<i32>>();
+    let (coords, inner, outer) =
+        (pipeline::file_coordinates(cloud, &cloud.positions), centers(&interior), centers(&exterior));
+    let (inner_touch, outer_touch) = (touch(&interior), touch(&exterior));
+    folder.coords = Some(&coords);
+    folder.normals = Some(prepared.oriented.normals());
+    folder.ma_coords_in = Some(&inner);
+    folder.ma_coords_out = Some(&outer);
+    folder.ma_qidx_in = Some(&inner_touch);
+    folder.ma_qidx_out = Some(&outer_touch);
+    let (sizes, keep);
+    if let Some(spacing) = arguments.simplify {
+        sizes = stages.run("feature size", 0, |_| {
+            local_feature_size(&cloud.positions, &[&interior, &exterior], &FeatureSizeParams::default())
+        })?;
+        let params =
+            SimplifyParams { spacing, cell_size: arguments.cell_size, seed: global.seed, ..SimplifyParams::default() };
+        keep = simplify(&cloud.positions, &sizes, &params)?.into_iter().map(u8::from).collect::<Vec<u8>>();
+        let kept = keep.iter().filter(|&&k| k == 1).count();
+        summary.add("kept_by_thinning_percent", percent(kept, keep.len()));
+        folder.lfs = Some(&sizes);
+        folder.decimate_lfs = Some(&keep);
+    }
+    stages.run("writing", 0, |_| write_masbcpp(&arguments.output, &folder))?;
+    Ok(())
+}

@@ -1,0 +1,117 @@
+//! `belvedere info`.
+
+use crate::arguments::{Global, Info};
+use crate::pipeline;
+use crate::progress::Stages;
+use crate::summary::{Summary, percent, rounded};
+use anyhow::Result;
+use belvedere::PointCloud;
+use belvedere::io::{ReadOptions, read_cloud};
+use belvedere::summary::CloudSummary;
+
+pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
+    let mut stages = Stages::new(global);
+    let mut summary = Summary::default();
+    let options = ReadOptions { crs: arguments.input.crs.clone() };
+    let (cloud, report) = stages.run("reading", 0, |_| read_cloud(&arguments.input.clouds, &options))?;
+    let files = report.files.iter().map(|file| {
+        let mut section = Summary::default();
+        section
+            .add("path", file.path.display().to_string())
+            .add("format", file.format.clone())
+            .add("points", file.points);
+        if !file.crs_source.is_empty() {
+            section.add("reference_system", format!("{} ({})", file.crs, file.crs_source));
+        }
+        serde_json::Value::from(section)
+    });
+    summary.add("file", files.collect::<Vec<_>>());
+    summary.add("points", cloud.len());
+    let facts = stages.run("counting", 0, |_| CloudSummary::of(&cloud));
+    if let Some((low, high)) = facts.bounds {
+        summary.add("lowest_corner", low.map(|v| rounded(v, 3)).to_vec());
+        summary.add("highest_corner", high.map(|v| rounded(v, 3)).to_vec());
+    }
+    summary.add("metres_per_unit", cloud.crs.metres_per_unit);
+    if cloud.crs.vertical_metres_per_unit != cloud.crs.metres_per_unit {
+        summary.add("metres_per_vertical_unit", cloud.crs.vertical_metres_per_unit);
+    }
+    summary.add("covered_ground_m2", rounded(facts.occupied_area, 1));
+    summary.add("points_per_m2_of_covered_ground", rounded(facts.density, 2));
+    let reading = pipeline::reading_section(&report);
+    summary.add("reading", reading);
+    summary.add("attributes", attributes(&cloud, &facts));
+    summary.add("missing", missing(&cloud));
+    summary.add("can_serve", can_serve(&cloud, &facts));
+    summary.add("duplicate_points", facts.duplicate_count);
+    Ok(summary)
+}
+
+fn attributes(cloud: &PointCloud, facts: &CloudSummary) -> Summary {
+    let mut section = Summary::default();
+    for (name, _) in cloud.attributes.columns() {
+        section.add(name, "yes");
+    }
+    let counts = |entries: Vec<(String, usize)>| {
+        let mut counts = Summary::default();
+        entries.into_iter().for_each(|(name, count)| {
+            counts.add(&name, count);
+        });
+        counts
+    };
+    if !facts.classes.is_empty() {
+        section.add("classification", counts(facts.classes.iter().map(|(c, &n)| (format!("class {c}"), n)).collect()));
+    }
+    if !facts.flight_lines.is_empty() {
+        section.add("point_source_id", counts(facts.flight_lines.iter().map(|(l, &n)| (format!("line {l}"), n)).collect()));
+    }
+    if let Some(share) = facts.multi_return_share {
+        section.add("return_count", format!("{:.1} % of the points belong to pulses with several returns", 100.0 * share));
+    }
+    if let Some([least, most]) = facts.scan_angle_deg {
+        section.add("scan_angle", format!("{least:.1} to {most:.1} degrees"));
+    }
+    if let Some(times) = facts.gps_time {
+        let mut text = format!("{:.3} to {:.3} s, {} different", times.first, times.last, times.distinct_count);
+        if times.missing_count > 0 {
+            text.push_str(&format!(", {} missing", times.missing_count));
+        }
+        if !times.can_tell_pulses_apart(cloud.len()) {
+            text.push_str(": too few to tell pulses apart");
+        }
+        section.add("gps_time", text);
+    }
+    if !cloud.scanner_positions.is_empty() {
+        section.add("scanner_positions", cloud.scanner_positions.len());
+    }
+    section
+}
+
+/// Attributes that would make more possible.
+fn missing(cloud: &PointCloud) -> Vec<&'static str> {
+    let a = &cloud.attributes;
+    let wanted = [
+        (a.classification.is_none(), "classes (noise cannot be told from its class)"),
+        (a.gps_time.is_none(), "GPS time (a trajectory cannot orient normals)"),
+        (a.return_number.is_none(), "return numbers"),
+        (a.scan_angle.is_none(), "scan angles"),
+        (a.point_source_id.is_none(), "flight lines"),
+        (cloud.crs.wkt.is_none() && cloud.crs.epsg.is_none(), "reference system (metres are assumed; see --crs)"),
+    ];
+    wanted.into_iter().filter_map(|(is_missing, name)| is_missing.then_some(name)).collect()
+}
+
+fn can_serve(cloud: &PointCloud, facts: &CloudSummary) -> Summary {
+    let mut section = Summary::default();
+    let enough = cloud.len() >= 4;
+    let yes_if = |able: bool, why_not: &str| if able { "yes".to_owned() } else { format!("no: {why_not}") };
+    for command in ["normals", "balls", "depth-map", "query"] {
+        section.add(command, yes_if(enough, "fewer than 4 points"));
+    }
+    section.add("--orient given", yes_if(cloud.attributes.normals.is_some(), "the file has no normals"));
+    section.add("--orient scanner", yes_if(!cloud.scanner_positions.is_empty(), "the file has no scanner positions"));
+    let times = facts.gps_time.is_some_and(|t| t.can_tell_pulses_apart(cloud.len()));
+    section.add("--orient trajectory=FILE", yes_if(times, "the file has no usable GPS times"));
+    section.add("--orient mesh=FILE", "yes");
+    section
+}

@@ -1,0 +1,359 @@
+//! From what was typed to clouds, oriented clouds, balls and views. Calls the core in order; computes nothing itself.
+
+use crate::arguments::{
+    CloudInput, Cleaning, MethodChoice, NeighborChoice, OrientChoice, Orienting, ProfileChoice, SceneInput, Shrinking,
+    Usage, ViewChoice,
+};
+use crate::progress::Stages;
+use crate::summary::{Summary, percent, rounded};
+use anyhow::Result;
+use belvedere::clean::{CleanParams, CleanReport, clean};
+use belvedere::crs::Crs;
+use belvedere::depth::Profile;
+use belvedere::io::{ReadOptions, ReadReport, SavedBalls, is_ball_file, read_balls, read_cloud, read_mesh, read_trajectory};
+use belvedere::medial::{MedialBalls, ShrinkMethod, ShrinkParams, ShrinkReport, Side, shrink};
+use belvedere::neighbors::NeighborIndex;
+use belvedere::normals::estimate::{Neighborhood, estimate};
+use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
+use belvedere::view::{View, default_pixel_size, to_sun};
+use belvedere::{Error, PointCloud};
+
+/// Reads the cloud and reports on it.
+pub(crate) fn read(input: &CloudInput, stages: &mut Stages, summary: &mut Summary) -> Result<PointCloud> {
+    let options = ReadOptions { crs: input.crs.clone() };
+    let (cloud, report) = stages.run("reading", 0, |_| read_cloud(&input.clouds, &options))?;
+    summary.add("points", cloud.len());
+    let section = reading_section(&report);
+    summary.add("reading", section);
+    Ok(cloud)
+}
+
+/// What reading found, without what goes without saying.
+pub(crate) fn reading_section(report: &ReadReport) -> Summary {
+    let mut section = Summary::default();
+    let crs = if report.crs.is_empty() { "unknown" } else { &report.crs };
+    section.add("reference_system", crs);
+    let left_out: Vec<String> = report
+        .files
+        .iter()
+        .flat_map(|file| &file.left_out)
+        .map(|left_out| format!("{} {}", left_out.count, left_out.reason))
+        .collect();
+    section.add("left_out", left_out);
+    section.add("attributes_not_in_every_file", report.dropped_attributes.clone());
+    let notes = report.files.iter().flat_map(|file| {
+        let name = file.path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        file.notes.iter().map(move |note| format!("{name}: {note}"))
+    });
+    section.add("notes", report.notes.iter().cloned().chain(notes).collect::<Vec<_>>());
+    section
+}
+
+impl Cleaning {
+    /// Parameters as typed.
+    pub(crate) fn params(&self) -> CleanParams {
+        let mut params = CleanParams::default();
+        if self.keep_noise {
+            params.dropped_classes = Vec::new();
+            params.withheld = belvedere::clean::Withheld::Keep;
+        }
+        if self.keep_duplicates {
+            params.duplicates = None;
+        }
+        if self.keep_isolated {
+            params.isolated = None;
+        }
+        params
+    }
+
+    /// Parameters that clean nothing away.
+    pub(crate) fn nothing() -> Self {
+        Self { keep_noise: true, keep_duplicates: true, keep_isolated: true }
+    }
+}
+
+fn cleaning_section(report: &CleanReport) -> Summary {
+    let mut section = Summary::default();
+    section
+        .add("noise_classes", report.dropped_class_count)
+        .add("withheld", report.withheld_count)
+        .add("duplicates", report.duplicate_count)
+        .add("isolated", report.isolated_count)
+        .add("kept", report.kept_count);
+    section
+}
+
+/// A cloud whose normals point outward, and its index.
+pub(crate) struct Prepared {
+    pub(crate) oriented: OrientedCloud,
+    pub(crate) index: NeighborIndex,
+    /// Which points of the cloud as read these are.
+    pub(crate) kept: Vec<u32>,
+}
+
+/// Cleans, estimates normals and orients them.
+pub(crate) fn prepare(
+    cloud: &PointCloud,
+    cleaning: &Cleaning,
+    orienting: &Orienting,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<Prepared> {
+    let (kept, report) = stages.run("cleaning", 0, |_| clean(cloud, &cleaning.params()))?;
+    summary.add("removed_by_cleaning", cleaning_section(&report));
+    if kept.is_empty() {
+        let what = format!("{} were read and cleaning removed all; see --keep-noise, --keep-isolated", cloud.len());
+        return Err(Error::NoPoints { what }.into());
+    }
+    let cleaned;
+    let cloud = if kept.len() == cloud.len() {
+        cloud
+    } else {
+        cleaned = cloud.select(&kept);
+        &cleaned
+    };
+    let index = stages.run("indexing", 0, |_| NeighborIndex::new(&cloud.positions))?;
+    let choice = match &orienting.orient {
+        OrientChoice::Auto if cloud.attributes.normals.is_some() => OrientChoice::Given,
+        OrientChoice::Auto if !cloud.scanner_positions.is_empty() => OrientChoice::Scanner,
+        OrientChoice::Auto => OrientChoice::Up,
+        other => other.clone(),
+    };
+    let normals = match choice {
+        OrientChoice::Given => Normals::default(),
+        _ => {
+            let neighborhood = match orienting.neighbors {
+                NeighborChoice::Fixed(k) => Neighborhood::Fixed { k },
+                NeighborChoice::Adaptive => Neighborhood::adaptive(),
+            };
+            stages.run("estimating normals", 0, |_| estimate(&cloud.positions, &index, neighborhood))?
+        }
+    };
+    let (mesh, trajectory);
+    let by = match choice {
+        OrientChoice::Auto | OrientChoice::Up => Orientation::Up,
+        OrientChoice::Given => Orientation::Given,
+        OrientChoice::Scanner => Orientation::Scanner,
+        OrientChoice::ScannerAt(position) => {
+            let scale = cloud.crs.metres_per_unit_xyz();
+            Orientation::ScannerAt(vec![std::array::from_fn(|i| position[i] * scale[i])])
+        }
+        OrientChoice::Trajectory(path) => {
+            (trajectory, _) = stages.run("reading trajectory", 0, |_| read_trajectory(&path, &cloud.crs))?;
+            Orientation::Trajectory(&trajectory)
+        }
+        OrientChoice::Mesh(path) => {
+            (mesh, _) = stages.run("reading mesh", 0, |_| read_mesh(&path))?;
+            Orientation::Mesh(&mesh)
+        }
+    };
+    let (oriented, report) = stages.run("orienting normals", 0, |_| orient(cloud, normals, &by))?;
+    summary.add("normals", orientation_section(&by, &report));
+    Ok(Prepared { oriented, index, kept })
+}
+
+fn orientation_section(by: &Orientation<'_>, report: &OrientReport) -> Summary {
+    let mut section = Summary::default();
+    let way = match by {
+        Orientation::Up => "up (facades are guesswork: give a trajectory, a scanner or a mesh if you can)",
+        Orientation::Given => "as given",
+        Orientation::Scanner | Orientation::ScannerAt(_) => "scanner position",
+        Orientation::Trajectory(_) => "trajectory",
+        Orientation::Mesh(_) => "mesh",
+        _ => "other",
+    };
+    section.add("oriented_by", way);
+    let shares = [
+        ("as_given_percent", report.by_file_count),
+        ("towards_scanner_percent", report.by_scanner_count),
+        ("as_aligned_face_percent", report.by_face_count),
+        ("by_parity_percent", report.by_parity_count),
+        ("by_vote_of_roof_and_ground_percent", report.by_vote_count),
+        ("upward_percent", report.by_up_count),
+        ("without_normal_percent", report.without_normal_count),
+        ("low_confidence_percent", report.low_confidence_count),
+    ];
+    for (name, count) in shares {
+        if count > 0 {
+            section.add(name, percent(count, report.point_count));
+        }
+    }
+    if let Some(clock) = &report.clock {
+        section.add("points_served_by_trajectory", clock.served_count);
+    }
+    section
+}
+
+impl Shrinking {
+    /// Parameters as typed, with `default` where no method was.
+    pub(crate) fn params(&self, default: MethodChoice) -> Result<ShrinkParams> {
+        let method = self.method.unwrap_or(default);
+        let mut params = match method {
+            MethodChoice::Tau => ShrinkParams::tau(),
+            MethodChoice::Angles => ShrinkParams::angles(),
+        };
+        if let Some(radius) = self.initial_radius {
+            params.initial_radius = radius;
+        }
+        match &mut params.method {
+            ShrinkMethod::Tau { penetration } => {
+                if self.first_angle.is_some() || self.next_angle.is_some() {
+                    return Err(Usage("--first-angle and --next-angle belong to --method angles".to_owned()).into());
+                }
+                *penetration = self.penetration.unwrap_or(*penetration);
+            }
+            ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
+                if self.penetration.is_some() {
+                    return Err(Usage("--penetration belongs to --method tau".to_owned()).into());
+                }
+                let typed = |angle: Option<f64>, default: f64| angle.map_or(default, f64::to_radians);
+                *first_separation_angle = typed(self.first_angle, *first_separation_angle);
+                *next_separation_angle = typed(self.next_angle, *next_separation_angle);
+            }
+        }
+        Ok(params)
+    }
+}
+
+/// Balls on one side, reported under `name`.
+pub(crate) fn shrink_side(
+    prepared: &Prepared,
+    side: Side,
+    params: &ShrinkParams,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<MedialBalls> {
+    let name = match side {
+        Side::Interior => "interior_balls",
+        Side::Exterior => "exterior_balls",
+    };
+    let count = prepared.oriented.len();
+    let (balls, report) = stages.run("shrinking balls", count, |progress| {
+        shrink(&prepared.oriented, &prepared.index, side, params, progress)
+    })?;
+    summary.add(name, balls_section(&report));
+    Ok(balls)
+}
+
+fn balls_section(report: &ShrinkReport) -> Summary {
+    let mut section = Summary::default();
+    section
+        .add("shrunk", report.shrunk)
+        .add("never_shrunk_and_unused", report.never_shrunk)
+        .add("without_normal", report.without_normal);
+    section
+}
+
+/// Balls that block, where they lie, and the cloud they came from unless they were read from a file.
+pub(crate) struct Scene {
+    pub(crate) balls: MedialBalls,
+    /// Local frame, unit and reference system: a cloud, without points where the balls came from a file.
+    pub(crate) cloud: PointCloud,
+    /// Lowest and highest local corner of the points.
+    pub(crate) bounds: ([f32; 3], [f32; 3]),
+}
+
+/// Reads a ball file, or a cloud and makes its interior balls.
+pub(crate) fn scene(arguments: &SceneInput, stages: &mut Stages, summary: &mut Summary) -> Result<Scene> {
+    if let [path] = &arguments.input.clouds[..]
+        && path.is_file()
+        && is_ball_file(path)?
+    {
+        let saved = stages.run("reading balls", 0, |_| read_balls(path))?;
+        summary.add("balls_read", saved.radii.len());
+        return scene_of_saved(saved);
+    }
+    let cloud = read(&arguments.input, stages, summary)?;
+    let bounds = bounds_of(&cloud)?;
+    let params = arguments.shrinking.params(MethodChoice::Tau)?;
+    let prepared = prepare(&cloud, &arguments.cleaning, &arguments.orienting, stages, summary)?;
+    let balls = shrink_side(&prepared, Side::Interior, &params, stages, summary)?;
+    Ok(Scene { balls, cloud, bounds })
+}
+
+fn scene_of_saved(saved: SavedBalls) -> Result<Scene> {
+    let bounds = saved.bounds;
+    let cloud = PointCloud { origin: saved.origin, crs: saved.crs, ..PointCloud::default() };
+    let balls = MedialBalls {
+        centers: saved.centers,
+        radii: saved.radii,
+        source: saved.source,
+        touch: saved.touch,
+        separation_angles: saved.separation_angles,
+    };
+    Ok(Scene { balls, cloud, bounds })
+}
+
+/// Lowest and highest corner of a cloud that has points.
+pub(crate) fn bounds_of(cloud: &PointCloud) -> Result<([f32; 3], [f32; 3])> {
+    Ok(cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?)
+}
+
+impl From<ProfileChoice> for Profile {
+    fn from(choice: ProfileChoice) -> Self {
+        match choice {
+            ProfileChoice::Sphere => Self::Sphere,
+            ProfileChoice::PaperCone => Self::PaperCone,
+        }
+    }
+}
+
+impl ViewChoice {
+    /// The view on a scene, reported.
+    pub(crate) fn view(&self, scene: &Scene, summary: &mut Summary) -> Result<View> {
+        let (low, high) = (scene.bounds.0.map(f64::from), scene.bounds.1.map(f64::from));
+        let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));
+        let view = if let Some(sun) = &self.kind.sun {
+            let [azimuth, elevation] = sun.0.map(f64::to_radians);
+            View::parallel(to_sun(azimuth, elevation).map(|v| -v), low, high, pixel)?
+        } else if let Some(direction) = &self.kind.direction {
+            View::parallel(direction.0, low, high, pixel)?
+        } else if let Some(viewport) = &self.kind.viewport {
+            let scale = scene.cloud.crs.metres_per_unit_xyz();
+            let local = |v: [f64; 3]| std::array::from_fn(|i| v[i] * scale[i] - scene.cloud.origin[i]);
+            let metres = |v: [f64; 3]| std::array::from_fn(|i| v[i] * scale[i]);
+            View::from_viewport(
+                local(viewport.p0),
+                metres(viewport.vx),
+                metres(viewport.vy),
+                viewport.pixels_per_unit / scale[0],
+            )?
+        } else {
+            return Err(Usage("say what to look at: --viewport, --sun or --direction".to_owned()).into());
+        };
+        let mut section = Summary::default();
+        section
+            .add("width_px", view.size_px[0])
+            .add("height_px", view.size_px[1])
+            .add("pixel_m", rounded(1.0 / view.pixels_per_metre(), 4))
+            .add("looks_along", view.frame.forward.map(|v| rounded(v, 4)).to_vec());
+        summary.add("view", section);
+        Ok(view)
+    }
+}
+
+/// What a ball file says of how it was made.
+pub(crate) fn saved(
+    balls: MedialBalls,
+    place: (&[f64; 3], &Crs),
+    bounds: ([f32; 3], [f32; 3]),
+    provenance: impl IntoIterator<Item = (&'static str, String)>,
+) -> SavedBalls {
+    SavedBalls {
+        origin: *place.0,
+        crs: place.1.clone(),
+        bounds,
+        centers: balls.centers,
+        radii: balls.radii,
+        source: balls.source,
+        touch: balls.touch,
+        separation_angles: balls.separation_angles,
+        provenance: provenance.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
+    }
+}
+
+/// Local positions as f32 in file coordinates, which is what masbcpp's folders hold.
+#[expect(clippy::cast_possible_truncation, reason = "the layout is f32")]
+pub(crate) fn file_coordinates(cloud: &PointCloud, local: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    local.iter().map(|&p| cloud.to_file_coordinates(p).map(|v| v as f32)).collect()
+}

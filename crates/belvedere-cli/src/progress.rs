@@ -1,0 +1,46 @@
+//! A progress bar on a terminal, nothing in a pipe.
+
+use crate::arguments::Global;
+use belvedere::progress::Progress;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::{Duration, Instant};
+
+/// The stages of a command, shown one after the other and timed.
+pub(crate) struct Stages {
+    shown: bool,
+    verbose: bool,
+    seconds: Vec<(&'static str, f64)>,
+}
+
+impl Stages {
+    pub(crate) fn new(global: &Global) -> Self {
+        Self { shown: !global.quiet, verbose: global.verbose, seconds: Vec::new() }
+    }
+
+    /// Runs one stage over `count` items (0: unknown).
+    pub(crate) fn run<T>(&mut self, name: &'static str, count: usize, work: impl FnOnce(Progress<'_>) -> T) -> T {
+        // standard error: the bar hides itself where that is no terminal
+        let target = if self.shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let bar = ProgressBar::with_draw_target(if count > 0 { Some(count as u64) } else { None }, target);
+        let template = if count > 0 { "{msg:24} [{bar:30}] {human_pos}/{human_len} {eta}" } else { "{msg:24} {spinner}" };
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        bar.set_message(name);
+        bar.enable_steady_tick(Duration::from_millis(200));
+        let start = Instant::now();
+        let result = work(Progress::to(&|done| bar.inc(done as u64)));
+        bar.finish_and_clear();
+        let seconds = start.elapsed().as_secs_f64();
+        if self.verbose {
+            crate::summary::note(&format!("{name}: {seconds:.3} s"));
+        }
+        self.seconds.push((name, seconds));
+        result
+    }
+
+    /// Seconds each stage took.
+    pub(crate) fn into_seconds(self) -> Vec<(&'static str, f64)> {
+        self.seconds
+    }
+}

@@ -1,0 +1,126 @@
+//! What a command found, for people and as JSON.
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "this file is where the program speaks")]
+
+use crate::arguments::Global;
+use serde_json::{Map, Value};
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Named figures and sections, in order.
+#[derive(Default)]
+pub(crate) struct Summary(Map<String, Value>);
+
+impl Summary {
+    /// Adds a figure, a text, a list or a section.
+    pub(crate) fn add(&mut self, name: &str, value: impl Into<Value>) -> &mut Self {
+        self.0.insert(name.to_owned(), value.into());
+        self
+    }
+
+    /// Adds the seconds of each stage and their sum.
+    pub(crate) fn add_seconds(&mut self, seconds: Vec<(&'static str, f64)>) -> &mut Self {
+        let mut section = Self::default();
+        let total: f64 = seconds.iter().map(|(_, s)| s).sum();
+        for (name, s) in seconds {
+            section.add(name, rounded(s, 3));
+        }
+        section.add("total", rounded(total, 3));
+        self.add("seconds", section)
+    }
+
+    /// Prints the summary, as JSON where asked for.
+    pub(crate) fn print(&self, global: &Global) -> ExitCode {
+        let mut text = String::new();
+        if global.json {
+            text = format!("{:#}\n", Value::Object(self.0.clone()));
+        } else if !global.quiet {
+            lines(&self.0, 0, &mut text);
+        }
+        // a reader that stopped listening is not a failure
+        match std::io::stdout().lock().write_all(text.as_bytes()) {
+            Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+                eprintln!("error: standard output: {error}");
+                ExitCode::FAILURE
+            }
+            _ => ExitCode::SUCCESS,
+        }
+    }
+}
+
+impl From<Summary> for Value {
+    fn from(summary: Summary) -> Self {
+        Self::Object(summary.0)
+    }
+}
+
+/// A number with `digits` decimals.
+pub(crate) fn rounded(value: f64, digits: i32) -> Value {
+    let scale = 10f64.powi(digits);
+    let rounded = (value * scale).round() / scale;
+    Value::from(if rounded.is_finite() { rounded } else { value })
+}
+
+/// A share as a percentage with one decimal.
+pub(crate) fn percent(part: usize, whole: usize) -> Value {
+    rounded(100.0 * part as f64 / whole.max(1) as f64, 2)
+}
+
+fn lines(section: &Map<String, Value>, depth: usize, text: &mut String) {
+    let indent = "  ".repeat(depth);
+    for (name, value) in section {
+        let name = name.replace('_', " ");
+        match value {
+            Value::Object(inner) if inner.is_empty() => {}
+            Value::Object(inner) => {
+                text.push_str(&format!("{indent}{name}\n"));
+                lines(inner, depth + 1, text);
+            }
+            Value::Array(items) if items.is_empty() => {}
+            Value::Array(items) if items.iter().any(Value::is_object) => {
+                for item in items {
+                    text.push_str(&format!("{indent}{name}\n"));
+                    if let Value::Object(inner) = item {
+                        lines(inner, depth + 1, text);
+                    }
+                }
+            }
+            Value::Array(items) if items.iter().all(Value::is_number) => {
+                let items: Vec<String> = items.iter().map(plain).collect();
+                text.push_str(&format!("{indent}{name}: {}\n", items.join(" ")));
+            }
+            Value::Array(items) => {
+                text.push_str(&format!("{indent}{name}\n"));
+                for item in items {
+                    text.push_str(&format!("{indent}  - {}\n", plain(item)));
+                }
+            }
+            other => text.push_str(&format!("{indent}{name}: {}\n", plain(other))),
+        }
+    }
+}
+
+fn plain(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+/// Says something beside the result.
+pub(crate) fn note(text: &str) {
+    eprintln!("{text}");
+}
+
+/// Says what went wrong, with its causes.
+pub(crate) fn print_error(error: &anyhow::Error) {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1) {
+        let cause = cause.to_string();
+        // errors that already print their cause need not say it twice
+        if !text.contains(&cause) {
+            text.push_str(": ");
+            text.push_str(&cause);
+        }
+    }
+    eprintln!("error: {text}");
+}
