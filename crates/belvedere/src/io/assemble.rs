@@ -34,7 +34,8 @@ pub(super) fn assemble(mut parts: Vec<Part>) -> Result<(PointCloud, ReadReport)>
     for one in &found {
         bounds = bounds.join(one.bounds);
     }
-    let origin = centre_rounded([bounds.low, bounds.high].into_iter());
+    // Adding zero turns −0 into 0, which prints better.
+    let origin = centre_rounded([bounds.low, bounds.high].into_iter()).map(|middle| middle + 0.0);
 
     let mut cloud = PointCloud { origin, ..PointCloud::default() };
     if let Some(part) = parts.iter().find(|part| part.crs.kind != CrsKind::Unknown) {

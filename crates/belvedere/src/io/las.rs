@@ -9,7 +9,7 @@ use ::las::{PointDataBuilder, Transform, Vector};
 use super::las_columns::Columns;
 use super::las_extra::find_extra_normals;
 use super::las_header::{LasHeader, read_header};
-use super::laz::{LazReader, is_chunked};
+use super::laz::{ExtraBytes, LazReader, is_chunked};
 use super::part::{Part, open};
 use crate::crs::{Crs, CrsKind};
 use crate::{Error, Result};
@@ -32,7 +32,9 @@ pub(super) fn read(path: &Path, forced: Option<&Crs>) -> Result<Part> {
     if header.broken_records > 0 {
         part.note("a variable-length record is cut off; it and those after it are passed over");
     }
-    find_crs(&mut part, &header);
+    if forced.is_none() {
+        find_crs(&mut part, &header);
+    }
     let crs = forced.unwrap_or(&part.crs);
     let somewhere = header.first_point(path, &mut file)?;
     if let Some(what) = crs.refusal(somewhere).or_else(|| unnamed_degrees(crs, &header, somewhere)) {
@@ -40,12 +42,15 @@ pub(super) fn read(path: &Path, forced: Option<&Crs>) -> Result<Part> {
     }
 
     let normals = find_extra_normals(&mut part, &header, &format);
-    let mut columns = Columns::new(&format, &header, normals);
+    let extra = if normals.is_some() { ExtraBytes::Decompress } else { ExtraBytes::Skip };
+    // No more is reserved than the size of the file makes likely; columns grow where that is too little.
+    let capacity = usize::try_from(header.points.min(size)).unwrap_or(0);
+    let mut columns = Columns::new(&format, &header, normals, capacity);
     let transform = |i: usize| Transform { scale: header.scale[i], offset: header.offset[i] };
     let transforms = Vector { x: transform(0), y: transform(1), z: transform(2) };
     let mut batch = PointDataBuilder::new().with_format(format).with_transforms(transforms).build();
     if header.compressed {
-        let mut reader = LazReader::new(path, file, &header, size)?;
+        let mut reader = LazReader::new(path, file, &header, size, extra)?;
         while reader.next_batch(BATCH, |points| batch.resize_for(points))? > 0 {
             columns.append(&batch);
         }
@@ -127,9 +132,11 @@ fn find_crs(part: &mut Part, header: &LasHeader) {
             return part.set_crs(crs, "GeoTIFF keys");
         }
     }
-    if unread {
-        part.note("the WKT record is not understood; no reference system is taken from it");
-    }
+    part.note(if unread {
+        "its WKT record is not understood: coordinates are taken as metres"
+    } else {
+        "it names no reference system: coordinates are taken as metres"
+    });
 }
 
 /// A file without a system whose scale and offset speak of degrees.

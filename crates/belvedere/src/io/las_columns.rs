@@ -20,28 +20,33 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    pub(super) fn new(format: &Format, header: &LasHeader, extra_normals: Option<ExtraNormals>) -> Self {
+    pub(super) fn new(
+        format: &Format,
+        header: &LasHeader,
+        extra_normals: Option<ExtraNormals>,
+        capacity: usize,
+    ) -> Self {
         let extended = format.is_extended;
         let attributes = Attributes {
-            normals: extra_normals.map(|_| Vec::new()),
-            classification: Some(Vec::new()),
-            gps_time: format.has_gps_time.then(Vec::new),
+            normals: extra_normals.map(|_| Vec::with_capacity(capacity)),
+            classification: Some(Vec::with_capacity(capacity)),
+            gps_time: format.has_gps_time.then(|| Vec::with_capacity(capacity)),
             gps_time_kind: if header.adjusted_gps_time {
                 GpsTimeKind::AdjustedStandard
             } else {
                 GpsTimeKind::SecondsOfWeek
             },
-            return_number: Some(Vec::new()),
-            return_count: Some(Vec::new()),
-            scan_angle: Some(Vec::new()),
-            point_source_id: Some(Vec::new()),
-            scanner_channel: extended.then(Vec::new),
-            flags: Some(Vec::new()),
-            intensity: Some(Vec::new()),
-            color: format.has_color.then(Vec::new),
+            return_number: Some(Vec::with_capacity(capacity)),
+            return_count: Some(Vec::with_capacity(capacity)),
+            scan_angle: Some(Vec::with_capacity(capacity)),
+            point_source_id: Some(Vec::with_capacity(capacity)),
+            scanner_channel: extended.then(|| Vec::with_capacity(capacity)),
+            flags: Some(Vec::with_capacity(capacity)),
+            intensity: Some(Vec::with_capacity(capacity)),
+            color: format.has_color.then(|| Vec::with_capacity(capacity)),
             scanner_index: None,
         };
-        Self { positions: Vec::new(), attributes, extended, extra_normals }
+        Self { positions: Vec::with_capacity(capacity), attributes, extended, extra_normals }
     }
 
     /// Decodes a batch, one task per column.

@@ -3,8 +3,8 @@
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-use ::laz::LazVlr;
 use ::laz::laszip::{ChunkTable, ChunkTableEntry, CompressorType, LazItemType};
+use ::laz::{DecompressionSelection, LazVlr};
 
 use super::las_header::LasHeader;
 use super::part::guarded;
@@ -13,6 +13,13 @@ use crate::{Error, Result};
 /// A chunk that would decompress to more bytes than this is no chunk that any writer makes (50 000 points are usual).
 const MAX_CHUNK_BYTES: u64 = 1 << 30;
 
+/// Whether extra bytes are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ExtraBytes {
+    Decompress,
+    Skip,
+}
+
 /// Decompresses the points of a file batch by batch.
 pub(super) struct LazReader<'a, R> {
     path: &'a Path,
@@ -20,13 +27,14 @@ pub(super) struct LazReader<'a, R> {
     vlr: LazVlr,
     chunks: std::vec::IntoIter<ChunkTableEntry>,
     layers: Option<usize>,
+    selection: DecompressionSelection,
     record_length: usize,
     compressed: Vec<u8>,
 }
 
 impl<'a, R: Read + Seek + Send> LazReader<'a, R> {
     /// A reader of the points that `header` announces in a file of `size` bytes.
-    pub(super) fn new(path: &'a Path, mut file: R, header: &LasHeader, size: u64) -> Result<Self> {
+    pub(super) fn new(path: &'a Path, mut file: R, header: &LasHeader, size: u64, extra: ExtraBytes) -> Result<Self> {
         let damaged = |what: String| Error::malformed(path, what);
         let record = header.record(LazVlr::USER_ID, LazVlr::RECORD_ID);
         let record =
@@ -48,12 +56,15 @@ impl<'a, R: Read + Seek + Send> LazReader<'a, R> {
             ChunkTable::read_from(&mut file, &vlr).map_err(|e| damaged(format!("has no readable LAZ chunk table: {e}")))
         })?;
         let chunks = checked_chunks(path, &table, &vlr, header, size)?;
+        let selection = DecompressionSelection::all().skip_user_data().skip_nir().skip_wavepacket();
+        let selection = if extra == ExtraBytes::Skip { selection.skip_extra_bytes() } else { selection };
         Ok(Self {
             path,
             file,
             vlr,
             chunks: chunks.into_iter(),
             layers,
+            selection,
             record_length: usize::from(header.record_length),
             compressed: Vec::new(),
         })
@@ -82,8 +93,7 @@ impl<'a, R: Read + Seek + Send> LazReader<'a, R> {
         self.check_layers(&batch)?;
         let (compressed, vlr) = (&self.compressed, &self.vlr);
         guarded(self.path, || {
-            let selection = ::laz::DecompressionSelection::all();
-            ::laz::laszip::parallel::par_decompress_selective(compressed, room(points), vlr, &batch, selection)
+            ::laz::laszip::parallel::par_decompress_selective(compressed, room(points), vlr, &batch, self.selection)
                 .map_err(|e| Error::malformed(self.path, format!("has points that cannot be decompressed: {e}")))
         })?;
         Ok(points)
