@@ -90,7 +90,7 @@ impl<'a, R: Read + Seek + Send> LazReader<'a, R> {
         if self.compressed.len() as u64 != bytes {
             return Err(self.damaged("ends within its points"));
         }
-        self.check_layers(&batch)?;
+        self.check_streams(&batch)?;
         let (compressed, vlr) = (&self.compressed, &self.vlr);
         guarded(self.path, || {
             ::laz::laszip::parallel::par_decompress_selective(compressed, room(points), vlr, &batch, self.selection)
@@ -99,30 +99,46 @@ impl<'a, R: Read + Seek + Send> LazReader<'a, R> {
         Ok(points)
     }
 
-    /// Holds the sizes of the layers of each chunk, which precede them, against the size of the chunk.
-    fn check_layers(&self, batch: &[ChunkTableEntry]) -> Result<()> {
-        let Some(layers) = self.layers else { return Ok(()) };
+    /// Holds what precedes the compressed streams of each chunk against the size of the chunk.
+    fn check_streams(&self, batch: &[ChunkTableEntry]) -> Result<()> {
         let mut rest = self.compressed.as_slice();
         for chunk in batch {
             let length = usize::try_from(chunk.byte_count).unwrap_or(usize::MAX).min(rest.len());
             let (bytes, after) = rest.split_at(length);
             rest = after;
-            if chunk.point_count == 0 {
-                continue;
-            }
-            let sizes = bytes.get(self.record_length + 4..).unwrap_or_default();
-            let (sizes, content) = sizes.split_at_checked(layers * 4).ok_or_else(|| self.damaged("has a cut chunk"))?;
-            let total: u64 = sizes.as_chunks::<4>().0.iter().map(|&s| u64::from(u32::from_le_bytes(s))).sum();
-            if total > content.len() as u64 {
-                return Err(self.damaged("has a LAZ chunk whose layers are larger than the chunk"));
+            if chunk.point_count > 0 && !self.streams_are_sound(bytes) {
+                return Err(self.damaged("has a LAZ chunk whose sizes or streams are damaged"));
             }
         }
         Ok(())
     }
 
+    /// Whether the streams after the first point, which is not compressed, fit in the chunk and begin as they must.
+    fn streams_are_sound(&self, chunk: &[u8]) -> bool {
+        let Some((_, streams)) = chunk.split_at_checked(self.record_length) else { return false };
+        let Some(layers) = self.layers else { return begins_soundly(streams) };
+        // The number of points comes first, then the size of each layer, then the layers.
+        let Some((sizes, mut content)) = streams.split_at_checked(4 + layers * 4) else { return false };
+        for &size in sizes.as_chunks::<4>().0.iter().skip(1) {
+            let size = usize::try_from(u32::from_le_bytes(size)).unwrap_or(usize::MAX);
+            let Some((layer, after)) = content.split_at_checked(size) else { return false };
+            if !begins_soundly(layer) {
+                return false;
+            }
+            content = after;
+        }
+        true
+    }
+
     fn damaged(&self, what: &str) -> Error {
         Error::malformed(self.path, what)
     }
+}
+
+/// Whether an arithmetic-coded stream begins with a value below its interval. From 0xFFFFFFFF the decoder yields the
+/// same symbol forever without consuming a byte, on which the laz crate (0.13) recurses until the stack overflows.
+fn begins_soundly(stream: &[u8]) -> bool {
+    stream.first_chunk() != Some(&[0xff; 4])
 }
 
 /// Number of layers of a chunk, or `None` for point formats 0 to 5, which have no layers.
