@@ -47,7 +47,7 @@ pub struct Attributes {
     pub flags: Option<Vec<u8>>,
     /// Intensity.
     pub intensity: Option<Vec<u16>>,
-    /// Red, green, blue.
+    /// Red, green, blue, 0 to 65535 (readers widen 8-bit colours).
     pub color: Option<Vec<[u16; 3]>>,
     /// Index into [`PointCloud::scanner_positions`]; `u16::MAX` where unknown.
     pub scanner_index: Option<Vec<u16>>,

@@ -1,4 +1,13 @@
-//! Coordinate reference systems as far as visibility needs them: which unit, and degrees or not.
+//! Coordinate reference systems as far as visibility needs them: which unit, degrees or not, where on the globe.
+
+mod wkt;
+
+use crate::{Error, Result};
+
+/// Metres per US survey foot, 1200/3937 exactly.
+pub const US_SURVEY_FOOT: f64 = 1200.0 / 3937.0;
+/// Metres per international foot.
+pub const INTERNATIONAL_FOOT: f64 = 0.3048;
 
 /// Reference system and unit of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,11 +22,36 @@ pub struct Crs {
     pub metres_per_unit: f64,
     /// Metres per vertical unit of the file.
     pub vertical_metres_per_unit: f64,
+    /// What the coordinates are.
+    pub kind: CrsKind,
+}
+
+/// What the coordinates of a reference system are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CrsKind {
+    /// No system is known; taken as a plane in metres.
+    #[default]
+    Unknown,
+    /// Easting and northing in a plane.
+    Projected,
+    /// Longitude and latitude in degrees.
+    Geographic,
+    /// Earth-centred X, Y, Z.
+    Geocentric,
+    /// A site's or machine's own axes.
+    Local,
 }
 
 impl Default for Crs {
     fn default() -> Self {
-        Self { wkt: None, epsg: None, vertical_epsg: None, metres_per_unit: 1.0, vertical_metres_per_unit: 1.0 }
+        Self {
+            wkt: None,
+            epsg: None,
+            vertical_epsg: None,
+            metres_per_unit: 1.0,
+            vertical_metres_per_unit: 1.0,
+            kind: CrsKind::Unknown,
+        }
     }
 }
 
@@ -27,4 +61,223 @@ impl Crs {
     pub fn metres_per_unit_xyz(&self) -> [f64; 3] {
         [self.metres_per_unit, self.metres_per_unit, self.vertical_metres_per_unit]
     }
+
+    /// The system that `text` names: an EPSG code ("EPSG:28992", "28992", "EPSG:28992+5709"), well-known text (version
+    /// 1 or 2, compound too) or a PROJ string.
+    ///
+    /// Heights without a unit of their own are taken in the horizontal unit. A unit whose name says foot is a foot even
+    /// where the file gives it the factor 1.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where the text names no system known here.
+    pub fn parse(text: &str) -> Result<Self> {
+        let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0');
+        if text.contains(['[', '(']) && text.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            return wkt::read(text).ok_or_else(|| invalid(text));
+        }
+        let definition = proj_wkt::parse_crs(text).map_err(|_| invalid(text))?;
+        Ok(Self::from_definition(&definition))
+    }
+
+    /// The system with an EPSG code, or `None` where the embedded registry lacks it.
+    #[must_use]
+    pub fn from_epsg(code: u32) -> Option<Self> {
+        proj_core::lookup_epsg(code).map(|definition| Self::from_definition(&definition))
+    }
+
+    /// The system that a GeoTIFF key directory (the bytes of LAS record 34735, little-endian u16) names, or `None`
+    /// where it names none. Keys that need the double or text records are not followed: only codes and units count.
+    #[must_use]
+    pub fn from_geotiff_keys(directory: &[u8]) -> Option<Self> {
+        let words: Vec<u16> = directory.as_chunks::<2>().0.iter().map(|&pair| u16::from_le_bytes(pair)).collect();
+        let (_, entries) = words.split_at_checked(4)?;
+        let value = |key: u16| {
+            entries
+                .as_chunks::<4>()
+                .0
+                .iter()
+                .find_map(|&[id, location, _, value]| (id == key && location == 0 && value != 0).then_some(value))
+        };
+        let code = |key: u16| value(key).filter(|&v| v < 32767).map(u32::from);
+        let (projected, geodetic, vertical) = (code(3072), code(2048), code(4096));
+        let kind = match value(1024) {
+            Some(2) => CrsKind::Geographic,
+            Some(3) => CrsKind::Geocentric,
+            Some(1) => CrsKind::Projected,
+            _ if value(3072).is_some() => CrsKind::Projected,
+            _ if geodetic.is_some() => CrsKind::Geographic,
+            _ => return None,
+        };
+        let epsg = if kind == CrsKind::Projected { projected } else { geodetic };
+        let mut crs = epsg.and_then(Self::from_epsg).unwrap_or_default();
+        (crs.epsg, crs.kind) = (epsg, kind);
+        if let Some(unit) = value(3076).and_then(unit_of_code) {
+            crs.metres_per_unit = unit;
+        }
+        crs.vertical_metres_per_unit = value(4099)
+            .and_then(unit_of_code)
+            .or_else(|| Some(proj_core::lookup_vertical_epsg(vertical?)?.linear_unit_to_meter()))
+            .unwrap_or(crs.metres_per_unit);
+        crs.vertical_epsg = vertical;
+        Some(crs)
+    }
+
+    /// The system in a few words, such as "EPSG:28992 (Amersfoort / RD New), metres".
+    #[must_use]
+    pub fn describe(&self) -> String {
+        let code = self.epsg.map(|code| format!("EPSG:{code}"));
+        let name = self
+            .wkt
+            .as_deref()
+            .and_then(wkt::name)
+            .or_else(|| Some(proj_core::lookup_epsg(self.epsg?)?.name().to_owned()))
+            .filter(|name| !name.is_empty());
+        let system = match (code, name) {
+            (Some(code), Some(name)) => format!("{code} ({name})"),
+            (Some(only), None) | (None, Some(only)) => only,
+            (None, None) if self.kind == CrsKind::Unknown => "no reference system".to_owned(),
+            (None, None) => "unnamed reference system".to_owned(),
+        };
+        let unit = match self.kind {
+            CrsKind::Geographic => return format!("{system}, degrees"),
+            CrsKind::Geocentric => return format!("{system}, earth-centred"),
+            _ => unit_name(self.metres_per_unit),
+        };
+        let vertical_unit = unit_name(self.vertical_metres_per_unit);
+        if unit == vertical_unit {
+            format!("{system}, {unit}")
+        } else {
+            format!("{system}, {unit}, heights in {vertical_unit}")
+        }
+    }
+
+    /// Whether two files in these systems can be put together: the same horizontal system in the same units.
+    #[must_use]
+    pub fn same_system(&self, other: &Self) -> bool {
+        let close = |a: f64, b: f64| (a - b).abs() <= 1e-9 * b.abs();
+        if self.kind != other.kind
+            || !close(self.metres_per_unit, other.metres_per_unit)
+            || !close(self.vertical_metres_per_unit, other.vertical_metres_per_unit)
+        {
+            return false;
+        }
+        match (self.horizontal_epsg(), other.horizontal_epsg()) {
+            (Some(mine), Some(theirs)) => mine == theirs,
+            _ => match (&self.wkt, &other.wkt) {
+                (Some(mine), Some(theirs)) => {
+                    mine == theirs || wkt::horizontal_name(mine) == wkt::horizontal_name(theirs)
+                }
+                _ => self.wkt.is_none() == other.wkt.is_none(),
+            },
+        }
+    }
+
+    /// Why coordinates in this system cannot be used, with a conversion to run first; `None` where they can.
+    ///
+    /// `somewhere` is any position of the file in its own unit, used to name a fitting UTM zone.
+    #[must_use]
+    pub fn refusal(&self, somewhere: [f64; 3]) -> Option<String> {
+        let [x, y, z] = somewhere;
+        let (longitude, latitude, what) = match self.kind {
+            CrsKind::Geographic => (x, y, "in degrees"),
+            CrsKind::Geocentric => {
+                (y.atan2(x).to_degrees(), z.atan2(x.hypot(y)).to_degrees(), "earth-centred (geocentric)")
+            }
+            CrsKind::Unknown | CrsKind::Projected | CrsKind::Local => return None,
+        };
+        let target = utm_zone(longitude, latitude);
+        Some(format!(
+            "coordinates are {what} ({}); a projected system in metres or feet is needed, so convert first, for \
+             example: pdal translate IN.laz OUT.laz reprojection --filters.reprojection.out_srs=EPSG:{target}",
+            self.describe()
+        ))
+    }
+
+    /// Longitude and latitude in degrees (WGS 84) of a position given in the unit of the file.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where the system is unknown or has no way to WGS 84.
+    pub fn longitude_latitude(&self, easting: f64, northing: f64) -> Result<[f64; 2]> {
+        let epsg = self.epsg.map(|code| format!("EPSG:{code}"));
+        [epsg.as_deref(), self.wkt.as_deref()]
+            .into_iter()
+            .flatten()
+            .find_map(|text| {
+                let way = proj_wkt::transform_from_crs_strings_horizontal(text, "EPSG:4326").ok()?;
+                let (longitude, latitude) = way.convert((easting, northing)).ok()?;
+                (longitude.is_finite() && latitude.is_finite()).then_some([longitude, latitude])
+            })
+            .ok_or_else(|| invalid(&self.describe()))
+    }
+
+    fn from_definition(definition: &proj_core::CrsDef) -> Self {
+        let horizontal = definition.as_projected().map_or(1.0, proj_core::ProjectedCrsDef::linear_unit_to_meter);
+        let vertical = definition.vertical_crs();
+        Self {
+            wkt: None,
+            epsg: Some(definition.epsg()).filter(|&code| code != 0).or_else(|| horizontal_code(definition)),
+            vertical_epsg: vertical.map(proj_core::VerticalCrsDef::epsg).filter(|&code| code != 0),
+            metres_per_unit: horizontal,
+            vertical_metres_per_unit: vertical.map_or(horizontal, proj_core::VerticalCrsDef::linear_unit_to_meter),
+            kind: if definition.is_geocentric() {
+                CrsKind::Geocentric
+            } else if definition.is_geographic() {
+                CrsKind::Geographic
+            } else {
+                CrsKind::Projected
+            },
+        }
+    }
+
+    fn horizontal_epsg(&self) -> Option<u32> {
+        let code = self.epsg?;
+        Some(proj_core::lookup_epsg(code).and_then(|definition| horizontal_code(&definition)).unwrap_or(code))
+    }
+}
+
+fn horizontal_code(definition: &proj_core::CrsDef) -> Option<u32> {
+    definition.horizontal_crs().map(|horizontal| horizontal.epsg()).filter(|&code| code != 0)
+}
+
+fn invalid(text: &str) -> Error {
+    let mut value: String = text.chars().take(80).collect();
+    if value.len() < text.len() {
+        value.push('…');
+    }
+    Error::InvalidParameter {
+        name: "crs",
+        value,
+        expected: "a known EPSG code such as EPSG:28992, well-known text or a PROJ string",
+    }
+}
+
+/// Metres of an EPSG unit code as GeoTIFF keys use them.
+fn unit_of_code(code: u16) -> Option<f64> {
+    match code {
+        9001 => Some(1.0),
+        9002 => Some(INTERNATIONAL_FOOT),
+        9003 => Some(US_SURVEY_FOOT),
+        9036 => Some(1000.0),
+        _ => None,
+    }
+}
+
+fn unit_name(metres: f64) -> String {
+    let is = |unit: f64| (metres - unit).abs() < 1e-9 * unit;
+    if is(1.0) {
+        "metres".to_owned()
+    } else if is(INTERNATIONAL_FOOT) {
+        "international feet".to_owned()
+    } else if is(US_SURVEY_FOOT) {
+        "US survey feet".to_owned()
+    } else {
+        format!("units of {metres} m")
+    }
+}
+
+/// EPSG code of the UTM zone (WGS 84) around a position in degrees; zone 31 north where it is no position at all.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 1..=60 just before")]
+fn utm_zone(longitude: f64, latitude: f64) -> u32 {
+    let zone = if longitude.is_finite() { ((longitude + 180.0) / 6.0).floor().clamp(0.0, 59.0) as u32 + 1 } else { 31 };
+    if latitude < 0.0 { 32700 + zone } else { 32600 + zone }
 }

@@ -1,0 +1,157 @@
+//! Just enough of well-known text, versions 1 and 2, to learn kind, unit and codes even where a file strays from the
+//! standard (a vertical system inside the projected one, feet with the factor 1).
+
+use super::{Crs, CrsKind, INTERNATIONAL_FOOT, US_SURVEY_FOOT};
+
+/// Nesting beyond this is no reference system but an attack.
+const MAX_DEPTH: usize = 40;
+
+const VERTICAL: &[&str] = &["VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"];
+
+/// One `KEYWORD[value, value, KEYWORD[…]]`.
+#[derive(Default)]
+struct Node {
+    keyword: String,
+    values: Vec<String>,
+    children: Vec<Node>,
+}
+
+/// The system that well-known text describes, or `None` where it cannot be understood.
+pub(super) fn read(text: &str) -> Option<Crs> {
+    let root = parse(text)?;
+    let horizontal = horizontal(&root)?;
+    let kind = kind(horizontal)?;
+    let metres_per_unit = if kind == CrsKind::Geographic { 1.0 } else { unit(horizontal).unwrap_or(1.0) };
+    let vertical = root.find(VERTICAL);
+    Some(Crs {
+        wkt: Some(text.to_owned()),
+        epsg: root.epsg().or_else(|| horizontal.epsg()),
+        vertical_epsg: vertical.and_then(Node::epsg),
+        metres_per_unit,
+        vertical_metres_per_unit: vertical.and_then(unit).unwrap_or(metres_per_unit),
+        kind,
+    })
+}
+
+/// Name of the system.
+pub(super) fn name(text: &str) -> Option<String> {
+    parse(text)?.values.into_iter().next()
+}
+
+/// Name of the horizontal part of the system.
+pub(super) fn horizontal_name(text: &str) -> Option<String> {
+    horizontal(&parse(text)?)?.values.first().cloned()
+}
+
+fn horizontal(root: &Node) -> Option<&Node> {
+    match root.keyword.as_str() {
+        "COMPD_CS" | "COMPOUNDCRS" => {
+            root.children.iter().find(|child| kind(child).is_some() || child.keyword == "BOUNDCRS").and_then(horizontal)
+        }
+        "BOUNDCRS" | "SOURCECRS" => root
+            .children
+            .iter()
+            .find(|child| child.keyword == "SOURCECRS" || child.keyword == "COMPOUNDCRS" || kind(child).is_some())
+            .and_then(horizontal),
+        _ => Some(root),
+    }
+}
+
+fn kind(node: &Node) -> Option<CrsKind> {
+    match node.keyword.as_str() {
+        "PROJCS" | "PROJCRS" | "PROJECTEDCRS" => Some(CrsKind::Projected),
+        "GEOGCS" | "GEOGCRS" | "GEOGRAPHICCRS" => Some(CrsKind::Geographic),
+        "GEOCCS" => Some(CrsKind::Geocentric),
+        "GEODCRS" | "GEODETICCRS" => {
+            let cartesian = node.children.iter().any(|child| {
+                child.keyword == "CS" && child.values.first().is_some_and(|v| v.eq_ignore_ascii_case("cartesian"))
+            });
+            Some(if cartesian { CrsKind::Geocentric } else { CrsKind::Geographic })
+        }
+        "LOCAL_CS" | "ENGCRS" | "ENGINEERINGCRS" => Some(CrsKind::Local),
+        _ => None,
+    }
+}
+
+/// Metres per length unit of a system: its own unit, or that of its first axis.
+fn unit(node: &Node) -> Option<f64> {
+    let own = |node: &Node| {
+        node.children.iter().find(|child| child.keyword == "UNIT" || child.keyword == "LENGTHUNIT").and_then(metres)
+    };
+    own(node).or_else(|| node.children.iter().filter(|child| child.keyword == "AXIS").find_map(own))
+}
+
+fn metres(unit: &Node) -> Option<f64> {
+    let name = unit.values.first()?.to_ascii_lowercase();
+    let factor: f64 = unit.values.get(1)?.parse().ok()?;
+    if name.contains("foot") || name.contains("feet") || name.starts_with("ft") {
+        let survey = name.contains("us") || name.contains("u.s.") || name.contains("survey");
+        if survey && (factor == 1.0 || (factor - US_SURVEY_FOOT).abs() < 1e-8) {
+            return Some(US_SURVEY_FOOT);
+        }
+        if factor == 1.0 {
+            return Some(INTERNATIONAL_FOOT);
+        }
+    }
+    (1e-6..1e6).contains(&factor).then_some(factor)
+}
+
+impl Node {
+    fn epsg(&self) -> Option<u32> {
+        self.children.iter().find(|child| child.keyword == "AUTHORITY" || child.keyword == "ID").and_then(|id| match id
+            .values
+            .as_slice()
+        {
+            [authority, code, ..] if authority.eq_ignore_ascii_case("EPSG") => code.parse().ok(),
+            _ => None,
+        })
+    }
+
+    fn find(&self, keywords: &[&str]) -> Option<&Self> {
+        if keywords.contains(&self.keyword.as_str()) {
+            return Some(self);
+        }
+        self.children.iter().find_map(|child| child.find(keywords))
+    }
+}
+
+fn parse(text: &str) -> Option<Node> {
+    let mut open: Vec<Node> = Vec::new();
+    let mut word = String::new();
+    let mut quoted = false;
+    let mut characters = text.chars().peekable();
+    // Values are kept when the next separator shows that they were no keyword.
+    let keep = |open: &mut Vec<Node>, word: &mut String| {
+        if let (Some(node), false) = (open.last_mut(), word.is_empty()) {
+            node.values.push(std::mem::take(word));
+        }
+    };
+    while let Some(c) = characters.next() {
+        match c {
+            '"' if quoted && characters.peek() == Some(&'"') => {
+                characters.next();
+                word.push('"');
+            }
+            '"' => quoted = !quoted,
+            _ if quoted => word.push(c),
+            '[' | '(' => {
+                if open.len() >= MAX_DEPTH {
+                    return None;
+                }
+                open.push(Node { keyword: std::mem::take(&mut word).to_ascii_uppercase(), ..Node::default() });
+            }
+            ']' | ')' => {
+                keep(&mut open, &mut word);
+                let done = open.pop()?;
+                match open.last_mut() {
+                    Some(parent) => parent.children.push(done),
+                    None => return Some(done),
+                }
+            }
+            ',' => keep(&mut open, &mut word),
+            _ if c.is_whitespace() || c == '\0' => {}
+            _ => word.push(c),
+        }
+    }
+    None
+}

@@ -1,0 +1,79 @@
+//! Extra bytes of LAS records: normals are taken, the rest is named in the report.
+
+use ::las::point::Format;
+
+use super::las_header::LasHeader;
+use super::part::Part;
+
+/// Where in a record NormalX, NormalY and NormalZ lie, and how they are kept.
+pub(super) type ExtraNormals = [ExtraField; 3];
+
+#[derive(Clone, Copy)]
+pub(super) struct ExtraField {
+    at: usize,
+    kind: u8,
+    scale: f64,
+    offset: f64,
+}
+
+impl ExtraField {
+    pub(super) fn value(self, record: &[u8]) -> Option<f64> {
+        let rest = record.get(self.at..)?;
+        let raw = match self.kind {
+            1 => f64::from(*rest.first()?),
+            2 => f64::from(i8::from_le_bytes(*rest.first_chunk()?)),
+            3 => f64::from(u16::from_le_bytes(*rest.first_chunk()?)),
+            4 => f64::from(i16::from_le_bytes(*rest.first_chunk()?)),
+            5 => f64::from(u32::from_le_bytes(*rest.first_chunk()?)),
+            6 => f64::from(i32::from_le_bytes(*rest.first_chunk()?)),
+            9 => f64::from(f32::from_le_bytes(*rest.first_chunk()?)),
+            10 => f64::from_le_bytes(*rest.first_chunk()?),
+            _ => return None,
+        };
+        Some(raw * self.scale + self.offset)
+    }
+}
+
+/// Bytes of each extra-bytes type, one to ten, and of the two and three element ones that follow.
+fn extra_size(kind: u8, options: u8) -> usize {
+    const SIZES: [usize; 10] = [1, 1, 2, 2, 4, 4, 8, 8, 4, 8];
+    match kind {
+        0 => usize::from(options),
+        1..=30 => SIZES[usize::from((kind - 1) % 10)] * usize::from(1 + (kind - 1) / 10),
+        _ => 0,
+    }
+}
+
+/// Finds normals among the extra bytes; the other extra bytes are noted as dropped.
+pub(super) fn find_extra_normals(part: &mut Part, header: &LasHeader, format: &Format) -> Option<ExtraNormals> {
+    let mut at = usize::from(format.len() - format.extra_bytes);
+    let mut normals: [Option<ExtraField>; 3] = [None; 3];
+    let mut others: Vec<String> = Vec::new();
+    for descriptor in header.records("LASF_Spec", 4).flat_map(|record| record.as_chunks::<192>().0) {
+        let (kind, options) = (descriptor[2], descriptor[3]);
+        let name = String::from_utf8_lossy(&descriptor[4..36]).trim_end_matches('\0').to_owned();
+        let f64_at = |i: usize| descriptor[i..].first_chunk().map_or(0.0, |&bytes| f64::from_le_bytes(bytes));
+        let field = ExtraField {
+            at,
+            kind,
+            scale: if options & 8 != 0 { f64_at(112) } else { 1.0 },
+            offset: if options & 16 != 0 { f64_at(136) } else { 0.0 },
+        };
+        match ["normalx", "normaly", "normalz"].iter().position(|n| name.eq_ignore_ascii_case(n)) {
+            Some(axis) => normals[axis] = Some(field),
+            None => others.push(name),
+        }
+        at += extra_size(kind, options);
+    }
+    if let [Some(x), Some(y), Some(z)] = normals {
+        if !others.is_empty() {
+            part.note(format!("extra bytes dropped: {}", others.join(", ")));
+        }
+        return Some([x, y, z]);
+    }
+    if format.extra_bytes > 0 {
+        let names = if others.is_empty() { "not described".to_owned() } else { others.join(", ") };
+        part.note(format!("{} extra bytes per point dropped: {names}", format.extra_bytes));
+    }
+    None
+}
