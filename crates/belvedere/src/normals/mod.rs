@@ -1,1 +1,18 @@
-//! To be written.
+//! Normals of the points, and which way is out.
+
+pub mod orient;
+pub mod oriented;
+mod reference_mesh;
+mod surroundings;
+
+pub use orient::{OrientReport, Orientation, orient};
+pub use oriented::OrientedCloud;
+
+/// Unit normals of the points of a cloud, not yet oriented.
+#[derive(Clone, Debug, Default)]
+pub struct Normals {
+    /// Unit vectors, (N, 3); (0, 0, 0) where the neighbourhood determines no plane.
+    pub vectors: Vec<[f32; 3]>,
+    /// How well each is determined, (N), 0 to 1: one minus the ratio of the two smallest eigenvalues of the neighbourhood.
+    pub quality: Vec<f32>,
+}
