@@ -1,5 +1,20 @@
 //! The path of a scanner through time.
 
+use crate::GpsTimeKind;
+
+/// Longest gap between two positions that is interpolated over: recorders write at 1 Hz or faster, and in two seconds an
+/// aircraft in a turn leaves the chord by a few metres; beyond that the path is not known.
+pub const MAX_GAP_S: f64 = 2.0;
+
+/// Seconds in a GPS week.
+pub const WEEK_S: f64 = 604_800.0;
+
+/// What is taken from GPS time to make it adjusted standard GPS time.
+pub const ADJUSTED_STANDARD_S: f64 = 1e9;
+
+/// GPS minus UTC since 2017: trajectories are sometimes written in UTC of the week.
+pub const LEAP_SECONDS_S: f64 = 18.0;
+
 /// Positions of a scanner at increasing times.
 #[derive(Clone, Debug, Default)]
 pub struct Trajectory {
@@ -7,4 +22,204 @@ pub struct Trajectory {
     pub times: Vec<f64>,
     /// Positions in the metres of the cloud's reference system (not local), (M, 3).
     pub positions: Vec<[f64; 3]>,
+}
+
+/// How the times of a cloud become times of a trajectory, and how many that serves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClockOffset {
+    /// Which clock the trajectory was written with.
+    pub clock: TrajectoryClock,
+    /// Seconds added after the change of clock: 0, or ±18 for a trajectory in UTC (or a cloud in UTC).
+    pub leap_seconds: f64,
+    /// Cloud times at which the trajectory knows a position.
+    pub served_count: usize,
+    /// Cloud times in all.
+    pub time_count: usize,
+}
+
+/// What the times of a trajectory count from, seen from the times of a cloud.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TrajectoryClock {
+    /// The same as those of the cloud.
+    Same,
+    /// Seconds of the GPS week, where the cloud has adjusted standard GPS time.
+    WeekFromAdjusted,
+    /// Seconds since 1980, where the cloud has adjusted standard GPS time.
+    GpsFromAdjusted,
+}
+
+impl ClockOffset {
+    /// Time of the trajectory at a time of the cloud, seconds.
+    #[must_use]
+    pub fn trajectory_time(&self, cloud_time: f64) -> f64 {
+        self.leap_seconds
+            + match self.clock {
+                TrajectoryClock::Same => cloud_time,
+                TrajectoryClock::WeekFromAdjusted => (cloud_time + ADJUSTED_STANDARD_S).rem_euclid(WEEK_S),
+                TrajectoryClock::GpsFromAdjusted => cloud_time + ADJUSTED_STANDARD_S,
+            }
+    }
+}
+
+impl Trajectory {
+    /// A trajectory from times (seconds) and positions (metres) in any order, and how many records were left out because
+    /// another had the same time. Of those the first is kept. Records that are not finite are left out and counted too.
+    #[must_use]
+    pub fn from_records(mut records: Vec<(f64, [f64; 3])>) -> (Self, usize) {
+        let given = records.len();
+        records.retain(|(time, p)| time.is_finite() && p.iter().all(|v| v.is_finite()));
+        records.sort_by(|a, b| a.0.total_cmp(&b.0));
+        records.dedup_by(|later, earlier| later.0 <= earlier.0);
+        let (times, positions): (Vec<f64>, Vec<[f64; 3]>) = records.into_iter().unzip();
+        let left_out = given - times.len();
+        (Self { times, positions }, left_out)
+    }
+
+    /// Position at `time` (seconds, on the trajectory's clock), metres; `None` before the first record, after the last,
+    /// and within gaps longer than [`MAX_GAP_S`].
+    ///
+    /// Between records the path is a cubic with the velocities that the neighbouring records give, or a straight line
+    /// where one of these is missing or too far away.
+    #[must_use]
+    pub fn position_at(&self, time: f64) -> Option<[f64; 3]> {
+        let after = self.times.partition_point(|&t| t <= time);
+        let start = after.checked_sub(1)?;
+        let (t0, p0) = (*self.times.get(start)?, *self.positions.get(start)?);
+        if t0.total_cmp(&time).is_eq() {
+            return Some(p0);
+        }
+        let (t1, p1) = (*self.times.get(after)?, *self.positions.get(after)?);
+        let span = t1 - t0;
+        if !(span > 0.0 && span <= MAX_GAP_S) {
+            return None;
+        }
+        let s = (time - t0) / span;
+        let before = start.checked_sub(1).and_then(|i| self.record_within(i, t0));
+        let beyond = self.record_within(after + 1, t1);
+        let (Some((t_before, p_before)), Some((t_beyond, p_beyond))) = (before, beyond) else {
+            return Some(std::array::from_fn(|i| p0[i] + s * (p1[i] - p0[i])));
+        };
+        Some(std::array::from_fn(|i| {
+            let m0 = (p1[i] - p_before[i]) / (t1 - t_before) * span;
+            let m1 = (p_beyond[i] - p0[i]) / (t_beyond - t0) * span;
+            let (s2, s3) = (s * s, s * s * s);
+            // relative to p0, so that coordinates of a million metres lose nothing
+            p0[i] + (3.0 * s2 - 2.0 * s3) * (p1[i] - p0[i]) + (s3 - 2.0 * s2 + s) * m0 + (s3 - s2) * m1
+        }))
+    }
+
+    fn record_within(&self, index: usize, time: f64) -> Option<(f64, [f64; 3])> {
+        let (t, p) = (*self.times.get(index)?, *self.positions.get(index)?);
+        ((t - time).abs() <= MAX_GAP_S).then_some((t, p))
+    }
+
+    /// How the times of a cloud, (N) seconds of `kind`, become times of this trajectory: the change of clock and leap
+    /// seconds that let it serve the most of them, and how many that is.
+    ///
+    /// Where several serve equally many the plainest wins, without leap seconds if possible: a difference of 18 s can
+    /// only be told where the trajectory begins or ends within 18 s of the cloud. A header may lie about its kind of
+    /// time, hence all changes of clock are tried whatever `kind` says; `kind` only breaks ties.
+    #[must_use]
+    pub fn clock_offset_for(&self, times: &[f64], kind: GpsTimeKind) -> ClockOffset {
+        use TrajectoryClock::{GpsFromAdjusted, Same, WeekFromAdjusted};
+        let clocks = match kind {
+            GpsTimeKind::SecondsOfWeek => [Same, WeekFromAdjusted, GpsFromAdjusted],
+            GpsTimeKind::AdjustedStandard => [WeekFromAdjusted, GpsFromAdjusted, Same],
+        };
+        let mut best: Option<ClockOffset> = None;
+        for leap_seconds in [0.0, -LEAP_SECONDS_S, LEAP_SECONDS_S] {
+            for clock in clocks {
+                let mut offset = ClockOffset { clock, leap_seconds, served_count: 0, time_count: times.len() };
+                offset.served_count = times.iter().filter(|&&t| self.knows(offset.trajectory_time(t))).count();
+                if best.is_none_or(|best| offset.served_count > best.served_count) {
+                    best = Some(offset);
+                }
+            }
+        }
+        best.unwrap_or(ClockOffset { clock: Same, leap_seconds: 0.0, served_count: 0, time_count: times.len() })
+    }
+
+    fn knows(&self, time: f64) -> bool {
+        let after = self.times.partition_point(|&t| t <= time);
+        let Some(&before) = after.checked_sub(1).and_then(|i| self.times.get(i)) else { return false };
+        before >= time || self.times.get(after).is_some_and(|next| next - before <= MAX_GAP_S)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn straight_flight(start: f64) -> Trajectory {
+        let records = (0..60).map(|i| {
+            let t = f64::from(i) * 0.5;
+            (start + t, [85_000.0 + 60.0 * t, 447_000.0 - 5.0 * t, 1000.0 + 0.1 * t])
+        });
+        Trajectory::from_records(records.collect()).0
+    }
+
+    #[test]
+    fn positions_on_a_straight_line_are_exact() {
+        let flight = straight_flight(1000.0);
+        for time in [1000.0, 1000.1, 1003.33, 1014.9, 1029.5] {
+            let p = flight.position_at(time).unwrap();
+            let t = time - 1000.0;
+            let truth = [85_000.0 + 60.0 * t, 447_000.0 - 5.0 * t, 1000.0 + 0.1 * t];
+            assert!((0..3).all(|i| (p[i] - truth[i]).abs() < 1e-8), "{time}: {p:?} {truth:?}");
+        }
+    }
+
+    #[test]
+    fn a_turn_is_followed_to_centimetres() {
+        // 1 Hz, radius 1500 m, 60 m/s: the chord is off by 0.3 m
+        let place = |t: f64| [1500.0 * (0.04 * t).cos(), 1500.0 * (0.04 * t).sin(), 800.0];
+        let (turn, _) = Trajectory::from_records((0..30).map(|i| (f64::from(i), place(f64::from(i)))).collect());
+        let (p, truth) = (turn.position_at(10.5).unwrap(), place(10.5));
+        assert!((0..3).all(|i| (p[i] - truth[i]).abs() < 0.01));
+    }
+
+    #[test]
+    fn outside_and_in_gaps_there_is_no_position() {
+        let (path, left_out) = Trajectory::from_records(vec![
+            (10.0, [10.0, 0.0, 0.0]),
+            (0.0, [0.0; 3]),
+            (1.0, [1.0, 0.0, 0.0]),
+            (1.0, [9.0; 3]),
+            (f64::NAN, [0.0; 3]),
+            (11.0, [11.0, 0.0, 0.0]),
+        ]);
+        assert_eq!(left_out, 2);
+        assert_eq!(path.position_at(0.5), Some([0.5, 0.0, 0.0]));
+        assert_eq!(path.position_at(1.0), Some([1.0, 0.0, 0.0]));
+        assert_eq!(path.position_at(11.0), Some([11.0, 0.0, 0.0]));
+        for nowhere in [-0.1, 1.5, 9.9, 11.1, f64::NAN] {
+            assert_eq!(path.position_at(nowhere), None, "{nowhere}");
+        }
+    }
+
+    #[test]
+    fn adjusted_times_find_their_week() {
+        let flight = straight_flight(300_000.0);
+        // week 2200
+        let times: Vec<f64> = (1..29).map(|i| 2200.0 * WEEK_S + 300_000.0 + f64::from(i) - 1e9).collect();
+        let offset = flight.clock_offset_for(&times, GpsTimeKind::AdjustedStandard);
+        assert_eq!(offset.clock, TrajectoryClock::WeekFromAdjusted);
+        assert_eq!((offset.leap_seconds, offset.served_count), (0.0, 28));
+        assert!((offset.trajectory_time(times[0]) - 300_001.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn utc_times_are_shifted_by_leap_seconds() {
+        let flight = straight_flight(300_000.0);
+        let times: Vec<f64> = (1..29).map(|i| 300_000.0 + f64::from(i) + 18.0).collect();
+        let offset = flight.clock_offset_for(&times, GpsTimeKind::SecondsOfWeek);
+        assert_eq!((offset.clock, offset.leap_seconds, offset.served_count), (TrajectoryClock::Same, -18.0, 28));
+    }
+
+    #[test]
+    fn strange_times_are_served_by_nothing() {
+        let offset = straight_flight(300_000.0).clock_offset_for(&[f64::NAN, -1e300, 5.0], GpsTimeKind::SecondsOfWeek);
+        assert_eq!((offset.served_count, offset.time_count), (0, 3));
+        assert_eq!(Trajectory::default().position_at(0.0), None);
+    }
 }

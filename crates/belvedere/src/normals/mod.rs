@@ -2,8 +2,12 @@
 
 pub mod estimate;
 pub mod orient;
+pub mod oriented;
+mod reference_mesh;
+mod surroundings;
 
-pub use orient::OrientedCloud;
+pub use orient::{OrientReport, Orientation, orient};
+pub use oriented::OrientedCloud;
 
 /// Unit normals of the points of a cloud, not yet oriented.
 #[derive(Clone, Debug, Default)]
