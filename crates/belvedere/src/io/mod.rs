@@ -1,8 +1,18 @@
-//! Files in and out.
+//! Files in and out; the extension tells the format. Every output appears only when it is complete.
 
 mod assemble;
+mod atomic;
+mod ball_formats;
+mod balls;
+mod canvas;
 mod cityjson;
+mod colors;
+mod columns;
+mod crs_text;
+mod depth_picture;
 mod e57;
+mod font;
+mod geotiff;
 mod las;
 mod las_columns;
 mod las_extra;
@@ -15,15 +25,33 @@ mod npy;
 mod obj;
 mod part;
 mod pcd;
+mod picture;
 mod ply;
+mod png;
 mod polygons;
 mod read_cloud;
 mod rows;
 mod trajectory;
+mod write_cloud;
+mod write_las;
+mod write_masbcpp;
+mod write_npy;
+mod write_ply;
+mod write_table;
 mod xyz;
 
+pub use balls::{SavedBalls, is_ball_file, read_balls, write_balls};
+pub use canvas::{Canvas, Colors};
 pub use cityjson::{LevelOfDetail, read_cityjson};
+pub use colors::{class_color, ramp_colors};
+pub use depth_picture::{DepthRange, depth_picture};
+pub use geotiff::{Georeference, write_f32 as write_tif_f32, write_u32 as write_tif_u32};
 pub use mesh::read_mesh;
+pub use picture::{Picture, side_by_side};
+pub use png::write_png;
 pub use polygons::MeshReport;
 pub use read_cloud::{CLOUD_EXTENSIONS, FileReport, LeftOut, ReadOptions, ReadReport, read_cloud};
 pub use trajectory::{TrajectoryReport, read_trajectory};
+pub use write_cloud::{ExtraColumn, ExtraValues, WriteReport, write_cloud};
+pub use write_masbcpp::{MasbcppFolder, write_masbcpp};
+pub use write_npy::{write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d};

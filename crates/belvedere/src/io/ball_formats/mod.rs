@@ -1,0 +1,65 @@
+//! The formats of ball files.
+
+mod las;
+mod metadata;
+mod npz;
+mod ply;
+
+pub(crate) use las::{las_has_balls, read_las, write_las};
+pub(crate) use npz::{npz_has_balls, read_npz, write_npz};
+pub(crate) use ply::{ply_has_balls, read_ply, write_ply};
+
+use crate::PointCloud;
+use crate::cloud::{centre_rounded, to_local};
+use crate::io::balls::SavedBalls;
+use crate::io::columns::{Column, Values};
+
+/// The centres as a cloud and the rest as columns, for formats that hold points. Indices are signed there, so that
+/// viewers show −1 and not four thousand million for "none".
+fn as_cloud(balls: &SavedBalls) -> (PointCloud, Vec<Column<'_>>) {
+    let cloud = PointCloud {
+        origin: balls.origin,
+        positions: balls.centers.clone(),
+        crs: balls.crs.clone(),
+        ..PointCloud::default()
+    };
+    let unit = balls.crs.metres_per_unit;
+    #[expect(clippy::cast_possible_truncation, reason = "a radius in another unit is still an f32")]
+    let radii = balls.radii.iter().map(|&r| (f64::from(r) / unit) as f32).collect();
+    let signed = |indices: &[u32]| Values::I32(indices.iter().map(|&i| i.cast_signed()).collect());
+    let column = |name, description, values| Column { name, description, values };
+    let columns = vec![
+        column("radius".into(), "in the unit of x and y".into(), Values::F32(radii)),
+        column("separation_angle".into(), "radians".into(), Values::F32((&balls.separation_angles).into())),
+        column("source".into(), "index of the tangent point".into(), signed(&balls.source)),
+        column("touch".into(), "index of second point, -1 none".into(), signed(&balls.touch)),
+    ];
+    (cloud, columns)
+}
+
+/// A ball as the formats that hold points give it.
+#[derive(Clone, Copy, Debug, Default)]
+struct FileBall {
+    /// In the system and unit of the file.
+    center: [f64; 3],
+    /// In the horizontal unit of the file.
+    radius: f64,
+    separation_angle: f32,
+    source: u32,
+    touch: u32,
+}
+
+/// Fills the columns of `balls` from rows in file coordinates; `origin` is chosen where it is `None`.
+#[expect(clippy::cast_possible_truncation, reason = "radii are f32 in memory")]
+fn fill(mut balls: SavedBalls, origin: Option<[f64; 3]>, rows: &[FileBall]) -> SavedBalls {
+    let units = balls.crs.metres_per_unit_xyz();
+    let metres = |row: &FileBall| -> [f64; 3] { std::array::from_fn(|i| row.center[i] * units[i]) };
+    let origin = origin.unwrap_or_else(|| centre_rounded(rows.iter().map(metres)));
+    balls.origin = origin;
+    balls.centers = rows.iter().map(|row| to_local(metres(row), origin)).collect();
+    balls.radii = rows.iter().map(|row| (row.radius * units[0]) as f32).collect();
+    balls.separation_angles = rows.iter().map(|row| row.separation_angle).collect();
+    balls.source = rows.iter().map(|row| row.source).collect();
+    balls.touch = rows.iter().map(|row| row.touch).collect();
+    balls
+}

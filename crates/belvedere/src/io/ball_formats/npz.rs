@@ -1,0 +1,108 @@
+//! Balls in NumPy's archive format, without loss.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, Write};
+use std::path::Path;
+
+use npyz::npz::{NpzArchive, NpzWriter};
+use npyz::zip::write::FileOptions;
+use npyz::{AutoSerialize, Deserialize, Order, WriterBuilder};
+
+use super::metadata;
+use crate::io::atomic;
+use crate::io::balls::SavedBalls;
+use crate::{Error, Result};
+
+const UNITS: &str = "metres relative to origin, radians; coordinates in the crs are \
+                     (origin + centers) / metres_per_unit";
+/// Metadata longer than this is not ours.
+const MAX_METADATA_BYTES: u64 = 1 << 24;
+
+pub(crate) fn write_npz(path: &Path, balls: &SavedBalls) -> Result<()> {
+    let metadata = metadata::to_json(balls, UNITS);
+    atomic::write(path, |output| {
+        let mut archive = NpzWriter::new(output);
+        let n = balls.centers.len() as u64;
+        let write = |archive: &mut NpzWriter<_>| -> io::Result<()> {
+            array(archive, "centers", &[n, 3], balls.centers.iter().flatten().copied())?;
+            array(archive, "origin", &[3], balls.origin.into_iter())?;
+            array(archive, "radii", &[n], balls.radii.iter().copied())?;
+            array(archive, "source", &[n], balls.source.iter().copied())?;
+            array(archive, "touch", &[n], balls.touch.iter().copied())?;
+            array(archive, "separation_angles", &[n], balls.separation_angles.iter().copied())?;
+            array(archive, "metadata", &[metadata.len() as u64], metadata.bytes())?;
+            archive.zip_writer().finish()?.flush()
+        };
+        write(&mut archive).map_err(Error::io(path))
+    })
+}
+
+fn array<T: AutoSerialize, W: Write + Seek>(
+    archive: &mut NpzWriter<W>,
+    name: &str,
+    shape: &[u64],
+    values: impl Iterator<Item = T>,
+) -> io::Result<()> {
+    // stored, as NumPy does: floats hardly shrink, and loading stays a copy
+    let options = FileOptions::default().compression_method(npyz::zip::CompressionMethod::Stored).large_file(true);
+    let mut writer = archive.array(name, options)?.default_dtype().shape(shape).begin_nd()?;
+    writer.extend(values)?;
+    writer.finish()
+}
+
+pub(crate) fn read_npz(path: &Path) -> Result<SavedBalls> {
+    let malformed = |e: io::Error| Error::malformed(path, format!("not a ball file: {e}"));
+    let file = BufReader::new(File::open(path).map_err(Error::io(path))?);
+    let mut archive = NpzArchive::new(file).map_err(malformed)?;
+    let text = match values::<u8, _>(&mut archive, "metadata", MAX_METADATA_BYTES) {
+        Ok((text, _)) => String::from_utf8_lossy(&text).into_owned(),
+        Err(_) => String::new(),
+    };
+    let (mut balls, _) = metadata::from_json(&text);
+    let (centers, shape) = values::<f32, _>(&mut archive, "centers", u64::MAX).map_err(malformed)?;
+    if shape.len() != 2 || shape[1] != 3 {
+        return Err(Error::malformed(path, format!("centers have shape {shape:?}, but must be (B, 3)")));
+    }
+    balls.centers = centers.as_chunks::<3>().0.to_vec();
+    let (origin, _) = values::<f64, _>(&mut archive, "origin", 3).map_err(malformed)?;
+    balls.origin = <[f64; 3]>::try_from(origin.as_slice())
+        .map_err(|_| Error::malformed(path, format!("origin has {} numbers, but must have 3", origin.len())))?;
+    balls.radii = values(&mut archive, "radii", u64::MAX).map_err(malformed)?.0;
+    balls.source = values(&mut archive, "source", u64::MAX).map_err(malformed)?.0;
+    balls.touch = values(&mut archive, "touch", u64::MAX).map_err(malformed)?.0;
+    balls.separation_angles = values(&mut archive, "separation_angles", u64::MAX).map_err(malformed)?.0;
+    Ok(balls)
+}
+
+/// Values and shape of an array of at most `most` values.
+fn values<T: Deserialize, R: Read + Seek>(
+    archive: &mut NpzArchive<R>,
+    name: &str,
+    most: u64,
+) -> io::Result<(Vec<T>, Vec<u64>)> {
+    let invalid = |what: String| io::Error::new(io::ErrorKind::InvalidData, what);
+    let Some(array) = archive.by_name(name)? else {
+        return Err(invalid(format!("there is no array {name}")));
+    };
+    let shape = array.shape().to_vec();
+    let count = shape.iter().try_fold(1_u64, |product, &n| product.checked_mul(n)).unwrap_or(u64::MAX);
+    if count > most {
+        return Err(invalid(format!("the array {name} is too large")));
+    }
+    if array.order() == Order::Fortran && shape.len() > 1 {
+        return Err(invalid(format!("the array {name} is in Fortran order; save it with numpy.ascontiguousarray")));
+    }
+    let reader = array.data::<T>().map_err(|e| invalid(format!("array {name}: {e}")))?;
+    // the shape is not to be trusted with an allocation: the vector grows with what is really there
+    let mut values = Vec::new();
+    for value in reader {
+        values.push(value?);
+    }
+    Ok((values, shape))
+}
+
+pub(crate) fn npz_has_balls(path: &Path) -> bool {
+    let Ok(file) = File::open(path) else { return false };
+    let Ok(archive) = NpzArchive::new(BufReader::new(file)) else { return false };
+    ["centers", "radii", "origin"].iter().all(|name| archive.array_names().any(|n| n == *name))
+}
