@@ -7,7 +7,7 @@ use crate::arguments::{
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
-use belvedere::clean::{CleanParams, CleanReport, clean};
+use belvedere::clean::{CleanParams, CleanReport, Treatment, clean};
 use belvedere::crs::Crs;
 use belvedere::depth::Profile;
 use belvedere::io::{ReadOptions, ReadReport, SavedBalls, is_ball_file, read_balls, read_cloud, read_mesh, read_trajectory};
@@ -55,10 +55,11 @@ impl Cleaning {
         let mut params = CleanParams::default();
         if self.keep_noise {
             params.dropped_classes = Vec::new();
-            params.withheld = belvedere::clean::Withheld::Keep;
+            params.withheld = Treatment::Keep;
         }
         if self.keep_duplicates {
-            params.duplicates = None;
+            params.exact_duplicates = Treatment::Keep;
+            params.near_duplicate_distance = None;
         }
         if self.keep_isolated {
             params.isolated = None;
@@ -75,9 +76,10 @@ impl Cleaning {
 fn cleaning_section(report: &CleanReport) -> Summary {
     let mut section = Summary::default();
     section
-        .add("noise_classes", report.dropped_class_count)
+        .add("noise_classes", report.class_count)
         .add("withheld", report.withheld_count)
-        .add("duplicates", report.duplicate_count)
+        .add("exact_duplicates", report.exact_duplicate_count)
+        .add("near_duplicates", report.near_duplicate_count)
         .add("isolated", report.isolated_count)
         .add("kept", report.kept_count);
     section
@@ -179,7 +181,7 @@ fn orientation_section(by: &Orientation<'_>, report: &OrientReport) -> Summary {
         }
     }
     if let Some(clock) = &report.clock {
-        section.add("points_served_by_trajectory", clock.served_count);
+        section.add("points_served_by_trajectory", clock.served);
     }
     section
 }
@@ -272,7 +274,7 @@ pub(crate) fn scene(arguments: &SceneInput, stages: &mut Stages, summary: &mut S
 }
 
 fn scene_of_saved(saved: SavedBalls) -> Result<Scene> {
-    let bounds = saved.bounds;
+    let bounds = (saved.centers[0], saved.centers[0]);
     let cloud = PointCloud { origin: saved.origin, crs: saved.crs, ..PointCloud::default() };
     let balls = MedialBalls {
         centers: saved.centers,
@@ -342,7 +344,6 @@ pub(crate) fn saved(
     SavedBalls {
         origin: *place.0,
         crs: place.1.clone(),
-        bounds,
         centers: balls.centers,
         radii: balls.radii,
         source: balls.source,

@@ -294,9 +294,9 @@ impl Crs {
     /// The projection from latitude and longitude into this system, for many positions.
     ///
     /// # Errors
-    /// [`crate::Error::MissingAttribute`] where neither EPSG code nor well-known text is there,
-    /// [`crate::Error::InvalidParameter`] where it cannot be projected into.
-    pub fn geographic_projection(&self) -> crate::Result<GeographicProjection> {
+    /// [`Error::MissingAttribute`] where neither EPSG code nor well-known text is there,
+    /// [`Error::InvalidParameter`] where it cannot be projected into.
+    pub fn geographic_projection(&self) -> Result<GeographicProjection> {
         let by_code = self.epsg.map(|code| format!("EPSG:{code}"));
         let mut failure = None;
         for definition in [by_code.as_deref(), self.wkt.as_deref()].into_iter().flatten() {
@@ -306,12 +306,12 @@ impl Crs {
             }
         }
         Err(match failure {
-            Some(value) => crate::Error::InvalidParameter {
+            Some(value) => Error::InvalidParameter {
                 name: "reference system",
                 value,
                 expected: "a projected system known by EPSG code or well-known text",
             },
-            None => crate::Error::MissingAttribute {
+            None => Error::MissingAttribute {
                 attribute: "reference system",
                 needed_for: "projecting latitude and longitude",
                 advice: "name its EPSG code",
@@ -324,7 +324,7 @@ impl Crs {
     ///
     /// # Errors
     /// As [`Crs::geographic_projection`] and [`GeographicProjection::project`].
-    pub fn project_geographic(&self, latitude: f64, longitude: f64) -> crate::Result<[f64; 2]> {
+    pub fn project_geographic(&self, latitude: f64, longitude: f64) -> Result<[f64; 2]> {
         self.geographic_projection()?.project(latitude, longitude)
     }
 }
@@ -333,10 +333,10 @@ impl GeographicProjection {
     /// Easting and northing in metres of a latitude and longitude in radians.
     ///
     /// # Errors
-    /// [`crate::Error::InvalidParameter`] for values that are no latitude and longitude or cannot be projected.
-    pub fn project(&self, latitude: f64, longitude: f64) -> crate::Result<[f64; 2]> {
+    /// [`Error::InvalidParameter`] for values that are no latitude and longitude or cannot be projected.
+    pub fn project(&self, latitude: f64, longitude: f64) -> Result<[f64; 2]> {
         use std::f64::consts::{FRAC_PI_2, PI};
-        let invalid = |why: String| crate::Error::InvalidParameter {
+        let invalid = |why: String| Error::InvalidParameter {
             name: "latitude and longitude",
             value: format!("{latitude}, {longitude} rad{why}"),
             expected: "radians within the area of the reference system",

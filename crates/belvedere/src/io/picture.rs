@@ -3,9 +3,6 @@
 //! Depth maps become pictures by [`depth_picture`], points and balls by [`Canvas`], several pictures one by
 //! [`side_by_side`]; [`crate::io::png::write_png`] saves them.
 
-pub use crate::io::canvas::{Canvas, Colors};
-pub use crate::io::colors::{class_color, ramp_colors};
-pub use crate::io::depth_picture::{DepthRange, depth_picture};
 use crate::io::font::{HEIGHT, draw_text, fitted};
 
 /// Colour of the paper around pictures.

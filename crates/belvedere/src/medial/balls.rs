@@ -37,6 +37,19 @@ impl MedialBalls {
         self.radii.len()
     }
 
+    /// Only the balls that shrank.
+    #[must_use]
+    pub fn shrunk(&self) -> Self {
+        let rows: Vec<usize> = (0..self.len()).filter(|&i| self.touch[i] != NO_TOUCH).collect();
+        Self {
+            centers: rows.iter().map(|&i| self.centers[i]).collect(),
+            radii: rows.iter().map(|&i| self.radii[i]).collect(),
+            source: rows.iter().map(|&i| self.source[i]).collect(),
+            touch: rows.iter().map(|&i| self.touch[i]).collect(),
+            separation_angles: rows.iter().map(|&i| self.separation_angles[i]).collect(),
+        }
+    }
+
     /// Whether there is no ball.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -28,6 +28,14 @@ impl Default for Neighborhood {
     }
 }
 
+impl Neighborhood {
+    /// Adaptive with a flatness of 0.05 m, the noise of airborne scans.
+    #[must_use]
+    pub fn adaptive() -> Self {
+        Self::Adaptive { flatness: 0.05 }
+    }
+}
+
 /// Sizes an adaptive neighbourhood chooses from, about a factor √2 apart.
 const ADAPTIVE_SIZES: [usize; 7] = [8, 11, 16, 22, 32, 45, 64];
 /// Points handed to a thread at once; their searches share the cache.

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::crs::Crs;
+use crate::crs::{Crs, CrsKind};
 use crate::io::balls::SavedBalls;
 
 /// Origin, reference system and provenance of `balls`; `units` says what the numbers beside it mean.
@@ -37,6 +37,8 @@ pub(super) fn from_json(text: &str) -> (SavedBalls, Option<[f64; 3]>) {
         vertical_epsg: code("vertical_epsg"),
         metres_per_unit: unit("metres_per_unit"),
         vertical_metres_per_unit: unit("vertical_metres_per_unit"),
+        // balls are only ever made in a plane
+        kind: if crs_is_known(&value["crs"]) { CrsKind::Projected } else { CrsKind::Unknown },
     };
     let provenance = value["provenance"]
         .as_object()
@@ -49,4 +51,8 @@ pub(super) fn from_json(text: &str) -> (SavedBalls, Option<[f64; 3]>) {
         _ => None,
     };
     (SavedBalls { crs, provenance, origin: origin.unwrap_or_default(), ..SavedBalls::default() }, origin)
+}
+
+fn crs_is_known(crs: &Value) -> bool {
+    crs["wkt"].is_string() || crs["epsg"].is_number()
 }
