@@ -181,7 +181,7 @@ fn orientation_section(by: &Orientation<'_>, report: &OrientReport) -> Summary {
         }
     }
     if let Some(clock) = &report.clock {
-        section.add("points_served_by_trajectory", clock.served);
+        section.add("points_served_by_trajectory", clock.served_count);
     }
     section
 }

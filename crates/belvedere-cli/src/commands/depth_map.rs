@@ -31,13 +31,13 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     stages.run("writing", 0, |_| match extension(output).as_str() {
         "npy" => write_npy_f32_2d(output, &map.depth),
         "png" => write_png(output, &depth_picture(&map.depth, DepthRange::Robust, "depth in metres")),
-        _ => write_tif_f32(output, &map.depth),
+        _ => write_tif_f32(output, &map.depth, None, None, Some("depth in metres along the line of sight")),
     })?;
     summary.add("written", output.display().to_string());
     if let (Some(path), Some(balls)) = (&arguments.balls_id, &map.balls) {
         stages.run("writing", 0, |_| match extension(path).as_str() {
             "npy" => write_npy_u32_2d(path, balls),
-            _ => write_tif_u32(path, balls),
+            _ => write_tif_u32(path, balls, None, None, Some("row of the ball seen")),
         })?;
         summary.add("balls_written", path.display().to_string());
     }

@@ -3,7 +3,7 @@
 use crate::arguments::{Global, Info};
 use crate::pipeline;
 use crate::progress::Stages;
-use crate::summary::{Summary, percent, rounded};
+use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::io::{ReadOptions, read_cloud};

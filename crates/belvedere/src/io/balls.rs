@@ -9,7 +9,7 @@ use crate::io::write_cloud::extension;
 use crate::{Error, Result};
 
 /// Extensions of ball files.
-pub const SUPPORTED: &str = ".npz .ply .laz .las";
+pub(crate) const SUPPORTED: &str = ".npz .ply .laz .las";
 
 /// Balls as files hold them, one per row, with what is needed to use them again.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -74,7 +74,7 @@ fn list(property: Property) -> Option<Vec<i64>> {
 /// # Errors
 /// [`Error::Io`] where the file cannot be read, [`Error::Malformed`] for syntax errors, a file without faces, indices
 /// without a vertex, and coordinates that are not finite.
-pub fn read_mesh_ply(path: &Path) -> Result<(Mesh, MeshReport)> {
+pub(crate) fn read_mesh_ply(path: &Path) -> Result<(Mesh, MeshReport)> {
     let bytes = std::fs::read(path).map_err(Error::io(path))?;
     let malformed = |e| Error::malformed(path, format!("not a readable PLY file: {e}"));
     let parser = Parser::<Element>::new();

@@ -1,7 +1,7 @@
 //! Files in and out; the extension tells the format. Every output appears only when it is complete.
 
 mod assemble;
-mod atomic;
+pub mod atomic;
 mod ball_formats;
 mod balls;
 mod canvas;

@@ -18,7 +18,7 @@ const UNNAMED: &str = "unnamed_object";
 /// # Errors
 /// [`Error::Io`] where the file cannot be opened, [`Error::Malformed`] for syntax errors, indices without a vertex,
 /// coordinates that are not finite, and files without a triangle.
-pub fn read_obj(path: &Path) -> Result<(Mesh, MeshReport)> {
+pub(crate) fn read_obj(path: &Path) -> Result<(Mesh, MeshReport)> {
     let mut reader = BufReader::new(File::open(path).map_err(Error::io(path))?);
     // the parser would cut polygons into fans, which is wrong for concave ones
     let options =

@@ -8,7 +8,7 @@ use crate::io::{write_las, write_npy, write_ply, write_table};
 use crate::{Error, PointCloud, Result};
 
 /// Extensions a cloud can be written to.
-pub const SUPPORTED: &str = ".las .laz .ply .csv .xyz .txt .npy";
+pub(crate) const SUPPORTED: &str = ".las .laz .ply .csv .xyz .txt .npy";
 
 /// A column of results beside the attributes of a cloud.
 #[derive(Clone, Copy, Debug)]
