@@ -1,6 +1,9 @@
 //! Damaged and malicious files: every reader must answer with an error or a report, never panic, hang or allocate what
 //! the file cannot hold.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+#[allow(unreachable_pub, reason = "shared by several test binaries")]
 mod common;
 
 use std::io::Cursor;

@@ -1,6 +1,9 @@
 //! Reading point clouds: the figures come from laspy 2.7 with lazrs (LAS, LAZ), the XML of E57 files and the data
 //! catalogue; none comes from this crate.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+#[allow(unreachable_pub, reason = "shared by several test binaries")]
 mod common;
 
 use std::path::{Path, PathBuf};

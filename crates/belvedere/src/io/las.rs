@@ -10,7 +10,7 @@ use super::las_columns::Columns;
 use super::las_extra::find_extra_normals;
 use super::las_header::{LasHeader, read_header};
 use super::laz::{ExtraBytes, LazReader, is_chunked};
-use super::part::{Part, open};
+use super::part::{Part, guarded, open};
 use crate::crs::{Crs, CrsKind};
 use crate::{Error, Result};
 
@@ -123,7 +123,8 @@ fn find_crs(part: &mut Part, header: &LasHeader) {
         for record in header.records(user, 2112) {
             let text = String::from_utf8_lossy(record);
             let text = text.trim_matches(|c: char| c == '\0' || c.is_whitespace());
-            match Crs::parse(text) {
+            // The text is the file's; parsing it must not bring the reader down.
+            match guarded(&part.report.path, || Crs::parse(text)) {
                 Ok(crs) => return part.set_crs(crs, source),
                 Err(_) => unread |= !text.is_empty(),
             }
