@@ -133,6 +133,11 @@ fn xyz() -> Vec<u8> {
     (0..POINTS).map(coordinates).flat_map(|p| format!("{} {} {}\n", p[0], p[1], p[2]).into_bytes()).collect()
 }
 
+fn ptx() -> Vec<u8> {
+    let header = b"60\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+    [header.to_vec(), xyz()].concat()
+}
+
 fn e57() -> Vec<u8> {
     let mut cursor = Cursor::new(Vec::new());
     let mut writer = e57::E57Writer::new(&mut cursor, "file").unwrap();
@@ -176,6 +181,7 @@ fn valid_files() -> Vec<Valid> {
         Valid { name: "f8.npy", bytes: npy("<f8", "(60, 3)") },
         Valid { name: "text.xyz", bytes: xyz() },
         Valid { name: "scan.e57", bytes: e57() },
+        Valid { name: "scan.ptx", bytes: ptx() },
     ]
 }
 

@@ -318,6 +318,35 @@ fn pcd_text_ply_and_npy_read() {
 }
 
 #[test]
+fn ptx_scans_read_with_their_scanners() {
+    let test = "ptx_scans_read_with_their_scanners";
+    if let Some(path) = common::data(test, "data/io_cases/1.2-with-color.ptx") {
+        let (cloud, report) = read(&[path]).unwrap();
+        // The same points as 1.2-with-color.copc.laz, in one grid of 15 x 71.
+        assert_eq!((cloud.len(), report.files[0].format.as_str()), (1065, "PTX, 1 scan"));
+        let (low, high) = cloud.bounds().unwrap();
+        let (low, high) = (cloud.to_file_coordinates(low), cloud.to_file_coordinates(high));
+        for (found, expected) in low.into_iter().zip([635_619.85, 848_899.70, 406.59]) {
+            assert!((found - expected).abs() < 1e-3, "{low:?}");
+        }
+        assert!((high[2] - 586.38).abs() < 1e-3, "{high:?}");
+        assert!(cloud.attributes.color.is_some() && cloud.attributes.intensity.is_some());
+        // Its header leaves the scanner at (0, 0, 0), 850 km away.
+        assert!(cloud.scanner_positions.is_empty());
+        assert!(report.files[0].notes.iter().any(|note| note.contains("scanner position")));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    // A quarter turn about z, then a shift by (10, 20, 30): x becomes y.
+    let scan = "2\n1\n10 20 30\n0 1 0\n-1 0 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n10 20 30 1\n1 0 0 0.5\n0 0 0 0.5\n";
+    let path = text_file(&folder, "two.ptx", &scan.repeat(2));
+    let (cloud, report) = read(&[path]).unwrap();
+    assert_eq!((cloud.len(), report.left_out_count()), (2, 2));
+    assert_eq!(cloud.to_file_coordinates(cloud.positions[0]), [10.0, 21.0, 30.0]);
+    assert_eq!(cloud.attributes.scanner_index, Some(vec![0, 1]));
+    assert_eq!(cloud.to_file_coordinates(cloud.scanner_positions[1]), [10.0, 20.0, 30.0]);
+}
+
+#[test]
 fn ply_whose_header_declares_more_than_its_lines_hold_is_refused() {
     let test = "ply_whose_header_declares_more_than_its_lines_hold_is_refused";
     let Some(path) = common::data(test, "data/house_dyke_tree/house_dyke_tree.HEAD.ply") else { return };
@@ -327,7 +356,7 @@ fn ply_whose_header_declares_more_than_its_lines_hold_is_refused() {
 
 #[test]
 fn unknown_extensions_and_missing_files_are_named() {
-    let error = read(&[PathBuf::from("nowhere/cloud.ptx")]).unwrap_err();
+    let error = read(&[PathBuf::from("nowhere/cloud.dwg")]).unwrap_err();
     assert!(matches!(error, Error::UnknownFormat { .. }), "{error}");
     let error = read(&[PathBuf::from("nowhere/cloud.las")]).unwrap_err();
     assert!(matches!(error, Error::Io { .. }) && error.to_string().contains("nowhere"), "{error}");

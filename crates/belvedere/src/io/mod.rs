@@ -12,6 +12,7 @@ mod npy;
 mod part;
 mod pcd;
 mod ply;
+mod ptx;
 mod read_cloud;
 mod rows;
 mod xyz;
