@@ -368,6 +368,12 @@ fn laz_chunk_sizes_are_held_against_the_file() {
         for value in [0, 1, start as u64, file.bytes.len() as u64, u64::MAX] {
             with("chunk table offset", start, &value.to_le_bytes());
         }
+        // Types, sizes and versions of the items; a wrong type makes the decompressor misread the sizes of layers.
+        for at in vlr + 32..vlr + 52 {
+            for bit in 0..8 {
+                with("item", at, &[file.bytes[at] ^ (1 << bit)]);
+            }
+        }
         for at in 0..150 {
             with("first chunk", start + 8 + at, &[0xff]);
         }

@@ -89,8 +89,10 @@ pub(super) fn assemble(mut parts: Vec<Part>) -> Result<(PointCloud, ReadReport)>
         return Err(Error::NoPoints { what: nothing_left(&report) });
     }
     if u32::try_from(cloud.len()).is_err() {
-        return Err(Error::NoPoints {
-            what: format!("{} points are more than this version can index; read fewer files at once", cloud.len()),
+        return Err(Error::InvalidParameter {
+            name: "number of points",
+            value: cloud.len().to_string(),
+            expected: "at most 4294967295; read fewer files at once",
         });
     }
     cloud.validate()?;

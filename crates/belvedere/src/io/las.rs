@@ -49,12 +49,13 @@ pub(super) fn read(path: &Path, forced: Option<&Crs>) -> Result<Part> {
     let transform = |i: usize| Transform { scale: header.scale[i], offset: header.offset[i] };
     let transforms = Vector { x: transform(0), y: transform(1), z: transform(2) };
     let mut batch = PointDataBuilder::new().with_format(format).with_transforms(transforms).build();
-    if header.compressed {
+    // Without points there need be no chunk table either.
+    if header.compressed && header.points > 0 {
         let mut reader = LazReader::new(path, file, &header, size, extra)?;
         while reader.next_batch(BATCH, |points| batch.resize_for(points))? > 0 {
             columns.append(&batch);
         }
-    } else {
+    } else if !header.compressed {
         let mut left = points_in_file(&mut part, &header, size);
         file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
         while left > 0 {
