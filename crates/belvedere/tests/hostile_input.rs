@@ -1,6 +1,9 @@
 //! Damaged and malicious files: every reader must answer with an error or a report, never panic, hang or allocate what
 //! the file cannot hold.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+#[allow(unreachable_pub, reason = "shared by several test binaries")]
 mod common;
 
 use std::io::Cursor;
@@ -130,6 +133,11 @@ fn xyz() -> Vec<u8> {
     (0..POINTS).map(coordinates).flat_map(|p| format!("{} {} {}\n", p[0], p[1], p[2]).into_bytes()).collect()
 }
 
+fn ptx() -> Vec<u8> {
+    let header = b"60\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+    [header.to_vec(), xyz()].concat()
+}
+
 fn e57() -> Vec<u8> {
     let mut cursor = Cursor::new(Vec::new());
     let mut writer = e57::E57Writer::new(&mut cursor, "file").unwrap();
@@ -173,6 +181,7 @@ fn valid_files() -> Vec<Valid> {
         Valid { name: "f8.npy", bytes: npy("<f8", "(60, 3)") },
         Valid { name: "text.xyz", bytes: xyz() },
         Valid { name: "scan.e57", bytes: e57() },
+        Valid { name: "scan.ptx", bytes: ptx() },
     ]
 }
 
@@ -358,6 +367,12 @@ fn laz_chunk_sizes_are_held_against_the_file() {
         }
         for value in [0, 1, start as u64, file.bytes.len() as u64, u64::MAX] {
             with("chunk table offset", start, &value.to_le_bytes());
+        }
+        // Types, sizes and versions of the items; a wrong type makes the decompressor misread the sizes of layers.
+        for at in vlr + 32..vlr + 52 {
+            for bit in 0..8 {
+                with("item", at, &[file.bytes[at] ^ (1 << bit)]);
+            }
         }
         for at in 0..150 {
             with("first chunk", start + 8 + at, &[0xff]);

@@ -1,6 +1,9 @@
 //! Reading point clouds: the figures come from laspy 2.7 with lazrs (LAS, LAZ), the XML of E57 files and the data
 //! catalogue; none comes from this crate.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+#[allow(unreachable_pub, reason = "shared by several test binaries")]
 mod common;
 
 use std::path::{Path, PathBuf};
@@ -315,6 +318,35 @@ fn pcd_text_ply_and_npy_read() {
 }
 
 #[test]
+fn ptx_scans_read_with_their_scanners() {
+    let test = "ptx_scans_read_with_their_scanners";
+    if let Some(path) = common::data(test, "data/io_cases/1.2-with-color.ptx") {
+        let (cloud, report) = read(&[path]).unwrap();
+        // The same points as 1.2-with-color.copc.laz, in one grid of 15 x 71.
+        assert_eq!((cloud.len(), report.files[0].format.as_str()), (1065, "PTX, 1 scan"));
+        let (low, high) = cloud.bounds().unwrap();
+        let (low, high) = (cloud.to_file_coordinates(low), cloud.to_file_coordinates(high));
+        for (found, expected) in low.into_iter().zip([635_619.85, 848_899.70, 406.59]) {
+            assert!((found - expected).abs() < 1e-3, "{low:?}");
+        }
+        assert!((high[2] - 586.38).abs() < 1e-3, "{high:?}");
+        assert!(cloud.attributes.color.is_some() && cloud.attributes.intensity.is_some());
+        // Its header leaves the scanner at (0, 0, 0), 850 km away.
+        assert!(cloud.scanner_positions.is_empty());
+        assert!(report.files[0].notes.iter().any(|note| note.contains("scanner position")));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    // A quarter turn about z, then a shift by (10, 20, 30): x becomes y.
+    let scan = "2\n1\n10 20 30\n0 1 0\n-1 0 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n10 20 30 1\n1 0 0 0.5\n0 0 0 0.5\n";
+    let path = text_file(&folder, "two.ptx", &scan.repeat(2));
+    let (cloud, report) = read(&[path]).unwrap();
+    assert_eq!((cloud.len(), report.left_out_count()), (2, 2));
+    assert_eq!(cloud.to_file_coordinates(cloud.positions[0]), [10.0, 21.0, 30.0]);
+    assert_eq!(cloud.attributes.scanner_index, Some(vec![0, 1]));
+    assert_eq!(cloud.to_file_coordinates(cloud.scanner_positions[1]), [10.0, 20.0, 30.0]);
+}
+
+#[test]
 fn ply_whose_header_declares_more_than_its_lines_hold_is_refused() {
     let test = "ply_whose_header_declares_more_than_its_lines_hold_is_refused";
     let Some(path) = common::data(test, "data/house_dyke_tree/house_dyke_tree.HEAD.ply") else { return };
@@ -324,7 +356,7 @@ fn ply_whose_header_declares_more_than_its_lines_hold_is_refused() {
 
 #[test]
 fn unknown_extensions_and_missing_files_are_named() {
-    let error = read(&[PathBuf::from("nowhere/cloud.ptx")]).unwrap_err();
+    let error = read(&[PathBuf::from("nowhere/cloud.dwg")]).unwrap_err();
     assert!(matches!(error, Error::UnknownFormat { .. }), "{error}");
     let error = read(&[PathBuf::from("nowhere/cloud.las")]).unwrap_err();
     assert!(matches!(error, Error::Io { .. }) && error.to_string().contains("nowhere"), "{error}");
@@ -450,4 +482,112 @@ fn systems_are_told_by_code_and_text() {
     // Delft, Nieuwe Kerk: 52.0123 N, 4.3608 E.
     let [longitude, latitude] = rd.longitude_latitude(84_500.0, 447_440.0).unwrap();
     assert!((longitude - 4.36).abs() < 0.01 && (latitude - 52.01).abs() < 0.01, "{longitude} {latitude}");
+}
+
+/// A LAS file of three points with everything its point format has; `edit` may add records.
+fn write_las(path: &Path, format: u8, compressed: bool, edit: impl Fn(&mut las::Builder), extra: &[Vec<u8>]) {
+    let version = if format >= 6 { (1, 4) } else { (1, 3) };
+    let mut builder = las::Builder::from(version);
+    builder.point_format = las::point::Format::new(format).unwrap();
+    builder.point_format.is_compressed = compressed;
+    builder.point_format.extra_bytes = u16::try_from(extra.first().map_or(0, Vec::len)).unwrap();
+    let transform = |offset| las::Transform { scale: 0.01, offset };
+    builder.transforms = las::Vector { x: transform(1000.0), y: transform(2000.0), z: transform(0.0) };
+    edit(&mut builder);
+    let mut writer = las::Writer::from_path(path, builder.into_header().unwrap()).unwrap();
+    let point_format = *writer.header().point_format();
+    for (i, number) in (0..3).zip(1_u8..) {
+        let point = las::Point {
+            x: 1000.25 + f64::from(number),
+            y: 2000.5,
+            z: 3.75,
+            intensity: 40_000 + u16::from(number),
+            return_number: number,
+            number_of_returns: 3,
+            scan_angle: -12.0,
+            is_withheld: true,
+            is_overlap: true,
+            scanner_channel: if point_format.is_extended { 2 } else { 0 },
+            point_source_id: 17,
+            gps_time: point_format.has_gps_time.then_some(5.5),
+            color: point_format.has_color.then(|| las::Color::new(65_000, 2, 3)),
+            nir: point_format.has_nir.then_some(9),
+            waveform: point_format.has_waveform.then(las::raw::point::Waveform::default),
+            extra_bytes: extra.get(i).cloned().unwrap_or_default(),
+            ..las::Point::default()
+        };
+        writer.write_point(point).unwrap();
+    }
+    writer.close().unwrap();
+}
+
+#[test]
+fn every_las_point_format_reads() {
+    let folder = tempfile::tempdir().unwrap();
+    for format in 0..=10 {
+        for compressed in [false, true] {
+            let path = folder.path().join(format!("{format}.{}", if compressed { "laz" } else { "las" }));
+            write_las(&path, format, compressed, |_| {}, &[]);
+            let (cloud, _) = read(std::slice::from_ref(&path)).unwrap_or_else(|e| panic!("{e}"));
+            let p = cloud.to_file_coordinates(cloud.positions[1]);
+            assert!((p[0] - 1002.25).abs() < 1e-4 && (p[1] - 2000.5).abs() < 1e-4 && (p[2] - 3.75).abs() < 1e-4);
+            let attributes = cloud.attributes;
+            assert_eq!(attributes.intensity, Some(vec![40_001, 40_002, 40_003]), "{format}");
+            assert_eq!(attributes.return_number, Some(vec![1, 2, 3]), "{format}");
+            assert_eq!(attributes.return_count, Some(vec![3; 3]), "{format}");
+            assert_eq!(attributes.point_source_id, Some(vec![17; 3]), "{format}");
+            // Withheld is 4, overlap 8.
+            assert_eq!(attributes.flags, Some(vec![12; 3]), "{format}");
+            let angle = attributes.scan_angle.unwrap()[0].to_degrees();
+            assert!((angle + 12.0).abs() < 1e-3, "{format}: {angle}");
+            assert_eq!(attributes.scanner_channel, (format >= 6).then(|| vec![2; 3]), "{format}");
+            let timed = ![0, 2].contains(&format);
+            assert_eq!(attributes.gps_time, timed.then(|| vec![5.5; 3]), "{format}");
+            let colored = [2, 3, 5, 7, 8, 10].contains(&format);
+            assert_eq!(attributes.color, colored.then(|| vec![[65_000, 2, 3]; 3]), "{format}");
+        }
+    }
+}
+
+#[test]
+fn normals_in_extra_bytes_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    // A record of 192 bytes per extra field: type at 2 (9 is f32, 4 is i16), options at 3 (8: scaled), name at 4.
+    let descriptor = |kind: u8, options: u8, name: &str, scale: f64| {
+        let mut bytes = vec![0_u8; 192];
+        (bytes[2], bytes[3]) = (kind, options);
+        bytes[4..4 + name.len()].copy_from_slice(name.as_bytes());
+        bytes[112..120].copy_from_slice(&scale.to_le_bytes());
+        bytes
+    };
+    for (kind, options, scale) in [(9, 0, 0.0), (4, 8, 0.0001)] {
+        let names = ["Radius", "NormalX", "NormalY", "NormalZ"];
+        let data: Vec<u8> = names.iter().flat_map(|name| descriptor(kind, options, name, scale)).collect();
+        let values: Vec<u8> = [50.0_f32, 0.0, 0.6, -0.8]
+            .iter()
+            .flat_map(|v| if kind == 9 { v.to_le_bytes().to_vec() } else { quantised(*v) })
+            .collect();
+        for (format, compressed) in [(6, true), (6, false), (1, true)] {
+            let path = folder.path().join(if compressed { "normals.laz" } else { "normals.las" });
+            let vlr = |builder: &mut las::Builder| {
+                builder.vlrs.push(las::Vlr {
+                    user_id: "LASF_Spec".to_owned(),
+                    record_id: 4,
+                    data: data.clone(),
+                    ..las::Vlr::default()
+                });
+            };
+            write_las(&path, format, compressed, vlr, &vec![values.clone(); 3]);
+            let (cloud, report) = read(std::slice::from_ref(&path)).unwrap_or_else(|e| panic!("{e}"));
+            let normals = cloud.attributes.normals.unwrap();
+            assert!((normals[2][1] - 0.6).abs() < 1e-4 && (normals[2][2] + 0.8).abs() < 1e-4, "{normals:?}");
+            assert!(report.files[0].notes.iter().any(|note| note.contains("dropped: Radius")), "{report:?}");
+        }
+    }
+}
+
+/// A component of a normal as an i16 of ten thousandths.
+#[expect(clippy::cast_possible_truncation, reason = "a component is at most 1, the radius is not looked at")]
+fn quantised(value: f32) -> Vec<u8> {
+    ((value * 10_000.0) as i16).to_le_bytes().to_vec()
 }

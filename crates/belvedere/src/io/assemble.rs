@@ -80,14 +80,19 @@ pub(super) fn assemble(mut parts: Vec<Part>) -> Result<(PointCloud, ReadReport)>
         }
         report.files.push(part.report);
     }
+    if cloud.scanner_positions.is_empty() {
+        cloud.attributes.scanner_index = None;
+    }
     report.dropped_attributes.sort_unstable();
     report.dropped_attributes.dedup();
     if cloud.is_empty() {
         return Err(Error::NoPoints { what: nothing_left(&report) });
     }
     if u32::try_from(cloud.len()).is_err() {
-        return Err(Error::NoPoints {
-            what: format!("{} points are more than this version can index; read fewer files at once", cloud.len()),
+        return Err(Error::InvalidParameter {
+            name: "number of points",
+            value: cloud.len().to_string(),
+            expected: "at most 4294967295; read fewer files at once",
         });
     }
     cloud.validate()?;
@@ -267,15 +272,26 @@ fn unquantise(q: [i32; 3], scale: [f64; 3], offset: [f64; 3]) -> [f64; 3] {
 }
 
 /// Moves the scanner positions of `part` into `cloud` and lets its indices point there.
+///
+/// A scanner more than 10 km from the middle of the cloud is a header left at zero, and taken as unknown.
 fn join_scanners(cloud: &mut PointCloud, part: &mut Part) {
-    let before = cloud.scanner_positions.len();
     let units = part.crs.metres_per_unit_xyz();
-    cloud
-        .scanner_positions
-        .extend(part.scanners.iter().map(|&s| to_local(std::array::from_fn(|i| s[i] * units[i]), cloud.origin)));
+    let mut new_indices: Vec<u16> = Vec::new();
+    for scanner in std::mem::take(&mut part.scanners) {
+        let metres: [f64; 3] = std::array::from_fn(|i| scanner[i] * units[i]);
+        let far = (0..3).any(|i| !metres[i].is_finite() || (metres[i] - cloud.origin[i]).abs() > NEAR);
+        let index = u16::try_from(cloud.scanner_positions.len()).ok().filter(|&index| !far && index != u16::MAX);
+        if far {
+            part.note(format!("the scanner position {scanner:?} is far from the cloud and taken as unknown"));
+        }
+        if index.is_some() {
+            cloud.scanner_positions.push(to_local(metres, cloud.origin));
+        }
+        new_indices.push(index.unwrap_or(u16::MAX));
+    }
     let count = part.coordinates.len();
     let indices = part.attributes.scanner_index.get_or_insert_with(|| vec![u16::MAX; count]);
-    for index in indices.iter_mut().filter(|index| **index != u16::MAX) {
-        *index = u16::try_from(usize::from(*index) + before).unwrap_or(u16::MAX);
+    for index in indices {
+        *index = new_indices.get(usize::from(*index)).copied().unwrap_or(u16::MAX);
     }
 }

@@ -10,7 +10,7 @@ use super::las_columns::Columns;
 use super::las_extra::find_extra_normals;
 use super::las_header::{LasHeader, read_header};
 use super::laz::{ExtraBytes, LazReader, is_chunked};
-use super::part::{Part, open};
+use super::part::{Part, guarded, open};
 use crate::crs::{Crs, CrsKind};
 use crate::{Error, Result};
 
@@ -49,12 +49,13 @@ pub(super) fn read(path: &Path, forced: Option<&Crs>) -> Result<Part> {
     let transform = |i: usize| Transform { scale: header.scale[i], offset: header.offset[i] };
     let transforms = Vector { x: transform(0), y: transform(1), z: transform(2) };
     let mut batch = PointDataBuilder::new().with_format(format).with_transforms(transforms).build();
-    if header.compressed {
+    // Without points there need be no chunk table either.
+    if header.compressed && header.points > 0 {
         let mut reader = LazReader::new(path, file, &header, size, extra)?;
         while reader.next_batch(BATCH, |points| batch.resize_for(points))? > 0 {
             columns.append(&batch);
         }
-    } else {
+    } else if !header.compressed {
         let mut left = points_in_file(&mut part, &header, size);
         file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
         while left > 0 {
@@ -123,7 +124,8 @@ fn find_crs(part: &mut Part, header: &LasHeader) {
         for record in header.records(user, 2112) {
             let text = String::from_utf8_lossy(record);
             let text = text.trim_matches(|c: char| c == '\0' || c.is_whitespace());
-            match Crs::parse(text) {
+            // The text is the file's; parsing it must not bring the reader down.
+            match guarded(&part.report.path, || Crs::parse(text)) {
                 Ok(crs) => return part.set_crs(crs, source),
                 Err(_) => unread |= !text.is_empty(),
             }

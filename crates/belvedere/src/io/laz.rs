@@ -42,10 +42,11 @@ impl<'a, R: Read + Seek + Send> LazReader<'a, R> {
         let vlr = guarded(path, || {
             LazVlr::from_buffer(record).map_err(|e| damaged(format!("has an unreadable LAZ record: {e}")))
         })?;
+        let items_match = vlr.items().iter().all(|item| item.size() == nominal_size(item.item_type()));
         let item_bytes: u64 = vlr.items().iter().map(|item| u64::from(item.size())).sum();
-        if item_bytes != u64::from(header.record_length) {
+        if !items_match || item_bytes != u64::from(header.record_length) {
             return Err(damaged(format!(
-                "compresses records of {item_bytes} bytes, but its header says {}",
+                "has a LAZ record for points of {item_bytes} bytes that does not fit the {} bytes of its header",
                 header.record_length
             )));
         }
@@ -139,6 +140,18 @@ impl<'a, R: Read + Seek + Send> LazReader<'a, R> {
 /// same symbol forever without consuming a byte, on which the laz crate (0.13) recurses until the stack overflows.
 fn begins_soundly(stream: &[u8]) -> bool {
     stream.first_chunk() != Some(&[0xff; 4])
+}
+
+/// Bytes of an item, which the file states again, as the decompressor knows them.
+fn nominal_size(item: LazItemType) -> u16 {
+    match item {
+        LazItemType::Point10 => 20,
+        LazItemType::GpsTime | LazItemType::RGBNIR14 => 8,
+        LazItemType::RGB12 | LazItemType::RGB14 => 6,
+        LazItemType::WavePacket13 | LazItemType::WavePacket14 => 29,
+        LazItemType::Point14 => 30,
+        LazItemType::Byte(count) | LazItemType::Byte14(count) => count,
+    }
 }
 
 /// Number of layers of a chunk, or `None` for point formats 0 to 5, which have no layers.

@@ -29,6 +29,7 @@ mod picture;
 mod ply;
 mod png;
 mod polygons;
+mod ptx;
 mod read_cloud;
 mod rows;
 mod trajectory;

@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use super::part::Part;
-use super::{assemble, e57, las, masbcpp, npy, pcd, ply, xyz};
+use super::{assemble, e57, las, masbcpp, npy, pcd, ply, ptx, xyz};
 use crate::cloud::PointCloud;
 use crate::crs::{Crs, CrsKind};
 use crate::{Error, Result};
 
 /// File extensions [`read_cloud`] knows, in lower case.
-pub const CLOUD_EXTENSIONS: &[&str] = &["las", "laz", "ply", "xyz", "txt", "csv", "pcd", "e57", "npy"];
+pub const CLOUD_EXTENSIONS: &[&str] = &["las", "laz", "ply", "xyz", "txt", "csv", "pcd", "e57", "npy", "ptx"];
 
 /// How to read.
 #[derive(Clone, Debug, Default)]
@@ -165,10 +165,11 @@ fn read_one(source: &Source, forced: Option<&Crs>) -> Result<Part> {
         "pcd" => pcd::read(path),
         "e57" => e57::read(path),
         "npy" => npy::read(path),
+        "ptx" => ptx::read(path),
         _ => Err(Error::UnknownFormat {
             path: path.clone(),
             kind: "point cloud",
-            supported: ".las, .laz, .ply, .xyz, .txt, .csv, .pcd, .e57, .npy",
+            supported: ".las, .laz, .ply, .xyz, .txt, .csv, .pcd, .e57, .npy, .ptx",
         }),
     }
 }
