@@ -90,11 +90,7 @@ impl Canvas {
     /// [`Error::LengthMismatch`] unless there is one radius for each centre, and one colour or one for each ball.
     pub fn draw_balls(&mut self, centers: &[[f32; 3]], radii: &[f32], colors: Colors<'_>) -> Result<()> {
         if radii.len() != centers.len() {
-            return Err(Error::LengthMismatch {
-                what: "radii of balls",
-                expected: centers.len(),
-                found: radii.len(),
-            });
+            return Err(Error::LengthMismatch { what: "radii of balls", expected: centers.len(), found: radii.len() });
         }
         colors.check(centers.len())?;
         let pixels_per_metre = self.view.pixels_per_metre();

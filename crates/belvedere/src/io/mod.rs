@@ -1,8 +1,8 @@
 //! Reading and writing files. The extension decides the format.
 
 pub mod atomic;
-pub mod balls;
 mod ball_formats;
+pub mod balls;
 mod canvas;
 mod colors;
 mod columns;
@@ -10,6 +10,7 @@ mod crs_text;
 mod depth_picture;
 mod font;
 pub mod geotiff;
+mod las_guard;
 pub mod masbcpp;
 pub mod picture;
 pub mod png;

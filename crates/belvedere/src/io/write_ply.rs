@@ -16,12 +16,7 @@ const POINTS_PER_BLOCK: usize = 1 << 18;
 
 /// Writes `cloud` with its attributes and `extra` columns. Each of `comments` becomes a comment of the header, beside
 /// those about the reference system. Coordinates are f64 in the unit of the cloud's file.
-pub(crate) fn write(
-    path: &Path,
-    cloud: &PointCloud,
-    extra: &[Column<'_>],
-    comments: &[String],
-) -> Result<WriteReport> {
+pub(crate) fn write(path: &Path, cloud: &PointCloud, extra: &[Column<'_>], comments: &[String]) -> Result<WriteReport> {
     let mut columns = attribute_columns(cloud);
     columns.extend(extra.iter().cloned());
     let row_bytes = 24 + columns.iter().map(|c| c.values.width()).sum::<usize>();

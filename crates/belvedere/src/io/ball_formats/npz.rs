@@ -19,22 +19,23 @@ const UNITS: &str = "metres relative to origin, radians; coordinates in the crs 
 const MAX_METADATA_BYTES: u64 = 1 << 24;
 
 pub(crate) fn write_npz(path: &Path, balls: &SavedBalls) -> Result<()> {
-    let metadata = metadata::to_json(balls, UNITS);
     atomic::write(path, |output| {
         let mut archive = NpzWriter::new(output);
-        let n = balls.centers.len() as u64;
-        let write = |archive: &mut NpzWriter<_>| -> io::Result<()> {
-            array(archive, "centers", &[n, 3], balls.centers.iter().flatten().copied())?;
-            array(archive, "origin", &[3], balls.origin.into_iter())?;
-            array(archive, "radii", &[n], balls.radii.iter().copied())?;
-            array(archive, "source", &[n], balls.source.iter().copied())?;
-            array(archive, "touch", &[n], balls.touch.iter().copied())?;
-            array(archive, "separation_angles", &[n], balls.separation_angles.iter().copied())?;
-            array(archive, "metadata", &[metadata.len() as u64], metadata.bytes())?;
-            archive.zip_writer().finish()?.flush()
-        };
-        write(&mut archive).map_err(Error::io(path))
+        write_arrays(&mut archive, balls).map_err(Error::io(path))
     })
+}
+
+fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, balls: &SavedBalls) -> io::Result<()> {
+    let metadata = metadata::to_json(balls, UNITS);
+    let n = balls.centers.len() as u64;
+    array(archive, "centers", &[n, 3], balls.centers.iter().flatten().copied())?;
+    array(archive, "origin", &[3], balls.origin.into_iter())?;
+    array(archive, "radii", &[n], balls.radii.iter().copied())?;
+    array(archive, "source", &[n], balls.source.iter().copied())?;
+    array(archive, "touch", &[n], balls.touch.iter().copied())?;
+    array(archive, "separation_angles", &[n], balls.separation_angles.iter().copied())?;
+    array(archive, "metadata", &[metadata.len() as u64], metadata.bytes())?;
+    archive.zip_writer().finish()?.flush()
 }
 
 fn array<T: AutoSerialize, W: Write + Seek>(

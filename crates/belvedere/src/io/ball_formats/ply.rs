@@ -99,7 +99,11 @@ impl PropertyAccess for FileBall {
 }
 
 /// An index that was stored as a signed number: what is negative in 32 bits stands above 2³¹.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked against the range; NaN gives none")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "checked against the range; NaN gives none"
+)]
 fn index(value: f64) -> u32 {
     if value >= f64::from(i32::MIN) && value < 0.0 {
         (value as i32).cast_unsigned()
