@@ -36,7 +36,8 @@ pub(crate) fn write(path: &Path, cloud: &PointCloud, extra: &[Column<'_>], comme
 fn header(cloud: &PointCloud, columns: &[Column<'_>], comments: &[String]) -> String {
     let mut text = String::from("ply\nformat binary_little_endian 1.0\ncomment written by belvedere\n");
     for line in comment_lines(&cloud.crs).iter().chain(comments) {
-        let line = line.replace(['\n', '\r'], " ");
+        // many readers refuse headers that are not ASCII
+        let line: String = line.chars().map(|c| if c.is_ascii() && !c.is_ascii_control() { c } else { '?' }).collect();
         text.push_str(&format!("comment {line}\n"));
     }
     text.push_str(&format!("element vertex {}\n", cloud.len()));
