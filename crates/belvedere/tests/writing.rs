@@ -1,4 +1,9 @@
 //! What is written can be read back, by the crates of the formats themselves, and never appears half done.
+#![expect(
+    clippy::unwrap_used,
+    clippy::cast_possible_truncation,
+    reason = "tests stop at the first surprise; the numbers are small"
+)]
 
 use std::collections::BTreeMap;
 use std::fs;
