@@ -1,7 +1,7 @@
 //! From what was typed to clouds, oriented clouds, balls and views. Calls the core in order; computes nothing itself.
 
 use crate::arguments::{
-    CloudInput, Cleaning, MethodChoice, NeighborChoice, OrientChoice, Orienting, ProfileChoice, SceneInput, Shrinking,
+    Cleaning, CloudInput, MethodChoice, NeighborChoice, OrientChoice, Orienting, ProfileChoice, SceneInput, Shrinking,
     Usage, ViewChoice,
 };
 use crate::progress::Stages;
@@ -10,7 +10,9 @@ use anyhow::Result;
 use belvedere::clean::{CleanParams, CleanReport, Treatment, clean};
 use belvedere::crs::Crs;
 use belvedere::depth::Profile;
-use belvedere::io::{ReadOptions, ReadReport, SavedBalls, is_ball_file, read_balls, read_cloud, read_mesh, read_trajectory};
+use belvedere::io::{
+    ReadOptions, ReadReport, SavedBalls, is_ball_file, read_balls, read_cloud, read_mesh, read_trajectory,
+};
 use belvedere::medial::{MedialBalls, ShrinkMethod, ShrinkParams, ShrinkReport, Side, shrink};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};

@@ -22,7 +22,8 @@ impl Stages {
         // standard error: the bar hides itself where that is no terminal
         let target = if self.shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(if count > 0 { Some(count as u64) } else { None }, target);
-        let template = if count > 0 { "{msg:24} [{bar:30}] {human_pos}/{human_len} {eta}" } else { "{msg:24} {spinner}" };
+        let template =
+            if count > 0 { "{msg:24} [{bar:30}] {human_pos}/{human_len} {eta}" } else { "{msg:24} {spinner}" };
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }

@@ -53,7 +53,7 @@ fn params(setting: &str) -> ShrinkParams {
 
 fn both_sides(coords: Vec<[f32; 3]>, normals: Vec<[f32; 3]>, params: &ShrinkParams) -> [MedialBalls; 2] {
     let index = NeighborIndex::new(&coords).unwrap();
-    let cloud = OrientedCloud::new(coords, normals);
+    let cloud = OrientedCloud::with_known_normals(coords, normals).unwrap();
     [Side::Interior, Side::Exterior].map(|side| shrink(&cloud, &index, side, params, Progress::none()).unwrap().0)
 }
 

@@ -4,7 +4,7 @@ mod common;
 
 use std::path::PathBuf;
 
-use belvedere::io::cityjson::{LevelOfDetail, read_cityjson};
+use belvedere::io::{LevelOfDetail, read_cityjson};
 use belvedere::io::{MeshReport, read_mesh};
 use belvedere::{Error, Mesh, Result};
 

@@ -20,7 +20,14 @@ fn balls_of(
     params: &ShrinkParams,
 ) -> (MedialBalls, ShrinkReport) {
     let index = NeighborIndex::new(points).unwrap();
-    shrink(&OrientedCloud::new(points.to_vec(), normals.to_vec()), &index, side, params, Progress::none()).unwrap()
+    shrink(
+        &OrientedCloud::with_known_normals(points.to_vec(), normals.to_vec()).unwrap(),
+        &index,
+        side,
+        params,
+        Progress::none(),
+    )
+    .unwrap()
 }
 
 /// A noisy gabled house on noisy ground, with normals that are off by some degrees.
@@ -145,7 +152,7 @@ fn duplicates_neither_stop_nor_enlarge_balls() {
 fn parameters_out_of_range_are_refused() {
     let (points, normals) = house(1);
     let index = NeighborIndex::new(&points).unwrap();
-    let cloud = OrientedCloud::new(points, normals);
+    let cloud = OrientedCloud::with_known_normals(points, normals).unwrap();
     let angles = |first: f64| ShrinkParams {
         method: ShrinkMethod::Angles { first_separation_angle: first, next_separation_angle: 0.3 },
         initial_radius: 200.0,

@@ -14,7 +14,9 @@ use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkParams, Side};
 pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
     let is_folder = extension(&arguments.output).is_empty();
     if !is_folder && (arguments.nan || arguments.simplify.is_some()) {
-        return Err(Usage("--nan and --simplify write into a folder: give -o a name without extension".to_owned()).into());
+        return Err(
+            Usage("--nan and --simplify write into a folder: give -o a name without extension".to_owned()).into()
+        );
     }
     let method = if is_folder { MethodChoice::Angles } else { MethodChoice::Tau };
     let params = arguments.shrinking.params(method)?;

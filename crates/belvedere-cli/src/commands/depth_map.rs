@@ -22,9 +22,8 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     let scene = pipeline::scene(&arguments.scene, &mut stages, &mut summary)?;
     let view = arguments.view.view(&scene, &mut summary)?;
     let items = if arguments.balls_id.is_some() { ItemBuffer::With } else { ItemBuffer::Without };
-    let map = stages.run("drawing depth map", 0, |_| {
-        depth_map(&scene.balls, &view, arguments.scene.profile.into(), items)
-    })?;
+    let map = stages
+        .run("drawing depth map", 0, |_| depth_map(&scene.balls, &view, arguments.scene.profile.into(), items))?;
     let hit = map.depth.values().iter().filter(|d| d.is_finite()).count();
     summary.add("pixels_hit_percent", percent(hit, map.depth.values().len()));
     let output = &arguments.output;

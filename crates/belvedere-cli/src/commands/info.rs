@@ -63,10 +63,14 @@ fn attributes(cloud: &PointCloud, facts: &CloudSummary) -> Summary {
         section.add("classification", counts(facts.classes.iter().map(|(c, &n)| (format!("class {c}"), n)).collect()));
     }
     if !facts.flight_lines.is_empty() {
-        section.add("point_source_id", counts(facts.flight_lines.iter().map(|(l, &n)| (format!("line {l}"), n)).collect()));
+        section.add(
+            "point_source_id",
+            counts(facts.flight_lines.iter().map(|(l, &n)| (format!("line {l}"), n)).collect()),
+        );
     }
     if let Some(share) = facts.multi_return_share {
-        section.add("return_count", format!("{:.1} % of the points belong to pulses with several returns", 100.0 * share));
+        section
+            .add("return_count", format!("{:.1} % of the points belong to pulses with several returns", 100.0 * share));
     }
     if let Some([least, most]) = facts.scan_angle_deg {
         section.add("scan_angle", format!("{least:.1} to {most:.1} degrees"));

@@ -22,11 +22,8 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
     stages.run("writing", 0, |_| -> Result<()> {
         if is_folder {
             let coords = pipeline::file_coordinates(&cloud, &cloud.positions);
-            let folder = MasbcppFolder {
-                coords: Some(&coords),
-                normals: Some(oriented.normals()),
-                ..MasbcppFolder::default()
-            };
+            let folder =
+                MasbcppFolder { coords: Some(&coords), normals: Some(oriented.normals()), ..MasbcppFolder::default() };
             return Ok(write_masbcpp(output, &folder)?);
         }
         let mut kept = if prepared.kept.len() == cloud.len() { cloud.clone() } else { cloud.select(&prepared.kept) };

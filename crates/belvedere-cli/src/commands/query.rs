@@ -67,7 +67,8 @@ fn targets(
     seed: u64,
     stages: &mut Stages,
 ) -> Result<PointCloud> {
-    let frame = |positions| PointCloud { origin: scene.origin, crs: scene.crs.clone(), positions, ..PointCloud::default() };
+    let frame =
+        |positions| PointCloud { origin: scene.origin, crs: scene.crs.clone(), positions, ..PointCloud::default() };
     if let Some(count) = arguments.targets.random {
         return Ok(frame(stages.run("spreading targets", 0, |_| random_targets(low, high, count, seed))));
     }

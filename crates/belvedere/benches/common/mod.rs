@@ -54,5 +54,5 @@ pub(crate) fn delft() -> Option<(Vec<[f32; 3]>, Vec<[f32; 3]>)> {
 
 pub(crate) fn indexed((positions, normals): (Vec<[f32; 3]>, Vec<[f32; 3]>)) -> (OrientedCloud, NeighborIndex) {
     let index = NeighborIndex::new(&positions).unwrap();
-    (OrientedCloud::new(positions, normals), index)
+    (OrientedCloud::with_known_normals(positions, normals).unwrap(), index)
 }

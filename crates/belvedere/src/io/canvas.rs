@@ -90,11 +90,7 @@ impl Canvas {
     /// [`Error::LengthMismatch`] unless there is one radius for each centre, and one colour or one for each ball.
     pub fn draw_balls(&mut self, centers: &[[f32; 3]], radii: &[f32], colors: Colors<'_>) -> Result<()> {
         if radii.len() != centers.len() {
-            return Err(Error::LengthMismatch {
-                what: "radii of balls",
-                expected: centers.len(),
-                found: radii.len(),
-            });
+            return Err(Error::LengthMismatch { what: "radii of balls", expected: centers.len(), found: radii.len() });
         }
         colors.check(centers.len())?;
         let pixels_per_metre = self.view.pixels_per_metre();
@@ -147,8 +143,9 @@ impl Canvas {
         let mut in_band: Vec<Vec<usize>> = vec![Vec::new(); height.div_ceil(ROWS_PER_BAND)];
         for (i, mark) in marks.iter().enumerate() {
             let rows = pixels(mark.y, mark.half, height);
-            for band in rows.start / ROWS_PER_BAND..rows.end.div_ceil(ROWS_PER_BAND) {
-                in_band[band].push(i);
+            let bands = rows.start / ROWS_PER_BAND..rows.end.div_ceil(ROWS_PER_BAND);
+            for members in in_band.get_mut(bands).into_iter().flatten() {
+                members.push(i);
             }
         }
         let band_pixels = ROWS_PER_BAND * width;

@@ -57,19 +57,21 @@ pub(crate) fn geo_keys(crs: &Crs, key_use: KeyUse) -> Option<GeoKeys> {
         return None;
     }
     let mut text = String::new();
-    let mut entries: Vec<[u16; 4]> = vec![[1024, 0, 1, if geographic { 2 } else { 1 }]];
-    if key_use == KeyUse::PixelAreas {
-        entries.push([1025, 0, 1, 1]);
-    }
-    let (system_key, citation_key) = if geographic { (2048, 2049) } else { (3072, 3073) };
+    let mut entries: Vec<[u16; 4]> = Vec::new();
+    let raster_type = (key_use == KeyUse::PixelAreas).then_some([1025, 0, 1, 1]);
     match (code, wkt) {
-        (Some(code), _) => entries.push([system_key, 0, 1, code]),
+        (Some(code), _) => {
+            entries.push([1024, 0, 1, if geographic { 2 } else { 1 }]);
+            entries.extend(raster_type);
+            entries.push([if geographic { 2048 } else { 3072 }, 0, 1, code]);
+        }
         (None, wkt) => {
-            entries.push([system_key, 0, 1, USER_DEFINED]);
+            entries.push([1024, 0, 1, USER_DEFINED]);
+            entries.extend(raster_type);
             // the form in which GDAL stores and understands systems without a code
             text = format!("ESRI PE String = {}|", wkt.unwrap_or_default().replace('|', "/"));
             if let Ok(length) = u16::try_from(text.len()) {
-                entries.push([citation_key, 34737, length, 0]);
+                entries.push([3073, 34737, length, 0]);
             }
         }
     }

@@ -53,13 +53,15 @@ fn with_legend(map: &Picture, near: f64, far: f64, title: &str) -> Picture {
     let (margin, line) = (8 * scale, (HEIGHT + 4) * scale);
     let (step, ticks) = ticks(near, far);
     let decimals = (0..6).find(|&d| step * 10.0_f64.powi(d) >= 0.999).map_or(6, |d| usize::try_from(d).unwrap_or(0));
-    let labels: Vec<String> = ticks.iter().map(|v| format!("{:.decimals$}", if *v == 0.0 { 0.0 } else { *v })).collect();
+    let labels: Vec<String> =
+        ticks.iter().map(|v| format!("{:.decimals$}", if *v == 0.0 { 0.0 } else { *v })).collect();
 
     let bar_width = 12 * scale;
     // room for the swatch of "nothing hit" below the bar, whatever the height of the map
     let bar_height = map.height.max(line * 7).saturating_sub(line * 4).min(320 * scale);
     let label_left = margin * 2 + map.width + bar_width + 5 * scale;
-    let widest = labels.iter().map(String::as_str).chain(["depth (m)"]).map(|t| text_width(t, scale)).max().unwrap_or(0);
+    let widest =
+        labels.iter().map(String::as_str).chain(["depth (m)"]).map(|t| text_width(t, scale)).max().unwrap_or(0);
     let legend_right =
         (label_left + widest).max(margin * 2 + map.width + bar_width + 5 * scale + text_width(NOTHING_LABEL, scale));
     let header = if title.is_empty() { 0 } else { line + TITLE_GAP * scale };
@@ -98,7 +100,8 @@ fn with_legend(map: &Picture, near: f64, far: f64, title: &str) -> Picture {
 fn ticks(low: f64, high: f64) -> (f64, Vec<f64>) {
     let rough = (high - low) / 5.0;
     let power = 10.0_f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|&s| s >= rough * 0.999).unwrap_or(power * 10.0);
+    let step =
+        [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|&s| s >= rough * 0.999).unwrap_or(power * 10.0);
     let first = (low / step).ceil();
     let values = (0..12).map(|i| (first + f64::from(i)) * step).take_while(|&v| v <= high + 1e-9 * step).collect();
     (step, values)

@@ -16,6 +16,7 @@ mod geotiff;
 mod las;
 mod las_columns;
 mod las_extra;
+mod las_guard;
 mod las_header;
 mod laz;
 mod masbcpp;

@@ -80,14 +80,12 @@ impl Picture {
 #[must_use]
 pub fn side_by_side(pictures: &[Picture], captions: &[&str]) -> Picture {
     let tallest = pictures.iter().map(|p| p.height).max().unwrap_or(0);
-    let scaled: Vec<Picture> =
-        pictures.iter().map(|p| p.enlarged((tallest / p.height.max(1)).clamp(1, 64))).collect();
+    let scaled: Vec<Picture> = pictures.iter().map(|p| p.enlarged((tallest / p.height.max(1)).clamp(1, 64))).collect();
     let total: usize = scaled.iter().map(|p| p.width).sum();
     let scale = text_scale(tallest.max(total / scaled.len().max(1)));
     let gap = 8 * scale;
     let header = (HEIGHT + 4) * scale;
-    let mut sheet =
-        Picture::filled(total + gap * (scaled.len() + 1), tallest + header + 2 * gap, PAPER);
+    let mut sheet = Picture::filled(total + gap * (scaled.len() + 1), tallest + header + 2 * gap, PAPER);
     let mut left = gap;
     for (i, picture) in scaled.iter().enumerate() {
         let caption = fitted(captions.get(i).copied().unwrap_or_default(), picture.width, scale);

@@ -91,8 +91,7 @@ fn to_column<'a>(extra: &ExtraColumn<'a>) -> Column<'a> {
 
 /// Names go into text headers of several formats: a blank or a comma in one would shift all later columns.
 fn check_names(columns: &[Column<'_>]) -> Result<()> {
-    let usable =
-        |name: &str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c));
+    let usable = |name: &str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c));
     match columns.iter().find(|c| !usable(&c.name)) {
         Some(c) => Err(Error::InvalidParameter {
             name: "name of a result column",

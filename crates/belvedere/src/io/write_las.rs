@@ -3,8 +3,8 @@
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use las::{Builder, GpsTimeType, PointDataBuilder, Transform, Vector, Vlr};
 use rayon::prelude::*;
@@ -50,8 +50,8 @@ pub(crate) fn write(
         });
     }
     let mut builder = Builder::from((1, 4));
-    builder.point_format = las::point::Format::new(if cloud.attributes.color.is_some() { 7 } else { 6 })
-        .map_err(las_error)?;
+    builder.point_format =
+        las::point::Format::new(if cloud.attributes.color.is_some() { 7 } else { 6 }).map_err(las_error)?;
     builder.point_format.is_compressed = compression == Compression::Laz;
     let extra_bytes: usize = columns.iter().map(|c| c.values.width()).sum();
     builder.point_format.extra_bytes = u16::try_from(extra_bytes).unwrap_or(u16::MAX);
@@ -109,8 +109,7 @@ pub(crate) fn write(
             return Err(Error::io(path)(error));
         }
         let normals_asked = extra.iter().any(|c| c.name.eq_ignore_ascii_case("NormalX"));
-        let left_out =
-            if cloud.attributes.normals.is_some() && !normals_asked { vec!["normals"] } else { Vec::new() };
+        let left_out = if cloud.attributes.normals.is_some() && !normals_asked { vec!["normals"] } else { Vec::new() };
         Ok(WriteReport { point_count: cloud.len(), left_out, clamped_count: clamped.into_inner() })
     })
 }

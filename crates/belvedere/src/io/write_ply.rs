@@ -16,12 +16,7 @@ const POINTS_PER_BLOCK: usize = 1 << 18;
 
 /// Writes `cloud` with its attributes and `extra` columns. Each of `comments` becomes a comment of the header, beside
 /// those about the reference system. Coordinates are f64 in the unit of the cloud's file.
-pub(crate) fn write(
-    path: &Path,
-    cloud: &PointCloud,
-    extra: &[Column<'_>],
-    comments: &[String],
-) -> Result<WriteReport> {
+pub(crate) fn write(path: &Path, cloud: &PointCloud, extra: &[Column<'_>], comments: &[String]) -> Result<WriteReport> {
     let mut columns = attribute_columns(cloud);
     columns.extend(extra.iter().cloned());
     let row_bytes = 24 + columns.iter().map(|c| c.values.width()).sum::<usize>();
@@ -41,7 +36,8 @@ pub(crate) fn write(
 fn header(cloud: &PointCloud, columns: &[Column<'_>], comments: &[String]) -> String {
     let mut text = String::from("ply\nformat binary_little_endian 1.0\ncomment written by belvedere\n");
     for line in comment_lines(&cloud.crs).iter().chain(comments) {
-        let line = line.replace(['\n', '\r'], " ");
+        // many readers refuse headers that are not ASCII
+        let line: String = line.chars().map(|c| if c.is_ascii() && !c.is_ascii_control() { c } else { '?' }).collect();
         text.push_str(&format!("comment {line}\n"));
     }
     text.push_str(&format!("element vertex {}\n", cloud.len()));

@@ -66,5 +66,7 @@ fn print_row(
 
 /// Decimals that resolve a tenth of a millimetre in units of `metres_per_unit`.
 fn decimals_for(metres_per_unit: f64) -> usize {
-    (0..15).find(|&d| metres_per_unit * 0.1_f64.powi(d) <= 1.000_001e-4).map_or(15, |d| usize::try_from(d).unwrap_or(15))
+    (0..15)
+        .find(|&d| metres_per_unit * 0.1_f64.powi(d) <= 1.000_001e-4)
+        .map_or(15, |d| usize::try_from(d).unwrap_or(15))
 }

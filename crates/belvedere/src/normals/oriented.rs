@@ -53,6 +53,15 @@ impl OrientedCloud {
         Ok(Self { positions, origin: [0.0; 3], crs: Crs::default(), normals, quality, confidence })
     }
 
+    /// As [`OrientedCloud::new`] for normals that are beyond doubt, such as those of a mesh: quality and confidence 1.
+    ///
+    /// # Errors
+    /// As [`OrientedCloud::new`].
+    pub fn with_known_normals(positions: Vec<[f32; 3]>, normals: Vec<[f32; 3]>) -> Result<Self> {
+        let sure = vec![1.0; positions.len()];
+        Self::new(positions, normals, sure.clone(), sure)
+    }
+
     /// The same cloud at this origin (metres) in this reference system.
     #[must_use]
     pub fn with_place(self, origin: [f64; 3], crs: Crs) -> Self {

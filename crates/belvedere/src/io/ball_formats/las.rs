@@ -10,7 +10,7 @@ use las::{Header, LazParallelism, Reader, ReaderOptions, Vlr};
 use super::{FileBall, as_cloud, fill, metadata};
 use crate::io::balls::SavedBalls;
 use crate::io::write_cloud::extension;
-use crate::io::write_las;
+use crate::io::{las_guard, write_las};
 use crate::{Error, Result};
 
 /// Identity of the record that holds the metadata.
@@ -27,12 +27,12 @@ pub(crate) fn write_las(path: &Path, balls: &SavedBalls) -> Result<()> {
         description: "medial balls".to_owned(),
         data: metadata::to_json(balls, "file units, radians; origin in metres").into_bytes(),
     };
-    let compression =
-        if extension(path) == "laz" { write_las::Compression::Laz } else { write_las::Compression::None };
+    let compression = if extension(path) == "laz" { write_las::Compression::Laz } else { write_las::Compression::None };
     write_las::write(path, &cloud, &columns, compression, &[record]).map(|_| ())
 }
 
 pub(crate) fn read_las(path: &Path) -> Result<SavedBalls> {
+    las_guard::check_promises(path)?;
     let file = BufReader::new(File::open(path).map_err(Error::io(path))?);
     // the decompressor may panic on damaged input
     catch_unwind(AssertUnwindSafe(|| decode(path, file)))
@@ -69,6 +69,9 @@ fn decode(path: &Path, file: BufReader<File>) -> Result<SavedBalls> {
 }
 
 pub(crate) fn las_has_balls(path: &Path) -> bool {
+    if las_guard::check_promises(path).is_err() {
+        return false;
+    }
     let Ok(file) = File::open(path) else { return false };
     catch_unwind(AssertUnwindSafe(|| Header::new(BufReader::new(file)).is_ok_and(|h| Fields::of(&h).is_some())))
         .unwrap_or(false)

@@ -19,8 +19,23 @@ const NEEDED: [&str; 5] = ["x", "y", "z", "radius", "touch"];
 pub(crate) fn write_ply(path: &Path, balls: &SavedBalls) -> Result<()> {
     let (cloud, columns) = as_cloud(balls);
     let json = metadata::to_json(balls, "file units, radians; origin in metres");
-    let comments = crs_text::pieces(METADATA_KEY, &json);
+    let comments = crs_text::pieces(METADATA_KEY, &in_ascii(&json));
     write_ply::write(path, &cloud, &columns, &comments).map(|_| ())
+}
+
+/// JSON with the characters beyond ASCII, which PLY headers must not hold, as escapes.
+fn in_ascii(json: &str) -> String {
+    let mut text = String::with_capacity(json.len());
+    for c in json.chars() {
+        if c.is_ascii() {
+            text.push(c);
+        } else {
+            for unit in c.encode_utf16(&mut [0; 2]) {
+                text.push_str(&format!("\\u{unit:04x}"));
+            }
+        }
+    }
+    text
 }
 
 pub(crate) fn read_ply(path: &Path) -> Result<SavedBalls> {
@@ -99,7 +114,11 @@ impl PropertyAccess for FileBall {
 }
 
 /// An index that was stored as a signed number: what is negative in 32 bits stands above 2³¹.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked against the range; NaN gives none")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "checked against the range; NaN gives none"
+)]
 fn index(value: f64) -> u32 {
     if value >= f64::from(i32::MIN) && value < 0.0 {
         (value as i32).cast_unsigned()

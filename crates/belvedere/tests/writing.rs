@@ -1,0 +1,533 @@
+//! What is written can be read back, by the crates of the formats themselves, and never appears half done.
+#![expect(
+    clippy::unwrap_used,
+    clippy::cast_possible_truncation,
+    reason = "tests stop at the first surprise; the numbers are small"
+)]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{BufReader, Write};
+use std::path::Path;
+
+use belvedere::cloud::GpsTimeKind;
+use belvedere::crs::Crs;
+use belvedere::io::{
+    Canvas, Colors, DepthRange, ExtraColumn, ExtraValues, Georeference, MasbcppFolder, Picture, SavedBalls, atomic,
+    depth_picture, is_ball_file, ramp_colors, read_balls, side_by_side, write_balls, write_cloud, write_masbcpp,
+    write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_png, write_tif_f32, write_tif_u32,
+};
+use belvedere::raster::Raster;
+use belvedere::view::View;
+use belvedere::{Attributes, Error, PointCloud};
+use tempfile::TempDir;
+
+const FOOT: f64 = 0.3048;
+
+fn dutch() -> Crs {
+    Crs { epsg: Some(28992), ..Crs::default() }
+}
+
+/// 1000 points with every attribute, near Delft.
+fn full_cloud() -> PointCloud {
+    let n = 1000_u16;
+    let column = |f: fn(u16) -> u8| Some((0..n).map(f).collect());
+    PointCloud {
+        origin: [84_500.0, 446_700.0, 3.0],
+        positions: (0..n).map(|i| [f32::from(i) * 0.25, f32::from(i % 37) * -1.5, f32::from(i % 11) * 0.125]).collect(),
+        attributes: Attributes {
+            normals: Some((0..n).map(|_| [0.0, 0.6, 0.8]).collect()),
+            classification: column(|i| (i % 7) as u8),
+            gps_time: Some((0..n).map(|i| 2.5e8 + f64::from(i) * 1e-5).collect()),
+            gps_time_kind: GpsTimeKind::AdjustedStandard,
+            return_number: column(|i| (i % 3 + 1) as u8),
+            return_count: column(|_| 3),
+            scan_angle: Some((0..n).map(|i| (f32::from(i % 40) - 20.0).to_radians()).collect()),
+            point_source_id: Some((0..n).collect()),
+            scanner_channel: column(|i| (i % 4) as u8),
+            flags: column(|i| (i % 16) as u8),
+            intensity: Some((0..n).map(|i| i * 60).collect()),
+            color: Some((0..n).map(|i| [i * 65, 1000, 65535]).collect()),
+            scanner_index: Some((0..n).map(|i| i % 2).collect()),
+        },
+        scanner_positions: vec![[0.0; 3]; 2],
+        crs: dutch(),
+    }
+}
+
+fn balls(crs: Crs) -> SavedBalls {
+    let n = 500_u16;
+    SavedBalls {
+        origin: [84_500.123_456_789, 446_700.0, 3.0],
+        crs,
+        centers: (0..n).map(|i| [f32::from(i) * 0.1234, f32::from(i) * -0.77, f32::from(i).sqrt()]).collect(),
+        radii: (0..n).map(|i| f32::from(i) * 0.0137).collect(),
+        source: (0..u32::from(n)).rev().collect(),
+        touch: (0..u32::from(n)).map(|i| if i % 10 == 0 { u32::MAX } else { i }).collect(),
+        separation_angles: (0..n).map(|i| if i % 10 == 0 { f32::NAN } else { f32::from(i) * 0.006 }).collect(),
+        provenance: BTreeMap::from([("parameters".to_owned(), "first_separation_angle = 32°".to_owned())]),
+    }
+}
+
+fn entries(folder: &TempDir) -> usize {
+    fs::read_dir(folder.path()).unwrap().count()
+}
+
+#[test]
+fn a_failed_write_changes_nothing() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("out.txt");
+    fs::write(&path, "before").unwrap();
+    let failed: Result<(), Error> = atomic::write(&path, |output| {
+        output.write_all(b"half").unwrap();
+        Err(Error::malformed(&path, "stopped"))
+    });
+    assert!(failed.is_err());
+    let panicked = std::panic::catch_unwind(|| {
+        atomic::write(&path, |output| -> Result<(), Error> {
+            output.write_all(b"half").unwrap();
+            panic!("stopped")
+        })
+    });
+    assert!(panicked.is_err());
+    assert_eq!(fs::read_to_string(&path).unwrap(), "before");
+    assert_eq!(entries(&folder), 1, "a temporary file was left");
+    atomic::write(&path, |output| output.write_all(b"after").map_err(Error::io(&path))).unwrap();
+    assert_eq!(fs::read_to_string(&path).unwrap(), "after");
+    assert_eq!(entries(&folder), 1);
+}
+
+#[test]
+fn a_missing_folder_is_named() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("missing").join("out.ply");
+    let message = write_cloud(&path, &full_cloud(), &[]).unwrap_err().to_string();
+    assert!(message.contains("missing does not exist"), "{message}");
+}
+
+#[test]
+fn las_and_laz_hold_every_attribute() {
+    let folder = TempDir::new().unwrap();
+    let cloud = full_cloud();
+    let visible: Vec<u8> = (0..1000).map(|i| (i % 3) as u8).collect();
+    let count: Vec<u32> = (0..1000).map(|i| i * 1_000_003).collect();
+    let hours: Vec<f32> = (0..1000).map(|i| i as f32 * 0.01).collect();
+    let extra = [
+        ExtraColumn { name: "visible", description: "0 blocked, 1 visible", values: ExtraValues::U8(&visible) },
+        ExtraColumn { name: "count", description: "", values: ExtraValues::U32(&count) },
+        ExtraColumn { name: "sun_hours", description: "hours", values: ExtraValues::F32(&hours) },
+    ];
+    for name in ["cloud.las", "cloud.laz"] {
+        let path = folder.path().join(name);
+        let report = write_cloud(&path, &cloud, &extra).unwrap();
+        assert_eq!((report.point_count, report.clamped_count), (1000, 0));
+        assert_eq!(report.left_out, ["normals"]);
+        let mut reader = las::Reader::from_path(&path).unwrap();
+        let header = reader.header().clone();
+        assert_eq!(header.point_format().to_u8().unwrap() & 0x3f, 7);
+        assert_eq!(header.generating_software(), "belvedere");
+        assert!(header.gps_time_type().is_standard());
+        assert!(!header.has_synthetic_return_numbers());
+        let wkt = String::from_utf8(header.get_wkt_crs_bytes().unwrap().to_vec()).unwrap();
+        assert!(wkt.starts_with("PROJCS") && wkt.contains("28992"), "{wkt}");
+        let descriptors = header.vlrs().iter().find(|v| v.user_id == "LASF_Spec" && v.record_id == 4).unwrap();
+        assert_eq!(descriptors.data.len(), 4 * 192);
+        let kinds: Vec<u8> = descriptors.data.chunks(192).map(|d| d[2]).collect();
+        assert_eq!(kinds, [1, 5, 9, 3]);
+        assert!(descriptors.data[4..].starts_with(b"visible\0"));
+        assert!(descriptors.data[160..].starts_with(b"0 blocked, 1 visible\0"));
+
+        let points = reader.read_all().unwrap();
+        assert_eq!(points.len(), 1000);
+        let a = &cloud.attributes;
+        for (i, point) in points.points().map(Result::unwrap).enumerate() {
+            let expected = cloud.to_file_coordinates(cloud.positions[i]);
+            for (found, expected) in [point.x, point.y, point.z].into_iter().zip(expected) {
+                assert!((found - expected).abs() <= 0.0005, "{found} {expected}");
+            }
+            assert_eq!(u8::from(point.classification), a.classification.as_ref().unwrap()[i]);
+            assert_eq!(point.gps_time, Some(a.gps_time.as_ref().unwrap()[i]));
+            assert_eq!(point.return_number, a.return_number.as_ref().unwrap()[i]);
+            assert_eq!(point.number_of_returns, 3);
+            assert!((point.scan_angle - a.scan_angle.as_ref().unwrap()[i].to_degrees()).abs() < 0.004);
+            assert_eq!(point.point_source_id, a.point_source_id.as_ref().unwrap()[i]);
+            assert_eq!(point.scanner_channel, a.scanner_channel.as_ref().unwrap()[i]);
+            let flags = a.flags.as_ref().unwrap()[i];
+            let found = u8::from(point.is_synthetic)
+                | u8::from(point.is_key_point) << 1
+                | u8::from(point.is_withheld) << 2
+                | u8::from(point.is_overlap) << 3;
+            assert_eq!(found, flags);
+            assert_eq!(point.intensity, a.intensity.as_ref().unwrap()[i]);
+            let color = point.color.unwrap();
+            assert_eq!([color.red, color.green, color.blue], a.color.as_ref().unwrap()[i]);
+            let bytes = &point.extra_bytes;
+            assert_eq!(bytes[0], visible[i]);
+            assert_eq!(bytes[1..5], count[i].to_le_bytes());
+            assert_eq!(bytes[5..9], hours[i].to_le_bytes());
+            assert_eq!(bytes[9..11], a.scanner_index.as_ref().unwrap()[i].to_le_bytes());
+        }
+    }
+}
+
+#[test]
+fn a_cloud_in_feet_goes_back_out_in_feet() {
+    let folder = TempDir::new().unwrap();
+    let crs = Crs { epsg: Some(2992), metres_per_unit: FOOT, vertical_metres_per_unit: FOOT, ..Crs::default() };
+    let feet = [[635_577.79, 848_882.15, 406.14], [639_000.0, 853_000.5, 520.25]];
+    let metres = feet.map(|p| p.map(|v: f64| v * FOOT));
+    let cloud = PointCloud { crs, ..PointCloud::from_coordinates(&metres).0 };
+    let path = folder.path().join("feet.laz");
+    write_cloud(&path, &cloud, &[]).unwrap();
+    let mut reader = las::Reader::from_path(&path).unwrap();
+    assert_eq!(reader.header().transforms().x.scale, 0.001);
+    let points = reader.read_all().unwrap();
+    for (found, expected) in points.x().zip(points.y()).zip(points.z()).zip(feet) {
+        let ((x, y), z) = found;
+        for (found, expected) in [x, y, z].into_iter().zip(expected) {
+            assert!((found - expected).abs() < 0.0015, "{found} {expected}");
+        }
+    }
+    assert!(reader.header().has_synthetic_return_numbers(), "no return numbers were given");
+    let path = folder.path().join("feet.npy");
+    write_cloud(&path, &cloud, &[]).unwrap();
+    let array = npyz::NpyFile::new(BufReader::new(fs::File::open(path).unwrap())).unwrap();
+    assert_eq!(array.shape(), [2, 3]);
+    let values: Vec<f64> = array.into_vec().unwrap();
+    for (found, expected) in values.iter().zip(feet.iter().flatten()) {
+        assert!((found - expected).abs() < 0.0005);
+    }
+}
+
+#[test]
+fn empty_and_tiny_clouds_are_written() {
+    let folder = TempDir::new().unwrap();
+    for name in ["e.las", "e.laz", "e.ply", "e.csv", "e.npy"] {
+        let path = folder.path().join(name);
+        assert_eq!(write_cloud(&path, &PointCloud::default(), &[]).unwrap().point_count, 0);
+    }
+    assert_eq!(las::Reader::from_path(folder.path().join("e.laz")).unwrap().read_all().unwrap().len(), 0);
+    let small = PointCloud { positions: vec![[0.0; 3], [0.1, 0.020_03, 0.0]], ..PointCloud::default() };
+    let path = folder.path().join("small.las");
+    write_cloud(&path, &small, &[]).unwrap();
+    let points = las::Reader::from_path(path).unwrap().read_all().unwrap();
+    assert!((points.y().nth(1).unwrap() - 0.020_03).abs() < 1e-7, "small objects keep their detail");
+}
+
+#[test]
+fn ply_and_tables_hold_columns() {
+    use ply_rs_bw::ply::{DefaultElement, Property};
+    let folder = TempDir::new().unwrap();
+    let cloud = full_cloud();
+    let hours: Vec<f32> = (0..1000).map(|i| i as f32 * 0.01).collect();
+    let extra = [ExtraColumn { name: "sun_hours", description: "hours", values: ExtraValues::F32(&hours) }];
+    let path = folder.path().join("cloud.ply");
+    write_cloud(&path, &cloud, &extra).unwrap();
+    let ply = ply_rs_bw::parser::Parser::<DefaultElement>::new()
+        .read_ply(&mut BufReader::new(fs::File::open(path).unwrap()))
+        .unwrap();
+    assert!(ply.header.comments.iter().any(|c| c.contains("EPSG:28992")));
+    assert!(ply.header.comments.iter().all(|c| c.len() < 1000));
+    let vertex = &ply.payload["vertex"][500];
+    let expected = cloud.to_file_coordinates(cloud.positions[500]);
+    assert!(matches!(vertex["x"], Property::Double(v) if v == expected[0]));
+    assert!(matches!(vertex["sun_hours"], Property::Float(5.0)));
+    assert!(matches!(vertex["blue"], Property::UChar(255)));
+    assert!(matches!(vertex["nz"], Property::Float(0.8)));
+
+    let path = folder.path().join("cloud.csv");
+    write_cloud(&path, &cloud, &extra).unwrap();
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert_eq!(header[..3], ["x", "y", "z"]);
+    assert_eq!(header.last(), Some(&"sun_hours"));
+    let row: Vec<&str> = lines.nth(500).unwrap().split(',').collect();
+    assert_eq!(row.len(), header.len());
+    assert_eq!(row[0], "84625.0000");
+    assert_eq!(*row.last().unwrap(), "5");
+    assert_eq!(text.lines().count(), 1001);
+}
+
+#[test]
+fn unsuitable_formats_and_columns_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let cloud = full_cloud();
+    let few = [1_u8; 3];
+    let column = |name| ExtraColumn { name, description: "", values: ExtraValues::U8(&few) };
+    let e57 = write_cloud(&folder.path().join("a.e57"), &cloud, &[]).unwrap_err();
+    assert!(e57.to_string().contains(".laz"), "{e57}");
+    assert!(matches!(
+        write_cloud(&folder.path().join("a.ply"), &cloud, &[column("visible")]),
+        Err(Error::LengthMismatch { expected: 1000, found: 3, .. })
+    ));
+    let small = PointCloud { positions: vec![[0.0; 3]; 3], ..PointCloud::default() };
+    assert!(write_cloud(&folder.path().join("a.npy"), &small, &[column("visible")]).is_err());
+    assert!(write_cloud(&folder.path().join("a.csv"), &small, &[column("a,b")]).is_err());
+    assert_eq!(entries(&folder), 0);
+}
+
+#[test]
+fn rasters_keep_values_place_and_nodata() {
+    use tiff::decoder::{Decoder, DecodingResult};
+    use tiff::tags::Tag;
+    let folder = TempDir::new().unwrap();
+    let values: Vec<f32> = (0..300 * 200).map(|i| if i == 7 { f32::INFINITY } else { i as f32 * 0.25 }).collect();
+    let raster = Raster::from_values(300, 200, values.clone()).unwrap();
+    let path = folder.path().join("depth.tif");
+    let place = Georeference::north_up([84_500.0, 446_800.0], 0.5, dutch());
+    write_tif_f32(&path, &raster, Some(&place), Some(-9999.0), None).unwrap();
+    let mut decoder = Decoder::new(BufReader::new(fs::File::open(&path).unwrap())).unwrap();
+    assert_eq!(decoder.dimensions().unwrap(), (300, 200));
+    assert_eq!(decoder.get_tag_ascii_string(Tag::GdalNodata).unwrap(), "-9999");
+    assert_eq!(decoder.get_tag_f64_vec(Tag::ModelPixelScaleTag).unwrap(), [0.5, 0.5, 0.0]);
+    assert_eq!(decoder.get_tag_f64_vec(Tag::ModelTiepointTag).unwrap(), [0.0, 0.0, 0.0, 84_500.0, 446_800.0, 0.0]);
+    let keys = decoder.get_tag_u16_vec(Tag::GeoKeyDirectoryTag).unwrap();
+    assert!(keys.chunks(4).any(|k| k == [3072, 0, 1, 28992]), "{keys:?}");
+    let DecodingResult::F32(found) = decoder.read_image().unwrap() else { panic!("not f32") };
+    assert_eq!(found[7], -9999.0);
+    assert_eq!(found[8..], values[8..]);
+
+    let items = Raster::from_values(3, 2, vec![0, 1, 2, 3, 4, u32::MAX]).unwrap();
+    let path = folder.path().join("items.tif");
+    write_tif_u32(&path, &items, None, Some(u32::MAX), Some("view space")).unwrap();
+    let mut decoder = Decoder::new(BufReader::new(fs::File::open(&path).unwrap())).unwrap();
+    assert_eq!(decoder.get_tag_ascii_string(Tag::ImageDescription).unwrap(), "view space");
+    assert!(decoder.get_tag(Tag::GeoKeyDirectoryTag).is_err());
+    let DecodingResult::U32(found) = decoder.read_image().unwrap() else { panic!("not u32") };
+    assert_eq!(found, items.values());
+    assert!(write_tif_u32(&path, &Raster::filled(0, 0, 0), None, None, None).is_err());
+
+    let path = folder.path().join("depth.npy");
+    write_npy_f32_2d(&path, &raster).unwrap();
+    let array = npyz::NpyFile::new(BufReader::new(fs::File::open(path).unwrap())).unwrap();
+    assert_eq!(array.shape(), [200, 300]);
+    assert_eq!(array.into_vec::<f32>().unwrap(), values);
+}
+
+/// Looks straight down on the square from (0, 0) to (`side`, `side`).
+fn plan_view(side: f64, pixel: f64) -> View {
+    View::parallel([0.0, 0.0, -1.0], [0.0, 0.0, 0.0], [side, side, 10.0], pixel).unwrap()
+}
+
+#[test]
+fn nearer_balls_and_points_hide_farther_ones() {
+    let view = plan_view(10.0, 0.1);
+    let mut canvas = Canvas::new(&view, [255; 3]);
+    let (red, green) = ([200, 0, 0], [0, 200, 0]);
+    // the second ball lies higher, nearer to a viewer above
+    canvas.draw_balls(&[[5.0, 5.0, 2.0], [6.0, 5.0, 6.0]], &[2.0, 1.0], Colors::Each(&[red, green])).unwrap();
+    canvas.draw_points(&[[6.0, 5.0, 1.0], [1.0, 9.0, 0.0]], Colors::One([0, 0, 255]), 3).unwrap();
+    let picture = canvas.into_picture();
+    let at = |x: f64, y: f64| picture.get((x * 10.0) as usize, ((10.0 - y) * 10.0) as usize).unwrap();
+    assert!(at(6.0, 5.0)[1] > 100 && at(6.0, 5.0)[0] == 0, "the near ball hides ball and point");
+    assert!(at(4.0, 5.0)[0] > 100 && at(4.0, 5.0)[1] == 0);
+    assert_eq!(at(1.0, 9.0), [0, 0, 255]);
+    assert_eq!(at(0.5, 0.5), [255; 3]);
+    let brightness = |x: f64, y: f64| at(x, y)[0];
+    assert!(brightness(4.2, 5.8) > brightness(5.0, 3.3), "lit from the upper left");
+    assert!(Canvas::new(&view, [0; 3]).draw_balls(&[[0.0; 3]], &[], Colors::One(red)).is_err());
+}
+
+#[test]
+fn drawing_does_not_depend_on_threads() {
+    let view = plan_view(20.0, 0.05);
+    let centers: Vec<[f32; 3]> =
+        (0..5000_u32).map(|i| [(i * 37 % 2000) as f32 * 0.01, (i * 91 % 2000) as f32 * 0.01, 5.0]).collect();
+    let radii: Vec<f32> = (0..5000_u16).map(|i| f32::from(i % 50) * 0.01).collect();
+    let draw = || {
+        let mut canvas = Canvas::new(&view, [255; 3]);
+        canvas.draw_balls(&centers, &radii, Colors::One([90, 120, 200])).unwrap();
+        canvas.into_picture()
+    };
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(draw);
+    assert_eq!(one, draw());
+}
+
+#[test]
+fn depth_pictures_have_colours_and_a_legend() {
+    let folder = TempDir::new().unwrap();
+    let values: Vec<f32> = (0..100 * 60).map(|i| if i % 100 > 80 { f32::INFINITY } else { (i % 100) as f32 }).collect();
+    let depth = Raster::from_values(100, 60, values).unwrap();
+    let picture = depth_picture(&depth, DepthRange::Full, "Depth map");
+    assert!(picture.width > 500 && picture.height > 300, "small maps are enlarged");
+    let lightness = |c: [u8; 3]| c.iter().map(|&v| u32::from(v)).sum::<u32>();
+    let map_row = picture.height / 2;
+    let near = picture.get(30, map_row).unwrap();
+    let far = picture.get(30 + 70 * 5, map_row).unwrap();
+    assert!(lightness(near) > lightness(far), "near is light: {near:?} {far:?}");
+    let dark = |columns: std::ops::Range<usize>, rows: std::ops::Range<usize>| {
+        rows.flat_map(|r| columns.clone().map(move |c| (c, r)))
+            .filter(|&(c, r)| picture.get(c, r).is_some_and(|p| lightness(p) < 150))
+            .count()
+    };
+    assert!(dark(0..200, 0..40) > 50, "title");
+    assert!(dark(560..picture.width, 0..picture.height) > 200, "legend");
+    let both = side_by_side(&[picture.clone(), Picture::filled(100, 50, [9; 3])], &["left", "right"]);
+    assert!(both.width > picture.width && both.height > picture.height);
+    let path = folder.path().join("p.png");
+    write_png(&path, &both).unwrap();
+    let mut reader = png::Decoder::new(BufReader::new(fs::File::open(&path).unwrap())).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!((info.width as usize, info.height as usize), (both.width, both.height));
+    assert_eq!(bytes, both.rgb);
+    assert!(write_png(&path, &Picture::filled(0, 0, [0; 3])).is_err());
+    let nothing = Raster::filled(4, 4, f32::INFINITY);
+    assert!(depth_picture(&nothing, DepthRange::Robust, "").width > 0);
+    assert!(depth_picture(&Raster::filled(1, 1, 5.0), DepthRange::Robust, "a title much too long").width > 0);
+}
+
+fn same_bits(a: &[f32], b: &[f32]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(x, y)| x.to_bits() == y.to_bits())
+}
+
+#[test]
+fn balls_come_back() {
+    let folder = TempDir::new().unwrap();
+    let feet = Crs { metres_per_unit: FOOT, vertical_metres_per_unit: FOOT, ..Crs::default() };
+    let wkt = Crs { wkt: Some(format!("LOCAL_CS[\"{}  end\"]", "long  name ".repeat(200))), ..Crs::default() };
+    for crs in [dutch(), feet, wkt] {
+        let balls = balls(crs);
+        for name in ["b.npz", "b.ply", "b.laz", "b.las"] {
+            let path = folder.path().join(name);
+            write_balls(&path, &balls).unwrap();
+            assert!(is_ball_file(&path).unwrap(), "{name}");
+            let found = read_balls(&path).unwrap();
+            assert_eq!(found.crs, balls.crs, "{name}");
+            assert_eq!(found.provenance, balls.provenance);
+            assert_eq!(found.source, balls.source);
+            assert_eq!(found.touch, balls.touch);
+            assert!(same_bits(&found.separation_angles, &balls.separation_angles));
+            if name == "b.npz" {
+                assert_eq!(found.origin, balls.origin);
+                assert!(same_bits(found.centers.as_flattened(), balls.centers.as_flattened()));
+                assert!(same_bits(&found.radii, &balls.radii));
+                continue;
+            }
+            for i in 0..balls.radii.len() {
+                assert!((found.radii[i] - balls.radii[i]).abs() <= balls.radii[i] * 2e-7, "{name}");
+                for axis in 0..3 {
+                    let expected = f64::from(balls.centers[i][axis]) + balls.origin[axis];
+                    let value = f64::from(found.centers[i][axis]) + found.origin[axis];
+                    assert!((value - expected).abs() < 0.0006, "{name}: {value} {expected}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn clouds_are_no_ball_files() {
+    let folder = TempDir::new().unwrap();
+    for name in ["c.las", "c.laz", "c.ply", "c.csv"] {
+        let path = folder.path().join(name);
+        write_cloud(&path, &full_cloud(), &[]).unwrap();
+        assert!(!is_ball_file(&path).unwrap(), "{name}");
+        assert!(read_balls(&path).is_err(), "{name}");
+    }
+    assert!(is_ball_file(&folder.path().join("missing.npz")).is_err());
+    assert!(matches!(write_balls(Path::new("b.obj"), &balls(dutch())), Err(Error::UnknownFormat { .. })));
+    let mut uneven = balls(dutch());
+    uneven.radii.pop();
+    assert!(matches!(write_balls(Path::new("b.npz"), &uneven), Err(Error::LengthMismatch { .. })));
+}
+
+#[test]
+fn damaged_ball_files_are_errors() {
+    let folder = TempDir::new().unwrap();
+    for name in ["b.npz", "b.ply", "b.laz", "b.las"] {
+        let path = folder.path().join(name);
+        write_balls(&path, &balls(dutch())).unwrap();
+        let whole = fs::read(&path).unwrap();
+        for share in 0..40 {
+            fs::write(&path, &whole[..whole.len() * share / 40]).unwrap();
+            assert!(read_balls(&path).is_err(), "{name} cut to {share}/40");
+            is_ball_file(&path).unwrap();
+        }
+        // any byte may be wrong: an error or other numbers, but no panic
+        for at in (0..whole.len()).step_by(whole.len() / 400 + 1) {
+            let mut damaged = whole.clone();
+            damaged[at] ^= 0xff;
+            fs::write(&path, &damaged).unwrap();
+            let _ = read_balls(&path);
+        }
+    }
+}
+
+#[test]
+fn masbcpp_folders_hold_its_arrays() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("mat");
+    let points = [[1.0_f32, 2.0, 3.0], [4.0, 5.0, 6.0]];
+    let arrays = MasbcppFolder {
+        coords: Some(&points),
+        ma_coords_in: Some(&points),
+        ma_qidx_in: Some(&[-1, 0]),
+        lfs: Some(&[0.5, 1.5]),
+        decimate_lfs: Some(&[0, 1]),
+        ..MasbcppFolder::default()
+    };
+    write_masbcpp(&path, &arrays).unwrap();
+    let array = |name: &str| npyz::NpyFile::new(BufReader::new(fs::File::open(path.join(name)).unwrap())).unwrap();
+    assert_eq!(array("ma_coords_in.npy").shape(), [2, 3]);
+    assert_eq!(array("ma_coords_in.npy").into_vec::<f32>().unwrap(), points.as_flattened());
+    assert_eq!(array("ma_qidx_in.npy").into_vec::<i32>().unwrap(), [-1, 0]);
+    assert_eq!(array("decimate_lfs.npy").into_vec::<bool>().unwrap(), [false, true]);
+    assert!(!path.join("normals.npy").exists());
+    assert!(write_masbcpp(&path, &MasbcppFolder { lfs: Some(&[1.0]), ..arrays }).is_err());
+}
+
+/// Writes one of everything for inspection with other programs; run with `--ignored` and `BELVEDERE_SAMPLES` set.
+#[test]
+#[ignore = "writes samples for other programs to the folder BELVEDERE_SAMPLES"]
+fn write_samples() {
+    let Some(folder) = std::env::var_os("BELVEDERE_SAMPLES").map(std::path::PathBuf::from) else { return };
+    let cloud = full_cloud();
+    let hours: Vec<f32> = (0..1000).map(|i| i as f32 * 0.01).collect();
+    let count: Vec<u32> = (0..1000).collect();
+    let extra = [
+        ExtraColumn { name: "sun_hours", description: "hours", values: ExtraValues::F32(&hours) },
+        ExtraColumn { name: "count", description: "cameras that see it", values: ExtraValues::U32(&count) },
+    ];
+    for name in ["c.las", "c.laz", "c.ply", "c.csv", "c.xyz"] {
+        write_cloud(&folder.join(name), &cloud, &extra).unwrap();
+    }
+    write_cloud(&folder.join("c.npy"), &cloud, &[]).unwrap();
+    for name in ["b.npz", "b.ply", "b.laz"] {
+        write_balls(&folder.join(name), &balls(dutch())).unwrap();
+    }
+    let view = plan_view(20.0, 0.05);
+    let depth: Vec<f32> = (0..view.size_px[0] * view.size_px[1])
+        .map(|i| {
+            let (x, y) = ((i % view.size_px[0]) as f32 * 0.05 - 10.0, (i / view.size_px[0]) as f32 * 0.05 - 10.0);
+            if x.hypot(y) > 9.0 { f32::INFINITY } else { 30.0 - 0.2 * (81.0 - x * x - y * y) + (x * 2.0).sin() }
+        })
+        .collect();
+    let depth = Raster::from_values(view.size_px[0], view.size_px[1], depth).unwrap();
+    let place = Georeference::north_up([84_500.0, 446_800.0], 0.05, dutch());
+    write_tif_f32(&folder.join("d.tif"), &depth, Some(&place), Some(-9999.0), None).unwrap();
+    let turned = Georeference { column_step: [0.0, 0.5], row_step: [0.5, 0.0], ..place.clone() };
+    write_tif_f32(&folder.join("turned.tif"), &depth, Some(&turned), None, None).unwrap();
+    let wkt = Crs { wkt: Some("PROJCS[\"mine\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\",5],PARAMETER[\"scale_factor\",1],PARAMETER[\"false_easting\",0],PARAMETER[\"false_northing\",0],UNIT[\"metre\",1]]".to_owned()), ..Crs::default() };
+    let compound = Crs { epsg: Some(28992), vertical_epsg: Some(5709), ..Crs::default() };
+    write_tif_f32(&folder.join("w.tif"), &depth, Some(&Georeference { crs: wkt, ..place.clone() }), None, None)
+        .unwrap();
+    write_tif_f32(&folder.join("v.tif"), &depth, Some(&Georeference { crs: compound, ..place }), None, None).unwrap();
+    write_npy_f32_2d(&folder.join("d.npy"), &depth).unwrap();
+    write_png(&folder.join("d.png"), &depth_picture(&depth, DepthRange::Robust, "Depth map, 20 m x 20 m")).unwrap();
+    let small = Raster::from_values(30, 12, (0..360).map(|i| (i % 30) as f32 * 0.01).collect()).unwrap();
+    write_png(&folder.join("small.png"), &depth_picture(&small, DepthRange::Robust, "small: {x} 12° (a-b), jpqgy?"))
+        .unwrap();
+    let mut canvas = Canvas::new(&view, [250, 250, 252]);
+    let centers: Vec<[f32; 3]> =
+        (0..60_u32).map(|i| [(i * 37 % 20) as f32 + 0.5, (i * 91 % 19) as f32 + 0.5, (i % 7) as f32]).collect();
+    let heights: Vec<f32> = centers.iter().map(|c| c[2]).collect();
+    let radii: Vec<f32> = (0..60_u16).map(|i| 0.3 + f32::from(i % 5) * 0.4).collect();
+    let colors = ramp_colors(&heights);
+    canvas.draw_balls(&centers, &radii, Colors::Each(&colors)).unwrap();
+    let mut points = Canvas::new(&view, [250, 250, 252]);
+    points.draw_points(&centers, Colors::Each(&colors), 7).unwrap();
+    let both = side_by_side(&[canvas.into_picture(), points.into_picture()], &["Medial balls by height", "Centres"]);
+    write_png(&folder.join("balls.png"), &both).unwrap();
+}
