@@ -1,4 +1,5 @@
 //! Cleaning of real clouds.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod common;
 
