@@ -210,6 +210,39 @@ fn hostile_files_are_errors_and_never_panics() {
 }
 
 #[test]
+fn mutated_files_never_panic() {
+    let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n\
+               property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n4 0 1 2 3\n";
+    // a list that claims four thousand million corners
+    let mut liar = ply.replace("ascii", "binary_little_endian").replace("uchar int", "uint int").into_bytes();
+    liar.truncate(liar.windows(11).position(|w| w == b"end_header\n").unwrap() + 11);
+    liar.extend([0; 48]);
+    liar.extend([0xff; 4]);
+    assert!(read("liar.ply", &liar).is_err());
+    let mut state = 7_u32;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as usize % below
+    };
+    let block = block_with_shaft("2.0", "\"2\"");
+    for (name, text) in [("a.obj", BOX_OBJ), ("a.ply", ply), ("a.json", TREES), ("a.json", &block)] {
+        for _ in 0..1500 {
+            let mut bytes = text.as_bytes().to_vec();
+            for _ in 0..=random(4) {
+                let place = random(bytes.len());
+                match random(3) {
+                    0 => bytes[place] = b"0123456789-[]{},. \nefvne+"[random(25)],
+                    1 => drop(bytes.remove(place)),
+                    _ => bytes.insert(place, b"0123456789-,[]"[random(14)]),
+                }
+            }
+            let Ok((mesh, _)) = read(name, &bytes) else { continue };
+            assert!((0..mesh.triangles.len()).all(|i| mesh.corners(i).is_some()));
+        }
+    }
+}
+
+#[test]
 fn real_files_are_read_whole() {
     let test = "real_files_are_read_whole";
     for (file, triangles) in [
