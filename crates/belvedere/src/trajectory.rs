@@ -1,5 +1,7 @@
 //! The path of a scanner through time.
 
+use rayon::prelude::*;
+
 use crate::GpsTimeKind;
 
 /// Longest gap between two positions that is interpolated over: recorders write at 1 Hz or faster, and in two seconds an
@@ -130,9 +132,12 @@ impl Trajectory {
         for leap_seconds in [0.0, -LEAP_SECONDS_S, LEAP_SECONDS_S] {
             for clock in clocks {
                 let mut offset = ClockOffset { clock, leap_seconds, served_count: 0, time_count: times.len() };
-                offset.served_count = times.iter().filter(|&&t| self.knows(offset.trajectory_time(t))).count();
+                offset.served_count = times.par_iter().filter(|&&t| self.knows(offset.trajectory_time(t))).count();
                 if best.is_none_or(|best| offset.served_count > best.served_count) {
                     best = Some(offset);
+                }
+                if offset.served_count == times.len() {
+                    return offset;
                 }
             }
         }

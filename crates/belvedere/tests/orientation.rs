@@ -1,4 +1,6 @@
 //! Signs of normals against solids in closed form, simulated scans, and an independent orientation of a real town.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![expect(clippy::cast_possible_truncation, reason = "test solids of a few metres in f32")]
 
 mod common;
 
@@ -176,6 +178,17 @@ fn points_off_a_generalised_model_use_parity_or_up() {
 }
 
 #[test]
+fn ground_near_the_floor_of_a_solid_faces_up() {
+    let (_, _, mesh) = box_solid(false);
+    // a court that the model filled, and the street in front of the house where the model has none
+    let cloud = cloud_of(vec![[10.0, 6.0, 0.2], [10.0, 6.0, 0.8], [21.0, 6.0, 0.05]]);
+    let truth = vec![[0.0, 0.0, 1.0]; 3];
+    let (result, report) = oriented(&cloud, &truth, &Orientation::Mesh(&mesh));
+    assert_eq!(result.normals(), truth);
+    assert_eq!(report.by_up_count, 3);
+}
+
+#[test]
 fn a_scanner_inside_sees_only_inward_normals() {
     let (mut cloud, truth) = sphere(10.0, 5000);
     let inward: Vec<[f32; 3]> = truth.iter().map(|n| n.map(|v| -v)).collect();
@@ -279,7 +292,6 @@ fn a_simulated_house_is_oriented_from_above() {
     let mut archive = npyz::npz::NpzArchive::open(folder.join("truth.npz")).unwrap();
     let values: Vec<f32> = archive.by_name("n_true").unwrap().unwrap().into_vec().unwrap();
     let truth: Vec<[f32; 3]> = values.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
-    let labels: Vec<u8> = archive.by_name("label").unwrap().unwrap().into_vec().unwrap();
     // trees have no true outside: their points are judged by none of the ways
     let solid = |i: usize| dot(lines[i], truth[i]).abs() > 0.5;
     let steep = |i: usize| solid(i) && lines[i][2].abs() < 0.3;
@@ -289,11 +301,6 @@ fn a_simulated_house_is_oriented_from_above() {
         let share = [agreement(result.normals(), &truth, solid), agreement(result.normals(), &truth, steep)];
         println!("houseL {name}: all {:.4}, steep {:.4}, {report:?}", share[0], share[1]);
         shares.push(share);
-    }
-    for label in 0..=labels.iter().copied().max().unwrap_or(0) {
-        let (result, _) = oriented(&cloud, &lines, &Orientation::Up);
-        let own = |i: usize| steep(i) && labels[i] == label;
-        println!("houseL up, steep, label {label}: {:.4}", agreement(result.normals(), &truth, own));
     }
     let upward: Vec<[f32; 3]> = lines.iter().map(|n| if n[2] < 0.0 { n.map(|v| -v) } else { *n }).collect();
     let plain = agreement(&upward, &truth, steep);
@@ -328,15 +335,15 @@ fn delft_by_its_city_model_agrees_with_a_scanner_above() {
         let all = agreement(result.normals(), &by_scanner, |i| dot(by_scanner[i], by_scanner[i]) > 0.0);
         let flat = agreement(result.normals(), &by_scanner, horizontal);
         println!("{}: all {all:.4}, horizontal {flat:.4}, {mesh_report:?}, {report:?}", path.display());
-        // the model covers a quarter of the tile; of its points those within its footprints near the floor of a solid
-        // take the floor's sign
-        assert!(all > 0.93 && flat > 0.99, "{all} {flat}");
+        // the model covers a quarter of the tile; steep points are a guess for a scanner straight above; ground that lies
+        // within a decimetre of the floor of a solid takes the floor's sign
+        assert!(all > 0.93 && flat > 0.998, "{all} {flat}");
         assert!(report.share(report.by_face_count) > 0.2, "{report:?}");
         results.push(result);
     }
     let same = agreement(results[0].normals(), results[1].normals(), |_| true);
     println!("OBJ and CityJSON agree on {same:.4}");
-    assert!(same > 0.99, "{same}");
+    assert!(same > 0.998, "{same}");
 }
 
 #[test]

@@ -103,7 +103,8 @@ struct Verdict {
 ///
 /// A mesh need not be consistently oriented or closed: each of its faces is first turned to its open side where one side
 /// is open and the other enclosed (parity of crossings straight up, which needs no orientation); faces for which that
-/// fails keep their turning sense, but are overruled by parity at the point. The result is the same for any number of
+/// fails keep their turning sense, but are overruled by parity at the point. A face counts as the point's own surface
+/// within 2 m, if their normals are within 60° of each other and the point lies no more than 0.25 m beside it. The result is the same for any number of
 /// threads.
 ///
 /// # Errors

@@ -15,6 +15,10 @@ const MIN_ALIGNMENT: f64 = 0.5;
 /// Faces that are farther than the nearest by no more than this are candidates too: noise of laser points near an edge.
 const EDGE_SLACK_M: f64 = 0.1;
 
+/// How far beside a face, along its plane, a point may lie for the face to be its own surface. Without this the street
+/// in front of a house would take its sign from the edge of the floor of the house where the model has no street.
+const MAX_LATERAL_M: f64 = 0.25;
+
 /// Offsets along a normal at which the sides of a point are probed, smallest first: beyond the noise of laser points,
 /// below the thickness of buildings; the second serves points that lie off the surface of a generalised model.
 const PROBE_OFFSETS_M: [f64; 2] = [0.25, 0.5];
@@ -118,7 +122,12 @@ impl ReferenceMesh {
         }
         for offset in PROBE_OFFSETS_M {
             if let Some(along) = self.open_side(position, normal, offset) {
-                return MeshVerdict::Parity(if along { 0.5 } else { -0.5 });
+                // ground under a passage or in a court that the model filled lies near the floor of a solid, and what is
+                // below a floor counts as open: parity cannot be asked about surfaces that would face down
+                let outward_z = if along { normal[2] } else { -normal[2] };
+                if outward_z >= -MIN_ALIGNMENT {
+                    return MeshVerdict::Parity(if along { 0.5 } else { -0.5 });
+                }
             }
         }
         unproven.unwrap_or(MeshVerdict::Silent)
@@ -128,13 +137,23 @@ impl ReferenceMesh {
     /// there is none, or faces about as near and about as well aligned disagree about the sign.
     fn own_face(&self, position: [f64; 3], normal: [f64; 3]) -> Option<(f64, bool)> {
         let nearest = self.faces.nearest_neighbor(position)?.distance_2(&position).sqrt();
-        if !(nearest <= MAX_FACE_DISTANCE_M) {
+        if nearest > MAX_FACE_DISTANCE_M {
             return None;
         }
         let reach = nearest + EDGE_SLACK_M;
         let mut best: Option<(f64, bool)> = None;
         let mut against = 0.0_f64;
         for face in self.faces.locate_within_distance(position, reach * reach) {
+            let offset = subtract(position, nearest_on_triangle(position, face.corners));
+            let height = dot(offset, face.normal);
+            if dot(offset, offset) - height * height > MAX_LATERAL_M * MAX_LATERAL_M {
+                continue;
+            }
+            // what lies above the floor of a solid is a passage or a low roof that the model left out, not the floor's
+            // underside
+            if face.normal[2] < -MIN_ALIGNMENT && height < -EDGE_SLACK_M {
+                continue;
+            }
             let alignment = dot(normal, face.normal);
             let found = (alignment, face.verified);
             match best {

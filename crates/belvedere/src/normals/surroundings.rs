@@ -40,7 +40,7 @@ impl Surroundings {
             low = low.min(z);
             high = high.max(z);
         }
-        if !(high - low >= MIN_RELIEF_M) {
+        if high - low < MIN_RELIEF_M {
             return None;
         }
         let middle = low + (high - low) / 2.0;
