@@ -276,7 +276,7 @@ pub(crate) fn scene(arguments: &SceneInput, stages: &mut Stages, summary: &mut S
 }
 
 fn scene_of_saved(saved: SavedBalls) -> Result<Scene> {
-    let bounds = (saved.centers[0], saved.centers[0]);
+    let bounds = saved.bounds;
     let cloud = PointCloud { origin: saved.origin, crs: saved.crs, ..PointCloud::default() };
     let balls = MedialBalls {
         centers: saved.centers,
@@ -346,6 +346,7 @@ pub(crate) fn saved(
     SavedBalls {
         origin: *place.0,
         crs: place.1.clone(),
+        bounds,
         centers: balls.centers,
         radii: balls.radii,
         source: balls.source,

@@ -19,6 +19,7 @@ pub mod random;
 pub mod raster;
 pub mod summary;
 pub mod trajectory;
+mod vector;
 pub mod view;
 
 pub use cloud::{Attributes, GpsTimeKind, PointCloud};

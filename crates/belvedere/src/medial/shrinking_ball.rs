@@ -4,6 +4,7 @@ use super::balls::{MedialBalls, NO_TOUCH, Side};
 use crate::neighbors::{NeighborIndex, Tangent};
 use crate::normals::OrientedCloud;
 use crate::progress::Progress;
+use crate::vector::{dot, sub};
 use crate::{Error, Result};
 use rayon::prelude::*;
 
@@ -180,14 +181,6 @@ struct Ball {
     center: [f32; 3],
     radius: f32,
     touch: u32,
-}
-
-fn sub(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    std::array::from_fn(|i| a[i] - b[i])
-}
-
-fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Cosine of ∠pcq, within −1 to 1.

@@ -7,6 +7,7 @@ use super::oriented::{OrientedCloud, unit_or_zero};
 use super::reference_mesh::{MeshVerdict, ReferenceMesh};
 use super::surroundings::Surroundings;
 use crate::trajectory::{ClockOffset, Trajectory};
+use crate::vector::dot;
 use crate::{Error, Mesh, PointCloud, Result};
 
 /// Below this |n_z| a surface counts as steep, and up says nothing: a wall with normals that are 17° wrong.
@@ -309,8 +310,4 @@ fn by_mesh(cloud: &PointCloud, vectors: &[[f32; 3]], mesh: &Mesh) -> Result<Vec<
         MeshVerdict::Parity(outward) => Some(Verdict { way: Way::Parity, outward }),
         MeshVerdict::Silent => None,
     }))
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
