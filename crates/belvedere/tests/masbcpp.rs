@@ -48,6 +48,7 @@ fn params(setting: &str) -> ShrinkParams {
             next_separation_angle: next.to_radians(),
         },
         initial_radius,
+        max_radius: f32::INFINITY,
     }
 }
 

@@ -204,7 +204,11 @@ fn write_pictures(
     let oblique = View::parallel([0.5, 0.7, -0.6], low, high, 0.125)?;
     let heights: Vec<f32> = balls.centers.iter().map(|c| c[2]).collect();
     let mut union = Canvas::new(&oblique, [255; 3]);
-    union.draw_balls(&balls.centers, &balls.radii, Colors::Each(&ramp_colors(&heights)))?;
+    let seen = depth_map(balls, &oblique, Profile::Sphere, ItemBuffer::With)?;
+    if let Some(items) = &seen.balls {
+        let colors = ramp_colors(&heights);
+        union.draw_seen_balls((&seen.depth, items), (&balls.centers, &balls.radii), Colors::Each(&colors))?;
+    }
     let caption = "The medial balls that block, coloured by height, seen from the south-west";
     write_png(&folder.join("balls.png"), &side_by_side(&[union.into_picture()], &[caption]))?;
     Ok(())
