@@ -1,4 +1,6 @@
 //! Medial balls against the stored results of masbcpp, and against shapes whose balls are known in closed form.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::cast_possible_truncation, reason = "small numbers made by the tests")]
 
 mod common;
 

@@ -1,4 +1,6 @@
 //! Balls of bounded penetration: their guarantee, and that nothing but the points decides them.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::cast_possible_truncation, reason = "small numbers made by the tests")]
 
 use belvedere::medial::feature_size::{SimplifyParams, simplify};
 use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkMethod, ShrinkParams, ShrinkReport, Side, shrink};
@@ -134,14 +136,14 @@ fn a_limited_ball_lies_within_the_unlimited_one_and_is_tangent_at_the_same_point
             balls_of(&points, &normals, Side::Interior, &ShrinkParams { max_radius: limit, ..params });
         assert_eq!((report, &full.touch), (same, &limited.touch));
         let mut cut = 0;
-        for i in 0..full.len() {
+        for (i, p) in points.iter().enumerate() {
             if full.touch[i] == NO_TOUCH || full.radii[i] <= limit {
                 assert_eq!(full.radii[i], limited.radii[i]);
                 continue;
             }
             cut += 1;
             let apart = (0..3).map(|k| (full.centers[i][k] - limited.centers[i][k]).powi(2)).sum::<f32>().sqrt();
-            let from_p = (0..3).map(|k| (limited.centers[i][k] - points[i][k]).powi(2)).sum::<f32>().sqrt();
+            let from_p = (0..3).map(|k| (limited.centers[i][k] - p[k]).powi(2)).sum::<f32>().sqrt();
             // f32 at coordinates up to 30 m, radii up to 200 m
             assert!((apart + limit - full.radii[i]).abs() < 1e-4, "{apart} {}", full.radii[i]);
             assert!((from_p - limit).abs() < 1e-4 && limited.radii[i] == limit);
