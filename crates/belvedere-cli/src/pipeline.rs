@@ -199,6 +199,9 @@ impl Shrinking {
         if let Some(radius) = self.initial_radius {
             params.initial_radius = radius;
         }
+        if let Some(radius) = self.max_radius {
+            params.max_radius = radius;
+        }
         match &mut params.method {
             ShrinkMethod::Tau { penetration } => {
                 if self.first_angle.is_some() || self.next_angle.is_some() {

@@ -1,5 +1,5 @@
 //! What a command found, for people and as JSON.
-#![expect(clippy::print_stdout, clippy::print_stderr, reason = "this file is where the program speaks")]
+#![allow(clippy::print_stderr, reason = "this file is where the program speaks")]
 
 use crate::arguments::Global;
 use serde_json::{Map, Value};
@@ -7,7 +7,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 /// Named figures and sections, in order.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Summary(Map<String, Value>);
 
 impl Summary {

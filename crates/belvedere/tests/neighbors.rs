@@ -1,5 +1,7 @@
 //! Every kind of search against brute force and against another kd-tree, query by query, on kind and unkind clouds, with
 //! and without AVX2.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::cast_possible_truncation, reason = "small numbers made by the tests")]
 
 use belvedere::neighbors::{Instructions, Neighbor, NeighborIndex, Tangent};
 use proptest::prelude::*;

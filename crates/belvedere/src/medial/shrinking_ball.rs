@@ -36,6 +36,9 @@ pub struct ShrinkParams {
     pub method: ShrinkMethod,
     /// Radius every ball starts with, metres, up to 100 000.
     pub initial_radius: f32,
+    /// Most radius a ball is left with, metres, above 0; +∞ for no limit. A larger ball gives way to the one of this radius
+    /// within it that is tangent at the same point, and keeps its touch and separation angle.
+    pub max_radius: f32,
 }
 
 impl ShrinkParams {
@@ -48,14 +51,21 @@ impl ShrinkParams {
                 next_separation_angle: 20f64.to_radians(),
             },
             initial_radius: 200.0,
+            max_radius: f32::INFINITY,
         }
     }
 
     /// Balls of bounded penetration: 0.05 m, started at 30 m, which is more than half the thickness of nearly every
-    /// building.
+    /// building, and cut down to half a metre.
+    ///
+    /// The limit is there for airborne scans, where large balls bulge out through facades that hardly a pulse has hit. On
+    /// simulated towns of 11 points a square metre (seeds 1 and 2, sun 30° high) unlimited balls call nine tenths of the
+    /// sunlit street shadowed; limits of 2, 1 and 0.5 m leave 46 to 52, 22 to 24 and 9 to 10 %, while missed shadow grows from
+    /// 0.1 to 2.4 %. Clouds
+    /// much sparser than that want about twice their point spacing.
     #[must_use]
     pub fn tau() -> Self {
-        Self { method: ShrinkMethod::Tau { penetration: 0.05 }, initial_radius: 30.0 }
+        Self { method: ShrinkMethod::Tau { penetration: 0.05 }, initial_radius: 30.0, max_radius: 0.5 }
     }
 
     fn check(&self) -> Result<()> {
@@ -64,6 +74,9 @@ impl ShrinkParams {
         let radius = self.initial_radius;
         if !(radius > 0.0 && radius <= 1e5) {
             return invalid("initial radius", radius.into(), "above 0 and at most 100000 metres");
+        }
+        if !(self.max_radius > 0.0) {
+            return invalid("greatest radius", self.max_radius.into(), "above 0 metres");
         }
         match self.method {
             ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
@@ -168,6 +181,11 @@ pub fn shrink(
             report.shrunk += 1;
             let cosine = separation_cosine(positions[i], positions[ball.touch as usize], ball.center);
             balls.separation_angles[i] = cosine.acos();
+            if ball.radius > params.max_radius {
+                let (p, share) = (positions[i], params.max_radius / ball.radius);
+                balls.centers[i] = std::array::from_fn(|axis| p[axis] + (ball.center[axis] - p[axis]) * share);
+                balls.radii[i] = params.max_radius;
+            }
         } else if ball.radius > 0.0 {
             report.never_shrunk += 1;
         } else {

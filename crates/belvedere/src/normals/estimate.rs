@@ -223,6 +223,7 @@ fn least_component(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
     ([least, middle, largest], longest.map(|v| v / length))
 }
 
+#[expect(clippy::needless_range_loop, reason = "two rows change at once")]
 /// As [`least_component`], by cyclic Jacobi rotations: slower, and exact for any spectrum.
 fn jacobi(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
     let [xx, yy, zz, xy, yz, zx] = m;
