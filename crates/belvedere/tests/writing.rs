@@ -577,6 +577,21 @@ fn damaged_ball_files_are_errors() {
 }
 
 #[test]
+fn arrays_have_the_shape_and_type_of_their_values() {
+    let folder = TempDir::new().unwrap();
+    let open =
+        |name: &str| npyz::NpyFile::new(BufReader::new(fs::File::open(folder.path().join(name)).unwrap())).unwrap();
+    write_npy_f32(&folder.path().join("f.npy"), &[1.5, f32::INFINITY]).unwrap();
+    write_npy_u8(&folder.path().join("u.npy"), &[0, 255]).unwrap();
+    let items = Raster::from_values(3, 2, vec![0, 1, 2, 3, 4, u32::MAX]).unwrap();
+    write_npy_u32_2d(&folder.path().join("i.npy"), &items).unwrap();
+    assert_eq!(open("f.npy").into_vec::<f32>().unwrap(), [1.5, f32::INFINITY]);
+    assert_eq!(open("u.npy").into_vec::<u8>().unwrap(), [0, 255]);
+    assert_eq!(open("i.npy").shape(), [2, 3]);
+    assert_eq!(open("i.npy").into_vec::<u32>().unwrap(), items.values());
+}
+
+#[test]
 fn masbcpp_folders_hold_its_arrays() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("mat");

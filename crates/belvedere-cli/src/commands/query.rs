@@ -7,6 +7,7 @@ use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Context, Result};
 use belvedere::PointCloud;
+use belvedere::crs::Crs;
 use belvedere::depth::{ItemBuffer, depth_map};
 use belvedere::io::{ExtraColumn, ExtraValues, ReadOptions, read_cloud, write_cloud, write_npy_u8};
 use belvedere::query::{AnswerCounts, query_points, random_targets};
@@ -73,8 +74,9 @@ fn targets(
         return Ok(frame(stages.run("spreading targets", 0, |_| random_targets(low, high, count, seed))));
     }
     if let Some(path) = &arguments.targets.targets {
-        let options = ReadOptions { crs: None, ..ReadOptions::default() };
-        let (mut cloud, report) = stages.run("reading targets", 0, |_| read_cloud(&[path.clone()], &options))?;
+        let options = ReadOptions::default();
+        let (mut cloud, report) =
+            stages.run("reading targets", 0, |_| read_cloud(std::slice::from_ref(path), &options))?;
         if report.left_out_count() > 0 {
             let count = report.left_out_count();
             return Err(anyhow::anyhow!("{count} targets are not usable, so answers would not match their rows"))
@@ -83,7 +85,7 @@ fn targets(
         // a table of targets says nothing of its unit: it is in the coordinates of the scene's file
         let scale = scene.crs.metres_per_unit_xyz();
         let given = cloud.crs.metres_per_unit_xyz();
-        let known = cloud.crs.wkt.is_some() || cloud.crs.epsg.is_some();
+        let known = cloud.crs != Crs::default();
         let positions = cloud
             .positions
             .iter()
