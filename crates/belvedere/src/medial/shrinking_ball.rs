@@ -138,31 +138,27 @@ pub fn shrink(
         return Err(Error::LengthMismatch { what: "neighbour index", expected: count, found: index.len() });
     }
     let order = index.tree_order();
-    let in_tree_order: Vec<Ball> = order
-        .par_chunks(CHUNK)
-        .flat_map_iter(|chunk| {
-            progress.advance(chunk.len());
-            chunk.iter().map(|&i| {
-                let (p, n) = (positions[i as usize], normals[i as usize]);
-                let inward = match side {
-                    Side::Interior => n.map(|v| -v),
-                    Side::Exterior => n,
-                };
-                if n == [0.0; 3] {
-                    return Ball { center: p, radius: 0.0, touch: NO_TOUCH };
+    let mut in_tree_order = vec![Ball { center: [0.0; 3], radius: 0.0, touch: NO_TOUCH }; count];
+    in_tree_order.par_chunks_mut(CHUNK).zip(order.par_chunks(CHUNK)).for_each(|(balls, points)| {
+        for (ball, &i) in balls.iter_mut().zip(points) {
+            let (p, n) = (positions[i as usize], normals[i as usize]);
+            let inward = match side {
+                Side::Interior => n.map(|v| -v),
+                Side::Exterior => n,
+            };
+            *ball = match params.method {
+                _ if n == [0.0; 3] => Ball { center: p, radius: 0.0, touch: NO_TOUCH },
+                ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
+                    let cosines = [first_separation_angle, next_separation_angle].map(least_cosine);
+                    shrink_by_angles(positions, index, p, inward, params.initial_radius, cosines)
                 }
-                match params.method {
-                    ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
-                        let cosines = [first_separation_angle, next_separation_angle].map(least_cosine);
-                        shrink_by_angles(positions, index, p, inward, params.initial_radius, cosines)
-                    }
-                    ShrinkMethod::Tau { penetration } => {
-                        shrink_by_penetration(index, p, inward, params.initial_radius, penetration)
-                    }
+                ShrinkMethod::Tau { penetration } => {
+                    shrink_by_penetration(index, p, inward, params.initial_radius, penetration)
                 }
-            })
-        })
-        .collect();
+            };
+        }
+        progress.advance(points.len());
+    });
 
     let mut balls = MedialBalls {
         centers: vec![[0.0; 3]; count],
@@ -195,6 +191,7 @@ pub fn shrink(
     Ok((balls, report))
 }
 
+#[derive(Clone, Copy)]
 struct Ball {
     center: [f32; 3],
     radius: f32,
