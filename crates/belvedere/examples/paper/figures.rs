@@ -104,7 +104,7 @@ pub(crate) fn artificial(folder: &Path, model: &Model, look: &Look) -> Result<()
 /// Figures 5 and 6 for a housing block.
 pub(crate) fn block(folder: &Path, model: &Model, tau: &Model, look: &Look) -> Result<()> {
     let colors = by_class(model);
-    let top = view_of(model.low, model.high, None, 500.0)?;
+    let top = view_of(model.low, model.high, None, 440.0)?;
     let a = points_picture(&top, &model.cloud.positions, &colors, 2)?;
     let b = shadow_picture(&top, model, &colors, look, 150_000)?;
     let viewport = view_of(model.low, model.high, Some(crate::VIEWER), 560.0)?;
