@@ -5,7 +5,7 @@ use belvedere::clean::{CleanParams, clean};
 use belvedere::medial::{MedialBalls, ShrinkParams, ShrinkReport, Side, shrink};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
-use belvedere::normals::{Normals, Orientation, OrientedCloud, orient};
+use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
 use belvedere::progress::Progress;
 use belvedere::{Error, Mesh, PointCloud, Result};
 use std::time::Instant;
@@ -27,6 +27,7 @@ pub(crate) struct Model {
     pub(crate) balls: MedialBalls,
     pub(crate) low: [f32; 3],
     pub(crate) high: [f32; 3],
+    orient_report: OrientReport,
     shrink_report: ShrinkReport,
     given_count: usize,
     /// Stages and seconds.
@@ -61,8 +62,7 @@ impl Model {
         let mut times = Vec::new();
         let given_count = cloud.len();
         let index = timed(&mut times, "index", || NeighborIndex::new(&cloud.positions))?;
-        let (oriented, _) =
-            timed(&mut times, "orientation", || orient(&cloud, Normals::default(), &Orientation::Given))?;
+        let oriented = timed(&mut times, "orientation", || orient(&cloud, Normals::default(), &Orientation::Given))?;
         Self::shrunk(cloud, oriented, index, params, given_count, times)
     }
 
@@ -85,13 +85,13 @@ impl Model {
         let index = timed(&mut times, "index", || NeighborIndex::new(&cloud.positions))?;
         let neighborhood = Neighborhood::Fixed { k: neighbors };
         let normals = timed(&mut times, "normals", || estimate(&cloud.positions, &index, neighborhood))?;
-        let (oriented, _) = timed(&mut times, "orientation", || orient(&cloud, normals, by))?;
+        let oriented = timed(&mut times, "orientation", || orient(&cloud, normals, by))?;
         Self::shrunk(cloud, oriented, index, params, given_count, times)
     }
 
     fn shrunk(
         cloud: PointCloud,
-        oriented: OrientedCloud,
+        (oriented, orient_report): (OrientedCloud, OrientReport),
         index: NeighborIndex,
         params: ShrinkParams,
         given_count: usize,
@@ -100,7 +100,18 @@ impl Model {
         let (low, high) = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "the data set is empty".to_owned() })?;
         let (balls, shrink_report) =
             timed(&mut times, "balls", || shrink(&oriented, &index, Side::Interior, &params, Progress::none()))?;
-        Ok(Self { cloud, oriented, index, balls: balls.shrunk(), low, high, shrink_report, given_count, times })
+        Ok(Self {
+            cloud,
+            oriented,
+            index,
+            balls: balls.shrunk(),
+            low,
+            high,
+            orient_report,
+            shrink_report,
+            given_count,
+            times,
+        })
     }
 
     /// ASPRS class of a point, 1 (unclassified) where the cloud has none.
@@ -122,6 +133,18 @@ impl Model {
             100.0 * r.never_shrunk as f64 / self.cloud.len() as f64,
             r.without_normal
         ));
+        let o = &self.orient_report;
+        let ways = [
+            ("file", o.by_file_count),
+            ("scanner", o.by_scanner_count),
+            ("aligned face", o.by_face_count),
+            ("parity", o.by_parity_count),
+            ("vote", o.by_vote_count),
+            ("up", o.by_up_count),
+        ];
+        let ways = ways.iter().filter(|(_, count)| *count > 0);
+        let signs: Vec<String> = ways.map(|(way, count)| format!("{way} {:.1} %", 100.0 * o.share(*count))).collect();
+        tables.line(&format!("signs of normals by: {}", signs.join(", ")));
         let times: Vec<String> = self.times.iter().map(|(stage, s)| format!("{stage} {s:.3} s")).collect();
         tables.line(&format!("times: {}\n", times.join(", ")));
     }
