@@ -12,12 +12,14 @@ use std::path::Path;
 
 use belvedere::cloud::GpsTimeKind;
 use belvedere::crs::Crs;
+use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::{
     Canvas, Colors, DepthRange, ExtraColumn, ExtraValues, Georeference, MasbcppFolder, Picture, ReadOptions,
     SavedBalls, atomic, depth_picture, is_ball_file, ramp_colors, read_balls, read_cloud, side_by_side, write_balls,
     write_cloud, write_masbcpp, write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_png,
     write_tif_f32, write_tif_u32,
 };
+use belvedere::medial::MedialBalls;
 use belvedere::raster::Raster;
 use belvedere::view::View;
 use belvedere::{Attributes, Error, PointCloud};
@@ -312,13 +314,27 @@ fn plan_view(side: f64, pixel: f64) -> View {
     View::parallel([0.0, 0.0, -1.0], [0.0, 0.0, 0.0], [side, side, 10.0], pixel).unwrap()
 }
 
+/// Draws balls by way of the depth map of `view`.
+fn draw_balls(canvas: &mut Canvas, view: &View, centers: &[[f32; 3]], radii: &[f32], colors: Colors<'_>) {
+    let balls = MedialBalls {
+        centers: centers.to_vec(),
+        radii: radii.to_vec(),
+        source: vec![0; radii.len()],
+        touch: vec![0; radii.len()],
+        separation_angles: vec![1.0; radii.len()],
+    };
+    let map = depth_map(&balls, view, Profile::Sphere, ItemBuffer::With).unwrap();
+    let items = map.balls.as_ref().unwrap();
+    canvas.draw_seen_balls((&map.depth, items), (centers, radii), colors).unwrap();
+}
+
 #[test]
 fn nearer_balls_and_points_hide_farther_ones() {
     let view = plan_view(10.0, 0.1);
     let mut canvas = Canvas::new(&view, [255; 3]);
     let (red, green) = ([200, 0, 0], [0, 200, 0]);
     // the second ball lies higher, nearer to a viewer above
-    canvas.draw_balls(&[[5.0, 5.0, 2.0], [6.0, 5.0, 6.0]], &[2.0, 1.0], Colors::Each(&[red, green])).unwrap();
+    draw_balls(&mut canvas, &view, &[[5.0, 5.0, 2.0], [6.0, 5.0, 6.0]], &[2.0, 1.0], Colors::Each(&[red, green]));
     canvas.draw_points(&[[6.0, 5.0, 1.0], [1.0, 9.0, 0.0]], Colors::One([0, 0, 255]), 3).unwrap();
     let picture = canvas.into_picture();
     let at = |x: f64, y: f64| picture.get((x * 10.0) as usize, ((10.0 - y) * 10.0) as usize).unwrap();
@@ -328,7 +344,10 @@ fn nearer_balls_and_points_hide_farther_ones() {
     assert_eq!(at(0.5, 0.5), [255; 3]);
     let brightness = |x: f64, y: f64| at(x, y)[0];
     assert!(brightness(4.2, 5.8) > brightness(5.0, 3.3), "lit from the upper left");
-    assert!(Canvas::new(&view, [0; 3]).draw_balls(&[[0.0; 3]], &[], Colors::One(red)).is_err());
+    let (depth, items) = (Raster::filled(2, 2, 1.0), Raster::filled(2, 2, 0));
+    let other_size =
+        Canvas::new(&view, [0; 3]).draw_seen_balls((&depth, &items), (&[[0.0; 3]], &[1.0]), Colors::One(red));
+    assert!(other_size.is_err());
 }
 
 #[test]
@@ -339,7 +358,7 @@ fn drawing_does_not_depend_on_threads() {
     let radii: Vec<f32> = (0..5000_u16).map(|i| f32::from(i % 50) * 0.01).collect();
     let draw = || {
         let mut canvas = Canvas::new(&view, [255; 3]);
-        canvas.draw_balls(&centers, &radii, Colors::One([90, 120, 200])).unwrap();
+        draw_balls(&mut canvas, &view, &centers, &radii, Colors::One([90, 120, 200]));
         canvas.into_picture()
     };
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(draw);
@@ -612,58 +631,4 @@ fn masbcpp_folders_hold_its_arrays() {
     assert_eq!(array("decimate_lfs.npy").into_vec::<bool>().unwrap(), [false, true]);
     assert!(!path.join("normals.npy").exists());
     assert!(write_masbcpp(&path, &MasbcppFolder { lfs: Some(&[1.0]), ..arrays }).is_err());
-}
-
-/// Writes one of everything for inspection with other programs; run with `--ignored` and `BELVEDERE_SAMPLES` set.
-#[test]
-#[ignore = "writes samples for other programs to the folder BELVEDERE_SAMPLES"]
-fn write_samples() {
-    let Some(folder) = std::env::var_os("BELVEDERE_SAMPLES").map(std::path::PathBuf::from) else { return };
-    let cloud = full_cloud();
-    let hours: Vec<f32> = (0..1000).map(|i| i as f32 * 0.01).collect();
-    let count: Vec<u32> = (0..1000).collect();
-    let extra = [
-        ExtraColumn { name: "sun_hours", description: "hours", values: ExtraValues::F32(&hours) },
-        ExtraColumn { name: "count", description: "cameras that see it", values: ExtraValues::U32(&count) },
-    ];
-    for name in ["c.las", "c.laz", "c.ply", "c.csv", "c.xyz"] {
-        write_cloud(&folder.join(name), &cloud, &extra).unwrap();
-    }
-    write_cloud(&folder.join("c.npy"), &cloud, &[]).unwrap();
-    for name in ["b.npz", "b.ply", "b.laz"] {
-        write_balls(&folder.join(name), &balls(dutch())).unwrap();
-    }
-    let view = plan_view(20.0, 0.05);
-    let depth: Vec<f32> = (0..view.size_px[0] * view.size_px[1])
-        .map(|i| {
-            let (x, y) = ((i % view.size_px[0]) as f32 * 0.05 - 10.0, (i / view.size_px[0]) as f32 * 0.05 - 10.0);
-            if x.hypot(y) > 9.0 { f32::INFINITY } else { 30.0 - 0.2 * (81.0 - x * x - y * y) + (x * 2.0).sin() }
-        })
-        .collect();
-    let depth = Raster::from_values(view.size_px[0], view.size_px[1], depth).unwrap();
-    let place = Georeference::north_up([84_500.0, 446_800.0], 0.05, dutch());
-    write_tif_f32(&folder.join("d.tif"), &depth, Some(&place), Some(-9999.0), None).unwrap();
-    let turned = Georeference { column_step: [0.0, 0.5], row_step: [0.5, 0.0], ..place.clone() };
-    write_tif_f32(&folder.join("turned.tif"), &depth, Some(&turned), None, None).unwrap();
-    let wkt = Crs { wkt: Some("PROJCS[\"mine\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\",5],PARAMETER[\"scale_factor\",1],PARAMETER[\"false_easting\",0],PARAMETER[\"false_northing\",0],UNIT[\"metre\",1]]".to_owned()), ..Crs::default() };
-    let compound = Crs { epsg: Some(28992), vertical_epsg: Some(5709), ..Crs::default() };
-    write_tif_f32(&folder.join("w.tif"), &depth, Some(&Georeference { crs: wkt, ..place.clone() }), None, None)
-        .unwrap();
-    write_tif_f32(&folder.join("v.tif"), &depth, Some(&Georeference { crs: compound, ..place }), None, None).unwrap();
-    write_npy_f32_2d(&folder.join("d.npy"), &depth).unwrap();
-    write_png(&folder.join("d.png"), &depth_picture(&depth, DepthRange::Robust, "Depth map, 20 m x 20 m")).unwrap();
-    let small = Raster::from_values(30, 12, (0..360).map(|i| (i % 30) as f32 * 0.01).collect()).unwrap();
-    write_png(&folder.join("small.png"), &depth_picture(&small, DepthRange::Robust, "small: {x} 12° (a-b), jpqgy?"))
-        .unwrap();
-    let mut canvas = Canvas::new(&view, [250, 250, 252]);
-    let centers: Vec<[f32; 3]> =
-        (0..60_u32).map(|i| [(i * 37 % 20) as f32 + 0.5, (i * 91 % 19) as f32 + 0.5, (i % 7) as f32]).collect();
-    let heights: Vec<f32> = centers.iter().map(|c| c[2]).collect();
-    let radii: Vec<f32> = (0..60_u16).map(|i| 0.3 + f32::from(i % 5) * 0.4).collect();
-    let colors = ramp_colors(&heights);
-    canvas.draw_balls(&centers, &radii, Colors::Each(&colors)).unwrap();
-    let mut points = Canvas::new(&view, [250, 250, 252]);
-    points.draw_points(&centers, Colors::Each(&colors), 7).unwrap();
-    let both = side_by_side(&[canvas.into_picture(), points.into_picture()], &["Medial balls by height", "Centres"]);
-    write_png(&folder.join("balls.png"), &both).unwrap();
 }

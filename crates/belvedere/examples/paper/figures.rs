@@ -1,9 +1,10 @@
 //! Pictures with the content of Figures 4 to 7.
 
 use crate::experiment::Look;
-use crate::model::{Model, Way, within_window};
+use crate::model::{Model, Way, unlimited_tau, within_window};
+use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::{Canvas, Colors, DepthRange, Picture, depth_picture, ramp_colors, side_by_side, write_png};
-use belvedere::medial::ShrinkParams;
+use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkParams};
 use belvedere::query::Answer;
 use belvedere::raster::Raster;
 use belvedere::view::{View, to_sun};
@@ -63,10 +64,18 @@ fn points_picture(view: &View, points: &[[f32; 3]], colors: &[[u8; 3]], size_px:
     Ok(canvas.into_picture())
 }
 
-fn balls_picture(view: &View, model: &Model, colors: &[[u8; 3]]) -> Result<Picture> {
+/// A canvas with `balls`, one colour each.
+fn canvas_with_balls(view: &View, balls: &MedialBalls, colors: &[[u8; 3]]) -> Result<Canvas> {
     let mut canvas = Canvas::new(view, PAPER);
-    canvas.draw_balls(&model.balls.centers, &model.balls.radii, Colors::Each(&of_sources(model, colors)))?;
-    Ok(canvas.into_picture())
+    let map = depth_map(balls, view, Profile::Sphere, ItemBuffer::With)?;
+    if let Some(items) = &map.balls {
+        canvas.draw_seen_balls((&map.depth, items), (&balls.centers, &balls.radii), Colors::Each(colors))?;
+    }
+    Ok(canvas)
+}
+
+fn balls_picture(view: &View, model: &Model, colors: &[[u8; 3]]) -> Result<Picture> {
+    Ok(canvas_with_balls(view, &model.balls, &of_sources(model, colors))?.into_picture())
 }
 
 /// Targets with one answer, at most `most` of them.
@@ -76,8 +85,7 @@ fn with_answer(look: &Look, answer: Answer, most: usize) -> Vec<[f32; 3]> {
 
 /// Balls and blocked targets together.
 fn shadow_picture(view: &View, model: &Model, colors: &[[u8; 3]], look: &Look, most: usize) -> Result<Picture> {
-    let mut canvas = Canvas::new(view, PAPER);
-    canvas.draw_balls(&model.balls.centers, &model.balls.radii, Colors::Each(&of_sources(model, colors)))?;
+    let mut canvas = canvas_with_balls(view, &model.balls, &of_sources(model, colors))?;
     canvas.draw_points(&with_answer(look, Answer::Blocked, most), Colors::One(SHADOW), 1)?;
     Ok(canvas.into_picture())
 }
@@ -155,27 +163,31 @@ pub(crate) fn close_views(folder: &Path, cloud: &PointCloud, way: &Way<'_>) -> R
         let Some((low, high)) = shown.bounds() else { continue };
         let view = view_of(low, high, Some(viewer), 440.0)?;
         let mut columns = Vec::new();
-        for params in [ShrinkParams::angles(), ShrinkParams::tau()] {
+        for params in [ShrinkParams::angles(), unlimited_tau(), ShrinkParams::tau()] {
             let model = Model::of_scan(&around, way, params)?;
             let inside = |p: [f32; 3]| (0..2).all(|i| p[i] >= low[i] && p[i] <= high[i]);
             let colors = by_class(&model);
-            let rows: Vec<usize> = (0..model.balls.len())
-                .filter(|&i| inside(model.cloud.positions[model.balls.source[i] as usize]))
-                .collect();
-            let centers: Vec<[f32; 3]> = rows.iter().map(|&i| model.balls.centers[i]).collect();
-            let radii: Vec<f32> = rows.iter().map(|&i| model.balls.radii[i]).collect();
-            let ball_colors: Vec<[u8; 3]> = rows.iter().map(|&i| colors[model.balls.source[i] as usize]).collect();
+            let mut balls = model.balls.clone();
+            for (touch, &source) in balls.touch.iter_mut().zip(&balls.source) {
+                if !inside(model.cloud.positions[source as usize]) {
+                    *touch = NO_TOUCH;
+                }
+            }
+            let balls = balls.shrunk();
+            let ball_colors: Vec<[u8; 3]> = balls.source.iter().map(|&source| colors[source as usize]).collect();
             let points: Vec<u32> =
                 (0..).zip(&model.cloud.positions).filter(|&(_, &p)| inside(p)).map(|(i, _)| i).collect();
             let point_colors: Vec<[u8; 3]> = points.iter().map(|&i| colors[i as usize]).collect();
             if columns.is_empty() {
                 columns.push(points_picture(&view, &model.cloud.select(&points).positions, &point_colors, 3)?);
             }
-            let mut canvas = Canvas::new(&view, PAPER);
-            canvas.draw_balls(&centers, &radii, Colors::Each(&ball_colors))?;
-            columns.push(canvas.into_picture());
+            columns.push(canvas_with_balls(&view, &balls, &ball_colors)?.into_picture());
         }
-        save(folder, name, side_by_side(&columns, &["points", "published balls", "balls of bounded penetration"]))?;
+        save(
+            folder,
+            name,
+            side_by_side(&columns, &["points", "published balls", "bounded penetration", "... and 0.5 m at most"]),
+        )?;
     }
     Ok(())
 }

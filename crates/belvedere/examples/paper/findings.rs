@@ -2,7 +2,7 @@
 
 use crate::Tables;
 use crate::experiment::parallel_to;
-use crate::model::{Model, Way};
+use crate::model::{Model, Way, unlimited_tau};
 use belvedere::cloud::to_local;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::medial::{NO_TOUCH, ShrinkParams};
@@ -57,8 +57,9 @@ fn percent(count: usize, of: usize) -> f64 {
 pub(crate) fn delft(published: Model, cloud: &PointCloud, mesh: &Mesh, tables: &mut Tables) -> Result<()> {
     let six = Way { neighbors: 6, mesh };
     let sixteen = Way { neighbors: 16, mesh };
-    let tau_six = Model::of_scan(cloud, &six, ShrinkParams::tau())?;
-    let tau_sixteen = Model::of_scan(cloud, &sixteen, ShrinkParams::tau())?;
+    let tau_six = Model::of_scan(cloud, &six, unlimited_tau())?;
+    let tau_sixteen = Model::of_scan(cloud, &sixteen, unlimited_tau())?;
+    let default = Model::of_scan(cloud, &sixteen, ShrinkParams::tau())?;
     let published_again = Model::of_scan(cloud, &six, ShrinkParams::angles())?;
     let methods = [
         Method {
@@ -70,6 +71,7 @@ pub(crate) fn delft(published: Model, cloud: &PointCloud, mesh: &Mesh, tables: &
         Method { name: "angles, k 6, sphere", model: published_again, profile: Profile::Sphere, bias: None },
         Method { name: "τ-balls, k 6, sphere", model: tau_six, profile: Profile::Sphere, bias: None },
         Method { name: "τ-balls, k 16, sphere", model: tau_sixteen, profile: Profile::Sphere, bias: None },
+        Method { name: "default: the same, 0.5 m at most", model: default, profile: Profile::Sphere, bias: None },
     ];
     let scene = Scene {
         vertices: mesh.vertices.clone(),
@@ -296,7 +298,7 @@ pub(crate) fn simulated_town(tables: &mut Tables) -> Result<()> {
         Trajectory::from_records(path.times.iter().copied().zip(path.positions.iter().copied()).collect());
     let by = Orientation::Trajectory(&trajectory);
     let make = |k, params| Model::of_oriented_scan(&cloud, k, &by, params);
-    let (angles, tau) = (ShrinkParams::angles, ShrinkParams::tau);
+    let (angles, tau) = (ShrinkParams::angles, unlimited_tau);
     let sphere = |name, model| Method { name, model, profile: Profile::Sphere, bias: None };
     let methods = [
         Method {
@@ -309,6 +311,7 @@ pub(crate) fn simulated_town(tables: &mut Tables) -> Result<()> {
         sphere("k 16, angles, sphere", make(16, angles())?),
         sphere("k 6, τ-balls, sphere", make(6, tau())?),
         sphere("k 16, τ-balls, sphere", make(16, tau())?),
+        sphere("default: the same, 0.5 m at most", make(16, ShrinkParams::tau())?),
     ];
     methods[0].model.report(tables);
     let cured_of = |model, classes: &[u8]| without_free_centers(model, classes, &scene, &truth);

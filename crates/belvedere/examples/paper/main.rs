@@ -15,7 +15,7 @@ use belvedere::Result;
 use belvedere::io::{ReadOptions, read_cloud, read_mesh};
 use belvedere::medial::ShrinkParams;
 use experiment::{Look, compare_profiles, oblique, top_down};
-use model::{Model, Way, within_window};
+use model::{Model, Way, unlimited_tau, within_window};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -117,7 +117,7 @@ fn delft(folder: &Path, tables: &mut Tables) -> Result<()> {
     model.report(tables);
     let views = [("top-down", top_down(&model, 10.0)?), ("oblique", oblique(&model, VIEWER, 10.0)?)];
     let looks = compare_profiles(&model, &views, tables)?;
-    let tau = Model::of_scan(&block, &way, ShrinkParams::tau())?;
+    let tau = Model::of_scan(&block, &way, unlimited_tau())?;
     figures::block(folder, &model, &tau, &looks[1])?;
     figures::close_views(folder, &cloud, &way)?;
 

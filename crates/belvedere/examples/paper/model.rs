@@ -149,3 +149,8 @@ impl Model {
         tables.line(&format!("times: {}\n", times.join(", ")));
     }
 }
+
+/// Balls of bounded penetration without the limit of their radius that is the default.
+pub(crate) fn unlimited_tau() -> ShrinkParams {
+    ShrinkParams { max_radius: f32::INFINITY, ..ShrinkParams::tau() }
+}

@@ -84,35 +84,6 @@ impl Canvas {
         Ok(())
     }
 
-    /// Draws balls as spheres lit from the upper left, with `centers`, (B, 3) local metres, and `radii`, (B) metres. A
-    /// ball smaller than a pixel still covers the pixel its centre is in.
-    ///
-    /// # Errors
-    /// [`Error::LengthMismatch`] unless there is one radius for each centre, and one colour or one for each ball.
-    pub fn draw_balls(&mut self, centers: &[[f32; 3]], radii: &[f32], colors: Colors<'_>) -> Result<()> {
-        if radii.len() != centers.len() {
-            return Err(Error::LengthMismatch { what: "radii of balls", expected: centers.len(), found: radii.len() });
-        }
-        colors.check(centers.len())?;
-        let pixels_per_metre = self.view.pixels_per_metre();
-        let half = |i: usize| (f64::from(radii[i]) * pixels_per_metre).max(0.5);
-        let marks = self.marks(centers, half);
-        self.draw(&marks, |mark, column, row| {
-            // in units of the radius, from the middle of the ball to the middle of the pixel
-            let (dx, dy) = ((column as f64 + 0.5 - mark.x) / mark.half, (row as f64 + 0.5 - mark.y) / mark.half);
-            let (dx, dy) = if mark.half <= 0.5 { (0.0, 0.0) } else { (dx, dy) };
-            let towards_viewer = 1.0 - dx * dx - dy * dy;
-            if towards_viewer < 0.0 {
-                return None;
-            }
-            let normal = [dx, dy, -towards_viewer.sqrt()];
-            let facing = (0..3).map(|i| normal[i] * TO_LIGHT[i]).sum::<f64>().max(0.0);
-            let color = colors.get(mark.index).map(|c| scaled(c, AMBIENT + (1.0 - AMBIENT) * facing));
-            Some((mark.depth + normal[2] * f64::from(radii[mark.index]), color))
-        });
-        Ok(())
-    }
-
     /// Draws the balls of a depth map as spheres lit from the upper left: `depth` and `items`, (height, width) of this
     /// canvas's view, say which ball each pixel shows and how deep, `centers`, (B, 3) local metres, and `radii`, (B)
     /// metres, how it is curved there.
