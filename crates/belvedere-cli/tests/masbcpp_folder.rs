@@ -1,9 +1,5 @@
 //! `balls` and `normals` in place of masbcpp's programs, on its folders of arrays.
-#![expect(
-    clippy::unwrap_used,
-    clippy::cast_possible_truncation,
-    reason = "tests stop at the first surprise; small numbers"
-)]
+#![expect(clippy::cast_possible_truncation, reason = "small numbers")]
 
 mod common;
 

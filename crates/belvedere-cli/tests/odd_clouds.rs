@@ -21,8 +21,11 @@ fn run_everything(place: &Workplace, name: &str) -> usize {
     let mut done = 0;
     for command in COMMANDS {
         for flags in ["", "--keep-isolated --keep-duplicates", "--method angles"] {
-            let takes_flags =
-                !command.starts_with("info") && !(command.starts_with("normals") && flags.contains("method"));
+            let takes_flags = match command.split(' ').next() {
+                Some("info") => false,
+                Some("normals") => !flags.contains("--method"),
+                _ => true,
+            };
             let arguments = format!("{command} {name} {}", if takes_flags { flags } else { "" });
             let run = place.run(&arguments);
             if run.status == 0 {

@@ -1,5 +1,4 @@
 //! Exit status, output streams, and what stays in the folder when a run fails.
-#![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
 mod common;
 

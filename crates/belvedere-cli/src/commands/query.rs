@@ -88,7 +88,8 @@ fn targets(
     }
     if let Some(path) = &arguments.targets.targets {
         let options = ReadOptions { crs: arguments.scene.input.crs.clone() };
-        let (mut cloud, report) = stages.run("reading targets", 0, |_| read_cloud(&[path.clone()], &options))?;
+        let (mut cloud, report) =
+            stages.run("reading targets", 0, |_| read_cloud(std::slice::from_ref(path), &options))?;
         pipeline::check_every_row(&report)?;
         summary.add("reading_targets", pipeline::reading_section(&report));
         // a table of targets says nothing of its unit: it is in the coordinates of the scene's file

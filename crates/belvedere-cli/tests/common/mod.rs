@@ -211,6 +211,6 @@ pub(crate) fn shared_data(test: &str) -> Option<PathBuf> {
     if folder.join("reference").is_dir() {
         return Some(folder);
     }
-    println!("SKIPPED {test}: there is no reference data; name its folder in BELVEDERE_TEST_DATA");
+    eprintln!("SKIPPED {test}: there is no reference data; name its folder in BELVEDERE_TEST_DATA");
     None
 }
