@@ -353,6 +353,12 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, path: &Path) -> Result<()> {
 const BOUNDS: &str = "bounds_local_m";
 
 fn scene_of_saved(saved: SavedBalls, path: &Path) -> Result<Scene> {
+    if saved.provenance.get("side").is_some_and(|side| side == "exterior") {
+        bail!(
+            "{}: these balls lie in free space (--side exterior) and block nothing; give the interior ones",
+            path.display()
+        );
+    }
     let bounds = saved.provenance.get(BOUNDS).and_then(|text| {
         let numbers: Option<Vec<f32>> =
             text.split(' ').map(|v| v.parse().ok().filter(|v: &f32| v.is_finite())).collect();

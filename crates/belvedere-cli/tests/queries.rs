@@ -305,3 +305,12 @@ fn several_files_and_a_folder_of_files_are_one_cloud() {
     }
     assert_eq!(answers[0], answers[1]);
 }
+
+#[test]
+fn balls_in_free_space_are_not_taken_for_what_blocks() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    place.summary("balls house.laz --side exterior -o air.npz");
+    place.refusal(1, "query air.npz --sun 180,45 --random 10 -o out.csv", &["air.npz", "--side exterior"]);
+    place.refusal(1, "depth-map air.npz --sun 180,45 -o out.tif", &["air.npz", "--side exterior"]);
+}

@@ -21,6 +21,8 @@ fn a_run_that_succeeds_speaks_on_standard_output_alone_and_leaves_only_its_outpu
     for word in ["points: ", "shrunk: ", "written: balls.npz"] {
         assert!(run.stdout.contains(word), "{}", run.stdout);
     }
+    let at = |word: &str| run.stdout.find(word).unwrap();
+    assert!(at("points: ") < at("shrunk: ") && at("shrunk: ") < at("written: "), "in the order of the work");
     // no bar and no escape sequence in a pipe
     assert!(!run.stdout.contains(['\u{1b}', '\r']), "{:?}", run.stdout);
     assert_eq!(place.names(), ["balls.npz", "house.laz"]);
