@@ -233,6 +233,9 @@ pub(crate) struct Shrinking {
     /// Radius balls start with, in metres [default: 30 for tau, 200 for angles]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(crate) initial_radius: Option<f32>,
+    /// Most radius a ball is left with, in metres [default: 0.5 for tau, no limit for angles]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub(crate) max_radius: Option<f32>,
     /// Depth to which a point may enter a ball, in metres [default: 0.05]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(crate) penetration: Option<f32>,

@@ -236,6 +236,9 @@ impl Shrinking {
         if let Some(radius) = self.initial_radius {
             params.initial_radius = radius;
         }
+        if let Some(radius) = self.max_radius {
+            params.max_radius = radius;
+        }
         match &mut params.method {
             ShrinkMethod::Tau { penetration } => {
                 if self.first_angle.is_some() || self.next_angle.is_some() {
@@ -256,6 +259,7 @@ impl Shrinking {
             Error::InvalidParameter { name, .. } => {
                 let flag = match name {
                     "separation angle" => "--first-angle, --next-angle".to_owned(),
+                    "greatest radius" => "--max-radius".to_owned(),
                     _ => format!("--{}", name.replace(' ', "-")),
                 };
                 anyhow::Error::from(Usage(format!("{flag}: {error}")))
@@ -336,6 +340,7 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, path: &Path) -> Result<()> {
         ("--orient", !matches!(orienting.orient, OrientChoice::Auto)),
         ("--method", shrinking.method.is_some()),
         ("--initial-radius", shrinking.initial_radius.is_some()),
+        ("--max-radius", shrinking.max_radius.is_some()),
         ("--penetration", shrinking.penetration.is_some()),
         ("--first-angle", shrinking.first_angle.is_some()),
         ("--next-angle", shrinking.next_angle.is_some()),
@@ -349,9 +354,6 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, path: &Path) -> Result<()> {
     }
 }
 
-/// Under this name a ball file keeps the corners of the points its balls were made from: six numbers, local metres.
-const BOUNDS: &str = "bounds_local_m";
-
 fn scene_of_saved(saved: SavedBalls, path: &Path) -> Result<Scene> {
     if saved.provenance.get("side").is_some_and(|side| side == "exterior") {
         bail!(
@@ -359,12 +361,7 @@ fn scene_of_saved(saved: SavedBalls, path: &Path) -> Result<Scene> {
             path.display()
         );
     }
-    let bounds = saved.provenance.get(BOUNDS).and_then(|text| {
-        let numbers: Option<Vec<f32>> =
-            text.split(' ').map(|v| v.parse().ok().filter(|v: &f32| v.is_finite())).collect();
-        let [a, b, c, d, e, f] = numbers?[..] else { return None };
-        Some(([a, b, c], [d, e, f]))
-    });
+    let bounds = saved.bounds;
     let cloud = PointCloud { origin: saved.origin, crs: saved.crs, ..PointCloud::default() };
     let balls = MedialBalls {
         centers: saved.centers,
@@ -372,9 +369,6 @@ fn scene_of_saved(saved: SavedBalls, path: &Path) -> Result<Scene> {
         source: saved.source,
         touch: saved.touch,
         separation_angles: saved.separation_angles,
-    };
-    let Some(bounds) = bounds.or_else(|| balls.bounds()) else {
-        bail!("{}: the file holds no balls that shrank, so nothing can be seen of its scene", path.display());
     };
     Ok(Scene { balls, cloud, bounds, left_out: ReadReport::default() })
 }
@@ -439,20 +433,16 @@ pub(crate) fn saved(
     bounds: ([f32; 3], [f32; 3]),
     provenance: impl IntoIterator<Item = (&'static str, String)>,
 ) -> SavedBalls {
-    let bounds = [bounds.0, bounds.1].as_flattened().iter().map(f32::to_string).collect::<Vec<_>>().join(" ");
     SavedBalls {
         origin: *place.0,
         crs: place.1.clone(),
+        bounds,
         centers: balls.centers,
         radii: balls.radii,
         source: balls.source,
         touch: balls.touch,
         separation_angles: balls.separation_angles,
-        provenance: provenance
-            .into_iter()
-            .chain([(BOUNDS, bounds)])
-            .map(|(name, value)| (name.to_owned(), value))
-            .collect(),
+        provenance: provenance.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
     }
 }
 

@@ -1,4 +1,5 @@
 //! What a command found, for people and as JSON.
+
 use crate::arguments::Global;
 use belvedere::io::WriteReport;
 use serde_json::{Map, Value};
@@ -6,7 +7,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 /// Named figures and sections, in order.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Summary(Map<String, Value>);
 
 impl Summary {

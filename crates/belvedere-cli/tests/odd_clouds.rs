@@ -77,7 +77,7 @@ fn a_cloud_that_cleaning_empties_names_the_flags_that_keep_it() {
 }
 
 #[test]
-fn a_ball_file_without_balls_says_so() {
+fn a_ball_file_without_balls_shows_nothing() {
     let place = Workplace::new();
     // a plane has no inside: no ball meets a second point
     let rows: Vec<String> = (0..400).map(|i| format!("{},{},0,0,0,1\n", i % 20, i / 20)).collect();

@@ -132,7 +132,7 @@ fn a_ball_file_gives_the_answers_of_its_cloud() {
     cloud.positions.push([0.0, 0.0, 400.0]);
     cloud.attributes.normals.as_mut().unwrap().push([0.0, 0.0, 1.0]);
     place.write_cloud("house.laz", &cloud);
-    for flags in ["", "--method angles --initial-radius 100", "--orient up --neighbors 10"] {
+    for flags in ["", "--method angles --initial-radius 100", "--orient up --neighbors 10 --max-radius 2"] {
         place.summary(&format!("query house.laz {flags} --sun 200,40 --random 5000 -o cloud.csv"));
         assert!(answers_of_csv(&place.text("cloud.csv")).contains(&BLOCKED));
         for balls in ["balls.npz", "balls.ply", "balls.laz"] {

@@ -149,6 +149,7 @@ fn wrong_usage_names_the_flag_and_ends_with_status_2() {
         ("balls house.laz -o out --penetration 0.1", &["--penetration", "--method tau"]),
         ("balls house.laz -o out.npz --penetration -1", &["--penetration", "above 0"]),
         ("balls house.laz -o out.npz --initial-radius 0", &["--initial-radius", "above 0"]),
+        ("balls house.laz -o out.npz --max-radius -1", &["--max-radius", "above 0"]),
         ("balls house.laz -o out.npz --initial-radius nan", &["--initial-radius"]),
         ("balls house.laz -o out --first-angle 200", &["--first-angle", "180"]),
         ("balls house.laz -o out.npz --neighbors some", &["--neighbors", "adaptive"]),

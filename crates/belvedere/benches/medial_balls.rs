@@ -2,6 +2,7 @@
 //!
 //! Set `BELVEDERE_BENCH_LARGE` to also measure 5 million points (a minute or two).
 #![allow(missing_docs, reason = "the macros of criterion write functions without")]
+#![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 
 mod common;
 

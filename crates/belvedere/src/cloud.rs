@@ -173,10 +173,7 @@ impl PointCloud {
     /// Lowest and highest local corner, or `None` without points.
     #[must_use]
     pub fn bounds(&self) -> Option<([f32; 3], [f32; 3])> {
-        let first = *self.positions.first()?;
-        Some(self.positions.iter().fold((first, first), |(low, high), p| {
-            (std::array::from_fn(|i| low[i].min(p[i])), std::array::from_fn(|i| high[i].max(p[i])))
-        }))
+        bounds(&self.positions)
     }
 
     /// Coordinates of a local position in the unit and reference system of the file.
@@ -220,6 +217,15 @@ impl PointCloud {
         }
         Ok(())
     }
+}
+
+/// Lowest and highest corner of `positions`, (N, 3), or `None` without any.
+#[must_use]
+pub fn bounds(positions: &[[f32; 3]]) -> Option<([f32; 3], [f32; 3])> {
+    let first = *positions.first()?;
+    Some(positions.iter().fold((first, first), |(low, high), p| {
+        (std::array::from_fn(|i| low[i].min(p[i])), std::array::from_fn(|i| high[i].max(p[i])))
+    }))
 }
 
 /// `coordinates − origin`, subtracted in f64.

@@ -1,5 +1,6 @@
 //! Coordinate reference systems as far as visibility needs them: which unit, degrees or not, where on the globe.
 
+pub(crate) mod text;
 mod wkt;
 
 use crate::{Error, Result};
@@ -251,15 +252,11 @@ fn invalid(text: &str) -> Error {
     }
 }
 
-/// Metres of an EPSG unit code as GeoTIFF keys use them.
+/// EPSG unit codes as GeoTIFF keys use them, with their metres.
+const UNIT_CODES: [(u16, f64); 4] = [(9001, 1.0), (9002, INTERNATIONAL_FOOT), (9003, US_SURVEY_FOOT), (9036, 1000.0)];
+
 fn unit_of_code(code: u16) -> Option<f64> {
-    match code {
-        9001 => Some(1.0),
-        9002 => Some(INTERNATIONAL_FOOT),
-        9003 => Some(US_SURVEY_FOOT),
-        9036 => Some(1000.0),
-        _ => None,
-    }
+    UNIT_CODES.iter().find(|&&(known, _)| known == code).map(|&(_, metres)| metres)
 }
 
 fn unit_name(metres: f64) -> String {

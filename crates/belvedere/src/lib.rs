@@ -1,7 +1,49 @@
 //! Visibility analysis directly on point clouds.
 //!
-//! A scene is modelled as a union of medial balls (Peters, Ledoux & Biljecki 2015); the balls block lines of sight, a
-//! depth map or exact rays answer what is visible.
+//! A scene is modelled as a union of medial balls (Peters, Ledoux & Biljecki 2015); the balls block lines of sight, and a
+//! depth map says what is visible. The stages are plain functions:
+//!
+//! ```
+//! use belvedere::clean::{CleanParams, clean};
+//! use belvedere::depth::{ItemBuffer, Profile, depth_map};
+//! use belvedere::medial::{ShrinkParams, Side, shrink};
+//! use belvedere::neighbors::NeighborIndex;
+//! use belvedere::normals::estimate::{Neighborhood, estimate};
+//! use belvedere::normals::{Orientation, orient};
+//! use belvedere::progress::Progress;
+//! use belvedere::query::{Answer, query_points};
+//! use belvedere::view::{View, to_sun};
+//! use belvedere::PointCloud;
+//!
+//! # fn main() -> belvedere::Result<()> {
+//! // a flat roof 10 m up over sloping ground; real clouds come from `io::read_cloud`
+//! let at = |i: u32, side: f64| [f64::from(i % 60) * side / 60.0, f64::from(i / 60) * side / 60.0];
+//! let roof = (0..3600).map(|i| { let [x, y] = at(i, 12.0); [x + 14.0, y + 14.0, 10.0 + 0.01 * (x * 7.0).sin()] });
+//! let ground = (0..3600).map(|i| { let [x, y] = at(i, 40.0); [x, y, 0.02 * x] });
+//! let (cloud, _left_out) = PointCloud::from_coordinates(&roof.chain(ground).collect::<Vec<_>>());
+//!
+//! let (kept, _report) = clean(&cloud, &CleanParams::default())?;
+//! let cloud = cloud.select(&kept);
+//! let index = NeighborIndex::new(&cloud.positions)?;
+//! let normals = estimate(&cloud.positions, &index, Neighborhood::default())?;
+//! let (oriented, _report) = orient(&cloud, normals, &Orientation::Up)?;
+//! let (balls, _report) = shrink(&oriented, &index, Side::Interior, &ShrinkParams::tau(), Progress::none())?;
+//!
+//! let sun = to_sun(180f64.to_radians(), 60f64.to_radians());
+//! let (low, high) = cloud.bounds().unwrap();
+//! let view = View::parallel(sun.map(|v| -v), low.map(f64::from), high.map(f64::from), 0.1)?;
+//! let map = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::Without)?;
+//!
+//! // on the ground north of the roof, where its shadow falls, and south of it
+//! let targets = [[20.0, 26.0, 1.0], [20.0, 5.0, 1.0]].map(|p| cloud.from_file_coordinates(p));
+//! let answers = query_points(&map, &targets, map.default_depth_bias());
+//! assert_eq!(answers, [Answer::Blocked, Answer::Visible]);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Units are metres and radians; positions are local f32 on an f64 origin ([`PointCloud`]). Every parallel result is the same,
+//! bit by bit, for any number of threads. The crate prints nothing and reads no clock or environment.
 
 pub mod clean;
 pub mod cloud;
@@ -19,6 +61,7 @@ pub mod random;
 pub mod raster;
 pub mod summary;
 pub mod trajectory;
+mod vector;
 pub mod view;
 
 pub use cloud::{Attributes, GpsTimeKind, PointCloud};

@@ -91,10 +91,11 @@ impl CloudSummary {
     }
 }
 
-/// A metre, or finer where the cloud is a small object: a fiftieth of its extent.
+/// Three times the spacing that the points would have if they filled their bounding rectangle: nine to a cell, so that
+/// cells between sparse points count too, and gaps of lakes and missing tiles do not.
 fn cell_size_for(cloud: &PointCloud) -> f64 {
-    let extent = cloud.bounds().map_or(0.0, |(low, high)| (0..2).map(|i| high[i] - low[i]).fold(0.0, f32::max));
-    if extent > 0.0 { (f64::from(extent) / 50.0).min(1.0) } else { 1.0 }
+    let area = cloud.bounds().map_or(0.0, |(low, high)| f64::from(high[0] - low[0]) * f64::from(high[1] - low[1]));
+    if area > 0.0 { 3.0 * (area / cloud.len() as f64).sqrt() } else { 1.0 }
 }
 
 fn occupied_cell_count(cloud: &PointCloud, cell_size: f64) -> usize {
@@ -146,7 +147,9 @@ mod tests {
         assert_eq!(summary.multi_return_share, Some(0.5));
         assert_eq!(summary.gps_time, Some(GpsTimes { first: 5.0, last: 7.0, distinct_count: 2, missing_count: 1 }));
         assert_eq!(summary.duplicate_count, 1);
-        assert_eq!((summary.occupied_area, summary.density), (2.0, 2.0));
+        // the rectangle of 100.3 x 0.2 m holds four points: cells of 6.718 m, two of which are occupied
+        assert!((summary.cell_size - 6.718).abs() < 1e-3 && (summary.occupied_area - 2.0 * 45.13).abs() < 0.1);
+        assert!((summary.density - 4.0 / 90.27).abs() < 1e-3);
         let [least, most] = summary.scan_angle_deg.unwrap();
         assert!((least + 14.32).abs() < 0.01 && (most - 28.65).abs() < 0.01);
     }

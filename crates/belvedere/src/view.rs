@@ -1,5 +1,6 @@
 //! Views: from where, in which direction, and how densely a scene is looked at.
 
+use crate::vector::{cross, dot, unit};
 use crate::{Error, Result};
 
 /// Most pixels a view may have, so that a mistyped pixel size is an error and not a crash: 4 GiB of f32.
@@ -40,19 +41,6 @@ pub struct View {
     pub projection: Projection,
     /// Width and height in pixels.
     pub size_px: [usize; 2],
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn normalized(v: [f64; 3]) -> Option<[f64; 3]> {
-    let length = dot(v, v).sqrt();
-    (length.is_finite() && length > 0.0).then(|| v.map(|x| x / length))
 }
 
 impl ViewFrame {
@@ -100,7 +88,7 @@ impl View {
     /// Peters, Ledoux & Biljecki 2015, section 3.2 and Figure 3.
     pub fn from_viewport(p0: [f64; 3], vx: [f64; 3], vy: [f64; 3], pixels_per_metre: f64) -> Result<Self> {
         let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
-        let (Some(right), Some(down)) = (normalized(vx), normalized(vy)) else {
+        let (Some(right), Some(down)) = (unit(vx), unit(vy)) else {
             return invalid("viewport vector", format!("{vx:?}, {vy:?}"), "finite and longer than zero");
         };
         if !p0.iter().all(|v| v.is_finite()) {
@@ -112,7 +100,7 @@ impl View {
         if !(pixels_per_metre.is_finite() && pixels_per_metre > 0.0) {
             return invalid("pixels per metre", pixels_per_metre.to_string(), "finite and above zero");
         }
-        let Some(forward) = normalized(cross(right, down)) else {
+        let Some(forward) = unit(cross(right, down)) else {
             return invalid("viewport vectors", format!("{vx:?}, {vy:?}"), "at right angles to each other");
         };
         let down = cross(forward, right);
@@ -137,7 +125,7 @@ impl View {
     /// # Errors
     /// As [`View::from_viewport`].
     pub fn parallel(forward: [f64; 3], low: [f64; 3], high: [f64; 3], pixel_size: f64) -> Result<Self> {
-        let Some(forward) = normalized(forward) else {
+        let Some(forward) = unit(forward) else {
             return Err(Error::InvalidParameter {
                 name: "view direction",
                 value: format!("{forward:?}"),
@@ -153,7 +141,7 @@ impl View {
         }
         // within a thousandth of straight up or down there is no usable sideways vector from the world's up
         let up = if forward[2].abs() < 1.0 - 1e-6 { [0.0, 0.0, 1.0] } else { [0.0, 1.0, 0.0] };
-        let right = normalized(cross(forward, up)).unwrap_or([1.0, 0.0, 0.0]);
+        let right = unit(cross(forward, up)).unwrap_or([1.0, 0.0, 0.0]);
         let down = cross(forward, right);
         let mut least = [f64::INFINITY; 3];
         let mut most = [f64::NEG_INFINITY; 3];

@@ -1,4 +1,6 @@
 //! Depth maps against loops over all balls and pixels, against the printed algorithm, and against closed forms.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::cast_possible_truncation, reason = "small numbers made by the tests")]
 
 use belvedere::depth::{DepthMap, ItemBuffer, NO_BALL, Profile, depth_map};
 use belvedere::medial::{MedialBalls, NO_TOUCH};

@@ -1,4 +1,6 @@
 //! Medial balls against the stored results of masbcpp, and against shapes whose balls are known in closed form.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::cast_possible_truncation, reason = "small numbers made by the tests")]
 
 mod common;
 
@@ -48,6 +50,7 @@ fn params(setting: &str) -> ShrinkParams {
             next_separation_angle: next.to_radians(),
         },
         initial_radius,
+        max_radius: f32::INFINITY,
     }
 }
 

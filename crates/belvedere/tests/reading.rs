@@ -3,7 +3,6 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
-#[allow(unreachable_pub, reason = "shared by several test binaries")]
 mod common;
 
 use std::path::{Path, PathBuf};

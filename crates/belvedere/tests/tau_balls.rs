@@ -1,4 +1,6 @@
 //! Balls of bounded penetration: their guarantee, and that nothing but the points decides them.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::cast_possible_truncation, reason = "small numbers made by the tests")]
 
 use belvedere::medial::feature_size::{SimplifyParams, simplify};
 use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkMethod, ShrinkParams, ShrinkReport, Side, shrink};
@@ -10,7 +12,7 @@ use proptest::prelude::*;
 const PENETRATION: f32 = 0.05;
 
 fn tau(initial_radius: f32) -> ShrinkParams {
-    ShrinkParams { method: ShrinkMethod::Tau { penetration: PENETRATION }, initial_radius }
+    ShrinkParams { method: ShrinkMethod::Tau { penetration: PENETRATION }, initial_radius, max_radius: f32::INFINITY }
 }
 
 fn balls_of(
@@ -125,6 +127,32 @@ fn balls_are_bit_identical_for_any_number_of_threads_and_any_order_of_points() {
 }
 
 #[test]
+fn a_limited_ball_lies_within_the_unlimited_one_and_is_tangent_at_the_same_point() {
+    let (points, normals) = house(7);
+    let limit = 0.8;
+    for params in [tau(30.0), ShrinkParams::angles()] {
+        let (full, report) = balls_of(&points, &normals, Side::Interior, &params);
+        let (limited, same) =
+            balls_of(&points, &normals, Side::Interior, &ShrinkParams { max_radius: limit, ..params });
+        assert_eq!((report, &full.touch), (same, &limited.touch));
+        let mut cut = 0;
+        for (i, p) in points.iter().enumerate() {
+            if full.touch[i] == NO_TOUCH || full.radii[i] <= limit {
+                assert_eq!(full.radii[i], limited.radii[i]);
+                continue;
+            }
+            cut += 1;
+            let apart = (0..3).map(|k| (full.centers[i][k] - limited.centers[i][k]).powi(2)).sum::<f32>().sqrt();
+            let from_p = (0..3).map(|k| (limited.centers[i][k] - p[k]).powi(2)).sum::<f32>().sqrt();
+            // f32 at coordinates up to 30 m, radii up to 200 m
+            assert!((apart + limit - full.radii[i]).abs() < 1e-4, "{apart} {}", full.radii[i]);
+            assert!((from_p - limit).abs() < 1e-4 && limited.radii[i] == limit);
+        }
+        assert!(cut > 100, "{cut} balls were cut");
+    }
+}
+
+#[test]
 fn points_without_a_normal_get_no_ball_but_still_shrink_others() {
     let points = vec![[0.0, 0.0, 0.0], [0.0, 0.0, -2.0], [1.0, 0.0, 50.0]];
     let normals = vec![[0.0, 0.0, 1.0], [0.0; 3], [0.0, 0.0, 1.0]];
@@ -156,6 +184,7 @@ fn parameters_out_of_range_are_refused() {
     let angles = |first: f64| ShrinkParams {
         method: ShrinkMethod::Angles { first_separation_angle: first, next_separation_angle: 0.3 },
         initial_radius: 200.0,
+        max_radius: f32::INFINITY,
     };
     for bad in [tau(0.0), tau(f32::NAN), tau(f32::INFINITY), tau(0.01), angles(-0.1), angles(f64::NAN)] {
         assert!(shrink(&cloud, &index, Side::Interior, &bad, Progress::none()).is_err(), "{bad:?}");

@@ -13,9 +13,10 @@ use std::path::Path;
 use belvedere::cloud::GpsTimeKind;
 use belvedere::crs::Crs;
 use belvedere::io::{
-    Canvas, Colors, DepthRange, ExtraColumn, ExtraValues, Georeference, MasbcppFolder, Picture, SavedBalls, atomic,
-    depth_picture, is_ball_file, ramp_colors, read_balls, side_by_side, write_balls, write_cloud, write_masbcpp,
-    write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_png, write_tif_f32, write_tif_u32,
+    Canvas, Colors, DepthRange, ExtraColumn, ExtraValues, Georeference, MasbcppFolder, Picture, ReadOptions,
+    SavedBalls, atomic, depth_picture, is_ball_file, ramp_colors, read_balls, read_cloud, side_by_side, write_balls,
+    write_cloud, write_masbcpp, write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_png,
+    write_tif_f32, write_tif_u32,
 };
 use belvedere::raster::Raster;
 use belvedere::view::View;
@@ -60,6 +61,7 @@ fn balls(crs: Crs) -> SavedBalls {
     SavedBalls {
         origin: [84_500.123_456_789, 446_700.0, 3.0],
         crs,
+        bounds: ([-5.5, -400.25, 0.1], [70.0, 1.0, 30.7]),
         centers: (0..n).map(|i| [f32::from(i) * 0.1234, f32::from(i) * -0.77, f32::from(i).sqrt()]).collect(),
         radii: (0..n).map(|i| f32::from(i) * 0.0137).collect(),
         source: (0..u32::from(n)).rev().collect(),
@@ -396,6 +398,7 @@ fn balls_come_back() {
             let found = read_balls(&path).unwrap();
             assert_eq!(found.crs, balls.crs, "{name}");
             assert_eq!(found.provenance, balls.provenance);
+            assert_eq!(found.bounds, balls.bounds, "{name}");
             assert_eq!(found.source, balls.source);
             assert_eq!(found.touch, balls.touch);
             assert!(same_bits(&found.separation_angles, &balls.separation_angles));
@@ -414,6 +417,124 @@ fn balls_come_back() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn no_balls_come_back_as_none() {
+    let folder = TempDir::new().unwrap();
+    let none = SavedBalls { bounds: ([-1.0; 3], [2.0; 3]), crs: dutch(), ..SavedBalls::default() };
+    for name in ["b.npz", "b.ply", "b.laz", "b.las"] {
+        let path = folder.path().join(name);
+        write_balls(&path, &none).unwrap();
+        assert!(is_ball_file(&path).unwrap(), "{name}");
+        assert_eq!(read_balls(&path).unwrap(), none, "{name}");
+    }
+    let endless = SavedBalls { bounds: ([0.0; 3], [f32::INFINITY; 3]), ..none };
+    assert!(matches!(write_balls(&folder.path().join("b.npz"), &endless), Err(Error::InvalidParameter { .. })));
+}
+
+#[test]
+fn balls_without_metadata_have_the_bounds_of_their_centres() {
+    let folder = TempDir::new().unwrap();
+    let balls = balls(dutch());
+    let path = folder.path().join("b.ply");
+    write_balls(&path, &balls).unwrap();
+    // as a program that does not know the comments would save it
+    let bytes = fs::read(&path).unwrap();
+    let end = bytes.windows(11).position(|w| w == b"end_header\n").unwrap();
+    let header = String::from_utf8(bytes[..end].to_vec()).unwrap();
+    let kept: Vec<&str> = header.lines().filter(|line| !line.starts_with("comment belvedere_balls")).collect();
+    let edited = [format!("{}\n", kept.join("\n")).as_bytes(), &bytes[end..]].concat();
+    fs::write(&path, edited).unwrap();
+    let found = read_balls(&path).unwrap();
+    assert_eq!((found.crs.epsg, found.radii.len()), (Some(28992), 500));
+    let (low, high) = found.bounds;
+    for axis in 0..3 {
+        let centers = || found.centers.iter().map(|c| c[axis]);
+        assert_eq!(low[axis], centers().fold(f32::INFINITY, f32::min));
+        assert_eq!(high[axis], centers().fold(f32::NEG_INFINITY, f32::max));
+    }
+}
+
+/// Whether two columns are there and alike within `tolerance`.
+fn alike<T: Copy + Into<f64>>(found: Option<&Vec<T>>, expected: Option<&Vec<T>>, tolerance: f64) -> bool {
+    let (Some(found), Some(expected)) = (found, expected) else { return found.is_none() && expected.is_none() };
+    let close = |(f, e): (&T, &T)| ((*f).into() - (*e).into()).abs() <= tolerance;
+    found.len() == expected.len() && found.iter().zip(expected).all(close)
+}
+
+#[test]
+fn written_clouds_read_back_the_same() {
+    struct Case {
+        name: &'static str,
+        /// Metres.
+        position: f64,
+        /// Radians.
+        scan_angle: f64,
+        color: u16,
+        has_crs: bool,
+    }
+    let case = |name, position, scan_angle, color, has_crs| Case { name, position, scan_angle, color, has_crs };
+    // LAS keeps scan angles in steps of 0.006°, PLY and tables colours in 8 bits, tables a tenth of a millimetre
+    let step = 0.003_01_f64.to_radians();
+    let cases = [
+        case("c.las", 0.000_51, step, 0, true),
+        case("c.laz", 0.000_51, step, 0, true),
+        case("c.ply", 0.0, 1e-7, 255, true),
+        case("c.csv", 0.000_051, 1e-7, 255, false),
+    ];
+    let feet = Crs::parse("EPSG:2992").unwrap();
+    let unnamed = Crs { metres_per_unit: FOOT, vertical_metres_per_unit: FOOT, ..Crs::default() };
+    let compound = Crs::parse("EPSG:28992+5709").unwrap();
+    assert!((feet.metres_per_unit - FOOT).abs() < 1e-12);
+    let folder = TempDir::new().unwrap();
+    for (crs, case) in [feet, unnamed, compound].iter().flat_map(|crs| cases.iter().map(move |case| (crs, case))) {
+        let cloud = PointCloud { crs: crs.clone(), ..full_cloud() };
+        let a = &cloud.attributes;
+        let normals = a.normals.as_ref().unwrap();
+        let part = |axis: usize| normals.iter().map(|n| n[axis]).collect::<Vec<f32>>();
+        let parts = [part(0), part(1), part(2)];
+        let normal = |i: usize, name| ExtraColumn { name, description: "", values: ExtraValues::F32(&parts[i]) };
+        let las = [normal(0, "NormalX"), normal(1, "NormalY"), normal(2, "NormalZ")];
+        let path = folder.path().join(case.name);
+        let extra = if case.name.contains("la") { &las[..] } else { &[] };
+        assert_eq!(write_cloud(&path, &cloud, extra).unwrap().left_out, [""; 0]);
+        let code = crs.epsg.map(|code| format!("EPSG:{code}")).filter(|_| !case.has_crs);
+        if code.is_none() && !case.has_crs {
+            // a table says nothing of its unit
+            continue;
+        }
+        let (found, report) = read_cloud(std::slice::from_ref(&path), &ReadOptions { crs: code }).unwrap();
+        let about = format!("{} {crs:?} {:?}", case.name, report.files);
+        assert_eq!(found.crs.epsg, crs.epsg, "{about}");
+        assert!((found.crs.metres_per_unit - crs.metres_per_unit).abs() < 1e-12, "{about}");
+        assert!((found.crs.vertical_metres_per_unit - crs.vertical_metres_per_unit).abs() < 1e-12, "{about}");
+        if case.has_crs {
+            assert_eq!(found.crs.vertical_epsg, crs.vertical_epsg, "{about}");
+        }
+        assert_eq!(found.len(), cloud.len());
+        for (&f, &e) in found.positions.iter().zip(&cloud.positions) {
+            for axis in 0..3 {
+                let off = f64::from(f[axis]) + found.origin[axis] - f64::from(e[axis]) - cloud.origin[axis];
+                // positions near 250 m are f32 with steps of 0.015 mm
+                assert!(off.abs() < case.position + 2e-5, "{about}: {off}");
+            }
+        }
+        let b = &found.attributes;
+        assert_eq!(b.normals, a.normals, "{about}");
+        assert_eq!(b.classification, a.classification, "{about}");
+        assert_eq!(b.gps_time, a.gps_time, "{about}");
+        assert_eq!(b.gps_time_kind, a.gps_time_kind, "{about}");
+        assert_eq!(b.return_number, a.return_number, "{about}");
+        assert_eq!(b.return_count, a.return_count, "{about}");
+        assert!(alike(b.scan_angle.as_ref(), a.scan_angle.as_ref(), case.scan_angle), "{about}");
+        assert_eq!(b.point_source_id, a.point_source_id, "{about}");
+        assert_eq!(b.scanner_channel, a.scanner_channel, "{about}");
+        assert_eq!(b.flags, a.flags, "{about}");
+        assert_eq!(b.intensity, a.intensity, "{about}");
+        let (mine, theirs) = (b.color.as_ref().unwrap(), a.color.as_ref().unwrap());
+        assert!(mine.as_flattened().iter().zip(theirs.as_flattened()).all(|(m, t)| m.abs_diff(*t) <= case.color));
     }
 }
 
@@ -453,6 +574,21 @@ fn damaged_ball_files_are_errors() {
             let _ = read_balls(&path);
         }
     }
+}
+
+#[test]
+fn arrays_have_the_shape_and_type_of_their_values() {
+    let folder = TempDir::new().unwrap();
+    let open =
+        |name: &str| npyz::NpyFile::new(BufReader::new(fs::File::open(folder.path().join(name)).unwrap())).unwrap();
+    write_npy_f32(&folder.path().join("f.npy"), &[1.5, f32::INFINITY]).unwrap();
+    write_npy_u8(&folder.path().join("u.npy"), &[0, 255]).unwrap();
+    let items = Raster::from_values(3, 2, vec![0, 1, 2, 3, 4, u32::MAX]).unwrap();
+    write_npy_u32_2d(&folder.path().join("i.npy"), &items).unwrap();
+    assert_eq!(open("f.npy").into_vec::<f32>().unwrap(), [1.5, f32::INFINITY]);
+    assert_eq!(open("u.npy").into_vec::<u8>().unwrap(), [0, 255]);
+    assert_eq!(open("i.npy").shape(), [2, 3]);
+    assert_eq!(open("i.npy").into_vec::<u32>().unwrap(), items.values());
 }
 
 #[test]

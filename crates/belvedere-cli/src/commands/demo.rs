@@ -1,13 +1,215 @@
-//! `belvedere demo`.
+//! `belvedere demo`: a simulated town, everything done on it, and how right the answers are.
 
-use crate::arguments::{Demo, Global};
+use crate::arguments::{Cleaning, CloudInput, Demo, Global, NeighborChoice, OrientChoice, Orienting};
+use crate::pipeline;
 use crate::progress::Stages;
-use crate::summary::Summary;
+use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
+use belvedere::cloud::{Attributes, GpsTimeKind, PointCloud, centre_rounded, to_local};
+use belvedere::crs::Crs;
+use belvedere::depth::{DepthMap, ItemBuffer, Profile, depth_map};
+use belvedere::io::{
+    Canvas, Colors, DepthRange, ExtraColumn, ExtraValues, atomic, class_color, depth_picture, in_shadow, ramp_colors,
+    side_by_side, write_balls, write_cloud, write_png, write_tif_f32,
+};
+use belvedere::medial::{MedialBalls, ShrinkParams, Side};
+use belvedere::query::{Answer, query_points};
+use belvedere::view::{View, default_pixel_size, to_sun};
+use belvedere_scenes::{AirborneParams, Scan, Scene, TownParams, Truth, scan_airborne, town};
+use std::io::Write;
+use std::path::Path;
 
-pub(crate) fn run(_arguments: &Demo, global: &Global) -> Result<Summary> {
+/// Azimuth and elevation of the sun in the pictures: a summer afternoon, degrees.
+const SUN_DEG: [f64; 2] = [235.0, 30.0];
+/// Height of a pedestrian's chest above the ground, metres.
+const PEDESTRIAN: f64 = 1.5;
+
+pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
+    let folder = &arguments.output;
     let mut stages = Stages::new(global);
-    let summary = Summary::default();
-    stages.run("x", 0, |_| ());
+    let mut summary = Summary::default();
+    atomic::make_folder(folder)?;
+
+    let params = TownParams { extent: arguments.extent, seed: global.seed, ..TownParams::default() };
+    let scene = stages.run("building town", 0, |_| town(&params));
+    let scan = stages.run("scanning town", 0, |_| {
+        scan_airborne(&scene, &AirborneParams { seed: global.seed, ..AirborneParams::default() })
+    });
+    summary.add("town", town_section(&scene, &scan));
+    stages.run("writing town", 0, |_| write_town(folder, &scene, &scan))?;
+
+    // from here on only what a survey would deliver: the LAZ file and the trajectory
+    let input = CloudInput { clouds: vec![folder.join("town.laz")], crs: None };
+    let cloud = pipeline::read(&input, &mut stages, &mut summary)?;
+    let orienting = Orienting {
+        neighbors: NeighborChoice::Fixed(16),
+        orient: OrientChoice::Trajectory(folder.join("trajectory.csv")),
+    };
+    let cleaning = Cleaning { keep_noise: false, keep_duplicates: false, keep_isolated: false };
+    let prepared = pipeline::prepare(&cloud, &cleaning, &orienting, &mut stages, &mut summary)?;
+    let shrinking = ShrinkParams::tau();
+    let balls = pipeline::shrink_side(&prepared, Side::Interior, &shrinking, &mut stages, &mut summary)?.shrunk();
+    drop(prepared);
+
+    let [azimuth, elevation] = SUN_DEG.map(f64::to_radians);
+    let sun = to_sun(azimuth, elevation);
+    let bounds = pipeline::bounds_of(&cloud)?;
+    let (low, high) = (bounds.0.map(f64::from), bounds.1.map(f64::from));
+    let view = View::parallel(sun.map(|v| -v), low, high, default_pixel_size(low, high))?;
+    let map = stages.run("drawing depth map", 0, |_| depth_map(&balls, &view, Profile::Sphere, ItemBuffer::Without))?;
+    let bias = map.default_depth_bias();
+    let answers = stages.run("querying", 0, |_| query_points(&map, &cloud.positions, bias));
+    let shadowed = answers.iter().filter(|&&a| a == Answer::Blocked).count();
+    summary.add("own_points_in_shadow_percent", percent(shadowed, answers.len()));
+
+    let agreement = stages.run("comparing with the mesh", 0, |_| agreement(&scene, &scan, &cloud, &map, sun));
+    summary.add("sun_azimuth_elevation_degrees", SUN_DEG.to_vec());
+    summary.add("against_the_exact_mesh", agreement);
+
+    stages.run("writing pictures", 0, |_| write_pictures(folder, &cloud, &balls, &map, &answers, (low, high)))?;
+    stages.run("writing results", 0, |_| -> Result<()> {
+        let codes: Vec<u8> = answers.iter().map(|&answer| answer as u8).collect();
+        let column = ExtraColumn {
+            name: "answer",
+            description: "0 blocked 1 visible 3 outside",
+            values: ExtraValues::U8(&codes),
+        };
+        write_cloud(&folder.join("town_lit.laz"), &cloud, &[column])?;
+        write_tif_f32(
+            &folder.join("seen_from_the_sun.tif"),
+            &map.depth,
+            None,
+            None,
+            Some("depth in metres from the sun"),
+        )?;
+        let provenance = [
+            ("program", concat!("belvedere ", env!("CARGO_PKG_VERSION"), " demo").to_owned()),
+            ("parameters", format!("{shrinking:?}")),
+        ];
+        write_balls(
+            &folder.join("balls.npz"),
+            &pipeline::saved(balls, (&cloud.origin, &cloud.crs), bounds, provenance),
+        )?;
+        Ok(())
+    })?;
+    let seconds = stages.into_seconds();
+    let total: f64 = seconds.iter().map(|(_, s)| s).sum();
+    summary.add_seconds(seconds);
+    let report = serde_json::Value::from(summary.clone());
+    atomic::write(&folder.join("numbers.json"), |file| {
+        writeln!(file, "{report:#}").map_err(belvedere::Error::io(&folder.join("numbers.json")))
+    })?;
+    summary.add("look_at", folder.join("shadows.png").display().to_string());
+    summary.add("total_seconds", rounded(total, 2));
     Ok(summary)
+}
+
+fn town_section(scene: &Scene, scan: &Scan) -> Summary {
+    let mut section = Summary::default();
+    section
+        .add("triangles_of_the_exact_mesh", scene.triangles.len())
+        .add("points_scanned", scan.len())
+        .add("pulses", scan.report.pulses);
+    section
+}
+
+/// The scan as a cloud, as a LAZ file will hold it.
+fn cloud_of(scan: &Scan) -> Result<PointCloud> {
+    let coordinates = || scan.x.iter().zip(&scan.y).zip(&scan.z).map(|((&x, &y), &z)| [x, y, z]);
+    let origin = centre_rounded(coordinates());
+    Ok(PointCloud {
+        origin,
+        positions: coordinates().map(|c| to_local(c, origin)).collect(),
+        attributes: Attributes {
+            classification: Some(scan.classification.clone()),
+            gps_time: Some(scan.gps_time.clone()),
+            gps_time_kind: GpsTimeKind::AdjustedStandard,
+            return_number: Some(scan.return_number.clone()),
+            return_count: Some(scan.return_count.clone()),
+            scan_angle: Some(scan.scan_angle_deg.iter().map(|a| a.to_radians()).collect()),
+            point_source_id: Some(scan.point_source_id.clone()),
+            intensity: Some(scan.intensity.clone()),
+            ..Attributes::default()
+        },
+        crs: Crs::parse("EPSG:7415")?,
+        ..PointCloud::default()
+    })
+}
+
+fn write_town(folder: &Path, scene: &Scene, scan: &Scan) -> Result<()> {
+    write_cloud(&folder.join("town.laz"), &cloud_of(scan)?, &[])?;
+    for (name, text) in [("trajectory.csv", scan.sensor_path.to_csv()), ("town.obj", scene.to_obj())] {
+        let path = folder.join(name);
+        atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(belvedere::Error::io(&path)))?;
+    }
+    Ok(())
+}
+
+/// How many answers the exact mesh contradicts, each kind of error for itself.
+fn agreement(scene: &Scene, scan: &Scan, cloud: &PointCloud, map: &DepthMap, sun: [f64; 3]) -> Summary {
+    let truth = Truth::new(scene);
+    let bias = map.default_depth_bias();
+    let ground = scan.exact_positions.iter().zip(&scan.classification).filter(|(_, class)| **class == 2);
+    let pedestrians: Vec<[f64; 3]> = ground.map(|(p, _)| [p[0], p[1], p[2] + PEDESTRIAN]).collect();
+    let mut section = Summary::default();
+    for (name, exact) in [("pedestrians", &pedestrians), ("own_points", &scan.exact_positions)] {
+        let shadowed = truth.occluded_towards_each(exact, sun);
+        let asked: Vec<[f32; 3]> = exact.iter().map(|&p| to_local(p, cloud.origin)).collect();
+        let answers = query_points(map, &asked, bias);
+        let lit_count = shadowed.iter().filter(|s| !**s).count();
+        let wrong = |answer: Answer, truly_shadowed: bool| {
+            answers.iter().zip(&shadowed).filter(|&(a, s)| *a == answer && *s == truly_shadowed).count()
+        };
+        let mut scores = Summary::default();
+        scores
+            .add("targets", asked.len())
+            .add("truly_in_shadow_percent", percent(asked.len() - lit_count, asked.len()))
+            .add("false_blocked_percent_of_the_lit", percent(wrong(Answer::Blocked, false), lit_count))
+            .add(
+                "false_visible_percent_of_the_shadowed",
+                percent(wrong(Answer::Visible, true), asked.len() - lit_count),
+            );
+        section.add(name, scores);
+    }
+    section
+}
+
+fn write_pictures(
+    folder: &Path,
+    cloud: &PointCloud,
+    balls: &MedialBalls,
+    map: &DepthMap,
+    answers: &[Answer],
+    (low, high): ([f64; 3], [f64; 3]),
+) -> Result<()> {
+    let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
+    let colors: Vec<[u8; 3]> = answers
+        .iter()
+        .enumerate()
+        .map(|(i, answer)| {
+            let color = class_color(classes.get(i).copied().unwrap_or(0));
+            if *answer == Answer::Blocked { in_shadow(color) } else { color }
+        })
+        .collect();
+    let from_above = View::parallel([0.0, 0.0, -1.0], low, high, 0.125)?;
+    let mut shadows = Canvas::new(&from_above, [255; 3]);
+    // half a metre wide, so that the ground closes between returns 0.3 m apart
+    shadows.draw_points(&cloud.positions, Colors::Each(&colors), 4)?;
+    let caption = "The town from above, sun in the south-west, 30 degrees high: what lies in shadow";
+    write_png(&folder.join("shadows.png"), &side_by_side(&[shadows.into_picture()], &[caption]))?;
+
+    let depth = depth_picture(&map.depth, DepthRange::Robust, "Seen from the sun: depth in metres");
+    write_png(&folder.join("seen_from_the_sun.png"), &depth)?;
+
+    let oblique = View::parallel([0.5, 0.7, -0.6], low, high, 0.125)?;
+    let heights: Vec<f32> = balls.centers.iter().map(|c| c[2]).collect();
+    let mut union = Canvas::new(&oblique, [255; 3]);
+    let seen = depth_map(balls, &oblique, Profile::Sphere, ItemBuffer::With)?;
+    if let Some(items) = &seen.balls {
+        let colors = ramp_colors(&heights);
+        union.draw_seen_balls((&seen.depth, items), (&balls.centers, &balls.radii), Colors::Each(&colors))?;
+    }
+    let caption = "The medial balls that block, coloured by height, seen from the south-west";
+    write_png(&folder.join("balls.png"), &side_by_side(&[union.into_picture()], &[caption]))?;
+    Ok(())
 }

@@ -7,7 +7,7 @@ use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::PointCloud;
-use belvedere::crs::CrsKind;
+use belvedere::crs::{Crs, CrsKind};
 use belvedere::depth::{ItemBuffer, depth_map};
 use belvedere::io::{ExtraColumn, ExtraValues, ReadOptions, WriteReport, read_cloud, write_cloud, write_npy_u8};
 use belvedere::query::{AnswerCounts, query_points, random_targets};
@@ -95,8 +95,9 @@ fn targets(
         // a table of targets says nothing of its unit: it is in the coordinates of the scene's file
         let scale = scene.crs.metres_per_unit_xyz();
         let given = cloud.crs.metres_per_unit_xyz();
-        let known = is_known(&cloud);
-        if known && is_known(&scene) && !cloud.crs.same_system(&scene.crs) {
+        // some files tell their unit without naming a system
+        let known = cloud.crs != Crs::default();
+        if is_known(&cloud) && is_known(&scene) && !cloud.crs.same_system(&scene.crs) {
             bail!(
                 "{}: the targets are in {}, but the scene is in {}; convert one of them",
                 path.display(),

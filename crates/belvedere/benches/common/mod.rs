@@ -1,14 +1,18 @@
 //! Clouds to measure on: a simulated aerial city of any size, and the Delft tile where the shared data are present.
 #![allow(dead_code, reason = "each bench uses the part it needs")]
 #![allow(clippy::cast_possible_truncation, reason = "local coordinates")]
+#![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::OrientedCloud;
 use std::path::PathBuf;
 
+/// Positions and outward normals.
+pub(crate) type Oriented = (Vec<[f32; 3]>, Vec<[f32; 3]>);
+
 /// About `count` points at 8 a square metre: gabled and flat blocks on gentle ground, with sparse walls and 2 cm noise,
 /// and their outward normals.
-pub(crate) fn aerial_city(count: usize) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
+pub(crate) fn aerial_city(count: usize) -> Oriented {
     let side = (count as f64 / 8.0).sqrt();
     let u = |i: usize, k: u64| belvedere::random::uniform(7, 8 * i as u64 + k);
     (0..count)
@@ -23,7 +27,7 @@ pub(crate) fn aerial_city(count: usize) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
             let (p, n) = if inside && u(i, 3) < 0.06 {
                 let s = across.signum();
                 ([x - across + 8.0 * s + noise, y, ground + eaves * u(i, 4)], [s, 0.0, 0.0])
-            } else if inside && block % 2 == 0 {
+            } else if inside && block.is_multiple_of(2) {
                 let s = across.signum() * std::f64::consts::FRAC_1_SQRT_2;
                 ([x, y, ground + eaves + 8.0 - across.abs() + noise], [s, 0.0, s.abs()])
             } else if inside {
@@ -37,7 +41,7 @@ pub(crate) fn aerial_city(count: usize) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
 }
 
 /// Coordinates and normals of the Delft tile, 640 510 points, or `None` after saying so.
-pub(crate) fn delft() -> Option<(Vec<[f32; 3]>, Vec<[f32; 3]>)> {
+pub(crate) fn delft() -> Option<Oriented> {
     let root = std::env::var_os("BELVEDERE_TEST_DATA")
         .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared")), PathBuf::from);
     let read = |name: &str| -> Option<Vec<[f32; 3]>> {
@@ -52,7 +56,7 @@ pub(crate) fn delft() -> Option<(Vec<[f32; 3]>, Vec<[f32; 3]>)> {
     clouds
 }
 
-pub(crate) fn indexed((positions, normals): (Vec<[f32; 3]>, Vec<[f32; 3]>)) -> (OrientedCloud, NeighborIndex) {
+pub(crate) fn indexed((positions, normals): Oriented) -> (OrientedCloud, NeighborIndex) {
     let index = NeighborIndex::new(&positions).unwrap();
     (OrientedCloud::with_known_normals(positions, normals).unwrap(), index)
 }

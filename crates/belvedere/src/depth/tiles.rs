@@ -55,7 +55,7 @@ pub(super) fn draw<S: Shape>(
             .enumerate()
             .for_each(|(row, (depth, nearest))| draw_band(row, depth, Some(nearest))),
         None => {
-            depth.values_mut().par_chunks_mut(band).enumerate().for_each(|(row, depth)| draw_band(row, depth, None))
+            depth.values_mut().par_chunks_mut(band).enumerate().for_each(|(row, depth)| draw_band(row, depth, None));
         }
     }
     (depth, nearest)
@@ -213,6 +213,7 @@ impl Tile {
 
     fn draw<S: Shape>(&mut self, splats: &[Splat], nearest_first: &[u64], with_items: bool) {
         for (drawn, &key) in nearest_first.iter().enumerate() {
+            #[expect(clippy::cast_possible_truncation, reason = "the low half of a key is a place")]
             let splat = &splats[key as u32 as usize];
             // finding the farthest depth of the whole tile costs as much as a few balls
             if drawn % 32 == 31 && splat.near() > self.farthest_of_all() {
@@ -320,7 +321,7 @@ impl Tile {
     }
 
     /// Copies the part of the tile that lies in the picture into its band of rows, in metres.
-    fn store(&self, depth: &mut [f32], mut nearest: Option<&mut [u32]>, width: usize) {
+    fn store(&self, depth: &mut [f32], nearest: Option<&mut [u32]>, width: usize) {
         let columns = TILE.min(width - self.left);
         for (row, band) in depth.chunks_mut(width).enumerate() {
             let from = &self.depth[row * TILE..][..columns];
@@ -328,7 +329,7 @@ impl Tile {
                 *to = depth / self.units_per_metre;
             }
         }
-        if let Some(nearest) = nearest.as_deref_mut() {
+        if let Some(nearest) = nearest {
             for (row, band) in nearest.chunks_mut(width).enumerate() {
                 band[self.left..][..columns].copy_from_slice(&self.nearest[row * TILE..][..columns]);
             }

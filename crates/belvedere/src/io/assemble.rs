@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::part::{Coordinates, Part};
 use super::read_cloud::ReadReport;
 use crate::cloud::{PointCloud, centre_rounded, to_local};
-use crate::crs::CrsKind;
+use crate::crs::{Crs, CrsKind};
 use crate::{Error, Result};
 
 /// Points further than this from the median along an axis are no part of any scene, in metres.
@@ -41,6 +41,9 @@ pub(super) fn assemble(mut parts: Vec<Part>) -> Result<(PointCloud, ReadReport)>
     if let Some(part) = parts.iter().find(|part| part.crs.kind != CrsKind::Unknown) {
         cloud.crs = part.crs.clone();
         report.crs_source = part.report.crs_source.clone();
+    } else if let Some(part) = parts.first() {
+        // a file can tell its unit without naming a system
+        cloud.crs = part.crs.clone();
     }
     report.crs = cloud.crs.describe();
     if cloud.crs.kind == CrsKind::Unknown && bounds.looks_like_degrees() {
@@ -104,7 +107,7 @@ fn adopt_common_crs(parts: &mut [Part], report: &mut ReadReport) {
     let Some(known) = parts.iter().find(|part| part.crs.kind != CrsKind::Unknown).map(|part| part.crs.clone()) else {
         return;
     };
-    for part in parts.iter_mut().filter(|part| part.crs.kind == CrsKind::Unknown && part.coordinates.len() > 0) {
+    for part in parts.iter_mut().filter(|part| part.crs == Crs::default() && part.coordinates.len() > 0) {
         report.notes.push(format!(
             "{} names no reference system and is taken to be in {}",
             part.report.path.display(),

@@ -18,6 +18,9 @@ pub struct SavedBalls {
     pub origin: [f64; 3],
     /// Reference system and unit of the cloud the balls were made from.
     pub crs: Crs,
+    /// Lowest and highest local corner of the points the balls were made from, metres: what a view must hold to show
+    /// the scene, whereas the balls may reach far beyond it. Files without it have the corners of the centres.
+    pub bounds: ([f32; 3], [f32; 3]),
     /// Centres, (B, 3), local metres.
     pub centers: Vec<[f32; 3]>,
     /// Radii, (B), metres.
@@ -33,7 +36,7 @@ pub struct SavedBalls {
 }
 
 impl SavedBalls {
-    /// Checks that all columns are equally long, centres finite, and radii finite and not negative.
+    /// Checks that all columns are equally long, centres, bounds and origin finite, and radii finite and not negative.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] or [`Error::InvalidParameter`] for the first fault.
@@ -55,6 +58,9 @@ impl SavedBalls {
         if let Some(r) = self.radii.iter().find(|&&r| !(r.is_finite() && r >= 0.0)) {
             return invalid("radius of a ball", r.to_string(), "finite and not negative");
         }
+        if self.bounds.0.iter().chain(&self.bounds.1).any(|v| !v.is_finite()) {
+            return invalid("bounds of balls", format!("{:?}", self.bounds), "finite");
+        }
         if self.origin.iter().any(|v| !v.is_finite()) {
             return invalid("origin of balls", format!("{:?}", self.origin), "finite");
         }
@@ -65,7 +71,8 @@ impl SavedBalls {
 /// Writes `balls` in the format that follows from the extension ([`SUPPORTED`]).
 ///
 /// An `.npz` file keeps every bit: arrays `centers` (B, 3) f32 in metres relative to `origin` (3) f64 metres, `radii` (B)
-/// f32 metres, `source` and `touch` (B) u32, `separation_angles` (B) f32 radians, and `metadata`, JSON text as u8.
+/// f32 metres, `source` and `touch` (B) u32, `separation_angles` (B) f32 radians, and `metadata`, JSON text as u8, which
+/// holds reference system, bounds and provenance.
 /// `.ply`, `.las` and `.laz` files are point clouds of the centres in the reference system and unit of the cloud (doubles
 /// in PLY, steps of at most a millimetre in LAS) with the columns `radius`, in the horizontal unit of the file,
 /// `separation_angle` in radians, `source` and `touch`, −1 where a ball never shrank.

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::io::picture::Picture;
+use crate::raster::Raster;
 use crate::view::{Projection, View};
 use crate::{Error, Result};
 
@@ -109,6 +110,56 @@ impl Canvas {
             let color = colors.get(mark.index).map(|c| scaled(c, AMBIENT + (1.0 - AMBIENT) * facing));
             Some((mark.depth + normal[2] * f64::from(radii[mark.index]), color))
         });
+        Ok(())
+    }
+
+    /// Draws the balls of a depth map as spheres lit from the upper left: `depth` and `items`, (height, width) of this
+    /// canvas's view, say which ball each pixel shows and how deep, `centers`, (B, 3) local metres, and `radii`, (B)
+    /// metres, how it is curved there.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] unless both rasters have the size of the picture, there is one radius for each centre, and
+    /// one colour or one for each ball.
+    pub fn draw_seen_balls(
+        &mut self,
+        (depth, items): (&Raster<f32>, &Raster<u32>),
+        (centers, radii): (&[[f32; 3]], &[f32]),
+        colors: Colors<'_>,
+    ) -> Result<()> {
+        let expected = self.depth.len();
+        for (what, found) in [("depth map", depth.values().len()), ("item buffer", items.values().len())] {
+            if found != expected {
+                return Err(Error::LengthMismatch { what, expected, found });
+            }
+        }
+        if radii.len() != centers.len() {
+            return Err(Error::LengthMismatch { what: "radii of balls", expected: centers.len(), found: radii.len() });
+        }
+        colors.check(centers.len())?;
+        let (width, view) = (self.view.size_px[0].max(1), self.view);
+        let Projection::Orthographic { pixels_per_metre } = view.projection;
+        self.picture
+            .rgb
+            .par_chunks_mut(3)
+            .zip(self.depth.par_iter_mut())
+            .zip(depth.values().par_iter().zip(items.values()))
+            .enumerate()
+            .for_each(|(pixel, ((rgb, nearest), (&depth, &ball)))| {
+                let (Some(&center), Some(&radius)) = (centers.get(ball as usize), radii.get(ball as usize)) else {
+                    return;
+                };
+                if depth >= *nearest {
+                    return;
+                }
+                let [right, down, _] = view.frame.view_from_local(center);
+                let from_center =
+                    |pixel: usize, center: f64| ((pixel as f64 + 0.5) / pixels_per_metre - center) / f64::from(radius);
+                let (dx, dy) = (from_center(pixel % width, right), from_center(pixel / width, down));
+                let normal = [dx, dy, -(1.0 - dx * dx - dy * dy).max(0.0).sqrt()];
+                let facing = (0..3).map(|i| normal[i] * TO_LIGHT[i]).sum::<f64>().max(0.0);
+                *nearest = depth;
+                rgb.copy_from_slice(&colors.get(ball as usize).map(|c| scaled(c, AMBIENT + (1.0 - AMBIENT) * facing)));
+            });
         Ok(())
     }
 

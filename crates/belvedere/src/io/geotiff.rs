@@ -6,8 +6,8 @@ use tiff::encoder::colortype::{ColorType, Gray32, Gray32Float};
 use tiff::encoder::{Compression, DeflateLevel, TiffEncoder, TiffKind, TiffValue};
 use tiff::tags::Tag;
 
-use crate::crs::Crs;
-use crate::io::{atomic, crs_text};
+use crate::crs::{Crs, text};
+use crate::io::atomic;
 use crate::raster::Raster;
 use crate::{Error, Result};
 
@@ -129,8 +129,8 @@ where
     let mut image = encoder.new_image::<C>(width, height)?;
     let tags = image.encoder();
     tags.write_tag(Tag::Software, "belvedere")?;
-    if let Some(text) = marks.description {
-        tags.write_tag(Tag::ImageDescription, ascii(text).as_str())?;
+    if let Some(description) = marks.description {
+        tags.write_tag(Tag::ImageDescription, ascii(description).as_str())?;
     }
     if let Some(nodata) = &marks.nodata {
         tags.write_tag(Tag::GdalNodata, nodata.as_str())?;
@@ -146,8 +146,8 @@ where
             tags.write_tag(Tag::ModelTransformationTag, &matrix[..])?;
         }
         // without a system the keys still say that pixels are areas
-        let keys = crs_text::geo_keys(&place.crs, crs_text::KeyUse::PixelAreas)
-            .unwrap_or_else(|| crs_text::GeoKeys { directory: vec![1, 1, 0, 1, 1025, 0, 1, 1], text: String::new() });
+        let keys = text::geo_keys(&place.crs, text::KeyUse::PixelAreas)
+            .unwrap_or_else(|| text::GeoKeys { directory: vec![1, 1, 0, 1, 1025, 0, 1, 1], text: String::new() });
         tags.write_tag(Tag::GeoKeyDirectoryTag, &keys.directory[..])?;
         if !keys.text.is_empty() {
             tags.write_tag(Tag::GeoAsciiParamsTag, ascii(&keys.text).as_str())?;

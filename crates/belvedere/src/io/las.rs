@@ -1,13 +1,14 @@
 //! LAS 1.0 to 1.4 and LAZ (also COPC, whose points are read in file order), all point formats.
 
-use std::io::{Read, Seek, SeekFrom};
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use ::las::point::Format;
-use ::las::{PointDataBuilder, Transform, Vector};
+use ::las::{PointData, PointDataBuilder, Transform, Vector};
 
 use super::las_columns::Columns;
-use super::las_extra::find_extra_normals;
+use super::las_extra::{ExtraField, find_columns, find_extra_normals};
 use super::las_header::{LasHeader, read_header};
 use super::laz::{ExtraBytes, LazReader, is_chunked};
 use super::part::{Part, guarded, open};
@@ -20,12 +21,70 @@ const BATCH: u64 = 1_000_000;
 /// Scales this fine are used for degrees, not for metres.
 const DEGREE_SCALE: f64 = 1.000_001e-6;
 
+/// A LAS or LAZ file whose header has been checked.
+pub(super) struct LasFile<'a> {
+    path: &'a Path,
+    file: BufReader<File>,
+    size: u64,
+    pub(super) header: LasHeader,
+    format: Format,
+}
+
+impl<'a> LasFile<'a> {
+    pub(super) fn open(path: &'a Path) -> Result<Self> {
+        let (mut file, size) = open(path)?;
+        let header = read_header(path, &mut file, size)?;
+        let format = point_format(path, &header)?;
+        Ok(Self { path, file, size, header, format })
+    }
+
+    /// The extra columns of these names, `None` for those the file lacks.
+    pub(super) fn columns<const N: usize>(&self, names: [&str; N]) -> [Option<ExtraField>; N] {
+        find_columns(&self.header, &self.format, names)
+    }
+
+    /// Points that the file really holds of those its header announces; a LAZ file is checked when it is decompressed.
+    pub(super) fn points_in_file(&self) -> u64 {
+        if self.header.compressed {
+            return self.header.points;
+        }
+        let room = self.size.saturating_sub(self.header.points_start) / u64::from(self.header.record_length).max(1);
+        self.header.points.min(room)
+    }
+
+    /// Decodes the points in file order and hands them to `take`, many at a time.
+    pub(super) fn for_each_batch(self, extra: ExtraBytes, mut take: impl FnMut(&PointData)) -> Result<()> {
+        let points = self.points_in_file();
+        let Self { path, mut file, size, header, format } = self;
+        let transform = |i: usize| Transform { scale: header.scale[i], offset: header.offset[i] };
+        let transforms = Vector { x: transform(0), y: transform(1), z: transform(2) };
+        let mut batch = PointDataBuilder::new().with_format(format).with_transforms(transforms).build();
+        // Without points there need be no chunk table either.
+        if header.compressed && points > 0 {
+            let mut reader = LazReader::new(path, file, &header, size, extra)?;
+            while reader.next_batch(BATCH, |points| batch.resize_for(points))? > 0 {
+                take(&batch);
+            }
+        } else if !header.compressed {
+            file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
+            let mut left = points;
+            while left > 0 {
+                let points = left.min(BATCH);
+                let room = batch.resize_for(usize::try_from(points).unwrap_or(0));
+                file.read_exact(room).map_err(Error::io(path))?;
+                take(&batch);
+                left -= points;
+            }
+        }
+        Ok(())
+    }
+}
+
 /// The points of the file at `path`; `forced` stands in for the system the file names.
 pub(super) fn read(path: &Path, forced: Option<&Crs>) -> Result<Part> {
-    let (mut file, size) = open(path)?;
-    let header = read_header(path, &mut file, size)?;
-    let format = point_format(path, &header)?;
-    let mut part = Part::new(path, describe(path, &header));
+    let mut source = LasFile::open(path)?;
+    let header = &source.header;
+    let mut part = Part::new(path, describe(path, header));
     if header.counts_differ {
         part.note(format!("the two point counts of the header differ; {} is used", header.points));
     }
@@ -33,40 +92,27 @@ pub(super) fn read(path: &Path, forced: Option<&Crs>) -> Result<Part> {
         part.note("a variable-length record is cut off; it and those after it are passed over");
     }
     if forced.is_none() {
-        find_crs(&mut part, &header);
+        find_crs(&mut part, header);
     }
     let crs = forced.unwrap_or(&part.crs);
-    let somewhere = header.first_point(path, &mut file)?;
-    if let Some(what) = crs.refusal(somewhere).or_else(|| unnamed_degrees(crs, &header, somewhere)) {
+    let somewhere = header.first_point(path, &mut source.file)?;
+    if let Some(what) = crs.refusal(somewhere).or_else(|| unnamed_degrees(crs, header, somewhere)) {
         return Err(Error::UnusableCrs { path: path.to_owned(), what });
     }
 
-    let normals = find_extra_normals(&mut part, &header, &format);
+    let normals = find_extra_normals(&mut part, header, &source.format);
     let extra = if normals.is_some() { ExtraBytes::Decompress } else { ExtraBytes::Skip };
-    // No more is reserved than the size of the file makes likely; columns grow where that is too little.
-    let capacity = usize::try_from(header.points.min(size)).unwrap_or(0);
-    let mut columns = Columns::new(&format, &header, normals, capacity);
-    let transform = |i: usize| Transform { scale: header.scale[i], offset: header.offset[i] };
-    let transforms = Vector { x: transform(0), y: transform(1), z: transform(2) };
-    let mut batch = PointDataBuilder::new().with_format(format).with_transforms(transforms).build();
-    // Without points there need be no chunk table either.
-    if header.compressed && header.points > 0 {
-        let mut reader = LazReader::new(path, file, &header, size, extra)?;
-        while reader.next_batch(BATCH, |points| batch.resize_for(points))? > 0 {
-            columns.append(&batch);
-        }
-    } else if !header.compressed {
-        let mut left = points_in_file(&mut part, &header, size);
-        file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
-        while left > 0 {
-            let points = left.min(BATCH);
-            let room = batch.resize_for(usize::try_from(points).unwrap_or(0));
-            file.read_exact(room).map_err(Error::io(path))?;
-            columns.append(&batch);
-            left -= points;
-        }
+    let (announced, present) = (header.points, source.points_in_file());
+    if announced > present {
+        part.note(format!("the header announces {announced} points, but the file holds only {present}"));
+        let missing = usize::try_from(announced - present).unwrap_or(usize::MAX);
+        part.leave_out(missing, "announced by the header but not in the file");
     }
-    (part.coordinates, part.attributes) = columns.finish(&header);
+    // No more is reserved than the size of the file makes likely; columns grow where that is too little.
+    let capacity = usize::try_from(announced.min(source.size)).unwrap_or(0);
+    let mut columns = Columns::new(&source.format, header, normals, capacity);
+    source.for_each_batch(extra, |batch| columns.append(batch))?;
+    (part.coordinates, part.attributes) = columns.finish();
     Ok(part)
 }
 
@@ -103,17 +149,6 @@ fn point_format(path: &Path, header: &LasHeader) -> Result<Format> {
         ));
     }
     Ok(format)
-}
-
-/// Points that an uncompressed file really holds of those its header announces.
-fn points_in_file(part: &mut Part, header: &LasHeader, size: u64) -> u64 {
-    let room = (size - header.points_start) / u64::from(header.record_length);
-    if header.points > room {
-        part.note(format!("the header announces {} points, but the file holds only {room}", header.points));
-        let missing = header.points - room;
-        part.leave_out(usize::try_from(missing).unwrap_or(usize::MAX), "announced by the header but not in the file");
-    }
-    header.points.min(room)
 }
 
 /// Takes the system from a WKT record, or else from GeoTIFF keys.

@@ -14,6 +14,8 @@ const OVERLAP_CLASS: u8 = 12;
 /// The columns as they grow batch by batch.
 pub(super) struct Columns {
     positions: Vec<[i32; 3]>,
+    scale: [f64; 3],
+    offset: [f64; 3],
     attributes: Attributes,
     extended: bool,
     extra_normals: Option<ExtraNormals>,
@@ -46,7 +48,14 @@ impl Columns {
             color: format.has_color.then(|| Vec::with_capacity(capacity)),
             scanner_index: None,
         };
-        Self { positions: Vec::with_capacity(capacity), attributes, extended, extra_normals }
+        Self {
+            positions: Vec::with_capacity(capacity),
+            scale: header.scale,
+            offset: header.offset,
+            attributes,
+            extended,
+            extra_normals,
+        }
     }
 
     /// Decodes a batch, one task per column.
@@ -118,8 +127,8 @@ impl Columns {
         });
     }
 
-    pub(super) fn finish(self, header: &LasHeader) -> (Coordinates, Attributes) {
-        let coordinates = Coordinates::Quantised { values: self.positions, scale: header.scale, offset: header.offset };
+    pub(super) fn finish(self) -> (Coordinates, Attributes) {
+        let coordinates = Coordinates::Quantised { values: self.positions, scale: self.scale, offset: self.offset };
         (coordinates, self.attributes)
     }
 }

@@ -1,4 +1,4 @@
-//! Extra bytes of LAS records: normals are taken, the rest is named in the report.
+//! Extra bytes of LAS records: columns asked for by name, normals among them; the rest is named in the report.
 
 use ::las::point::Format;
 
@@ -44,14 +44,13 @@ fn extra_size(kind: u8, options: u8) -> usize {
     }
 }
 
-/// Finds normals among the extra bytes; the other extra bytes are noted as dropped.
-pub(super) fn find_extra_normals(part: &mut Part, header: &LasHeader, format: &Format) -> Option<ExtraNormals> {
-    let mut at = usize::from(format.len() - format.extra_bytes);
-    let mut normals: [Option<ExtraField>; 3] = [None; 3];
-    let mut others: Vec<String> = Vec::new();
+/// The names of the extra bytes as the file describes them, and how to read each.
+fn described(header: &LasHeader, format: &Format) -> Vec<(String, ExtraField)> {
+    let mut at = usize::from(format.len().saturating_sub(format.extra_bytes));
+    let mut fields = Vec::new();
     for descriptor in header.records("LASF_Spec", 4).flat_map(|record| record.as_chunks::<192>().0) {
         let (kind, options) = (descriptor[2], descriptor[3]);
-        let name = String::from_utf8_lossy(&descriptor[4..36]).trim_end_matches('\0').to_owned();
+        let name = descriptor[4..36].split(|&byte| byte == 0).next().unwrap_or_default();
         let f64_at = |i: usize| descriptor[i..].first_chunk().map_or(0.0, |&bytes| f64::from_le_bytes(bytes));
         let field = ExtraField {
             at,
@@ -59,12 +58,32 @@ pub(super) fn find_extra_normals(part: &mut Part, header: &LasHeader, format: &F
             scale: if options & 8 != 0 { f64_at(112) } else { 1.0 },
             offset: if options & 16 != 0 { f64_at(136) } else { 0.0 },
         };
-        match ["normalx", "normaly", "normalz"].iter().position(|n| name.eq_ignore_ascii_case(n)) {
-            Some(axis) => normals[axis] = Some(field),
-            None => others.push(name),
-        }
+        fields.push((String::from_utf8_lossy(name).into_owned(), field));
         at += extra_size(kind, options);
     }
+    fields
+}
+
+/// The extra columns of these names, in whatever case the file writes them; `None` for those it lacks.
+pub(super) fn find_columns<const N: usize>(
+    header: &LasHeader,
+    format: &Format,
+    names: [&str; N],
+) -> [Option<ExtraField>; N] {
+    let fields = described(header, format);
+    // the last of several fields of one name counts
+    names.map(|name| fields.iter().rev().find(|(n, _)| n.eq_ignore_ascii_case(name)).map(|&(_, field)| field))
+}
+
+/// Finds normals among the extra bytes; the other extra bytes are noted as dropped.
+pub(super) fn find_extra_normals(part: &mut Part, header: &LasHeader, format: &Format) -> Option<ExtraNormals> {
+    const NAMES: [&str; 3] = ["NormalX", "NormalY", "NormalZ"];
+    let normals = find_columns(header, format, NAMES);
+    let others: Vec<String> = described(header, format)
+        .into_iter()
+        .map(|(name, _)| name)
+        .filter(|name| !NAMES.iter().any(|normal| normal.eq_ignore_ascii_case(name)))
+        .collect();
     if let [Some(x), Some(y), Some(z)] = normals {
         if !others.is_empty() {
             part.note(format!("extra bytes dropped: {}", others.join(", ")));

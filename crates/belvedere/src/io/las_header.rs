@@ -93,42 +93,32 @@ pub(super) fn read_header(path: &Path, file: &mut (impl Read + Seek), size: u64)
         let what = format!("says that points start at byte {points_start} of {size}; the file is cut off or damaged");
         return Err(Error::malformed(path, what));
     }
-    file.seek(SeekFrom::Start(header_size)).map_err(Error::io(path))?;
-    let mut position = header_size;
-    for _ in 0..record_count {
-        match read_record(file, Length::Short, points_start - position) {
-            Some((record, length)) => {
-                position += length;
-                header.records.extend(record);
-            }
-            None => {
-                header.broken_records += 1;
-                break;
-            }
-        }
-    }
+    read_records(path, file, &mut header, Length::Short, header_size..points_start, record_count)?;
     if version.1 >= 4 && header_size >= 375 {
         let (start, count) = (fields.u64(235)?, fields.u32(243)?);
-        read_extended(path, file, &mut header, start..size, count)?;
+        read_records(path, file, &mut header, Length::Long, start..size, count)?;
     }
     Ok(header)
 }
 
-fn read_extended(
+/// Reads up to `count` records that lie in the bytes of `range`, until one is broken.
+fn read_records(
     path: &Path,
     file: &mut (impl Read + Seek),
     header: &mut LasHeader,
+    length: Length,
     range: std::ops::Range<u64>,
     count: u32,
 ) -> Result<()> {
     let mut position = range.start;
     for _ in 0..count {
-        if position < header.points_start || position >= range.end {
+        let is_extended = length == Length::Long;
+        if is_extended && (position < header.points_start || position >= range.end) {
             header.broken_records += 1;
             break;
         }
         file.seek(SeekFrom::Start(position)).map_err(Error::io(path))?;
-        match read_record(file, Length::Long, range.end - position) {
+        match read_record(file, length, range.end - position) {
             Some((record, length)) => {
                 position += length;
                 header.records.extend(record);

@@ -6,6 +6,7 @@ use std::path::Path;
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
+use super::ply::scalar;
 use super::polygons::{MeshBuilder, MeshReport};
 use crate::{Error, Mesh, Result};
 
@@ -39,20 +40,6 @@ impl PropertyAccess for Element {
             PropertyAccessResult::Set
         })
     }
-}
-
-fn scalar(property: &Property) -> Option<f64> {
-    Some(match *property {
-        Property::Char(v) => v.into(),
-        Property::UChar(v) => v.into(),
-        Property::Short(v) => v.into(),
-        Property::UShort(v) => v.into(),
-        Property::Int(v) => v.into(),
-        Property::UInt(v) => v.into(),
-        Property::Float(v) => v.into(),
-        Property::Double(v) => v,
-        _ => return None,
-    })
 }
 
 fn list(property: Property) -> Option<Vec<i64>> {

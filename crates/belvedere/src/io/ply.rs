@@ -1,17 +1,24 @@
 //! PLY: the vertices of ascii and binary files; faces and other elements are passed over.
 
-use std::io::{BufRead, Read};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
+use ply_rs_bw::ply::{
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
+};
 
 use super::part::{Part, guarded, open};
 use super::rows::{Role, Row, Rows, role_of};
+use crate::crs::text::crs_from_comments;
 use crate::{Error, Result};
 
 /// A header longer than this is no header.
 const MAX_HEADER: u64 = 1 << 20;
+
+/// The element that holds the points.
+const VERTEX: &str = "vertex";
 
 /// One vertex: the numbers whose names have a role.
 #[derive(Default)]
@@ -23,17 +30,7 @@ impl PropertyAccess for Vertex {
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let value = match property {
-            Property::Char(v) => f64::from(v),
-            Property::UChar(v) => f64::from(v),
-            Property::Short(v) => f64::from(v),
-            Property::UShort(v) => f64::from(v),
-            Property::Int(v) => f64::from(v),
-            Property::UInt(v) => f64::from(v),
-            Property::Float(v) => f64::from(v),
-            Property::Double(v) => v,
-            _ => return PropertyAccessResult::Ignored,
-        };
+        let Some(value) = scalar(&property) else { return PropertyAccessResult::Ignored };
         match role_of(name) {
             Some(role) => {
                 self.0.set(role, value);
@@ -44,41 +41,85 @@ impl PropertyAccess for Vertex {
     }
 }
 
+/// A PLY file whose header has been checked against its size.
+pub(super) struct PlyFile<'a> {
+    path: &'a Path,
+    file: BufReader<File>,
+    header: Header,
+}
+
+impl<'a> PlyFile<'a> {
+    pub(super) fn open(path: &'a Path) -> Result<Self> {
+        let (mut file, size) = open(path)?;
+        guarded(path, || {
+            let bytes = header_bytes(path, &mut file)?;
+            let header = Parser::<Vertex>::new()
+                .read_header(&mut Reader::new(bytes.as_slice()))
+                .map_err(|e| Error::malformed(path, format!("is not a readable PLY file: {e}")))?;
+            let body = size.saturating_sub(bytes.len() as u64);
+            for element in header.elements.values() {
+                check_count(path, element, header.encoding, body)?;
+            }
+            Ok(Self { path, file, header })
+        })
+    }
+
+    pub(super) fn vertex(&self) -> Option<&ElementDef> {
+        self.header.elements.get(VERTEX)
+    }
+
+    pub(super) fn comments(&self) -> impl Iterator<Item = &str> + Clone {
+        self.header.comments.iter().map(String::as_str)
+    }
+
+    /// Hands every vertex to `take`; what follows the vertices is not looked at.
+    pub(super) fn for_each_vertex<V: PropertyAccess>(&mut self, take: impl FnMut(V)) -> Result<()> {
+        let Self { path, file, header } = self;
+        guarded(path, || {
+            for (name, element) in &header.elements {
+                if name == VERTEX {
+                    return for_each(&Parser::<V>::new(), path, file, element, header.encoding, take);
+                }
+                for_each(&Parser::<Vertex>::new(), path, file, element, header.encoding, |_| {})?;
+            }
+            Err(Error::malformed(path, "has no vertices"))
+        })
+    }
+}
+
 /// The vertices of the file at `path`.
 pub(super) fn read(path: &Path) -> Result<Part> {
-    let (mut file, size) = open(path)?;
-    guarded(path, || {
-        let damaged = |e: &dyn std::fmt::Display| Error::malformed(path, format!("is not a readable PLY file: {e}"));
-        let parser = Parser::<Vertex>::new();
-        let header_bytes = header_bytes(path, &mut file)?;
-        let header = parser.read_header(&mut Reader::new(header_bytes.as_slice())).map_err(|e| damaged(&e))?;
-        let mut part = Part::new(path, format!("PLY, {}", header.encoding));
-        let body = size.saturating_sub(header_bytes.len() as u64);
-        let mut found = false;
-        for (name, element) in &header.elements {
-            check_count(path, element, header.encoding, body)?;
-            if name != "vertex" {
-                if !found {
-                    for_each(&Parser::<Vertex>::new(), path, &mut file, element, header.encoding, |_| {})?;
-                }
-                continue;
-            }
-            found = true;
-            let mut rows = Rows::new(element.properties.keys().filter_map(|property| role_of(property)));
-            if !rows.has_position() {
-                return Err(Error::malformed(path, "has vertices without x, y and z"));
-            }
-            note_unknown(&mut part, element);
-            for_each(&parser, path, &mut file, element, header.encoding, |vertex| rows.push(&vertex.0))?;
-            part.single_precision = element.properties.iter().any(|(property, definition)| {
-                role_of(property) == Some(Role::X) && definition.data_type == PropertyType::Scalar(ScalarType::Float)
-            });
-            rows.finish(&mut part);
-        }
-        if !found {
-            return Err(Error::malformed(path, "has no vertices"));
-        }
-        Ok(part)
+    let mut file = PlyFile::open(path)?;
+    let mut part = Part::new(path, format!("PLY, {}", file.header.encoding));
+    if let Some(crs) = crs_from_comments(file.comments()) {
+        part.set_crs(crs, "comments in the header");
+    }
+    let vertex = file.vertex().ok_or_else(|| Error::malformed(path, "has no vertices"))?;
+    let mut rows = Rows::new(vertex.properties.keys().filter_map(|property| role_of(property)));
+    if !rows.has_position() {
+        return Err(Error::malformed(path, "has vertices without x, y and z"));
+    }
+    note_unknown(&mut part, vertex);
+    part.single_precision = vertex.properties.iter().any(|(property, definition)| {
+        role_of(property) == Some(Role::X) && definition.data_type == PropertyType::Scalar(ScalarType::Float)
+    });
+    file.for_each_vertex(|vertex: Vertex| rows.push(&vertex.0))?;
+    rows.finish(&mut part);
+    Ok(part)
+}
+
+/// A property as a number, `None` where it is a list.
+pub(super) fn scalar(property: &Property) -> Option<f64> {
+    Some(match *property {
+        Property::Char(v) => v.into(),
+        Property::UChar(v) => v.into(),
+        Property::Short(v) => v.into(),
+        Property::UShort(v) => v.into(),
+        Property::Int(v) => v.into(),
+        Property::UInt(v) => v.into(),
+        Property::Float(v) => v.into(),
+        Property::Double(v) => v,
+        _ => return None,
     })
 }
 
@@ -139,13 +180,13 @@ fn note_unknown(part: &mut Part, element: &ElementDef) {
     }
 }
 
-fn for_each(
-    parser: &Parser<Vertex>,
+fn for_each<V: PropertyAccess>(
+    parser: &Parser<V>,
     path: &Path,
     file: &mut impl BufRead,
     element: &ElementDef,
     encoding: Encoding,
-    mut take: impl FnMut(Vertex),
+    mut take: impl FnMut(V),
 ) -> Result<()> {
     let mut line = Vec::new();
     for index in 0..element.count {

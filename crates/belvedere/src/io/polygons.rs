@@ -4,6 +4,7 @@ use std::path::Path;
 
 use earcut::Earcut;
 
+use crate::vector::{cross, dot, length, sub};
 use crate::{Error, Mesh, Result};
 
 /// Coordinates beyond this are no place on earth in any unit; kept below, products of three never overflow.
@@ -131,7 +132,7 @@ impl<'a> MeshBuilder<'a> {
 
     fn push_triangle(&mut self, triangle: [u32; 3], object: Option<u32>) {
         let [a, b, c] = triangle.map(|i| self.mesh.vertices[i as usize]);
-        let (ab, ac, bc) = (subtract(b, a), subtract(c, a), subtract(c, b));
+        let (ab, ac, bc) = (sub(b, a), sub(c, a), sub(c, b));
         let longest = dot(ab, ab).max(dot(ac, ac)).max(dot(bc, bc));
         let doubled_area = length(cross(ab, ac));
         if doubled_area > DEGENERATE_AREA_RATIO * longest {
@@ -159,7 +160,7 @@ impl<'a> MeshBuilder<'a> {
 /// rings), or `None` where the outline has no area.
 fn flatten(vertices: &[[f64; 3]], corners: &[u32], outline_length: usize) -> Option<Vec<[f64; 2]>> {
     let base = vertices[*corners.first()? as usize];
-    let points: Vec<[f64; 3]> = corners.iter().map(|&i| subtract(vertices[i as usize], base)).collect();
+    let points: Vec<[f64; 3]> = corners.iter().map(|&i| sub(vertices[i as usize], base)).collect();
     let outline = points.get(..outline_length)?;
     let mut normal = [0.0; 3];
     for (i, &p) in outline.iter().enumerate() {
@@ -176,20 +177,4 @@ fn flatten(vertices: &[[f64; 3]], corners: &[u32], outline_length: usize) -> Opt
     let u = u.map(|v| v / length(u));
     let v = cross(normal, u);
     Some(points.iter().map(|&p| [dot(u, p), dot(v, p)]).collect())
-}
-
-fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| a[i] - b[i])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn length(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
 }

@@ -1,8 +1,9 @@
 //! Reading one cloud from one or several files.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::part::Part;
+use super::write_cloud::extension;
 use super::{assemble, e57, las, masbcpp, npy, pcd, ply, ptx, xyz};
 use crate::cloud::PointCloud;
 use crate::crs::{Crs, CrsKind};
@@ -172,8 +173,4 @@ fn read_one(source: &Source, forced: Option<&Crs>) -> Result<Part> {
             supported: ".las, .laz, .ply, .xyz, .txt, .csv, .pcd, .e57, .npy, .ptx",
         }),
     }
-}
-
-fn extension(path: &Path) -> String {
-    path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }

@@ -1,7 +1,7 @@
 //! Points that come one by one with named numbers, as in text, PLY, PCD and E57 files.
 
 use super::part::{Coordinates, Part, narrow, to_u8, to_u16};
-use crate::cloud::Attributes;
+use crate::cloud::{Attributes, GpsTimeKind};
 
 /// What a number of a point means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,9 +22,14 @@ pub(super) enum Role {
     ReturnCount,
     ScanAngle,
     SourceId,
+    ScannerChannel,
+    Flags,
 }
 
-const ROLES: usize = Role::SourceId as usize + 1;
+const ROLES: usize = Role::Flags as usize + 1;
+
+/// Flights that pass midnight on Saturday may count on, but not for another week.
+const LONGEST_WEEK: f64 = 2.0 * 604_800.0;
 
 /// The numbers of one point, by role.
 #[derive(Clone, Copy, Debug)]
@@ -80,8 +85,10 @@ pub(super) fn role_of(name: &str) -> Option<Role> {
         "t" | "time" | "gpstime" | "timestamp" => Role::GpsTime,
         "returnnumber" | "rn" => Role::ReturnNumber,
         "numberofreturns" | "returncount" | "nr" => Role::ReturnCount,
-        "scanangle" | "scananglerank" => Role::ScanAngle,
+        "scanangle" | "scanangledeg" | "scananglerank" => Role::ScanAngle,
         "pointsourceid" | "sourceid" => Role::SourceId,
+        "scannerchannel" => Role::ScannerChannel,
+        "flags" => Role::Flags,
         _ => return None,
     })
 }
@@ -100,6 +107,8 @@ pub(super) struct Rows {
     classes: Vec<u8>,
     return_numbers: Vec<u8>,
     return_counts: Vec<u8>,
+    scanner_channels: Vec<u8>,
+    flags: Vec<u8>,
 }
 
 impl Rows {
@@ -150,6 +159,12 @@ impl Rows {
         if self.has(&[Role::ReturnCount]) {
             self.return_counts.push(to_u8(row.get(Role::ReturnCount)));
         }
+        if self.has(&[Role::ScannerChannel]) {
+            self.scanner_channels.push(to_u8(row.get(Role::ScannerChannel)));
+        }
+        if self.has(&[Role::Flags]) {
+            self.flags.push(to_u8(row.get(Role::Flags)));
+        }
     }
 
     /// Moves the points into `part`. Intensities and colours from 0 to 1 become 0 to 65535.
@@ -161,14 +176,24 @@ impl Rows {
             values.as_chunks::<3>().0.to_vec()
         });
         let intensity = has(Role::Intensity).then(|| to_16_bit(part, "intensities", &self.intensities));
+        // Only LAS files say what their times count from; a time that no week has can only be the other kind.
+        let in_a_week = |time: &f64| !time.is_finite() || (0.0..=LONGEST_WEEK).contains(time);
+        let gps_time_kind = if self.gps_times.iter().all(in_a_week) {
+            GpsTimeKind::SecondsOfWeek
+        } else {
+            GpsTimeKind::AdjustedStandard
+        };
         part.attributes = Attributes {
             normals: normal.then_some(self.normals),
             classification: has(Role::Classification).then_some(self.classes),
             gps_time: has(Role::GpsTime).then_some(self.gps_times),
+            gps_time_kind,
             return_number: has(Role::ReturnNumber).then_some(self.return_numbers),
             return_count: has(Role::ReturnCount).then_some(self.return_counts),
             scan_angle: has(Role::ScanAngle).then_some(self.scan_angles),
             point_source_id: has(Role::SourceId).then_some(self.source_ids),
+            scanner_channel: has(Role::ScannerChannel).then_some(self.scanner_channels),
+            flags: has(Role::Flags).then_some(self.flags),
             intensity,
             color: colors,
             ..Attributes::default()

@@ -10,9 +10,10 @@ use las::{Builder, GpsTimeType, PointDataBuilder, Transform, Vector, Vlr};
 use rayon::prelude::*;
 
 use crate::cloud::GpsTimeKind;
+use crate::crs::text;
+use crate::io::atomic;
 use crate::io::columns::{Column, Values};
 use crate::io::write_cloud::WriteReport;
-use crate::io::{atomic, crs_text};
 use crate::{Error, PointCloud, Result};
 
 /// Points encoded at a time: many LAZ chunks of 50 000, so that all threads compress, yet little memory.
@@ -186,12 +187,12 @@ fn crs_records(cloud: &PointCloud) -> Vec<Vlr> {
         description: description.to_owned(),
         data,
     };
-    if let Some(wkt) = crs_text::wkt_line(&cloud.crs) {
+    if let Some(wkt) = text::wkt_line(&cloud.crs) {
         let mut data = wkt.into_bytes();
         data.push(0);
         return vec![record(2112, "OGC coordinate system WKT", data)];
     }
-    let Some(keys) = crs_text::geo_keys(&cloud.crs, crs_text::KeyUse::Points) else { return Vec::new() };
+    let Some(keys) = text::geo_keys(&cloud.crs, text::KeyUse::Points) else { return Vec::new() };
     vec![record(34735, "GeoTIFF keys", keys.directory.iter().flat_map(|v| v.to_le_bytes()).collect())]
 }
 

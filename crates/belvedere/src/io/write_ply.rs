@@ -5,9 +5,9 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
+use crate::crs::text::comment_lines;
 use crate::io::atomic;
 use crate::io::columns::{Column, Values, attribute_columns};
-use crate::io::crs_text::comment_lines;
 use crate::io::write_cloud::WriteReport;
 use crate::{Error, PointCloud, Result};
 

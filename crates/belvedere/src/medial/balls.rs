@@ -50,39 +50,9 @@ impl MedialBalls {
         }
     }
 
-    /// Lowest and highest local corner of the box that holds all balls that shrank, metres, or `None` where none did.
-    #[must_use]
-    pub fn bounds(&self) -> Option<([f32; 3], [f32; 3])> {
-        let corners = |i: usize| {
-            let (center, radius) = (self.centers[i], self.radii[i]);
-            (center.map(|v| v - radius), center.map(|v| v + radius))
-        };
-        (0..self.len()).filter(|&i| self.touch[i] != NO_TOUCH).map(corners).reduce(|(low, high), (below, above)| {
-            (std::array::from_fn(|i| low[i].min(below[i])), std::array::from_fn(|i| high[i].max(above[i])))
-        })
-    }
-
     /// Whether there is no ball.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.radii.is_empty()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_box_of_balls_touches_them_and_leaves_out_those_that_never_shrank() {
-        let balls = MedialBalls {
-            centers: vec![[0.0, 0.0, 0.0], [10.0, 1.0, -2.0], [500.0, 0.0, 0.0]],
-            radii: vec![1.0, 3.0, 200.0],
-            source: vec![0, 1, 2],
-            touch: vec![1, 0, NO_TOUCH],
-            separation_angles: vec![1.0, 1.0, f32::NAN],
-        };
-        assert_eq!(balls.bounds(), Some(([-1.0, -2.0, -5.0], [13.0, 4.0, 1.0])));
-        assert_eq!(MedialBalls::default().bounds(), None);
     }
 }

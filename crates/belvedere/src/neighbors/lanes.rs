@@ -77,6 +77,7 @@ pub(super) trait Lanes {
 /// One lane after the other.
 pub(super) struct Scalar;
 
+#[expect(clippy::needless_range_loop, reason = "reads like the eight lanes of avx2.rs that it must agree with")]
 impl Lanes for Scalar {
     #[inline(always)]
     fn boxes(node: &Node, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32 {

@@ -77,23 +77,18 @@ pub fn estimate(positions: &[[f32; 3]], index: &NeighborIndex, neighborhood: Nei
         }
     };
     let order = index.tree_order();
-    let in_tree_order: Vec<([f32; 3], f32)> = order
-        .par_chunks(CHUNK)
-        .flat_map_iter(|chunk| {
-            let mut found = Vec::with_capacity(k + 2);
-            chunk
-                .iter()
-                .map(|&i| {
-                    // the point itself is its own nearest neighbour, or a duplicate of it stands in
-                    index.k_nearest(positions[i as usize], k + 1, &mut found);
-                    match neighborhood {
-                        Neighborhood::Fixed { .. } => normal_of(positions, &found),
-                        Neighborhood::Adaptive { flatness } => adaptive_normal_of(positions, &found, flatness),
-                    }
-                })
-                .collect::<Vec<_>>()
-        })
-        .collect();
+    let mut in_tree_order = vec![([0.0; 3], 0.0); positions.len()];
+    in_tree_order.par_chunks_mut(CHUNK).zip(order.par_chunks(CHUNK)).for_each(|(normals, points)| {
+        let mut found = Vec::with_capacity(k + 2);
+        for (normal, &i) in normals.iter_mut().zip(points) {
+            // the point itself is its own nearest neighbour, or a duplicate of it stands in
+            index.k_nearest(positions[i as usize], k + 1, &mut found);
+            *normal = match neighborhood {
+                Neighborhood::Fixed { .. } => normal_of(positions, &found),
+                Neighborhood::Adaptive { flatness } => adaptive_normal_of(positions, &found, flatness),
+            };
+        }
+    });
     let mut normals = Normals { vectors: vec![[0.0; 3]; positions.len()], quality: vec![0.0; positions.len()] };
     for (&i, (vector, quality)) in order.iter().zip(in_tree_order) {
         normals.vectors[i as usize] = vector;
@@ -223,6 +218,7 @@ fn least_component(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
     ([least, middle, largest], longest.map(|v| v / length))
 }
 
+#[expect(clippy::needless_range_loop, reason = "two rows change at once")]
 /// As [`least_component`], by cyclic Jacobi rotations: slower, and exact for any spectrum.
 fn jacobi(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
     let [xx, yy, zz, xy, yz, zx] = m;

@@ -7,6 +7,7 @@ use super::oriented::{OrientedCloud, unit_or_zero};
 use super::reference_mesh::{MeshVerdict, ReferenceMesh};
 use super::surroundings::Surroundings;
 use crate::trajectory::{ClockOffset, Trajectory};
+use crate::vector::dot;
 use crate::{Error, Mesh, PointCloud, Result};
 
 /// Below this |n_z| a surface counts as steep, and up says nothing: a wall with normals that are 17° wrong.
@@ -90,7 +91,14 @@ enum Way {
 #[derive(Clone, Copy)]
 struct Verdict {
     way: Way,
-    outward: f64,
+    outward: f32,
+}
+
+impl Verdict {
+    #[expect(clippy::cast_possible_truncation, reason = "a confidence with a sign: there is one for every point")]
+    fn new(way: Way, outward: f64) -> Self {
+        Self { way, outward: outward as f32 }
+    }
 }
 
 /// The cloud with outward normals, and how they were found.
@@ -104,8 +112,8 @@ struct Verdict {
 /// A mesh need not be consistently oriented or closed: each of its faces is first turned to its open side where one side
 /// is open and the other enclosed (parity of crossings straight up, which needs no orientation); faces for which that
 /// fails keep their turning sense, but are overruled by parity at the point. A face counts as the point's own surface
-/// within 2 m, if their normals are within 60° of each other and the point lies no more than 0.25 m beside it. The result is the same for any number of
-/// threads.
+/// within 2 m, if their normals are within 60° of each other and the point lies no more than 0.25 m beside it. The result
+/// is the same for any number of threads.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where lengths differ, [`Error::MissingAttribute`] where the cloud lacks scanner positions,
@@ -129,7 +137,7 @@ pub fn orient(cloud: &PointCloud, normals: Normals, by: &Orientation<'_>) -> Res
     vectors.par_iter_mut().for_each(|normal| *normal = unit_or_zero(*normal));
     let mut clock = None;
     let verdicts = match by {
-        Orientation::Given => each(cloud, &vectors, |_, _, _| Some(Verdict { way: Way::File, outward: 1.0 })),
+        Orientation::Given => each(cloud, &vectors, |_, _, _| Some(Verdict::new(Way::File, 1.0))),
         Orientation::Up => each(cloud, &vectors, |_, _, _| None),
         Orientation::Scanner => by_own_scanner(cloud, &vectors)?,
         Orientation::ScannerAt(scanners) => by_nearest_scanner(cloud, &vectors, scanners)?,
@@ -160,8 +168,7 @@ pub fn orient(cloud: &PointCloud, normals: Normals, by: &Orientation<'_>) -> Res
             report.flipped_count += 1;
         }
     }
-    #[expect(clippy::cast_possible_truncation, reason = "confidences lie between 0 and 1")]
-    let confidence: Vec<f32> = verdicts.iter().map(|verdict| verdict.outward.abs().min(1.0) as f32).collect();
+    let confidence: Vec<f32> = verdicts.iter().map(|verdict| verdict.outward.abs().min(1.0)).collect();
     report.low_confidence_count = verdicts
         .iter()
         .zip(&confidence)
@@ -179,7 +186,7 @@ fn each(
 ) -> Vec<Option<Verdict>> {
     let decide_one = |(index, (p, n)): (usize, (&[f32; 3], &[f32; 3]))| {
         if *n == [0.0; 3] {
-            return Some(Verdict { way: Way::Nothing, outward: 0.0 });
+            return Some(Verdict::new(Way::Nothing, 0.0));
         }
         decide(index, p.map(f64::from), n.map(f64::from))
     };
@@ -203,9 +210,9 @@ fn fall_back(
             match downhill {
                 Some([x, y]) => {
                     let along = f64::from(n[0]) * x + f64::from(n[1]) * y;
-                    Verdict { way: Way::Vote, outward: VOTE_WEIGHT * along * weight }
+                    Verdict::new(Way::Vote, VOTE_WEIGHT * along * weight)
                 }
-                None => Verdict { way: Way::Up, outward: f64::from(n[2]) * weight },
+                None => Verdict::new(Way::Up, f64::from(n[2]) * weight),
             }
         })
     };
@@ -228,7 +235,7 @@ fn given_normals(cloud: &PointCloud, estimated: Normals) -> Result<Normals> {
 fn towards(scanner: [f64; 3], position: [f64; 3], normal: [f64; 3]) -> Option<Verdict> {
     let sight: [f64; 3] = std::array::from_fn(|i| scanner[i] - position[i]);
     let length = dot(sight, sight).sqrt();
-    (length > 1e-6).then(|| Verdict { way: Way::Scanner, outward: dot(normal, sight) / length })
+    (length > 1e-6).then(|| Verdict::new(Way::Scanner, dot(normal, sight) / length))
 }
 
 fn nearest(scanners: &[[f64; 3]], position: [f64; 3]) -> Option<[f64; 3]> {
@@ -305,12 +312,8 @@ fn by_mesh(cloud: &PointCloud, vectors: &[[f32; 3]], mesh: &Mesh) -> Result<Vec<
         expected: "at least one triangle with an area",
     })?;
     Ok(each(cloud, vectors, |_, position, normal| match reference.verdict(position, normal) {
-        MeshVerdict::Face(outward) => Some(Verdict { way: Way::Face, outward }),
-        MeshVerdict::Parity(outward) => Some(Verdict { way: Way::Parity, outward }),
+        MeshVerdict::Face(outward) => Some(Verdict::new(Way::Face, outward)),
+        MeshVerdict::Parity(outward) => Some(Verdict::new(Way::Parity, outward)),
         MeshVerdict::Silent => None,
     }))
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
 use crate::Mesh;
+use crate::vector::{cross, dot, sub};
 
 /// Farthest a face may be for its normal to say something about a point: generalised models leave out dormers and
 /// terraces of that size.
@@ -54,7 +55,7 @@ impl RTreeObject for Face {
 
 impl PointDistance for Face {
     fn distance_2(&self, point: &[f64; 3]) -> f64 {
-        let d = subtract(nearest_on_triangle(*point, self.corners), *point);
+        let d = sub(nearest_on_triangle(*point, self.corners), *point);
         dot(d, d)
     }
 }
@@ -74,8 +75,8 @@ impl ReferenceMesh {
     pub(super) fn new(mesh: &Mesh, origin: [f64; 3]) -> Option<Self> {
         let faces: Vec<Face> = (0..mesh.triangles.len())
             .filter_map(|index| {
-                let corners = mesh.corners(index)?.map(|corner| subtract(corner, origin));
-                let normal = cross(subtract(corners[1], corners[0]), subtract(corners[2], corners[0]));
+                let corners = mesh.corners(index)?.map(|corner| sub(corner, origin));
+                let normal = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
                 let size = dot(normal, normal).sqrt();
                 (size > 0.0 && size.is_finite()).then(|| Face {
                     corners,
@@ -144,7 +145,7 @@ impl ReferenceMesh {
         let mut best: Option<(f64, bool)> = None;
         let mut against = 0.0_f64;
         for face in self.faces.locate_within_distance(position, reach * reach) {
-            let offset = subtract(position, nearest_on_triangle(position, face.corners));
+            let offset = sub(position, nearest_on_triangle(position, face.corners));
             let height = dot(offset, face.normal);
             if dot(offset, offset) - height * height > MAX_LATERAL_M * MAX_LATERAL_M {
                 continue;
@@ -229,12 +230,12 @@ fn height_at(face: &Face, x: f64, y: f64) -> f64 {
 /// # Source
 /// Ericson 2005, Real-Time Collision Detection, section 5.1.5 (Voronoi regions of the triangle).
 fn nearest_on_triangle(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
-    let (ab, ac, ap) = (subtract(b, a), subtract(c, a), subtract(p, a));
+    let (ab, ac, ap) = (sub(b, a), sub(c, a), sub(p, a));
     let (d1, d2) = (dot(ab, ap), dot(ac, ap));
     if d1 <= 0.0 && d2 <= 0.0 {
         return a;
     }
-    let bp = subtract(p, b);
+    let bp = sub(p, b);
     let (d3, d4) = (dot(ab, bp), dot(ac, bp));
     if d3 >= 0.0 && d4 <= d3 {
         return b;
@@ -244,7 +245,7 @@ fn nearest_on_triangle(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
         return along(a, ab, d1 / (d1 - d3));
     }
-    let cp = subtract(p, c);
+    let cp = sub(p, c);
     let (d5, d6) = (dot(ab, cp), dot(ac, cp));
     if d6 >= 0.0 && d5 <= d6 {
         return c;
@@ -255,20 +256,8 @@ fn nearest_on_triangle(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     }
     let va = d3 * d6 - d5 * d4;
     if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        return along(b, subtract(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
+        return along(b, sub(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
     }
     let sum = va + vb + vc;
     std::array::from_fn(|i| a[i] + (ab[i] * vb + ac[i] * vc) / sum)
-}
-
-fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| a[i] - b[i])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

@@ -1,12 +1,10 @@
 //! Where the shared test data lie.
-#![allow(dead_code, reason = "each test binary uses the part it needs")]
 
 use std::path::PathBuf;
 
 /// The file or folder at `relative` under `BELVEDERE_TEST_DATA` (default: `shared` beside the repository), or `None`
 /// after saying that `test` is skipped.
-#[allow(unreachable_pub, reason = "shared by test binaries")]
-pub fn data(test: &str, relative: &str) -> Option<PathBuf> {
+pub(crate) fn data(test: &str, relative: &str) -> Option<PathBuf> {
     let root = std::env::var_os("BELVEDERE_TEST_DATA")
         .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared")), PathBuf::from);
     let path = root.join(relative);

@@ -10,7 +10,6 @@ pub(crate) use npz::{npz_has_balls, read_npz, write_npz};
 pub(crate) use ply::{ply_has_balls, read_ply, write_ply};
 
 use crate::PointCloud;
-use crate::cloud::{centre_rounded, to_local};
 use crate::io::balls::SavedBalls;
 use crate::io::columns::{Column, Values};
 
@@ -49,17 +48,18 @@ struct FileBall {
     touch: u32,
 }
 
-/// Fills the columns of `balls` from rows in file coordinates; `origin` is chosen where it is `None`.
-#[expect(clippy::cast_possible_truncation, reason = "radii are f32 in memory")]
-fn fill(mut balls: SavedBalls, origin: Option<[f64; 3]>, rows: &[FileBall]) -> SavedBalls {
-    let units = balls.crs.metres_per_unit_xyz();
-    let metres = |row: &FileBall| -> [f64; 3] { std::array::from_fn(|i| row.center[i] * units[i]) };
-    let origin = origin.unwrap_or_else(|| centre_rounded(rows.iter().map(metres)));
-    balls.origin = origin;
-    balls.centers = rows.iter().map(|row| to_local(metres(row), origin)).collect();
-    balls.radii = rows.iter().map(|row| (row.radius * units[0]) as f32).collect();
-    balls.separation_angles = rows.iter().map(|row| row.separation_angle).collect();
-    balls.source = rows.iter().map(|row| row.source).collect();
-    balls.touch = rows.iter().map(|row| row.touch).collect();
-    balls
+/// An index that was stored as a signed number: what is negative in 32 bits stands above 2³¹.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "checked against the range; NaN gives none"
+)]
+fn index(value: f64) -> u32 {
+    if value >= f64::from(i32::MIN) && value < 0.0 {
+        (value as i32).cast_unsigned()
+    } else if value >= 0.0 && value <= f64::from(u32::MAX) {
+        value as u32
+    } else {
+        u32::MAX
+    }
 }

@@ -63,15 +63,15 @@ pub(crate) fn read_npz(path: &Path) -> Result<SavedBalls> {
         Ok((text, _)) => String::from_utf8_lossy(&text).into_owned(),
         Err(_) => String::new(),
     };
-    let (mut balls, _) = metadata::from_json(&text);
+    let metadata = metadata::from_json(&text);
     let (centers, shape) = values::<f32, _>(&mut archive, "centers", u64::MAX).map_err(malformed)?;
     if shape.len() != 2 || shape[1] != 3 {
         return Err(Error::malformed(path, format!("centers have shape {shape:?}, but must be (B, 3)")));
     }
-    balls.centers = centers.as_chunks::<3>().0.to_vec();
     let (origin, _) = values::<f64, _>(&mut archive, "origin", 3).map_err(malformed)?;
-    balls.origin = <[f64; 3]>::try_from(origin.as_slice())
+    let origin = <[f64; 3]>::try_from(origin.as_slice())
         .map_err(|_| Error::malformed(path, format!("origin has {} numbers, but must have 3", origin.len())))?;
+    let mut balls = metadata.balls(origin, centers.as_chunks::<3>().0.to_vec());
     balls.radii = values(&mut archive, "radii", u64::MAX).map_err(malformed)?.0;
     balls.source = values(&mut archive, "source", u64::MAX).map_err(malformed)?.0;
     balls.touch = values(&mut archive, "touch", u64::MAX).map_err(malformed)?.0;

@@ -1,15 +1,15 @@
 //! Balls as PLY point clouds.
 
-use std::fs::File;
-use std::io::BufReader;
 use std::path::Path;
 
-use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{Header, Property, PropertyAccess, PropertyAccessResult};
+use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
-use super::{FileBall, as_cloud, fill, metadata};
+use super::{FileBall, as_cloud, index, metadata};
+use crate::crs::text::{crs_from_comments, joined, pieces};
 use crate::io::balls::SavedBalls;
-use crate::io::{crs_text, write_ply};
+use crate::io::part::narrow;
+use crate::io::ply::{PlyFile, scalar};
+use crate::io::write_ply;
 use crate::{Error, Result};
 
 /// Begins the comments that hold the metadata.
@@ -18,8 +18,8 @@ const NEEDED: [&str; 5] = ["x", "y", "z", "radius", "touch"];
 
 pub(crate) fn write_ply(path: &Path, balls: &SavedBalls) -> Result<()> {
     let (cloud, columns) = as_cloud(balls);
-    let json = metadata::to_json(balls, "file units, radians; origin in metres");
-    let comments = crs_text::pieces(METADATA_KEY, &in_ascii(&json));
+    let json = metadata::to_json(balls, metadata::FILE_UNITS);
+    let comments = pieces(METADATA_KEY, &in_ascii(&json));
     write_ply::write(path, &cloud, &columns, &comments).map(|_| ())
 }
 
@@ -39,41 +39,27 @@ fn in_ascii(json: &str) -> String {
 }
 
 pub(crate) fn read_ply(path: &Path) -> Result<SavedBalls> {
-    let malformed = |what: String| Error::malformed(path, what);
-    let mut reader = Reader::new(BufReader::new(File::open(path).map_err(Error::io(path))?));
-    let parser = Parser::<FileBall>::new();
-    let header = parser.read_header(&mut reader).map_err(|e| malformed(format!("not a PLY file: {e}")))?;
-    if !has_columns(&header) {
-        return Err(malformed(format!("holds no balls; the vertices need the properties {}", NEEDED.join(", "))));
+    let mut file = PlyFile::open(path)?;
+    if !has_columns(&file) {
+        let what = format!("holds no balls; the vertices need the properties {}", NEEDED.join(", "));
+        return Err(Error::malformed(path, what));
     }
-    let mut json = String::new();
-    for comment in &header.comments {
-        if let Some((METADATA_KEY, piece)) = comment.trim().split_once(' ') {
-            json.push_str(piece.trim());
-        }
-    }
-    let (mut balls, origin) = metadata::from_json(&json);
+    let json = joined(METADATA_KEY, file.comments());
+    let mut metadata = metadata::from_json(&json);
     if json.is_empty() {
-        balls.crs = crs_text::crs_from_comments(header.comments.iter().map(String::as_str));
+        metadata.crs = crs_from_comments(file.comments()).unwrap_or_default();
     }
-    for (name, element) in &header.elements {
-        let rows = parser
-            .read_payload_for_element(&mut reader, element, &header)
-            .map_err(|e| malformed(format!("damaged: {e}")))?;
-        if name == "vertex" {
-            return Ok(fill(balls, origin, &rows));
-        }
-    }
-    Err(malformed("has no vertices".to_owned()))
+    let mut rows = Vec::new();
+    file.for_each_vertex(|ball: FileBall| rows.push(ball))?;
+    Ok(metadata.fill(&rows))
 }
 
 pub(crate) fn ply_has_balls(path: &Path) -> bool {
-    let Ok(file) = File::open(path) else { return false };
-    Parser::<FileBall>::new().read_header(&mut Reader::new(BufReader::new(file))).is_ok_and(|h| has_columns(&h))
+    PlyFile::open(path).is_ok_and(|file| has_columns(&file))
 }
 
-fn has_columns(header: &Header) -> bool {
-    header.elements.get("vertex").is_some_and(|vertex| {
+fn has_columns(file: &PlyFile<'_>) -> bool {
+    file.vertex().is_some_and(|vertex| {
         // CloudCompare puts "scalar_" before the names of what it saves
         NEEDED.iter().all(|name| {
             vertex.properties.contains_key(*name) || vertex.properties.contains_key(&format!("scalar_{name}"))
@@ -86,45 +72,18 @@ impl PropertyAccess for FileBall {
         Self { separation_angle: f32::NAN, source: u32::MAX, touch: u32::MAX, ..Self::default() }
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "radius and angle are f32 in memory")]
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let value = match property {
-            Property::Char(v) => f64::from(v),
-            Property::UChar(v) => f64::from(v),
-            Property::Short(v) => f64::from(v),
-            Property::UShort(v) => f64::from(v),
-            Property::Int(v) => f64::from(v),
-            Property::UInt(v) => f64::from(v),
-            Property::Float(v) => f64::from(v),
-            Property::Double(v) => v,
-            _ => return PropertyAccessResult::Ignored,
-        };
+        let Some(value) = scalar(&property) else { return PropertyAccessResult::Ignored };
         match name.strip_prefix("scalar_").unwrap_or(name) {
             "x" => self.center[0] = value,
             "y" => self.center[1] = value,
             "z" => self.center[2] = value,
             "radius" => self.radius = value,
-            "separation_angle" => self.separation_angle = value as f32,
+            "separation_angle" => self.separation_angle = narrow(value),
             "source" => self.source = index(value),
             "touch" => self.touch = index(value),
             _ => return PropertyAccessResult::Ignored,
         }
         PropertyAccessResult::Set
-    }
-}
-
-/// An index that was stored as a signed number: what is negative in 32 bits stands above 2³¹.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "checked against the range; NaN gives none"
-)]
-fn index(value: f64) -> u32 {
-    if value >= f64::from(i32::MIN) && value < 0.0 {
-        (value as i32).cast_unsigned()
-    } else if value >= 0.0 && value <= f64::from(u32::MAX) {
-        value as u32
-    } else {
-        u32::MAX
     }
 }
