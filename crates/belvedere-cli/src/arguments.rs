@@ -1,5 +1,6 @@
 //! What can be typed: flags as entered. What they build is made in `pipeline` and in each command.
 
+use belvedere::crs::Crs;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -35,19 +36,19 @@ pub(crate) struct Cli {
 #[command(next_help_heading = "Everywhere")]
 pub(crate) struct Global {
     /// Threads to work with; results are the same for any number [default: all processors]
-    #[arg(long, global = true, value_name = "N")]
+    #[arg(long, global = true, value_name = "N", value_parser = at_least_one)]
     pub(crate) threads: Option<usize>,
     /// Seed of everything random
     #[arg(long, global = true, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Print the summary as one JSON object
+    /// Print the summary as one JSON object: the same figures, under names without blanks
     #[arg(long, global = true)]
     pub(crate) json: bool,
-    /// Say how long each stage takes
+    /// Say how long each stage takes, on standard error
     #[arg(short, long, global = true)]
     pub(crate) verbose: bool,
     /// Print nothing but errors
-    #[arg(long, global = true, conflicts_with = "verbose")]
+    #[arg(long, global = true, conflicts_with_all = ["verbose", "json"])]
     pub(crate) quiet: bool,
 }
 
@@ -59,12 +60,12 @@ pub(crate) enum Command {
     /// Tell what is in a point cloud, what is missing, and what can be done with it
     #[command(after_help = "Example:\n  belvedere demo -o demo\n  belvedere info demo/town.laz")]
     Info(Info),
-    /// Estimate and orient normals
+    /// Estimate normals and turn them outward
     #[command(
         after_help = "Examples:\n  belvedere normals demo/town.laz --orient trajectory=demo/trajectory.csv -o demo/normals.laz\n  belvedere normals FOLDER --neighbors 10 -o FOLDER      coords.npy to normals.npy, as masbcpp's compute_normals"
     )]
     Normals(Normals),
-    /// Shrink medial balls
+    /// Shrink medial balls: the solid parts of a scene as a union of balls, for use in other commands
     #[command(
         after_help = "Examples:\n  belvedere balls demo/town.laz --orient trajectory=demo/trajectory.csv -o demo/balls.npz\n  belvedere balls FOLDER -o FOLDER                 coords.npy and normals.npy to ma_*.npy, as masbcpp's compute_ma\n  belvedere balls FOLDER --simplify 0.4 -o FOLDER  also lfs.npy and decimate_lfs.npy, as masbcpp's simplify"
     )]
@@ -72,12 +73,12 @@ pub(crate) enum Command {
     /// Draw how far one sees along each pixel of a view
     #[command(
         name = "depth-map",
-        after_help = "Examples:\n  belvedere depth-map demo/town.laz --sun 235,30 -o demo/seen-from-the-sun.png\n  belvedere depth-map demo/balls.npz --viewport \"154940,463060,60 120,0,0 0,-120,0 4\" -o demo/from-above.tif"
+        after_help = "A ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere depth-map demo/town.laz --sun 235,30 -o demo/seen-from-the-sun.png\n  belvedere depth-map demo/balls.npz --viewport \"154940,463060,60 120,0,0 0,-120,0 4\" -o demo/from-above.tif"
     )]
     DepthMap(DepthMap),
     /// Answer which targets are visible in a view
     #[command(
-        after_help = "Answers: 0 blocked, 1 visible, 3 outside the view (2 is kept for answers not borne out by measured free space).\n\nExamples:\n  belvedere query demo/town.laz --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/balls.npz --sun 235,30 --random 1000000 -o demo/answers.npy"
+        after_help = "Answers: 0 blocked, 1 visible, 3 outside the view: beside the picture, or behind the plane of a --viewport (2 is kept for answers not borne out by measured free space).\n\nA ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere query demo/town.laz --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/balls.npz --sun 235,30 --random 10000 -o demo/answers.csv\n  belvedere query demo/balls.npz --direction 0,0,-1 --targets demo/answers.csv -o demo/open-to-the-sky.csv"
     )]
     Query(Query),
     /// Print a completion script for a shell
@@ -142,10 +143,11 @@ pub(crate) struct Balls {
     pub(crate) nan: bool,
     /// In a folder: also write the local feature size (lfs.npy) and which points a thinning to this share of it keeps
     /// (decimate_lfs.npy)
-    #[arg(long, value_name = "EPSILON")]
+    #[arg(long, value_name = "EPSILON", value_parser = above_zero::<f32>, allow_negative_numbers = true)]
     pub(crate) simplify: Option<f32>,
     /// Side of the cells that thinning counts points in, in metres
-    #[arg(long, value_name = "M", default_value_t = 0.5, requires = "simplify")]
+    #[arg(long, value_name = "M", default_value_t = 0.5, requires = "simplify", value_parser = above_zero::<f32>,
+        allow_negative_numbers = true)]
     pub(crate) cell_size: f32,
 }
 
@@ -155,10 +157,12 @@ pub(crate) struct DepthMap {
     pub(crate) scene: SceneInput,
     #[command(flatten)]
     pub(crate) view: ViewChoice,
-    /// Depth in metres as .tif or .npy, or a picture as .png
+    /// Depth in metres from the picture plane as .tif or .npy (rows from the top; nothing hit: nodata -9999 in .tif, infinity
+    /// in .npy), or a picture with a legend as .png. A .tif of a view straight down lies on the map
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
-    /// Also write which ball each pixel shows (.tif or .npy; 4294967295 where none)
+    /// Also write which ball each pixel shows (.tif or .npy): its row in the ball file, counted from 0, or in the one that
+    /// `belvedere balls` writes from the same cloud with the same flags; 4294967295 where none
     #[arg(long, value_name = "OUT")]
     pub(crate) balls_id: Option<PathBuf>,
 }
@@ -173,9 +177,10 @@ pub(crate) struct Query {
     pub(crate) targets: Targets,
     /// Metres a target may lie behind the depth of its pixel and still count as visible [default: 0.05 and half the
     /// pixel's diagonal; 0 with --profile paper-cone]
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) bias: Option<f32>,
-    /// Targets with their answer (.csv .laz .las .ply), or the answers alone (.npy, u8)
+    /// Targets with a column `answer` (.csv .xyz .txt .laz .las .ply), or the answers alone (.npy, u8); one row per target
+    /// in their order
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 }
@@ -187,7 +192,7 @@ pub(crate) struct CloudInput {
     #[arg(value_name = "CLOUD", required = true)]
     pub(crate) clouds: Vec<PathBuf>,
     /// Reference system in place of the file's, as EPSG:CODE or WKT
-    #[arg(long, value_name = "CRS")]
+    #[arg(long, value_name = "CRS", value_parser = known_crs)]
     pub(crate) crs: Option<String>,
 }
 
@@ -208,10 +213,11 @@ pub(crate) struct Cleaning {
 #[derive(Args)]
 #[command(next_help_heading = "Normals")]
 pub(crate) struct Orienting {
-    /// Neighbours that make a normal, or `adaptive` (the paper: 6)
-    #[arg(long, value_name = "K", default_value = "16")]
+    /// Neighbours that make a normal, 3 to 256, or `adaptive` (the paper: 6, masbcpp: 10)
+    #[arg(long, value_name = "K", default_value = "16", allow_negative_numbers = true)]
     pub(crate) neighbors: NeighborChoice,
-    /// How normals know what is outside: auto (the file's normals, else its scanner positions, else up), given, up,
+    /// How normals know what is outside: auto (the file's normals, else its scanner positions, else up; `normals` always
+    /// estimates anew), given, up,
     /// scanner (from the file), scanner=X,Y,Z, trajectory=FILE (.csv .txt .sbet), mesh=FILE (.obj .ply .json)
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub(crate) orient: OrientChoice,
@@ -225,19 +231,19 @@ pub(crate) struct Shrinking {
     #[arg(long, value_enum)]
     pub(crate) method: Option<MethodChoice>,
     /// Radius balls start with, in metres [default: 30 for tau, 200 for angles]
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(crate) initial_radius: Option<f32>,
     /// Most radius a ball is left with, in metres [default: 0.5 for tau, no limit for angles]
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(crate) max_radius: Option<f32>,
     /// Depth to which a point may enter a ball, in metres [default: 0.05]
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(crate) penetration: Option<f32>,
     /// The paper's t_a in degrees [default: 32]
-    #[arg(long, value_name = "DEG")]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub(crate) first_angle: Option<f64>,
     /// The paper's t_b in degrees [default: 20]
-    #[arg(long, value_name = "DEG")]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub(crate) next_angle: Option<f64>,
 }
 
@@ -261,14 +267,16 @@ pub(crate) struct SceneInput {
 #[command(next_help_heading = "View (one of)")]
 #[group(required = true, multiple = false, id = "view")]
 pub(crate) struct ViewKind {
-    /// The paper's p0, v_x, v_y and s: upper left corner, row and column vectors in file coordinates (their lengths are the
-    /// size), pixels per unit; one looks along v_x x v_y
+    /// The paper's p0, v_x, v_y and s in one quoted text: upper left corner, vector along the rows, vector down the columns,
+    /// all in file coordinates, and pixels per unit. The lengths of the vectors are the size of the picture; one looks along
+    /// v_x x v_y, and what lies behind the corner's plane is not seen
     #[arg(long, value_name = "\"X,Y,Z X,Y,Z X,Y,Z S\"", allow_hyphen_values = true)]
     pub(crate) viewport: Option<ViewportChoice>,
-    /// Parallel view from the sun: azimuth clockwise from grid north, elevation above the horizon, in degrees
+    /// Parallel view from the sun onto the whole scene: azimuth clockwise from grid north (90 is east), elevation above the
+    /// horizon, 0 to 90, in degrees
     #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true)]
     pub(crate) sun: Option<Numbers<2>>,
-    /// Parallel view along a direction
+    /// Parallel view onto the whole scene along a direction, of any length: 0,0,-1 looks straight down
     #[arg(long, value_name = "DX,DY,DZ", allow_hyphen_values = true)]
     pub(crate) direction: Option<Numbers<3>>,
 }
@@ -278,7 +286,8 @@ pub(crate) struct ViewChoice {
     #[command(flatten)]
     pub(crate) kind: ViewKind,
     /// Pixel size of --sun and --direction in metres [default: 0.25, finer for small objects]
-    #[arg(long, value_name = "M", conflicts_with = "viewport")]
+    #[arg(long, value_name = "M", conflicts_with = "viewport", value_parser = above_zero::<f64>,
+        allow_negative_numbers = true)]
     pub(crate) pixel: Option<f64>,
 }
 
@@ -286,11 +295,11 @@ pub(crate) struct ViewChoice {
 #[command(next_help_heading = "Targets (one of)")]
 #[group(required = true, multiple = false)]
 pub(crate) struct Targets {
-    /// Points from a file of any cloud format, in the coordinates of the scene's file
+    /// Points from a file of any cloud format, in the coordinates of the scene's file; a table needs columns x, y and z
     #[arg(long, value_name = "FILE")]
     pub(crate) targets: Option<PathBuf>,
-    /// Points spread evenly at random over the bounding box of the cloud
-    #[arg(long, value_name = "N")]
+    /// Points spread evenly at random over the bounding box of the cloud, up to 1000000000; other --seed, other points
+    #[arg(long, value_name = "N", value_parser = target_count)]
     pub(crate) random: Option<usize>,
     /// The points of the cloud themselves, all of them and in their order
     #[arg(long = "self")]
@@ -367,6 +376,38 @@ impl FromStr for OrientChoice {
             Some(_) => Err("use scanner=X,Y,Z, trajectory=FILE or mesh=FILE".to_owned()),
         }
     }
+}
+
+fn known_crs(text: &str) -> Result<String, String> {
+    Crs::parse(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
+}
+
+fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) | Err(_) => Err("must be a whole number of at least 1".to_owned()),
+        Ok(count) => Ok(count),
+    }
+}
+
+/// More targets than this fill the memory of most machines, so that a slipped digit is an error and not a crash.
+const MOST_TARGETS: usize = 1_000_000_000;
+
+fn target_count(text: &str) -> Result<usize, String> {
+    at_least_one(text)
+        .ok()
+        .filter(|&count| count <= MOST_TARGETS)
+        .ok_or_else(|| format!("must be a whole number from 1 to {MOST_TARGETS}"))
+}
+
+fn finite(text: &str) -> Result<f32, String> {
+    text.parse().ok().filter(|v: &f32| v.is_finite()).ok_or_else(|| "must be a finite number".to_owned())
+}
+
+fn above_zero<T: FromStr + Copy + Into<f64>>(text: &str) -> Result<T, String> {
+    text.parse()
+        .ok()
+        .filter(|&v: &T| v.into() > 0.0 && v.into().is_finite())
+        .ok_or_else(|| "must be a number above zero".to_owned())
 }
 
 /// Numbers separated by commas.

@@ -6,7 +6,7 @@ use crate::arguments::{
 };
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
-use anyhow::Result;
+use anyhow::{Result, bail};
 use belvedere::clean::{CleanParams, CleanReport, Treatment, clean};
 use belvedere::crs::Crs;
 use belvedere::depth::Profile;
@@ -19,15 +19,48 @@ use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere::{Error, PointCloud};
+use std::path::Path;
+
+/// Makes a parameter out of range an error about the flag that gave it, which is wrong usage.
+pub(crate) fn flagged<T>(flag: &str, result: belvedere::Result<T>) -> Result<T> {
+    result.map_err(|error| match error {
+        Error::InvalidParameter { .. } => Usage(format!("{flag}: {error}")).into(),
+        other => other.into(),
+    })
+}
 
 /// Reads the cloud and reports on it.
 pub(crate) fn read(input: &CloudInput, stages: &mut Stages, summary: &mut Summary) -> Result<PointCloud> {
+    Ok(read_counted(input, stages, summary)?.0)
+}
+
+/// Reads the cloud for results whose rows belong to the rows of the file, which a point left out would shift.
+pub(crate) fn read_every_row(input: &CloudInput, stages: &mut Stages, summary: &mut Summary) -> Result<PointCloud> {
+    let (cloud, report) = read_counted(input, stages, summary)?;
+    check_every_row(&report)?;
+    Ok(cloud)
+}
+
+/// Refuses a cloud of which points were left out.
+pub(crate) fn check_every_row(report: &ReadReport) -> Result<()> {
+    let Some((file, left_out)) = report.files.iter().find_map(|file| Some((file, file.left_out.first()?))) else {
+        return Ok(());
+    };
+    bail!(
+        "{}: {} rows cannot be used ({}), so that results would not match the rows of the file; repair or remove them",
+        file.path.display(),
+        report.left_out_count(),
+        left_out.reason
+    )
+}
+
+fn read_counted(input: &CloudInput, stages: &mut Stages, summary: &mut Summary) -> Result<(PointCloud, ReadReport)> {
     let options = ReadOptions { crs: input.crs.clone() };
     let (cloud, report) = stages.run("reading", 0, |_| read_cloud(&input.clouds, &options))?;
     summary.add("points", cloud.len());
     let section = reading_section(&report);
     summary.add("reading", section);
-    Ok(cloud)
+    Ok((cloud, report))
 }
 
 /// What reading found, without what goes without saying.
@@ -93,6 +126,8 @@ pub(crate) struct Prepared {
     pub(crate) index: NeighborIndex,
     /// Which points of the cloud as read these are.
     pub(crate) kept: Vec<u32>,
+    /// Lowest and highest local corner of these points: a stray point that was cleaned away must not widen a view.
+    pub(crate) bounds: ([f32; 3], [f32; 3]),
 }
 
 /// Cleans, estimates normals and orients them.
@@ -130,7 +165,8 @@ pub(crate) fn prepare(
                 NeighborChoice::Fixed(k) => Neighborhood::Fixed { k },
                 NeighborChoice::Adaptive => Neighborhood::adaptive(),
             };
-            stages.run("estimating normals", 0, |_| estimate(&cloud.positions, &index, neighborhood))?
+            let normals = stages.run("estimating normals", 0, |_| estimate(&cloud.positions, &index, neighborhood));
+            flagged("--neighbors", normals)?
         }
     };
     let (mesh, trajectory);
@@ -153,7 +189,8 @@ pub(crate) fn prepare(
     };
     let (oriented, report) = stages.run("orienting normals", 0, |_| orient(cloud, normals, &by))?;
     summary.add("normals", orientation_section(&by, &report));
-    Ok(Prepared { oriented, index, kept })
+    let bounds = bounds_of(cloud)?;
+    Ok(Prepared { oriented, index, kept, bounds })
 }
 
 fn orientation_section(by: &Orientation<'_>, report: &OrientReport) -> Summary {
@@ -218,6 +255,17 @@ impl Shrinking {
                 *next_separation_angle = typed(self.next_angle, *next_separation_angle);
             }
         }
+        params.check().map_err(|error| match error {
+            Error::InvalidParameter { name, .. } => {
+                let flag = match name {
+                    "separation angle" => "--first-angle, --next-angle".to_owned(),
+                    "greatest radius" => "--max-radius".to_owned(),
+                    _ => format!("--{}", name.replace(' ', "-")),
+                };
+                anyhow::Error::from(Usage(format!("{flag}: {error}")))
+            }
+            other => other.into(),
+        })?;
         Ok(params)
     }
 }
@@ -256,8 +304,10 @@ pub(crate) struct Scene {
     pub(crate) balls: MedialBalls,
     /// Local frame, unit and reference system: a cloud, without points where the balls came from a file.
     pub(crate) cloud: PointCloud,
-    /// Lowest and highest local corner of the points.
+    /// Lowest and highest local corner of the points that balls were made from.
     pub(crate) bounds: ([f32; 3], [f32; 3]),
+    /// Rows of the files that reading left out.
+    pub(crate) left_out: ReadReport,
 }
 
 /// Reads a ball file, or a cloud and makes its interior balls.
@@ -266,19 +316,51 @@ pub(crate) fn scene(arguments: &SceneInput, stages: &mut Stages, summary: &mut S
         && path.is_file()
         && is_ball_file(path)?
     {
+        refuse_flags_of_clouds(arguments, path)?;
         let saved = stages.run("reading balls", 0, |_| read_balls(path))?;
         summary.add("balls_read", saved.radii.len());
-        return scene_of_saved(saved);
+        return scene_of_saved(saved, path);
     }
-    let cloud = read(&arguments.input, stages, summary)?;
-    let bounds = bounds_of(&cloud)?;
     let params = arguments.shrinking.params(MethodChoice::Tau)?;
+    let (cloud, left_out) = read_counted(&arguments.input, stages, summary)?;
     let prepared = prepare(&cloud, &arguments.cleaning, &arguments.orienting, stages, summary)?;
-    let balls = shrink_side(&prepared, Side::Interior, &params, stages, summary)?;
-    Ok(Scene { balls, cloud, bounds })
+    // as in a ball file, so that rows of balls mean the same
+    let balls = shrink_side(&prepared, Side::Interior, &params, stages, summary)?.shrunk();
+    Ok(Scene { balls, cloud, bounds: prepared.bounds, left_out })
 }
 
-fn scene_of_saved(saved: SavedBalls) -> Result<Scene> {
+/// Flags that say how to make balls are of no use where they are made already.
+fn refuse_flags_of_clouds(arguments: &SceneInput, path: &Path) -> Result<()> {
+    let (cleaning, orienting, shrinking) = (&arguments.cleaning, &arguments.orienting, &arguments.shrinking);
+    let given = [
+        ("--crs", arguments.input.crs.is_some()),
+        ("--keep-noise", cleaning.keep_noise),
+        ("--keep-duplicates", cleaning.keep_duplicates),
+        ("--keep-isolated", cleaning.keep_isolated),
+        ("--orient", !matches!(orienting.orient, OrientChoice::Auto)),
+        ("--method", shrinking.method.is_some()),
+        ("--initial-radius", shrinking.initial_radius.is_some()),
+        ("--max-radius", shrinking.max_radius.is_some()),
+        ("--penetration", shrinking.penetration.is_some()),
+        ("--first-angle", shrinking.first_angle.is_some()),
+        ("--next-angle", shrinking.next_angle.is_some()),
+    ];
+    match given.into_iter().find(|(_, given)| *given) {
+        Some((flag, _)) => {
+            let path = path.display();
+            Err(Usage(format!("{flag} says how to make balls from a cloud, but {path} holds balls already")).into())
+        }
+        None => Ok(()),
+    }
+}
+
+fn scene_of_saved(saved: SavedBalls, path: &Path) -> Result<Scene> {
+    if saved.provenance.get("side").is_some_and(|side| side == "exterior") {
+        bail!(
+            "{}: these balls lie in free space (--side exterior) and block nothing; give the interior ones",
+            path.display()
+        );
+    }
     let bounds = saved.bounds;
     let cloud = PointCloud { origin: saved.origin, crs: saved.crs, ..PointCloud::default() };
     let balls = MedialBalls {
@@ -288,7 +370,7 @@ fn scene_of_saved(saved: SavedBalls) -> Result<Scene> {
         touch: saved.touch,
         separation_angles: saved.separation_angles,
     };
-    Ok(Scene { balls, cloud, bounds })
+    Ok(Scene { balls, cloud, bounds, left_out: ReadReport::default() })
 }
 
 /// Lowest and highest corner of a cloud that has points.
@@ -311,20 +393,25 @@ impl ViewChoice {
         let (low, high) = (scene.bounds.0.map(f64::from), scene.bounds.1.map(f64::from));
         let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));
         let view = if let Some(sun) = &self.kind.sun {
+            if !(0.0..=90.0).contains(&sun.0[1]) {
+                let elevation = sun.0[1];
+                return Err(Usage(format!("--sun: the elevation is {elevation}, but must be 0 to 90 degrees")).into());
+            }
             let [azimuth, elevation] = sun.0.map(f64::to_radians);
-            View::parallel(to_sun(azimuth, elevation).map(|v| -v), low, high, pixel)?
+            flagged("--sun, --pixel", View::parallel(to_sun(azimuth, elevation).map(|v| -v), low, high, pixel))?
         } else if let Some(direction) = &self.kind.direction {
-            View::parallel(direction.0, low, high, pixel)?
+            flagged("--direction, --pixel", View::parallel(direction.0, low, high, pixel))?
         } else if let Some(viewport) = &self.kind.viewport {
             let scale = scene.cloud.crs.metres_per_unit_xyz();
             let local = |v: [f64; 3]| std::array::from_fn(|i| v[i] * scale[i] - scene.cloud.origin[i]);
             let metres = |v: [f64; 3]| std::array::from_fn(|i| v[i] * scale[i]);
-            View::from_viewport(
+            let view = View::from_viewport(
                 local(viewport.p0),
                 metres(viewport.vx),
                 metres(viewport.vy),
                 viewport.pixels_per_unit / scale[0],
-            )?
+            );
+            flagged("--viewport", view)?
         } else {
             return Err(Usage("say what to look at: --viewport, --sun or --direction".to_owned()).into());
         };

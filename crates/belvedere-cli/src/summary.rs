@@ -1,7 +1,7 @@
 //! What a command found, for people and as JSON.
-#![allow(clippy::print_stderr, reason = "this file is where the program speaks")]
 
 use crate::arguments::Global;
+use belvedere::io::WriteReport;
 use serde_json::{Map, Value};
 use std::io::Write;
 use std::process::ExitCode;
@@ -28,8 +28,23 @@ impl Summary {
         self.add("seconds", section)
     }
 
+    /// Adds what a format had no room for.
+    pub(crate) fn add_writing(&mut self, report: &WriteReport) -> &mut Self {
+        if !report.left_out.is_empty() {
+            self.add("attributes_not_written", report.left_out.clone());
+        }
+        if report.clamped_count > 0 {
+            self.add("values_cut_to_the_range_of_their_field", report.clamped_count);
+        }
+        self
+    }
+
     /// Prints the summary, as JSON where asked for.
     pub(crate) fn print(&self, global: &Global) -> ExitCode {
+        // a command without a summary, such as one that prints a script
+        if self.0.is_empty() {
+            return ExitCode::SUCCESS;
+        }
         let mut text = String::new();
         if global.json {
             text = format!("{:#}\n", Value::Object(self.0.clone()));
@@ -39,7 +54,7 @@ impl Summary {
         // a reader that stopped listening is not a failure
         match std::io::stdout().lock().write_all(text.as_bytes()) {
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-                eprintln!("error: standard output: {error}");
+                note(&format!("error: standard output: {error}"));
                 ExitCode::FAILURE
             }
             _ => ExitCode::SUCCESS,
@@ -108,7 +123,8 @@ fn plain(value: &Value) -> String {
 
 /// Says something beside the result.
 pub(crate) fn note(text: &str) {
-    eprintln!("{text}");
+    // nobody is left to tell where standard error is closed
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
 /// Says what went wrong, with its causes.
@@ -122,5 +138,5 @@ pub(crate) fn print_error(error: &anyhow::Error) {
             text.push_str(&cause);
         }
     }
-    eprintln!("error: {text}");
+    note(&format!("error: {text}"));
 }

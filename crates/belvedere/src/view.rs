@@ -158,11 +158,63 @@ impl View {
         Self::from_viewport(eye, right.map(|v| v * span(0)), down.map(|v| v * span(1)), 1.0 / pixel_size)
     }
 
+    /// The same view with its picture plane moved back as far as needed for none of `positions`, local metres, to lie before
+    /// it. Pixels stay the same lines of sight.
+    #[must_use]
+    pub fn moved_before(mut self, positions: &[[f32; 3]]) -> Self {
+        let depth = |&p: &[f32; 3]| self.frame.view_from_local(p)[2];
+        let nearest = positions.iter().map(depth).fold(0.0, f64::min);
+        if nearest < 0.0 {
+            // a millimetre more, so that rounding leaves none before it
+            let back = nearest - 1e-3;
+            self.frame.eye = self.frame.local_from_view([0.0, 0.0, back]);
+        }
+        self
+    }
+
+    /// Where the picture of a parallel view straight down or up lies in the plane: easting and northing of its upper left
+    /// corner, of the step to the next column and of the step to the next row, local metres; `None` for an oblique view.
+    #[must_use]
+    pub fn ground_grid(&self) -> Option<[[f64; 2]; 3]> {
+        let plane = |v: [f64; 3]| [v[0], v[1]];
+        let step = |v: [f64; 3]| plane(v).map(|v| v / self.pixels_per_metre());
+        // a tilt that moves the far side of a kilometre by a millimetre is no tilt
+        let upright = self.frame.forward[2].abs() > 1.0 - 0.5e-12;
+        upright.then(|| [plane(self.frame.eye), step(self.frame.right), step(self.frame.down)])
+    }
+
     /// Pixels per metre of a parallel view.
     #[must_use]
     pub fn pixels_per_metre(&self) -> f64 {
         match self.projection {
             Projection::Orthographic { pixels_per_metre } => pixels_per_metre,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_view_moved_before_its_targets_has_none_behind_it_and_the_same_pixels() {
+        let view = View::parallel([0.3, -0.5, -0.8], [0.0; 3], [10.0, 10.0, 5.0], 0.25).unwrap();
+        let (target, lower) = ([4.0, 5.0, 40.0], [4.0, 5.0, 1.0]);
+        assert_eq!(view.moved_before(&[lower]), view);
+        let moved = view.moved_before(&[lower, target]);
+        assert!(view.frame.view_from_local(target)[2] < 0.0 && moved.frame.view_from_local(target)[2] >= 0.0);
+        let [before, after] = [view, moved].map(|v| v.frame.view_from_local(lower));
+        // a nanometre: rounding of f64
+        assert!((before[0] - after[0]).abs() < 1e-9 && (before[1] - after[1]).abs() < 1e-9);
+    }
+
+    #[test]
+    fn only_a_view_straight_down_lies_on_the_map() {
+        let low = [10.0, 20.0, 0.0];
+        let high = [14.0, 22.0, 5.0];
+        let down = View::parallel([0.0, 0.0, -2.0], low, high, 0.5).unwrap();
+        assert_eq!(down.ground_grid(), Some([[10.0, 22.0], [0.5, 0.0], [0.0, -0.5]]));
+        let oblique = View::parallel([0.0, 1e-5, -1.0], low, high, 0.5).unwrap();
+        assert_eq!(oblique.ground_grid(), None);
     }
 }

@@ -1,6 +1,6 @@
 //! `belvedere balls`.
 
-use super::extension;
+use super::{check_output, check_parent, is_folder, is_same};
 use crate::arguments::{Balls, Cleaning, Global, MethodChoice, SideChoice, Usage};
 use crate::pipeline::{self, Prepared};
 use crate::progress::Stages;
@@ -12,17 +12,26 @@ use belvedere::medial::feature_size::{FeatureSizeParams, SimplifyParams, local_f
 use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkParams, Side};
 
 pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
-    let is_folder = extension(&arguments.output).is_empty();
+    let is_folder = is_folder(&arguments.output);
     if !is_folder && (arguments.nan || arguments.simplify.is_some()) {
         return Err(
             Usage("--nan and --simplify write into a folder: give -o a name without extension".to_owned()).into()
         );
     }
+    if is_folder {
+        check_parent(&arguments.output)?;
+    } else {
+        check_output("-o", &arguments.output, &["npz", "ply", "laz", "las"])?;
+    }
     let method = if is_folder { MethodChoice::Angles } else { MethodChoice::Tau };
     let params = arguments.shrinking.params(method)?;
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
-    let cloud = pipeline::read(&arguments.input, &mut stages, &mut summary)?;
+    let cloud = if is_folder {
+        pipeline::read_every_row(&arguments.input, &mut stages, &mut summary)?
+    } else {
+        pipeline::read(&arguments.input, &mut stages, &mut summary)?
+    };
     let nothing = Cleaning::nothing();
     let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
     let prepared = pipeline::prepare(&cloud, cleaning, &arguments.orienting, &mut stages, &mut summary)?;
@@ -33,15 +42,18 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
             SideChoice::Interior => Side::Interior,
             SideChoice::Exterior => Side::Exterior,
         };
-        let balls = pipeline::shrink_side(&prepared, side, &params, &mut stages, &mut summary)?.shrunk();
+        let mut balls = pipeline::shrink_side(&prepared, side, &params, &mut stages, &mut summary)?.shrunk();
+        // rows of the cloud as read, not as cleaned
+        for row in balls.source.iter_mut().chain(&mut balls.touch) {
+            *row = prepared.kept[*row as usize];
+        }
         let provenance = [
             ("program", concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned()),
             ("side", format!("{side:?}").to_lowercase()),
             ("parameters", format!("{params:?}")),
             ("input", arguments.input.clouds.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(" ")),
         ];
-        let bounds = pipeline::bounds_of(&cloud)?;
-        let saved = pipeline::saved(balls, (&cloud.origin, &cloud.crs), bounds, provenance);
+        let saved = pipeline::saved(balls, (&cloud.origin, &cloud.crs), prepared.bounds, provenance);
         stages.run("writing", 0, |_| write_balls(&arguments.output, &saved))?;
     }
     summary.add("written", arguments.output.display().to_string());
@@ -73,8 +85,10 @@ fn write_folder(
     let (coords, inner, outer) =
         (pipeline::file_coordinates(cloud, &cloud.positions), centers(&interior), centers(&exterior));
     let (inner_touch, outer_touch) = (touch(&interior), touch(&exterior));
-    folder.coords = Some(&coords);
-    folder.normals = Some(prepared.oriented.normals());
+    let is_input = arguments.input.clouds.iter().any(|input| is_same(input, &arguments.output));
+    // what was read from this folder stays as it is: its coordinates may be finer than the layout's f32
+    folder.coords = (!is_input).then_some(&coords);
+    folder.normals = (!is_input || cloud.attributes.normals.is_none()).then_some(prepared.oriented.normals());
     folder.ma_coords_in = Some(&inner);
     folder.ma_coords_out = Some(&outer);
     folder.ma_qidx_in = Some(&inner_touch);
@@ -86,7 +100,10 @@ fn write_folder(
         })?;
         let params =
             SimplifyParams { spacing, cell_size: arguments.cell_size, seed: global.seed, ..SimplifyParams::default() };
-        keep = simplify(&cloud.positions, &sizes, &params)?.into_iter().map(u8::from).collect::<Vec<u8>>();
+        keep = pipeline::flagged("--simplify, --cell-size", simplify(&cloud.positions, &sizes, &params))?
+            .into_iter()
+            .map(u8::from)
+            .collect::<Vec<u8>>();
         let kept = keep.iter().filter(|&&k| k == 1).count();
         summary.add("kept_by_thinning_percent", percent(kept, keep.len()));
         folder.lfs = Some(&sizes);

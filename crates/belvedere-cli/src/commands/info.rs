@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     let reading = pipeline::reading_section(&report);
     summary.add("reading", reading);
     summary.add("attributes", attributes(&cloud, &facts));
-    summary.add("missing", missing(&cloud));
+    summary.add("missing", missing(&cloud, &facts));
     summary.add("can_serve", can_serve(&cloud, &facts));
     summary.add("duplicate_points", facts.duplicate_count);
     Ok(summary)
@@ -92,14 +92,17 @@ fn attributes(cloud: &PointCloud, facts: &CloudSummary) -> Summary {
 }
 
 /// Attributes that would make more possible.
-fn missing(cloud: &PointCloud) -> Vec<&'static str> {
+fn missing(cloud: &PointCloud, facts: &CloudSummary) -> Vec<&'static str> {
     let a = &cloud.attributes;
+    // LAS files always have these fields; 0 says that nobody filled them, class 1 that the point was not classified
+    let classes_say_nothing = facts.classes.keys().all(|&class| class <= 1);
+    let lines_say_nothing = facts.flight_lines.keys().all(|&line| line == 0);
     let wanted = [
-        (a.classification.is_none(), "classes (noise cannot be told from its class)"),
+        (a.classification.is_none() || classes_say_nothing, "classes (noise cannot be told from its class)"),
         (a.gps_time.is_none(), "GPS time (a trajectory cannot orient normals)"),
         (a.return_number.is_none(), "return numbers"),
         (a.scan_angle.is_none(), "scan angles"),
-        (a.point_source_id.is_none(), "flight lines"),
+        (a.point_source_id.is_none() || lines_say_nothing, "flight lines"),
         (cloud.crs.wkt.is_none() && cloud.crs.epsg.is_none(), "reference system (metres are assumed; see --crs)"),
     ];
     wanted.into_iter().filter_map(|(is_missing, name)| is_missing.then_some(name)).collect()

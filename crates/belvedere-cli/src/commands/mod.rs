@@ -9,16 +9,16 @@ mod query;
 
 use crate::arguments::{Cli, Command, Usage};
 use crate::summary::Summary;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
+use belvedere::io::{ExtraColumn, ExtraValues};
 use clap::CommandFactory;
+use std::io::Write;
+use std::path::Path;
 
 /// Runs the command that was typed.
 pub(crate) fn run(cli: &Cli) -> Result<Summary> {
     let global = &cli.global;
     if let Some(threads) = global.threads {
-        if threads == 0 {
-            return Err(Usage("--threads must be at least 1".to_owned()).into());
-        }
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().context("--threads")?;
     }
     match &cli.command {
@@ -42,11 +42,68 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
 }
 
 fn print_raw(text: &[u8]) -> Result<Summary> {
-    std::io::Write::write_all(&mut std::io::stdout().lock(), text)?;
+    let mut output = std::io::stdout().lock();
+    output.write_all(text).and_then(|()| output.flush()).context("standard output")?;
     Ok(Summary::default())
 }
 
 /// The extension of a path in lower case, empty where it has none.
-fn extension(path: &std::path::Path) -> String {
+fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
+}
+
+/// Normals as columns of their own, for formats that have no other place for them.
+struct NormalColumns([Vec<f32>; 3]);
+
+impl NormalColumns {
+    fn new(normals: &[[f32; 3]]) -> Self {
+        Self([0, 1, 2].map(|axis| normals.iter().map(|n| n[axis]).collect()))
+    }
+
+    /// The columns under the names that readers of the format at `path` look for.
+    fn columns(&self, path: &Path) -> [ExtraColumn<'_>; 3] {
+        let names = if is_las(path) { ["NormalX", "NormalY", "NormalZ"] } else { ["nx", "ny", "nz"] };
+        let descriptions = ["outward unit normal, east", "outward unit normal, north", "outward unit normal, up"];
+        std::array::from_fn(|axis| ExtraColumn {
+            name: names[axis],
+            description: descriptions[axis],
+            values: ExtraValues::F32(&self.0[axis]),
+        })
+    }
+}
+
+fn is_las(path: &Path) -> bool {
+    matches!(extension(path).as_str(), "las" | "laz")
+}
+
+/// Whether an output is meant as a folder: it is one, or its name has no extension.
+fn is_folder(path: &Path) -> bool {
+    path.is_dir() || extension(path).is_empty()
+}
+
+/// Refuses an output of an unknown format or in a folder that is not there, before hours of work go into it.
+fn check_output(flag: &str, path: &Path, known: &[&str]) -> Result<()> {
+    if !known.contains(&extension(path).as_str()) {
+        let known = known.join(" .");
+        return Err(Usage(format!("{flag} {}: the extension must be one of .{known}", path.display())).into());
+    }
+    check_parent(path)
+}
+
+/// Refuses an output in a folder that is not there.
+fn check_parent(path: &Path) -> Result<()> {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() && !parent.is_dir() => {
+            bail!("{}: the folder {} does not exist; create it first", path.display(), parent.display())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether two paths name the same file or folder, as far as that can be told.
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
 }

@@ -1,51 +1,65 @@
 //! `belvedere normals`.
 
-use super::extension;
-use crate::arguments::{Cleaning, Global, Normals};
+use super::{NormalColumns, check_output, check_parent, is_folder, is_same};
+use crate::arguments::{Cleaning, Global, Normals, OrientChoice};
 use crate::pipeline;
 use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::io::{ExtraColumn, ExtraValues, MasbcppFolder, write_cloud, write_masbcpp};
+use belvedere::io::{ExtraColumn, ExtraValues, MasbcppFolder, WriteReport, write_cloud, write_masbcpp};
 
 pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
+    let output = &arguments.output;
+    let is_folder = is_folder(output);
+    if is_folder {
+        check_parent(output)?;
+    } else {
+        check_output("-o", output, &["laz", "las", "ply", "csv", "xyz", "txt"])?;
+    }
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
-    let cloud = pipeline::read(&arguments.input, &mut stages, &mut summary)?;
-    let output = &arguments.output;
-    let is_folder = extension(output).is_empty();
+    let mut cloud = if is_folder {
+        pipeline::read_every_row(&arguments.input, &mut stages, &mut summary)?
+    } else {
+        pipeline::read(&arguments.input, &mut stages, &mut summary)?
+    };
+    if matches!(arguments.orienting.orient, OrientChoice::Auto) {
+        // normals are asked for, so those of an earlier run do not stand in the way
+        cloud.attributes.normals = None;
+    }
     let nothing = Cleaning::nothing();
     // the rows of a folder belong to the rows of its coords.npy
     let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
     let prepared = pipeline::prepare(&cloud, cleaning, &arguments.orienting, &mut stages, &mut summary)?;
     let oriented = &prepared.oriented;
-    stages.run("writing", 0, |_| -> Result<()> {
+    let report = stages.run("writing", 0, |_| -> Result<WriteReport> {
         if is_folder {
-            let coords = pipeline::file_coordinates(&cloud, &cloud.positions);
-            let folder =
-                MasbcppFolder { coords: Some(&coords), normals: Some(oriented.normals()), ..MasbcppFolder::default() };
-            return Ok(write_masbcpp(output, &folder)?);
+            // the points of the input are never replaced: its coordinates may be finer than the layout's f32
+            let coords = arguments.input.clouds.iter().all(|input| !is_same(input, output));
+            let coords = coords.then(|| pipeline::file_coordinates(&cloud, &cloud.positions));
+            let folder = MasbcppFolder {
+                coords: coords.as_deref(),
+                normals: Some(oriented.normals()),
+                ..MasbcppFolder::default()
+            };
+            write_masbcpp(output, &folder)?;
+            return Ok(WriteReport::default());
         }
         let mut kept = if prepared.kept.len() == cloud.len() { cloud.clone() } else { cloud.select(&prepared.kept) };
         kept.attributes.normals = None;
-        let component = |axis: usize| oriented.normals().iter().map(|n| n[axis]).collect::<Vec<f32>>();
-        let [x, y, z] = [0, 1, 2].map(component);
-        let names = if extension(output) == "las" || extension(output) == "laz" {
-            ["NormalX", "NormalY", "NormalZ"]
-        } else {
-            ["nx", "ny", "nz"]
-        };
+        let normals = NormalColumns::new(oriented.normals());
+        let [x, y, z] = normals.columns(output);
         let column = |name, description, values| ExtraColumn { name, description, values: ExtraValues::F32(values) };
         let columns = [
-            column(names[0], "outward unit normal, east", &x[..]),
-            column(names[1], "outward unit normal, north", &y[..]),
-            column(names[2], "outward unit normal, up", &z[..]),
+            x,
+            y,
+            z,
             column("quality", "how well the line is known", oriented.quality()),
             column("confidence", "how sure the sign is", oriented.confidence()),
         ];
-        write_cloud(output, &kept, &columns)?;
-        Ok(())
+        Ok(write_cloud(output, &kept, &columns)?)
     })?;
+    summary.add_writing(&report);
     summary.add("written", output.display().to_string());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)

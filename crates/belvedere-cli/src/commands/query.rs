@@ -1,33 +1,32 @@
 //! `belvedere query`.
 
-use super::extension;
+use super::{NormalColumns, check_output, extension, is_las};
 use crate::arguments::{Global, Query, Usage};
 use crate::pipeline;
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
-use anyhow::{Context, Result};
+use anyhow::{Result, bail};
 use belvedere::PointCloud;
-use belvedere::crs::Crs;
+use belvedere::crs::{Crs, CrsKind};
 use belvedere::depth::{ItemBuffer, depth_map};
-use belvedere::io::{ExtraColumn, ExtraValues, ReadOptions, read_cloud, write_cloud, write_npy_u8};
+use belvedere::io::{ExtraColumn, ExtraValues, ReadOptions, WriteReport, read_cloud, write_cloud, write_npy_u8};
 use belvedere::query::{AnswerCounts, query_points, random_targets};
 
 pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     let output = &arguments.output;
-    let known = ["csv", "txt", "xyz", "laz", "las", "ply", "npy"];
-    if !known.contains(&extension(output).as_str()) {
-        return Err(Usage(format!("{}: write to one of .{}", output.display(), known.join(" ."))).into());
-    }
-    if let Some(bias) = arguments.bias
-        && !bias.is_finite()
-    {
-        return Err(Usage(format!("--bias {bias} is not finite")).into());
-    }
+    check_output("-o", output, &["csv", "txt", "xyz", "laz", "las", "ply", "npy"])?;
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let scene = pipeline::scene(&arguments.scene, &mut stages, &mut summary)?;
-    let view = arguments.view.view(&scene, &mut summary)?;
-    let targets = targets(arguments, scene.cloud, scene.bounds, global.seed, &mut stages)?;
+    let mut view = arguments.view.view(&scene, &mut summary)?;
+    if arguments.targets.own && extension(output) == "npy" {
+        pipeline::check_every_row(&scene.left_out)?;
+    }
+    let mut targets = targets(arguments, scene.cloud, scene.bounds, global.seed, &mut stages, &mut summary)?;
+    if arguments.view.kind.viewport.is_none() {
+        // a view that fits the scene has no plane of its own that a target could lie before
+        view = view.moved_before(&targets.positions);
+    }
     let map = stages.run("drawing depth map", 0, |_| {
         depth_map(&scene.balls, &view, arguments.scene.profile.into(), ItemBuffer::Without)
     })?;
@@ -44,20 +43,33 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         .add("depth_bias_m", rounded(f64::from(bias), 4));
     summary.add("answers", section);
     let codes: Vec<u8> = answers.iter().map(|&answer| answer as u8).collect();
-    stages.run("writing", 0, |_| {
+    let report = stages.run("writing", 0, |_| {
         if extension(output) == "npy" {
-            return write_npy_u8(output, &codes);
+            return write_npy_u8(output, &codes).map(|()| WriteReport::default());
         }
         let column = ExtraColumn {
             name: "answer",
             description: "0 blocked 1 visible 3 outside",
             values: ExtraValues::U8(&codes),
         };
-        write_cloud(output, &targets, &[column]).map(|_| ())
+        if is_las(output)
+            && let Some(normals) = targets.attributes.normals.take()
+        {
+            let normals = NormalColumns::new(&normals);
+            let [x, y, z] = normals.columns(output);
+            return write_cloud(output, &targets, &[x, y, z, column]);
+        }
+        write_cloud(output, &targets, &[column])
     })?;
+    summary.add_writing(&report);
     summary.add("written", output.display().to_string());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
+}
+
+/// Whether the file of a cloud says in which reference system it is.
+fn is_known(cloud: &PointCloud) -> bool {
+    cloud.crs.kind != CrsKind::Unknown
 }
 
 /// The targets as a cloud in the frame of the scene.
@@ -67,6 +79,7 @@ fn targets(
     (low, high): ([f32; 3], [f32; 3]),
     seed: u64,
     stages: &mut Stages,
+    summary: &mut Summary,
 ) -> Result<PointCloud> {
     let frame =
         |positions| PointCloud { origin: scene.origin, crs: scene.crs.clone(), positions, ..PointCloud::default() };
@@ -74,18 +87,24 @@ fn targets(
         return Ok(frame(stages.run("spreading targets", 0, |_| random_targets(low, high, count, seed))));
     }
     if let Some(path) = &arguments.targets.targets {
-        let options = ReadOptions::default();
+        let options = ReadOptions { crs: arguments.scene.input.crs.clone() };
         let (mut cloud, report) =
             stages.run("reading targets", 0, |_| read_cloud(std::slice::from_ref(path), &options))?;
-        if report.left_out_count() > 0 {
-            let count = report.left_out_count();
-            return Err(anyhow::anyhow!("{count} targets are not usable, so answers would not match their rows"))
-                .with_context(|| path.display().to_string());
-        }
+        pipeline::check_every_row(&report)?;
+        summary.add("reading_targets", pipeline::reading_section(&report));
         // a table of targets says nothing of its unit: it is in the coordinates of the scene's file
         let scale = scene.crs.metres_per_unit_xyz();
         let given = cloud.crs.metres_per_unit_xyz();
+        // some files tell their unit without naming a system
         let known = cloud.crs != Crs::default();
+        if is_known(&cloud) && is_known(&scene) && !cloud.crs.same_system(&scene.crs) {
+            bail!(
+                "{}: the targets are in {}, but the scene is in {}; convert one of them",
+                path.display(),
+                cloud.crs.describe(),
+                scene.crs.describe()
+            );
+        }
         let positions = cloud
             .positions
             .iter()

@@ -68,7 +68,11 @@ impl ShrinkParams {
         Self { method: ShrinkMethod::Tau { penetration: 0.05 }, initial_radius: 30.0, max_radius: 0.5 }
     }
 
-    fn check(&self) -> Result<()> {
+    /// Checks what [`shrink`] checks, before a cloud is there.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for the first parameter out of its range.
+    pub fn check(&self) -> Result<()> {
         let invalid =
             |name, value: f64, expected| Err(Error::InvalidParameter { name, value: value.to_string(), expected });
         let radius = self.initial_radius;

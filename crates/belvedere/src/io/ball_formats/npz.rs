@@ -44,8 +44,12 @@ fn array<T: AutoSerialize, W: Write + Seek>(
     shape: &[u64],
     values: impl Iterator<Item = T>,
 ) -> io::Result<()> {
-    // stored, as NumPy does: floats hardly shrink, and loading stays a copy
-    let options = FileOptions::default().compression_method(npyz::zip::CompressionMethod::Stored).large_file(true);
+    // stored, as NumPy does: floats hardly shrink, and loading stays a copy; without the time of day, so that the same
+    // balls give the same bytes
+    let options = FileOptions::default()
+        .compression_method(npyz::zip::CompressionMethod::Stored)
+        .last_modified_time(npyz::zip::DateTime::default())
+        .large_file(true);
     let mut writer = archive.array(name, options)?.default_dtype().shape(shape).begin_nd()?;
     writer.extend(values)?;
     writer.finish()
