@@ -15,9 +15,9 @@ use belvedere::crs::Crs;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::{
     Canvas, Colors, DepthRange, ExtraColumn, ExtraValues, Georeference, MasbcppFolder, Picture, ReadOptions,
-    SavedBalls, atomic, depth_picture, is_ball_file, ramp_colors, read_balls, read_cloud, side_by_side, write_balls,
-    write_cloud, write_masbcpp, write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_png,
-    write_tif_f32, write_tif_u32,
+    SavedBalls, atomic, depth_picture, is_ball_file, read_balls, read_cloud, side_by_side, write_balls, write_cloud,
+    write_masbcpp, write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_png, write_tif_f32,
+    write_tif_u32,
 };
 use belvedere::medial::MedialBalls;
 use belvedere::raster::Raster;

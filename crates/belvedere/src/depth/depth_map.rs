@@ -74,21 +74,29 @@ pub fn depth_map(balls: &MedialBalls, view: &View, profile: Profile, items: Item
     Ok(DepthMap { view: *view, profile, depth, balls })
 }
 
-/// Noise of a laser scan along its normals, metres, that the default depth bias must swallow.
-const SURFACE_NOISE: f32 = 0.05;
+/// How far a point of an airborne scan may lie from the surface of the balls around it, metres: 0.05 of noise, and as much
+/// by which the default balls stand out over points.
+const SURFACE_DEVIATION: f64 = 0.1;
+/// Slope of a surface against the picture plane up to which its own points shall be visible: 63°, level ground under a sun
+/// 27° high.
+const SLOPE: f64 = 2.0;
 
 impl DepthMap {
     /// The bias, metres, by which a target may lie behind the depth of its pixel and still count as visible, unless the
     /// caller knows better.
     ///
-    /// A target on the surface of its own ball lies behind the depth at its pixel's centre by rounding and noise
-    /// (0.05 m), and on a slope by up to half the pixel's diagonal times that slope; 45° is allowed for. The paper's
-    /// algorithm has no bias, so [`Profile::PaperCone`] has 0.
+    /// A target on a surface lies behind the depth at its pixel's centre by what noise and balls deviate along the normal
+    /// (0.1 m, or a pixel where pixels are finer, as for small objects), seen at a slope of 2, and by that slope over half
+    /// the diagonal of the pixel. On simulated towns this is close to the best for the cloud's own points under suns 15° to
+    /// 60° high, with pixels of 0.05 and of 0.25 m; targets in free air hardly depend on it. The paper's algorithm has no
+    /// bias, so [`Profile::PaperCone`] has 0.
     #[must_use]
-    #[expect(clippy::cast_possible_truncation, reason = "a pixel size in metres")]
+    #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
     pub fn default_depth_bias(&self) -> f32 {
+        let pixel = 1.0 / self.view.pixels_per_metre();
+        let deviation = SURFACE_DEVIATION.min(pixel) * (1.0 + SLOPE * SLOPE).sqrt();
         match self.profile {
-            Profile::Sphere => SURFACE_NOISE + (std::f64::consts::FRAC_1_SQRT_2 / self.view.pixels_per_metre()) as f32,
+            Profile::Sphere => (deviation + SLOPE * pixel * std::f64::consts::FRAC_1_SQRT_2) as f32,
             Profile::PaperCone => 0.0,
         }
     }
