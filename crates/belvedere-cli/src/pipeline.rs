@@ -19,6 +19,7 @@ use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere::{Error, PointCloud};
+use std::borrow::Cow;
 use std::path::Path;
 
 /// Makes a parameter out of range an error about the flag that gave it, which is wrong usage.
@@ -130,27 +131,21 @@ pub(crate) struct Prepared {
     pub(crate) bounds: ([f32; 3], [f32; 3]),
 }
 
-/// Cleans, estimates normals and orients them.
+/// Cleans, estimates normals and orients them. A cloud that is given away is let go as soon as it has served.
 pub(crate) fn prepare(
-    cloud: &PointCloud,
+    cloud: Cow<'_, PointCloud>,
     cleaning: &Cleaning,
     orienting: &Orienting,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<Prepared> {
-    let (kept, report) = stages.run("cleaning", 0, |_| clean(cloud, &cleaning.params()))?;
+    let (kept, report) = stages.run("cleaning", 0, |_| clean(&cloud, &cleaning.params()))?;
     summary.add("removed_by_cleaning", cleaning_section(&report));
     if kept.is_empty() {
         let what = format!("{} were read and cleaning removed all; see --keep-noise, --keep-isolated", cloud.len());
         return Err(Error::NoPoints { what }.into());
     }
-    let cleaned;
-    let cloud = if kept.len() == cloud.len() {
-        cloud
-    } else {
-        cleaned = cloud.select(&kept);
-        &cleaned
-    };
+    let cloud = if kept.len() == cloud.len() { cloud } else { Cow::Owned(cloud.select(&kept)) };
     let index = stages.run("indexing", 0, |_| NeighborIndex::new(&cloud.positions))?;
     let choice = match &orienting.orient {
         OrientChoice::Auto if cloud.attributes.normals.is_some() => OrientChoice::Given,
@@ -183,13 +178,15 @@ pub(crate) fn prepare(
             Orientation::Trajectory(&trajectory)
         }
         OrientChoice::Mesh(path) => {
-            (mesh, _) = stages.run("reading mesh", 0, |_| read_mesh(&path))?;
+            let (read, _) = stages.run("reading mesh", 0, |_| read_mesh(&path))?;
+            // like every position that is typed or read, in the unit of the cloud's file
+            mesh = read.scaled_to_metres(&cloud.crs);
             Orientation::Mesh(&mesh)
         }
     };
-    let (oriented, report) = stages.run("orienting normals", 0, |_| orient(cloud, normals, &by))?;
+    let (oriented, report) = stages.run("orienting normals", 0, |_| orient(&cloud, normals, &by))?;
     summary.add("normals", orientation_section(&by, &report));
-    let bounds = bounds_of(cloud)?;
+    let bounds = bounds_of(&cloud)?;
     Ok(Prepared { oriented, index, kept, bounds })
 }
 
@@ -310,8 +307,20 @@ pub(crate) struct Scene {
     pub(crate) left_out: ReadReport,
 }
 
+/// Whether a scene keeps the points that its balls were made from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Points {
+    Keep,
+    LetGo,
+}
+
 /// Reads a ball file, or a cloud and makes its interior balls.
-pub(crate) fn scene(arguments: &SceneInput, stages: &mut Stages, summary: &mut Summary) -> Result<Scene> {
+pub(crate) fn scene(
+    arguments: &SceneInput,
+    points: Points,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<Scene> {
     if let [path] = &arguments.input.clouds[..]
         && path.is_file()
         && is_ball_file(path)?
@@ -322,8 +331,15 @@ pub(crate) fn scene(arguments: &SceneInput, stages: &mut Stages, summary: &mut S
         return scene_of_saved(saved, path);
     }
     let params = arguments.shrinking.params(MethodChoice::Tau)?;
-    let (cloud, left_out) = read_counted(&arguments.input, stages, summary)?;
-    let prepared = prepare(&cloud, &arguments.cleaning, &arguments.orienting, stages, summary)?;
+    let (mut cloud, left_out) = read_counted(&arguments.input, stages, summary)?;
+    let given = match points {
+        Points::Keep => Cow::Borrowed(&cloud),
+        Points::LetGo => {
+            let frame = cloud.without_points();
+            Cow::Owned(std::mem::replace(&mut cloud, frame))
+        }
+    };
+    let prepared = prepare(given, &arguments.cleaning, &arguments.orienting, stages, summary)?;
     // as in a ball file, so that rows of balls mean the same
     let balls = shrink_side(&prepared, Side::Interior, &params, stages, summary)?.shrunk();
     Ok(Scene { balls, cloud, bounds: prepared.bounds, left_out })

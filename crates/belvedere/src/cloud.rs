@@ -202,6 +202,12 @@ impl PointCloud {
         }
     }
 
+    /// A cloud in the same place, unit and reference system that has no points.
+    #[must_use]
+    pub fn without_points(&self) -> Self {
+        Self { origin: self.origin, crs: self.crs.clone(), ..Self::default() }
+    }
+
     /// Checks that every column has one value per point and every position is finite.
     ///
     /// # Errors

@@ -18,6 +18,16 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// The mesh in metres, its vertices being in the unit of `crs`.
+    #[must_use]
+    pub fn scaled_to_metres(mut self, crs: &Crs) -> Self {
+        let scale = crs.metres_per_unit_xyz();
+        for vertex in &mut self.vertices {
+            *vertex = std::array::from_fn(|i| vertex[i] * scale[i]);
+        }
+        self
+    }
+
     /// Corners of triangle `index`, or `None` where it or one of its vertices does not exist.
     #[must_use]
     pub fn corners(&self, index: usize) -> Option<[[f64; 3]; 3]> {

@@ -414,3 +414,18 @@ fn within(corners: &[[f64; 3]; 3], n: &[f64; 3], p: [f64; 3]) -> bool {
         (0..3).map(|k| cross[k] * n[k]).sum::<f64>() > -1e-4 * length
     })
 }
+
+#[test]
+fn a_mesh_in_feet_becomes_one_in_metres() {
+    use belvedere::crs::{Crs, INTERNATIONAL_FOOT};
+    let feet =
+        Crs { metres_per_unit: INTERNATIONAL_FOOT, vertical_metres_per_unit: INTERNATIONAL_FOOT, ..Crs::default() };
+    let square = Mesh {
+        vertices: vec![[0.0, 0.0, 10.0], [100.0, 0.0, 10.0], [100.0, 100.0, 10.0], [0.0, 100.0, 10.0]],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    };
+    let metres = square.scaled_to_metres(&feet);
+    let corner = metres.corners(0).unwrap()[2];
+    assert!((corner[0] - 30.48).abs() < 1e-12 && (corner[2] - 3.048).abs() < 1e-12, "{corner:?}");
+}

@@ -10,6 +10,7 @@ use belvedere::PointCloud;
 use belvedere::io::{MasbcppFolder, write_balls, write_masbcpp};
 use belvedere::medial::feature_size::{FeatureSizeParams, SimplifyParams, local_feature_size, simplify};
 use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkParams, Side};
+use std::borrow::Cow;
 
 pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
     let is_folder = is_folder(&arguments.output);
@@ -34,7 +35,7 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
     };
     let nothing = Cleaning::nothing();
     let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
-    let prepared = pipeline::prepare(&cloud, cleaning, &arguments.orienting, &mut stages, &mut summary)?;
+    let prepared = pipeline::prepare(Cow::Borrowed(&cloud), cleaning, &arguments.orienting, &mut stages, &mut summary)?;
     if is_folder {
         write_folder(arguments, global, &cloud, &prepared, &params, &mut stages, &mut summary)?;
     } else {

@@ -16,6 +16,7 @@ use belvedere::medial::{MedialBalls, ShrinkParams, Side};
 use belvedere::query::{Answer, query_points};
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere_scenes::{AirborneParams, Scan, Scene, TownParams, Truth, scan_airborne, town};
+use std::borrow::Cow;
 use std::io::Write;
 use std::path::Path;
 
@@ -46,7 +47,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
         orient: OrientChoice::Trajectory(folder.join("trajectory.csv")),
     };
     let cleaning = Cleaning { keep_noise: false, keep_duplicates: false, keep_isolated: false };
-    let prepared = pipeline::prepare(&cloud, &cleaning, &orienting, &mut stages, &mut summary)?;
+    let prepared = pipeline::prepare(Cow::Borrowed(&cloud), &cleaning, &orienting, &mut stages, &mut summary)?;
     let shrinking = ShrinkParams::tau();
     let balls = pipeline::shrink_side(&prepared, Side::Interior, &shrinking, &mut stages, &mut summary)?.shrunk();
     drop(prepared);

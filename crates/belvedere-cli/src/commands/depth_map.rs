@@ -2,7 +2,7 @@
 
 use super::{check_output, extension, is_same};
 use crate::arguments::{DepthMap, Global, Usage};
-use crate::pipeline;
+use crate::pipeline::{self, Points};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     }
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
-    let scene = pipeline::scene(&arguments.scene, &mut stages, &mut summary)?;
+    let scene = pipeline::scene(&arguments.scene, Points::LetGo, &mut stages, &mut summary)?;
     let view = arguments.view.view(&scene, &mut summary)?;
     let items = if arguments.balls_id.is_some() { ItemBuffer::With } else { ItemBuffer::Without };
     let map = stages

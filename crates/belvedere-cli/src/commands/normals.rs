@@ -7,6 +7,7 @@ use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::io::{ExtraColumn, ExtraValues, MasbcppFolder, WriteReport, write_cloud, write_masbcpp};
+use std::borrow::Cow;
 
 pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
     let output = &arguments.output;
@@ -30,7 +31,7 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
     let nothing = Cleaning::nothing();
     // the rows of a folder belong to the rows of its coords.npy
     let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
-    let prepared = pipeline::prepare(&cloud, cleaning, &arguments.orienting, &mut stages, &mut summary)?;
+    let prepared = pipeline::prepare(Cow::Borrowed(&cloud), cleaning, &arguments.orienting, &mut stages, &mut summary)?;
     let oriented = &prepared.oriented;
     let report = stages.run("writing", 0, |_| -> Result<WriteReport> {
         if is_folder {

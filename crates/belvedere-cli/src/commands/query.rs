@@ -2,7 +2,7 @@
 
 use super::{NormalColumns, check_output, extension, is_las};
 use crate::arguments::{Global, Query, Usage};
-use crate::pipeline;
+use crate::pipeline::{self, Points};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
@@ -17,7 +17,8 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     check_output("-o", output, &["csv", "txt", "xyz", "laz", "las", "ply", "npy"])?;
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
-    let scene = pipeline::scene(&arguments.scene, &mut stages, &mut summary)?;
+    let points = if arguments.targets.own { Points::Keep } else { Points::LetGo };
+    let scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
     let mut view = arguments.view.view(&scene, &mut summary)?;
     if arguments.targets.own && extension(output) == "npy" {
         pipeline::check_every_row(&scene.left_out)?;
@@ -81,8 +82,7 @@ fn targets(
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<PointCloud> {
-    let frame =
-        |positions| PointCloud { origin: scene.origin, crs: scene.crs.clone(), positions, ..PointCloud::default() };
+    let frame = |positions| PointCloud { positions, ..scene.without_points() };
     if let Some(count) = arguments.targets.random {
         return Ok(frame(stages.run("spreading targets", 0, |_| random_targets(low, high, count, seed))));
     }
