@@ -18,7 +18,7 @@ use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
 use belvedere::view::{View, default_pixel_size, to_sun};
-use belvedere::{Error, PointCloud};
+use belvedere::{Attributes, Error, PointCloud};
 use std::borrow::Cow;
 use std::path::Path;
 
@@ -145,7 +145,18 @@ pub(crate) fn prepare(
         let what = format!("{} were read and cleaning removed all; see --keep-noise, --keep-isolated", cloud.len());
         return Err(Error::NoPoints { what }.into());
     }
-    let cloud = if kept.len() == cloud.len() { cloud } else { Cow::Owned(cloud.select(&kept)) };
+    let mut cloud = if kept.len() == cloud.len() { cloud } else { Cow::Owned(cloud.select(&kept)) };
+    if let Cow::Owned(owned) = &mut cloud {
+        // nothing but orientation asks for attributes from here on, and they weigh more than the positions
+        let attributes = std::mem::take(&mut owned.attributes);
+        owned.attributes = Attributes {
+            normals: attributes.normals,
+            scanner_index: attributes.scanner_index,
+            gps_time: attributes.gps_time.filter(|_| matches!(orienting.orient, OrientChoice::Trajectory(_))),
+            gps_time_kind: attributes.gps_time_kind,
+            ..Attributes::default()
+        };
+    }
     let index = stages.run("indexing", 0, |_| NeighborIndex::new(&cloud.positions))?;
     let choice = match &orienting.orient {
         OrientChoice::Auto if cloud.attributes.normals.is_some() => OrientChoice::Given,

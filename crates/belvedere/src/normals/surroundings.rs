@@ -13,17 +13,19 @@ const MIN_RELIEF_M: f32 = 2.0;
 
 /// Highest point of every occupied cell of a horizontal grid, sorted by cell.
 pub(super) struct Surroundings {
-    cells: Vec<((i64, i64), f32)>,
+    cells: Vec<((i32, i32), f32)>,
 }
 
 impl Surroundings {
     /// Surroundings of local positions, (N, 3), metres.
     pub(super) fn new(positions: &[[f32; 3]]) -> Self {
-        let mut cells: Vec<((i64, i64), f32)> =
+        let mut cells: Vec<((i32, i32), f32)> =
             positions.par_iter().map(|p| ((cell(p[1].into()), cell(p[0].into())), p[2])).collect();
         // by cell and then downward, so that the highest of a cell comes first
         cells.par_sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
         cells.dedup_by_key(|entry| entry.0);
+        // one cell is left for two or three points
+        cells.shrink_to_fit();
         Self { cells }
     }
 
@@ -58,7 +60,7 @@ impl Surroundings {
         (length > 1e-6 && length.is_finite()).then(|| [dx / length, dy / length])
     }
 
-    fn around(&self, x: f64, y: f64) -> impl Iterator<Item = ((i64, i64), f32)> + '_ {
+    fn around(&self, x: f64, y: f64) -> impl Iterator<Item = ((i32, i32), f32)> + '_ {
         let (left, right) = (cell(x - REACH_M), cell(x + REACH_M));
         (cell(y - REACH_M)..=cell(y + REACH_M)).flat_map(move |row| {
             let start = self.cells.partition_point(|entry| entry.0 < (row, left));
@@ -68,7 +70,7 @@ impl Surroundings {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "a float to integer cast saturates, which is what far points need")]
-fn cell(coordinate: f64) -> i64 {
-    // clear of the ends of i64, so that a range of cells never overflows
-    ((coordinate / CELL_M).floor() as i64).clamp(i64::MIN / 4, i64::MAX / 4)
+fn cell(coordinate: f64) -> i32 {
+    // clear of the ends of i32, so that a range of cells never overflows; 500 000 km suffice
+    ((coordinate / CELL_M).floor() as i32).clamp(i32::MIN / 4, i32::MAX / 4)
 }
