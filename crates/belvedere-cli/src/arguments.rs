@@ -117,7 +117,7 @@ pub(crate) struct Normals {
     #[command(flatten)]
     pub(crate) orienting: Orienting,
     /// Cloud with normals as attributes (.laz .las .ply .csv), or a folder for coords.npy and normals.npy
-    #[arg(short, long, value_name = "OUT")]
+    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
 }
 
@@ -136,18 +136,18 @@ pub(crate) struct Balls {
     pub(crate) side: SideChoice,
     /// Ball file (.npz .ply .laz .las), or a folder for masbcpp's ma_coords_*.npy and ma_qidx_*.npy (one row per input
     /// point: nothing is cleaned away, and the method is `angles` unless said otherwise)
-    #[arg(short, long, value_name = "OUT")]
+    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
     /// In a folder: write NaN as centre of balls that never shrank
-    #[arg(long)]
+    #[arg(long, help_heading = "Result")]
     pub(crate) nan: bool,
     /// In a folder: also write the local feature size (lfs.npy) and which points a thinning to this share of it keeps
     /// (decimate_lfs.npy)
-    #[arg(long, value_name = "EPSILON", value_parser = above_zero::<f32>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "EPSILON", help_heading = "Result", value_parser = above_zero::<f32>, allow_negative_numbers = true)]
     pub(crate) simplify: Option<f32>,
     /// Side of the cells that thinning counts points in, in metres
-    #[arg(long, value_name = "M", default_value_t = 0.5, requires = "simplify", value_parser = above_zero::<f32>,
-        allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", default_value_t = 0.5, requires = "simplify", help_heading = "Result",
+        value_parser = above_zero::<f32>, allow_negative_numbers = true)]
     pub(crate) cell_size: f32,
 }
 
@@ -159,11 +159,11 @@ pub(crate) struct DepthMap {
     pub(crate) view: ViewChoice,
     /// Depth in metres from the picture plane as .tif or .npy (rows from the top; nothing hit: nodata -9999 in .tif, infinity
     /// in .npy), or a picture with a legend as .png. A .tif of a view straight down lies on the map
-    #[arg(short, long, value_name = "OUT")]
+    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
     /// Also write which ball each pixel shows (.tif or .npy): its row in the ball file, counted from 0, or in the one that
     /// `belvedere balls` writes from the same cloud with the same flags; 4294967295 where none
-    #[arg(long, value_name = "OUT")]
+    #[arg(long, value_name = "OUT", help_heading = "Result")]
     pub(crate) balls_id: Option<PathBuf>,
 }
 
@@ -177,17 +177,17 @@ pub(crate) struct Query {
     pub(crate) targets: Targets,
     /// Metres a target may lie behind the depth of its pixel and still count as visible [default: what noise and half a
     /// pixel are deep on a slope of 63 degrees, 0.58 at pixels of 0.25 m; 0 with --profile paper-cone]
-    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite)]
+    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite, help_heading = "Result")]
     pub(crate) bias: Option<f32>,
     /// Targets with a column `answer` (.csv .xyz .txt .laz .las .ply), or the answers alone (.npy, u8); one row per target
     /// in their order
-    #[arg(short, long, value_name = "OUT")]
+    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
 }
 
 #[derive(Args)]
 pub(crate) struct CloudInput {
-    /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .npy): several files, or a folder, make one cloud; a
+    /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy): several files, or a folder, make one cloud; a
     /// folder with coords.npy is masbcpp's
     #[arg(value_name = "CLOUD", required = true)]
     pub(crate) clouds: Vec<PathBuf>,
