@@ -114,6 +114,29 @@ fn files_that_cannot_be_used_are_named() {
 }
 
 #[test]
+fn damaged_laz_files_give_one_line_or_a_result_whatever_happens_in_the_decoder() {
+    let place = with_house();
+    let laz = place.bytes("house.laz");
+    let mut refused = 0;
+    for at in (laz.len() / 3..laz.len()).step_by(laz.len() / 40) {
+        let mut damaged = laz.clone();
+        // a stretch of set bits makes the decoder panic where a single flipped bit seldom does
+        damaged[at..(at + 12).min(laz.len())].fill(0xff);
+        place.write("damaged.laz", &damaged);
+        let run = place.run("info damaged.laz");
+        let lines: Vec<&str> = run.stderr.lines().collect();
+        match run.status {
+            0 => assert!(lines.is_empty(), "{lines:?}"),
+            _ => {
+                refused += 1;
+                assert!(lines.len() == 1 && lines[0].contains("damaged.laz"), "{lines:?}");
+            }
+        }
+    }
+    assert!(refused > 3, "only {refused} files were refused");
+}
+
+#[test]
 fn degrees_are_refused_with_the_conversion_to_run() {
     let place = Workplace::new();
     let degrees = PointCloud { origin: [5.4, 52.2, 0.0], crs: Crs::from_epsg(4326).unwrap(), ..house() };
