@@ -5,23 +5,16 @@
     reason = "tests stop at the first surprise; the numbers are small"
 )]
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::io::{BufReader, Write};
-use std::path::Path;
 
 use belvedere::cloud::GpsTimeKind;
 use belvedere::crs::Crs;
-use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::{
-    Canvas, Colors, DepthRange, ExtraColumn, ExtraValues, Georeference, MasbcppFolder, Picture, ReadOptions,
-    SavedBalls, atomic, depth_picture, is_ball_file, read_balls, read_cloud, side_by_side, write_balls, write_cloud,
-    write_masbcpp, write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_png, write_tif_f32,
-    write_tif_u32,
+    ExtraColumn, ExtraValues, Georeference, MasbcppFolder, ReadOptions, atomic, read_cloud, write_cloud, write_masbcpp,
+    write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_tif_f32, write_tif_u32,
 };
-use belvedere::medial::MedialBalls;
 use belvedere::raster::Raster;
-use belvedere::view::View;
 use belvedere::{Attributes, Error, PointCloud};
 use tempfile::TempDir;
 
@@ -55,21 +48,6 @@ fn full_cloud() -> PointCloud {
         },
         scanner_positions: vec![[0.0; 3]; 2],
         crs: dutch(),
-    }
-}
-
-fn balls(crs: Crs) -> SavedBalls {
-    let n = 500_u16;
-    SavedBalls {
-        origin: [84_500.123_456_789, 446_700.0, 3.0],
-        crs,
-        bounds: ([-5.5, -400.25, 0.1], [70.0, 1.0, 30.7]),
-        centers: (0..n).map(|i| [f32::from(i) * 0.1234, f32::from(i) * -0.77, f32::from(i).sqrt()]).collect(),
-        radii: (0..n).map(|i| f32::from(i) * 0.0137).collect(),
-        source: (0..u32::from(n)).rev().collect(),
-        touch: (0..u32::from(n)).map(|i| if i % 10 == 0 { u32::MAX } else { i }).collect(),
-        separation_angles: (0..n).map(|i| if i % 10 == 0 { f32::NAN } else { f32::from(i) * 0.006 }).collect(),
-        provenance: BTreeMap::from([("parameters".to_owned(), "first_separation_angle = 32°".to_owned())]),
     }
 }
 
@@ -309,173 +287,6 @@ fn rasters_keep_values_place_and_nodata() {
     assert_eq!(array.into_vec::<f32>().unwrap(), values);
 }
 
-/// Looks straight down on the square from (0, 0) to (`side`, `side`).
-fn plan_view(side: f64, pixel: f64) -> View {
-    View::parallel([0.0, 0.0, -1.0], [0.0, 0.0, 0.0], [side, side, 10.0], pixel).unwrap()
-}
-
-/// Draws balls by way of the depth map of `view`.
-fn draw_balls(canvas: &mut Canvas, view: &View, centers: &[[f32; 3]], radii: &[f32], colors: Colors<'_>) {
-    let balls = MedialBalls {
-        centers: centers.to_vec(),
-        radii: radii.to_vec(),
-        source: vec![0; radii.len()],
-        touch: vec![0; radii.len()],
-        separation_angles: vec![1.0; radii.len()],
-    };
-    let map = depth_map(&balls, view, Profile::Sphere, ItemBuffer::With).unwrap();
-    let items = map.balls.as_ref().unwrap();
-    canvas.draw_seen_balls((&map.depth, items), (centers, radii), colors).unwrap();
-}
-
-#[test]
-fn nearer_balls_and_points_hide_farther_ones() {
-    let view = plan_view(10.0, 0.1);
-    let mut canvas = Canvas::new(&view, [255; 3]);
-    let (red, green) = ([200, 0, 0], [0, 200, 0]);
-    // the second ball lies higher, nearer to a viewer above
-    draw_balls(&mut canvas, &view, &[[5.0, 5.0, 2.0], [6.0, 5.0, 6.0]], &[2.0, 1.0], Colors::Each(&[red, green]));
-    canvas.draw_points(&[[6.0, 5.0, 1.0], [1.0, 9.0, 0.0]], Colors::One([0, 0, 255]), 3).unwrap();
-    let picture = canvas.into_picture();
-    let at = |x: f64, y: f64| picture.get((x * 10.0) as usize, ((10.0 - y) * 10.0) as usize).unwrap();
-    assert!(at(6.0, 5.0)[1] > 100 && at(6.0, 5.0)[0] == 0, "the near ball hides ball and point");
-    assert!(at(4.0, 5.0)[0] > 100 && at(4.0, 5.0)[1] == 0);
-    assert_eq!(at(1.0, 9.0), [0, 0, 255]);
-    assert_eq!(at(0.5, 0.5), [255; 3]);
-    let brightness = |x: f64, y: f64| at(x, y)[0];
-    assert!(brightness(4.2, 5.8) > brightness(5.0, 3.3), "lit from the upper left");
-    let (depth, items) = (Raster::filled(2, 2, 1.0), Raster::filled(2, 2, 0));
-    let other_size =
-        Canvas::new(&view, [0; 3]).draw_seen_balls((&depth, &items), (&[[0.0; 3]], &[1.0]), Colors::One(red));
-    assert!(other_size.is_err());
-}
-
-#[test]
-fn drawing_does_not_depend_on_threads() {
-    let view = plan_view(20.0, 0.05);
-    let centers: Vec<[f32; 3]> =
-        (0..5000_u32).map(|i| [(i * 37 % 2000) as f32 * 0.01, (i * 91 % 2000) as f32 * 0.01, 5.0]).collect();
-    let radii: Vec<f32> = (0..5000_u16).map(|i| f32::from(i % 50) * 0.01).collect();
-    let draw = || {
-        let mut canvas = Canvas::new(&view, [255; 3]);
-        draw_balls(&mut canvas, &view, &centers, &radii, Colors::One([90, 120, 200]));
-        canvas.into_picture()
-    };
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(draw);
-    assert_eq!(one, draw());
-}
-
-#[test]
-fn depth_pictures_have_colours_and_a_legend() {
-    let folder = TempDir::new().unwrap();
-    let values: Vec<f32> = (0..100 * 60).map(|i| if i % 100 > 80 { f32::INFINITY } else { (i % 100) as f32 }).collect();
-    let depth = Raster::from_values(100, 60, values).unwrap();
-    let picture = depth_picture(&depth, DepthRange::Full, "Depth map");
-    assert!(picture.width > 500 && picture.height > 300, "small maps are enlarged");
-    let lightness = |c: [u8; 3]| c.iter().map(|&v| u32::from(v)).sum::<u32>();
-    let map_row = picture.height / 2;
-    let near = picture.get(30, map_row).unwrap();
-    let far = picture.get(30 + 70 * 5, map_row).unwrap();
-    assert!(lightness(near) > lightness(far), "near is light: {near:?} {far:?}");
-    let dark = |columns: std::ops::Range<usize>, rows: std::ops::Range<usize>| {
-        rows.flat_map(|r| columns.clone().map(move |c| (c, r)))
-            .filter(|&(c, r)| picture.get(c, r).is_some_and(|p| lightness(p) < 150))
-            .count()
-    };
-    assert!(dark(0..200, 0..40) > 50, "title");
-    assert!(dark(560..picture.width, 0..picture.height) > 200, "legend");
-    let both = side_by_side(&[picture.clone(), Picture::filled(100, 50, [9; 3])], &["left", "right"]);
-    assert!(both.width > picture.width && both.height > picture.height);
-    let path = folder.path().join("p.png");
-    write_png(&path, &both).unwrap();
-    let mut reader = png::Decoder::new(BufReader::new(fs::File::open(&path).unwrap())).read_info().unwrap();
-    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
-    let info = reader.next_frame(&mut bytes).unwrap();
-    assert_eq!((info.width as usize, info.height as usize), (both.width, both.height));
-    assert_eq!(bytes, both.rgb);
-    assert!(write_png(&path, &Picture::filled(0, 0, [0; 3])).is_err());
-    let nothing = Raster::filled(4, 4, f32::INFINITY);
-    assert!(depth_picture(&nothing, DepthRange::Robust, "").width > 0);
-    assert!(depth_picture(&Raster::filled(1, 1, 5.0), DepthRange::Robust, "a title much too long").width > 0);
-}
-
-fn same_bits(a: &[f32], b: &[f32]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(x, y)| x.to_bits() == y.to_bits())
-}
-
-#[test]
-fn balls_come_back() {
-    let folder = TempDir::new().unwrap();
-    let feet = Crs { metres_per_unit: FOOT, vertical_metres_per_unit: FOOT, ..Crs::default() };
-    let wkt = Crs { wkt: Some(format!("LOCAL_CS[\"{}  end\"]", "long  name ".repeat(200))), ..Crs::default() };
-    for crs in [dutch(), feet, wkt] {
-        let balls = balls(crs);
-        for name in ["b.npz", "b.ply", "b.laz", "b.las"] {
-            let path = folder.path().join(name);
-            write_balls(&path, &balls).unwrap();
-            assert!(is_ball_file(&path).unwrap(), "{name}");
-            let found = read_balls(&path).unwrap();
-            assert_eq!(found.crs, balls.crs, "{name}");
-            assert_eq!(found.provenance, balls.provenance);
-            assert_eq!(found.bounds, balls.bounds, "{name}");
-            assert_eq!(found.source, balls.source);
-            assert_eq!(found.touch, balls.touch);
-            assert!(same_bits(&found.separation_angles, &balls.separation_angles));
-            if name == "b.npz" {
-                assert_eq!(found.origin, balls.origin);
-                assert!(same_bits(found.centers.as_flattened(), balls.centers.as_flattened()));
-                assert!(same_bits(&found.radii, &balls.radii));
-                continue;
-            }
-            for i in 0..balls.radii.len() {
-                assert!((found.radii[i] - balls.radii[i]).abs() <= balls.radii[i] * 2e-7, "{name}");
-                for axis in 0..3 {
-                    let expected = f64::from(balls.centers[i][axis]) + balls.origin[axis];
-                    let value = f64::from(found.centers[i][axis]) + found.origin[axis];
-                    assert!((value - expected).abs() < 0.0006, "{name}: {value} {expected}");
-                }
-            }
-        }
-    }
-}
-
-#[test]
-fn no_balls_come_back_as_none() {
-    let folder = TempDir::new().unwrap();
-    let none = SavedBalls { bounds: ([-1.0; 3], [2.0; 3]), crs: dutch(), ..SavedBalls::default() };
-    for name in ["b.npz", "b.ply", "b.laz", "b.las"] {
-        let path = folder.path().join(name);
-        write_balls(&path, &none).unwrap();
-        assert!(is_ball_file(&path).unwrap(), "{name}");
-        assert_eq!(read_balls(&path).unwrap(), none, "{name}");
-    }
-    let endless = SavedBalls { bounds: ([0.0; 3], [f32::INFINITY; 3]), ..none };
-    assert!(matches!(write_balls(&folder.path().join("b.npz"), &endless), Err(Error::InvalidParameter { .. })));
-}
-
-#[test]
-fn balls_without_metadata_have_the_bounds_of_their_centres() {
-    let folder = TempDir::new().unwrap();
-    let balls = balls(dutch());
-    let path = folder.path().join("b.ply");
-    write_balls(&path, &balls).unwrap();
-    // as a program that does not know the comments would save it
-    let bytes = fs::read(&path).unwrap();
-    let end = bytes.windows(11).position(|w| w == b"end_header\n").unwrap();
-    let header = String::from_utf8(bytes[..end].to_vec()).unwrap();
-    let kept: Vec<&str> = header.lines().filter(|line| !line.starts_with("comment belvedere_balls")).collect();
-    let edited = [format!("{}\n", kept.join("\n")).as_bytes(), &bytes[end..]].concat();
-    fs::write(&path, edited).unwrap();
-    let found = read_balls(&path).unwrap();
-    assert_eq!((found.crs.epsg, found.radii.len()), (Some(28992), 500));
-    let (low, high) = found.bounds;
-    for axis in 0..3 {
-        let centers = || found.centers.iter().map(|c| c[axis]);
-        assert_eq!(low[axis], centers().fold(f32::INFINITY, f32::min));
-        assert_eq!(high[axis], centers().fold(f32::NEG_INFINITY, f32::max));
-    }
-}
-
 /// Whether two columns are there and alike within `tolerance`.
 fn alike<T: Copy + Into<f64>>(found: Option<&Vec<T>>, expected: Option<&Vec<T>>, tolerance: f64) -> bool {
     let (Some(found), Some(expected)) = (found, expected) else { return found.is_none() && expected.is_none() };
@@ -554,44 +365,6 @@ fn written_clouds_read_back_the_same() {
         assert_eq!(b.intensity, a.intensity, "{about}");
         let (mine, theirs) = (b.color.as_ref().unwrap(), a.color.as_ref().unwrap());
         assert!(mine.as_flattened().iter().zip(theirs.as_flattened()).all(|(m, t)| m.abs_diff(*t) <= case.color));
-    }
-}
-
-#[test]
-fn clouds_are_no_ball_files() {
-    let folder = TempDir::new().unwrap();
-    for name in ["c.las", "c.laz", "c.ply", "c.csv"] {
-        let path = folder.path().join(name);
-        write_cloud(&path, &full_cloud(), &[]).unwrap();
-        assert!(!is_ball_file(&path).unwrap(), "{name}");
-        assert!(read_balls(&path).is_err(), "{name}");
-    }
-    assert!(is_ball_file(&folder.path().join("missing.npz")).is_err());
-    assert!(matches!(write_balls(Path::new("b.obj"), &balls(dutch())), Err(Error::UnknownFormat { .. })));
-    let mut uneven = balls(dutch());
-    uneven.radii.pop();
-    assert!(matches!(write_balls(Path::new("b.npz"), &uneven), Err(Error::LengthMismatch { .. })));
-}
-
-#[test]
-fn damaged_ball_files_are_errors() {
-    let folder = TempDir::new().unwrap();
-    for name in ["b.npz", "b.ply", "b.laz", "b.las"] {
-        let path = folder.path().join(name);
-        write_balls(&path, &balls(dutch())).unwrap();
-        let whole = fs::read(&path).unwrap();
-        for share in 0..40 {
-            fs::write(&path, &whole[..whole.len() * share / 40]).unwrap();
-            assert!(read_balls(&path).is_err(), "{name} cut to {share}/40");
-            is_ball_file(&path).unwrap();
-        }
-        // any byte may be wrong: an error or other numbers, but no panic
-        for at in (0..whole.len()).step_by(whole.len() / 400 + 1) {
-            let mut damaged = whole.clone();
-            damaged[at] ^= 0xff;
-            fs::write(&path, &damaged).unwrap();
-            let _ = read_balls(&path);
-        }
     }
 }
 

@@ -1,0 +1,150 @@
+//! Ball files: what is written comes back, and what is damaged is an error.
+#![expect(
+    clippy::unwrap_used,
+    clippy::cast_possible_truncation,
+    reason = "tests stop at the first surprise; the numbers are small"
+)]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use belvedere::crs::Crs;
+use belvedere::io::{SavedBalls, is_ball_file, read_balls, write_balls, write_cloud};
+use belvedere::{Error, PointCloud};
+use tempfile::TempDir;
+
+fn dutch() -> Crs {
+    Crs { epsg: Some(28992), ..Crs::default() }
+}
+
+fn balls(crs: Crs) -> SavedBalls {
+    let n = 500_u16;
+    SavedBalls {
+        origin: [84_500.123_456_789, 446_700.0, 3.0],
+        crs,
+        bounds: ([-5.5, -400.25, 0.1], [70.0, 1.0, 30.7]),
+        centers: (0..n).map(|i| [f32::from(i) * 0.1234, f32::from(i) * -0.77, f32::from(i).sqrt()]).collect(),
+        radii: (0..n).map(|i| f32::from(i) * 0.0137).collect(),
+        source: (0..u32::from(n)).rev().collect(),
+        touch: (0..u32::from(n)).map(|i| if i % 10 == 0 { u32::MAX } else { i }).collect(),
+        separation_angles: (0..n).map(|i| if i % 10 == 0 { f32::NAN } else { f32::from(i) * 0.006 }).collect(),
+        provenance: BTreeMap::from([("parameters".to_owned(), "first_separation_angle = 32°".to_owned())]),
+    }
+}
+
+fn same_bits(a: &[f32], b: &[f32]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(x, y)| x.to_bits() == y.to_bits())
+}
+
+#[test]
+fn balls_come_back() {
+    let folder = TempDir::new().unwrap();
+    let foot = 0.3048;
+    let feet = Crs { metres_per_unit: foot, vertical_metres_per_unit: foot, ..Crs::default() };
+    let wkt = Crs { wkt: Some(format!("LOCAL_CS[\"{}  end\"]", "long  name ".repeat(200))), ..Crs::default() };
+    for crs in [dutch(), feet, wkt] {
+        let balls = balls(crs);
+        for name in ["b.npz", "b.ply", "b.laz", "b.las"] {
+            let path = folder.path().join(name);
+            write_balls(&path, &balls).unwrap();
+            assert!(is_ball_file(&path).unwrap(), "{name}");
+            let found = read_balls(&path).unwrap();
+            assert_eq!(found.crs, balls.crs, "{name}");
+            assert_eq!(found.provenance, balls.provenance);
+            assert_eq!(found.bounds, balls.bounds, "{name}");
+            assert_eq!(found.source, balls.source);
+            assert_eq!(found.touch, balls.touch);
+            assert!(same_bits(&found.separation_angles, &balls.separation_angles));
+            if name == "b.npz" {
+                assert_eq!(found.origin, balls.origin);
+                assert!(same_bits(found.centers.as_flattened(), balls.centers.as_flattened()));
+                assert!(same_bits(&found.radii, &balls.radii));
+                continue;
+            }
+            for i in 0..balls.radii.len() {
+                assert!((found.radii[i] - balls.radii[i]).abs() <= balls.radii[i] * 2e-7, "{name}");
+                for axis in 0..3 {
+                    let expected = f64::from(balls.centers[i][axis]) + balls.origin[axis];
+                    let value = f64::from(found.centers[i][axis]) + found.origin[axis];
+                    assert!((value - expected).abs() < 0.0006, "{name}: {value} {expected}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn no_balls_come_back_as_none() {
+    let folder = TempDir::new().unwrap();
+    let none = SavedBalls { bounds: ([-1.0; 3], [2.0; 3]), crs: dutch(), ..SavedBalls::default() };
+    for name in ["b.npz", "b.ply", "b.laz", "b.las"] {
+        let path = folder.path().join(name);
+        write_balls(&path, &none).unwrap();
+        assert!(is_ball_file(&path).unwrap(), "{name}");
+        assert_eq!(read_balls(&path).unwrap(), none, "{name}");
+    }
+    let endless = SavedBalls { bounds: ([0.0; 3], [f32::INFINITY; 3]), ..none };
+    assert!(matches!(write_balls(&folder.path().join("b.npz"), &endless), Err(Error::InvalidParameter { .. })));
+}
+
+#[test]
+fn balls_without_metadata_have_the_bounds_of_their_centres() {
+    let folder = TempDir::new().unwrap();
+    let balls = balls(dutch());
+    let path = folder.path().join("b.ply");
+    write_balls(&path, &balls).unwrap();
+    // as a program that does not know the comments would save it
+    let bytes = fs::read(&path).unwrap();
+    let end = bytes.windows(11).position(|w| w == b"end_header\n").unwrap();
+    let header = String::from_utf8(bytes[..end].to_vec()).unwrap();
+    let kept: Vec<&str> = header.lines().filter(|line| !line.starts_with("comment belvedere_balls")).collect();
+    let edited = [format!("{}\n", kept.join("\n")).as_bytes(), &bytes[end..]].concat();
+    fs::write(&path, edited).unwrap();
+    let found = read_balls(&path).unwrap();
+    assert_eq!((found.crs.epsg, found.radii.len()), (Some(28992), 500));
+    let (low, high) = found.bounds;
+    for axis in 0..3 {
+        let centers = || found.centers.iter().map(|c| c[axis]);
+        assert_eq!(low[axis], centers().fold(f32::INFINITY, f32::min));
+        assert_eq!(high[axis], centers().fold(f32::NEG_INFINITY, f32::max));
+    }
+}
+
+#[test]
+fn clouds_are_no_ball_files() {
+    let folder = TempDir::new().unwrap();
+    for name in ["c.las", "c.laz", "c.ply", "c.csv"] {
+        let path = folder.path().join(name);
+        write_cloud(&path, &PointCloud::from_coordinates(&[[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]).0, &[]).unwrap();
+        assert!(!is_ball_file(&path).unwrap(), "{name}");
+        assert!(read_balls(&path).is_err(), "{name}");
+    }
+    assert!(is_ball_file(&folder.path().join("missing.npz")).is_err());
+    assert!(matches!(write_balls(Path::new("b.obj"), &balls(dutch())), Err(Error::UnknownFormat { .. })));
+    let mut uneven = balls(dutch());
+    uneven.radii.pop();
+    assert!(matches!(write_balls(Path::new("b.npz"), &uneven), Err(Error::LengthMismatch { .. })));
+}
+
+#[test]
+fn damaged_ball_files_are_errors() {
+    let folder = TempDir::new().unwrap();
+    for name in ["b.npz", "b.ply", "b.laz", "b.las"] {
+        let path = folder.path().join(name);
+        write_balls(&path, &balls(dutch())).unwrap();
+        let whole = fs::read(&path).unwrap();
+        for share in 0..40 {
+            fs::write(&path, &whole[..whole.len() * share / 40]).unwrap();
+            assert!(read_balls(&path).is_err(), "{name} cut to {share}/40");
+            is_ball_file(&path).unwrap();
+        }
+        // any byte may be wrong: an error or other numbers, but no panic
+        for at in (0..whole.len()).step_by(whole.len() / 400 + 1) {
+            let mut damaged = whole.clone();
+            damaged[at] ^= 0xff;
+            fs::write(&path, &damaged).unwrap();
+            let _ = read_balls(&path);
+        }
+    }
+}
