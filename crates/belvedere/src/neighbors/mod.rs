@@ -1,8 +1,9 @@
 //! Neighbours of points: the one spatial index, used by every stage that asks what lies near.
 //!
 //! A tree with eight children a node and tight boxes, over leaves of 32 points kept as structure of arrays. Ball centres
-//! lie far from the surface, where thousands of points are nearly equally far; only tight boxes tell them apart, which is
-//! why split-plane trees are ten times slower here (shrinking-ball queries on an aerial city: 0.5 µs against 5 to 20 µs).
+//! lie far from the surface, where thousands of points are nearly equally far; only tight boxes tell them apart. On half a
+//! million points of a simulated city a nearest point costs 0.34 µs on the surface, 0.5 µs from 5 m and 1.0 µs from 200 m
+//! below it; the kd-tree crate kiddo takes 0.24, 2.1 and 57 µs (`benches/neighbors.rs`).
 //!
 //! | question | method |
 //! |---|---|
