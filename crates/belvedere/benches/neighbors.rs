@@ -1,15 +1,17 @@
 //! Is the index faster than a kd-tree crate where it has to be: near the surface, and from the far centres of large balls?
+//! And what do AVX2 instructions give?
 #![allow(missing_docs, reason = "the macros of criterion write functions without")]
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 
 mod common;
 
-use belvedere::neighbors::NeighborIndex;
+use belvedere::neighbors::{Instructions, NeighborIndex};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 fn searches(c: &mut Criterion) {
     let (points, _) = common::aerial_city(500_000);
     let index = NeighborIndex::new(&points).unwrap();
+    let scalar = NeighborIndex::with_instructions(&points, Instructions::Scalar).unwrap();
     let other = kiddo::ImmutableKdTree::<f32, 3>::new_from_slice(&points).unwrap();
     let some: Vec<[f32; 3]> = index.tree_order().iter().step_by(25).map(|&i| points[i as usize]).collect();
     for (name, depth) in [("on the surface", 0.0), ("5 m below", 5.0), ("200 m below", 200.0)] {
@@ -18,6 +20,9 @@ fn searches(c: &mut Criterion) {
         group.sample_size(10).throughput(Throughput::Elements(queries.len() as u64));
         group.bench_function("belvedere", |b| {
             b.iter(|| queries.iter().filter_map(|&q| index.nearest_within(q, f32::INFINITY)).count());
+        });
+        group.bench_function("belvedere, scalar", |b| {
+            b.iter(|| queries.iter().filter_map(|&q| scalar.nearest_within(q, f32::INFINITY)).count());
         });
         group.bench_function("kiddo", |b| {
             b.iter(|| {

@@ -1,5 +1,5 @@
 //! Ball files: what is written comes back, and what is damaged is an error.
-#![expect(
+#![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
     reason = "tests stop at the first surprise; the numbers are small"

@@ -1,5 +1,5 @@
 //! Pictures: what hides what, what is light, and that threads do not matter.
-#![expect(
+#![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
     reason = "tests stop at the first surprise; the numbers are small"

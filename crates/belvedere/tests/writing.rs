@@ -1,5 +1,5 @@
 //! What is written can be read back, by the crates of the formats themselves, and never appears half done.
-#![expect(
+#![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
     reason = "tests stop at the first surprise; the numbers are small"
