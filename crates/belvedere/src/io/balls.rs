@@ -68,7 +68,7 @@ impl SavedBalls {
     }
 }
 
-/// Writes `balls` in the format that follows from the extension ([`SUPPORTED`]).
+/// Writes `balls` in the format that follows from the extension (.npz .ply .laz .las).
 ///
 /// An `.npz` file keeps every bit: arrays `centers` (B, 3) f32 in metres relative to `origin` (3) f64 metres, `radii` (B)
 /// f32 metres, `source` and `touch` (B) u32, `separation_angles` (B) f32 radians, and `metadata`, JSON text as u8, which

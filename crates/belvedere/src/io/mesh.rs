@@ -12,7 +12,7 @@ use crate::{Error, Mesh, Result};
 /// CityJSON is read at the highest level of detail of each object.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`] for other extensions; otherwise as [`read_obj`], [`read_mesh_ply`] and [`read_cityjson`].
+/// [`Error::UnknownFormat`] for other extensions; otherwise as `read_obj`, `read_mesh_ply` and [`read_cityjson`].
 pub fn read_mesh(path: &Path) -> Result<(Mesh, MeshReport)> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     match extension.as_str() {

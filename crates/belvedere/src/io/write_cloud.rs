@@ -44,7 +44,7 @@ pub struct WriteReport {
 }
 
 /// The report of writing `cloud` to `path`, with its attributes and the `extra` columns, in a format that follows from
-/// the extension ([`SUPPORTED`]). Coordinates are those of the reference system and unit of the cloud's file.
+/// the extension (.las .laz .ply .csv .xyz .txt .npy). Coordinates are those of the reference system and unit of the cloud's file.
 ///
 /// LAS and LAZ files hold every attribute but normals, which go in as extra columns `NormalX`, `NormalY` and `NormalZ`
 /// where wanted. PLY files and tables hold scan angles in degrees (`scan_angle_deg`) and colours in 8 bits; tables have a
