@@ -194,23 +194,6 @@ impl Crs {
         ))
     }
 
-    /// Longitude and latitude in degrees (WGS 84) of a position given in the unit of the file.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`] where the system is unknown or has no way to WGS 84.
-    pub fn longitude_latitude(&self, easting: f64, northing: f64) -> Result<[f64; 2]> {
-        let epsg = self.epsg.map(|code| format!("EPSG:{code}"));
-        [epsg.as_deref(), self.wkt.as_deref()]
-            .into_iter()
-            .flatten()
-            .find_map(|text| {
-                let way = proj_wkt::transform_from_crs_strings_horizontal(text, "EPSG:4326").ok()?;
-                let (longitude, latitude) = way.convert((easting, northing)).ok()?;
-                (longitude.is_finite() && latitude.is_finite()).then_some([longitude, latitude])
-            })
-            .ok_or_else(|| invalid(&self.describe()))
-    }
-
     fn from_definition(definition: &proj_core::CrsDef) -> Self {
         let horizontal = definition.as_projected().map_or(1.0, proj_core::ProjectedCrsDef::linear_unit_to_meter);
         let vertical = definition.vertical_crs();
@@ -315,15 +298,6 @@ impl Crs {
             },
         })
     }
-
-    /// Easting and northing in metres (units of this system times its metres per unit) of a latitude and longitude in
-    /// radians (WGS 84). For many positions take [`Crs::geographic_projection`] once.
-    ///
-    /// # Errors
-    /// As [`Crs::geographic_projection`] and [`GeographicProjection::project`].
-    pub fn project_geographic(&self, latitude: f64, longitude: f64) -> Result<[f64; 2]> {
-        self.geographic_projection()?.project(latitude, longitude)
-    }
 }
 
 impl GeographicProjection {
@@ -359,16 +333,21 @@ mod geographic_projection_tests {
     #[test]
     fn the_tower_of_amersfoort_is_where_it_should_be() {
         let rd = Crs { epsg: Some(28_992), ..Crs::default() };
-        let [x, y] = rd.project_geographic(52.155_174_40_f64.to_radians(), 5.387_206_21_f64.to_radians()).unwrap();
+        let [x, y] = rd
+            .geographic_projection()
+            .unwrap()
+            .project(52.155_174_40_f64.to_radians(), 5.387_206_21_f64.to_radians())
+            .unwrap();
         assert!((x - 155_000.0).abs() < 1.0 && (y - 463_000.0).abs() < 1.0, "{x} {y}");
     }
 
     #[test]
     fn without_a_system_the_error_advises() {
-        let error = Crs::default().project_geographic(0.9, 0.1).unwrap_err().to_string();
+        let error = Crs::default().geographic_projection().err().unwrap().to_string();
         assert!(error.contains("EPSG"), "{error}");
         let rd = Crs { epsg: Some(28_992), ..Crs::default() };
-        assert!(rd.project_geographic(f64::NAN, 0.0).is_err());
-        assert!(rd.project_geographic(52.0, 5.0).is_err());
+        let projection = rd.geographic_projection().unwrap();
+        assert!(projection.project(f64::NAN, 0.0).is_err());
+        assert!(projection.project(52.0, 5.0).is_err());
     }
 }

@@ -9,7 +9,7 @@ use std::fs;
 use std::io::BufReader;
 
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
-use belvedere::io::{Canvas, Colors, DepthRange, Picture, depth_picture, side_by_side, write_png};
+use belvedere::io::{Canvas, Colors, Picture, depth_picture, side_by_side, write_png};
 use belvedere::medial::MedialBalls;
 use belvedere::raster::Raster;
 use belvedere::view::View;
@@ -76,7 +76,7 @@ fn depth_pictures_have_colours_and_a_legend() {
     let folder = TempDir::new().unwrap();
     let values: Vec<f32> = (0..100 * 60).map(|i| if i % 100 > 80 { f32::INFINITY } else { (i % 100) as f32 }).collect();
     let depth = Raster::from_values(100, 60, values).unwrap();
-    let picture = depth_picture(&depth, DepthRange::Full, "Depth map");
+    let picture = depth_picture(&depth, "Depth map");
     assert!(picture.width > 500 && picture.height > 300, "small maps are enlarged");
     let lightness = |c: [u8; 3]| c.iter().map(|&v| u32::from(v)).sum::<u32>();
     let map_row = picture.height / 2;
@@ -101,6 +101,6 @@ fn depth_pictures_have_colours_and_a_legend() {
     assert_eq!(bytes, both.rgb);
     assert!(write_png(&path, &Picture::filled(0, 0, [0; 3])).is_err());
     let nothing = Raster::filled(4, 4, f32::INFINITY);
-    assert!(depth_picture(&nothing, DepthRange::Robust, "").width > 0);
-    assert!(depth_picture(&Raster::filled(1, 1, 5.0), DepthRange::Robust, "a title much too long").width > 0);
+    assert!(depth_picture(&nothing, "").width > 0);
+    assert!(depth_picture(&Raster::filled(1, 1, 5.0), "a title much too long").width > 0);
 }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![allow(clippy::cast_possible_truncation, reason = "small numbers made by the tests")]
 
-use belvedere::medial::feature_size::{SimplifyParams, simplify};
+use belvedere::medial::feature_size::{Cells, SimplifyParams, simplify};
 use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkMethod, ShrinkParams, ShrinkReport, Side, shrink};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::OrientedCloud;
@@ -206,6 +206,14 @@ fn simplify_leaves_the_density_the_feature_size_asks_for_and_repeats_itself() {
     let all = SimplifyParams { density_limits: [1.0, f32::INFINITY], ..params };
     assert!(simplify(&points, &sizes, &all).unwrap().iter().all(|&k| k));
     assert!(simplify(&points, &sizes[1..], &params).is_err());
+    // a step of 13 m in a column makes an edge, which keeps a hundred times as many; in cubes each level is flat
+    let stepped: Vec<[f32; 3]> =
+        points.iter().map(|p| [p[0], p[1], if p[0] as i32 % 2 == 0 { 0.0 } else { 13.0 }]).collect();
+    let columns = SimplifyParams { cells: Cells::Columns, ..params };
+    assert!(simplify(&stepped, &sizes, &columns).unwrap().iter().all(|&k| k));
+    let no_edges = SimplifyParams { edge_height: None, ..columns };
+    let share = simplify(&stepped, &sizes, &no_edges).unwrap().iter().filter(|&&k| k).count() as f64 / 1e4;
+    assert!((share - 0.25).abs() < 4.0 * 0.0044, "{share}");
     // where no medial point is reliable the feature size is infinite and one keeps nothing but the lower limit
     assert!(!simplify(&points, &vec![f32::INFINITY; points.len()], &params).unwrap().contains(&true));
 }

@@ -257,7 +257,12 @@ fn rasters_keep_values_place_and_nodata() {
     let values: Vec<f32> = (0..300 * 200).map(|i| if i == 7 { f32::INFINITY } else { i as f32 * 0.25 }).collect();
     let raster = Raster::from_values(300, 200, values.clone()).unwrap();
     let path = folder.path().join("depth.tif");
-    let place = Georeference::north_up([84_500.0, 446_800.0], 0.5, dutch());
+    let place = Georeference {
+        upper_left: [84_500.0, 446_800.0],
+        column_step: [0.5, 0.0],
+        row_step: [0.0, -0.5],
+        crs: dutch(),
+    };
     write_tif_f32(&path, &raster, Some(&place), Some(-9999.0), None).unwrap();
     let mut decoder = Decoder::new(BufReader::new(fs::File::open(&path).unwrap())).unwrap();
     assert_eq!(decoder.dimensions().unwrap(), (300, 200));

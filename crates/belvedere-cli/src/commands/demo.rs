@@ -9,8 +9,8 @@ use belvedere::cloud::{Attributes, GpsTimeKind, PointCloud, centre_rounded, to_l
 use belvedere::crs::Crs;
 use belvedere::depth::{DepthMap, ItemBuffer, Profile, depth_map};
 use belvedere::io::{
-    Canvas, Colors, DepthRange, ExtraColumn, ExtraValues, atomic, class_color, depth_picture, in_shadow, ramp_colors,
-    side_by_side, write_balls, write_cloud, write_png, write_tif_f32,
+    Canvas, Colors, ExtraColumn, ExtraValues, atomic, class_color, depth_picture, in_shadow, ramp_colors, side_by_side,
+    write_balls, write_cloud, write_png, write_tif_f32,
 };
 use belvedere::medial::{MedialBalls, ShrinkParams, Side};
 use belvedere::query::{Answer, query_points};
@@ -199,7 +199,7 @@ fn write_pictures(
     let caption = "The town from above, sun in the south-west, 30 degrees high: what lies in shadow";
     write_png(&folder.join("shadows.png"), &side_by_side(&[shadows.into_picture()], &[caption]))?;
 
-    let depth = depth_picture(&map.depth, DepthRange::Robust, "Seen from the sun: depth in metres");
+    let depth = depth_picture(&map.depth, "Seen from the sun: depth in metres");
     write_png(&folder.join("seen_from_the_sun.png"), &depth)?;
 
     let oblique = View::parallel([0.5, 0.7, -0.6], low, high, 0.125)?;

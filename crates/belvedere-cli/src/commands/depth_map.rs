@@ -9,8 +9,7 @@ use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::depth::{ItemBuffer, NO_BALL, depth_map};
 use belvedere::io::{
-    DepthRange, Georeference, depth_picture, write_npy_f32_2d, write_npy_u32_2d, write_png, write_tif_f32,
-    write_tif_u32,
+    Georeference, depth_picture, write_npy_f32_2d, write_npy_u32_2d, write_png, write_tif_f32, write_tif_u32,
 };
 use belvedere::view::View;
 
@@ -39,7 +38,7 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     let place = georeference(&scene.cloud, &view);
     stages.run("writing", 0, |_| match extension(output).as_str() {
         "npy" => write_npy_f32_2d(output, &map.depth),
-        "png" => write_png(output, &depth_picture(&map.depth, DepthRange::Robust, "depth in metres")),
+        "png" => write_png(output, &depth_picture(&map.depth, "depth in metres")),
         _ => write_tif_f32(output, &map.depth, place.as_ref(), Some(NOTHING_HIT), Some(DESCRIPTION)),
     })?;
     summary.add("written", output.display().to_string());

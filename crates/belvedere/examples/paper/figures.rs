@@ -3,7 +3,7 @@
 use crate::experiment::Look;
 use crate::model::{Model, Way, unlimited_tau, within_window};
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
-use belvedere::io::{Canvas, Colors, DepthRange, Picture, depth_picture, ramp_colors, side_by_side, write_png};
+use belvedere::io::{Canvas, Colors, Picture, depth_picture, ramp_colors, side_by_side, write_png};
 use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkParams};
 use belvedere::query::Answer;
 use belvedere::raster::Raster;
@@ -95,7 +95,7 @@ fn depth_of(look: &Look, title: &str) -> Result<Picture> {
     let least = look.map.depth.values().iter().copied().fold(f32::INFINITY, f32::min);
     let values = look.map.depth.values().iter().map(|d| d - least).collect();
     let depth = Raster::from_values(look.map.depth.width(), look.map.depth.height(), values)?;
-    Ok(depth_picture(&depth, DepthRange::Robust, title))
+    Ok(depth_picture(&depth, title))
 }
 
 /// Figure 4.

@@ -14,28 +14,13 @@ const TITLE_GAP: usize = 6;
 /// Maps smaller than this are enlarged.
 const LEAST_SIDE: usize = 480;
 
-/// Which depths the colours span.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum DepthRange {
-    /// From the first to the last hundredth of the depths: a few far pixels do not flatten the rest.
-    #[default]
-    Robust,
-    /// From the least to the greatest depth.
-    Full,
-    /// Between two depths, metres.
-    Fixed(f32, f32),
-}
-
 /// A picture of a depth map, metres: near yellow, far violet, light grey where nothing was hit (not finite), with `title`
-/// above and a legend at the right. Small maps are enlarged by repeating pixels.
+/// above and a legend at the right. The colours span the first to the last hundredth of the depths, so that a few far pixels
+/// do not flatten the rest. Small maps are enlarged by repeating pixels.
 #[must_use]
-pub fn depth_picture(depth: &Raster<f32>, range: DepthRange, title: &str) -> Picture {
-    let (near, far) = match range {
-        DepthRange::Robust => percentiles(depth.values(), 0.01, 0.99),
-        DepthRange::Full => percentiles(depth.values(), 0.0, 1.0),
-        DepthRange::Fixed(near, far) => Some((near, far)),
-    }
-    .map_or((0.0, 1.0), |(near, far)| (f64::from(near), f64::from(far)));
+pub fn depth_picture(depth: &Raster<f32>, title: &str) -> Picture {
+    let (near, far) =
+        percentiles(depth.values(), 0.01, 0.99).map_or((0.0, 1.0), |(near, far)| (f64::from(near), f64::from(far)));
     let span = if far > near { far - near } else { 1.0 };
     let mut map = Picture::filled(depth.width(), depth.height(), NOTHING);
     map.rgb.par_chunks_exact_mut(3).zip(depth.values()).for_each(|(pixel, &value)| {

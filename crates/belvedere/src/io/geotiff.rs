@@ -27,15 +27,6 @@ pub struct Georeference {
     pub crs: Crs,
 }
 
-impl Georeference {
-    /// A raster whose top is north, from the file coordinates of its upper left corner and the side of its square pixels
-    /// in the unit of the file.
-    #[must_use]
-    pub fn north_up(upper_left: [f64; 2], pixel_size: f64, crs: Crs) -> Self {
-        Self { upper_left, column_step: [pixel_size, 0.0], row_step: [0.0, -pixel_size], crs }
-    }
-}
-
 /// Writes `raster` as 32-bit floats, compressed without loss.
 ///
 /// Without a `georeference` the file carries no position and no system; `description` is for such rasters, in view

@@ -116,7 +116,7 @@ pub struct SimplifyParams {
     /// Columns or cubes; masbcpp: cubes.
     pub cells: Cells,
     /// A cell whose points differ in height by more than this, metres, keeps a hundred times as many: edges of roofs and
-    /// kerbs. `None`: never.
+    /// kerbs. `None`: never; masbcpp: 0.5, which only columns can exceed with its cells.
     pub edge_height: Option<f32>,
     /// Least and most points per square metre to leave.
     pub density_limits: [f32; 2],
@@ -130,7 +130,7 @@ impl Default for SimplifyParams {
             spacing: 0.4,
             cell_size: 0.5,
             cells: Cells::Cubes,
-            edge_height: None,
+            edge_height: Some(0.5),
             density_limits: [0.0, f32::INFINITY],
             seed: 1,
         }

@@ -61,8 +61,7 @@ impl ShrinkParams {
     /// The limit is there for airborne scans, where large balls bulge out through facades that hardly a pulse has hit. On
     /// simulated towns of 11 points a square metre (seeds 1 and 2, sun 30° high) unlimited balls call nine tenths of the
     /// sunlit street shadowed; limits of 2, 1 and 0.5 m leave 46 to 52, 22 to 24 and 9 to 10 %, while missed shadow grows from
-    /// 0.1 to 2.4 %. Clouds
-    /// much sparser than that want about twice their point spacing.
+    /// 0.1 to 2.4 %. Clouds much sparser than that want about twice their point spacing.
     #[must_use]
     pub fn tau() -> Self {
         Self { method: ShrinkMethod::Tau { penetration: 0.05 }, initial_radius: 30.0, max_radius: 0.5 }
