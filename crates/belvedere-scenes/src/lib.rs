@@ -23,6 +23,7 @@ mod airborne;
 mod beam;
 mod flight;
 mod obj;
+mod preset;
 mod random;
 mod scan;
 mod scene;
@@ -35,6 +36,7 @@ mod vector;
 
 pub use airborne::{AirborneParams, scan_airborne};
 pub use beam::BeamParams;
+pub use preset::Preset;
 pub use scan::{Scan, ScanReport, SensorPath};
 pub use scene::{Material, Part, Scene};
 pub use solids::{Placement, extruded, l_shaped_ridged, ridged};

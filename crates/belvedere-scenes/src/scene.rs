@@ -15,19 +15,50 @@ pub enum Material {
     TreeCrown,
     /// Stem of a tree.
     Trunk,
+    /// A single leaf, or a few on a twig, of a porous crown.
+    Leaf,
+    /// Slab that carries or covers: balcony, deck, canopy, ceiling of an arcade.
+    Slab,
+    /// Deck of a bridge, with its sides and underside.
+    Bridge,
+    /// Fence or garden wall.
+    Fence,
+    /// Mast or lamp post.
+    Mast,
+    /// Wire between masts.
+    Wire,
+    /// Parked car.
+    Car,
 }
 
 impl Material {
     /// Every material.
-    pub const ALL: [Self; 5] = [Self::Terrain, Self::Roof, Self::Facade, Self::TreeCrown, Self::Trunk];
+    pub const ALL: [Self; 12] = [
+        Self::Terrain,
+        Self::Roof,
+        Self::Facade,
+        Self::TreeCrown,
+        Self::Trunk,
+        Self::Leaf,
+        Self::Slab,
+        Self::Bridge,
+        Self::Fence,
+        Self::Mast,
+        Self::Wire,
+        Self::Car,
+    ];
 
-    /// Standard class of a laser point on this material: 2 ground, 5 high vegetation, 6 building (ASPRS LAS 1.4, table 17).
+    /// Standard class of a laser point on this material: 1 unclassified, 2 ground, 5 high vegetation, 6 building, 14 wire
+    /// conductor, 17 bridge deck (ASPRS LAS 1.4, table 17).
     #[must_use]
     pub fn asprs_class(self) -> u8 {
         match self {
             Self::Terrain => 2,
-            Self::Roof | Self::Facade => 6,
-            Self::TreeCrown | Self::Trunk => 5,
+            Self::Roof | Self::Facade | Self::Slab => 6,
+            Self::TreeCrown | Self::Trunk | Self::Leaf => 5,
+            Self::Bridge => 17,
+            Self::Wire => 14,
+            Self::Fence | Self::Mast | Self::Car => 1,
         }
     }
 
@@ -40,6 +71,13 @@ impl Material {
             Self::Facade => "facade",
             Self::TreeCrown => "tree_crown",
             Self::Trunk => "trunk",
+            Self::Leaf => "leaf",
+            Self::Slab => "slab",
+            Self::Bridge => "bridge",
+            Self::Fence => "fence",
+            Self::Mast => "mast",
+            Self::Wire => "wire",
+            Self::Car => "car",
         }
     }
 
@@ -50,8 +88,9 @@ impl Material {
             Self::Terrain => 0.25,
             Self::Roof => 0.2,
             Self::Facade => 0.35,
-            Self::TreeCrown => 0.5,
-            Self::Trunk => 0.3,
+            Self::TreeCrown | Self::Leaf => 0.5,
+            Self::Trunk | Self::Slab | Self::Bridge | Self::Fence => 0.3,
+            Self::Mast | Self::Wire | Self::Car => 0.15,
         }
     }
 }

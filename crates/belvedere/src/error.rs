@@ -79,6 +79,22 @@ pub enum Error {
         /// What else could be done.
         advice: &'static str,
     },
+    /// A method cannot answer for targets of this kind.
+    #[error("{method} cannot answer for these targets: {what}")]
+    UnsupportedTargets {
+        /// The method.
+        method: &'static str,
+        /// Which targets it can answer for.
+        what: &'static str,
+    },
+    /// A method knows no viewer of this kind.
+    #[error("{method} cannot look from there: {what}")]
+    UnsupportedViewer {
+        /// The method.
+        method: &'static str,
+        /// From where it can look.
+        what: &'static str,
+    },
 }
 
 impl Error {

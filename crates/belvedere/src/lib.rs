@@ -59,9 +59,10 @@ pub mod progress;
 pub mod query;
 pub mod random;
 pub mod raster;
+pub mod ray_index;
 pub mod summary;
 pub mod trajectory;
-mod vector;
+pub mod vector;
 pub mod view;
 
 pub use cloud::{Attributes, GpsTimeKind, PointCloud};

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 /// Level of each module of the core; a module imports from lower levels, or from its own folder.
-const LEVELS: [(&str, u8); 20] = [
+const LEVELS: [(&str, u8); 21] = [
     ("error", 0),
     ("crs", 0),
     ("cloud", 0),
@@ -18,6 +18,7 @@ const LEVELS: [(&str, u8); 20] = [
     ("vector", 0),
     ("neighbors", 1),
     ("io", 1),
+    ("ray_index", 1),
     ("clean", 2),
     ("normals", 2),
     ("pulses", 2),
@@ -28,7 +29,7 @@ const LEVELS: [(&str, u8); 20] = [
 ];
 
 /// Crates that only one file or folder may name, below `src`.
-const ONE_HOME: [(&str, &str); 12] = [
+const ONE_HOME: [(&str, &str); 13] = [
     ("las::", "io/"),
     ("laz::", "io/laz.rs"),
     ("npyz::", "io/"),
@@ -41,6 +42,7 @@ const ONE_HOME: [(&str, &str); 12] = [
     ("proj_core::", "crs"),
     ("proj_wkt::", "crs"),
     ("rstar::", "normals/"),
+    ("obvhs::", "ray_index.rs"),
 ];
 
 fn level(module: &str) -> Option<u8> {

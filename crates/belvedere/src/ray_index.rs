@@ -1,0 +1,182 @@
+//! The one index that rays are traced through: boxes around whatever may block, such as balls, discs and triangles.
+
+use crate::vector::unit;
+use crate::{Error, Result};
+use obvhs::aabb::Aabb;
+use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
+use obvhs::ray::RayHit;
+use obvhs::{Boundable, BvhBuildParams};
+use std::time::Duration;
+
+/// Padding of the boxes, as a share of the size of the scene: the tree works in f32 and a ray enters it at the box of the
+/// scene, so that its slab test errs by a few units of 6e-8 of that size.
+const BOX_PADDING: f64 = 1e-6;
+/// Least padding, and how much farther than asked the tree looks, metres: it passes over boxes that a ray leaves, or stops
+/// before, within its first 0.1 mm.
+const TREE_SLACK: f64 = 1e-3;
+
+/// A piece of a straight line, local metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where ranges count from.
+    pub origin: [f64; 3],
+    /// Unit vector.
+    pub direction: [f64; 3],
+    /// Ranges looked at, from and to, metres; the second may be infinite.
+    pub ranges: [f64; 2],
+}
+
+impl Ray {
+    /// The ray from `origin` along `direction` (any length) between two ranges, or `None` for one without direction or with a
+    /// number that is not finite (an infinite end excepted).
+    #[must_use]
+    pub fn new(origin: [f64; 3], direction: [f64; 3], ranges: [f64; 2]) -> Option<Self> {
+        let usable = origin.iter().all(|v| v.is_finite()) && ranges[0].is_finite() && !ranges[1].is_nan();
+        usable.then_some(Self { origin, direction: unit(direction)?, ranges })
+    }
+
+    /// The point at `range`.
+    #[must_use]
+    pub fn at(&self, range: f64) -> [f64; 3] {
+        std::array::from_fn(|i| self.origin[i] + range * self.direction[i])
+    }
+}
+
+/// Boxes in a tree. It proposes boxes that a ray may meet and leaves the exact test to the caller, so that results never
+/// depend on the tree.
+pub struct RayIndex {
+    tree: CwBvh,
+    center: [f64; 3],
+    half_size: [f64; 3],
+}
+
+struct PaddedBox(Aabb);
+
+impl Boundable for PaddedBox {
+    fn aabb(&self) -> Aabb {
+        self.0
+    }
+}
+
+impl RayIndex {
+    /// Indexes boxes given by their lowest and highest corner, local metres. The rows of the index are numbered in the
+    /// order of the tree, see [`RayIndex::order`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a box that is not finite.
+    pub fn new(boxes: &[[[f32; 3]; 2]]) -> Result<Self> {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for corners in boxes {
+            if !corners.as_flattened().iter().all(|v| v.is_finite()) {
+                return Err(Error::InvalidParameter {
+                    name: "box of an obstacle",
+                    value: format!("{corners:?}"),
+                    expected: "finite",
+                });
+            }
+            for axis in 0..3 {
+                low[axis] = low[axis].min(f64::from(corners[0][axis]));
+                high[axis] = high[axis].max(f64::from(corners[1][axis]));
+            }
+        }
+        if boxes.is_empty() {
+            return Ok(Self { tree: CwBvh::default(), center: [0.0; 3], half_size: [0.0; 3] });
+        }
+        let center: [f64; 3] = std::array::from_fn(|i| (low[i] + high[i]) / 2.0);
+        let size = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+        let padding = (BOX_PADDING * size).max(TREE_SLACK);
+        let half_size = std::array::from_fn(|i| (high[i] - low[i]) / 2.0 + padding);
+        let padded: Vec<PaddedBox> = boxes
+            .iter()
+            .map(|[low, high]| {
+                let local = |corner: &[f32; 3], padding: f64| -> [f32; 3] {
+                    to_f32(std::array::from_fn(|i| f64::from(corner[i]) - center[i] + padding))
+                };
+                PaddedBox(Aabb::new(local(low, -padding).into(), local(high, padding).into()))
+            })
+            .collect();
+        let tree = build_cwbvh(&padded, BvhBuildParams::medium_build(), &mut Duration::default());
+        Ok(Self { tree, center, half_size })
+    }
+
+    /// For each row of the index, the box it was made from. Obstacles kept in this order lie close together in memory where
+    /// they lie close together in space.
+    #[must_use]
+    pub fn order(&self) -> &[u32] {
+        &self.tree.primitive_indices
+    }
+
+    /// Whether `blocks` is true for any row whose box `ray` may meet.
+    pub fn any(&self, ray: &Ray, mut blocks: impl FnMut(usize) -> bool) -> bool {
+        let Some(entry) = self.enter(ray) else { return false };
+        // only "in reach or not" counts here: a range of zero ends the search
+        !self.tree.ray_traverse_miss(entry.ray, |_, row| if blocks(row) { 0.0 } else { f32::INFINITY })
+    }
+
+    /// The row whose `range` is least within the ranges of `ray`, and that range; the lowest row where several are equal.
+    /// `range` gives the range at which the ray meets the obstacle of a row first, if it does.
+    pub fn nearest(&self, ray: &Ray, mut range: impl FnMut(usize) -> Option<f64>) -> Option<(usize, f64)> {
+        let entry = self.enter(ray)?;
+        let mut best: Option<(usize, f64)> = None;
+        self.tree.ray_traverse(entry.ray, &mut RayHit::none(), |_, row| {
+            let Some(range) = range(row) else { return f32::INFINITY };
+            let nearer = best.is_none_or(|(best_row, best)| (range, row) < (best, best_row));
+            if !nearer || range < ray.ranges[0] || range > ray.ranges[1] {
+                return f32::INFINITY;
+            }
+            best = Some((row, range));
+            tree_reach(range - entry.start)
+        });
+        best
+    }
+
+    /// Calls `visit` for every row whose box `ray` may meet, in no particular order.
+    pub fn each(&self, ray: &Ray, mut visit: impl FnMut(usize)) {
+        if let Some(entry) = self.enter(ray) {
+            self.tree.ray_traverse_anyhit(entry.ray, |_, row| visit(row));
+        }
+    }
+
+    /// The part of a ray inside the box of the scene, as the tree takes it, or `None` where it misses the box.
+    fn enter(&self, ray: &Ray) -> Option<Entry> {
+        let local: [f64; 3] = std::array::from_fn(|i| ray.origin[i] - self.center[i]);
+        let [mut start, mut end] = ray.ranges;
+        if self.tree.nodes.is_empty() {
+            return None;
+        }
+        for axis in 0..3 {
+            let inverse = 1.0 / ray.direction[axis];
+            let (a, b) =
+                ((-self.half_size[axis] - local[axis]) * inverse, (self.half_size[axis] - local[axis]) * inverse);
+            // a ray that runs in a face of the box gives 0 · ∞ = NaN, which `min` and `max` pass over: not clipped there
+            start = start.max(a.min(b));
+            end = end.min(a.max(b));
+        }
+        if !(start <= end) {
+            return None;
+        }
+        // −0 + 0 = +0: the tree takes the slope of −0 for negative but its sign for positive, and would miss every box
+        let direction = to_f32(ray.direction).map(|component| component + 0.0);
+        let origin = to_f32(std::array::from_fn(|i| local[i] + start * ray.direction[i]));
+        let ray = obvhs::ray::Ray::new(origin.into(), direction.into(), 0.0, tree_reach(end - start));
+        Some(Entry { ray, start })
+    }
+}
+
+/// A ray as the tree takes it.
+struct Entry {
+    ray: obvhs::ray::Ray,
+    /// Range at which the tree's ray starts.
+    start: f64,
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the padding of the boxes exceeds the rounding")]
+fn to_f32(v: [f64; 3]) -> [f32; 3] {
+    v.map(|v| v as f32)
+}
+
+/// How far the tree must look to find every box that holds something within `range`.
+#[expect(clippy::cast_possible_truncation, reason = "rounded up on purpose")]
+fn tree_reach(range: f64) -> f32 {
+    ((range + TREE_SLACK) as f32).next_up()
+}
