@@ -144,11 +144,9 @@ impl RayIndex {
         if self.tree.nodes.is_empty() {
             return None;
         }
-        for axis in 0..3 {
-            let inverse = 1.0 / ray.direction[axis];
-            let (a, b) =
-                ((-self.half_size[axis] - local[axis]) * inverse, (self.half_size[axis] - local[axis]) * inverse);
-            // a ray that runs in a face of the box gives 0 · ∞ = NaN, which `min` and `max` pass over: not clipped there
+        for ((local, half_size), direction) in local.into_iter().zip(self.half_size).zip(ray.direction) {
+            let (a, b) = ((-half_size - local) / direction, (half_size - local) / direction);
+            // a ray that runs in a face of the box gives 0 / 0 = NaN, which `min` and `max` pass over: not clipped there
             start = start.max(a.min(b));
             end = end.min(a.max(b));
         }
