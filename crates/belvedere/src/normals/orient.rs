@@ -34,6 +34,8 @@ pub enum Orientation<'a> {
     ScannerAt(Vec<[f64; 3]>),
     /// Towards where the scanner was at each point's GPS time.
     Trajectory(&'a Trajectory),
+    /// Towards where the scanner was when it measured each point, (N, 3), local metres; NaN where that is unknown.
+    Pulses(&'a [[f32; 3]]),
     /// As the nearest face of this mesh, or towards the side of the point that is outside the mesh.
     Mesh(&'a Mesh),
     /// As the file gives them; its normals replace the estimated ones.
@@ -146,6 +148,7 @@ pub fn orient(cloud: &PointCloud, normals: Normals, by: &Orientation<'_>) -> Res
             clock = Some(offset);
             verdicts
         }
+        Orientation::Pulses(scanner) => by_pulses(cloud, &vectors, scanner)?,
         Orientation::Mesh(mesh) => by_mesh(cloud, &vectors, mesh)?,
     };
     let mut report = OrientReport { point_count: cloud.len(), clock, ..OrientReport::default() };
@@ -303,6 +306,16 @@ fn by_trajectory(
         towards(std::array::from_fn(|i| sensor[i] - cloud.origin[i]), position, normal)
     });
     Ok((verdicts, offset))
+}
+
+fn by_pulses(cloud: &PointCloud, vectors: &[[f32; 3]], scanner: &[[f32; 3]]) -> Result<Vec<Option<Verdict>>> {
+    if scanner.len() != cloud.len() {
+        return Err(Error::LengthMismatch { what: "scanner positions", expected: cloud.len(), found: scanner.len() });
+    }
+    Ok(each(cloud, vectors, |index, position, normal| {
+        let scanner = scanner.get(index)?.map(f64::from);
+        scanner.iter().all(|v| v.is_finite()).then(|| towards(scanner, position, normal))?
+    }))
 }
 
 fn by_mesh(cloud: &PointCloud, vectors: &[[f32; 3]], mesh: &Mesh) -> Result<Vec<Option<Verdict>>> {

@@ -1,7 +1,9 @@
 //! Queries: which targets can be seen.
 
+pub mod medial_scene;
 pub mod points;
 pub mod visibility;
 
+pub use medial_scene::MedialScene;
 pub use points::{Answer, AnswerCounts, query_points, random_targets};
 pub use visibility::{Sight, Viewer, Visibility};

@@ -1,0 +1,180 @@
+//! Exact lines of sight through a union of balls, against every ball tried in turn and against closed forms.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use belvedere::depth::Profile;
+use belvedere::medial::{MedialBalls, NO_TOUCH};
+use belvedere::query::{Answer, MedialScene, Viewer, Visibility};
+use belvedere::random::uniform;
+use belvedere::ray_index::{Ray, RayIndex};
+
+fn balls(centers: Vec<[f32; 3]>, radii: Vec<f32>) -> MedialBalls {
+    let count = radii.len();
+    MedialBalls { centers, radii, source: vec![0; count], touch: vec![0; count], separation_angles: vec![1.0; count] }
+}
+
+/// A number in 0 to 1 that belongs to `index`.
+fn at(seed: u64, index: u64) -> f32 {
+    uniform(seed, index) as f32
+}
+
+fn random_points(seed: u64, count: u64, size: f32) -> Vec<[f32; 3]> {
+    (0..count).map(|i| std::array::from_fn(|axis| size * at(seed, 3 * i + axis as u64))).collect()
+}
+
+fn random_balls(count: u64) -> MedialBalls {
+    let radii = (0..count).map(|i| 0.05 + 4.0 * at(7, i).powi(3)).collect();
+    balls(random_points(3, count, 100.0), radii)
+}
+
+/// The rule of the documentation, ball after ball: on the way from the target to the viewer the line leaves the ball
+/// farther than `bias` on, and the ball does not hold the viewer.
+fn brute_force(balls: &MedialBalls, target: [f32; 3], eye: [f64; 3], bias: f64) -> bool {
+    let target = target.map(f64::from);
+    let d: Vec<f64> = (0..3).map(|i| eye[i] - target[i]).collect();
+    let range = d.iter().map(|v| v * v).sum::<f64>().sqrt();
+    balls.centers.iter().zip(&balls.radii).any(|(center, radius)| {
+        // roots of |target + t·d/|d| − c|² = r²
+        let c: Vec<f64> = (0..3).map(|i| f64::from(center[i]) - target[i]).collect();
+        let b: f64 = (0..3).map(|i| c[i] * d[i] / range).sum();
+        let q: f64 = c.iter().map(|v| v * v).sum::<f64>() - f64::from(*radius).powi(2);
+        let discriminant = b * b - q;
+        discriminant > 0.0 && b + discriminant.sqrt() > bias && b + discriminant.sqrt() < range
+    })
+}
+
+#[test]
+fn answers_equal_those_of_every_ball_tried_in_turn() {
+    let balls = random_balls(3000);
+    let targets = random_points(11, 4000, 100.0);
+    let eyes = random_points(12, 4000, 100.0);
+    for bias in [0.0, 0.25] {
+        let scene = MedialScene::new(&balls, Profile::Sphere, bias).unwrap();
+        let pairs = scene.visible(Viewer::Each(&eyes), &targets).unwrap();
+        let eye = [50.3, 48.0, 130.0];
+        let from_eye = scene.visible(Viewer::Eye(eye), &targets).unwrap();
+        let mut blocked = 0;
+        for (i, &target) in targets.iter().enumerate() {
+            let expected = brute_force(&balls, target, eyes[i].map(f64::from), bias);
+            blocked += usize::from(expected);
+            assert_eq!(pairs[i] == Answer::Blocked, expected, "pair {i}");
+            assert_eq!(from_eye[i] == Answer::Blocked, brute_force(&balls, target, eye, bias), "target {i}");
+        }
+        assert!((400..3600).contains(&blocked), "both answers must occur: {blocked}");
+    }
+}
+
+#[test]
+fn a_direction_is_an_eye_very_far_away() {
+    let balls = random_balls(2000);
+    let targets = random_points(21, 5000, 100.0);
+    let scene = MedialScene::new(&balls, Profile::Sphere, 0.1).unwrap();
+    for direction in [[0.3, -0.5, 0.4], [0.0, 0.0, 1.0], [-1.0, -0.0, 0.0]] {
+        let far = scene.visible(Viewer::Eye(direction.map(|v: f64| 50.0 + 1e9 * v)), &targets).unwrap();
+        let parallel = scene.visible(Viewer::Direction(direction), &targets).unwrap();
+        // lines that differ by 1e-7 rad part at edges of balls only
+        let differ = far.iter().zip(&parallel).filter(|(a, b)| a != b).count();
+        assert!(differ <= 1, "{differ} of {} differ along {direction:?}", targets.len());
+        assert!(parallel.contains(&Answer::Blocked) && parallel.contains(&Answer::Visible));
+    }
+}
+
+#[test]
+fn the_cone_hides_less_than_the_sphere_by_the_depth_between_them() {
+    // ball of radius 2 at the origin, seen from above; at 1 m beside the axis the sphere's top is at √3, the cone's at 1
+    let one = balls(vec![[0.0; 3]], vec![2.0]);
+    let sphere = MedialScene::new(&one, Profile::Sphere, 0.0).unwrap();
+    let cone = MedialScene::new(&one, Profile::PaperCone, 0.0).unwrap();
+    let up = Viewer::Direction([0.0, 0.0, 1.0]);
+    let targets = [[1.0, 0.0, 0.99], [1.0, 0.0, 1.01], [1.0, 0.0, 1.73], [1.0, 0.0, 1.74], [2.01, 0.0, -5.0]];
+    let (blocked, visible) = (Answer::Blocked, Answer::Visible);
+    assert_eq!(sphere.visible(up, &targets).unwrap(), [blocked, blocked, blocked, visible, visible]);
+    assert_eq!(cone.visible(up, &targets).unwrap(), [blocked, visible, visible, visible, visible]);
+}
+
+#[test]
+fn balls_that_hold_the_viewer_lie_behind_it_or_never_shrank_hide_nothing() {
+    let mut three = balls(vec![[0.0; 3], [20.0, 0.0, 0.0], [10.0, 0.0, 0.0]], vec![2.0, 3.0, 1.0]);
+    three.touch[2] = NO_TOUCH;
+    let scene = MedialScene::new(&three, Profile::Sphere, 0.0).unwrap();
+    let target = [[5.0, 0.0, 0.0]];
+    for (eye, expected) in [
+        ([1.0, 0.0, 0.0], Answer::Visible),  // within the first ball
+        ([15.0, 0.0, 0.0], Answer::Visible), // beyond the one that never shrank
+        ([-3.0, 0.0, 0.0], Answer::Blocked), // beyond the first ball
+        ([5.0, 0.0, 0.0], Answer::OutsideView),
+    ] {
+        assert_eq!(scene.visible(Viewer::Eye(eye), &target).unwrap(), [expected], "eye at {eye:?}");
+    }
+}
+
+#[test]
+fn answers_are_the_same_for_any_number_of_threads() {
+    let (balls, targets) = (random_balls(2000), random_points(31, 20_000, 100.0));
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let scene = MedialScene::new(&balls, Profile::Sphere, 0.1).unwrap();
+            scene.visible(Viewer::Direction([0.4, 0.3, 0.5]), &targets).unwrap()
+        })
+    };
+    let one = run(1);
+    assert!(one.contains(&Answer::Blocked) && one.contains(&Answer::Visible));
+    assert!(one == run(2) && one == run(7));
+}
+
+#[test]
+fn what_cannot_be_looked_at_is_said() {
+    let scene = MedialScene::new(&random_balls(10), Profile::Sphere, 0.0).unwrap();
+    let targets = [[f32::NAN, 0.0, 0.0], [1.0, 2.0, 3.0]];
+    let answers = scene.visible(Viewer::Direction([0.0, 0.0, 1.0]), &targets).unwrap();
+    assert_eq!(answers[0], Answer::OutsideView);
+    assert!(scene.visible(Viewer::Direction([0.0; 3]), &targets).is_err());
+    assert!(scene.visible(Viewer::Eye([f64::NAN, 0.0, 0.0]), &targets).is_err());
+    assert!(scene.visible(Viewer::Each(&targets[..1]), &targets).is_err());
+    let empty = MedialScene::new(&MedialBalls::default(), Profile::Sphere, 0.0).unwrap();
+    assert_eq!(empty.visible(Viewer::Eye([0.0; 3]), &targets[1..]).unwrap(), [Answer::Visible]);
+}
+
+#[test]
+fn the_index_proposes_every_box_that_a_ray_meets() {
+    let low = random_points(41, 3000, 50.0);
+    let boxes: Vec<[[f32; 3]; 2]> =
+        low.iter().zip(random_points(42, 3000, 2.0)).map(|(&l, s)| [l, std::array::from_fn(|i| l[i] + s[i])]).collect();
+    let index = RayIndex::new(&boxes).unwrap();
+    let starts = random_points(43, 300, 60.0);
+    let ends = random_points(44, 300, 60.0);
+    for (i, (start, end)) in starts.iter().zip(&ends).enumerate() {
+        let (start, end) = (start.map(f64::from), end.map(f64::from));
+        let mut direction: [f64; 3] = std::array::from_fn(|i| end[i] - start[i]);
+        if i % 3 == 0 {
+            // along an axis, where slabs divide by zero
+            direction = [-0.0, 0.0, if i % 2 == 0 { -1.0 } else { 1.0 }];
+        }
+        let ray = Ray::new(start, direction, [0.0, 30.0]).unwrap();
+        let range = |corners: &[[f32; 3]; 2]| {
+            let (mut from, mut to) = (0.0, 30.0);
+            for axis in 0..3 {
+                let (l, h) = (f64::from(corners[0][axis]), f64::from(corners[1][axis]));
+                if ray.direction[axis] == 0.0 {
+                    if ray.origin[axis] < l || ray.origin[axis] > h {
+                        return None;
+                    }
+                } else {
+                    let (a, b) =
+                        ((l - ray.origin[axis]) / ray.direction[axis], (h - ray.origin[axis]) / ray.direction[axis]);
+                    from = f64::max(from, a.min(b));
+                    to = f64::min(to, a.max(b));
+                }
+            }
+            (from <= to).then_some(from)
+        };
+        let expected: Vec<usize> = (0..boxes.len()).filter(|&b| range(&boxes[b]).is_some()).collect();
+        let mut proposed = Vec::new();
+        index.each(&ray, |row| proposed.push(index.order()[row] as usize));
+        assert!(expected.iter().all(|b| proposed.contains(b)), "ray {i}");
+        assert_eq!(index.any(&ray, |row| range(&boxes[index.order()[row] as usize]).is_some()), !expected.is_empty());
+        let nearest = index.nearest(&ray, |row| range(&boxes[index.order()[row] as usize])).map(|(_, r)| r);
+        let least = expected.iter().filter_map(|&b| range(&boxes[b])).reduce(f64::min);
+        assert_eq!(nearest, least, "ray {i}");
+    }
+}
