@@ -4,6 +4,9 @@
 
 use belvedere::{Mesh, PointCloud};
 
+pub mod agreement;
+pub mod medial;
+
 /// What the methods may use of a place: nothing a survey would not deliver.
 #[derive(Clone, Copy)]
 pub struct Survey<'a> {

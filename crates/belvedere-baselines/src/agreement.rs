@@ -1,0 +1,256 @@
+//! How right answers are: counts against the truth, rates, and how sure the rates are.
+
+use belvedere::query::Answer;
+use belvedere::random::uniform;
+
+/// Answers for targets of known truth, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Blocked in truth and answered so.
+    pub blocked: u64,
+    /// Blocked in truth, answered visible.
+    pub false_visible: u64,
+    /// Visible in truth and answered so.
+    pub visible: u64,
+    /// Visible in truth, answered blocked.
+    pub false_blocked: u64,
+    /// Neither answered visible nor blocked.
+    pub unproven: u64,
+}
+
+impl Counts {
+    /// Counts one answer.
+    pub fn add(&mut self, visible_in_truth: bool, answer: Answer) {
+        let count = match (answer, visible_in_truth) {
+            (Answer::Blocked, false) => &mut self.blocked,
+            (Answer::Visible, false) => &mut self.false_visible,
+            (Answer::Visible, true) => &mut self.visible,
+            (Answer::Blocked, true) => &mut self.false_blocked,
+            _ => &mut self.unproven,
+        };
+        *count += 1;
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            blocked: self.blocked + other.blocked,
+            false_visible: self.false_visible + other.false_visible,
+            visible: self.visible + other.visible,
+            false_blocked: self.false_blocked + other.false_blocked,
+            unproven: self.unproven + other.unproven,
+        }
+    }
+}
+
+/// A rate derived from [`Counts`]. Targets without an answer enter [`Rate::Unproven`] only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rate {
+    /// Share of the visible that is called blocked.
+    FalseBlocked,
+    /// Share of the blocked that is called visible.
+    FalseVisible,
+    /// Mean of the shares of the visible and of the blocked that are called so.
+    Balanced,
+    /// Intersection over union of the blocked class: right blocked over all that is blocked in truth or by answer.
+    BlockedIou,
+    /// Share of all targets without an answer.
+    Unproven,
+}
+
+impl Rate {
+    /// Every rate.
+    pub const ALL: [Self; 5] =
+        [Self::FalseBlocked, Self::FalseVisible, Self::Balanced, Self::BlockedIou, Self::Unproven];
+
+    /// The rate, 0 to 1, or `None` where nothing of the kind was asked.
+    #[must_use]
+    pub fn of(self, counts: &Counts) -> Option<f64> {
+        let share = |part: u64, whole: u64| (whole > 0).then(|| part as f64 / whole as f64);
+        let visible = counts.visible + counts.false_blocked;
+        let blocked = counts.blocked + counts.false_visible;
+        match self {
+            Self::FalseBlocked => share(counts.false_blocked, visible),
+            Self::FalseVisible => share(counts.false_visible, blocked),
+            Self::Balanced => Some((share(counts.visible, visible)? + share(counts.blocked, blocked)?) / 2.0),
+            Self::BlockedIou => share(counts.blocked, blocked + counts.false_blocked),
+            Self::Unproven => share(counts.unproven, visible + blocked + counts.unproven),
+        }
+    }
+}
+
+/// A rate averaged over views, and where it would lie for other targets of the same kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Mean over the views.
+    pub value: f64,
+    /// 2.5 % of resampled means lie below.
+    pub low: f64,
+    /// 2.5 % of resampled means lie above.
+    pub high: f64,
+}
+
+/// Which tile of the plan each target lies in, numbered from 0, and how many tiles there are.
+#[derive(Clone, Debug)]
+pub struct Tiles {
+    /// Tile of each target, (M).
+    pub of_target: Vec<u32>,
+    /// Tiles in all.
+    pub count: usize,
+}
+
+impl Tiles {
+    /// Square tiles of `side` metres under `targets`, (M, 3) local metres. Targets that are not finite share a tile.
+    #[must_use]
+    pub fn new(targets: &[[f32; 3]], side: f32) -> Self {
+        let mut numbers = std::collections::BTreeMap::new();
+        let cells: Vec<[i64; 2]> = targets
+            .iter()
+            .map(|p| {
+                #[expect(clippy::cast_possible_truncation, reason = "`as` saturates, and NaN becomes 0")]
+                [0, 1].map(|axis| (p[axis] / side).floor() as i64)
+            })
+            .collect();
+        for &cell in &cells {
+            numbers.insert(cell, 0_u32);
+        }
+        for (number, tile) in (0..).zip(numbers.values_mut()) {
+            *tile = number;
+        }
+        let of_target = cells.iter().map(|cell| numbers.get(cell).copied().unwrap_or(0)).collect();
+        Self { of_target, count: numbers.len() }
+    }
+}
+
+/// The counts of one view, tile by tile.
+///
+/// `truth`, (M), is `None` for targets that are not scored.
+#[must_use]
+pub fn count_by_tile(tiles: &Tiles, truth: &[Option<bool>], answers: &[Answer]) -> Vec<Counts> {
+    let mut counts = vec![Counts::default(); tiles.count];
+    for ((&tile, &visible), &answer) in tiles.of_target.iter().zip(truth).zip(answers) {
+        if let (Some(visible), Some(counts)) = (visible, counts.get_mut(tile as usize)) {
+            counts.add(visible, answer);
+        }
+    }
+    counts
+}
+
+/// Resamples of tiles that an interval rests on.
+const RESAMPLES: u64 = 400;
+
+/// The mean of `rate` over `views`, each given by the counts of the same tiles, with its 95 % interval; `None` where no
+/// view has the rate.
+///
+/// Whole tiles are drawn with replacement, the same in every view, because errors come in patches: one wrong ball or
+/// one missing tree spoils all targets around it, and targets resampled one by one would look far more certain than they
+/// are.
+///
+/// # Source
+/// Efron & Tibshirani 1993, chapter 13 (percentile intervals); blocks as in Künsch 1989.
+#[must_use]
+pub fn interval(views: &[Vec<Counts>], rate: Rate, seed: u64) -> Option<Interval> {
+    let tile_count = views.iter().map(Vec::len).min()?;
+    let mean = |weights: Option<&[u32]>| {
+        let rates = views.iter().filter_map(|tiles| {
+            let total = tiles.iter().take(tile_count).enumerate().fold(Counts::default(), |total, (tile, counts)| {
+                let times = weights.map_or(1, |weights| u64::from(weights[tile]));
+                total.plus(Counts {
+                    blocked: counts.blocked * times,
+                    false_visible: counts.false_visible * times,
+                    visible: counts.visible * times,
+                    false_blocked: counts.false_blocked * times,
+                    unproven: counts.unproven * times,
+                })
+            });
+            rate.of(&total)
+        });
+        let (sum, count) = rates.fold((0.0, 0_u32), |(sum, count), rate| (sum + rate, count + 1));
+        (count > 0).then(|| sum / f64::from(count))
+    };
+    let value = mean(None)?;
+    let mut resampled: Vec<f64> = (0..RESAMPLES)
+        .filter_map(|resample| {
+            let mut weights = vec![0_u32; tile_count];
+            for draw in 0..tile_count as u64 {
+                let chosen = uniform(seed, resample * tile_count as u64 + draw) * tile_count as f64;
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to the tile count")]
+                let chosen = chosen as usize;
+                weights[chosen.min(tile_count - 1)] += 1;
+            }
+            mean(Some(&weights))
+        })
+        .collect();
+    resampled.sort_by(f64::total_cmp);
+    let quantile = |share: f64| {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the list")]
+        let index = (share * (resampled.len().max(1) - 1) as f64).round() as usize;
+        resampled.get(index).copied().unwrap_or(value)
+    };
+    Some(Interval { value, low: quantile(0.025), high: quantile(0.975) })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+    use super::*;
+
+    #[test]
+    fn rates_of_a_small_table_are_those_computed_by_hand() {
+        let counts = Counts { blocked: 30, false_visible: 10, visible: 45, false_blocked: 5, unproven: 10 };
+        let rates = Rate::ALL.map(|rate| rate.of(&counts).unwrap());
+        let expected = [0.1, 0.25, 0.825, 30.0 / 45.0, 0.1];
+        assert!(rates.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{rates:?}");
+        let nothing_blocked = Counts { visible: 3, ..Counts::default() };
+        assert_eq!(Rate::FalseVisible.of(&nothing_blocked), None);
+        assert_eq!(Rate::Balanced.of(&nothing_blocked), None);
+        assert_eq!(Rate::FalseBlocked.of(&nothing_blocked), Some(0.0));
+    }
+
+    #[test]
+    fn the_interval_of_independent_tiles_is_that_of_the_binomial() {
+        // 400 tiles with one visible target each, of which 100 are called blocked: 0.25 ± 1.96·√(0.25·0.75/400) = ± 0.0424
+        let tile = |i: u64| Counts {
+            false_blocked: u64::from(i.is_multiple_of(4)),
+            visible: u64::from(!i.is_multiple_of(4)),
+            ..Counts::default()
+        };
+        let views = [(0..400).map(tile).collect::<Vec<_>>()];
+        let found = interval(&views, Rate::FalseBlocked, 1).unwrap();
+        assert!((found.value - 0.25).abs() < 1e-12);
+        // the ends of 400 resamples scatter by about a sixth of the standard error of 0.022
+        assert!((found.low - 0.2076).abs() < 0.012 && (found.high - 0.2924).abs() < 0.012, "{found:?}");
+    }
+
+    #[test]
+    fn errors_in_one_patch_make_a_wide_interval() {
+        let spread: Vec<Counts> =
+            (0..50).map(|_| Counts { false_blocked: 10, visible: 90, ..Counts::default() }).collect();
+        let patch: Vec<Counts> = (0..50)
+            .map(|i| {
+                if i < 5 {
+                    Counts { false_blocked: 100, ..Counts::default() }
+                } else {
+                    Counts { visible: 100, ..Counts::default() }
+                }
+            })
+            .collect();
+        let [spread, patch] = [spread, patch].map(|view| interval(&[view], Rate::FalseBlocked, 1).unwrap());
+        assert!((spread.value - patch.value).abs() < 1e-12);
+        assert!(spread.high - spread.low < 1e-12 && patch.high - patch.low > 0.1, "{spread:?} {patch:?}");
+    }
+
+    #[test]
+    fn views_without_the_rate_do_not_count_and_unscored_targets_do_not_either() {
+        let tiles = Tiles::new(&[[0.0, 0.0, 0.0], [1.0, 0.0, 5.0], [30.0, 0.0, 0.0]], 25.0);
+        assert_eq!((tiles.of_target.as_slice(), tiles.count), ([0, 0, 1].as_slice(), 2));
+        let (v, b) = (Answer::Visible, Answer::Blocked);
+        let view = count_by_tile(&tiles, &[Some(true), None, Some(true)], &[b, b, v]);
+        assert_eq!(view[0], Counts { false_blocked: 1, ..Counts::default() });
+        let all_blocked = count_by_tile(&tiles, &[Some(false); 3], &[b, b, Answer::OutsideView]);
+        let found = interval(&[view.clone(), all_blocked.clone()], Rate::FalseBlocked, 3).unwrap();
+        assert!((found.value - 0.5).abs() < 1e-12);
+        let unproven = interval(&[all_blocked], Rate::Unproven, 3).unwrap();
+        assert!((unproven.value - 1.0 / 3.0).abs() < 1e-12);
+        assert_eq!(interval(&[], Rate::Balanced, 1), None);
+    }
+}

@@ -1,0 +1,244 @@
+//! Sets of targets whose visibility is worth asking for, and the viewers to ask from.
+
+use crate::random::Random;
+use crate::scene::{Material, Scene};
+use crate::truth::{CONTACT, Truth};
+use crate::vector::{add_scaled, cross, length, scale, sub, unit};
+use rayon::prelude::*;
+
+/// A kind of target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum QuerySet {
+    /// Anywhere in a box: the experiment of Peters, Ledoux & Biljecki 2015. It flatters every method, because what lies
+    /// within the ground or a building is blocked anyway.
+    Volume,
+    /// As [`QuerySet::Volume`], but in free air.
+    Air,
+    /// 1.5 m above the ground, in free air: chests of people, under decks and crowns too.
+    Pedestrians,
+    /// 0.1 m above the ground, in free air.
+    Ground,
+    /// 0.1 m outside roofs.
+    Roofs,
+    /// 0.1 m outside walls.
+    Facades,
+    /// Eyes 1.6 m above the ground that look at each other, as many pairs in each class of length.
+    LinesOfSight,
+}
+
+impl QuerySet {
+    /// Every kind.
+    pub const ALL: [Self; 7] =
+        [Self::Volume, Self::Air, Self::Pedestrians, Self::Ground, Self::Roofs, Self::Facades, Self::LinesOfSight];
+
+    /// Short name for tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Volume => "VOL",
+            Self::Air => "AIR",
+            Self::Pedestrians => "PED",
+            Self::Ground => "GRD",
+            Self::Roofs => "ROOF",
+            Self::Facades => "FACADE",
+            Self::LinesOfSight => "LOS",
+        }
+    }
+}
+
+/// Heights above the ground and distances from surfaces, metres.
+const CHEST: f64 = 1.5;
+const EYE: f64 = 1.6;
+const ABOVE_ROOF: f64 = 6.0;
+const OFF_SURFACE: f64 = 0.1;
+/// Bounds of the classes of length that lines of sight are drawn in, metres.
+const SIGHT_LENGTHS: [f64; 5] = [5.0, 25.0, 50.0, 100.0, 200.0];
+/// Least distance between two surfaces that a ray crosses for both to count, metres: an edge or a doubled face is one.
+const SAME_SURFACE: f64 = 1e-4;
+/// Crossings after which a ray is given up; no place has so many floors.
+const MOST_CROSSINGS: usize = 64;
+/// Draws tried for each target wanted, so that a scene without free ground ends.
+const DRAWS_PER_TARGET: u64 = 64;
+
+/// Where targets are looked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Site<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Its index.
+    pub truth: &'a Truth,
+    /// Lowest and highest corner of the box that targets lie in, absolute, metres: the box of the cloud.
+    pub bounds: [[f64; 3]; 2],
+}
+
+/// Targets of one kind.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Targets {
+    /// Positions, (M, 3), absolute, metres.
+    pub positions: Vec<[f64; 3]>,
+    /// The other end of each line of sight, (M, 3), for [`QuerySet::LinesOfSight`]; empty otherwise.
+    pub eyes: Vec<[f64; 3]>,
+}
+
+impl Site<'_> {
+    /// `count` targets of a kind, fewer where the place has no room for them (no roof, say).
+    ///
+    /// Every target draws from its own stream of `seed`, so that a longer list begins with the shorter one, whatever the
+    /// number of threads. Free air is what [`Site::is_inside`] denies.
+    #[must_use]
+    pub fn targets(&self, set: QuerySet, count: usize, seed: u64) -> Targets {
+        let surfaces = match set {
+            QuerySet::Roofs => SurfaceSampler::new(self.scene, Material::Roof),
+            QuerySet::Facades => SurfaceSampler::new(self.scene, Material::Facade),
+            _ => SurfaceSampler::default(),
+        };
+        let draw = |number: usize| {
+            let mut random = Random::new(seed, ((set as u64) << 48) | number as u64);
+            (0..DRAWS_PER_TARGET).find_map(|_| match set {
+                QuerySet::Volume => Some((self.anywhere(&mut random), None)),
+                QuerySet::Air => Some((self.anywhere(&mut random), None)).filter(|&(p, _)| !self.is_inside(p)),
+                QuerySet::Pedestrians => self.above_ground(CHEST, &mut random).map(|p| (p, None)),
+                QuerySet::Ground => self.above_ground(OFF_SURFACE, &mut random).map(|p| (p, None)),
+                QuerySet::Roofs | QuerySet::Facades => {
+                    let p = surfaces.draw(self.scene, &mut random)?;
+                    let in_bounds = (0..2).all(|i| (self.bounds[0][i]..=self.bounds[1][i]).contains(&p[i]));
+                    (in_bounds && !self.is_inside(p)).then_some((p, None))
+                }
+                QuerySet::LinesOfSight => {
+                    let class = number % (SIGHT_LENGTHS.len() - 1);
+                    self.line_of_sight(SIGHT_LENGTHS[class], SIGHT_LENGTHS[class + 1], &mut random)
+                }
+            })
+        };
+        let drawn: Vec<_> = (0..count).into_par_iter().filter_map(draw).collect();
+        Targets {
+            positions: drawn.iter().map(|&(position, _)| position).collect(),
+            eyes: drawn.iter().filter_map(|&(_, eye)| eye).collect(),
+        }
+    }
+
+    /// Whether `point` lies within a solid or below the terrain.
+    ///
+    /// Straight above the point, each surface left from within counts one more, each entered one less: the winding number
+    /// of the closed solids (and of the ground) around it, which overlapping solids do not confuse. Triangles must be
+    /// counter-clockwise seen from outside.
+    #[must_use]
+    pub fn is_inside(&self, point: [f64; 3]) -> bool {
+        let up = [0.0, 0.0, 1.0];
+        self.crossings(point, up).map(|(_, facing)| if facing > 0.0 { 1 } else { -1 }).sum::<i32>() > 0
+    }
+
+    /// Height of the terrain at absolute (x, y), metres, or `None` beyond its rim. The highest, where there are several.
+    #[must_use]
+    pub fn ground_height(&self, [x, y]: [f64; 2]) -> Option<f64> {
+        let top = self.bounds[1][2].max(self.scene_top()) + 1.0;
+        self.crossings([x, y, top], [0.0, 0.0, -1.0])
+            .find(|&(hit, _)| self.scene.materials.get(hit.triangle as usize) == Some(&Material::Terrain))
+            .map(|(hit, _)| top - hit.range)
+    }
+
+    /// Two observers: a person's eyes in the open near the middle of the place, and 6 m above its highest roof, absolute,
+    /// metres. The first is missing where no ground is free, the second where there is no roof.
+    #[must_use]
+    pub fn observers(&self, seed: u64) -> [Option<[f64; 3]>; 2] {
+        let [low, high] = self.bounds;
+        let middle = [0, 1].map(|i| (low[i] + high[i]) / 2.0);
+        let reach = [0, 1].map(|i| (high[i] - low[i]) / 6.0);
+        let mut random = Random::new(seed, u64::MAX);
+        let street = (0..1000).find_map(|_| {
+            let at = [0, 1].map(|i| middle[i] + random.between(-reach[i], reach[i]));
+            let eye = self.standing_at(at, EYE)?;
+            // under the open sky and with room to step: not in a hedge, a passage or a car
+            let free = (0..16).all(|i| {
+                let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 16.0).sin_cos();
+                self.truth.first_hit(eye, [cos, sin, 0.0], 1.5).is_none()
+            });
+            (free && !self.truth.occluded_towards(eye, [0.0, 0.0, 1.0])).then_some(eye)
+        });
+        let highest = (0..self.scene.triangles.len())
+            .filter(|&t| self.scene.materials.get(t) == Some(&Material::Roof))
+            .filter_map(|t| self.scene.corners(t))
+            .map(|[a, b, c]| scale([a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]], 1.0 / 3.0))
+            .filter(|p| (0..2).all(|i| (low[i]..=high[i]).contains(&p[i])))
+            .max_by(|a, b| a[2].total_cmp(&b[2]));
+        [street, highest.map(|p| [p[0], p[1], p[2] + ABOVE_ROOF])]
+    }
+
+    fn scene_top(&self) -> f64 {
+        self.scene.bounds().map_or(0.0, |(_, high)| high[2])
+    }
+
+    /// Surfaces along a ray, nearest first, and whether each faces along it (positive: left from within).
+    fn crossings(&self, origin: [f64; 3], direction: [f64; 3]) -> impl Iterator<Item = (crate::Hit, f64)> + '_ {
+        let mut passed = CONTACT;
+        std::iter::from_fn(move || {
+            let hit = self.truth.first_hit_between(origin, direction, passed, f64::INFINITY)?;
+            passed = hit.range + SAME_SURFACE;
+            let [a, b, c] = self.scene.corners(hit.triangle as usize)?;
+            Some((hit, crate::vector::dot(cross(sub(b, a), sub(c, a)), direction)))
+        })
+        .take(MOST_CROSSINGS)
+    }
+
+    fn anywhere(&self, random: &mut Random) -> [f64; 3] {
+        let [low, high] = self.bounds;
+        std::array::from_fn(|i| random.between(low[i], high[i]))
+    }
+
+    /// A free point `height` metres above the ground at (x, y).
+    fn standing_at(&self, at: [f64; 2], height: f64) -> Option<[f64; 3]> {
+        let point = [at[0], at[1], self.ground_height(at)? + height];
+        (!self.is_inside(point)).then_some(point)
+    }
+
+    fn above_ground(&self, height: f64, random: &mut Random) -> Option<[f64; 3]> {
+        let [x, y, _] = self.anywhere(random);
+        self.standing_at([x, y], height)
+    }
+
+    fn line_of_sight(&self, shortest: f64, longest: f64, random: &mut Random) -> Option<([f64; 3], Option<[f64; 3]>)> {
+        let target = self.above_ground(EYE, random)?;
+        let (sin, cos) = random.between(0.0, std::f64::consts::TAU).sin_cos();
+        let distance = random.between(shortest, longest);
+        let at = [target[0] + distance * cos, target[1] + distance * sin];
+        let in_bounds = (0..2).all(|i| (self.bounds[0][i]..=self.bounds[1][i]).contains(&at[i]));
+        let eye = in_bounds.then(|| self.standing_at(at, EYE))??;
+        Some((target, Some(eye)))
+    }
+}
+
+/// Triangles of one material, drawn in proportion to their area.
+#[derive(Default)]
+struct SurfaceSampler {
+    triangles: Vec<usize>,
+    /// Area of all triangles up to and including each, m².
+    areas: Vec<f64>,
+}
+
+impl SurfaceSampler {
+    fn new(scene: &Scene, material: Material) -> Self {
+        let mut sampler = Self::default();
+        let mut total = 0.0;
+        for triangle in 0..scene.triangles.len() {
+            let Some([a, b, c]) = scene.corners(triangle) else { continue };
+            let area = length(cross(sub(b, a), sub(c, a))) / 2.0;
+            if scene.materials.get(triangle) == Some(&material) && area > 0.0 && area.is_finite() {
+                total += area;
+                sampler.triangles.push(triangle);
+                sampler.areas.push(total);
+            }
+        }
+        sampler
+    }
+
+    /// A point 0.1 m outside the surface.
+    fn draw(&self, scene: &Scene, random: &mut Random) -> Option<[f64; 3]> {
+        let at = random.uniform() * self.areas.last()?;
+        let chosen = self.areas.partition_point(|&area| area <= at);
+        let [a, b, c] = scene.corners(*self.triangles.get(chosen)?)?;
+        let (root, v) = (random.uniform().sqrt(), random.uniform());
+        let edges = [sub(b, a), sub(c, a)];
+        let on_surface = add_scaled(add_scaled(a, edges[0], root * (1.0 - v)), edges[1], root * v);
+        Some(add_scaled(on_surface, unit(cross(edges[0], edges[1]))?, OFF_SURFACE))
+    }
+}
