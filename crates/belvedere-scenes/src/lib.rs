@@ -22,6 +22,7 @@
 mod airborne;
 mod beam;
 mod flight;
+mod given_model;
 mod obj;
 mod preset;
 mod queries;

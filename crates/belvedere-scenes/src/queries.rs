@@ -51,6 +51,10 @@ const CHEST: f64 = 1.5;
 const EYE: f64 = 1.6;
 const ABOVE_ROOF: f64 = 6.0;
 const OFF_SURFACE: f64 = 0.1;
+/// How far a return may lie from the surface it came from, along its line, metres: ten times the usual noise.
+const RETURN_DEVIATION: f64 = 0.3;
+/// How far outside a surface its own visibility is asked, metres.
+const OUTSIDE: f64 = 0.03;
 /// Bounds of the classes of length that lines of sight are drawn in, metres.
 const SIGHT_LENGTHS: [f64; 5] = [5.0, 25.0, 50.0, 100.0, 200.0];
 /// Least distance between two surfaces that a ray crosses for both to count, metres: an edge or a doubled face is one.
@@ -137,6 +141,25 @@ impl Site<'_> {
             .map(|(hit, _)| top - hit.range)
     }
 
+    /// The surface that a laser return at `point` came from, for a scanner at `scanner`: the crossing of their line that lies
+    /// nearest to the return, its triangle, and a point 3 cm outside it; `None` where no surface lies within 0.3 m of the
+    /// return along the line. All absolute, metres.
+    ///
+    /// What is visible of a cloud's own points is asked of the point outside: the return itself lies behind or before the
+    /// surface by chance.
+    #[must_use]
+    pub fn surface_of_return(&self, scanner: [f64; 3], point: [f64; 3]) -> Option<(crate::Hit, [f64; 3])> {
+        let direction = unit(sub(point, scanner))?;
+        let range = length(sub(point, scanner));
+        let (hit, _) = self
+            .crossings_from(scanner, direction, (range - RETURN_DEVIATION).max(CONTACT))
+            .take_while(|(hit, _)| hit.range <= range + RETURN_DEVIATION)
+            .min_by(|a, b| (a.0.range - range).abs().total_cmp(&(b.0.range - range).abs()))?;
+        let [a, b, c] = self.scene.corners(hit.triangle as usize)?;
+        let normal = unit(cross(sub(b, a), sub(c, a)))?;
+        Some((hit, add_scaled(add_scaled(scanner, direction, hit.range), normal, OUTSIDE)))
+    }
+
     /// Two observers: a person's eyes in the open near the middle of the place, and 6 m above its highest roof, absolute,
     /// metres. The first is missing where no ground is free, the second where there is no roof.
     #[must_use]
@@ -170,7 +193,15 @@ impl Site<'_> {
 
     /// Surfaces along a ray, nearest first, and whether each faces along it (positive: left from within).
     fn crossings(&self, origin: [f64; 3], direction: [f64; 3]) -> impl Iterator<Item = (crate::Hit, f64)> + '_ {
-        let mut passed = CONTACT;
+        self.crossings_from(origin, direction, CONTACT)
+    }
+
+    fn crossings_from(
+        &self,
+        origin: [f64; 3],
+        direction: [f64; 3],
+        mut passed: f64,
+    ) -> impl Iterator<Item = (crate::Hit, f64)> + '_ {
         std::iter::from_fn(move || {
             let hit = self.truth.first_hit_between(origin, direction, passed, f64::INFINITY)?;
             passed = hit.range + SAME_SURFACE;
