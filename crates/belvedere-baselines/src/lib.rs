@@ -5,6 +5,7 @@
 use belvedere::{Mesh, PointCloud};
 
 pub mod agreement;
+pub mod audit;
 pub mod medial;
 
 /// What the methods may use of a place: nothing a survey would not deliver.
