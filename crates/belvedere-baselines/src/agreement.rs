@@ -168,7 +168,7 @@ pub fn interval(views: &[Vec<Counts>], rate: Rate, seed: u64) -> Option<Interval
         (count > 0).then(|| sum / f64::from(count))
     };
     let value = mean(None)?;
-    let mut resampled: Vec<f64> = (0..RESAMPLES)
+    let resampled: Vec<f64> = (0..RESAMPLES)
         .filter_map(|resample| {
             let mut weights = vec![0_u32; tile_count];
             for draw in 0..tile_count as u64 {
@@ -180,13 +180,42 @@ pub fn interval(views: &[Vec<Counts>], rate: Rate, seed: u64) -> Option<Interval
             mean(Some(&weights))
         })
         .collect();
+    Some(percentiles(value, resampled))
+}
+
+/// The mean of the rates of several places, with its 95 % interval. Places are drawn with replacement: they differ more than
+/// the tiles of one do. A single place keeps its own interval; `None` for none.
+#[must_use]
+pub fn over_places(places: &[Interval], seed: u64) -> Option<Interval> {
+    if let [one] = places {
+        return Some(*one);
+    }
+    let values: Vec<f64> = places.iter().map(|place| place.value).collect();
+    let mean = |drawn: &mut dyn Iterator<Item = f64>| drawn.sum::<f64>() / values.len() as f64;
+    let resampled = (0..RESAMPLES).map(|resample| {
+        mean(&mut (0..values.len() as u64).map(|draw| {
+            let chosen = uniform(seed, resample * values.len() as u64 + draw) * values.len() as f64;
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "from 0 to the number of places"
+            )]
+            let chosen = chosen as usize;
+            values[chosen.min(values.len() - 1)]
+        }))
+    });
+    (!values.is_empty()).then(|| percentiles(mean(&mut values.iter().copied()), resampled.collect()))
+}
+
+/// The interval that holds 95 % of `resampled`.
+fn percentiles(value: f64, mut resampled: Vec<f64>) -> Interval {
     resampled.sort_by(f64::total_cmp);
     let quantile = |share: f64| {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the list")]
         let index = (share * (resampled.len().max(1) - 1) as f64).round() as usize;
         resampled.get(index).copied().unwrap_or(value)
     };
-    Some(Interval { value, low: quantile(0.025), high: quantile(0.975) })
+    Interval { value, low: quantile(0.025), high: quantile(0.975) }
 }
 
 #[cfg(test)]
@@ -252,5 +281,15 @@ mod tests {
         let unproven = interval(&[all_blocked], Rate::Unproven, 3).unwrap();
         assert!((unproven.value - 1.0 / 3.0).abs() < 1e-12);
         assert_eq!(interval(&[], Rate::Balanced, 1), None);
+    }
+
+    #[test]
+    fn places_that_differ_widen_the_interval_and_one_place_keeps_its_own() {
+        let at = |value: f64| Interval { value, low: value - 0.01, high: value + 0.01 };
+        assert_eq!(over_places(&[at(0.3)], 1), Some(at(0.3)));
+        assert_eq!(over_places(&[], 1), None);
+        let found = over_places(&[at(0.0), at(0.0), at(0.6)], 1).unwrap();
+        // of the 27 ways to draw three places 8 have none of the third, and 1 has it three times
+        assert!((found.value - 0.2).abs() < 1e-12 && found.low.abs() < 1e-12 && (found.high - 0.6).abs() < 1e-12);
     }
 }

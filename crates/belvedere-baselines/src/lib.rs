@@ -1,20 +1,31 @@
 //! Other ways of answering visibility on point clouds, each a [`belvedere::query::Visibility`], and how right they are.
 //!
 //! Every method gets the same [`Survey`]: what a LAZ file and its trajectory hold, and for some a model.
+//! [`methods::methods`] lists them all, [`agreement`] scores their answers.
 
 use belvedere::{Mesh, PointCloud};
 
 pub mod agreement;
 pub mod audit;
 pub mod medial;
+pub mod methods;
 
-/// What the methods may use of a place: nothing a survey would not deliver.
+/// What the methods may use of a place: nothing that could not be at hand.
 #[derive(Clone, Copy)]
 pub struct Survey<'a> {
     /// The cloud, with the attributes of its file.
     pub cloud: &'a PointCloud,
     /// Local position of the scanner for each point, (N, 3), metres; NaN where unknown. Empty where nothing is known.
     pub scanner: &'a [[f32; 3]],
-    /// A model of the place in metres of its reference system (not local), where one is given.
-    pub model: Option<&'a Mesh>,
+    /// Models of the place, such as a city model.
+    pub models: &'a [Model],
+}
+
+/// A model of a place.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Name in tables and on the command line: lower case, digits and hyphens.
+    pub name: String,
+    /// Its surface, in metres of its reference system (not local).
+    pub mesh: Mesh,
 }

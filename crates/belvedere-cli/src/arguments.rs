@@ -1,6 +1,7 @@
 //! What can be typed: flags as entered. What they build is made in `pipeline` and in each command.
 
 use belvedere::crs::Crs;
+use belvedere_scenes::Preset;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -81,6 +82,11 @@ pub(crate) enum Command {
         after_help = "Answers: 0 blocked, 1 visible, 3 outside the view: beside the picture, or behind the plane of a --viewport (2 is kept for answers not borne out by measured free space).\n\nA ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere query demo/town.laz --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/balls.npz --sun 235,30 --random 10000 -o demo/answers.csv\n  belvedere query demo/balls.npz --direction 0,0,-1 --targets demo/answers.csv -o demo/open-to-the-sky.csv"
     )]
     Query(Query),
+    /// Hold every method against exact answers on the same places: how right each is, and what it costs
+    #[command(
+        after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, or over two observers, with 95 % intervals from resampled tiles of 25 m.\n\nExamples:\n  belvedere compare --extent 80 --targets 2000 --methods paper-cone,belvedere -o compared\n  belvedere compare --presets village,old-town,towers --seeds 1,2,3 -o compared-at-length"
+    )]
+    Compare(Compare),
     /// Print a completion script for a shell
     #[command(after_help = "Example:\n  belvedere completions bash > belvedere.bash")]
     Completions {
@@ -245,6 +251,84 @@ pub(crate) struct Shrinking {
     /// The paper's t_b in degrees [default: 20]
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub(crate) next_angle: Option<f64>,
+}
+
+#[derive(Args)]
+pub(crate) struct Compare {
+    /// Kinds of simulated towns: village, town, old-town, towers, park
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "town", help_heading = "Simulated places")]
+    pub(crate) presets: Vec<PresetChoice>,
+    /// Seeds of the towns and their scans
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1", help_heading = "Simulated places")]
+    pub(crate) seeds: Vec<u64>,
+    /// Side of a town in metres
+    #[arg(long, value_name = "M", default_value_t = 150.0, value_parser = above_zero::<f64>, help_heading = "Simulated places")]
+    pub(crate) extent: f64,
+    /// Pulses per m² and flight strip
+    #[arg(long, value_name = "N", default_value_t = 4.0, value_parser = above_zero::<f64>, help_heading = "Simulated places")]
+    pub(crate) density: f64,
+    /// Point clouds of a place of your own, in place of simulated ones
+    #[arg(long, value_name = "CLOUD", num_args = 1.., help_heading = "A place of your own")]
+    pub(crate) scene: Vec<PathBuf>,
+    /// Its exact surface, triangles counter-clockwise seen from outside (.obj .ply .json)
+    #[arg(long, value_name = "MESH", requires = "scene", help_heading = "A place of your own")]
+    pub(crate) mesh: Option<PathBuf>,
+    /// Where the scanner was (.csv .txt .sbet); without it normals are turned upward, and the cloud's own points are not asked
+    #[arg(long, value_name = "FILE", requires = "scene", help_heading = "A place of your own")]
+    pub(crate) trajectory: Option<PathBuf>,
+    /// A city model, or a surface reconstructed elsewhere, to trace as another method; may be repeated
+    #[arg(long, value_name = "NAME=MESH", requires = "scene", help_heading = "A place of your own")]
+    pub(crate) model: Vec<NamedFile>,
+    /// Only these methods, by the beginnings of their names [default: all]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', help_heading = "Questions")]
+    pub(crate) methods: Vec<String>,
+    /// Targets of each kind
+    #[arg(long, value_name = "N", default_value_t = 50_000, value_parser = target_count, help_heading = "Questions")]
+    pub(crate) targets: usize,
+    /// Folder for report.html, report.md, results and pictures; made if it is not there
+    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
+    pub(crate) output: PathBuf,
+    /// Also put the tables into this Markdown page, between its lines `<!-- tables -->` and `<!-- end of tables -->`
+    #[arg(long, value_name = "FILE", help_heading = "Result")]
+    pub(crate) page: Option<PathBuf>,
+}
+
+impl Compare {
+    /// Whether a method was asked for.
+    pub(crate) fn wants(&self, key: &str) -> bool {
+        self.methods.is_empty() || self.methods.iter().any(|start| key.starts_with(start.as_str()))
+    }
+}
+
+#[derive(Clone, Copy)]
+pub(crate) struct PresetChoice(pub(crate) Preset);
+
+impl FromStr for PresetChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let names = || Preset::ALL.map(Preset::name).join(", ");
+        let preset = Preset::ALL.into_iter().find(|preset| preset.name() == text);
+        preset.map(Self).ok_or_else(|| format!("use one of {}", names()))
+    }
+}
+
+/// A file under a name of the user's choice.
+#[derive(Clone)]
+pub(crate) struct NamedFile {
+    pub(crate) name: String,
+    pub(crate) file: PathBuf,
+}
+
+impl FromStr for NamedFile {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, file) = text.split_once('=').ok_or("use NAME=FILE")?;
+        let plain = !name.is_empty() && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-');
+        let named = plain.then(|| Self { name: name.to_owned(), file: file.into() });
+        named.ok_or_else(|| "the name may have lower-case letters, digits and hyphens".to_owned())
+    }
 }
 
 /// A cloud to make balls from, or a ball file.

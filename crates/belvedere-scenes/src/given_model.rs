@@ -2,7 +2,7 @@
 
 use crate::scene::{Material, Scene};
 use crate::truth::Truth;
-use crate::vector::{add, cross, scale, sub, unit};
+use crate::vector::{add, scale};
 use rayon::prelude::*;
 
 /// Beginnings of object names, lower case, that say what a thing is.
@@ -49,11 +49,10 @@ impl Scene {
             if let Some(&(_, material)) = NAMED.iter().find(|(start, _)| name.starts_with(start)) {
                 return Some(material);
             }
-            let [a, b, c] = scene.corners(triangle)?;
-            let normal = unit(cross(sub(b, a), sub(c, a)))?;
-            if normal[2].abs() < STEEP {
+            if scene.normal(triangle)?[2].abs() < STEEP {
                 return Some(Material::Facade);
             }
+            let [a, b, c] = scene.corners(triangle)?;
             let middle = scale(add(add(a, b), c), 1.0 / 3.0);
             let covers = truth.occluded_towards(middle, [0.0, 0.0, -1.0]);
             Some(if covers { Material::Roof } else { Material::Terrain })

@@ -3,7 +3,7 @@
 use crate::random::Random;
 use crate::scene::{Material, Scene};
 use crate::truth::{CONTACT, Truth};
-use crate::vector::{add_scaled, cross, length, scale, sub, unit};
+use crate::vector::{add_scaled, cross, dot, length, scale, sub, unit};
 use rayon::prelude::*;
 
 /// A kind of target.
@@ -155,8 +155,7 @@ impl Site<'_> {
             .crossings_from(scanner, direction, (range - RETURN_DEVIATION).max(CONTACT))
             .take_while(|(hit, _)| hit.range <= range + RETURN_DEVIATION)
             .min_by(|a, b| (a.0.range - range).abs().total_cmp(&(b.0.range - range).abs()))?;
-        let [a, b, c] = self.scene.corners(hit.triangle as usize)?;
-        let normal = unit(cross(sub(b, a), sub(c, a)))?;
+        let normal = self.scene.normal(hit.triangle as usize)?;
         Some((hit, add_scaled(add_scaled(scanner, direction, hit.range), normal, OUTSIDE)))
     }
 
@@ -205,8 +204,7 @@ impl Site<'_> {
         std::iter::from_fn(move || {
             let hit = self.truth.first_hit_between(origin, direction, passed, f64::INFINITY)?;
             passed = hit.range + SAME_SURFACE;
-            let [a, b, c] = self.scene.corners(hit.triangle as usize)?;
-            Some((hit, crate::vector::dot(cross(sub(b, a), sub(c, a)), direction)))
+            Some((hit, dot(self.scene.normal(hit.triangle as usize)?, direction)))
         })
         .take(MOST_CROSSINGS)
     }
@@ -235,6 +233,15 @@ impl Site<'_> {
         let in_bounds = (0..2).all(|i| (self.bounds[0][i]..=self.bounds[1][i]).contains(&at[i]));
         let eye = in_bounds.then(|| self.standing_at(at, EYE))??;
         Some((target, Some(eye)))
+    }
+}
+
+impl Scene {
+    /// Outward unit normal of triangle `index`, or `None` where it does not exist or has no area.
+    #[must_use]
+    pub fn normal(&self, index: usize) -> Option<[f64; 3]> {
+        let [a, b, c] = self.corners(index)?;
+        unit(cross(sub(b, a), sub(c, a)))
     }
 }
 
@@ -268,8 +275,7 @@ impl SurfaceSampler {
         let chosen = self.areas.partition_point(|&area| area <= at);
         let [a, b, c] = scene.corners(*self.triangles.get(chosen)?)?;
         let (root, v) = (random.uniform().sqrt(), random.uniform());
-        let edges = [sub(b, a), sub(c, a)];
-        let on_surface = add_scaled(add_scaled(a, edges[0], root * (1.0 - v)), edges[1], root * v);
-        Some(add_scaled(on_surface, unit(cross(edges[0], edges[1]))?, OFF_SURFACE))
+        let on_surface = add_scaled(add_scaled(a, sub(b, a), root * (1.0 - v)), sub(c, a), root * v);
+        Some(add_scaled(on_surface, scene.normal(self.triangles[chosen])?, OFF_SURFACE))
     }
 }

@@ -115,7 +115,7 @@ fn town_section(scene: &Scene, scan: &Scan) -> Summary {
 }
 
 /// The scan as a cloud, as a LAZ file will hold it.
-fn cloud_of(scan: &Scan) -> Result<PointCloud> {
+pub(super) fn cloud_of(scan: &Scan) -> Result<PointCloud> {
     let coordinates = || scan.x.iter().zip(&scan.y).zip(&scan.z).map(|((&x, &y), &z)| [x, y, z]);
     let origin = centre_rounded(coordinates());
     Ok(PointCloud {

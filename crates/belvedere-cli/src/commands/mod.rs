@@ -1,6 +1,7 @@
 //! One file per command.
 
 mod balls;
+mod compare;
 mod demo;
 mod depth_map;
 mod info;
@@ -28,6 +29,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::Balls(arguments) => balls::run(arguments, global),
         Command::DepthMap(arguments) => depth_map::run(arguments, global),
         Command::Query(arguments) => query::run(arguments, global),
+        Command::Compare(arguments) => compare::run(arguments, global),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut Cli::command(), "belvedere", &mut script);

@@ -1,0 +1,226 @@
+//! One method on one place: built, asked, scored, timed.
+
+use super::case::{Case, Set};
+use super::memory::{reset_peak, resident_and_peak_mib};
+use super::results::{AblationRow, AuditRow, Cost, MethodResult, Rated, Score};
+use belvedere::medial::{MedialBalls, NO_TOUCH};
+use belvedere::query::{Answer, Visibility};
+use belvedere_baselines::agreement::{Counts, Interval, Rate, count_by_tile, interval};
+use belvedere_baselines::audit::{Verdict, audit};
+use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward, interior_balls};
+use belvedere_baselines::methods::Method;
+use belvedere_scenes::Material;
+use std::time::Instant;
+
+/// Groups of views that rates are averaged over.
+const GROUPS: [&str; 3] = ["suns", "observers", "pairs"];
+/// The set and the view that pictures show.
+pub(super) const SHOWN_SET: &str = "PED";
+pub(super) const SHOWN_VIEW: usize = 1;
+
+/// What a method answered, for the picture.
+pub(super) struct Shown {
+    pub(super) answers: Vec<Answer>,
+}
+
+/// Builds `method` on `case` and asks it everything.
+pub(super) fn judge(
+    case: &Case,
+    method: &Method<'_>,
+    (place, made_from): (&str, String),
+    seed: u64,
+) -> (MethodResult, Option<Shown>) {
+    let mut result = MethodResult {
+        made_from,
+        place: place.to_owned(),
+        method: method.key.clone(),
+        title: method.title.clone(),
+        page: method.page.to_owned(),
+        failed: None,
+        cost: Cost::default(),
+        scores: Vec::new(),
+    };
+    reset_peak();
+    let before = resident_and_peak_mib();
+    let start = Instant::now();
+    let built = match method.build() {
+        Ok(built) => built,
+        Err(error) => {
+            result.failed = Some(error.to_string());
+            return (result, None);
+        }
+    };
+    result.cost.build_seconds = start.elapsed().as_secs_f64();
+
+    let asked = ask(case, built.as_ref());
+    let views = asked.view_seconds.len().max(1);
+    result.cost.seconds_per_view = asked.view_seconds.iter().sum::<f64>() / views as f64;
+    result.cost.queries_per_second =
+        (asked.query_count > 0).then(|| asked.query_count as f64 / asked.query_seconds.max(1e-9));
+    result.cost.peak_mib = before.zip(resident_and_peak_mib()).map(|([now, _], [_, peak])| (peak - now).max(0.0));
+    drop(built);
+    for set in &case.sets {
+        for group in GROUPS {
+            let answered = asked.answers.iter().filter(|a| a.set == set.name && case.views[a.view].group == group);
+            let (mut views, mut refused) = (Vec::new(), None);
+            for one in answered {
+                match &one.answers {
+                    Ok(answers) => views.push(counts(set, one.view, answers)),
+                    Err(reason) => refused = Some(reason.clone()),
+                }
+            }
+            if views.is_empty() && refused.is_none() {
+                continue;
+            }
+            let rate = |rate| rated(interval(&views, rate, seed));
+            result.scores.push(Score {
+                set: set.name.to_owned(),
+                views: group.to_owned(),
+                targets: set.targets.len(),
+                false_blocked: rate(Rate::FalseBlocked),
+                false_visible: rate(Rate::FalseVisible),
+                balanced: rate(Rate::Balanced),
+                blocked_iou: rate(Rate::BlockedIou),
+                unproven: rate(Rate::Unproven),
+                refused,
+            });
+        }
+    }
+    let shown = asked.answers.into_iter().find(|a| a.set == SHOWN_SET && a.view == SHOWN_VIEW);
+    let shown = shown.and_then(|one| one.answers.ok()).map(|answers| Shown { answers });
+    (result, shown)
+}
+
+/// The answers to one set in one view.
+struct Answered {
+    set: &'static str,
+    view: usize,
+    answers: Result<Vec<Answer>, String>,
+}
+
+struct Asked {
+    answers: Vec<Answered>,
+    view_seconds: Vec<f64>,
+    query_count: usize,
+    query_seconds: f64,
+}
+
+fn ask(case: &Case, method: &dyn Visibility) -> Asked {
+    let mut asked = Asked { answers: Vec::new(), view_seconds: Vec::new(), query_count: 0, query_seconds: 0.0 };
+    for view in 0..case.views.len() {
+        let sets = || case.sets.iter().filter(|set| set.truth.iter().any(|(number, _)| *number == view));
+        let Some(first) = sets().next() else { continue };
+        let start = Instant::now();
+        let sight = method.seen_from(case.viewer(view, first));
+        let seconds = start.elapsed().as_secs_f64();
+        let sight = match sight {
+            Ok(sight) => {
+                asked.view_seconds.push(seconds);
+                sight
+            }
+            Err(error) => {
+                let refused = |set: &Set| Answered { set: set.name, view, answers: Err(error.to_string()) };
+                asked.answers.extend(sets().map(refused));
+                continue;
+            }
+        };
+        for set in sets() {
+            let start = Instant::now();
+            let answers = sight(&set.targets);
+            if answers.is_ok() {
+                asked.query_seconds += start.elapsed().as_secs_f64();
+                asked.query_count += set.targets.len();
+            }
+            let answers = answers.map_err(|error| error.to_string());
+            asked.answers.push(Answered { set: set.name, view, answers });
+        }
+    }
+    asked
+}
+
+fn counts(set: &Set, view: usize, answers: &[Answer]) -> Vec<Counts> {
+    let truth = set.truth.iter().find(|(number, _)| *number == view);
+    truth.map(|(_, truth)| count_by_tile(&set.tiles, truth, answers)).unwrap_or_default()
+}
+
+fn rated(interval: Option<Interval>) -> Option<Rated> {
+    interval.map(|i| [i.value, i.low, i.high])
+}
+
+/// Share of the targets that are blocked in truth, for each set and group of views.
+pub(super) fn blocked_in_truth(case: &Case) -> Vec<(String, String, f64)> {
+    let mut shares = Vec::new();
+    for set in &case.sets {
+        for group in GROUPS {
+            let truths = set.truth.iter().filter(|(view, _)| case.views[*view].group == group);
+            let known: Vec<bool> = truths.flat_map(|(_, truth)| truth.iter().flatten().copied()).collect();
+            if !known.is_empty() {
+                let blocked = known.iter().filter(|visible| !**visible).count();
+                shares.push((set.name.to_owned(), group.to_owned(), blocked as f64 / known.len() as f64));
+            }
+        }
+    }
+    shares
+}
+
+/// Which of the published balls are wrong, by the surface they are tangent at, and what people under the suns would be told
+/// if some of them were left out.
+pub(super) fn audit_published(case: &Case, seed: u64) -> belvedere::Result<(Vec<AuditRow>, Vec<AblationRow>)> {
+    let survey = case.survey();
+    let params = MedialParams::published_with_spheres();
+    let balls = interior_balls(&survey, Outward::Survey, &params)?;
+    let (verdicts, audits) = audit(&balls, &case.cloud.positions, &case.sources, |p| case.is_inside(p));
+    let rows = audits
+        .iter()
+        .map(|(surface, audit)| AuditRow {
+            surface: surface.name().replace('_', " "),
+            balls: audit.count,
+            wrong: audit.wrong,
+            flipped: audit.flipped,
+            tilted: audit.tilted,
+            bulging: audit.bulging(),
+        })
+        .collect();
+
+    let of = |row: usize| case.sources.get(balls.source[row] as usize).copied().flatten().map(|source| source.kind);
+    let mut unions: Vec<(String, Vec<bool>)> = vec![("all".to_owned(), vec![true; balls.len()])];
+    let groups: [(&str, &[Material]); 4] = [
+        ("without those of facades", &[Material::Facade]),
+        ("without those of trees", &[Material::TreeCrown, Material::Trunk, Material::Leaf]),
+        ("without those of slabs and bridges", &[Material::Slab, Material::Bridge]),
+        ("without those of the ground", &[Material::Terrain]),
+    ];
+    for (name, materials) in groups {
+        let kept = (0..balls.len()).map(|row| of(row).is_none_or(|kind| !materials.contains(&kind))).collect();
+        unions.push((name.to_owned(), kept));
+    }
+    let right = verdicts.iter().map(|v| *v == Verdict::Right).collect();
+    unions.push(("only those whose centre lies in a solid (oracle)".to_owned(), right));
+
+    let mut ablation = Vec::new();
+    for (name, kept) in unions {
+        let mut some: MedialBalls = balls.clone();
+        for (touch, kept) in some.touch.iter_mut().zip(&kept) {
+            if !kept {
+                *touch = NO_TOUCH;
+            }
+        }
+        let some = some.shrunk();
+        let number = some.len();
+        let union = MedialBaseline::of_balls(&survey, some, &params)?;
+        let mut views = Vec::new();
+        for set in case.sets.iter().filter(|set| set.name == SHOWN_SET) {
+            for (view, _) in set.truth.iter().filter(|(view, _)| case.views[*view].group == GROUPS[0]) {
+                views.push(counts(set, *view, &union.visible(case.viewer(*view, set), &set.targets)?));
+            }
+        }
+        let rate = |rate| rated(interval(&views, rate, seed));
+        ablation.push(AblationRow {
+            balls: name,
+            number,
+            false_blocked: rate(Rate::FalseBlocked),
+            false_visible: rate(Rate::FalseVisible),
+        });
+    }
+    Ok((rows, ablation))
+}

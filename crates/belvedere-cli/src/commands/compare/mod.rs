@@ -1,0 +1,136 @@
+//! `belvedere compare`: every method on the same places and questions, held against exact answers.
+
+mod case;
+mod judge;
+mod memory;
+mod pictures;
+mod place;
+mod report;
+mod results;
+mod table;
+
+use crate::arguments::{Compare, Global, Usage};
+use crate::progress::Stages;
+use crate::summary::Summary;
+use anyhow::Result;
+use belvedere::io::atomic;
+use belvedere_baselines::methods::methods;
+use case::Case;
+use place::Place;
+use results::{MethodResult, PlaceResult, keep, kept};
+use std::path::Path;
+
+pub(crate) fn run(arguments: &Compare, global: &Global) -> Result<Summary> {
+    if !arguments.scene.is_empty() && arguments.mesh.is_none() {
+        return Err(Usage("--scene needs --mesh, the exact surface that answers are held against".to_owned()).into());
+    }
+    let folder = &arguments.output;
+    atomic::make_folder(folder)?;
+    atomic::make_folder(&folder.join("results"))?;
+    atomic::make_folder(&folder.join("pictures"))?;
+    let mut stages = Stages::new(global);
+    let mut found = report::Found::default();
+    for place in Place::all(arguments) {
+        compare_on(&place, arguments, global, &mut stages, &mut found)?;
+    }
+    found.write(folder, arguments.page.as_deref())?;
+    let mut summary = Summary::default();
+    if global.json {
+        summary.add("results", found.to_json()?);
+    } else if !global.quiet {
+        super::print_raw(found.table().as_bytes())?;
+    }
+    summary.add("look_at", folder.join("report.html").display().to_string());
+    Ok(summary)
+}
+
+/// Judges every method on a place, taking over what an earlier run has found.
+fn compare_on(
+    place: &Place,
+    arguments: &Compare,
+    global: &Global,
+    stages: &mut Stages,
+    found: &mut report::Found,
+) -> Result<()> {
+    let name = place.name();
+    let results = arguments.output.join("results");
+    let version = env!("CARGO_PKG_VERSION");
+    let made_from =
+        format!("belvedere {version}; {}; {} targets; seed {}", place.made_from(), arguments.targets, global.seed);
+    let place_file = results.join(format!("{name}.json"));
+    let listed: Option<PlaceResult> = kept(&place_file, &made_from);
+    let method_file = |key: &str| results.join(format!("{name}--{key}.json"));
+    if let Some(done) = &listed {
+        let all: Option<Vec<MethodResult>> = done
+            .methods
+            .iter()
+            .filter(|key| arguments.wants(key))
+            .map(|key| kept(&method_file(key), &made_from))
+            .collect();
+        if let Some(all) = all {
+            found.places.push(done.clone());
+            found.methods.extend(all);
+            return Ok(());
+        }
+    }
+
+    let ingredients = stages.run("making the place", 0, |_| place.make())?;
+    let case = stages.run("answering exactly", 0, |_| Case::new(ingredients, arguments.targets, global.seed))?;
+    let survey = case.survey();
+    let methods = methods(&survey);
+    let described = match listed {
+        Some(listed) => listed,
+        None => {
+            let described =
+                stages.run("auditing balls", 0, |_| describe(&case, &name, &made_from, &methods, global.seed))?;
+            keep(&place_file, &described)?;
+            described
+        }
+    };
+    found.places.push(described);
+    for method in methods.iter().filter(|method| arguments.wants(&method.key)) {
+        let file = method_file(&method.key);
+        if let Some(result) = kept(&file, &made_from) {
+            found.methods.push(result);
+            continue;
+        }
+        let (result, shown) =
+            stages.run("judging methods", 0, |_| judge::judge(&case, method, (&name, made_from.clone()), global.seed));
+        if global.verbose {
+            crate::summary::note(&format!("{name}: {}", method.title));
+        }
+        if let Some(shown) = shown {
+            let picture = picture_file(&arguments.output, &name, &method.key);
+            pictures::write_errors(&picture, &case, &method.title, &shown.answers)?;
+        }
+        keep(&file, &result)?;
+        found.methods.push(result);
+    }
+    Ok(())
+}
+
+fn describe(
+    case: &Case,
+    name: &str,
+    made_from: &str,
+    methods: &[belvedere_baselines::methods::Method<'_>],
+    seed: u64,
+) -> Result<PlaceResult> {
+    let (low, high) = crate::pipeline::bounds_of(&case.cloud)?;
+    let (audit, ablation) = judge::audit_published(case, seed)?;
+    Ok(PlaceResult {
+        made_from: made_from.to_owned(),
+        place: name.to_owned(),
+        points: case.cloud.len(),
+        area_m2: f64::from(high[0] - low[0]) * f64::from(high[1] - low[1]),
+        triangles: case.triangles,
+        methods: methods.iter().map(|method| method.key.clone()).collect(),
+        blocked_in_truth: judge::blocked_in_truth(case),
+        audit,
+        ablation,
+    })
+}
+
+fn picture_file(folder: &Path, place: &str, method: &str) -> std::path::PathBuf {
+    folder.join("pictures").join(format!("{place}--{method}.png"))
+}

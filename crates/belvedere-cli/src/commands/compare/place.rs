@@ -1,0 +1,120 @@
+//! Places to compare on: simulated towns, or a cloud with its exact mesh.
+
+use super::case::Ingredients;
+use crate::arguments::Compare;
+use crate::commands::demo::cloud_of;
+use anyhow::{Context, Result, bail};
+use belvedere::cloud::to_local;
+use belvedere::io::{ReadOptions, read_cloud, read_mesh, read_trajectory};
+use belvedere::trajectory::Trajectory;
+use belvedere::{Mesh, PointCloud};
+use belvedere_baselines::Model;
+use belvedere_scenes::{AirborneParams, Preset, Scene, scan_airborne, town};
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+
+/// A place by its description.
+pub(super) enum Place {
+    Simulated { preset: Preset, extent: f64, seed: u64, pulses_per_m2: f64 },
+    Given { clouds: Vec<PathBuf>, mesh: PathBuf, trajectory: Option<PathBuf>, models: Vec<(String, PathBuf)> },
+}
+
+impl Place {
+    /// The places asked for.
+    pub(super) fn all(arguments: &Compare) -> Vec<Self> {
+        if let Some(mesh) = &arguments.mesh {
+            let models = arguments.model.iter().map(|m| (m.name.clone(), m.file.clone())).collect();
+            let (clouds, trajectory) = (arguments.scene.clone(), arguments.trajectory.clone());
+            return vec![Self::Given { clouds, mesh: mesh.clone(), trajectory, models }];
+        }
+        let presets = arguments.presets.iter().map(|choice| choice.0);
+        presets
+            .flat_map(|preset| {
+                arguments.seeds.iter().map(move |&seed| Self::Simulated {
+                    preset,
+                    extent: arguments.extent,
+                    seed,
+                    pulses_per_m2: arguments.density,
+                })
+            })
+            .collect()
+    }
+
+    /// Name in tables and file names.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::Simulated { preset, extent, seed, .. } => format!("{}-{extent:.0}m-{seed}", preset.name()),
+            Self::Given { clouds, .. } => file_name(clouds.first().map_or(Path::new("scene"), PathBuf::as_path)),
+        }
+    }
+
+    /// Everything that its results depend on.
+    pub(super) fn made_from(&self) -> String {
+        match self {
+            Self::Simulated { preset, extent, seed, pulses_per_m2 } => {
+                format!("{} {extent} m, seed {seed}, {pulses_per_m2} pulses/m2", preset.name())
+            }
+            Self::Given { clouds, mesh, trajectory, models } => {
+                let files = clouds.iter().chain([mesh]).chain(trajectory).chain(models.iter().map(|(_, file)| file));
+                files.map(|file| state_of(file)).collect::<Vec<_>>().join(", ")
+            }
+        }
+    }
+
+    /// Simulates or reads it.
+    pub(super) fn make(&self) -> Result<Ingredients> {
+        match self {
+            Self::Simulated { preset, extent, seed, pulses_per_m2 } => {
+                let scene = town(&preset.params(*extent, *seed));
+                let params = AirborneParams { seed: *seed, pulses_per_m2: *pulses_per_m2, ..AirborneParams::default() };
+                let scan = scan_airborne(&scene, &params);
+                let cloud = cloud_of(&scan)?;
+                let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
+                let (trajectory, _) = Trajectory::from_records(path.collect());
+                let scanner = scanner_positions(&cloud, &trajectory)?;
+                Ok(Ingredients { cloud, scanner, models: Vec::new(), scene })
+            }
+            Self::Given { clouds, mesh, trajectory, models } => {
+                let (cloud, _) = read_cloud(clouds, &ReadOptions::default())?;
+                let in_metres = |path: &Path| -> Result<Mesh> { Ok(read_mesh(path)?.0.scaled_to_metres(&cloud.crs)) };
+                let mesh = in_metres(mesh)?;
+                let scene = Scene::from_model(mesh.vertices, mesh.triangles, mesh.objects, mesh.object_names);
+                let scanner = match trajectory {
+                    Some(path) => scanner_positions(&cloud, &read_trajectory(path, &cloud.crs)?.0)?,
+                    None => Vec::new(),
+                };
+                let models = models
+                    .iter()
+                    .map(|(name, path)| Ok(Model { name: name.clone(), mesh: in_metres(path)? }))
+                    .collect::<Result<_>>()?;
+                Ok(Ingredients { cloud, scanner, models, scene })
+            }
+        }
+    }
+}
+
+/// A file's name without folder and extension, as a name of its own.
+pub(super) fn file_name(path: &Path) -> String {
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().to_lowercase()).unwrap_or_default();
+    stem.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect()
+}
+
+/// Path, size and time of change of a file.
+pub(super) fn state_of(file: &Path) -> String {
+    let state = std::fs::metadata(file).ok();
+    let changed = state.as_ref().and_then(|m| m.modified().ok());
+    let seconds = changed.and_then(|t| t.duration_since(std::time::UNIX_EPOCH).ok()).map_or(0, |d| d.as_secs());
+    format!("{} ({} bytes, {seconds})", file.display(), state.map_or(0, |m| m.len()))
+}
+
+/// Local position of the scanner for each point, NaN where the trajectory does not know it.
+fn scanner_positions(cloud: &PointCloud, trajectory: &Trajectory) -> Result<Vec<[f32; 3]>> {
+    let times =
+        cloud.attributes.gps_time.as_deref().context("the cloud has no GPS times to match the trajectory with")?;
+    let offset = trajectory.clock_offset_for(times, cloud.attributes.gps_time_kind);
+    if offset.served_count == 0 {
+        bail!("the trajectory knows a position at none of the cloud's GPS times");
+    }
+    let position = |&time: &f64| trajectory.position_at(offset.trajectory_time(time));
+    Ok(times.par_iter().map(|time| position(time).map_or([f32::NAN; 3], |p| to_local(p, cloud.origin))).collect())
+}

@@ -1,0 +1,367 @@
+//! Tables of what was found: as text, Markdown and a page with pictures.
+
+use super::pictures::LEGEND;
+use super::results::{HeldOutResult, MethodResult, PlaceResult, Rated, Score, keep};
+use super::table::Table;
+use anyhow::{Context, Result, bail};
+use belvedere::io::atomic;
+use belvedere_baselines::agreement::{Interval, over_places};
+use serde_json::Value;
+use std::io::Write;
+use std::path::Path;
+
+/// Sets and views that the tables show, with their heading.
+const COLUMNS: [(&str, &str, &str); 12] = [
+    ("AIR", "suns", "AIR sun"),
+    ("PED", "suns", "PED sun"),
+    ("GRD", "suns", "GRD sun"),
+    ("ROOF", "suns", "ROOF sun"),
+    ("FACADE", "suns", "FACADE sun"),
+    ("VOL", "suns", "VOL sun"),
+    ("OWN", "suns", "OWN sun"),
+    ("AIR", "observers", "AIR eye"),
+    ("PED", "observers", "PED eye"),
+    ("FACADE", "observers", "FACADE eye"),
+    ("OWN", "observers", "OWN eye"),
+    ("LOS", "pairs", "LOS"),
+];
+/// Lines between which tables are put into a page.
+const PAGE_MARKS: [&str; 2] = ["<!-- tables -->", "<!-- end of tables -->"];
+/// Seed of the resampling of places.
+const SEED: u64 = 1;
+
+/// Everything that a comparison found.
+#[derive(Default)]
+pub(super) struct Found {
+    pub(super) places: Vec<PlaceResult>,
+    pub(super) methods: Vec<MethodResult>,
+    pub(super) held_out: Vec<HeldOutResult>,
+}
+
+impl Found {
+    /// Writes report.json, report.md and report.html into `folder`, and the tables into `page`.
+    pub(super) fn write(&self, folder: &Path, page: Option<&Path>) -> Result<()> {
+        keep(&folder.join("report.json"), &self.to_json()?)?;
+        let tables = self.tables();
+        let markdown: String = tables.iter().map(Table::to_markdown).collect();
+        write_text(&folder.join("report.md"), &markdown)?;
+        write_text(&folder.join("report.html"), &self.to_html(&tables))?;
+        if let Some(page) = page {
+            let text = std::fs::read_to_string(page).with_context(|| page.display().to_string())?;
+            let parts = text
+                .split_once(PAGE_MARKS[0])
+                .and_then(|(before, rest)| rest.split_once(PAGE_MARKS[1]).map(|(_, after)| (before, after)));
+            let Some((before, after)) = parts else {
+                bail!("{}: no lines {} and {} to put tables between", page.display(), PAGE_MARKS[0], PAGE_MARKS[1]);
+            };
+            let [begin, end] = PAGE_MARKS;
+            write_text(page, &format!("{before}{begin}\n\n{markdown}{end}{after}"))?;
+        }
+        Ok(())
+    }
+
+    /// Everything as JSON.
+    pub(super) fn to_json(&self) -> Result<Value> {
+        Ok(serde_json::json!({
+            "places": serde_json::to_value(&self.places)?,
+            "methods": serde_json::to_value(&self.methods)?,
+            "held_out": serde_json::to_value(&self.held_out)?,
+        }))
+    }
+
+    /// The tables as text for a terminal.
+    pub(super) fn table(&self) -> String {
+        self.tables().iter().map(Table::to_text).collect()
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let mut tables = Vec::new();
+        if !self.methods.is_empty() {
+            tables.extend([self.balanced(), self.errors(), self.costs(), self.place_table(), self.base_rates()]);
+            tables.extend([self.audit(), self.ablation()]);
+        }
+        tables.extend(self.held_out_tables());
+        let refusals = self.refusals();
+        if !refusals.rows.is_empty() {
+            tables.push(refusals);
+        }
+        tables
+    }
+
+    /// Keys and titles of all methods, in the order in which they occur first.
+    fn method_names(&self) -> Vec<(&str, &str)> {
+        let mut names: Vec<(&str, &str)> = Vec::new();
+        for result in &self.methods {
+            if !names.iter().any(|(key, _)| *key == result.method) {
+                names.push((&result.method, &result.title));
+            }
+        }
+        names
+    }
+
+    fn of(&self, method: &str) -> impl Iterator<Item = &MethodResult> {
+        self.methods.iter().filter(move |result| result.method == method)
+    }
+
+    /// A rate of a method on one set and group of views, averaged over places.
+    fn rate(
+        &self,
+        method: &str,
+        (set, views): (&str, &str),
+        pick: impl Fn(&Score) -> Option<Rated>,
+    ) -> Option<Interval> {
+        let scores = self.of(method).flat_map(|r| &r.scores).filter(|s| s.set == set && s.views == views);
+        let rated: Vec<Interval> =
+            scores.filter_map(pick).map(|[value, low, high]| Interval { value, low, high }).collect();
+        over_places(&rated, SEED)
+    }
+
+    fn balanced(&self) -> Table {
+        let headings = COLUMNS.map(|(_, _, heading)| heading);
+        let mut table = Table::new(
+            "Balanced accuracy and IoU of the blocked, %",
+            "Mean over suns (sun) or over two observers (eye), then over places. The second number is the IoU.",
+            [&["method"], headings.as_slice()].concat(),
+        );
+        for (key, title) in self.method_names() {
+            let cells = COLUMNS.map(|(set, views, _)| {
+                let balanced = self.rate(key, (set, views), |s| s.balanced);
+                let iou = self.rate(key, (set, views), |s| s.blocked_iou);
+                pair(balanced.map(|i| i.value), iou.map(|i| i.value))
+            });
+            table.add(title, cells);
+        }
+        table
+    }
+
+    fn errors(&self) -> Table {
+        let shown: Vec<_> = COLUMNS.iter().filter(|(set, ..)| !matches!(*set, "VOL" | "GRD")).collect();
+        let mut table = Table::new(
+            "False-blocked / false-visible, %",
+            "False-blocked: of what is visible, the share called blocked. False-visible: of what is blocked, the share called \
+             visible. In brackets the 95 % interval: of resampled tiles for one place, of resampled places for several.",
+            [vec!["method"], shown.iter().map(|(_, _, heading)| *heading).collect()].concat(),
+        );
+        for (key, title) in self.method_names() {
+            let cells = shown.iter().map(|(set, views, _)| {
+                let blocked = self.rate(key, (set, views), |s| s.false_blocked);
+                let visible = self.rate(key, (set, views), |s| s.false_visible);
+                match (blocked, visible) {
+                    (None, None) => "–".to_owned(),
+                    _ => format!("{} / {}", with_interval(blocked), with_interval(visible)),
+                }
+            });
+            table.add(title, cells);
+        }
+        table
+    }
+
+    fn costs(&self) -> Table {
+        let mut table = Table::new(
+            "Cost",
+            "Building once, preparing a view (mean), answering (all threads), and peak memory above that of the place itself; \
+             means over places. No answer: share of AIR targets under the suns.",
+            vec!["method", "build s", "view s", "million queries/s", "peak MiB", "no answer %"],
+        );
+        for (key, title) in self.method_names() {
+            let mean = |pick: &dyn Fn(&MethodResult) -> Option<f64>| {
+                let values: Vec<f64> = self.of(key).filter_map(pick).collect();
+                (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+            };
+            let cell = |value: Option<f64>, digits: usize| value.map_or("–".to_owned(), |v| format!("{v:.digits$}"));
+            let built = |r: &MethodResult| r.failed.is_none();
+            let unproven = self.rate(key, ("AIR", "suns"), |s| s.unproven);
+            table.add(
+                title,
+                [
+                    cell(mean(&|r| built(r).then_some(r.cost.build_seconds)), 2),
+                    cell(mean(&|r| built(r).then_some(r.cost.seconds_per_view)), 2),
+                    cell(mean(&|r| r.cost.queries_per_second.map(|q| q / 1e6)), 2),
+                    cell(mean(&|r| r.cost.peak_mib), 0),
+                    cell(unproven.map(|i| 100.0 * i.value), 1),
+                ],
+            );
+        }
+        table
+    }
+
+    fn place_table(&self) -> Table {
+        let headings = vec!["place", "points", "points/m²", "triangles of the truth"];
+        let mut table = Table::new("Places", "", headings);
+        for place in &self.places {
+            let density = place.points as f64 / place.area_m2.max(1e-9);
+            table.add(&place.place, [place.points.to_string(), format!("{density:.1}"), place.triangles.to_string()]);
+        }
+        table
+    }
+
+    fn base_rates(&self) -> Table {
+        let mut table = Table::new(
+            "What is blocked in truth, %",
+            "A method that calls everything blocked is right this often.",
+            [vec!["place"], COLUMNS.map(|(_, _, heading)| heading).to_vec()].concat(),
+        );
+        for place in &self.places {
+            let cells = COLUMNS.map(|(set, views, _)| {
+                let share = place.blocked_in_truth.iter().find(|(s, v, _)| s == set && v == views);
+                share.map_or("–".to_owned(), |(_, _, share)| percent(*share))
+            });
+            table.add(&place.place, cells);
+        }
+        table
+    }
+
+    fn audit(&self) -> Table {
+        let mut table = Table::new(
+            "Which balls of the published method are wrong, and why",
+            "A ball is wrong if its centre lies in free air. Flipped: its normal points into the solid. Tilted: the normal is off \
+             by 30° to 90°. Bulging: the normal is good, but the ball grew out through surface that no point marks. Shares of \
+             the balls of that surface; all places together.",
+            vec!["tangent at", "balls", "wrong %", "flipped %", "tilted %", "bulging %"],
+        );
+        let mut surfaces: Vec<&str> = Vec::new();
+        for row in self.places.iter().flat_map(|place| &place.audit) {
+            if !surfaces.contains(&row.surface.as_str()) {
+                surfaces.push(&row.surface);
+            }
+        }
+        for surface in surfaces {
+            let rows = || self.places.iter().flat_map(|p| &p.audit).filter(|row| row.surface == surface);
+            let balls: usize = rows().map(|row| row.balls).sum();
+            let share = |count: usize| percent(count as f64 / balls.max(1) as f64);
+            table.add(
+                surface,
+                [
+                    balls.to_string(),
+                    share(rows().map(|row| row.wrong).sum()),
+                    share(rows().map(|row| row.flipped).sum()),
+                    share(rows().map(|row| row.tilted).sum()),
+                    share(rows().map(|row| row.bulging).sum()),
+                ],
+            );
+        }
+        table
+    }
+
+    fn ablation(&self) -> Table {
+        let mut table = Table::new(
+            "The published balls with some of them left out: pedestrians under the suns, %",
+            "As spheres, cut exactly; means over places.",
+            vec!["balls", "number", "false-blocked", "false-visible"],
+        );
+        let Some(first) = self.places.first() else { return table };
+        for name in first.ablation.iter().map(|row| row.balls.as_str()) {
+            let rows: Vec<_> =
+                self.places.iter().flat_map(|place| &place.ablation).filter(|row| row.balls == name).collect();
+            let mean = |pick: &dyn Fn(&super::results::AblationRow) -> Option<Rated>| {
+                let rated = rows.iter().filter_map(|row| pick(row));
+                let intervals: Vec<Interval> = rated.map(|[value, low, high]| Interval { value, low, high }).collect();
+                with_interval(over_places(&intervals, SEED))
+            };
+            let number: usize = rows.iter().map(|row| row.number).sum();
+            table.add(name, [number.to_string(), mean(&|r| r.false_blocked), mean(&|r| r.false_visible)]);
+        }
+        table
+    }
+
+    fn held_out_tables(&self) -> Vec<Table> {
+        let mut clouds: Vec<&str> = Vec::new();
+        for result in &self.held_out {
+            if !clouds.contains(&result.cloud.as_str()) {
+                clouds.push(&result.cloud);
+            }
+        }
+        let of_cloud = |cloud: &&str| {
+            let rows: Vec<_> = self.held_out.iter().filter(|result| result.cloud == *cloud).collect();
+            let longest = rows.iter().max_by_key(|row| row.shares.len());
+            let names = longest.map(|row| row.shares.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>());
+            let mut table = Table::new(
+                &format!("Held-out pulses of {cloud}, %"),
+                "Built from nine tenths of the pulses, asked for the rest. False-blocked: paths from 30 m before to 0.3 m before \
+                 the first return, by its class. False-visible: points behind the last return of a pulse that are called \
+                 visible from the scanner.",
+                [vec!["method"], names.unwrap_or_default()].concat(),
+            );
+            for row in rows.iter().filter(|row| row.failed.is_none()) {
+                let cells = row.shares.iter().map(|(_, share)| share.map_or("–".to_owned(), percent));
+                table.add(&row.title, cells);
+            }
+            table
+        };
+        clouds.iter().map(of_cloud).collect()
+    }
+
+    /// What methods could not do, once each.
+    fn refusals(&self) -> Table {
+        let mut table = Table::new("What has no answer", "", vec!["method", "asked", "reason"]);
+        let mut add = |title: &str, asked: String, reason: &str| {
+            let row = vec![title.to_owned(), asked, reason.to_owned()];
+            if !table.rows.contains(&row) {
+                table.rows.push(row);
+            }
+        };
+        for result in &self.methods {
+            if let Some(reason) = &result.failed {
+                add(&result.title, "to be built".to_owned(), reason);
+            }
+            for score in &result.scores {
+                if let Some(reason) = &score.refused {
+                    add(&result.title, format!("{} {}", score.set, score.views), reason);
+                }
+            }
+        }
+        for result in &self.held_out {
+            if let Some(reason) = &result.failed {
+                add(&result.title, format!("pulses of {}", result.cloud), reason);
+            }
+        }
+        table
+    }
+
+    fn to_html(&self, tables: &[Table]) -> String {
+        let mut body: String = tables.iter().map(Table::to_html).collect();
+        for place in &self.places {
+            body.push_str(&format!(
+                "<h2>Pedestrians of {}, sun in the south-west</h2><p>{LEGEND}</p>\n<div>",
+                place.place
+            ));
+            for result in self.methods.iter().filter(|result| result.place == place.place && result.failed.is_none()) {
+                let file = format!("pictures/{}--{}.png", result.place, result.method);
+                body.push_str(&format!("<img src=\"{file}\" alt=\"{}\" loading=\"lazy\">\n", result.title));
+            }
+            body.push_str("</div>\n");
+        }
+        format!(
+            "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Belvedere: comparison</title>\n<style>{STYLE}</style>\n\
+             <h1>Visibility on point clouds: how right, how costly</h1>\n{body}</html>\n"
+        )
+    }
+}
+
+const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;margin:2rem;max-width:110rem}\
+     table{border-collapse:collapse;margin:.5rem 0 1rem}td,th{padding:.2rem .6rem;border-bottom:1px solid #ddd;text-align:right;white-space:nowrap}\
+     td:first-child,th:first-child{text-align:left}tbody tr:hover{background:#f4f2ea}h2{margin-top:2.2rem}\
+     p{color:#444;max-width:60rem}img{max-width:32%;min-width:300px}";
+
+fn write_text(path: &Path, text: &str) -> Result<()> {
+    atomic::write(path, |file| file.write_all(text.as_bytes()).map_err(belvedere::Error::io(path)))?;
+    Ok(())
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1}", 100.0 * share)
+}
+
+fn pair(first: Option<f64>, second: Option<f64>) -> String {
+    match (first, second) {
+        (None, None) => "–".to_owned(),
+        (first, second) => {
+            let cell = |value: Option<f64>| value.map_or("–".to_owned(), percent);
+            format!("{} / {}", cell(first), cell(second))
+        }
+    }
+}
+
+fn with_interval(rate: Option<Interval>) -> String {
+    rate.map_or("–".to_owned(), |i| format!("{} [{}, {}]", percent(i.value), percent(i.low), percent(i.high)))
+}

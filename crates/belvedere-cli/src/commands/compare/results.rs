@@ -1,0 +1,136 @@
+//! What was found, as kept in JSON files so that an interrupted comparison goes on where it stopped.
+
+use anyhow::{Context, Result};
+use belvedere::io::atomic;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use std::io::Write;
+use std::path::Path;
+
+/// A rate and its 95 % interval, shares from 0 to 1: value, low, high.
+pub(super) type Rated = [f64; 3];
+
+/// How right a method was on one kind of target, averaged over a group of views.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub(super) struct Score {
+    /// Kind of target.
+    pub(super) set: String,
+    /// Group of views: `suns`, `observers` or `pairs`.
+    pub(super) views: String,
+    /// Targets asked for in each view.
+    pub(super) targets: usize,
+    pub(super) false_blocked: Option<Rated>,
+    pub(super) false_visible: Option<Rated>,
+    pub(super) balanced: Option<Rated>,
+    pub(super) blocked_iou: Option<Rated>,
+    pub(super) unproven: Option<Rated>,
+    /// Why there are no answers.
+    pub(super) refused: Option<String>,
+}
+
+/// What a method cost.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
+pub(super) struct Cost {
+    pub(super) build_seconds: f64,
+    /// Mean over the views.
+    pub(super) seconds_per_view: f64,
+    /// Over all views and sets; `None` where nothing was answered.
+    pub(super) queries_per_second: Option<f64>,
+    /// Peak of resident memory above what it was before building, MiB; `None` where the system does not tell.
+    pub(super) peak_mib: Option<f64>,
+}
+
+/// A method on a place.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub(super) struct MethodResult {
+    /// What the result depends on; another one makes it stale.
+    pub(super) made_from: String,
+    pub(super) place: String,
+    pub(super) method: String,
+    pub(super) title: String,
+    pub(super) page: String,
+    /// Why the method could not be built.
+    pub(super) failed: Option<String>,
+    pub(super) cost: Cost,
+    pub(super) scores: Vec<Score>,
+}
+
+/// What a place is like.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub(super) struct PlaceResult {
+    pub(super) made_from: String,
+    pub(super) place: String,
+    pub(super) points: usize,
+    pub(super) area_m2: f64,
+    pub(super) triangles: usize,
+    /// Keys of the methods that can be judged here.
+    pub(super) methods: Vec<String>,
+    /// Name, and share of the targets that are blocked in truth, of each set and group of views.
+    pub(super) blocked_in_truth: Vec<(String, String, f64)>,
+    /// Balls of the published method by the surface they are tangent at.
+    pub(super) audit: Vec<AuditRow>,
+    /// Pedestrians under the suns with only some of these balls.
+    pub(super) ablation: Vec<AblationRow>,
+}
+
+/// Balls tangent at one kind of surface.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub(super) struct AuditRow {
+    pub(super) surface: String,
+    pub(super) balls: usize,
+    pub(super) wrong: usize,
+    pub(super) flipped: usize,
+    pub(super) tilted: usize,
+    pub(super) bulging: usize,
+}
+
+/// A union of some of the balls.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub(super) struct AblationRow {
+    pub(super) balls: String,
+    pub(super) number: usize,
+    pub(super) false_blocked: Option<Rated>,
+    pub(super) false_visible: Option<Rated>,
+}
+
+/// The held-out pulses of a cloud, as one method sees them.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub(super) struct HeldOutResult {
+    pub(super) made_from: String,
+    pub(super) cloud: String,
+    pub(super) method: String,
+    pub(super) title: String,
+    /// Name and share, 0 to 1, in the order of the table; `None` where nothing was asked.
+    pub(super) shares: Vec<(String, Option<f64>)>,
+    /// Why there are no shares.
+    pub(super) failed: Option<String>,
+}
+
+/// A result that knows what it was made from.
+pub(super) trait Kept: Serialize + DeserializeOwned {
+    fn made_from(&self) -> &str;
+}
+
+macro_rules! kept {
+    ($($kind:ty),*) => {$(
+        impl Kept for $kind {
+            fn made_from(&self) -> &str {
+                &self.made_from
+            }
+        }
+    )*};
+}
+kept!(MethodResult, PlaceResult, HeldOutResult);
+
+/// The result at `path` if it was made from the same, or `None`: a file that is missing, unreadable or of another making is
+/// made anew.
+pub(super) fn kept<T: Kept>(path: &Path, made_from: &str) -> Option<T> {
+    let result: T = serde_json::from_slice(&std::fs::read(path).ok()?).ok()?;
+    (result.made_from() == made_from).then_some(result)
+}
+
+/// Writes a result.
+pub(super) fn keep<T: Serialize>(path: &Path, result: &T) -> Result<()> {
+    let text = serde_json::to_string_pretty(result).context("a result as JSON")?;
+    atomic::write(path, |file| writeln!(file, "{text}").map_err(belvedere::Error::io(path)))?;
+    Ok(())
+}
