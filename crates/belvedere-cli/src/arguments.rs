@@ -84,7 +84,7 @@ pub(crate) enum Command {
     Query(Query),
     /// Hold every method against exact answers on the same places: how right each is, and what it costs
     #[command(
-        after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, or over two observers, with 95 % intervals from resampled tiles of 25 m.\n\nExamples:\n  belvedere compare --extent 80 --targets 2000 --methods paper-cone,belvedere -o compared\n  belvedere compare --presets village,old-town,towers --seeds 1,2,3 -o compared-at-length"
+        after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, or over two observers, with 95 % intervals from resampled tiles of 25 m.\n\nA thorough comparison takes several places and seeds, such as --presets village,old-town,towers --seeds 1,2,3.\n\nExample:\n  belvedere compare --extent 100 --targets 2000 --methods paper-cone,belvedere -o compared"
     )]
     Compare(Compare),
     /// Print a completion script for a shell

@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &Compare, global: &Global) -> Result<Summary> {
     if global.json {
         summary.add("results", found.to_json()?);
     } else if !global.quiet {
-        super::print_raw(found.table().as_bytes())?;
+        super::print_raw(found.essence().as_bytes())?;
     }
     summary.add("look_at", folder.join("report.html").display().to_string());
     Ok(summary)

@@ -25,6 +25,19 @@ const COLUMNS: [(&str, &str, &str); 12] = [
     ("OWN", "observers", "OWN eye"),
     ("LOS", "pairs", "LOS"),
 ];
+/// What a terminal shows of them: balanced accuracy, or both kinds of error where the heading says `err`.
+const ESSENCE: [(&str, &str, &str); 10] = [
+    ("AIR", "suns", "AIR sun"),
+    ("PED", "suns", "PED sun"),
+    ("PED", "suns", "err"),
+    ("ROOF", "suns", "ROOF sun"),
+    ("FACADE", "suns", "FACADE sun"),
+    ("OWN", "suns", "OWN sun"),
+    ("PED", "observers", "PED eye"),
+    ("PED", "observers", "err"),
+    ("LOS", "pairs", "LOS"),
+    ("LOS", "pairs", "err"),
+];
 /// Lines between which tables are put into a page.
 const PAGE_MARKS: [&str; 2] = ["<!-- tables -->", "<!-- end of tables -->"];
 /// Seed of the resampling of places.
@@ -69,9 +82,30 @@ impl Found {
         }))
     }
 
-    /// The tables as text for a terminal.
-    pub(super) fn table(&self) -> String {
-        self.tables().iter().map(Table::to_text).collect()
+    /// The essence as text for a terminal; the whole is in the reports.
+    pub(super) fn essence(&self) -> String {
+        let mut table = Table::new(
+            "Balanced accuracy, %; where two numbers: false-blocked / false-visible, %",
+            "",
+            [vec!["method"], ESSENCE.map(|(_, _, heading)| heading).to_vec(), vec!["build s", "view s", "Mq/s", "MiB"]]
+                .concat(),
+        );
+        for (key, title) in self.method_names() {
+            let mean = |pick: &dyn Fn(&Score) -> Option<Rated>, set: &str, views: &str| {
+                self.rate(key, (set, views), pick).map(|i| i.value)
+            };
+            let rates = ESSENCE.iter().map(|(set, views, heading)| {
+                if heading.ends_with("err") {
+                    let blocked = mean(&|s| s.false_blocked, set, views);
+                    pair(blocked, mean(&|s| s.false_visible, set, views))
+                } else {
+                    mean(&|s| s.balanced, set, views).map_or("–".to_owned(), percent)
+                }
+            });
+            table.add(title, rates.chain(self.cost_cells(key)));
+        }
+        let essence = if self.methods.is_empty() { String::new() } else { table.to_text() };
+        essence + &self.held_out_tables().iter().map(Table::to_text).collect::<String>()
     }
 
     fn tables(&self) -> Vec<Table> {
@@ -108,7 +142,7 @@ impl Found {
         &self,
         method: &str,
         (set, views): (&str, &str),
-        pick: impl Fn(&Score) -> Option<Rated>,
+        pick: &dyn Fn(&Score) -> Option<Rated>,
     ) -> Option<Interval> {
         let scores = self.of(method).flat_map(|r| &r.scores).filter(|s| s.set == set && s.views == views);
         let rated: Vec<Interval> =
@@ -125,8 +159,8 @@ impl Found {
         );
         for (key, title) in self.method_names() {
             let cells = COLUMNS.map(|(set, views, _)| {
-                let balanced = self.rate(key, (set, views), |s| s.balanced);
-                let iou = self.rate(key, (set, views), |s| s.blocked_iou);
+                let balanced = self.rate(key, (set, views), &|s| s.balanced);
+                let iou = self.rate(key, (set, views), &|s| s.blocked_iou);
                 pair(balanced.map(|i| i.value), iou.map(|i| i.value))
             });
             table.add(title, cells);
@@ -144,8 +178,8 @@ impl Found {
         );
         for (key, title) in self.method_names() {
             let cells = shown.iter().map(|(set, views, _)| {
-                let blocked = self.rate(key, (set, views), |s| s.false_blocked);
-                let visible = self.rate(key, (set, views), |s| s.false_visible);
+                let blocked = self.rate(key, (set, views), &|s| s.false_blocked);
+                let visible = self.rate(key, (set, views), &|s| s.false_visible);
                 match (blocked, visible) {
                     (None, None) => "–".to_owned(),
                     _ => format!("{} / {}", with_interval(blocked), with_interval(visible)),
@@ -164,25 +198,26 @@ impl Found {
             vec!["method", "build s", "view s", "million queries/s", "peak MiB", "no answer %"],
         );
         for (key, title) in self.method_names() {
-            let mean = |pick: &dyn Fn(&MethodResult) -> Option<f64>| {
-                let values: Vec<f64> = self.of(key).filter_map(pick).collect();
-                (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
-            };
-            let cell = |value: Option<f64>, digits: usize| value.map_or("–".to_owned(), |v| format!("{v:.digits$}"));
-            let built = |r: &MethodResult| r.failed.is_none();
-            let unproven = self.rate(key, ("AIR", "suns"), |s| s.unproven);
-            table.add(
-                title,
-                [
-                    cell(mean(&|r| built(r).then_some(r.cost.build_seconds)), 2),
-                    cell(mean(&|r| built(r).then_some(r.cost.seconds_per_view)), 2),
-                    cell(mean(&|r| r.cost.queries_per_second.map(|q| q / 1e6)), 2),
-                    cell(mean(&|r| r.cost.peak_mib), 0),
-                    cell(unproven.map(|i| 100.0 * i.value), 1),
-                ],
-            );
+            let unproven = self.rate(key, ("AIR", "suns"), &|s| s.unproven);
+            let unproven = unproven.map_or("–".to_owned(), |i| percent(i.value));
+            table.add(title, self.cost_cells(key).into_iter().chain([unproven]));
         }
         table
+    }
+
+    /// Seconds to build and for a view, million queries a second and MiB, means over places.
+    fn cost_cells(&self, method: &str) -> [String; 4] {
+        let mean = |pick: &dyn Fn(&MethodResult) -> Option<f64>| {
+            let values: Vec<f64> = self.of(method).filter(|r| r.failed.is_none()).filter_map(pick).collect();
+            (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+        };
+        let cell = |value: Option<f64>, digits: usize| value.map_or("–".to_owned(), |v| format!("{v:.digits$}"));
+        [
+            cell(mean(&|r| Some(r.cost.build_seconds)), 2),
+            cell(mean(&|r| Some(r.cost.seconds_per_view)), 2),
+            cell(mean(&|r| r.cost.queries_per_second.map(|q| q / 1e6)), 2),
+            cell(mean(&|r| r.cost.peak_mib), 0),
+        ]
     }
 
     fn place_table(&self) -> Table {

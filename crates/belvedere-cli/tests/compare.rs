@@ -1,0 +1,107 @@
+//! `belvedere compare` scores honestly, goes on where it stopped, and takes places of one's own.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+use common::Workplace;
+use serde_json::Value;
+use std::fs;
+
+const SMALL: &str = "--extent 100 --density 2 --targets 1500 --methods paper-sphere,belvedere";
+
+/// The share, 0 to 1, of a rate of `method` on one set and group of views, at the first place.
+fn rate(results: &Value, method: &str, set: &str, views: &str, rate: &str) -> f64 {
+    let of_method = results["methods"].as_array().unwrap().iter().find(|r| r["method"] == method).unwrap();
+    let scores = of_method["scores"].as_array().unwrap();
+    let score = scores.iter().find(|s| s["set"] == set && s["views"] == views).unwrap();
+    let [value, low, high] = [0, 1, 2].map(|i| score[rate][i].as_f64().unwrap());
+    assert!(low <= value + 1e-9 && value <= high + 1e-9 && (0.0..=1.0).contains(&value), "{score}");
+    value
+}
+
+#[test]
+fn every_method_gets_scores_costs_and_pictures() {
+    let place = Workplace::new();
+    let results = &place.summary(&format!("compare {SMALL} -o out"))["results"];
+    for method in ["paper-sphere", "belvedere"] {
+        for set in ["AIR", "PED", "GRD", "ROOF", "FACADE", "VOL", "OWN"] {
+            for views in ["suns", "observers"] {
+                let [blocked, visible, balanced] =
+                    ["false_blocked", "false_visible", "balanced"].map(|r| rate(results, method, set, views, r));
+                // each view's balanced accuracy is one minus the mean of its two errors, and so is the mean over views
+                assert!((balanced - (1.0 - (blocked + visible) / 2.0)).abs() < 1e-9, "{method} {set} {views}");
+            }
+        }
+        rate(results, method, "LOS", "pairs", "balanced");
+        let picture = fs::read(place.path(&format!("out/pictures/town-100m-1--{method}.png"))).unwrap();
+        assert!(picture.starts_with(b"\x89PNG"));
+    }
+    // the finding of the paper's comparison: union as published blocks the street, the default does not
+    let street = |method| rate(results, method, "PED", "suns", "false_blocked");
+    assert!(street("paper-sphere") > 0.5 && street("belvedere") < 0.3);
+    let html = fs::read_to_string(place.path("out/report.html")).unwrap();
+    assert!(html.contains("town-100m-1--belvedere.png") && html.contains("Which balls of the published method"));
+    let audit = results["places"][0]["audit"].as_array().unwrap();
+    assert!(audit.iter().any(|row| row["surface"] == "facade" && row["balls"].as_u64() > row["wrong"].as_u64()));
+}
+
+#[test]
+fn a_run_goes_on_where_it_stopped_and_redoes_what_is_stale() {
+    let place = Workplace::new();
+    let first = place.summary(&format!("compare {SMALL} -o out"));
+    let [kept, lost] = ["belvedere", "paper-sphere"].map(|m| place.path(&format!("out/results/town-100m-1--{m}.json")));
+    let untouched = fs::metadata(&kept).unwrap().modified().unwrap();
+    let old = fs::read_to_string(&lost).unwrap();
+    // an interruption leaves results out, or, at worst, a file of something else
+    fs::write(&lost, "{\"half\": ").unwrap();
+    let second = place.summary(&format!("compare {SMALL} -o out"));
+    assert_eq!(fs::metadata(&kept).unwrap().modified().unwrap(), untouched, "was made anew");
+    let scores = |text: &str| serde_json::from_str::<Value>(text).unwrap()["scores"].clone();
+    assert_eq!(scores(&fs::read_to_string(&lost).unwrap()), scores(&old), "the same scores again");
+    let methods = |run: &Value| run["results"]["methods"].as_array().unwrap().len();
+    assert_eq!((methods(&first), methods(&second)), (2, 2));
+    // other questions: what was kept does not answer them
+    place.summary(&format!("compare {SMALL} --targets 1000 -o out").replacen("--targets 1500 ", "", 1));
+    assert!(fs::metadata(&kept).unwrap().modified().unwrap() > untouched);
+}
+
+#[test]
+fn tables_go_between_the_marks_of_a_page() {
+    let place = Workplace::new();
+    fs::write(place.path("page.md"), "# Ours\n<!-- tables -->\nold\n<!-- end of tables -->\nclosing words\n").unwrap();
+    fs::write(place.path("bare.md"), "# Nothing\n").unwrap();
+    place.summary(&format!("compare {SMALL} -o out --page page.md"));
+    let page = fs::read_to_string(place.path("page.md")).unwrap();
+    assert!(page.starts_with("# Ours\n<!-- tables -->\n") && page.ends_with("<!-- end of tables -->\nclosing words\n"));
+    assert!(page.contains("| Belvedere, default balls |") && !page.contains("old"));
+    place.refusal(1, &format!("compare {SMALL} -o out --page bare.md"), &["bare.md", "<!-- tables -->"]);
+    assert_eq!(fs::read_to_string(place.path("bare.md")).unwrap(), "# Nothing\n");
+}
+
+#[test]
+fn a_place_of_ones_own_takes_part() {
+    let place = Workplace::new();
+    assert_eq!(place.run("demo -o demo --extent 100").status, 0);
+    let files = "--scene demo/town.laz --mesh demo/town.obj --trajectory demo/trajectory.csv --model city=demo/town.obj";
+    let run = place.summary(&format!("compare {files} --targets 1500 --methods belvedere,mesh -o out"));
+    let results = &run["results"];
+    let street = rate(results, "belvedere", "PED", "suns", "false_blocked");
+    assert!((0.01..0.3).contains(&street), "{street}");
+    assert!(rate(results, "belvedere", "OWN", "suns", "balanced") > 0.8);
+    // the exact mesh as a method: what is left is the millimetre of the file
+    let exact = rate(results, "mesh-city", "PED", "suns", "balanced");
+    assert!(exact > 0.999, "{exact}");
+    let upward = place.summary("compare --scene demo/town.laz --mesh demo/town.obj --targets 800 --methods belvedere -o up");
+    let sets = upward["results"]["methods"][0]["scores"].as_array().unwrap().clone();
+    assert!(sets.iter().all(|score| score["set"] != "OWN"), "without a scanner own points have no truth");
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let place = Workplace::new();
+    place.refusal(2, "compare --scene a.laz -o out", &["--mesh"]);
+    place.refusal(2, "compare --presets metropolis -o out", &["metropolis", "old-town"]);
+    place.refusal(2, "compare --scene a.laz --mesh b.obj --model City=c.obj -o out", &["lower-case"]);
+    place.refusal(1, "compare --scene a.laz --mesh b.obj -o out", &["a.laz"]);
+    place.refusal(1, "compare -o missing/out", &["missing"]);
+}
