@@ -3,6 +3,16 @@
 //! Every method gets the same [`Survey`]: what a LAZ file and its trajectory hold, and for some a model.
 //! [`methods::methods`] lists them all, [`agreement`] scores their answers.
 
+pub mod dsm;
+pub mod implicit_surface;
+mod lines_of_sight;
+pub mod mesh_rays;
+mod sampling;
+pub mod shadow_map;
+pub mod splatting;
+pub mod tin;
+pub mod voxels;
+
 use belvedere::{Mesh, PointCloud};
 
 pub mod agreement;
