@@ -2,6 +2,8 @@
 //!
 //! Every method gets the same [`Survey`]: what a LAZ file and its trajectory hold, and for some a model.
 
+pub mod hidden_points;
+
 use belvedere::{Mesh, PointCloud};
 
 /// What the methods may use of a place: nothing a survey would not deliver.
