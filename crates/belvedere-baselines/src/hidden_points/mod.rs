@@ -183,7 +183,3 @@ fn place(p: [f32; 3]) -> [u32; 3] {
 fn invalid(name: &'static str, value: f64, expected: &'static str) -> Error {
     Error::InvalidParameter { name, value: value.to_string(), expected }
 }
-impl HiddenPoints<'_> {
-    /// scratch
-    pub fn one_sided(&self, viewer: Viewer<'_>, g: f64) -> Result<usize> { Ok(radius::seen_from_one_side(self.positions, self.eye(viewer)?, g)) }
-}

@@ -4,16 +4,22 @@
 //! so that most are on the hull, and neighbours in the picture are neighbours on the hull. Points are therefore inserted
 //! along a space-filling curve, in rounds that double, and each is found by a walk of a few facets from the last one.
 
+mod cavity;
+mod curve;
+mod start;
+#[cfg(test)]
+mod tests;
+
 use belvedere::vector::{cross, dot, sub};
 use robust::{Coord3D, orient3d};
+
+use cavity::Cavity;
+use curve::{Curve, insertion_order};
+use start::{first_tetrahedron, middle, tetrahedron};
 
 /// How near to the eye walks aim from, as a share of the way from the eye to the middle of the first tetrahedron: a power of
 /// two, so that the centre stays on that way exactly, and small enough to count as the eye itself.
 const CENTRE_SHARE: f64 = 1.0 / 1_048_576.0;
-/// Points in the first round of insertions; each later round holds as many as all before it.
-const FIRST_ROUND: usize = 1000;
-/// Cells per side of the space-filling curve: its keys fit beside the round in 64 bits.
-const CURVE_CELLS: f64 = 262_143.0;
 /// No facet.
 const NONE: u32 = u32::MAX;
 
@@ -91,7 +97,10 @@ impl Hull {
 
     /// Whether point number `index` of those given is a corner of the hull; points at the same place all are or none is.
     pub(crate) fn is_extreme(&self, index: usize) -> bool {
-        self.representative.get(index).and_then(|&first| self.extreme.get(first as usize)).is_some_and(|&extreme| extreme)
+        self.representative
+            .get(index)
+            .and_then(|&first| self.extreme.get(first as usize))
+            .is_some_and(|&extreme| extreme)
     }
 
     /// Whether `point` lies strictly outside, and if not, how far inside along the ray from the eye: 0 on the hull.
@@ -247,182 +256,6 @@ impl Hull {
         }
         bent_edges.into_iter().map(|count| count >= 3).collect()
     }
-}
-
-/// What an insertion needs to remember, kept from one to the next so that nothing is allocated.
-struct Cavity {
-    /// Facets seen by the new point, in the order found, and how many of them have been looked around from.
-    seen: Vec<u32>,
-    expanded: usize,
-    /// For each facet, the last insertion that saw it.
-    seen_by: Vec<u32>,
-    insertion: u32,
-    /// Edges around the seen facets, from and to, and the facet beyond.
-    rim: Vec<[u32; 3]>,
-    /// For each point, the new facet whose rim edge starts there.
-    fan_from: Vec<u32>,
-    /// Numbers of facets that are no longer in use.
-    free: Vec<u32>,
-}
-
-impl Cavity {
-    fn new(point_count: usize) -> Self {
-        Self {
-            seen: Vec::new(),
-            expanded: 0,
-            seen_by: vec![0; 2 * point_count + 8],
-            insertion: 0,
-            rim: Vec::new(),
-            fan_from: vec![NONE; point_count],
-            free: Vec::new(),
-        }
-    }
-
-    fn begin(&mut self, first: u32) {
-        self.insertion += 1;
-        self.seen.clear();
-        self.expanded = 0;
-        self.add(first);
-    }
-
-    fn add(&mut self, facet: u32) {
-        // Euler: a hull of n points has at most 2n − 4 facets, and freed numbers are used again
-        self.seen_by[facet as usize] = self.insertion;
-        self.seen.push(facet);
-    }
-
-    fn next(&mut self) -> Option<u32> {
-        self.expanded += 1;
-        self.seen.get(self.expanded - 1).copied()
-    }
-
-    fn knows(&self, facet: u32) -> bool {
-        self.seen_by[facet as usize] == self.insertion
-    }
-
-    fn release(&mut self) {
-        self.free.append(&mut self.seen);
-    }
-}
-
-/// Four points that fill a volume, the eye first; adds pairs about the eye to `points` where they do not by themselves.
-fn first_tetrahedron(points: &mut Vec<[f64; 3]>, eye: u32) -> [u32; 4] {
-    let origin = [0.0; 3];
-    let size = points.iter().flatten().fold(0.0, |size: f64, v| size.max(v.abs()));
-    let size = if size > 0.0 { size } else { 1.0 };
-    let axes = [[size, 0.0, 0.0], [0.0, size, 0.0], [0.0, 0.0, size]];
-    let mut complete = |points: &mut Vec<[f64; 3]>, volume: &dyn Fn([f64; 3]) -> f64| {
-        let best = axes.into_iter().max_by(|a, b| volume(*a).total_cmp(&volume(*b))).unwrap_or(axes[0]);
-        points.extend([best, best.map(|v| -v)]);
-        points.len() as u32 - 2
-    };
-    let given = eye as usize;
-    let best_of = |points: &[[f64; 3]], size_of: &dyn Fn([f64; 3]) -> f64| {
-        let sizes = points[..given].iter().enumerate().map(|(i, &p)| (i as u32, size_of(p)));
-        sizes.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|best| best.1 > 0.0).map(|best| best.0)
-    };
-    let square = |v: [f64; 3]| dot(v, v);
-    let first = best_of(points, &square).unwrap_or_else(|| complete(points, &|w| w[0]));
-    let a = points[first as usize];
-    let area = |p: [f64; 3]| square(cross(a, p));
-    let off_line = |p: [f64; 3]| if axes.iter().any(|&w| orient(origin, a, p, w) != 0.0) { area(p) } else { 0.0 };
-    let second = best_of(points, &off_line).unwrap_or_else(|| complete(points, &area));
-    let b = points[second as usize];
-    let volume = |p: [f64; 3]| orient(origin, a, b, p).abs();
-    if let Some(third) = best_of(points, &volume) {
-        let tetrahedron = [eye, first, second, third];
-        if encloses(points, tetrahedron, middle(points, tetrahedron)) {
-            return tetrahedron;
-        }
-    }
-    let third = complete(points, &volume);
-    [eye, first, second, third]
-}
-
-fn middle(points: &[[f64; 3]], corners: [u32; 4]) -> [f64; 3] {
-    std::array::from_fn(|i| corners.iter().map(|&c| points[c as usize][i]).sum::<f64>() / 4.0)
-}
-
-fn encloses(points: &[[f64; 3]], corners: [u32; 4], point: [f64; 3]) -> bool {
-    tetrahedron(points, corners).iter().all(|facet| {
-        let [a, b, c] = facet.corners.map(|corner| points[corner as usize]);
-        orient(a, b, c, point) > 0.0
-    })
-}
-
-/// The four facets of a tetrahedron.
-fn tetrahedron(points: &[[f64; 3]], [mut a, mut b, c, d]: [u32; 4]) -> Vec<Facet> {
-    let [p, q, r, s] = [a, b, c, d].map(|corner| points[corner as usize]);
-    if orient(p, q, r, s) < 0.0 {
-        std::mem::swap(&mut a, &mut b);
-    }
-    let facets = [[a, b, c], [b, a, d], [c, b, d], [a, c, d]];
-    let across = |from: u32, to: u32| {
-        let has_edge = |f: &[u32; 3]| (0..3).any(|i| f[i] == to && f[(i + 1) % 3] == from);
-        facets.iter().position(has_edge).map_or(NONE, |i| i as u32)
-    };
-    facets
-        .iter()
-        .map(|&corners| Facet { corners, neighbors: std::array::from_fn(|i| across(corners[i], corners[(i + 1) % 3])) })
-        .collect()
-}
-
-/// All points but `first`: rounds that double in size, chosen at random, each along a space-filling curve.
-fn insertion_order(points: &[[f64; 3]], first: &[u32; 4], curve: &Curve) -> Vec<u32> {
-    let round_count = (points.len() / FIRST_ROUND).max(1).ilog2();
-    let mut keys: Vec<(u64, u32)> = (0..points.len() as u32)
-        .filter(|index| !first.contains(index))
-        .map(|index| {
-            // half of the points come in the last round, a quarter in the one before
-            let lot = belvedere::random::uniform(0, u64::from(index)).max(1e-9);
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 30")]
-            let rounds_before_last = ((-lot.log2()) as u32).min(round_count);
-            (u64::from(round_count - rounds_before_last) << 54 | curve.key(points[index as usize]), index)
-        })
-        .collect();
-    keys.sort_unstable();
-    keys.into_iter().map(|(_, index)| index).collect()
-}
-
-/// Places in space in an order that keeps neighbours together (Morton 1966).
-struct Curve {
-    low: [f64; 3],
-    cells_per_metre: f64,
-}
-
-impl Curve {
-    fn new(points: &[[f64; 3]]) -> Self {
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for p in points {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(p[axis]);
-                high[axis] = high[axis].max(p[axis]);
-            }
-        }
-        let size = (0..3).map(|axis| high[axis] - low[axis]).fold(f64::MIN_POSITIVE, f64::max);
-        Self { low, cells_per_metre: CURVE_CELLS / size }
-    }
-
-    /// Below 2^54.
-    fn key(&self, point: [f64; 3]) -> u64 {
-        let cell = |axis: usize| {
-            let cells = (point[axis] - self.low[axis]) * self.cells_per_metre;
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to CURVE_CELLS")]
-            let cell = cells.clamp(0.0, CURVE_CELLS) as u64;
-            cell
-        };
-        spread(cell(0)) | spread(cell(1)) << 1 | spread(cell(2)) << 2
-    }
-}
-
-/// The lowest 18 bits of `v`, three places apart.
-fn spread(v: u64) -> u64 {
-    let mut x = v & 0x3_ffff;
-    x = (x | x << 32) & 0x001f_0000_0000_ffff;
-    x = (x | x << 16) & 0x001f_0000_ff00_00ff;
-    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
-    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
-    (x | x << 2) & 0x1249_2492_4924_9249
 }
 
 /// Positive where `d` lies below the plane of `a`, `b` and `c`, which turn counter-clockwise as seen from above; exact sign.
