@@ -13,6 +13,8 @@ pub mod splatting;
 pub mod tin;
 pub mod voxels;
 
+pub mod hidden_points;
+
 use belvedere::{Mesh, PointCloud};
 
 pub mod agreement;
