@@ -3,24 +3,22 @@
 //! Every method gets the same [`Survey`]: what a LAZ file and its trajectory hold, and for some a model.
 //! [`methods::methods`] lists them all, [`agreement`] scores their answers.
 
+pub mod agreement;
+pub mod audit;
 pub mod dsm;
+pub mod hidden_points;
 pub mod implicit_surface;
 mod lines_of_sight;
+pub mod medial;
 pub mod mesh_rays;
+pub mod methods;
 mod sampling;
 pub mod shadow_map;
 pub mod splatting;
 pub mod tin;
 pub mod voxels;
 
-pub mod hidden_points;
-
 use belvedere::{Mesh, PointCloud};
-
-pub mod agreement;
-pub mod audit;
-pub mod medial;
-pub mod methods;
 
 /// What the methods may use of a place: nothing that could not be at hand.
 #[derive(Clone, Copy)]

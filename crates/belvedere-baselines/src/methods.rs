@@ -1,6 +1,14 @@
 //! Every method by name, ready to be built from a survey.
 
+use crate::dsm::{Dsm, DsmParams};
+use crate::hidden_points::{ForeignTargets, HiddenPoints, HiddenPointsParams};
+use crate::implicit_surface::{ImplicitSurface, ImplicitSurfaceParams};
 use crate::medial::{MedialBaseline, MedialParams, Outward};
+use crate::mesh_rays::{MeshRays, MeshRaysParams};
+use crate::shadow_map::{ShadowMap, ShadowMapParams};
+use crate::splatting::{SplatParams, Splats};
+use crate::tin::{Tin, TinParams};
+use crate::voxels::{VoxelParams, Voxels};
 use crate::{Model, Survey};
 use belvedere::Result;
 use belvedere::query::Visibility;
@@ -36,26 +44,66 @@ impl<'a> Method<'a> {
     }
 }
 
+/// Bound of the noise that the robust hidden point removal is told, metres: three times what data sheets of airborne
+/// scanners state.
+const NOISE: f64 = 0.06;
+
 /// The methods that a survey allows, in the order of tables: those that need the cloud alone, then for each model those that
 /// trace it.
 #[must_use]
 pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
+    let (cloud, positions, origin) = (survey.cloud, &survey.cloud.positions, survey.cloud.origin);
     let medial = |key: &str, title: &str, params: MedialParams| {
         Method::new(key, title, "medial-balls", move || MedialBaseline::new(survey, Outward::Survey, &params))
     };
+    let hidden_points = |key: &str, title: &str, params: HiddenPointsParams| {
+        Method::new(key, title, "hidden-points", move || HiddenPoints::new(survey, params))
+    };
+    let splats = |key: &str, title: &str, params: SplatParams| {
+        Method::new(key, title, "splats", move || Splats::new(cloud, &params))
+    };
+    let voxels = |key: &str, title: &str, size: f64| {
+        let params = VoxelParams { size, ..VoxelParams::default() };
+        Method::new(key, title, "voxels", move || Voxels::new(positions, &params))
+    };
+    let inserting = HiddenPointsParams { foreign_targets: ForeignTargets::Insert, ..HiddenPointsParams::default() };
+    let robust = HiddenPointsParams { noise: NOISE, ..inserting };
     let mut methods = vec![
         medial("paper-cone", "paper as published (cone)", MedialParams::published()),
         medial("paper-sphere", "paper, spheres", MedialParams::published_with_spheres()),
         medial("union", "unfiltered union of balls", MedialParams::unfiltered_union()),
-        medial("belvedere", "Belvedere, default balls", MedialParams::belvedere()),
+        hidden_points("hidden-points", "hidden point removal (targets inserted)", inserting),
+        hidden_points("hidden-points-robust", "the same, robust to noise", robust),
+        splats("surfels", "splats: surfels", SplatParams::surfels()),
+        splats("depth-splats", "splats: sprites", SplatParams::depth_splats()),
+        splats("elliptical-splats", "splats: ellipses", SplatParams::object_space()),
+        Method::new("implicit-surface", "implicit surface", "implicit-surface", move || {
+            ImplicitSurface::new(survey, &ImplicitSurfaceParams::default())
+        }),
+        voxels("voxels-05", "voxels 0.5 m", 0.5),
+        voxels("voxels-10", "voxels 1 m", 1.0),
+        Method::new("dsm", "highest-point raster 0.5 m", "dsm", move || {
+            Dsm::from_points(positions, &DsmParams::default())
+        }),
+        Method::new("tin", "first-return TIN", "tin", move || Tin::new(cloud, &TinParams::default())),
     ];
     for Model { name, mesh } in survey.models {
         methods.push(Method::new(
             format!("paper-cone-{name}"),
-            format!("paper as published, oriented by {name}"),
+            format!("paper as published, signs by {name}"),
             "medial-balls",
             move || MedialBaseline::new(survey, Outward::Model(mesh), &MedialParams::published()),
         ));
+        methods.push(Method::new(format!("mesh-{name}"), format!("rays on {name}"), "mesh-rays", move || {
+            MeshRays::new(mesh, origin, &MeshRaysParams::default())
+        }));
+        methods.push(Method::new(
+            format!("shadow-map-{name}"),
+            format!("shadow map of {name}"),
+            "shadow-map",
+            move || ShadowMap::new(mesh, origin, &ShadowMapParams::default()),
+        ));
     }
+    methods.push(medial("belvedere", "Belvedere, default balls", MedialParams::belvedere()));
     methods
 }

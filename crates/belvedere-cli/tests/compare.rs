@@ -82,7 +82,8 @@ fn tables_go_between_the_marks_of_a_page() {
 fn a_place_of_ones_own_takes_part() {
     let place = Workplace::new();
     assert_eq!(place.run("demo -o demo --extent 100").status, 0);
-    let files = "--scene demo/town.laz --mesh demo/town.obj --trajectory demo/trajectory.csv --model city=demo/town.obj";
+    let files =
+        "--scene demo/town.laz --mesh demo/town.obj --trajectory demo/trajectory.csv --model city=demo/town.obj";
     let run = place.summary(&format!("compare {files} --targets 1500 --methods belvedere,mesh -o out"));
     let results = &run["results"];
     let street = rate(results, "belvedere", "PED", "suns", "false_blocked");
@@ -91,7 +92,8 @@ fn a_place_of_ones_own_takes_part() {
     // the exact mesh as a method: what is left is the millimetre of the file
     let exact = rate(results, "mesh-city", "PED", "suns", "balanced");
     assert!(exact > 0.999, "{exact}");
-    let upward = place.summary("compare --scene demo/town.laz --mesh demo/town.obj --targets 800 --methods belvedere -o up");
+    let upward =
+        place.summary("compare --scene demo/town.laz --mesh demo/town.obj --targets 800 --methods belvedere -o up");
     let sets = upward["results"]["methods"][0]["scores"].as_array().unwrap().clone();
     assert!(sets.iter().all(|score| score["set"] != "OWN"), "without a scanner own points have no truth");
 }
