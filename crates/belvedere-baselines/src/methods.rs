@@ -78,7 +78,7 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
         splats("depth-splats", "splats: sprites", SplatParams::depth_splats()),
         splats("elliptical-splats", "splats: ellipses", SplatParams::object_space()),
         Method::new("implicit-surface", "implicit surface", "implicit-surface", move || {
-            ImplicitSurface::new(survey, &ImplicitSurfaceParams::default())
+            ImplicitSurface::new(cloud, &ImplicitSurfaceParams::default())
         }),
         voxels("voxels-05", "voxels 0.5 m", 0.5),
         voxels("voxels-10", "voxels 1 m", 1.0),
@@ -87,13 +87,14 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
         }),
         Method::new("tin", "first-return TIN", "tin", move || Tin::new(cloud, &TinParams::default())),
     ];
+    // as the paper did it: signs of normals from a city model
+    methods.extend(survey.models.first().map(|Model { name, mesh }| {
+        let (key, title) = (format!("paper-cone-{name}"), format!("paper as published, signs by {name}"));
+        Method::new(key, title, "medial-balls", move || {
+            MedialBaseline::new(survey, Outward::Model(mesh), &MedialParams::published())
+        })
+    }));
     for Model { name, mesh } in survey.models {
-        methods.push(Method::new(
-            format!("paper-cone-{name}"),
-            format!("paper as published, signs by {name}"),
-            "medial-balls",
-            move || MedialBaseline::new(survey, Outward::Model(mesh), &MedialParams::published()),
-        ));
         methods.push(Method::new(format!("mesh-{name}"), format!("rays on {name}"), "mesh-rays", move || {
             MeshRays::new(mesh, origin, &MeshRaysParams::default())
         }));

@@ -9,7 +9,7 @@ use belvedere::io::{ReadOptions, read_cloud, read_mesh, read_trajectory};
 use belvedere::trajectory::Trajectory;
 use belvedere::{Mesh, PointCloud};
 use belvedere_baselines::Model;
-use belvedere_scenes::{AirborneParams, Preset, Scene, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Material, Preset, Scene, scan_airborne, town};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -72,7 +72,11 @@ impl Place {
                 let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
                 let (trajectory, _) = Trajectory::from_records(path.collect());
                 let scanner = scanner_positions(&cloud, &trajectory)?;
-                Ok(Ingredients { cloud, scanner, models: Vec::new(), scene })
+                let models = vec![
+                    Model { name: "no-trees".to_owned(), mesh: mesh_of(&scene, |material| !is_loose(material)) },
+                    Model { name: "exact".to_owned(), mesh: mesh_of(&scene, |_| true) },
+                ];
+                Ok(Ingredients { cloud, scanner, models, scene })
             }
             Self::Given { clouds, mesh, trajectory, models } => {
                 let (cloud, _) = read_cloud(clouds, &ReadOptions::default())?;
@@ -91,6 +95,19 @@ impl Place {
             }
         }
     }
+}
+
+/// Whether city models usually leave it out: vegetation and furniture.
+fn is_loose(material: Material) -> bool {
+    use Material::{Car, Fence, Leaf, Mast, TreeCrown, Trunk, Wire};
+    matches!(material, TreeCrown | Trunk | Leaf | Car | Fence | Mast | Wire)
+}
+
+/// The triangles of a scene whose material is wanted.
+fn mesh_of(scene: &Scene, wanted: impl Fn(Material) -> bool) -> Mesh {
+    let triangles = scene.triangles.iter().zip(&scene.materials).filter(|(_, material)| wanted(**material));
+    let triangles = triangles.map(|(corners, _)| *corners).collect();
+    Mesh { vertices: scene.vertices.clone(), triangles, ..Mesh::default() }
 }
 
 /// A file's name without folder and extension, as a name of its own.
