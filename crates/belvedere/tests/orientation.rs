@@ -240,6 +240,20 @@ fn a_trajectory_gives_every_point_its_own_sensor() {
 }
 
 #[test]
+fn positions_of_the_scanner_for_each_point_give_its_sign_and_the_rest_turns_up() {
+    let (cloud, truth) = sphere(10.0, 4000);
+    // each point is measured from its own place, 50 m straight outside; every fifth place is unknown
+    let scanner: Vec<[f32; 3]> =
+        truth.iter().enumerate().map(|(i, n)| if i % 5 == 0 { [f32::NAN; 3] } else { n.map(|v| 60.0 * v) }).collect();
+    let (result, report) = oriented(&cloud, &truth, &Orientation::Pulses(&scanner));
+    assert_eq!(report.by_scanner_count, 3200);
+    assert!((agreement(result.normals(), &truth, |i| i % 5 != 0) - 1.0).abs() < 1e-12);
+    let upward = |i: usize| i.is_multiple_of(5) && truth[i][2] > 0.4;
+    assert!((agreement(result.normals(), &truth, upward) - 1.0).abs() < 1e-12);
+    assert!(orient(&cloud, scrambled(&truth), &Orientation::Pulses(&scanner[1..])).is_err());
+}
+
+#[test]
 fn given_normals_replace_the_estimated() {
     let (mut cloud, truth) = sphere(10.0, 100);
     assert!(orient(&cloud, scrambled(&truth), &Orientation::Given).is_err());
