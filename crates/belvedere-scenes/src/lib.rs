@@ -1,7 +1,7 @@
 //! Simulated towns with exact meshes, and simulated laser scans of them.
 //!
 //! Tests and demonstrations need scenes whose answers are known. This crate makes a town out of triangles
-//! ([`town`]), answers exactly what blocks what in it ([`Truth`]), and flies a laser scanner over it
+//! ([`town`], from a description or a [`Preset`]), generalises it to the blocks of a city model ([`blocks`]), answers exactly what blocks what in it ([`Truth`]), and flies a laser scanner over it
 //! ([`scan_airborne`]). It knows no other crate of the project: what comes out are plain columns and meshes.
 //!
 //! ```
@@ -22,7 +22,9 @@
 mod airborne;
 mod beam;
 mod buildings;
+pub mod closed_forms;
 mod flight;
+mod lod1;
 mod obj;
 mod open_blocks;
 mod plain_blocks;
@@ -44,6 +46,7 @@ mod vector;
 
 pub use airborne::{AirborneParams, scan_airborne};
 pub use beam::BeamParams;
+pub use lod1::blocks;
 pub use preset::Preset;
 pub use scan::{Scan, ScanReport, SensorPath};
 pub use scene::{Material, Part, Scene};

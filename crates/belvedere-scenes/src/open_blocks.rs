@@ -171,11 +171,12 @@ impl Site {
     pub(crate) fn lawn(&mut self, plan: &Plan) {
         let [half_u, half_v] = plan.half_sides();
         let pavilion = plan.centre.moved(0.3 * half_u, 0.2 * half_v, self.random.between(0.0, FRAC_PI_2));
-        self.canopy(pavilion, [7.0, 5.0], 2.8, 0.2, 3.5);
-        // Its roof rests on the slab of the canopy.
+        let mut parts = self.canopy_parts(pavilion, [7.0, 5.0], 2.8, 0.2, 3.5);
+        // Its roof is sunk into the slab.
         let base = self.ground(pavilion.origin) + 2.8 + 0.1;
         let roof = ridged(&pavilion.rectangle(6.8, 4.8), base, base + 0.2, base + 1.9, 2.2);
-        self.add("canopy", &[roof.with_material(Material::Slab)]);
+        parts.push(roof.with_material(Material::Slab));
+        self.add("canopy", &parts);
         if self.random.chance(0.5) {
             let lookout = plan.centre.moved(-0.55 * half_u, -0.45 * half_v, self.random.between(0.0, FRAC_PI_2));
             self.deck(lookout, [7.0, 7.0], 3.0);

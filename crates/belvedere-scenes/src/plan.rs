@@ -16,7 +16,7 @@ const MIN_EXTENT_OF_FOUR: f64 = 100.0;
 const CANAL_STRIP: f64 = 15.0;
 const CANAL_WIDTH: f64 = 12.0;
 /// Least side of a block next to a canal, metres; where it would be less there is no canal.
-const MIN_BLOCK_AT_CANAL: f64 = 34.0;
+const MIN_BLOCK_AT_CANAL: f64 = 33.0;
 /// How far a bridge reaches beyond the banks, metres.
 const BRIDGE_END: f64 = 1.2;
 

@@ -55,15 +55,18 @@ impl Preset {
             },
             Self::Town => TownParams {
                 canal_depth: 2.2,
+                street_width: 8.0,
+                block_pitch: 44.0,
                 blocks: vec![
-                    (BlockPlan::RowHouses, 6),
+                    (BlockPlan::RowHouses, 8),
                     (BlockPlan::HighRise, 2),
                     (BlockPlan::Square, 1),
                     (BlockPlan::Gardens, 2),
                     (BlockPlan::Courtyard, 2),
-                    (BlockPlan::Perimeter, 2),
+                    (BlockPlan::Perimeter, 3),
                     (BlockPlan::PetrolStation, 1),
                 ],
+                area_per_garden_tree: 60.0,
                 street_furniture: 0.7,
                 ..usual
             },
@@ -90,13 +93,13 @@ impl Preset {
             },
             Self::Park => TownParams {
                 hill_height: 2.5,
-                canal_depth: 1.8,
+                canal_depth: 2.2,
                 street_width: 6.0,
                 block_pitch: 56.0,
                 blocks: vec![(BlockPlan::Lawn, 1)],
                 crowns: Crowns::Porous,
                 tree_heights: [7.0, 18.0],
-                area_per_garden_tree: 110.0,
+                area_per_garden_tree: 80.0,
                 street_trees: StreetTrees::Without,
                 street_furniture: 0.2,
                 ..usual

@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::buildings::JOINT;
 use crate::plan::Layout;
+use crate::scene::Part;
 use crate::site::{Clearance, Site};
 use crate::solids::Placement;
 use crate::street_furniture::{PostedSlab, bridge, car, mast, posted_slab, wire};
@@ -141,13 +142,25 @@ impl Site {
     /// Roof over nothing: a slab of `size` with its underside `clear` metres above the ground at its middle, on posts at most
     /// `spacing` metres apart.
     pub(crate) fn canopy(&mut self, placement: Placement, size: [f64; 2], clear: f64, thickness: f64, spacing: f64) {
+        let parts = self.canopy_parts(placement, size, clear, thickness, spacing);
+        self.add("canopy", &parts);
+    }
+
+    /// The solids of a canopy, the slab first, for others to be put on it; takes its ground.
+    pub(crate) fn canopy_parts(
+        &mut self,
+        placement: Placement,
+        size: [f64; 2],
+        clear: f64,
+        thickness: f64,
+        spacing: f64,
+    ) -> Vec<Part> {
         let inset = 0.1 * size[0].min(size[1]);
         let post_side = if clear < 3.0 { 0.1 } else { 0.3 };
         let underside = self.ground(placement.origin) + clear;
         let shape = PostedSlab { size, underside, thickness, post_side, inset: inset.max(post_side), spacing };
-        let parts = posted_slab(&placement, &shape, &self.terrain);
         self.take(placement, size[0], size[1]);
-        self.add("canopy", &parts);
+        posted_slab(&placement, &shape, &self.terrain)
     }
 
     /// Deck to walk on and under, as a canopy with a thicker slab; its ends may lie inside buildings by [`JOINT`].

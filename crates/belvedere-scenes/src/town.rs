@@ -64,7 +64,7 @@ pub struct TownParams {
     /// Height of the hills above and below the inclined plane, metres, 0 to 5. Default 1.2.
     pub hill_height: f64,
     /// Depth of a dry canal through the middle of the town, crossed by bridges, metres, 0 (none) to 3. It needs two rows of
-    /// blocks that stay 34 m deep beside it, or it is left out. Default 0.
+    /// blocks that stay 33 m deep beside it, or it is left out. Default 0.
     pub canal_depth: f64,
     /// Direction of the streets, radians counter-clockwise from east, 0 to π/4. Default 0.14: walls that run along the rows
     /// of a raster flatter every raster method.
@@ -72,7 +72,7 @@ pub struct TownParams {
     /// Width of the streets between the blocks, metres, 4 to 12: wider ones would push the houses of the smallest town into
     /// each other. Default 9.
     pub street_width: f64,
-    /// Least distance between the middles of blocks, metres, 45 to 80; the blocks share what is left over. Default 52.
+    /// Least distance between the middles of blocks, metres, 44 to 80; the blocks share what is left over. Default 52.
     pub block_pitch: f64,
     /// Kinds of blocks and how often each occurs beside the others. The first blocks are one of each, in this order. Without
     /// any, the ground stays open. Default: terraces, L-shapes, tower and hall, detached houses, equally often.

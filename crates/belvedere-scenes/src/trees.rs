@@ -40,8 +40,8 @@ const COLUMNS: usize = 14;
 pub enum Crowns {
     /// A closed hull that lets no light through ([`Material::TreeCrown`]); the scanner's beam may be told to pass it in part.
     Opaque,
-    /// Sprays of leaves, a quarter to half a metre, in clumps with gaps between ([`Material::Leaf`]): about half of all
-    /// straight lines through the crown get past them.
+    /// Sprays of leaves, 0.2 to 0.4 m, in clumps with gaps between ([`Material::Leaf`]): about two in
+    /// five straight lines through the crown get past them.
     Porous,
 }
 
@@ -68,9 +68,9 @@ pub(crate) fn tree(foot: [f64; 3], shape: &TreeShape, crowns: Crowns, buried: f6
 const SPRAYS: u32 = 400;
 /// Clumps that the sprays gather in.
 const CLUMPS: usize = 24;
-/// Area of the sprays seen from one side, as a share of that of the crown: with clumping about half of all lines through the
-/// crown stay free.
-const COVER: f64 = 0.8;
+/// Area of the sprays seen from one side, as a share of that of the crown: about two in five lines through the inner crown
+/// stay free, as through a scanned crown in leaf.
+const COVER: f64 = 0.55;
 
 /// Sprays within an ellipsoid about `centre`: each a closed flat tetrahedron, turned at random.
 fn leaves(centre: [f64; 3], radius: f64, half_height: f64, random: &mut Random) -> Part {
