@@ -28,7 +28,7 @@ fn on_plane(name: &str, parts: &[Part]) -> Scene {
 /// Sphere of `radius` metres about (0, 0, `centre_height`).
 ///
 /// Its vertices lie on the sphere, its facets inside it by `tolerance` metres at most, which costs about 10 · `radius` /
-/// `tolerance` triangles. For the sun at elevation e its shadow on the ground is an ellipse with the semi-axes `radius`
+/// `tolerance` triangles; tolerances from 1e-8 to half of the radius are kept to. For the sun at elevation e its shadow on the ground is an ellipse with the semi-axes `radius`
 /// across and `radius` / sin e along the light, its middle `centre_height` / tan e away from the sun; the shadow of the mesh
 /// lies within, by no more than `tolerance` / sin e.
 #[must_use]
@@ -92,7 +92,7 @@ pub fn box_on_plane(size: [f64; 2], height: f64) -> Scene {
 /// ends add less than `width` · `height`² / `length`³.
 ///
 /// # Source
-/// Oke 1987, Boundary Layer Climates, 2nd edition, appendix A. The ends: past the end of a wall the sky reaches from elevation
+/// Johnson & Watson 1984, "The determination of view-factors in urban canyons", J. Climate Appl. Meteor. 23. The ends: past the end of a wall the sky reaches from elevation
 /// 2 `height` / `length` at most down to 0, over an angle of 2 `width` / `length` to either side; sin² integrated over both.
 #[must_use]
 pub fn canyon(width: f64, height: f64, length: f64) -> Scene {

@@ -72,8 +72,15 @@ impl Site {
     /// Church, houses over arcades, market hall and stalls.
     pub(crate) fn square(&mut self, plan: &Plan) {
         let [half_u, half_v] = plan.half_sides();
-        let style =
-            RowStyle { house_width: 7.0, depth: 8.5, eaves: [7.0, 10.5], arcades: 1.0, balconies: 0.0, dormers: 0.6 };
+        let style = RowStyle {
+            house_width: 7.0,
+            depth: 8.5,
+            eaves: [7.0, 10.5],
+            arcades: 1.0,
+            balconies: 0.0,
+            corner: 0.0,
+            dormers: 0.6,
+        };
         // Their fronts face the square.
         self.row(&plan.centre.moved(0.0, half_v - style.depth / 2.0 - 0.8, 0.0), 2.0 * half_u - 1.0, &style);
 

@@ -8,8 +8,6 @@ use crate::town::TownParams;
 const PLAN_HALF_SIDE: f64 = 20.0;
 /// Ground kept free of buildings at the rim, metres.
 const RIM: f64 = 4.0;
-/// Least side of the ground, metres: room for one block.
-const MIN_EXTENT: f64 = 60.0;
 /// Least side of the ground for two by two blocks, metres.
 const MIN_EXTENT_OF_FOUR: f64 = 100.0;
 /// Ground that a canal takes between two rows of blocks besides the street, metres, and how much of it is trench.
@@ -58,8 +56,9 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
+    /// From parameters within their limits.
     pub(crate) fn new(params: &TownParams) -> Self {
-        let extent = params.extent.max(MIN_EXTENT);
+        let extent = params.extent;
         // The turned grid of blocks has to fit into the upright square.
         let (sin, cos) = params.street_angle.sin_cos();
         let side = (extent - 2.0 * RIM) / (sin.abs() + cos.abs());

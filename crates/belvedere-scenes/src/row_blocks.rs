@@ -13,6 +13,8 @@ use crate::street_furniture::fence;
 pub(crate) const STOREY: f64 = 2.9;
 /// How far a balcony sticks out, metres.
 pub(crate) const BALCONY_DEPTH: f64 = 1.4;
+/// Width of a balcony, metres.
+const BALCONY_WIDTH: f64 = 3.0;
 /// How far neighbours reach into each other, metres: party walls without a seam.
 const PARTY_WALL: f64 = 0.06;
 
@@ -23,6 +25,8 @@ pub(crate) struct RowStyle {
     pub(crate) eaves: [f64; 2],
     pub(crate) arcades: f64,
     pub(crate) balconies: f64,
+    /// Length at either end of the row whose back other houses stand against: no balconies there.
+    pub(crate) corner: f64,
     pub(crate) dormers: f64,
 }
 
@@ -30,8 +34,15 @@ impl Site {
     /// Two rows of houses with fenced gardens between them.
     pub(crate) fn row_houses(&mut self, plan: &Plan) {
         let [half_u, half_v] = plan.half_sides();
-        let style =
-            RowStyle { house_width: 6.2, depth: 9.0, eaves: [5.4, 8.6], arcades: 0.0, balconies: 0.4, dormers: 0.5 };
+        let style = RowStyle {
+            house_width: 5.4,
+            depth: 9.0,
+            eaves: [5.4, 8.6],
+            arcades: 0.0,
+            balconies: 0.4,
+            corner: 0.0,
+            dormers: 0.5,
+        };
         let front_garden = 0.9;
         let back = half_v - front_garden - style.depth;
         let mut count = 0;
@@ -61,25 +72,28 @@ impl Site {
     pub(crate) fn perimeter(&mut self, plan: &Plan) {
         let [half_u, half_v] = plan.half_sides();
         let depth = 8.0;
-        let style = |arcades: f64| RowStyle {
+        let style = |arcades: f64, corner: f64| RowStyle {
             house_width: 6.6,
             depth,
             eaves: [6.8, 11.5],
             arcades,
             balconies: 0.4,
+            corner,
             dormers: 0.5,
         };
+        // The other rows and their balconies, and a metre.
+        let corner = BALCONY_DEPTH + 1.0;
         let rim = 0.5;
         for (angle, arcades) in [(0.0, 0.7), (PI, 0.2)] {
             let side = plan.centre.moved(0.0, 0.0, angle);
             let row = side.moved(0.0, -half_v + depth / 2.0 + rim, 0.0);
-            self.row(&row, 2.0 * (half_u - rim), &style(arcades));
+            self.row(&row, 2.0 * (half_u - rim), &style(arcades, depth + corner));
         }
         for angle in [FRAC_PI_2, 1.5 * PI] {
             let side = plan.centre.moved(0.0, 0.0, angle);
             let row = side.moved(0.0, -half_u + depth / 2.0 + rim, 0.0);
             // Into the backs of the other rows, whose depth varies.
-            self.row(&row, 2.0 * (half_v - depth - rim + 0.6), &style(0.0));
+            self.row(&row, 2.0 * (half_v - depth - rim + 0.6), &style(0.0, corner));
         }
         let [court_u, court_v] = [half_u - depth - rim, half_v - depth - rim];
         if court_u > 7.0 && court_v > 6.0 {
@@ -143,7 +157,7 @@ impl Site {
     pub(crate) fn balconies(&self, wall: &Placement, ground: f64, top: f64) -> Vec<Part> {
         let floors = std::iter::successors(Some(ground + STOREY), |floor| Some(floor + STOREY));
         let below = floors.take_while(|floor| floor + 1.6 < top);
-        below.map(|floor| balcony(wall, 3.0, BALCONY_DEPTH, floor)).collect()
+        below.map(|floor| balcony(wall, BALCONY_WIDTH, BALCONY_DEPTH, floor)).collect()
     }
 
     /// A row of houses along u about `row`, their fronts towards −v. Returns how many.
@@ -152,7 +166,9 @@ impl Site {
         let width = length / f64::from(count);
         for house in 0..count {
             let u = -length / 2.0 + width * (f64::from(house) + 0.5);
-            self.party_house(&row.moved(u, 0.0, 0.0), width, style);
+            let has_open_back = u.abs() + BALCONY_WIDTH / 2.0 < length / 2.0 - style.corner;
+            let balconies = if has_open_back { style.balconies } else { 0.0 };
+            self.party_house(&row.moved(u, 0.0, 0.0), width, &RowStyle { balconies, ..*style });
         }
         count
     }

@@ -66,6 +66,10 @@ struct TakenGround {
 impl TakenGround {
     fn push(&mut self, taken: Taken) {
         let half = taken.half_box();
+        // Nothing is built at infinity, and its cells would be without end.
+        if !taken.placement.origin.iter().chain(&half).all(|v| v.is_finite()) {
+            return;
+        }
         let range = |axis: usize| {
             let centre = taken.placement.origin[axis];
             cell(centre - half[axis] - REACH)..=cell(centre + half[axis] + REACH)

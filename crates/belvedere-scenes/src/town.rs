@@ -1,5 +1,7 @@
 //! A town from a short description: streets, blocks of buildings and trees on undulating ground.
 
+use std::f64::consts::FRAC_PI_4;
+
 use crate::plan::{Layout, Plan};
 use crate::random::Random;
 use crate::scene::Scene;
@@ -47,10 +49,10 @@ pub enum StreetTrees {
     Without,
 }
 
-/// What [`town`] builds.
+/// What [`town`] builds. Values outside the stated ranges count as the nearest within.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TownParams {
-    /// Side of the square of ground, metres, 60 to 5000; smaller values count as 60. Below 100 there is one block, from
+    /// Side of the square of ground, metres, 60 to 5000. Below 100 there is one block, from
     /// there on at least two by two. Default 120: a scan of it stays near 200 000 points.
     pub extent: f64,
     /// Any number; another one gives another town. Default 1.
@@ -121,14 +123,30 @@ impl TownParams {
     /// The ground of the town as a formula.
     #[must_use]
     pub fn terrain(&self) -> Terrain {
-        Terrain::new(self.origin, self.slope, self.hill_height, self.seed).with_canal(Layout::new(self).trench())
+        Terrain::new(self.origin, self.slope, self.hill_height, self.seed)
+            .with_canal(Layout::new(&self.within_limits()).trench())
+    }
+
+    /// The same description with everything that shapes the plan brought to values that can be built.
+    fn within_limits(&self) -> Self {
+        Self {
+            extent: within(self.extent, [60.0, 5000.0]),
+            canal_depth: within(self.canal_depth, [0.0, 3.0]),
+            street_angle: within(self.street_angle, [0.0, FRAC_PI_4]),
+            street_width: within(self.street_width, [4.0, 12.0]),
+            block_pitch: within(self.block_pitch, [44.0, 80.0]),
+            tree_heights: self.tree_heights.map(|height| within(height, [3.0, 22.0])),
+            area_per_garden_tree: within(self.area_per_garden_tree, [20.0, f64::INFINITY]),
+            street_furniture: within(self.street_furniture, [0.0, 1.0]),
+            ..self.clone()
+        }
     }
 }
 
-/// Least and greatest height of a tree, metres.
-const TREE_HEIGHTS: [f64; 2] = [3.0, 22.0];
-/// Least ground per tree that is tried, m²: below it a town would be tries without end.
-const MIN_AREA_PER_TREE: f64 = 20.0;
+/// The nearest value between the two; the lower one for NaN.
+fn within(value: f64, [low, high]: [f64; 2]) -> f64 {
+    if value > low { value.min(high) } else { low }
+}
 
 /// Builds a town of the described blocks, with trees in gardens and streets, and what stands about in the streets.
 ///
@@ -136,11 +154,12 @@ const MIN_AREA_PER_TREE: f64 = 20.0;
 /// `wire 1`… and `car 1`… as they were built; coordinates are absolute. The same parameters give the same town.
 #[must_use]
 pub fn town(params: &TownParams) -> Scene {
+    let params = &params.within_limits();
     let layout = Layout::new(params);
     let centre = layout.centre;
     let mut site = Site::new(params.terrain(), Random::new(params.seed, 0), centre.origin, layout.extent);
     site.crowns = params.crowns;
-    site.tree_heights = params.tree_heights.map(|height| height.max(TREE_HEIGHTS[0]).min(TREE_HEIGHTS[1]));
+    site.tree_heights = params.tree_heights;
 
     for (number, plan) in layout.plans().iter().enumerate() {
         if let Some(kind) = choose(&params.blocks, number, &mut site.random) {
@@ -162,7 +181,7 @@ pub fn town(params: &TownParams) -> Scene {
     for &u in &layout.streets_along_v {
         site.take(centre.moved(u, 0.0, 0.0), params.street_width, layout.side);
     }
-    site.garden_trees(params.area_per_garden_tree.max(MIN_AREA_PER_TREE));
+    site.garden_trees(params.area_per_garden_tree);
     site.scene
 }
 

@@ -69,7 +69,7 @@ const SPRAYS: u32 = 400;
 /// Clumps that the sprays gather in.
 const CLUMPS: usize = 24;
 /// Area of the sprays seen from one side, as a share of that of the crown: about two in five lines through the inner crown
-/// stay free, as through a scanned crown in leaf.
+/// stay free.
 const COVER: f64 = 0.55;
 
 /// Sprays within an ellipsoid about `centre`: each a closed flat tetrahedron, turned at random.

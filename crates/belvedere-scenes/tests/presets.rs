@@ -285,6 +285,27 @@ fn trees_and_cars_and_masts_stand_outside_buildings() {
 }
 
 #[test]
+fn balconies_and_canopies_keep_out_of_other_buildings() {
+    for (preset, params) in towns() {
+        let scene = town(&params);
+        let blocks = blocks(&scene);
+        let floors: Vec<(&str, [[f64; 2]; 3])> =
+            floors(&scene).into_iter().map(|(o, f)| (blocks.object_names[o as usize].as_str(), f)).collect();
+        for range in parts(&scene) {
+            let name = scene.object_names[scene.objects[range.start] as usize].as_str();
+            // Decks run into the buildings they join.
+            if name.starts_with("deck") || !range.clone().all(|t| scene.materials[t] == Material::Slab) {
+                continue;
+            }
+            for v in &part(&scene, range).vertices {
+                let hit = floors.iter().find(|&&(other, floor)| other != name && inside(floor, [v[0], v[1]]));
+                assert!(hit.is_none(), "{preset:?} {} {}: {name} in {hit:?}", params.extent, params.seed);
+            }
+        }
+    }
+}
+
+#[test]
 fn crowns_keep_clear_of_other_objects_seen_from_the_middle_of_each_crown() {
     // The trunk ends in the middle of the crown: what lies around it within the crown's reach must be its own tree.
     let scene = town(&TownParams { crowns: Crowns::Opaque, ..Preset::Village.params(125.0, 2) });
@@ -411,14 +432,22 @@ fn odd_descriptions_give_a_scene_all_the_same() {
     assert_eq!(count(&open, "building"), 0);
     assert!(count(&open, "tree") > 0);
     let never = town(&TownParams { blocks: vec![(BlockPlan::Gardens, 0)], ..usual.clone() });
-    assert_eq!(count(&never, "building") >= 4, true, "the first block is one of each, weight or not");
+    assert!(count(&never, "building") >= 4, "the first block is one of each, weight or not");
     for odd in [
-        TownParams { extent: f64::NAN, ..usual.clone() },
+        TownParams { extent: f64::NAN, street_angle: 3.0, ..usual.clone() },
+        TownParams { street_width: f64::NAN, block_pitch: 1e9, canal_depth: 99.0, ..usual.clone() },
         TownParams { extent: 0.0, area_per_garden_tree: 0.0, ..usual.clone() },
         TownParams { street_trees: StreetTrees::Without, tree_heights: [-5.0, 900.0], ..usual.clone() },
     ] {
         let scene = town(&odd);
         assert!(scene.triangles.len() > 1000);
         assert!(scene.vertices.as_flattened().iter().all(|v| v.is_finite()));
+    }
+    // No sense can be made of these, but they end.
+    for odd in [
+        TownParams { origin: [f64::INFINITY, f64::NAN, 0.0], ..usual.clone() },
+        TownParams { slope: f64::NAN, hill_height: f64::INFINITY, ..usual.clone() },
+    ] {
+        assert!(!blocks(&town(&odd)).triangles.is_empty());
     }
 }
