@@ -1,7 +1,7 @@
 //! Simulated towns with exact meshes, and simulated laser scans of them.
 //!
 //! Tests and demonstrations need scenes whose answers are known. This crate makes a town out of triangles
-//! ([`town`]), answers exactly what blocks what in it ([`Truth`]), and flies a laser scanner over it
+//! ([`town`], from a description or a [`Preset`]), generalises it to the blocks of a city model ([`blocks`]), answers exactly what blocks what in it ([`Truth`]), and flies a laser scanner over it
 //! ([`scan_airborne`]). It knows no other crate of the project: what comes out are plain columns and meshes.
 //!
 //! ```
@@ -21,15 +21,25 @@
 
 mod airborne;
 mod beam;
+mod buildings;
+pub mod closed_forms;
 mod flight;
 mod given_model;
+mod lod1;
 mod obj;
+mod open_blocks;
+mod plain_blocks;
+mod plan;
 mod preset;
 mod queries;
 mod random;
+mod row_blocks;
 mod scan;
 mod scene;
+mod site;
 mod solids;
+mod street_furniture;
+mod streets;
 mod terrain;
 mod town;
 mod trees;
@@ -38,11 +48,13 @@ mod vector;
 
 pub use airborne::{AirborneParams, scan_airborne};
 pub use beam::BeamParams;
+pub use lod1::blocks;
 pub use preset::Preset;
 pub use queries::{QuerySet, Site, Targets};
 pub use scan::{Scan, ScanReport, SensorPath};
 pub use scene::{Material, Part, Scene};
 pub use solids::{Placement, extruded, l_shaped_ridged, ridged};
 pub use terrain::Terrain;
-pub use town::{TownParams, town};
+pub use town::{BlockPlan, StreetTrees, TownParams, town};
+pub use trees::Crowns;
 pub use truth::{CONTACT, Hit, Truth};

@@ -1,19 +1,21 @@
 //! Kinds of towns by name.
 
-use crate::town::TownParams;
+use crate::town::{BlockPlan, StreetTrees, TownParams};
+use crate::trees::Crowns;
 
 /// A kind of town, at any size and seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Preset {
-    /// Detached houses with gardens, hedges and many trees on hilly ground.
+    /// Detached houses with chimneys and dormers in fenced gardens, porous trees, cars, masts and wires on hilly ground.
     Village,
-    /// Terraces, L-shaped blocks, a tower, detached houses.
+    /// Rows of houses with party walls, high-rise with balconies and decks, a market square with arcades, courtyards, a
+    /// petrol station, a dry canal with bridges; cars, fences, masts and wires, opaque trees.
     Town,
-    /// Narrow streets, party walls, courtyards, arcades.
+    /// Narrow streets, party walls, courtyards, arcades, a canal.
     OldTown,
     /// High-rise blocks with balconies, decks and canopies between them.
     Towers,
-    /// Trees, ponds' bridges and a few pavilions.
+    /// Many porous trees, pavilions, lookout decks and footbridges over a trench.
     Park,
 }
 
@@ -33,9 +35,75 @@ impl Preset {
         }
     }
 
-    /// Parameters of a town of this kind: a square of `extent` metres.
+    /// Parameters of a town of this kind: a square of `extent` metres. What the kind promises is there from 120 m on;
+    /// smaller ones hold the first of its blocks.
     #[must_use]
     pub fn params(self, extent: f64, seed: u64) -> TownParams {
-        TownParams { extent, seed, ..TownParams::default() }
+        let usual = TownParams { extent, seed, street_trees: StreetTrees::Kerb, ..TownParams::default() };
+        match self {
+            Self::Village => TownParams {
+                slope: 0.05,
+                hill_height: 3.0,
+                street_width: 7.0,
+                blocks: vec![(BlockPlan::Gardens, 4), (BlockPlan::DetachedHouses, 1)],
+                crowns: Crowns::Porous,
+                tree_heights: [5.0, 12.0],
+                area_per_garden_tree: 150.0,
+                street_trees: StreetTrees::Without,
+                street_furniture: 0.5,
+                ..usual
+            },
+            Self::Town => TownParams {
+                canal_depth: 2.2,
+                street_width: 8.0,
+                block_pitch: 44.0,
+                blocks: vec![
+                    (BlockPlan::RowHouses, 16),
+                    (BlockPlan::HighRise, 5),
+                    (BlockPlan::Square, 2),
+                    (BlockPlan::Gardens, 4),
+                    (BlockPlan::Courtyard, 2),
+                    (BlockPlan::Perimeter, 6),
+                    (BlockPlan::PetrolStation, 1),
+                ],
+                area_per_garden_tree: 45.0,
+                street_furniture: 0.7,
+                ..usual
+            },
+            Self::OldTown => TownParams {
+                slope: 0.02,
+                canal_depth: 2.2,
+                street_width: 5.0,
+                block_pitch: 46.0,
+                blocks: vec![(BlockPlan::Perimeter, 6), (BlockPlan::Courtyard, 2), (BlockPlan::Square, 1)],
+                area_per_garden_tree: 200.0,
+                street_trees: StreetTrees::Without,
+                street_furniture: 0.3,
+                ..usual
+            },
+            Self::Towers => TownParams {
+                slope: 0.01,
+                hill_height: 0.6,
+                street_width: 11.0,
+                block_pitch: 56.0,
+                blocks: vec![(BlockPlan::HighRise, 6), (BlockPlan::PetrolStation, 1), (BlockPlan::Square, 1)],
+                area_per_garden_tree: 220.0,
+                street_furniture: 0.8,
+                ..usual
+            },
+            Self::Park => TownParams {
+                hill_height: 2.5,
+                canal_depth: 2.2,
+                street_width: 6.0,
+                block_pitch: 56.0,
+                blocks: vec![(BlockPlan::Lawn, 1)],
+                crowns: Crowns::Porous,
+                tree_heights: [7.0, 18.0],
+                area_per_garden_tree: 80.0,
+                street_trees: StreetTrees::Without,
+                street_furniture: 0.2,
+                ..usual
+            },
+        }
     }
 }

@@ -149,6 +149,9 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Object of each triangle, (T), index into `object_names`; the triangles of one object are neighbours.
     pub objects: Vec<u32>,
+    /// Part of each triangle, (T): the parts of all objects counted through from 0 in the order they were added; the
+    /// triangles of one part are neighbours. Empty where a scene was put together without parts.
+    pub parts: Vec<u32>,
     /// Name of each object, such as `building 3`.
     pub object_names: Vec<String>,
 }
@@ -158,13 +161,28 @@ impl Scene {
     pub fn add_object(&mut self, name: impl Into<String>, parts: &[Part]) {
         let object = index_u32(self.object_names.len());
         self.object_names.push(name.into());
-        for part in parts {
+        let first_part = self.parts.last().map_or(0, |last| last + 1);
+        for (part, number) in parts.iter().filter(|part| !part.triangles.is_empty()).zip(first_part..) {
             let first = index_u32(self.vertices.len());
             self.vertices.extend_from_slice(&part.vertices);
             self.triangles.extend(part.triangles.iter().map(|t| t.map(|corner| corner + first)));
             self.materials.extend_from_slice(&part.materials);
             self.objects.extend(std::iter::repeat_n(object, part.triangles.len()));
+            self.parts.extend(std::iter::repeat_n(number, part.triangles.len()));
         }
+    }
+
+    /// Triangles of each object and part, as ranges: neighbours of the same object and part belong together.
+    pub(crate) fn part_ranges(&self) -> Vec<std::ops::Range<usize>> {
+        let key = |t: usize| (self.objects.get(t), self.parts.get(t));
+        let mut ranges: Vec<std::ops::Range<usize>> = Vec::new();
+        for t in 0..self.triangles.len() {
+            match ranges.last_mut() {
+                Some(range) if key(range.start) == key(t) => range.end = t + 1,
+                _ => ranges.push(t..t + 1),
+            }
+        }
+        ranges
     }
 
     /// Corners of triangle `index`, or `None` where it or one of its vertices does not exist.

@@ -120,6 +120,91 @@ pub fn l_shaped_ridged(
     part
 }
 
+/// Closed solid through `rings`, each of the same number of corners: sides between neighbouring rings, the first and the
+/// last ring as caps. An upright prism is two rings, a sagging wire many.
+///
+/// Rings run counter-clockwise seen from the end that the sweep goes to; all of a cap must be in sight of its first corner.
+/// `side_materials` has one material per edge of a ring, edge k from corner k to the next; the last one holds for all
+/// that follow. Sides need not be flat. Fewer than two rings, or none with three corners, give an empty part.
+pub(crate) fn swept<R: AsRef<[[f64; 3]]>>(rings: &[R], side_materials: &[Material], cap: Material) -> Part {
+    let mut part = Part::default();
+    let count = rings.iter().map(|ring| ring.as_ref().len()).min().unwrap_or(0);
+    let material = |k: usize| side_materials.get(k).or(side_materials.last()).copied().unwrap_or(cap);
+    if count < 3 || rings.len() < 2 {
+        return part;
+    }
+    for ring in rings {
+        part.vertices.extend(ring.as_ref().iter().take(count));
+    }
+    for ring in 1..rings.len() {
+        let (before, after) = ((ring - 1) * count, ring * count);
+        for k in 0..count {
+            let next = (k + 1) % count;
+            part.add_polygon(&[before + k, before + next, after + next, after + k], material(k));
+        }
+    }
+    let last = (rings.len() - 1) * count;
+    let start: Vec<usize> = std::iter::once(0).chain((1..count).rev()).collect();
+    part.add_polygon(&start, cap);
+    part.add_polygon(&(last..last + count).collect::<Vec<_>>(), cap);
+    part
+}
+
+/// Upright prism of one material over the convex `footprint`, (N, 2), counter-clockwise, heights in metres.
+pub(crate) fn prism(footprint: &[[f64; 2]], bottom: f64, top: f64, material: Material) -> Part {
+    let ring = |height: f64| footprint.iter().map(|&[x, y]| [x, y, height]).collect::<Vec<_>>();
+    swept(&[ring(bottom), ring(top)], &[material], material)
+}
+
+/// Whether a course of wings comes back to where it starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Course {
+    /// With a gable at either end: one wing, an L, a U.
+    Open,
+    /// Around a courtyard.
+    Closed,
+}
+
+/// Closed building of wings along a course, with the outer corners `outer`, (N, 2), on the right and `inner`, (N, 2), on the
+/// left; the opposite walls of a wing are parallel. The ridge runs midway between them; at the height of the eaves it makes
+/// a flat roof. Heights in metres.
+pub(crate) fn winged(
+    outer: &[[f64; 2]],
+    inner: &[[f64; 2]],
+    course: Course,
+    bottom: f64,
+    eaves: f64,
+    ridge: f64,
+) -> Part {
+    let mut part = Part::default();
+    let count = outer.len().min(inner.len());
+    if count < 2 {
+        return part;
+    }
+    for (&[ox, oy], &[ix, iy]) in outer.iter().zip(inner) {
+        part.vertices.extend([[ox, oy, bottom], [ix, iy, bottom], [ox, oy, eaves], [ix, iy, eaves]]);
+        part.vertices.push([(ox + ix) / 2.0, (oy + iy) / 2.0, ridge]);
+    }
+    let corner = |station: usize| [0, 1, 2, 3, 4].map(|k| 5 * station + k);
+    let wings = if course == Course::Closed { count } else { count - 1 };
+    for station in 0..wings {
+        let [outer_a, inner_a, outer_eaves_a, inner_eaves_a, ridge_a] = corner(station);
+        let [outer_b, inner_b, outer_eaves_b, inner_eaves_b, ridge_b] = corner((station + 1) % count);
+        part.add_polygon(&[outer_a, outer_b, outer_eaves_b, outer_eaves_a], Material::Facade);
+        part.add_polygon(&[inner_b, inner_a, inner_eaves_a, inner_eaves_b], Material::Facade);
+        part.add_polygon(&[outer_a, inner_a, inner_b, outer_b], Material::Facade);
+        part.add_polygon(&[outer_eaves_a, outer_eaves_b, ridge_b, ridge_a], Material::Roof);
+        part.add_polygon(&[ridge_a, ridge_b, inner_eaves_b, inner_eaves_a], Material::Roof);
+    }
+    if course == Course::Open {
+        let [outer, inner, outer_eaves, inner_eaves, ridge] = corner(0);
+        part.add_polygon(&[outer, outer_eaves, ridge, inner_eaves, inner], Material::Facade);
+        let [outer, inner, outer_eaves, inner_eaves, ridge] = corner(count - 1);
+        part.add_polygon(&[outer, inner, inner_eaves, ridge, outer_eaves], Material::Facade);
+    }
+    part
+}
+
 /// Starts `part` with the corners of `footprint` at `bottom`, then at `top`, the walls between them and the floor.
 fn add_walls(part: &mut Part, footprint: &[[f64; 2]], bottom: f64, top: f64) {
     let count = footprint.len();

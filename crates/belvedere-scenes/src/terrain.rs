@@ -1,9 +1,10 @@
 //! Undulating ground with a height formula.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use crate::random::Random;
 use crate::scene::{Material, Part};
+use crate::solids::Placement;
 
 /// Ground: an inclined plane with gentle hills, known as a formula.
 ///
@@ -13,6 +14,28 @@ pub struct Terrain {
     centre: [f64; 3],
     gradient: [f64; 2],
     hills: Vec<Hill>,
+    canal: Option<Canal>,
+}
+
+/// A dry canal: a straight trench with smooth banks, right across the scene.
+#[derive(Clone, Debug)]
+pub(crate) struct Canal {
+    /// On the middle line, u along it.
+    pub(crate) placement: Placement,
+    /// From bank to bank, metres.
+    pub(crate) width: f64,
+    /// Below the ground at its middle, metres.
+    pub(crate) depth: f64,
+}
+
+impl Canal {
+    /// Metres that the bed lies below the ground that would be there without the canal.
+    fn depth_at(&self, x: f64, y: f64) -> f64 {
+        let (sin, cos) = self.placement.angle.sin_cos();
+        let across = (y - self.placement.origin[1]) * cos - (x - self.placement.origin[0]) * sin;
+        let share = across.abs() / (self.width / 2.0);
+        if share < 1.0 { self.depth * (0.5 + 0.5 * (share * PI).cos()) } else { 0.0 }
+    }
 }
 
 /// A wave of the ground.
@@ -43,18 +66,26 @@ impl Terrain {
                 phase: random.between(0.0, TAU),
             }
         });
-        Self { centre, gradient: [slope * cos, slope * sin], hills: hills.collect() }
+        Self { centre, gradient: [slope * cos, slope * sin], hills: hills.collect(), canal: None }
+    }
+
+    /// The same ground with a trench in it.
+    pub(crate) fn with_canal(mut self, canal: Option<Canal>) -> Self {
+        self.canal = canal;
+        self
     }
 
     /// Height of the ground at absolute (x, y), all in metres.
     ///
     /// The mesh lies on this height at its vertices and departs from it by less than 4 mm per metre of hill height
-    /// between them (half the squared circumradius of its triangles times the greatest curvature).
+    /// between them (half the squared circumradius of its triangles times the greatest curvature). In a canal it departs by
+    /// up to 0.4 m, since its banks are steeper than the mesh is fine.
     #[must_use]
     pub fn height(&self, x: f64, y: f64) -> f64 {
         let (dx, dy) = (x - self.centre[0], y - self.centre[1]);
         let hills = self.hills.iter().map(|h| h.amplitude * (h.wave[0] * dx + h.wave[1] * dy + h.phase).sin());
-        self.centre[2] + self.gradient[0] * dx + self.gradient[1] * dy + hills.sum::<f64>()
+        let natural = self.centre[2] + self.gradient[0] * dx + self.gradient[1] * dy + hills.sum::<f64>();
+        self.canal.as_ref().map_or(natural, |canal| natural - canal.depth_at(x, y))
     }
 
     /// Lowest height within the box around `footprint`, sampled every metre.

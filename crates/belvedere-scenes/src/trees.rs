@@ -1,10 +1,11 @@
-//! Trees: a stem and a bumpy crown, both closed.
+//! Trees: a stem and a crown, either a closed bumpy hull or many small leaves.
 
 use std::f64::consts::{PI, TAU};
 
 use crate::random::Random;
 use crate::scene::{Material, Part};
 use crate::solids::{Placement, extruded};
+use crate::vector::{add, add_scaled, cross, length, scale, unit};
 
 /// Size of a tree, metres.
 #[derive(Clone, Copy, Debug)]
@@ -15,9 +16,9 @@ pub(crate) struct TreeShape {
 }
 
 impl TreeShape {
-    /// A broad-leaved street tree of 7 to 13 m.
-    pub(crate) fn random(random: &mut Random) -> Self {
-        let height = random.between(7.0, 13.0);
+    /// A broad-leaved tree of a height between the two.
+    pub(crate) fn random([lowest, highest]: [f64; 2], random: &mut Random) -> Self {
+        let height = random.between(lowest, highest);
         Self {
             height,
             crown_radius: height * random.between(0.22, 0.3),
@@ -34,8 +35,18 @@ const BUMP: f64 = 0.12;
 const ROWS: usize = 9;
 const COLUMNS: usize = 14;
 
+/// What the crowns of trees are made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Crowns {
+    /// A closed hull that lets no light through ([`Material::TreeCrown`]); the scanner's beam may be told to pass it in part.
+    Opaque,
+    /// Sprays of leaves, 0.2 to 0.4 m, in clumps with gaps between ([`Material::Leaf`]): about two in
+    /// five straight lines through the crown get past them.
+    Porous,
+}
+
 /// Trunk and crown of a tree that stands at `foot`, absolute, metres, its trunk reaching `buried` metres below.
-pub(crate) fn tree(foot: [f64; 3], shape: &TreeShape, buried: f64, random: &mut Random) -> [Part; 2] {
+pub(crate) fn tree(foot: [f64; 3], shape: &TreeShape, crowns: Crowns, buried: f64, random: &mut Random) -> [Part; 2] {
     let half_height = shape.height * (1.0 - BARE_STEM) / 2.0;
     let centre = [foot[0], foot[1], foot[2] + shape.height - half_height];
     let around = Placement { origin: [foot[0], foot[1]], angle: random.between(0.0, TAU) };
@@ -46,7 +57,59 @@ pub(crate) fn tree(foot: [f64; 3], shape: &TreeShape, buried: f64, random: &mut 
         })
         .collect();
     let trunk = extruded(&ring, foot[2] - buried, centre[2]).with_material(Material::Trunk);
-    [trunk, crown(centre, shape.crown_radius, half_height, random)]
+    let crown = match crowns {
+        Crowns::Opaque => crown(centre, shape.crown_radius, half_height, random),
+        Crowns::Porous => leaves(centre, shape.crown_radius, half_height, random),
+    };
+    [trunk, crown]
+}
+
+/// Sprays per crown: enough to look like foliage, few enough that hundreds of trees stay below a million triangles.
+const SPRAYS: u32 = 400;
+/// Clumps that the sprays gather in.
+const CLUMPS: usize = 24;
+/// Area of the sprays seen from one side, as a share of that of the crown: about two in five lines through the inner crown
+/// stay free.
+const COVER: f64 = 0.55;
+
+/// Sprays within an ellipsoid about `centre`: each a closed flat tetrahedron, turned at random.
+fn leaves(centre: [f64; 3], radius: f64, half_height: f64, random: &mut Random) -> Part {
+    let mut part = Part::default();
+    let clumps: Vec<[f64; 3]> = (0..CLUMPS).map(|_| scale(direction(random), random.between(0.45, 0.85))).collect();
+    // Seen from all sides on average, a flat spray of edge a covers a²/4.
+    let edge = (COVER * PI * radius * half_height / f64::from(SPRAYS) * 4.0).sqrt();
+    for spray in 0..SPRAYS {
+        let clump = clumps[spray as usize % CLUMPS];
+        let place = add_scaled(clump, direction(random), 0.45 * random.uniform());
+        let reach = length(place);
+        let place = if reach > 0.95 { scale(place, 0.95 / reach) } else { place };
+        let middle = add(centre, [place[0] * radius, place[1] * radius, place[2] * half_height]);
+        let size = edge * random.between(0.8, 1.2);
+        let (normal, around) = (direction(random), direction(random));
+        let along = unit(cross(normal, around)).unwrap_or([1.0, 0.0, 0.0]);
+        let across = cross(normal, along);
+        // Two opposite edges at right angles, 4 cm apart: from above a square, from the side a sliver.
+        let corner = |axis: [f64; 3], share: f64, up: f64| {
+            add_scaled(add_scaled(middle, axis, share * size / 2.0), normal, up * SPRAY_THICKNESS / 2.0)
+        };
+        let first = part.vertices.len();
+        part.vertices.extend([corner(along, -1.0, -1.0), corner(along, 1.0, -1.0)]);
+        part.vertices.extend([corner(across, -1.0, 1.0), corner(across, 1.0, 1.0)]);
+        for corners in [[0, 3, 1], [1, 2, 0], [2, 1, 3], [3, 0, 2]] {
+            part.add_polygon(&corners.map(|corner| first + corner), Material::Leaf);
+        }
+    }
+    part
+}
+
+/// Thickness of a spray, metres.
+const SPRAY_THICKNESS: f64 = 0.04;
+
+/// Unit vector, all directions alike.
+fn direction(random: &mut Random) -> [f64; 3] {
+    let (height, turn) = (random.between(-1.0, 1.0), random.between(0.0, TAU));
+    let across = (1.0 - height * height).sqrt();
+    [across * turn.cos(), across * turn.sin(), height]
 }
 
 /// Closed bumpy ellipsoid about `centre`.

@@ -1,9 +1,9 @@
 //! Exact answers: what a ray through a scene meets first, and whether anything lies between two points.
 
-use std::time::Duration;
-
 use obvhs::aabb::Aabb;
-use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::cwbvh::{CwBvh, bvh2_to_cwbvh::bvh2_to_cwbvh};
+use obvhs::ploc::PlocBuilder;
 use obvhs::ray::{Ray, RayHit};
 use obvhs::{Boundable, BvhBuildParams};
 use rayon::prelude::*;
@@ -92,7 +92,7 @@ impl Truth {
             triangle.corners = triangle.corners.map(|corner| sub(corner, centre));
         }
         let boxes: Vec<PaddedBox> = triangles.iter().map(|t| padded_box(&t.corners, padding)).collect();
-        let tree = build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
+        let tree = search_tree(&boxes);
         let in_tree_order = tree.primitive_indices.iter().filter_map(|&i| triangles.get(i as usize).copied()).collect();
         Self { triangles: in_tree_order, centre, half_size, tree }
     }
@@ -227,6 +227,24 @@ fn crossing(corners: &[[f64; 3]; 3], origin: [f64; 3], direction: [f64; 3]) -> O
     let normal = cross(sub(b, a), sub(c, a));
     let steepness = dot(direction, normal);
     (steepness != 0.0).then(|| dot(a, normal) / steepness)
+}
+
+/// Search tree over `boxes`, which must not be empty.
+///
+/// These are the steps of the crate's own `build_cwbvh` without what that does after them in debug builds: a check of the
+/// boxes to a fixed 1e-5, which f32 does not keep farther than about 80 m from the centre, so that it would panic on sound
+/// trees of larger scenes.
+fn search_tree(boxes: &[PaddedBox]) -> CwBvh {
+    let params = BvhBuildParams::medium_build();
+    let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
+        params.ploc_search_distance,
+        boxes,
+        (0..).take(boxes.len()).collect(),
+        params.sort_precision,
+        params.search_depth_threshold,
+    );
+    ReinsertionOptimizer::default().run(&mut binary, params.reinsertion_batch_ratio, None);
+    bvh2_to_cwbvh(&binary, params.max_prims_per_leaf.clamp(1, 3), true, false)
 }
 
 fn padded_box(corners: &[[f64; 3]; 3], padding: f64) -> PaddedBox {

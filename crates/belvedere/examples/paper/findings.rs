@@ -79,6 +79,7 @@ pub(crate) fn delft(published: Model, cloud: &PointCloud, mesh: &Mesh, tables: &
         materials: vec![Material::Roof; mesh.triangles.len()],
         objects: vec![0; mesh.triangles.len()],
         object_names: vec!["city model".to_owned()],
+        ..Scene::default()
     };
     let truth = Truth::new(&scene);
     let people = people(&methods[0].model.cloud, &truth);

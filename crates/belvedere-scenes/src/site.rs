@@ -1,0 +1,221 @@
+//! A town under construction: what stands where already, and how things are put there.
+
+use std::collections::HashMap;
+
+use crate::random::Random;
+use crate::scene::{Part, Scene};
+use crate::solids::{Placement, extruded, ridged};
+use crate::terrain::Terrain;
+use crate::trees::{Crowns, TreeShape, tree};
+
+/// How far solids reach below the lowest ground they stand on, metres.
+pub(crate) const BURIED: f64 = 1.0;
+/// Least gap between a crown and a building or another crown, metres.
+const CROWN_GAP: f64 = 0.3;
+/// Least gap between the middle of a trunk and what its crown may hang over, metres.
+const TRUNK_GAP: f64 = 0.8;
+/// Side of the cells in which taken ground is looked up, metres.
+const CELL: f64 = 16.0;
+/// Farthest from a point that taken ground may matter, metres: the widest crown and its gap.
+const REACH: f64 = 8.0;
+/// How far a crown may bulge beyond its mean radius, as a factor.
+const CROWN_BULGE: f64 = 1.15;
+
+/// What keeps its distance from taken ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Clearance {
+    /// The whole crown, and everything else.
+    Crown,
+    /// The trunk and everything else; crowns may hang over.
+    Trunk,
+}
+
+/// Ground that something stands on already: a rectangle, or a disc where its half sides are zero.
+struct Taken {
+    placement: Placement,
+    half_sides: [f64; 2],
+    margin: f64,
+    clearance: Clearance,
+}
+
+impl Taken {
+    /// Distance from `point` to the rim, metres, negative inside.
+    fn distance(&self, point: [f64; 2]) -> f64 {
+        let (sin, cos) = self.placement.angle.sin_cos();
+        let (dx, dy) = (point[0] - self.placement.origin[0], point[1] - self.placement.origin[1]);
+        let local = [dx * cos + dy * sin, dy * cos - dx * sin];
+        let [outside_u, outside_v] = [0, 1].map(|i| (local[i].abs() - self.half_sides[i]).max(0.0));
+        outside_u.hypot(outside_v) - self.margin
+    }
+
+    /// Half the sides of the upright box around it.
+    fn half_box(&self) -> [f64; 2] {
+        let (sin, cos) = self.placement.angle.sin_cos();
+        let [u, v] = self.half_sides;
+        [u * cos.abs() + v * sin.abs() + self.margin, u * sin.abs() + v * cos.abs() + self.margin]
+    }
+}
+
+/// Taken ground by cells, so that a city is built in time that grows with its area.
+#[derive(Default)]
+struct TakenGround {
+    all: Vec<Taken>,
+    cells: HashMap<[i64; 2], Vec<usize>>,
+}
+
+impl TakenGround {
+    fn push(&mut self, taken: Taken) {
+        let half = taken.half_box();
+        // Nothing is built at infinity, and its cells would be without end.
+        if !taken.placement.origin.iter().chain(&half).all(|v| v.is_finite()) {
+            return;
+        }
+        let range = |axis: usize| {
+            let centre = taken.placement.origin[axis];
+            cell(centre - half[axis] - REACH)..=cell(centre + half[axis] + REACH)
+        };
+        for i in range(0) {
+            for j in range(1) {
+                self.cells.entry([i, j]).or_default().push(self.all.len());
+            }
+        }
+        self.all.push(taken);
+    }
+
+    fn near(&self, point: [f64; 2]) -> impl Iterator<Item = &Taken> {
+        let numbers = self.cells.get(&point.map(cell)).map_or([].as_slice(), Vec::as_slice);
+        numbers.iter().filter_map(|&number| self.all.get(number))
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "`as` saturates far outside any town")]
+fn cell(coordinate: f64) -> i64 {
+    (coordinate / CELL).floor() as i64
+}
+
+/// A town under construction.
+pub(crate) struct Site {
+    pub(crate) scene: Scene,
+    pub(crate) terrain: Terrain,
+    pub(crate) random: Random,
+    /// Middle and side of the upright square of ground.
+    pub(crate) centre: [f64; 2],
+    pub(crate) extent: f64,
+    pub(crate) crowns: Crowns,
+    pub(crate) tree_heights: [f64; 2],
+    taken: TakenGround,
+    counts: HashMap<&'static str, u32>,
+    courtyards: u32,
+}
+
+impl Site {
+    /// The bare square of ground of side `extent` about `centre`.
+    pub(crate) fn new(terrain: Terrain, random: Random, centre: [f64; 2], extent: f64) -> Self {
+        let mut scene = Scene::default();
+        scene.add_object("terrain", &[terrain.mesh(extent)]);
+        Self {
+            scene,
+            terrain,
+            random,
+            centre,
+            extent,
+            crowns: Crowns::Opaque,
+            tree_heights: [7.0, 13.0],
+            taken: TakenGround::default(),
+            counts: HashMap::new(),
+            courtyards: 0,
+        }
+    }
+
+    pub(crate) fn ground(&self, [x, y]: [f64; 2]) -> f64 {
+        self.terrain.height(x, y)
+    }
+
+    /// Height at which solids over `footprint` end below the ground.
+    pub(crate) fn bottom(&self, footprint: &[[f64; 2]]) -> f64 {
+        self.terrain.lowest(footprint) - BURIED
+    }
+
+    /// Adds an object with a number of its own among those of its `kind`, from 1.
+    pub(crate) fn add(&mut self, kind: &'static str, parts: &[Part]) {
+        let count = self.counts.entry(kind).or_default();
+        *count += 1;
+        self.scene.add_object(format!("{kind} {count}"), parts);
+    }
+
+    /// 0 and 1 by turns: which kind of courtyard comes next.
+    pub(crate) fn next_courtyard(&mut self) -> u32 {
+        let count = self.courtyards;
+        self.courtyards += 1;
+        count % 2
+    }
+
+    pub(crate) fn take(&mut self, placement: Placement, length: f64, width: f64) {
+        self.take_for(placement, [length, width], Clearance::Crown);
+    }
+
+    pub(crate) fn take_for(&mut self, placement: Placement, [length, width]: [f64; 2], clearance: Clearance) {
+        let half_sides = [length / 2.0, width / 2.0];
+        self.taken.push(Taken { placement, half_sides, margin: 0.0, clearance });
+    }
+
+    /// Whether a rectangle lies inside the square and `gap` metres off everything that stands already, crowns excepted
+    /// where only trunks count. Looked at in points a metre apart, so corners of others may reach in by half a metre.
+    pub(crate) fn is_free(&self, placement: &Placement, [length, width]: [f64; 2], gap: f64) -> bool {
+        let steps = [length, width].map(|side| crate::street_furniture::pieces(side, 1.0));
+        let share = |step: u32, steps: u32| f64::from(step) / f64::from(steps) - 0.5;
+        (0..=steps[0]).flat_map(|i| (0..=steps[1]).map(move |j| (i, j))).all(|(i, j)| {
+            let point = placement.at(length * share(i, steps[0]), width * share(j, steps[1]));
+            self.is_inside(point, gap) && self.taken.near(point).all(|taken| taken.distance(point) >= gap)
+        })
+    }
+
+    /// Whether the square reaches `reach` metres beyond `point` on all sides.
+    fn is_inside(&self, point: [f64; 2], reach: f64) -> bool {
+        [0, 1].iter().all(|&i| (point[i] - self.centre[i]).abs() + reach < self.extent / 2.0)
+    }
+
+    /// House of `length` by `width` centred on `placement`, ridge along u.
+    pub(crate) fn house(&mut self, placement: Placement, size: [f64; 2], eaves: f64, roof_height: f64, hip: f64) {
+        let footprint = placement.rectangle(size[0], size[1]);
+        let ground = self.ground(placement.origin);
+        let part = ridged(&footprint, self.bottom(&footprint), ground + eaves, ground + eaves + roof_height, hip);
+        self.take(placement, size[0], size[1]);
+        self.add("building", &[part]);
+    }
+
+    /// Box of `length` by `width` centred on `placement`.
+    pub(crate) fn flat_block(&mut self, placement: Placement, [length, width]: [f64; 2], height: f64) {
+        let footprint = placement.rectangle(length, width);
+        let part = extruded(&footprint, self.bottom(&footprint), self.ground(placement.origin) + height);
+        self.take(placement, length, width);
+        self.add("building", &[part]);
+    }
+
+    /// Plants a tree of a random size where its crown fits.
+    pub(crate) fn plant(&mut self, point: [f64; 2]) {
+        let shape = TreeShape::random(self.tree_heights, &mut self.random);
+        self.plant_shaped(point, &shape);
+    }
+
+    /// Plants a tree where its crown fits.
+    pub(crate) fn plant_shaped(&mut self, point: [f64; 2], shape: &TreeShape) {
+        let reach = shape.crown_radius * CROWN_BULGE;
+        let gap = |taken: &Taken| match taken.clearance {
+            Clearance::Crown => reach + CROWN_GAP,
+            Clearance::Trunk => TRUNK_GAP,
+        };
+        if !self.is_inside(point, reach) || self.taken.near(point).any(|t| t.distance(point) < gap(t)) {
+            return;
+        }
+        self.taken.push(Taken {
+            placement: Placement { origin: point, angle: 0.0 },
+            half_sides: [0.0; 2],
+            margin: reach,
+            clearance: Clearance::Crown,
+        });
+        let foot = [point[0], point[1], self.ground(point)];
+        let parts = tree(foot, shape, self.crowns, BURIED, &mut self.random);
+        self.add("tree", &parts);
+    }
+}
