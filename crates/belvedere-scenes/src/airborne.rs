@@ -142,11 +142,7 @@ impl AirborneParams {
     }
 
     pub(crate) fn sweep(&self) -> Sweep {
-        Sweep {
-            pattern: self.pattern,
-            half_angle: self.greatest_angle(),
-            pulses_per_line: self.pulses_per_line(),
-        }
+        Sweep { pattern: self.pattern, half_angle: self.greatest_angle(), pulses_per_line: self.pulses_per_line() }
     }
 
     fn pulses_per_line(&self) -> u32 {

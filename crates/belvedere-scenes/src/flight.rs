@@ -147,9 +147,8 @@ const COVERAGE_STEPS: u32 = 60;
 pub(crate) fn mean_coverage(scene: &Scene, params: &AirborneParams) -> f64 {
     let Some((low, high)) = scene.bounds() else { return 0.0 };
     let sweep = params.sweep();
-    let place = |axis: usize, i: u32| {
-        (high[axis] - low[axis]) * ((f64::from(i) + 0.5) / f64::from(COVERAGE_STEPS) - 0.5)
-    };
+    let place =
+        |axis: usize, i: u32| (high[axis] - low[axis]) * ((f64::from(i) + 0.5) / f64::from(COVERAGE_STEPS) - 0.5);
     let sets = [(params.heading, params.strip_count), (params.heading + FRAC_PI_2, params.cross_strip_count)];
     let mut sum = 0.0;
     for (heading, count) in sets {

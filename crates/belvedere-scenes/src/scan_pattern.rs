@@ -58,7 +58,7 @@ impl Sweep {
     pub(crate) fn pulse(&self, origin: [f64; 3], course: &Course, line: u32, step: u32) -> (Axis, f64) {
         let count = f64::from(self.pulses_per_line);
         let share = (f64::from(step) + 0.5) / count;
-        let turn = if line % 2 == 0 { 1.0 } else { -1.0 };
+        let turn = if line.is_multiple_of(2) { 1.0 } else { -1.0 };
         let angle = match self.pattern {
             ScanPattern::Rotating => self.half_angle * (2.0 * (f64::from(step) + 0.5) / count - 1.0),
             ScanPattern::Oscillating(MirrorMotion::Triangular) => turn * self.half_angle * (2.0 * share - 1.0),
