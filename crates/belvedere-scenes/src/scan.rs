@@ -2,6 +2,12 @@
 
 use std::fmt::Write as _;
 
+use rayon::prelude::*;
+
+use crate::scene::Scene;
+use crate::truth::Truth;
+use crate::vector::{add_scaled, cross, sub, unit};
+
 /// A simulated laser scan. Columns have one value per return, ordered by strip, time and return number.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scan {
@@ -39,6 +45,10 @@ pub struct Scan {
     /// What became of the pulses.
     pub report: ScanReport,
 }
+
+/// How far outside its surface a point is put before one asks what lights it, metres: beyond the unevenness of a mesh with
+/// millimetres, and short of everything that could matter.
+const STAND_OFF: f64 = 0.03;
 
 /// Counts of a scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -114,6 +124,23 @@ impl Scan {
             let _ = writeln!(text, "{number},{x:.3},{y:.3},{z:.3}");
         }
         text
+    }
+
+    /// Whether light from `direction`, such as that of the sun, reaches each return, (N): from its exact position, 3 cm
+    /// outside along the normal of its triangle. `truth` must be made of `scene`, and `scene` the one scanned.
+    ///
+    /// Crowns block as opaque solids do, so that a return from inside a crown is in shadow.
+    #[must_use]
+    pub fn lit_from(&self, scene: &Scene, truth: &Truth, direction: [f64; 3]) -> Vec<bool> {
+        self.exact_positions
+            .par_iter()
+            .zip(&self.triangle)
+            .map(|(&position, &triangle)| {
+                let corners = scene.corners(triangle as usize);
+                let normal = corners.and_then(|[a, b, c]| unit(cross(sub(b, a), sub(c, a)))).unwrap_or_default();
+                !truth.occluded_towards(add_scaled(position, normal, STAND_OFF), direction)
+            })
+            .collect()
     }
 
     pub(crate) fn push(&mut self, r: Return) {

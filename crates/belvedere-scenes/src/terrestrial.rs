@@ -84,6 +84,13 @@ const SETTLED: f64 = 1.0;
 const PATH_STEP: f64 = 0.5;
 
 impl TerrestrialParams {
+    /// Pulses sent from each place.
+    #[must_use]
+    pub fn pulses_per_station(&self) -> u64 {
+        let [columns, rows] = self.grid();
+        u64::from(columns) * u64::from(rows)
+    }
+
     /// Columns and rows of pulses: around, and from below upwards.
     fn grid(&self) -> [u32; 2] {
         let height = self.highest_elevation.min(FRAC_PI_2) - self.lowest_elevation.max(-FRAC_PI_2);
