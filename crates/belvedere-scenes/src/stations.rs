@@ -21,9 +21,12 @@ const KNEE: f64 = 0.6;
 
 /// Up to `count` positions of an instrument `height` metres above open ground, (S, 3), metres, absolute.
 ///
-/// Open ground has nothing above it and nothing beside it for a few metres. The first position is the open place farthest
-/// from the rim, each next one the farthest from those before, where the rim counts as if twice as far away. Fewer where
-/// there is less room, none in a scene without ground.
+/// Open ground has nothing above it and nothing beside it for a few metres. Each open place is as near as can be to one of
+/// the positions: they start far from each other and then move to the middle of the places that are nearest to them. Fewer
+/// where there is less room, none in a scene without ground.
+///
+/// # Source
+/// Start: farthest-point sampling, Gonzalez 1985. Moves: Lloyd 1982.
 pub(crate) fn free_stations(scene: &Scene, truth: &Truth, count: u16, height: f64) -> Vec<[f64; 3]> {
     let Some((low, high)) = scene.bounds() else { return Vec::new() };
     let places = open_ground(scene, truth, (low, high));
@@ -31,7 +34,7 @@ pub(crate) fn free_stations(scene: &Scene, truth: &Truth, count: u16, height: f6
         let free: Vec<[f64; 3]> =
             places.par_iter().copied().filter(|&foot| has_room(truth, foot, height, clearance)).collect();
         if !free.is_empty() {
-            let chosen = spread(&free, count, (low, high));
+            let chosen = spread(&free, count);
             return chosen.into_iter().map(|[x, y, z]| [x, y, z + height]).collect();
         }
     }
@@ -66,22 +69,51 @@ fn has_room(truth: &Truth, [x, y, z]: [f64; 3], height: f64, clearance: f64) -> 
     })
 }
 
-/// Up to `count` of `places`, far from each other and from the rim.
-fn spread(places: &[[f64; 3]], count: u16, (low, high): ([f64; 3], [f64; 3])) -> Vec<[f64; 3]> {
-    let mut scores: Vec<f64> = places
-        .iter()
-        .map(|p| 2.0 * [0, 1].map(|i| (p[i] - low[i]).min(high[i] - p[i])).into_iter().fold(f64::INFINITY, f64::min))
-        .collect();
+/// Rounds of moving stations to the middle of their surroundings; after ten hardly one moves.
+const ROUNDS: u32 = 10;
+
+/// Up to `count` of `places`, spread evenly over them.
+fn spread(places: &[[f64; 3]], count: u16) -> Vec<[f64; 3]> {
+    let mut chosen = far_apart(places, count);
+    for _ in 0..ROUNDS {
+        let owners: Vec<usize> = places.par_iter().filter_map(|&place| nearest(&chosen, place)).collect();
+        let mut sums = vec![([0.0; 2], 0.0); chosen.len()];
+        for (place, &owner) in places.iter().zip(&owners) {
+            if let Some((sum, members)) = sums.get_mut(owner) {
+                *sum = [sum[0] + place[0], sum[1] + place[1]];
+                *members += 1.0;
+            }
+        }
+        let owning = sums.iter().filter(|(_, members)| *members > 0.0);
+        let middles = owning.map(|(sum, members)| [sum[0] / members, sum[1] / members, 0.0]);
+        chosen = middles.filter_map(|middle| places.get(nearest(places, middle)?).copied()).collect();
+    }
+    chosen
+}
+
+/// Up to `count` of `places`, each the farthest from those before, the first the first of all.
+fn far_apart(places: &[[f64; 3]], count: u16) -> Vec<[f64; 3]> {
+    let mut gaps = vec![f64::INFINITY; places.len()];
     let mut chosen = Vec::new();
     for _ in 0..count {
         // The first of equals, so that the choice does not depend on how the search runs.
-        let best = scores.iter().enumerate().reduce(|a, b| if b.1 > a.1 { b } else { a });
-        let Some((index, _)) = best.filter(|(_, score)| **score > 0.0) else { break };
+        let best = gaps.iter().enumerate().reduce(|a, b| if b.1 > a.1 { b } else { a });
+        let Some((index, _)) = best.filter(|(_, gap)| **gap > 0.0) else { break };
         let Some(&place) = places.get(index) else { break };
-        for (score, p) in scores.iter_mut().zip(places) {
-            *score = score.min((p[0] - place[0]).hypot(p[1] - place[1]));
+        for (gap, p) in gaps.iter_mut().zip(places) {
+            *gap = gap.min(level_distance(*p, place));
         }
         chosen.push(place);
     }
     chosen
+}
+
+/// Index of the first of `places` nearest to `place` on the map.
+fn nearest(places: &[[f64; 3]], place: [f64; 3]) -> Option<usize> {
+    let gaps = places.iter().map(|&p| level_distance(p, place)).enumerate();
+    gaps.reduce(|a, b| if b.1 < a.1 { b } else { a }).map(|(index, _)| index)
+}
+
+fn level_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
 }
