@@ -2,6 +2,7 @@
 
 use belvedere::crs::Crs;
 use belvedere_scenes::Preset;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -58,6 +59,11 @@ pub(crate) enum Command {
     /// Simulate a small town and run everything on it; needs no input
     #[command(after_help = "Example:\n  belvedere demo -o demo")]
     Demo(Demo),
+    /// Simulate a town and its laser survey: cloud, trajectory, exact mesh and exact answers, to test any method against
+    #[command(
+        after_help = "What DIR gets:\n  cloud.laz        LAZ 1.4 in EPSG:7415: class, GPS time, scan angle, returns, strip or station, and lit_110_20,\n                   lit_180_65, lit_240_35: 1 where the sun at that azimuth and elevation reaches the point, by the mesh\n  trajectory.csv   time,x,y,z of the scanner, 20 a second\n  trajectory.sbet  the same as SBET, with velocities and headings\n  stations.csv     tripod positions (terrestrial only)\n  mesh.obj         the exact town: an object each for ground, buildings, trees, with materials\n  mesh.city.json   the same as CityJSON 2.0, with parts of buildings and kinds of surfaces\n\nExamples:\n  belvedere simulate -o town --extent 100\n  belvedere simulate village -o village --extent 100 --pattern conical --density 4\n  belvedere simulate old-town -o streets --extent 100 --scanner terrestrial --stations 2 --angular-step 0.5"
+    )]
+    Simulate(Simulate),
     /// Tell what is in a point cloud, what is missing, and what can be done with it
     #[command(after_help = "Example:\n  belvedere demo -o demo\n  belvedere info demo/town.laz")]
     Info(Info),
@@ -106,6 +112,103 @@ pub(crate) struct Demo {
     /// Side of the town in metres
     #[arg(long, value_name = "M", default_value_t = 120.0)]
     pub(crate) extent: f64,
+}
+
+#[derive(Args)]
+pub(crate) struct Simulate {
+    /// Kind of town
+    #[arg(value_name = "SCENE", default_value = "town", value_parser = presets())]
+    pub(crate) scene: Preset,
+    /// Folder for cloud, trajectory and meshes; made if it is not there
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+    /// Side of the town in metres, 60 to 5000
+    #[arg(long, value_name = "M", default_value_t = 150.0, value_parser = within::<60, 5000>, allow_negative_numbers = true)]
+    pub(crate) extent: f64,
+    /// What scans
+    #[arg(long, value_enum, default_value_t = ScannerChoice::Airborne)]
+    pub(crate) scanner: ScannerChoice,
+    #[command(flatten)]
+    pub(crate) airborne: AirborneFlags,
+    #[command(flatten)]
+    pub(crate) terrestrial: TerrestrialFlags,
+    #[command(flatten)]
+    pub(crate) pulses: PulseFlags,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Airborne scanner")]
+pub(crate) struct AirborneFlags {
+    /// Path of the pulses over the ground [default: rotating]
+    #[arg(long, value_enum)]
+    pub(crate) pattern: Option<PatternChoice>,
+    /// Pulses per square metre of ground, all strips together, 0.1 to 200 [default: 10]
+    #[arg(long, value_name = "PULSES_PER_M2", value_parser = density, allow_negative_numbers = true)]
+    pub(crate) density: Option<f64>,
+    /// Height above ground in metres, 50 to 5000 [default: 450]
+    #[arg(long, value_name = "M", value_parser = within::<50, 5000>, allow_negative_numbers = true)]
+    pub(crate) flying_height: Option<f64>,
+    /// Speed over ground in metres per second, 10 to 150 [default: 60]
+    #[arg(long, value_name = "M_PER_S", value_parser = within::<10, 150>, allow_negative_numbers = true)]
+    pub(crate) speed: Option<f64>,
+    /// Greatest angle from nadir in degrees, 1 to 60 [default: 25; conical: 20, all round]
+    #[arg(long, value_name = "DEG", value_parser = within::<1, 60>, allow_negative_numbers = true)]
+    pub(crate) scan_angle: Option<f64>,
+    /// Parallel strips, spread over the town [default: as many as let every place be seen from both sides]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub(crate) strips: Option<u16>,
+    /// Further strips at right angles to the others [default: 0]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=1000))]
+    pub(crate) cross_strips: Option<u16>,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Terrestrial scanner")]
+pub(crate) struct TerrestrialFlags {
+    /// Tripod positions, chosen on open ground far from each other [default: 4]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub(crate) stations: Option<u16>,
+    /// Angle between pulses in degrees, 0.01 to 5 [default: 0.25]
+    #[arg(long, value_name = "DEG", value_parser = angular_step, allow_negative_numbers = true)]
+    pub(crate) angular_step: Option<f64>,
+    /// Farthest point in metres, 1 to 5000 [default: 120]
+    #[arg(long, value_name = "M", value_parser = within::<1, 5000>, allow_negative_numbers = true)]
+    pub(crate) max_range: Option<f64>,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Pulses")]
+pub(crate) struct PulseFlags {
+    /// Standard deviation of a range in metres, 0 to 1 [default: 0.02; terrestrial: 0.005]
+    #[arg(long, value_name = "M", value_parser = within::<0, 1>, allow_negative_numbers = true)]
+    pub(crate) noise: Option<f64>,
+    /// Share of the pulses that get lost, 0 to 1 [default: 0.01]
+    #[arg(long, value_name = "SHARE", value_parser = within::<0, 1>, allow_negative_numbers = true)]
+    pub(crate) dropout: Option<f64>,
+    /// Full width of a pulse in milliradians, 0 to 10 [default: 0.4; terrestrial: 0.3]
+    #[arg(long, value_name = "MRAD", value_parser = within::<0, 10>, allow_negative_numbers = true)]
+    pub(crate) divergence: Option<f64>,
+    /// How deep pulses get into crowns, on the mean, in metres, 0 to 100; with 0 all points lie on the mesh [default: 1.5]
+    #[arg(long, value_name = "M", value_parser = within::<0, 100>, allow_negative_numbers = true)]
+    pub(crate) foliage_depth: Option<f64>,
+}
+
+#[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]
+pub(crate) enum ScannerChoice {
+    /// From an aircraft, in strips
+    Airborne,
+    /// From a tripod, at several places
+    Terrestrial,
+}
+
+#[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]
+pub(crate) enum PatternChoice {
+    /// Parallel lines of a rotating mirror
+    Rotating,
+    /// Zig-zag of an oscillating mirror, denser at the edges of a strip
+    Oscillating,
+    /// Circles: every place is seen from ahead and from behind
+    Conical,
 }
 
 #[derive(Args)]
@@ -481,6 +584,34 @@ fn target_count(text: &str) -> Result<usize, String> {
         .ok()
         .filter(|&count| count <= MOST_TARGETS)
         .ok_or_else(|| format!("must be a whole number from 1 to {MOST_TARGETS}"))
+}
+
+/// Presets by their names.
+fn presets() -> impl TypedValueParser<Value = Preset> {
+    PossibleValuesParser::new(Preset::ALL.map(Preset::name)).map(|name| {
+        // the parser lets no other name through
+        Preset::ALL.into_iter().find(|preset| preset.name() == name).unwrap_or(Preset::Town)
+    })
+}
+
+/// A number from `LOW` to `HIGH`, both included.
+fn within<const LOW: u16, const HIGH: u16>(text: &str) -> Result<f64, String> {
+    between(text, f64::from(LOW), f64::from(HIGH))
+}
+
+fn density(text: &str) -> Result<f64, String> {
+    between(text, 0.1, 200.0)
+}
+
+fn angular_step(text: &str) -> Result<f64, String> {
+    between(text, 0.01, 5.0)
+}
+
+fn between(text: &str, low: f64, high: f64) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|v| (low..=high).contains(v))
+        .ok_or_else(|| format!("must be a number from {low} to {high}"))
 }
 
 fn finite(text: &str) -> Result<f32, String> {

@@ -4,6 +4,7 @@ mod arguments;
 mod commands;
 mod pipeline;
 mod progress;
+mod simulated;
 mod summary;
 
 use clap::{CommandFactory, FromArgMatches};

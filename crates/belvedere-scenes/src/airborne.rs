@@ -1,14 +1,15 @@
-//! An airborne laser scanner with a rotating mirror over parallel flight strips.
+//! An airborne laser scanner over parallel flight strips.
 
 use rayon::prelude::*;
 
-use crate::beam::{Axis, BeamParams, Echo, pulse_echoes};
-use crate::flight::{Strip, strips};
+use crate::beam::BeamParams;
+use crate::flight::{Strip, mean_coverage, strips, width_across};
 use crate::random::Random;
-use crate::scan::{Return, Scan};
+use crate::recording::{Recorder, Shot};
+use crate::scan::Scan;
+use crate::scan_pattern::{ScanPattern, Sweep};
 use crate::scene::Scene;
 use crate::truth::Truth;
-use crate::vector::{add_scaled, scale};
 
 /// How a scene is flown. Values outside their ranges that leave nothing to fly (a height, speed, density or angle that is not
 /// positive) give a scan without points.
@@ -16,6 +17,8 @@ use crate::vector::{add_scaled, scale};
 pub struct AirborneParams {
     /// Any number; another one gives other noise and another wander. Default 1.
     pub seed: u64,
+    /// Path of the pulses over the ground. Default rotating.
+    pub pattern: ScanPattern,
     /// Height above the mean ground, metres, 50 to 5000. Default 450: usual for town surveys of ten points per m².
     pub flying_height: f64,
     /// Speed over ground, metres per second, 10 to 150. Default 60.
@@ -28,7 +31,9 @@ pub struct AirborneParams {
     /// Distance between strips, metres. Default 260: with the default height and angle, strips of 420 m overlap by 38 %, and
     /// the default town lies in the overlap, seen under 9° to 23° from either side.
     pub strip_spacing: f64,
-    /// Greatest angle from nadir, radians, 0 to 1.2. Default 25°.
+    /// Further strips at right angles to the others, as far apart, 0 to 1000. Default 0.
+    pub cross_strip_count: u16,
+    /// Greatest angle from nadir, radians, 0 to 1.2; a conical pattern has its own. Default 25°.
     pub half_angle: f64,
     /// Pulses per m² and strip on level ground, mean over the strip, 0.01 to 100. Default 5.5: two strips give about ten. It
     /// sets [`AirborneParams::line_rate`] and [`AirborneParams::pulse_rate`].
@@ -58,11 +63,13 @@ impl Default for AirborneParams {
     fn default() -> Self {
         Self {
             seed: 1,
+            pattern: ScanPattern::Rotating,
             flying_height: 450.0,
             speed: 60.0,
             heading: std::f64::consts::FRAC_PI_6,
             strip_count: 2,
             strip_spacing: 260.0,
+            cross_strip_count: 0,
             half_angle: 25_f64.to_radians(),
             pulses_per_m2: 5.5,
             beam: BeamParams::default(),
@@ -78,10 +85,42 @@ impl Default for AirborneParams {
 }
 
 impl AirborneParams {
-    /// Scan lines per second, chosen so that lines are as far apart as pulses within a line are on average.
+    /// A survey of `scene`, whatever its size, with `pulses_per_m2` in all: strips that let every place be seen from both
+    /// sides, and crowns that pulses enter ([`BeamParams::in_leaf`]); the other parameters are the defaults.
+    #[must_use]
+    pub fn covering(scene: &Scene, pulses_per_m2: f64) -> Self {
+        Self { beam: BeamParams::in_leaf(), ..Self::default() }.spread_over(scene, None, pulses_per_m2)
+    }
+
+    /// The same scanner with strips and pulses for `scene`: the outer strips over its rims, as many between them as
+    /// `strip_count` says, and `pulses_per_m2` on the mean over its ground, all strips together.
+    ///
+    /// Without a count strips are at most half their width apart, so that every place lies between two that see it from
+    /// either side: two for a town of 150 m with the default height and angle, three for 300 m.
+    #[must_use]
+    pub fn spread_over(mut self, scene: &Scene, strip_count: Option<u16>, pulses_per_m2: f64) -> Self {
+        if !self.leaves_something_to_fly() {
+            return self;
+        }
+        let width = width_across(scene, self.heading);
+        self.strip_count = strip_count.unwrap_or_else(|| {
+            let count = saturating_count(width / (self.swath() / 2.0)).saturating_add(1).clamp(2, MOST_STRIPS);
+            u16::try_from(count).unwrap_or(u16::MAX)
+        });
+        self.strip_spacing = width / f64::from(self.strip_count.max(2) - 1);
+        let coverage = mean_coverage(scene, &self);
+        self.pulses_per_m2 = if coverage > 0.0 { pulses_per_m2 / coverage } else { pulses_per_m2 };
+        self
+    }
+
+    /// Scan lines (sweeps of the mirror, turns of the cone) per second, chosen so that lines are as far apart as pulses
+    /// within a line are on average; under the aircraft for a cone, whose two lines there cross every place.
     #[must_use]
     pub fn line_rate(&self) -> f64 {
-        self.speed * self.pulses_per_m2.sqrt()
+        match self.pattern {
+            ScanPattern::Rotating | ScanPattern::Oscillating(_) => self.speed * self.pulses_per_m2.sqrt(),
+            ScanPattern::Conical { .. } => self.speed * (self.pulses_per_m2 / std::f64::consts::PI).sqrt(),
+        }
     }
 
     /// Pulses per second. All of them fall within the scan angle, whereas a real mirror wastes some.
@@ -93,24 +132,49 @@ impl AirborneParams {
     /// Width of the ground that a strip covers, metres.
     #[must_use]
     pub fn swath(&self) -> f64 {
-        2.0 * self.flying_height * self.half_angle.tan()
+        2.0 * self.flying_height * self.greatest_angle().tan()
+    }
+
+    /// Greatest angle of a pulse from nadir, radians.
+    #[must_use]
+    pub fn greatest_angle(&self) -> f64 {
+        if let ScanPattern::Conical { half_angle } = self.pattern { half_angle } else { self.half_angle }
+    }
+
+    pub(crate) fn sweep(&self) -> Sweep {
+        Sweep { pattern: self.pattern, half_angle: self.greatest_angle(), pulses_per_line: self.pulses_per_line() }
     }
 
     fn pulses_per_line(&self) -> u32 {
-        saturating_count(self.swath() * self.pulses_per_m2.sqrt())
+        match self.pattern {
+            ScanPattern::Rotating | ScanPattern::Oscillating(_) => {
+                saturating_count(self.swath() * self.pulses_per_m2.sqrt())
+            }
+            // around the circle, as far apart as the circles are
+            ScanPattern::Conical { .. } => {
+                saturating_count(self.swath() * (std::f64::consts::PI * self.pulses_per_m2).sqrt())
+            }
+        }
     }
 
     fn leaves_something_to_fly(&self) -> bool {
-        let sizes = [self.flying_height, self.speed, self.pulses_per_m2, self.half_angle];
-        sizes.iter().all(|v| v.is_finite() && *v > 0.0) && self.half_angle < std::f64::consts::FRAC_PI_2
+        let angle = self.greatest_angle();
+        let sizes = [self.flying_height, self.speed, self.pulses_per_m2, angle];
+        sizes.iter().all(|v| v.is_finite() && *v > 0.0) && angle < std::f64::consts::FRAC_PI_2
     }
 }
+
+/// Most strips that [`AirborneParams::spread_over`] makes of itself.
+const MOST_STRIPS: u32 = 1000;
 
 /// Flies over `scene` and returns what the scanner records.
 ///
 /// Each pulse draws its noise from its own stream, so the scan has the same bits for any number of threads. The cost is that
-/// of seven rays for each pulse that meets the scene. Pulses are sent along parallel lines across the flight direction, at
-/// equal steps of the scan angle; the aircraft neither rolls, pitches nor yaws.
+/// of seven rays for each pulse that meets the scene. Pulses point where [`AirborneParams::pattern`] says; the aircraft
+/// neither rolls, pitches nor yaws.
+///
+/// The scan angle is the part of the angle from nadir across the flight, as files of conical scanners carry it too: theirs
+/// runs from -20° to 20° and is 0 straight ahead and behind, although every pulse is 20° from nadir.
 #[must_use]
 pub fn scan_airborne(scene: &Scene, params: &AirborneParams) -> Scan {
     let mut scan = Scan::default();
@@ -133,70 +197,32 @@ pub fn scan_airborne(scene: &Scene, params: &AirborneParams) -> Scan {
 /// Returns of one line of a strip.
 fn scan_line(scene: &Scene, truth: &Truth, params: &AirborneParams, strip: &Strip, line: u32) -> Scan {
     let mut scan = Scan::default();
-    let pulse_count = params.pulses_per_line();
+    let recorder = Recorder {
+        scene,
+        truth,
+        beam: &params.beam,
+        max_range: f64::INFINITY,
+        range_sd: params.range_sd,
+        pointing_sd: params.pointing_sd,
+        boresight: strip.boresight,
+        dropout: params.dropout,
+        point_source_id: strip.number + 1,
+        intensity_range: Some(params.flying_height),
+    };
+    let sweep = params.sweep();
     let rate = params.pulse_rate();
-    for step in 0..pulse_count {
-        let number = u64::from(line) * u64::from(pulse_count) + u64::from(step);
+    for step in 0..sweep.pulses_per_line {
+        let number = u64::from(line) * u64::from(sweep.pulses_per_line) + u64::from(step);
         let seconds = number as f64 / rate;
-        let scan_angle = params.half_angle * (2.0 * (f64::from(step) + 0.5) / f64::from(pulse_count) - 1.0);
-        let axis = pulse_axis(strip, seconds, scan_angle);
+        let (axis, scan_angle) = sweep.pulse(strip.position(seconds), &strip.course, line, step);
         let mut random = Random::new(params.seed, (u64::from(strip.number) << 48) | number);
-
-        scan.report.pulses += 1;
-        let pulse = pulse_echoes(scene, truth, &axis, &params.beam, &mut random);
-        if pulse.echoes.is_empty() && pulse.dropped == 0 {
-            scan.report.missed_pulses += 1;
-            continue;
-        }
-        if random.chance(params.dropout) {
-            scan.report.dropped_pulses += 1;
-            continue;
-        }
-        scan.report.dropped_echoes += pulse.dropped as u64;
-        let pointing = strip.boresight.map(|constant| constant + params.pointing_sd * random.normal());
-        let return_count = u8::try_from(pulse.echoes.len()).unwrap_or(u8::MAX);
-        for (return_number, echo) in (1..=return_count).zip(&pulse.echoes) {
-            let range = echo.range + params.range_sd * random.normal();
-            scan.push(Return {
-                position: add_scaled(axis.origin, axis.tilted(echo.direction, pointing), range),
-                gps_time: strip.start_time + seconds,
-                return_number,
-                return_count,
-                scan_angle_deg: degrees_f32(scan_angle),
-                point_source_id: strip.number + 1,
-                classification: echo.material.asprs_class(),
-                intensity: intensity(echo, params.flying_height),
-                triangle: echo.triangle,
-                exact_position: add_scaled(axis.origin, echo.direction, echo.range),
-            });
-        }
+        let shot = Shot { axis, gps_time: strip.start_time + seconds, scan_angle };
+        recorder.record(&shot, &mut random, &mut scan);
     }
     scan
 }
 
-/// The pulse sent `seconds` after the first of the strip, `scan_angle` radians to the right of nadir.
-fn pulse_axis(strip: &Strip, seconds: f64, scan_angle: f64) -> Axis {
-    let (sin, cos) = scan_angle.sin_cos();
-    let up = [0.0, 0.0, 1.0];
-    let direction = add_scaled(scale(strip.right, sin), up, -cos);
-    let outwards = add_scaled(scale(strip.right, cos), up, sin);
-    Axis { origin: strip.position(seconds), direction, across: [strip.forward, outwards] }
-}
-
-/// Intensity that leaves room above a perfect white target straight below: an echo at the flying height that sends
-/// everything back has 50 000.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the range of u16")]
-fn intensity(echo: &Echo, flying_height: f64) -> u16 {
-    let spreading = (flying_height / echo.range).powi(2);
-    (50_000.0 * echo.brightness * spreading).round().clamp(0.0, f64::from(u16::MAX)) as u16
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "a scan angle needs no more digits than f32 has")]
-fn degrees_f32(angle: f64) -> f32 {
-    angle.to_degrees() as f32
-}
-
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-fn saturating_count(count: f64) -> u32 {
+pub(crate) fn saturating_count(count: f64) -> u32 {
     count.ceil() as u32
 }

@@ -18,14 +18,38 @@ pub struct BeamParams {
     pub weakest_echo: f64,
     /// Most echoes recorded per pulse, the first ones, 1 to 15. Default 5.
     pub max_returns: u8,
-    /// Probability that a ray passes through the hull of a crown, at entry and again at exit, 0 to 1. Default 0.35: a
-    /// seventh of the energy reaches the ground below, as in trees in leaf.
+    /// Probability that a ray passes through the hull of a crown, at entry and (without [`BeamParams::foliage_depth`])
+    /// again at exit, 0 to 1. Default 0.35: a seventh of the energy reaches the ground below, as in trees in leaf.
     pub crown_porosity: f64,
+    /// Mean free path of a ray among the leaves inside a crown, metres, 0 to 100. Default 0: rays are stopped by the hull
+    /// alone, so that every return lies on a triangle. Otherwise a ray that passed the hull is stopped after an
+    /// exponentially distributed path, inside the crown, or leaves the crown freely.
+    pub foliage_depth: f64,
 }
 
 impl Default for BeamParams {
     fn default() -> Self {
-        Self { divergence: 4e-4, range_resolution: 0.8, weakest_echo: 0.15, max_returns: 5, crown_porosity: 0.35 }
+        Self {
+            divergence: 4e-4,
+            range_resolution: 0.8,
+            weakest_echo: 0.15,
+            max_returns: 5,
+            crown_porosity: 0.35,
+            foliage_depth: 0.0,
+        }
+    }
+}
+
+impl BeamParams {
+    /// The default pulse in crowns that it enters, before a receiver that notices weak echoes: half of the rays pass the
+    /// hull and then get 1.5 m deep on average.
+    ///
+    /// Four fifths of the pulses that meet a crown then give several returns, a quarter reach the ground, and half of the
+    /// returns inside crowns lie within a metre of the hull. Over a town a twelfth of whose ground lies under crowns that
+    /// makes 7 % of all pulses; in AHN3 over Delft, with more trees, it is 21 %.
+    #[must_use]
+    pub fn in_leaf() -> Self {
+        Self { weakest_echo: 0.1, crown_porosity: 0.5, foliage_depth: 1.5, ..Self::default() }
     }
 }
 
@@ -56,12 +80,14 @@ impl Axis {
 
 /// An echo of a pulse.
 ///
-/// It is placed at the strongest of the rays that make it up, not at their mean, so that it lies exactly on a surface.
+/// It is placed at the strongest of the rays that make it up, not at their mean, so that it lies exactly on a surface, or
+/// exactly where that ray met leaves inside a crown.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Echo {
     pub(crate) range: f64,
     /// Unit vector of the ray that stands for the echo.
     pub(crate) direction: [f64; 3],
+    /// Triangle met; within a crown, where the ray entered it.
     pub(crate) triangle: u32,
     pub(crate) material: Material,
     /// Share of the energy of the pulse that met the surfaces of this echo.
@@ -78,18 +104,20 @@ pub(crate) struct PulseEchoes {
     pub(crate) dropped: usize,
 }
 
-/// Sends a pulse into a scene.
+/// Sends a pulse into a scene; what lies farther than `max_range` metres gives no echo.
 pub(crate) fn pulse_echoes(
     scene: &Scene,
     truth: &Truth,
     axis: &Axis,
     beam: &BeamParams,
+    max_range: f64,
     random: &mut Random,
 ) -> PulseEchoes {
     let mut rays: Vec<Echo> = Vec::new();
     for (angles, energy) in sub_rays(beam.divergence) {
         let direction = axis.tilted(axis.direction, angles);
-        rays.extend(ray_echo(scene, truth, axis.origin, direction, energy, beam.crown_porosity, random));
+        let ray = SubRay { origin: axis.origin, direction, energy, max_range };
+        rays.extend(ray_echo(scene, truth, &ray, beam, random));
     }
     rays.sort_by(|a, b| a.range.total_cmp(&b.range));
 
@@ -119,34 +147,69 @@ fn sub_rays(divergence: f64) -> impl Iterator<Item = ([f64; 2], f64)> {
     std::iter::once(([0.0; 2], CENTRE_ENERGY)).chain(ring)
 }
 
-/// The surface that stops a ray, or `None` where it leaves the scene.
-fn ray_echo(
-    scene: &Scene,
-    truth: &Truth,
+/// One of the rays that stand for a pulse.
+struct SubRay {
     origin: [f64; 3],
+    /// Unit vector.
     direction: [f64; 3],
+    /// Share of the energy of the pulse.
     energy: f64,
-    crown_porosity: f64,
-    random: &mut Random,
-) -> Option<Echo> {
+    max_range: f64,
+}
+
+impl SubRay {
+    fn echo(&self, range: f64, triangle: u32, material: Material, cosine: f64) -> Echo {
+        let brightness = self.energy * material.reflectance() * cosine;
+        Echo { range, direction: self.direction, triangle, material, energy: self.energy, brightness }
+    }
+}
+
+/// Cosine of incidence on a leaf: the mean over leaves that face all ways alike.
+const LEAF_COSINE: f64 = 0.5;
+
+/// Where a ray that is inside crowns will be stopped.
+struct Foliage {
+    range: f64,
+    /// Where the ray entered.
+    triangle: u32,
+    /// Crowns entered and not left: those of neighbouring trees may overlap.
+    crown_count: u32,
+}
+
+/// What stops a ray, or `None` where it leaves the scene.
+fn ray_echo(scene: &Scene, truth: &Truth, ray: &SubRay, beam: &BeamParams, random: &mut Random) -> Option<Echo> {
     let mut passed = 0.0;
+    let mut foliage: Option<Foliage> = None;
     loop {
-        let hit = truth.first_hit_between(origin, direction, passed + CONTACT, f64::INFINITY)?;
-        let material = *scene.materials.get(hit.triangle as usize)?;
-        if material == Material::TreeCrown && random.chance(crown_porosity) {
-            passed = hit.range;
-            continue;
+        let hit = truth.first_hit_between(ray.origin, ray.direction, passed + CONTACT, ray.max_range);
+        if let Some(leaves) = foliage.as_ref().filter(|f| hit.is_none_or(|hit| f.range < hit.range)) {
+            let within = leaves.range <= ray.max_range;
+            return within.then(|| ray.echo(leaves.range, leaves.triangle, Material::TreeCrown, LEAF_COSINE));
         }
+        let hit = hit?;
+        let material = *scene.materials.get(hit.triangle as usize)?;
         let [a, b, c] = scene.corners(hit.triangle as usize)?;
-        let cosine = unit(cross(sub(b, a), sub(c, a))).map_or(0.0, |normal| dot(normal, direction).abs());
-        return Some(Echo {
-            range: hit.range,
-            direction,
-            triangle: hit.triangle,
-            material,
-            energy,
-            brightness: energy * material.reflectance() * cosine,
-        });
+        let towards = unit(cross(sub(b, a), sub(c, a))).map_or(0.0, |normal| dot(normal, ray.direction));
+        if material == Material::TreeCrown {
+            let enters = towards < 0.0;
+            if beam.foliage_depth > 0.0 && (foliage.is_some() || !enters) {
+                foliage = foliage.and_then(|f| {
+                    let crown_count = if enters { f.crown_count + 1 } else { f.crown_count - 1 };
+                    (crown_count > 0).then_some(Foliage { crown_count, ..f })
+                });
+                passed = hit.range;
+                continue;
+            }
+            if random.chance(beam.crown_porosity) {
+                if beam.foliage_depth > 0.0 {
+                    let path = -beam.foliage_depth * (1.0 - random.uniform()).ln();
+                    foliage = Some(Foliage { range: hit.range + path, triangle: hit.triangle, crown_count: 1 });
+                }
+                passed = hit.range;
+                continue;
+            }
+        }
+        return Some(ray.echo(hit.range, hit.triangle, material, towards.abs()));
     }
 }
 
@@ -170,7 +233,7 @@ mod tests {
 
     fn echoes_at(x: f64, height: f64, beam: &BeamParams) -> PulseEchoes {
         let scene = step(height);
-        pulse_echoes(&scene, &Truth::new(&scene), &downward(x), beam, &mut Random::new(0, 0))
+        pulse_echoes(&scene, &Truth::new(&scene), &downward(x), beam, f64::INFINITY, &mut Random::new(0, 0))
     }
 
     #[test]
@@ -202,5 +265,59 @@ mod tests {
         let surplus = echoes_at(0.01, 5.0, &BeamParams { max_returns: 1, ..BeamParams::default() });
         assert_eq!((surplus.echoes.len(), surplus.dropped), (1, 1));
         assert!((surplus.echoes[0].range - 495.0).abs() < 1e-3, "the first echo is the one kept");
+    }
+
+    /// A crown of 8 m over the ground, seen from above, as a block of leaves.
+    fn crown_over_ground() -> Scene {
+        let mut scene = Scene::default();
+        let at = Placement { origin: [0.0, 0.0], angle: 0.0 };
+        scene.add_object("ground", &[extruded(&at.rectangle(40.0, 40.0), -1.0, 0.0)]);
+        let crown = extruded(&at.rectangle(20.0, 20.0), 4.0, 12.0).with_material(Material::TreeCrown);
+        scene.add_object("crown", &[crown]);
+        scene
+    }
+
+    #[test]
+    fn rays_in_a_crown_are_stopped_after_an_exponential_path() {
+        let scene = crown_over_ground();
+        let truth = Truth::new(&scene);
+        // one ray a pulse, and a pulse without width, so that the share of the rays shows itself
+        let beam = BeamParams { divergence: 0.0, foliage_depth: 3.0, crown_porosity: 0.6, ..BeamParams::default() };
+        let ray = SubRay { origin: [1.0, 2.0, 500.0], direction: [0.0, 0.0, -1.0], energy: 1.0, max_range: 1e9 };
+        let ranges: Vec<f64> = (0..40_000)
+            .filter_map(|i| Some(ray_echo(&scene, &truth, &ray, &beam, &mut Random::new(5, i))?.range))
+            .collect();
+        assert_eq!(ranges.len(), 40_000, "the ground stops what the crown lets through");
+        let share =
+            |from: f64, to: f64| ranges.iter().filter(|r| (from..=to).contains(r)).count() as f64 / ranges.len() as f64;
+        // Shares of 40 000 rays stray by 0.0025 at most (one deviation); four of them.
+        let expected = |from: f64, to: f64| 0.6 * ((-from / 3.0).exp() - (-to / 3.0).exp());
+        for (found, exact) in [
+            (share(488.0 - 1e-6, 488.0 + 1e-6), 0.4),
+            (share(488.0 + 1e-6, 489.0), expected(0.0, 1.0)),
+            (share(489.0, 492.0), expected(1.0, 4.0)),
+            (share(492.0, 496.0), expected(4.0, 8.0)),
+            (share(500.0 - 1e-6, 500.0 + 1e-6), 0.6 * (-8.0_f64 / 3.0).exp()),
+        ] {
+            assert!((found - exact).abs() < 0.01, "{found} {exact}");
+        }
+    }
+
+    #[test]
+    fn echoes_in_leaves_name_the_hull_where_the_ray_entered() {
+        let scene = crown_over_ground();
+        let truth = Truth::new(&scene);
+        let beam = BeamParams { crown_porosity: 1.0, foliage_depth: 2.0, ..BeamParams::default() };
+        let top = truth.first_hit([1.0, 2.0, 500.0], [0.0, 0.0, -1.0], f64::INFINITY).map(|hit| hit.triangle);
+        let ray = SubRay { origin: [1.0, 2.0, 500.0], direction: [0.0, 0.0, -1.0], energy: 1.0, max_range: 490.0 };
+        let echoes = (0..1000).filter_map(|i| ray_echo(&scene, &truth, &ray, &beam, &mut Random::new(1, i)));
+        let mut count = 0;
+        for echo in echoes {
+            assert!(echo.range > 488.0 && echo.range <= 490.0, "no echo from beyond the greatest range");
+            assert_eq!((Some(echo.triangle), echo.material), (top, Material::TreeCrown));
+            count += 1;
+        }
+        // 1 − 1/e of 1000, give or take four deviations of 15
+        assert!((572..=692).contains(&count), "{count}");
     }
 }

@@ -1,10 +1,11 @@
 //! Parallel flight strips over a scene.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::airborne::AirborneParams;
 use crate::random::Random;
 use crate::scan::SensorPath;
+use crate::scan_pattern::{Course, ScanPattern};
 use crate::scene::Scene;
 use crate::vector::add_scaled;
 
@@ -24,9 +25,9 @@ const WANDER_PERIODS: [f64; 2] = [9.0, 5.5];
 pub(crate) struct Strip {
     /// Counted from 0.
     pub(crate) number: u16,
-    /// Unit vectors of the flight, level.
-    pub(crate) forward: [f64; 3],
-    pub(crate) right: [f64; 3],
+    pub(crate) course: Course,
+    /// Direction of the flight, radians clockwise from north, 0 to 2π.
+    heading: f64,
     /// GPS time of the first pulse.
     pub(crate) start_time: f64,
     /// Seconds from the first pulse to the last.
@@ -44,8 +45,8 @@ impl Strip {
     /// Position of the scanner `seconds` after the first pulse, absolute, metres.
     pub(crate) fn position(&self, seconds: f64) -> [f64; 3] {
         let wave = |i: usize| (TAU * seconds / WANDER_PERIODS[i] + self.phases[i]).sin();
-        let on_line = add_scaled(self.start, self.forward, self.speed * seconds);
-        let aside = add_scaled(on_line, self.right, self.wander * wave(0));
+        let on_line = add_scaled(self.start, self.course.forward, self.speed * seconds);
+        let aside = add_scaled(on_line, self.course.right, self.wander * wave(0));
         [aside[0], aside[1], aside[2] + 0.5 * self.wander * wave(1)]
     }
 
@@ -57,6 +58,7 @@ impl Strip {
             let seconds = f64::from(step) * PATH_STEP - RUN_UP;
             path.times.push(self.start_time + seconds);
             path.positions.push(self.position(seconds));
+            path.headings.push(self.heading);
             if seconds > self.duration + RUN_UP {
                 return path;
             }
@@ -65,27 +67,57 @@ impl Strip {
     }
 }
 
-/// Strips side by side over the middle of `scene`, flown to and fro. None over an empty scene.
+/// Strips side by side over the middle of `scene`, flown to and fro, then those across them. None over an empty scene.
 pub(crate) fn strips(scene: &Scene, params: &AirborneParams) -> Vec<Strip> {
+    let along = strips_towards(scene, params, params.heading, 0..params.strip_count, params.start_time + RUN_UP);
+    let start_time = along.last().map_or(params.start_time + RUN_UP, |last| next_start(last, params));
+    let last_number = params.strip_count.saturating_add(params.cross_strip_count);
+    let across = params.strip_count..last_number;
+    let mut strips = along;
+    strips.extend(strips_towards(scene, params, params.heading + FRAC_PI_2, across, start_time));
+    strips
+}
+
+/// Time of the first pulse of the strip after `strip`.
+fn next_start(strip: &Strip, params: &AirborneParams) -> f64 {
+    // A turn lasts at least as long as the run-ups, or else times would run backwards.
+    strip.start_time + (strip.duration + params.turn_time.max(4.0 * RUN_UP))
+}
+
+/// The strips `numbers`, flown to and fro along `heading`, the first from `start_time` on.
+fn strips_towards(
+    scene: &Scene,
+    params: &AirborneParams,
+    heading: f64,
+    numbers: std::ops::Range<u16>,
+    mut start_time: f64,
+) -> Vec<Strip> {
     let Some((low, high)) = scene.bounds() else { return Vec::new() };
     let height = scene.mean_ground_height() + params.flying_height;
     let centre = [low[0] / 2.0 + high[0] / 2.0, low[1] / 2.0 + high[1] / 2.0, height];
-    let (sin, cos) = params.heading.sin_cos();
-    let half_length = (sin.abs() * (high[0] - low[0]) + cos.abs() * (high[1] - low[1])) / 2.0 + OVERSHOOT;
+    let (sin, cos) = heading.sin_cos();
+    // A cone looks ahead: the part of the circle behind the aircraft has to pass the far rim, too.
+    let look_ahead = match params.pattern {
+        ScanPattern::Rotating | ScanPattern::Oscillating(_) => 0.0,
+        ScanPattern::Conical { .. } => params.swath() / 2.0,
+    };
+    let extent = sin.abs() * (high[0] - low[0]) + cos.abs() * (high[1] - low[1]);
+    let half_length = extent / 2.0 + OVERSHOOT + look_ahead;
     let duration = 2.0 * half_length / params.speed;
-    let mut start_time = params.start_time + RUN_UP;
-    (0..params.strip_count)
-        .map(|number| {
-            let offset = (f64::from(number) - (f64::from(params.strip_count) - 1.0) / 2.0) * params.strip_spacing;
-            let sense = if number % 2 == 0 { 1.0 } else { -1.0 };
+    let count = numbers.len() as f64;
+    numbers
+        .enumerate()
+        .map(|(place, number)| {
+            let offset = (place as f64 - (count - 1.0) / 2.0) * params.strip_spacing;
+            let sense = if place % 2 == 0 { 1.0 } else { -1.0 };
             let forward = [sense * sin, sense * cos, 0.0];
             let right = [sense * cos, -sense * sin, 0.0];
             let start = add_scaled(add_scaled(centre, right, sense * offset), forward, -half_length);
             let mut random = Random::new(params.seed, u64::MAX - u64::from(number));
             let strip = Strip {
                 number,
-                forward,
-                right,
+                course: Course { forward, right },
+                heading: forward[0].atan2(forward[1]).rem_euclid(TAU),
                 start_time,
                 duration,
                 boresight: [0, 1].map(|_| params.boresight_sd * random.normal()),
@@ -94,9 +126,42 @@ pub(crate) fn strips(scene: &Scene, params: &AirborneParams) -> Vec<Strip> {
                 wander: params.wander,
                 phases: [0, 1].map(|_| random.between(0.0, TAU)),
             };
-            // A turn lasts at least as long as the run-ups, or else times would run backwards.
-            start_time += duration + params.turn_time.max(4.0 * RUN_UP);
+            start_time = next_start(&strip, params);
             strip
         })
         .collect()
+}
+
+/// Width of the ground of `scene` across a flight along `heading`, metres; 0 for an empty scene.
+pub(crate) fn width_across(scene: &Scene, heading: f64) -> f64 {
+    let Some((low, high)) = scene.bounds() else { return 0.0 };
+    let (sin, cos) = heading.sin_cos();
+    cos.abs() * (high[0] - low[0]) + sin.abs() * (high[1] - low[1])
+}
+
+/// Places along each side of a scene at which coverage is looked up.
+const COVERAGE_STEPS: u32 = 60;
+
+/// How many strips see a place of `scene`, mean over its ground, each weighted with how dense its pulses are there against
+/// the mean of the strip.
+pub(crate) fn mean_coverage(scene: &Scene, params: &AirborneParams) -> f64 {
+    let Some((low, high)) = scene.bounds() else { return 0.0 };
+    let sweep = params.sweep();
+    let place =
+        |axis: usize, i: u32| (high[axis] - low[axis]) * ((f64::from(i) + 0.5) / f64::from(COVERAGE_STEPS) - 0.5);
+    let sets = [(params.heading, params.strip_count), (params.heading + FRAC_PI_2, params.cross_strip_count)];
+    let mut sum = 0.0;
+    for (heading, count) in sets {
+        let (sin, cos) = heading.sin_cos();
+        for j in 0..COVERAGE_STEPS {
+            for i in 0..COVERAGE_STEPS {
+                let aside = place(0, i) * cos - place(1, j) * sin;
+                for number in 0..count {
+                    let offset = (f64::from(number) - (f64::from(count) - 1.0) / 2.0) * params.strip_spacing;
+                    sum += sweep.relative_density(aside - offset, params.flying_height);
+                }
+            }
+        }
+    }
+    sum / f64::from(COVERAGE_STEPS).powi(2)
 }

@@ -2,6 +2,12 @@
 
 use std::fmt::Write as _;
 
+use rayon::prelude::*;
+
+use crate::scene::Scene;
+use crate::truth::Truth;
+use crate::vector::{add_scaled, cross, sub, unit};
+
 /// A simulated laser scan. Columns have one value per return, ordered by strip, time and return number.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scan {
@@ -17,23 +23,32 @@ pub struct Scan {
     pub return_number: Vec<u8>,
     /// How many returns its pulse has.
     pub return_count: Vec<u8>,
-    /// Angle of the pulse from nadir in degrees, negative to the left of the flight direction (LAS 1.4).
+    /// Angle of the pulse from nadir in degrees (LAS 1.4): across the flight and negative to its left for an airborne scanner;
+    /// 0 to 180, where 90 is level, for one on a tripod.
     pub scan_angle_deg: Vec<f32>,
-    /// Strip, from 1.
+    /// Strip or tripod position, from 1.
     pub point_source_id: Vec<u16>,
-    /// ASPRS class of the surface: 2 ground, 5 high vegetation, 6 building.
+    /// ASPRS class of the surface, see [`crate::Material::asprs_class`].
     pub classification: Vec<u8>,
     /// Strength of the echo, grows with reflectance, share of the beam and steepness of incidence; arbitrary unit.
     pub intensity: Vec<u16>,
-    /// Truth: index of the triangle of the scene that sent the echo back.
+    /// Truth: index of the triangle of the scene that sent the echo back; for a return from inside a crown (only with
+    /// [`crate::BeamParams::foliage_depth`]) the triangle of the crown's hull through which the ray entered.
     pub triangle: Vec<u32>,
-    /// Truth: the point without noise, on that triangle, (N, 3), metres, absolute.
+    /// Truth: the point without noise, (N, 3), metres, absolute: on that triangle, or behind it on the ray where leaves
+    /// inside the crown stopped it. In both cases the noise moved it along its ray and, by pointing errors, across.
     pub exact_positions: Vec<[f64; 3]>,
-    /// Path of the scanner over all strips.
+    /// Path of the scanner over all strips, or its position on each tripod during the scan there.
     pub sensor_path: SensorPath,
+    /// Centre of the scanner at each tripod position, (S, 3), metres, absolute; empty for an airborne scan.
+    pub stations: Vec<[f64; 3]>,
     /// What became of the pulses.
     pub report: ScanReport,
 }
+
+/// How far outside its surface a point is put before one asks what lights it, metres: beyond the unevenness of a mesh with
+/// millimetres, and short of everything that could matter.
+const STAND_OFF: f64 = 0.03;
 
 /// Counts of a scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,6 +70,8 @@ pub struct SensorPath {
     pub times: Vec<f64>,
     /// Positions, (M, 3), metres, absolute, without noise.
     pub positions: Vec<[f64; 3]>,
+    /// Where the nose of the aircraft points at each time, radians clockwise from grid north, 0 to 2π, (M); 0 on a tripod.
+    pub headings: Vec<f64>,
 }
 
 impl SensorPath {
@@ -97,6 +114,35 @@ impl Scan {
         self.x.is_empty()
     }
 
+    /// CSV text of the tripod positions: the header `station,x,y,z`, then a line per station with its number (the point
+    /// source id of its returns) and millimetres.
+    #[must_use]
+    pub fn stations_to_csv(&self) -> String {
+        let mut text = String::from("station,x,y,z\n");
+        for (number, [x, y, z]) in (1_u32..).zip(&self.stations) {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{number},{x:.3},{y:.3},{z:.3}");
+        }
+        text
+    }
+
+    /// Whether light from `direction`, such as that of the sun, reaches each return, (N): from its exact position, 3 cm
+    /// outside along the normal of its triangle. `truth` must be made of `scene`, and `scene` the one scanned.
+    ///
+    /// Crowns block as opaque solids do, so that a return from inside a crown is in shadow.
+    #[must_use]
+    pub fn lit_from(&self, scene: &Scene, truth: &Truth, direction: [f64; 3]) -> Vec<bool> {
+        self.exact_positions
+            .par_iter()
+            .zip(&self.triangle)
+            .map(|(&position, &triangle)| {
+                let corners = scene.corners(triangle as usize);
+                let normal = corners.and_then(|[a, b, c]| unit(cross(sub(b, a), sub(c, a)))).unwrap_or_default();
+                !truth.occluded_towards(add_scaled(position, normal, STAND_OFF), direction)
+            })
+            .collect()
+    }
+
     pub(crate) fn push(&mut self, r: Return) {
         self.x.push(r.position[0]);
         self.y.push(r.position[1]);
@@ -128,6 +174,8 @@ impl Scan {
         self.exact_positions.append(&mut later.exact_positions);
         self.sensor_path.times.append(&mut later.sensor_path.times);
         self.sensor_path.positions.append(&mut later.sensor_path.positions);
+        self.sensor_path.headings.append(&mut later.sensor_path.headings);
+        self.stations.append(&mut later.stations);
         self.report.pulses += later.report.pulses;
         self.report.dropped_pulses += later.report.dropped_pulses;
         self.report.missed_pulses += later.report.missed_pulses;

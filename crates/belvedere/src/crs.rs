@@ -264,9 +264,10 @@ fn utm_zone(longitude: f64, latitude: f64) -> u32 {
 
 // ---- geographic coordinates into the plane of a reference system ----
 
-/// Turns latitude and longitude (WGS 84) into the metres of one reference system.
+/// Turns latitude and longitude (WGS 84) into the metres of one reference system, and back.
 pub struct GeographicProjection {
     transform: proj_core::Transform,
+    inverse: Option<proj_core::Transform>,
     metres_per_unit: f64,
 }
 
@@ -281,7 +282,10 @@ impl Crs {
         let mut failure = None;
         for definition in [by_code.as_deref(), self.wkt.as_deref()].into_iter().flatten() {
             match proj_wkt::transform_from_crs_strings_horizontal("EPSG:4326", definition) {
-                Ok(transform) => return Ok(GeographicProjection { transform, metres_per_unit: self.metres_per_unit }),
+                Ok(transform) => {
+                    let inverse = transform.inverse().ok();
+                    return Ok(GeographicProjection { transform, inverse, metres_per_unit: self.metres_per_unit });
+                }
                 Err(e) => failure = Some(e.to_string()),
             }
         }
@@ -324,7 +328,44 @@ impl GeographicProjection {
         }
         Ok([x * self.metres_per_unit, y * self.metres_per_unit])
     }
+
+    /// Latitude and longitude in radians of an easting and northing in metres: what [`GeographicProjection::project`] takes
+    /// back to within a micrometre.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for positions that the system cannot take back, and for systems without an inverse.
+    pub fn unproject(&self, position: [f64; 2]) -> Result<[f64; 2]> {
+        let invalid = |why: String| Error::InvalidParameter {
+            name: "easting and northing",
+            value: format!("{}, {} m{why}", position[0], position[1]),
+            expected: "within the area of the reference system",
+        };
+        let inverse = self.inverse.as_ref().ok_or_else(|| invalid(" (the system has no inverse)".to_owned()))?;
+        let back = |[x, y]: [f64; 2]| {
+            let (longitude, latitude) = inverse
+                .convert((x / self.metres_per_unit, y / self.metres_per_unit))
+                .map_err(|e| invalid(format!(" ({e})")))?;
+            Ok([latitude.to_radians(), longitude.to_radians()])
+        };
+        // Inverses of datum shifts are approximate; correcting by what projecting forward says removes the rest.
+        let mut sought = position;
+        for _ in 0..MAX_CORRECTIONS {
+            let [latitude, longitude] = back(sought)?;
+            let [x, y] = self.project(latitude, longitude)?;
+            let error = [position[0] - x, position[1] - y];
+            if error[0].hypot(error[1]) < UNPROJECT_TOLERANCE {
+                return Ok([latitude, longitude]);
+            }
+            sought = [sought[0] + error[0], sought[1] + error[1]];
+        }
+        Err(invalid(String::new()))
+    }
 }
+
+/// Most rounds of correcting an inverse: one or two are enough where it is approximate at all.
+const MAX_CORRECTIONS: u32 = 8;
+/// Distance that an inverse may miss, metres: far below a millimetre, above the rounding of degrees in f64 (2 nm).
+const UNPROJECT_TOLERANCE: f64 = 1e-6;
 
 #[cfg(test)]
 mod geographic_projection_tests {
@@ -339,6 +380,24 @@ mod geographic_projection_tests {
             .project(52.155_174_40_f64.to_radians(), 5.387_206_21_f64.to_radians())
             .unwrap();
         assert!((x - 155_000.0).abs() < 1.0 && (y - 463_000.0).abs() < 1.0, "{x} {y}");
+    }
+
+    #[test]
+    fn unprojected_positions_project_back() {
+        // The corners of the Dutch grid and its middle, Stuttgart in UTM 32, and New York in US survey feet.
+        for (epsg, positions) in [
+            (28_992, vec![[155_000.0, 463_000.0], [20_000.0, 370_000.0], [270_000.0, 600_000.0]]),
+            (25_832, vec![[513_000.0, 5_402_000.0]]),
+            (2263, vec![[300_000.0, 65_000.0]]),
+        ] {
+            let projection = Crs::from_epsg(epsg).unwrap().geographic_projection().unwrap();
+            for position in positions {
+                let [latitude, longitude] = projection.unproject(position).unwrap();
+                let [x, y] = projection.project(latitude, longitude).unwrap();
+                assert!((x - position[0]).hypot(y - position[1]) < 2e-6, "{epsg} {position:?}: {x} {y}");
+            }
+            assert!(projection.unproject([f64::NAN, 0.0]).is_err());
+        }
     }
 
     #[test]

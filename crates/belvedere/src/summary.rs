@@ -1,7 +1,11 @@
 //! What a cloud holds, in numbers: for people who ask what can be done with a file.
 
+mod facades;
+
 use crate::cloud::PointCloud;
 use std::collections::BTreeMap;
+
+pub use facades::FacadeSummary;
 
 /// Counts and ranges of a cloud.
 #[derive(Clone, Debug, Default)]
@@ -20,12 +24,43 @@ pub struct CloudSummary {
     pub flight_lines: BTreeMap<u16, usize>,
     /// Share of the points whose pulse had more than one return.
     pub multi_return_share: Option<f64>,
+    /// Pulses that the points come from, and how many of them had more than one return.
+    pub pulses: Option<PulseCounts>,
     /// First and last GPS time, and how many different ones there are.
     pub gps_time: Option<GpsTimes>,
     /// Least and greatest scan angle in degrees.
     pub scan_angle_deg: Option<[f32; 2]>,
     /// Points that share their position with an earlier one.
     pub duplicate_count: usize,
+}
+
+/// Pulses of a cloud.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PulseCounts {
+    /// Each point counts as the part of a pulse that it is, 1 / its return count: a pulse cut at the rim of a tile counts in
+    /// part.
+    pub count: f64,
+    /// Those with several returns.
+    pub multi_return_count: f64,
+}
+
+impl PulseCounts {
+    /// Pulses of points with these return counts, (N); `None` without points. A count of 0 stands for 1.
+    fn of(return_counts: &[u8]) -> Option<Self> {
+        let mut points = [0_usize; 256];
+        return_counts.iter().for_each(|&count| points[usize::from(count)] += 1);
+        let pulses = |counts: std::ops::RangeInclusive<u8>| {
+            counts.map(|count| points[usize::from(count)] as f64 / f64::from(count.max(1))).sum::<f64>()
+        };
+        let (single, several) = (pulses(0..=1), pulses(2..=255));
+        (!return_counts.is_empty()).then_some(Self { count: single + several, multi_return_count: several })
+    }
+
+    /// Share of the pulses that had several returns.
+    #[must_use]
+    pub fn multi_return_share(&self) -> f64 {
+        self.multi_return_count / self.count
+    }
 }
 
 /// GPS times of a cloud.
@@ -84,6 +119,7 @@ impl CloudSummary {
             classes: count_by(&attributes.classification),
             flight_lines,
             multi_return_share,
+            pulses: attributes.return_count.as_deref().and_then(PulseCounts::of),
             gps_time: attributes.gps_time.as_deref().and_then(gps_times),
             scan_angle_deg,
             duplicate_count: duplicate_count(cloud),
@@ -145,6 +181,10 @@ mod tests {
         assert_eq!(summary.classes, BTreeMap::from([(2, 3), (6, 1)]));
         assert_eq!(summary.flight_lines, BTreeMap::from([(1, 2), (9, 2)]));
         assert_eq!(summary.multi_return_share, Some(0.5));
+        // one pulse of two returns, and two of one
+        let pulses = summary.pulses.unwrap();
+        assert_eq!((pulses.count, pulses.multi_return_count), (3.0, 1.0));
+        assert!((pulses.multi_return_share() - 1.0 / 3.0).abs() < 1e-15);
         assert_eq!(summary.gps_time, Some(GpsTimes { first: 5.0, last: 7.0, distinct_count: 2, missing_count: 1 }));
         assert_eq!(summary.duplicate_count, 1);
         // the rectangle of 100.3 x 0.2 m holds four points: cells of 6.718 m, two of which are occupied

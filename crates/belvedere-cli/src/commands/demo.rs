@@ -3,10 +3,10 @@
 use crate::arguments::{Cleaning, CloudInput, Demo, Global, NeighborChoice, OrientChoice, Orienting};
 use crate::pipeline;
 use crate::progress::Stages;
+use crate::simulated::{cloud_of, write_text};
 use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
-use belvedere::cloud::{Attributes, GpsTimeKind, PointCloud, centre_rounded, to_local};
-use belvedere::crs::Crs;
+use belvedere::cloud::{PointCloud, to_local};
 use belvedere::depth::{DepthMap, ItemBuffer, Profile, depth_map};
 use belvedere::io::{
     Canvas, Colors, ExtraColumn, ExtraValues, atomic, class_color, depth_picture, in_shadow, ramp_colors, side_by_side,
@@ -114,34 +114,10 @@ fn town_section(scene: &Scene, scan: &Scan) -> Summary {
     section
 }
 
-/// The scan as a cloud, as a LAZ file will hold it.
-pub(super) fn cloud_of(scan: &Scan) -> Result<PointCloud> {
-    let coordinates = || scan.x.iter().zip(&scan.y).zip(&scan.z).map(|((&x, &y), &z)| [x, y, z]);
-    let origin = centre_rounded(coordinates());
-    Ok(PointCloud {
-        origin,
-        positions: coordinates().map(|c| to_local(c, origin)).collect(),
-        attributes: Attributes {
-            classification: Some(scan.classification.clone()),
-            gps_time: Some(scan.gps_time.clone()),
-            gps_time_kind: GpsTimeKind::AdjustedStandard,
-            return_number: Some(scan.return_number.clone()),
-            return_count: Some(scan.return_count.clone()),
-            scan_angle: Some(scan.scan_angle_deg.iter().map(|a| a.to_radians()).collect()),
-            point_source_id: Some(scan.point_source_id.clone()),
-            intensity: Some(scan.intensity.clone()),
-            ..Attributes::default()
-        },
-        crs: Crs::parse("EPSG:7415")?,
-        ..PointCloud::default()
-    })
-}
-
 fn write_town(folder: &Path, scene: &Scene, scan: &Scan) -> Result<()> {
     write_cloud(&folder.join("town.laz"), &cloud_of(scan)?, &[])?;
     for (name, text) in [("trajectory.csv", scan.sensor_path.to_csv()), ("town.obj", scene.to_obj())] {
-        let path = folder.join(name);
-        atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(belvedere::Error::io(&path)))?;
+        write_text(&folder.join(name), &text)?;
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::io::{ReadOptions, read_cloud};
-use belvedere::summary::CloudSummary;
+use belvedere::summary::{CloudSummary, FacadeSummary};
 
 pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
@@ -38,6 +38,22 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     }
     summary.add("covered_ground_m2", rounded(facts.occupied_area, 1));
     summary.add("points_per_m2_of_covered_ground", rounded(facts.density, 2));
+    if let Some(facades) = stages.run("measuring facades", 0, |_| FacadeSummary::of(&cloud)) {
+        let mut section = Summary::default();
+        section
+            .add("steep_points", facades.steep_point_count)
+            .add("of_building_points", facades.building_point_count)
+            .add("estimated_wall_area_m2", rounded(facades.area, 0))
+            .add("points_per_m2_of_wall", rounded(facades.density, 2));
+        summary.add("facades", section);
+    }
+    if let Some(pulses) = facts.pulses {
+        summary.add("pulses", rounded(pulses.count, 0));
+        summary.add("pulses_with_several_returns_percent", rounded(100.0 * pulses.multi_return_share(), 2));
+        if facts.occupied_area > 0.0 {
+            summary.add("pulses_per_m2_of_covered_ground", rounded(pulses.count / facts.occupied_area, 2));
+        }
+    }
     let reading = pipeline::reading_section(&report);
     summary.add("reading", reading);
     summary.add("attributes", attributes(&cloud, &facts));

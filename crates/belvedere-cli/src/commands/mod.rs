@@ -7,6 +7,7 @@ mod depth_map;
 mod info;
 mod normals;
 mod query;
+mod simulate;
 
 use crate::arguments::{Cli, Command, Usage};
 use crate::summary::Summary;
@@ -24,6 +25,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
     }
     match &cli.command {
         Command::Demo(arguments) => demo::run(arguments, global),
+        Command::Simulate(arguments) => simulate::run(arguments, global),
         Command::Info(arguments) => info::run(arguments, global),
         Command::Normals(arguments) => normals::run(arguments, global),
         Command::Balls(arguments) => balls::run(arguments, global),

@@ -38,6 +38,7 @@ mod write_masbcpp;
 mod write_npy;
 mod write_ply;
 mod write_table;
+mod write_trajectory;
 mod xyz;
 
 pub use balls::{SavedBalls, is_ball_file, read_balls, write_balls};
@@ -55,3 +56,4 @@ pub use trajectory::{TrajectoryReport, read_trajectory};
 pub use write_cloud::{ExtraColumn, ExtraValues, WriteReport, write_cloud};
 pub use write_masbcpp::{MasbcppFolder, write_masbcpp};
 pub use write_npy::{write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d};
+pub use write_trajectory::{Heading, write_trajectory};

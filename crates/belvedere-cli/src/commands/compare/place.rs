@@ -2,7 +2,7 @@
 
 use super::case::Ingredients;
 use crate::arguments::Compare;
-use crate::commands::demo::cloud_of;
+use crate::simulated::cloud_of;
 use anyhow::{Context, Result, bail};
 use belvedere::cloud::to_local;
 use belvedere::io::{ReadOptions, read_cloud, read_mesh, read_trajectory};

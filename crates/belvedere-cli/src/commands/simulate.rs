@@ -1,0 +1,240 @@
+//! `belvedere simulate`: a town, a survey of it, and what is true about both.
+
+use crate::arguments::{Global, PatternChoice, ScannerChoice, Simulate, Usage};
+use crate::progress::Stages;
+use crate::simulated::{EPSG, cloud_of, crs, write_text};
+use crate::summary::{Summary, percent, rounded};
+use anyhow::Result;
+use belvedere::cloud::GpsTimeKind;
+use belvedere::io::{ExtraColumn, ExtraValues, Heading, atomic, write_cloud, write_trajectory};
+use belvedere::trajectory::Trajectory;
+use belvedere::view::to_sun;
+use belvedere_scenes::{
+    AirborneParams, BeamParams, MirrorMotion, Scan, ScanPattern, Scene, Stations, TerrestrialParams, Truth,
+    scan_airborne, scan_terrestrial, town,
+};
+use std::path::Path;
+
+/// Suns whose light on each point is written, azimuth and elevation in degrees: morning, noon and afternoon.
+const SUNS_DEG: [[f64; 2]; 3] = [[110.0, 20.0], [180.0, 65.0], [240.0, 35.0]];
+/// Pulses per m² where none are asked for: what national surveys have.
+const DENSITY: f64 = 10.0;
+/// Most pulses: a scan of more would fill the memory of most machines, so that a slipped digit is an error and no crash.
+const MOST_PULSES: f64 = 5e8;
+
+pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
+    check_flags(arguments)?;
+    let folder = &arguments.output;
+    let mut stages = Stages::new(global);
+    let mut summary = Summary::default();
+
+    let town_params = arguments.scene.params(arguments.extent, global.seed);
+    let scene = stages.run("building town", 0, |_| town(&town_params));
+    let scan = match arguments.scanner {
+        ScannerChoice::Airborne => {
+            let params = airborne(arguments, &scene, global.seed)?;
+            summary.add("survey", airborne_section(&params));
+            stages.run("scanning", 0, |_| scan_airborne(&scene, &params))
+        }
+        ScannerChoice::Terrestrial => {
+            let params = terrestrial(arguments, global.seed)?;
+            let scan = stages.run("scanning", 0, |_| scan_terrestrial(&scene, &params));
+            summary.add("survey", terrestrial_section(&params, &scan));
+            scan
+        }
+    };
+    atomic::make_folder(folder)?;
+    let lit = stages.run("asking what is lit", 0, |_| {
+        let truth = Truth::new(&scene);
+        SUNS_DEG.map(|sun| {
+            let [azimuth, elevation] = sun.map(f64::to_radians);
+            let lit = scan.lit_from(&scene, &truth, to_sun(azimuth, elevation));
+            lit.into_iter().map(u8::from).collect::<Vec<u8>>()
+        })
+    });
+    stages.run("writing cloud", 0, |_| write_lit_cloud(&folder.join("cloud.laz"), &scan, &lit))?;
+    let mut files = vec!["cloud.laz"];
+    files.extend(stages.run("writing trajectory", 0, |_| write_paths(folder, &scan))?);
+    files.extend(stages.run("writing meshes", 0, |_| write_meshes(folder, &scene))?);
+
+    summary.add("scene", arguments.scene.name());
+    summary.add("objects", scene.object_names.len());
+    summary.add("triangles_of_the_exact_mesh", scene.triangles.len());
+    summary.add("points", scan.len());
+    summary.add("pulses", pulses_section(&scan));
+    for (name, lit) in SUN_NAMES.iter().zip(&lit) {
+        summary.add(&format!("{name}_percent"), percent(lit.iter().filter(|&&v| v == 1).count(), lit.len()));
+    }
+    summary.add("files", files.iter().map(|name| folder.join(name).display().to_string()).collect::<Vec<_>>());
+    summary.add_seconds(stages.into_seconds());
+    Ok(summary)
+}
+
+/// Refuses flags of the scanner that is not used.
+fn check_flags(arguments: &Simulate) -> Result<()> {
+    let (air, ground) = (&arguments.airborne, &arguments.terrestrial);
+    let of_airborne = [
+        ("--pattern", air.pattern.is_some()),
+        ("--density", air.density.is_some()),
+        ("--flying-height", air.flying_height.is_some()),
+        ("--speed", air.speed.is_some()),
+        ("--scan-angle", air.scan_angle.is_some()),
+        ("--strips", air.strips.is_some()),
+        ("--cross-strips", air.cross_strips.is_some()),
+    ];
+    let of_terrestrial = [
+        ("--stations", ground.stations.is_some()),
+        ("--angular-step", ground.angular_step.is_some()),
+        ("--max-range", ground.max_range.is_some()),
+    ];
+    let (unused, scanner): (&[(&str, bool)], &str) = match arguments.scanner {
+        ScannerChoice::Airborne => (&of_terrestrial, "terrestrial"),
+        ScannerChoice::Terrestrial => (&of_airborne, "airborne"),
+    };
+    match unused.iter().find(|(_, is_given)| *is_given) {
+        Some((flag, _)) => Err(Usage(format!("{flag} needs --scanner {scanner}")).into()),
+        None => Ok(()),
+    }
+}
+
+/// Refuses more pulses than a machine holds.
+fn check_pulses(count: f64, advice: &str) -> Result<()> {
+    if count <= MOST_PULSES {
+        return Ok(());
+    }
+    Err(Usage(format!("{count:.1e} pulses are more than the {MOST_PULSES:.0e} that fit into memory; {advice}")).into())
+}
+
+fn airborne(arguments: &Simulate, scene: &Scene, seed: u64) -> Result<AirborneParams> {
+    let flags = &arguments.airborne;
+    let density = flags.density.unwrap_or(DENSITY);
+    check_pulses(density * arguments.extent.powi(2), "lower --density or --extent")?;
+    let usual = AirborneParams::default();
+    let angle = flags.scan_angle.map(f64::to_radians);
+    let pattern = match flags.pattern {
+        None | Some(PatternChoice::Rotating) => ScanPattern::Rotating,
+        Some(PatternChoice::Oscillating) => ScanPattern::Oscillating(MirrorMotion::Sinusoidal),
+        Some(PatternChoice::Conical) => {
+            angle.map_or(ScanPattern::CONICAL_20, |half_angle| ScanPattern::Conical { half_angle })
+        }
+    };
+    let params = AirborneParams {
+        seed,
+        pattern,
+        flying_height: flags.flying_height.unwrap_or(usual.flying_height),
+        speed: flags.speed.unwrap_or(usual.speed),
+        half_angle: angle.unwrap_or(usual.half_angle),
+        cross_strip_count: flags.cross_strips.unwrap_or(usual.cross_strip_count),
+        beam: beam(arguments, BeamParams::in_leaf()),
+        range_sd: arguments.pulses.noise.unwrap_or(usual.range_sd),
+        dropout: arguments.pulses.dropout.unwrap_or(usual.dropout),
+        ..usual
+    };
+    Ok(params.spread_over(scene, flags.strips, density))
+}
+
+fn terrestrial(arguments: &Simulate, seed: u64) -> Result<TerrestrialParams> {
+    let flags = &arguments.terrestrial;
+    let usual = TerrestrialParams::default();
+    let stations = flags.stations.map_or(usual.stations.clone(), Stations::Chosen);
+    let params = TerrestrialParams {
+        seed,
+        stations,
+        angular_step: flags.angular_step.map_or(usual.angular_step, f64::to_radians),
+        max_range: flags.max_range.unwrap_or(usual.max_range),
+        beam: beam(arguments, usual.beam.clone()),
+        range_sd: arguments.pulses.noise.unwrap_or(usual.range_sd),
+        dropout: arguments.pulses.dropout.unwrap_or(usual.dropout),
+        ..usual
+    };
+    let station_count = if let Stations::Chosen(count) = params.stations { f64::from(count) } else { 0.0 };
+    check_pulses(station_count * params.pulses_per_station() as f64, "raise --angular-step or lower --stations")?;
+    Ok(params)
+}
+
+fn beam(arguments: &Simulate, usual: BeamParams) -> BeamParams {
+    BeamParams {
+        divergence: arguments.pulses.divergence.map_or(usual.divergence, |mrad| mrad / 1000.0),
+        foliage_depth: arguments.pulses.foliage_depth.unwrap_or(usual.foliage_depth),
+        ..usual
+    }
+}
+
+fn airborne_section(params: &AirborneParams) -> Summary {
+    let pattern = match params.pattern {
+        ScanPattern::Rotating => "rotating",
+        ScanPattern::Oscillating(_) => "oscillating",
+        ScanPattern::Conical { .. } => "conical",
+    };
+    let mut section = Summary::default();
+    section
+        .add("pattern", pattern)
+        .add("flying_height_m", rounded(params.flying_height, 1))
+        .add("strips", params.strip_count + params.cross_strip_count)
+        .add("strip_width_m", rounded(params.swath(), 1))
+        .add("strip_spacing_m", rounded(params.strip_spacing, 1))
+        .add("pulses_per_second", rounded(params.pulse_rate(), 0))
+        .add("lines_per_second", rounded(params.line_rate(), 1));
+    section
+}
+
+fn terrestrial_section(params: &TerrestrialParams, scan: &Scan) -> Summary {
+    let mut section = Summary::default();
+    section
+        .add("stations", scan.stations.len())
+        .add("pulses_per_station", params.pulses_per_station())
+        .add("angular_step_deg", rounded(params.angular_step.to_degrees(), 4));
+    section
+}
+
+fn pulses_section(scan: &Scan) -> Summary {
+    let firsts = scan.return_number.iter().zip(&scan.return_count).filter(|(number, _)| **number == 1);
+    let (recorded, several) =
+        firsts.fold((0, 0), |(all, several), (_, &count)| (all + 1, several + usize::from(count > 1)));
+    let mut section = Summary::default();
+    section
+        .add("sent", scan.report.pulses)
+        .add("beside_the_town", scan.report.missed_pulses)
+        .add("lost", scan.report.dropped_pulses)
+        .add("recorded", recorded)
+        .add("with_several_returns_percent", percent(several, recorded));
+    section
+}
+
+/// Names of the columns for [`SUNS_DEG`].
+const SUN_NAMES: [&str; 3] = ["lit_110_20", "lit_180_65", "lit_240_35"];
+
+fn write_lit_cloud(path: &Path, scan: &Scan, lit: &[Vec<u8>; 3]) -> Result<()> {
+    let columns: [ExtraColumn<'_>; 3] = std::array::from_fn(|i| ExtraColumn {
+        name: SUN_NAMES[i],
+        description: "1 lit 0 in shadow, by the mesh",
+        values: ExtraValues::U8(&lit[i]),
+    });
+    write_cloud(path, &cloud_of(scan)?, &columns)?;
+    Ok(())
+}
+
+/// Writes where the scanner was; the names of the files.
+fn write_paths(folder: &Path, scan: &Scan) -> Result<Vec<&'static str>> {
+    let path = &scan.sensor_path;
+    let trajectory = Trajectory { times: path.times.clone(), positions: path.positions.clone() };
+    let mut files = vec!["trajectory.csv", "trajectory.sbet"];
+    for name in &files {
+        let headings = Heading::Given(&path.headings);
+        write_trajectory(&folder.join(name), &trajectory, GpsTimeKind::AdjustedStandard, &crs()?, headings)?;
+    }
+    if !scan.stations.is_empty() {
+        write_text(&folder.join("stations.csv"), &scan.stations_to_csv())?;
+        files.push("stations.csv");
+    }
+    Ok(files)
+}
+
+/// Writes what was scanned; the names of the files.
+fn write_meshes(folder: &Path, scene: &Scene) -> Result<Vec<&'static str>> {
+    let files = vec!["mesh.obj", "mesh.city.json"];
+    for (name, text) in files.iter().zip([scene.to_obj(), scene.to_cityjson(&[], EPSG)]) {
+        write_text(&folder.join(name), &text)?;
+    }
+    Ok(files)
+}

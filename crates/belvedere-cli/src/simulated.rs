@@ -1,0 +1,46 @@
+//! Simulated scans as the rest of the program takes them.
+
+use anyhow::Result;
+use belvedere::cloud::{Attributes, GpsTimeKind, PointCloud, centre_rounded, to_local};
+use belvedere::crs::Crs;
+use belvedere::io::atomic;
+use belvedere_scenes::Scan;
+use std::io::Write;
+use std::path::Path;
+
+/// Code of the reference system that simulated towns lie in: the Dutch grid with heights above NAP.
+pub(crate) const EPSG: u32 = 7415;
+
+/// Reference system that simulated towns lie in.
+pub(crate) fn crs() -> Result<Crs> {
+    Ok(Crs::parse(&format!("EPSG:{EPSG}"))?)
+}
+
+/// The scan as a cloud, as a LAZ file will hold it.
+pub(crate) fn cloud_of(scan: &Scan) -> Result<PointCloud> {
+    let coordinates = || scan.x.iter().zip(&scan.y).zip(&scan.z).map(|((&x, &y), &z)| [x, y, z]);
+    let origin = centre_rounded(coordinates());
+    Ok(PointCloud {
+        origin,
+        positions: coordinates().map(|c| to_local(c, origin)).collect(),
+        attributes: Attributes {
+            classification: Some(scan.classification.clone()),
+            gps_time: Some(scan.gps_time.clone()),
+            gps_time_kind: GpsTimeKind::AdjustedStandard,
+            return_number: Some(scan.return_number.clone()),
+            return_count: Some(scan.return_count.clone()),
+            scan_angle: Some(scan.scan_angle_deg.iter().map(|a| a.to_radians()).collect()),
+            point_source_id: Some(scan.point_source_id.clone()),
+            intensity: Some(scan.intensity.clone()),
+            ..Attributes::default()
+        },
+        crs: crs()?,
+        ..PointCloud::default()
+    })
+}
+
+/// Writes a text file that appears only when it is complete.
+pub(crate) fn write_text(path: &Path, text: &str) -> Result<()> {
+    atomic::write(path, |file| file.write_all(text.as_bytes()).map_err(belvedere::Error::io(path)))?;
+    Ok(())
+}
