@@ -55,8 +55,7 @@ pub(crate) fn moeller_trumbore(corners: [[f64; 3]; 3], origin: [f64; 3], directi
 /// A town of 100 m with its mesh.
 pub(crate) fn small_town() -> (Scene, Mesh) {
     let scene = town(&TownParams { extent: 100.0, seed: 3, ..TownParams::default() });
-    let mesh =
-        Mesh { vertices: scene.vertices.clone(), triangles: scene.triangles.clone(), ..Mesh::default() };
+    let mesh = Mesh { vertices: scene.vertices.clone(), triangles: scene.triangles.clone(), ..Mesh::default() };
     (scene, mesh)
 }
 
