@@ -143,8 +143,8 @@ fn rays_meet_the_implicit_surface_where_the_sphere_is() {
                 if signs == NormalSigns::Outward && hit[2].abs() < 2.0 {
                     continue;
                 }
-                // the surface bends by spacing² / 2 radius = 0.08 % of the radius within a support; the bisection and the
-                // normals of 16 neighbours err by as much
+                // over a spacing the sphere falls away by spacing² / 2 radius, a fiftieth of the spacing; means over a support, the
+                // plane of 16 neighbours and the bisection err by a few times that
                 assert!(height.abs() < 0.1 * spacing, "{height} of {spacing} at {hit:?}");
             } else {
                 panic!("{signs:?}: the ray to {aim:?} from {from:?} met nothing");
