@@ -28,20 +28,25 @@ pub enum Relief {
 /// How a [`Dsm`] is made and traced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DsmParams {
-    /// Side of a cell, metres, above 0. Default 0.5, about the spacing of airborne scans.
+    /// Side of a cell, metres, above 0. Default 0.25: half of what GIS users take, but on a simulated town of 11 points/m² (seed 7,
+    /// not one that is reported) it is right for 94.5 % of sunlit and shaded pedestrian points where 0.5 m is for 92.9 %, and for
+    /// 94.6 instead of 91.1 % on facades (balanced). Gaps, filled from below, keep streets open.
     pub cell: f64,
-    /// How cells without points get a height. Default: from below.
+    /// How cells without points get a height. Default from below, which the same town found as good as the mean, and better on
+    /// facades by half a percent.
     pub gap_fill: GapFill,
-    /// How the surface runs between the cells. Default bilinear.
+    /// How the surface runs between the cells. Default columns: in the same town 0.6 % better for pedestrians and 4 % on roofs,
+    /// and an eye in a street sees out of its column, whereas bilinear slopes bury it.
     pub relief: Relief,
     /// The surface blocks only farther than this from the target, metres, 0 or more. Columns that hold the target or the eye
-    /// never block whatever the clearance, since the tools take the heights of both as given. Default 0.5.
+    /// never block whatever the clearance, since the tools take the heights of both as given. Default 1: of 0.25 to 2 in the same town, where roofs and facades
+    /// (0.1 m off the surface) are wrong least often together.
     pub clearance: f64,
 }
 
 impl Default for DsmParams {
     fn default() -> Self {
-        Self { cell: 0.5, gap_fill: GapFill::Lowest, relief: Relief::Bilinear, clearance: 0.5 }
+        Self { cell: 0.25, gap_fill: GapFill::Lowest, relief: Relief::Columns, clearance: 1.0 }
     }
 }
 

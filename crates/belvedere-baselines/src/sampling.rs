@@ -34,11 +34,12 @@ pub(crate) fn for_neighborhoods<T: Send + Clone + Default>(
     values
 }
 
-/// Distance of each point to its `k`-th nearest neighbour, (N), metres, but no more than `cap` times the median of all: a
-/// point that stands alone would otherwise count for a wide surface.
+/// Distance of each point to its `k`-th nearest neighbour, (N), metres, but no more than `cap` times the median of those above
+/// zero: a point that stands alone would otherwise count for a wide surface.
 pub(crate) fn capped_spacing(positions: &[[f32; 3]], index: &NeighborIndex, k: usize, cap: f64) -> Vec<f32> {
     let mut spacing = for_neighborhoods(positions, index, k, |_, _, farthest| farthest);
-    let mut sorted = spacing.clone();
+    // duplicates have no spacing to tell
+    let mut sorted: Vec<f32> = spacing.iter().copied().filter(|&distance| distance > 0.0).collect();
     let middle = sorted.len() / 2;
     if sorted.is_empty() {
         return spacing;

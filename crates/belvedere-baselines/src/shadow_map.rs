@@ -18,19 +18,20 @@ pub struct ShadowMapParams {
     /// Pixels along each side of the six faces around an eye, 1 to 16 384. Default 1024: 0.15 m at a range of 100 m.
     pub face_px: usize,
     /// Constant depth bias: how far behind the depth of its pixel a target may lie and still be visible, metres, 0 or more.
-    /// Default 0.02; see `slope_bias`.
+    /// Default 0.05: with the slope bias, any value to 0.1 does as well on a simulated town (seed 7, not one that is reported).
     pub depth_bias: f64,
     /// Slope-scaled depth bias, 0 or more: this many pixels along the surface drawn in a pixel, seen as depth, are added to
     /// the bias. Default 0.71, half the diagonal of a pixel: just what a flat surface needs in order not to shade itself,
-    /// because the target may lie in a corner of the pixel and the depth is that of its middle.
+    /// because the target may lie in a corner of the pixel and the depth is that of its middle. Without it, 5 instead of 1.5 % of that town's sunlit roof points are dark.
     pub slope_bias: f64,
-    /// Most that `slope_bias` adds, metres, 0 or more. Default 1: a wall seen edge-on would otherwise reveal all behind it.
+    /// Most that `slope_bias` adds, metres, 0 or more. Default 0.5: a wall seen edge-on would otherwise reveal all behind it; 1 misses
+    /// half a percent more of the roofs an observer cannot see.
     pub max_slope_bias: f64,
 }
 
 impl Default for ShadowMapParams {
     fn default() -> Self {
-        Self { pixel_size: 0.25, face_px: 1024, depth_bias: 0.02, slope_bias: 0.71, max_slope_bias: 1.0 }
+        Self { pixel_size: 0.25, face_px: 1024, depth_bias: 0.05, slope_bias: 0.71, max_slope_bias: 0.5 }
     }
 }
 

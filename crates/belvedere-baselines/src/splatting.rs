@@ -23,20 +23,24 @@ pub enum SplatShape {
 /// How splats are made and what they block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SplatParams {
-    /// Neighbours whose principal components give the tangent plane, 3 to 256. Default 16.
+    /// Neighbours whose principal components give the tangent plane, 3 to 256. Default 16; 8 and 12 do as well in the same town.
     pub normal_neighbors: usize,
     /// Which neighbour's distance the radius is a multiple of, 1 to 256. Default 6.
     pub radius_neighbor: usize,
-    /// Radius as a multiple of that distance, above 0. Default 1.
+    /// Radius as a multiple of that distance, above 0. Default 0.6, for sprites 0.4: of 0.3 to 1.2 on a simulated town of
+    /// 11 points/m² (seed 7, not one that is reported) where misses and false shadows balance. Pedestrian points are right 98.7 %
+    /// of the time; at 1, which others report, 97.2 %, and facades 93.6 instead of 87.1 %.
     pub radius_scale: f64,
-    /// Greatest radius as a multiple of the median radius, 1 or more: isolated points are no wide surfaces. Default 4.
+    /// Greatest radius as a multiple of the median radius, 1 or more: isolated points are no wide surfaces. Default 4: at 2,
+    /// the sparse walls of the same town leak (facade misses 10 instead of 4 %); 8 changes nothing.
     pub max_radius_in_medians: f64,
     /// Shape of a splat.
     pub shape: SplatShape,
     /// Most that one axis of an ellipse is longer than the other, 1 or more. Default 3.
     pub max_aspect: f64,
     /// A splat blocks only farther than this from the target, metres, 0 or more. This is the depth offset ε of the visibility
-    /// pass of two-pass blending: what lies within it behind the first splat still counts as the same surface.
+    /// pass of two-pass blending: what lies within it behind the first splat still counts as the same surface. Default 0.5,
+    /// for sprites 1: of 0.1 to 1 in the same town, best on roofs and facades together.
     pub clearance: f64,
 }
 
@@ -51,11 +55,11 @@ impl SplatParams {
         Self {
             normal_neighbors: 16,
             radius_neighbor: 6,
-            radius_scale: 1.0,
+            radius_scale: 0.6,
             max_radius_in_medians: 4.0,
             shape: SplatShape::Disc,
             max_aspect: 3.0,
-            clearance: 0.25,
+            clearance: 0.5,
         }
     }
 
@@ -65,7 +69,7 @@ impl SplatParams {
     /// Sainz & Pajarola 2004, "Point-based rendering techniques", sections 3 and 4 (opaque sprites, ε-depth visibility pass).
     #[must_use]
     pub fn depth_splats() -> Self {
-        Self { shape: SplatShape::Facing, ..Self::surfels() }
+        Self { shape: SplatShape::Facing, radius_scale: 0.4, clearance: 1.0, ..Self::surfels() }
     }
 
     /// Ellipses in object space.

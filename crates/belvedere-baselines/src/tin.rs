@@ -14,13 +14,15 @@ pub struct TinParams {
     /// Side of the square cells of which each keeps its highest point, metres, above 0. Default 0.25: below the spacing of
     /// airborne scans, so that it takes out the lower of two points on one wall and little else.
     pub cell: f64,
-    /// A triangle blocks only if it lies farther than this from the target, metres, 0 or more. Default 0.1.
+    /// A triangle blocks only if it lies farther than this from the target, metres, 0 or more. Default 1: walls lean in a
+    /// triangulation, by about a cell and a point spacing. On a simulated town of 11 points/m² (seed 7, not one that is reported)
+    /// facade points 0.1 m off their wall are right 94.0 % of the time (balanced; 79.3 % at 0.1 m), roofs 94.3 % (95.5 %).
     pub clearance: f64,
 }
 
 impl Default for TinParams {
     fn default() -> Self {
-        Self { cell: 0.25, clearance: 0.1 }
+        Self { cell: 0.25, clearance: 1.0 }
     }
 }
 

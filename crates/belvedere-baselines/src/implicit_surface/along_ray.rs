@@ -1,6 +1,6 @@
 //! Where a ray crosses an implicit surface: the samples whose balls it meets, swept from near to far.
 
-use super::{ImplicitSurfaceParams, Sample};
+use super::{ImplicitSurfaceParams, NormalSigns, Sample};
 use belvedere::ray_index::{Ray, RayIndex};
 use belvedere::vector::{dot, length, sub};
 
@@ -87,9 +87,11 @@ impl<'a> Crossings<'a> {
         true
     }
 
-    /// The formula at `range`, of the samples in reach of `from` to `range`, its sign such that its normal goes with `along`.
+    /// The formula at `range`, of the samples in reach there; of normals without a sign, that which
+    /// goes with `along`.
     fn value(&self, range: f64, along: Option<[f64; 3]>) -> Option<Value> {
         let place = self.ray.at(range);
+        let agreeing = self.params.signs == NormalSigns::Agreeing;
         // (1 − d²/h²)³ reaches zero smoothly at the rim of the ball
         let weighted = self.active.iter().filter_map(|met| {
             let sample = &self.samples[met.row];
@@ -104,7 +106,7 @@ impl<'a> Crossings<'a> {
         for (share, offset, sample) in weighted {
             let weight = share * share * share;
             let normal = sample.normal.map(f64::from);
-            let sign = if dot(normal, reference) < 0.0 { -1.0 } else { 1.0 };
+            let sign = if agreeing && dot(normal, reference) < 0.0 { -1.0 } else { 1.0 };
             weight_sum += weight;
             count += 1;
             support += weight * f64::from(sample.support);
@@ -118,7 +120,7 @@ impl<'a> Crossings<'a> {
             return None;
         }
         let to_mean = offset_sum.map(|v| v / weight_sum);
-        if along.is_some_and(|along| dot(along, normal_sum) < 0.0) {
+        if agreeing && along.is_some_and(|along| dot(along, normal_sum) < 0.0) {
             normal_sum = normal_sum.map(|v| -v);
         }
         let supported = count >= self.params.min_samples && length(to_mean) <= self.params.rim * support / weight_sum;
