@@ -1,8 +1,13 @@
 //! Returns that share a laser pulse.
 
+use std::cmp::Ordering;
+
 use rayon::prelude::*;
 
 use crate::{Error, PointCloud, Result};
+
+/// Most points of one time, line and channel: LAS counts returns to 15, and two full pulses in one tick of a clock do not occur.
+const MOST_PER_TIME: usize = 15;
 
 /// Returns grouped by pulse. Pulses are ordered by flight line, channel and time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,13 +42,14 @@ pub struct PulseReport {
     pub without_time_count: usize,
     /// Points left out because another has the same time, return number and position.
     pub duplicate_count: usize,
-    /// Points left out because their time belongs to several pulses: two of them have the same return number.
+    /// Points left out because their time belongs to several pulses that cannot be told apart.
     pub ambiguous_count: usize,
 }
 
 /// Groups the returns of `cloud` by flight line, scanner channel and GPS time.
 ///
-/// Points that cannot be told to belong to one pulse are left out and counted. A cloud of ground-based scans, whose times
+/// Pulses of the same time are told apart by how many returns they had; single returns are a pulse each. Points that cannot be
+/// told to belong to one pulse are left out and counted. A cloud of ground-based scans, whose times
 /// belong to a single point each, gives a pulse for each point.
 ///
 /// # Errors
@@ -61,6 +67,7 @@ pub fn group(cloud: &PointCloud) -> Result<(Pulses, PulseReport)> {
     let numbers = attributes.return_number.as_deref().ok_or_else(|| missing("return number"))?;
     let lines = attributes.point_source_id.as_deref();
     let channels = attributes.scanner_channel.as_deref();
+    let counts = attributes.return_count.as_deref();
     let column = |row: usize| {
         let line = lines.and_then(|lines| lines.get(row)).copied().unwrap_or(0);
         let channel = channels.and_then(|channels| channels.get(row)).copied().unwrap_or(0);
@@ -70,42 +77,33 @@ pub fn group(cloud: &PointCloud) -> Result<(Pulses, PulseReport)> {
     let mut keys: Vec<Key> = (0_u32..)
         .zip(times.iter().zip(numbers))
         .filter(|(_, (time, _))| time.is_finite() && **time != 0.0)
-        .map(|(row, (&time, &number))| Key { shot: column(row as usize), time, number, row })
+        .map(|(row, (&time, &number))| {
+            let count = counts.and_then(|counts| counts.get(row as usize)).copied().unwrap_or(number);
+            // a count below the number says nothing
+            Key { shot: column(row as usize), time, count: count.max(number), number, row }
+        })
         .collect();
     report.without_time_count = cloud.len() - keys.len();
     keys.par_sort_unstable_by(Key::compare);
 
     let mut pulses = Pulses { offsets: vec![0], ..Pulses::default() };
-    let counts = attributes.return_count.as_deref();
-    for pulse in keys.chunk_by(|a, b| a.shot == b.shot && a.time.total_cmp(&b.time).is_eq()) {
-        let start = pulses.returns.len();
-        let is_copy = |a: &Key, b: &Key| {
-            let place = |key: &Key| cloud.positions.get(key.row as usize);
-            a.number == b.number && place(a) == place(b)
-        };
-        let mut kept: Vec<&Key> = pulse.iter().collect();
-        kept.dedup_by(|later, earlier| is_copy(later, earlier));
-        report.duplicate_count += pulse.len() - kept.len();
-        if kept.windows(2).any(|pair| pair[0].number == pair[1].number) {
-            report.ambiguous_count += kept.len();
+    for mut same_time in keys.chunk_by(Key::same_time).map(<[Key]>::to_vec) {
+        let place = |key: &Key| cloud.positions.get(key.row as usize);
+        let count = same_time.len();
+        same_time.dedup_by(|later, earlier| later.same_return(earlier) && place(later) == place(earlier));
+        report.duplicate_count += count - same_time.len();
+        if same_time.len() > MOST_PER_TIME {
+            report.ambiguous_count += same_time.len();
             continue;
         }
-        pulses.returns.extend(kept.iter().map(|key| key.row));
-        let (Some(&&first), Some(&&last)) = (kept.first(), kept.last()) else { continue };
-        let last_number = counts.and_then(|counts| counts.get(last.row as usize)).copied().unwrap_or(last.number);
-        // a return count of zero, or below a return number, says nothing
-        let last_present = last.number >= last_number;
-        pulses.times.push(first.time);
-        pulses.source_ids.push(first.shot.0);
-        pulses.first_present.push(first.number <= 1);
-        pulses.last_present.push(last_present);
-        #[expect(clippy::cast_possible_truncation, reason = "rows of a cloud are numbered with 32 bits everywhere")]
-        pulses.offsets.push(pulses.returns.len() as u32);
-        let count = pulses.returns.len() - start;
-        report.pulse_count += 1;
-        report.multi_return_count += usize::from(count > 1);
-        let is_complete = first.number <= 1 && last_present && usize::from(last.number.max(1)) == count;
-        report.incomplete_count += usize::from(!is_complete);
+        // clocks tick nearly as slowly as scanners shoot: two pulses of one tick are told apart by their return counts
+        for same_count in same_time.chunk_by(|a, b| a.count == b.count && a.count > 1) {
+            if same_count.windows(2).any(|pair| pair[0].number == pair[1].number) {
+                report.ambiguous_count += same_count.len();
+            } else {
+                pulses.add(same_count, &mut report);
+            }
+        }
     }
     if pulses.is_empty() && !cloud.is_empty() {
         return Err(missing("GPS time that tells pulses apart"));
@@ -119,18 +117,43 @@ struct Key {
     /// Flight line and channel.
     shot: (u16, u8),
     time: f64,
+    /// Returns that the pulse had.
+    count: u8,
     number: u8,
     row: u32,
 }
 
 impl Key {
-    fn compare(&self, other: &Self) -> std::cmp::Ordering {
-        let rest = |key: &Self| (key.number, key.row);
+    fn compare(&self, other: &Self) -> Ordering {
+        let rest = |key: &Self| (key.count, key.number, key.row);
         self.shot.cmp(&other.shot).then(self.time.total_cmp(&other.time)).then_with(|| rest(self).cmp(&rest(other)))
+    }
+
+    fn same_time(&self, other: &Self) -> bool {
+        self.shot == other.shot && self.time.total_cmp(&other.time).is_eq()
+    }
+
+    fn same_return(&self, other: &Self) -> bool {
+        (self.count, self.number) == (other.count, other.number)
     }
 }
 
 impl Pulses {
+    /// Adds the pulse of `returns`, at least one, in order of their numbers.
+    fn add(&mut self, returns: &[Key], report: &mut PulseReport) {
+        let (Some(first), Some(last)) = (returns.first(), returns.last()) else { return };
+        self.returns.extend(returns.iter().map(|key| key.row));
+        self.times.push(first.time);
+        self.source_ids.push(first.shot.0);
+        self.first_present.push(first.number <= 1);
+        self.last_present.push(last.number >= last.count);
+        #[expect(clippy::cast_possible_truncation, reason = "rows of a cloud are numbered with 32 bits everywhere")]
+        self.offsets.push(self.returns.len() as u32);
+        report.pulse_count += 1;
+        report.multi_return_count += usize::from(returns.len() > 1);
+        report.incomplete_count += usize::from(returns.len() < usize::from(last.count));
+    }
+
     /// Number of pulses.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -7,8 +7,8 @@ use super::Pulses;
 use crate::trajectory::{ClockOffset, MAX_GAP_S, Trajectory};
 use crate::{Error, PointCloud, Result};
 
-/// Rounds of reweighting; the weights settle after three.
-const ROUNDS: usize = 5;
+/// Rounds of improvement and reweighting; position and weights settle after four.
+const ROUNDS: usize = 6;
 /// Misses beyond so many deviations count less (Huber): most of a clean set, two components together, lies within.
 const HUBER_DEVIATIONS: f64 = 2.0;
 /// Median length of a miss whose two components have deviation 1 (Rayleigh).
@@ -25,6 +25,9 @@ pub struct SensorEstimateParams {
     pub least_length: f64,
     /// Fewest such pulses in a part, 6 to 100 000. Default 30.
     pub least_pair_count: usize,
+    /// Standard deviation of the vertical speed about zero, metres per second, 0.1 to 100. Default 2: surveys fly level, and
+    /// a tile that took two seconds to pass hardly tells climb from scale.
+    pub vertical_speed_sd: f64,
     /// Greatest standard deviation of the position that is accepted, horizontal and vertical, metres. Default 20 and 50:
     /// seen from 450 m below, 20 m sideways tilt a pulse by 2.5°; upwards they tilt it less.
     pub greatest_sd: [f64; 2],
@@ -40,6 +43,7 @@ impl Default for SensorEstimateParams {
             part_s: 5.0,
             least_length: 3.0,
             least_pair_count: 30,
+            vertical_speed_sd: 2.0,
             greatest_sd: [20.0, 50.0],
             speeds: [15.0, 120.0],
             least_height: 30.0,
@@ -135,10 +139,9 @@ impl SensorPositions {
     /// Positions from the directions of pulses with several returns, by flight line.
     ///
     /// A line is cut where nothing was scanned for two seconds and then into equal parts of at most
-    /// [`SensorEstimateParams::part_s`]. In each part the scanner moves evenly, S + V t, and passes as near as possible to
-    /// the straight lines through the first and last return of each pulse. Misses count with the squared distance of the
-    /// two returns, because the direction of a pulse is the better the farther they lie apart, and less where they stand
-    /// out. Parts whose estimate is not fit for use are unknown; [`SensorReport::parts`] says why.
+    /// [`SensorEstimateParams::part_s`]. In each part the scanner moves evenly, S + V t, such that the last return of each
+    /// pulse lies as near as possible to the line from the scanner through the first. Misses that stand out count less, and level flight is
+    /// assumed where the pulses tell nothing. Parts whose estimate is not fit for use are unknown; [`SensorReport::parts`] says why.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a parameter outside its range.
@@ -200,6 +203,7 @@ impl SensorEstimateParams {
         };
         check("part of a flight line", self.part_s, 0.5..=60.0, "0.5 to 60 s")?;
         check("least length of a pulse", self.least_length, 0.5..=50.0, "0.5 to 50 m")?;
+        check("deviation of the vertical speed", self.vertical_speed_sd, 0.1..=100.0, "0.1 to 100 m/s")?;
         check("least number of pulses", self.least_pair_count as f64, 6.0..=1e5, "6 to 100000")
     }
 }
@@ -215,9 +219,12 @@ fn parts(pulses: &Pulses, longest: f64) -> Vec<Vec<usize>> {
         let (Some(first), Some(last)) = (pass.first(), pass.last()) else { continue };
         let (start, length) = (key(first).1, key(last).1 - key(first).1);
         let count = (length / longest).ceil().max(1.0);
-        let part_of = |pulse: &usize| ((key(pulse).1 - start) / length.max(f64::MIN_POSITIVE) * count).floor();
         // the very last pulse belongs to the last part
-        parts.extend(pass.chunk_by(|a, b| part_of(a) == part_of(b).min(count - 1.0)).map(<[usize]>::to_vec));
+        let part_of = |pulse: &usize| {
+            let share = (key(pulse).1 - start) / length.max(f64::MIN_POSITIVE);
+            (share * count).floor().min(count - 1.0)
+        };
+        parts.extend(pass.chunk_by(|a, b| part_of(a).total_cmp(&part_of(b)).is_eq()).map(<[usize]>::to_vec));
     }
     parts
 }
@@ -268,7 +275,9 @@ fn estimate(cloud: &PointCloud, pulses: &Pulses, members: &[usize], params: &Sen
         return part;
     }
     part.verdict = Verdict::Uncertain;
-    let Some(Fit { position, velocity, position_sd, median_angle }) = fit(&pairs) else { return part };
+    let Some(Fit { position, velocity, position_sd, median_angle }) = fit(&pairs, params.vertical_speed_sd) else {
+        return part;
+    };
     (part.position, part.velocity) = (position.into(), velocity.into());
     (part.position_sd, part.median_angle) = (position_sd, median_angle);
     let [x_sd, y_sd, z_sd] = position_sd;
@@ -288,46 +297,92 @@ struct Fit {
     median_angle: f64,
 }
 
-/// Position and velocity that pass nearest to the lines of `pairs`, or `None` where the lines fix none.
-fn fit(pairs: &[Pair]) -> Option<Fit> {
-    let mut trust = vec![1.0; pairs.len()];
+/// Position and velocity for which the last returns of `pairs` lie nearest to the lines from the scanner through the first
+/// ones, or `None` where they fix none.
+///
+/// The first guess minimises how far the lines miss the scanner, which is linear. It lies too near, because a line with a
+/// wrong direction misses a far scanner by more, so the rounds that follow (Gauss and Newton) minimise the distance at the
+/// last return, where the error is.
+fn fit(pairs: &[Pair], vertical_speed_sd: f64) -> Option<Fit> {
+    let mut start = Equations::default();
+    for pair in pairs {
+        let weighted = pair.across * pair.length.powi(2);
+        start.add(&weighted, &(weighted * pair.first), pair.since);
+    }
+    let mut state = start.normal.cholesky()?.solve(&start.right);
+    let (mut misses, mut scale) = misses_of(pairs, &state);
     let mut result = None;
     for _ in 0..ROUNDS {
-        let (mut normal, mut right) = (Matrix6::<f64>::zeros(), Vector6::<f64>::zeros());
+        let greatest = HUBER_DEVIATIONS * scale;
+        let trust: Vec<f64> = misses.iter().map(|miss| if *miss > greatest { greatest / miss } else { 1.0 }).collect();
+        let mut step = Equations::default();
+        let level = (scale / vertical_speed_sd).powi(2);
+        step.normal[(5, 5)] = level;
+        step.right[5] = -level * state[5];
         for (pair, trust) in pairs.iter().zip(&trust) {
-            let weighted = pair.across * (trust * pair.length.powi(2));
-            let pull = weighted * pair.first;
-            for (row, row_factor) in [(0, 1.0), (3, pair.since)] {
-                for (column, column_factor) in [(0, 1.0), (3, pair.since)] {
-                    let mut block = normal.fixed_view_mut::<3, 3>(row, column);
-                    block += weighted * (row_factor * column_factor);
-                }
-                let mut block = right.fixed_rows_mut::<3>(row);
-                block += pull * row_factor;
-            }
+            let sight = pair.sight(&state);
+            let range = sight.norm();
+            let towards = sight / range;
+            let slope = pair.across * (Matrix3::identity() - towards * towards.transpose()) * (pair.length / range);
+            let weighted = slope.transpose() * *trust;
+            step.add(&(weighted * slope), &(-weighted * pair.miss(&state)), pair.since);
         }
-        let factors = normal.cholesky()?;
-        let solution = factors.solve(&right);
-        let (position, velocity) = (solution.fixed_rows::<3>(0).into_owned(), solution.fixed_rows::<3>(3).into_owned());
-        // a miss at the scanner is the error of a return times range over length: the product with the length is even
-        let sight = |pair: &Pair| position + velocity * pair.since - pair.first;
-        let misses: Vec<f64> = pairs.iter().map(|pair| (pair.across * sight(pair)).norm() * pair.length).collect();
-        let scale = median(misses.clone()) / RAYLEIGH_MEDIAN;
+        let factors = step.normal.cholesky()?;
+        state += factors.solve(&step.right);
+        (misses, scale) = misses_of(pairs, &state);
         let squares: f64 = misses.iter().zip(&trust).map(|(miss, trust)| trust * miss * miss).sum();
         let variance = squares / (2.0 * pairs.len() as f64 - 6.0).max(1.0);
         let covariance = factors.inverse() * variance;
-        let angle = |(pair, miss): (&Pair, &f64)| (miss / pair.length / sight(pair).norm()).min(1.0).asin();
+        let angle = |(pair, miss): (&Pair, &f64)| (miss / pair.length).min(1.0).asin();
         result = Some(Fit {
-            position,
-            velocity,
+            position: state.fixed_rows::<3>(0).into_owned(),
+            velocity: state.fixed_rows::<3>(3).into_owned(),
             position_sd: std::array::from_fn(|i| covariance[(i, i)].sqrt()),
             median_angle: median(pairs.iter().zip(&misses).map(angle).collect()),
         });
-        for (trust, miss) in trust.iter_mut().zip(&misses) {
-            *trust = if *miss > HUBER_DEVIATIONS * scale { HUBER_DEVIATIONS * scale / miss } else { 1.0 };
+    }
+    result.filter(|fit| fit.position.iter().chain(&fit.velocity).all(|v| v.is_finite()))
+}
+
+/// Lengths of the misses, metres, and the standard deviation of their components as far as the middle ones tell.
+fn misses_of(pairs: &[Pair], state: &Vector6<f64>) -> (Vec<f64>, f64) {
+    let misses: Vec<f64> = pairs.iter().map(|pair| pair.miss(state).norm()).collect();
+    let scale = median(misses.clone()) / RAYLEIGH_MEDIAN;
+    (misses, scale)
+}
+
+impl Pair {
+    /// From the first return to the scanner of `state`, which is position then velocity.
+    fn sight(&self, state: &Vector6<f64>) -> Vector3<f64> {
+        state.fixed_rows::<3>(0) + state.fixed_rows::<3>(3) * self.since - self.first
+    }
+
+    /// How far the last return lies from the line through the scanner and the first, metres across the pulse.
+    fn miss(&self, state: &Vector6<f64>) -> Vector3<f64> {
+        let sight = self.sight(state);
+        self.across * sight * (self.length / sight.norm())
+    }
+}
+
+/// Normal equations for position and velocity.
+#[derive(Default)]
+struct Equations {
+    normal: Matrix6<f64>,
+    right: Vector6<f64>,
+}
+
+impl Equations {
+    /// Adds what says that `matrix` times the position at `since` is `right`.
+    fn add(&mut self, matrix: &Matrix3<f64>, right: &Vector3<f64>, since: f64) {
+        for (row, row_factor) in [(0, 1.0), (3, since)] {
+            for (column, column_factor) in [(0, 1.0), (3, since)] {
+                let mut block = self.normal.fixed_view_mut::<3, 3>(row, column);
+                block += matrix * (row_factor * column_factor);
+            }
+            let mut block = self.right.fixed_rows_mut::<3>(row);
+            block += right * row_factor;
         }
     }
-    result
 }
 
 /// The upper of the two middle values, NaN for none.
