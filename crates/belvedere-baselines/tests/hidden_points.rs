@@ -83,27 +83,24 @@ fn answers_are_those_of_open3d() {
         for (exponent, expected) in open3d {
             let found = seen(&method(&cloud, with_exponent(exponent)), Viewer::Eye(eye), &cloud.positions);
             let differing = found.iter().zip(&expected).filter(|(f, e)| f != e).count();
-            // the same definition; qhull merges facets that are flat within rounding, exact signs do not
-            assert!(differing <= 2, "{differing} points differ at {eye:?}, exponent {exponent}");
+            assert_eq!(differing, 0, "at {eye:?}, exponent {exponent}");
         }
     }
 }
 
 #[test]
-fn katz_rule_comes_near_the_best_radius_from_an_eye_in_the_scene() {
+fn katz_rule_comes_near_the_best_radius() {
     let Reference { cloud, views } = reference();
     let katz = method(&cloud, HiddenPointsParams::default());
-    let loss: Vec<f64> = views
-        .iter()
-        .map(|view| {
-            let (_, best) = &view.open3d[1];
-            let found = seen(&katz, Viewer::Eye(view.eye), &cloud.positions);
-            balanced_accuracy(best, &view.truth) - balanced_accuracy(&found, &view.truth)
-        })
-        .collect();
-    assert!(loss[1] < 0.05 && loss[2] < 0.05, "{loss:?}");
-    // from below, the ground is seen as well as from above, so the rule takes too small a radius: a trait of the method
-    assert!(loss[0] < 0.15, "{loss:?}");
+    for (i, view) in views.iter().enumerate() {
+        // the first eye stands for a sun
+        let viewer = if i == 0 { Viewer::Direction(view.eye) } else { Viewer::Eye(view.eye) };
+        let (_, best) = &view.open3d[1];
+        let found = seen(&katz, viewer, &cloud.positions);
+        let loss = balanced_accuracy(best, &view.truth) - balanced_accuracy(&found, &view.truth);
+        // half a step of the exponent costs up to five points, see the accuracies beside the best in `data/README.md`
+        assert!(loss < 0.05, "{loss} for view {i}: {:?}", katz.choose_radius(viewer));
+    }
 }
 
 #[test]
@@ -112,8 +109,8 @@ fn a_roof_hides_what_is_below_it() {
     let ground_count = positions.len();
     positions.extend(roof);
     let cloud = cloud_of(positions);
-    // the paraboloid that the flipped ground lies on rises by R t²/L² between points t = 0.25 m apart: with L about 4 km,
-    // R = 10^5.5 L that is 5 m, the height of the roof
+    // flipped level ground stands out by R t²/L² between points t = 0.25 m apart: with L = 5.7 km and R = 10^5 L that is
+    // 1.1 m, so roof points 5 m up hide what is between them
     let method = method(&cloud, with_exponent(5.0));
     let found = seen(&method, Viewer::Direction([0.0, 0.0, 1.0]), &cloud.positions);
     for (p, found) in cloud.positions.iter().zip(&found).take(ground_count) {
@@ -237,6 +234,6 @@ fn the_rule_on_two_sides_of_a_ball_takes_half_of_its_points() {
     assert!(choice.tried.iter().all(|&(_, count)| count <= ball.len()));
     let truth: Vec<bool> = ball.positions.iter().map(|p| p[2] > 10.0 / 3.0).collect();
     let accuracy = balanced_accuracy(&seen(&katz, viewer, &ball.positions), &truth);
-    // the rule errs near the horizon only: 0.97 is a belt of 9°
-    assert!(accuracy > 0.92, "{accuracy} with {choice:?}");
+    // the rule errs near the horizon only, where points every 0.6 m see each other at less than 5°: 0.98 found
+    assert!(accuracy > 0.95, "{accuracy} with {choice:?}");
 }

@@ -56,6 +56,7 @@ pub mod mesh;
 pub mod neighbors;
 pub mod normals;
 pub mod progress;
+pub mod pulses;
 pub mod query;
 pub mod random;
 pub mod raster;

@@ -29,7 +29,7 @@ const LEVELS: [(&str, u8); 21] = [
 ];
 
 /// Crates that only one file or folder may name, below `src`.
-const ONE_HOME: [(&str, &str); 13] = [
+const ONE_HOME: [(&str, &str); 14] = [
     ("las::", "io/"),
     ("laz::", "io/laz.rs"),
     ("npyz::", "io/"),
@@ -42,6 +42,7 @@ const ONE_HOME: [(&str, &str); 13] = [
     ("proj_core::", "crs"),
     ("proj_wkt::", "crs"),
     ("rstar::", "normals/"),
+    ("nalgebra::", "pulses/"),
     ("obvhs::", "ray_index.rs"),
 ];
 

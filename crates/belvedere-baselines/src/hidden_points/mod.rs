@@ -19,6 +19,10 @@ pub use radius::RadiusChoice;
 /// a tenth of a millimetre.
 const FAR_EYE_DIAGONALS: f64 = 200.0;
 
+/// Highest elevation of the direction that another one from above is compared with, radians: two that both come from near
+/// the zenith see the same points.
+const HIGHEST_OPPOSITE: f64 = std::f64::consts::FRAC_PI_3;
+
 /// How the radius of the sphere is chosen, as the exponent γ of R = 10^γ · range of the farthest point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FlipRadius {
@@ -75,11 +79,15 @@ impl<'a> HiddenPoints<'a> {
     /// The method on the cloud of `survey`; nothing is computed yet.
     ///
     /// # Errors
-    /// [`Error::NoPoints`], [`Error::InvalidParameter`] for a parameter outside its range or a position that is not finite.
+    /// [`Error::NoPoints`], [`Error::InvalidParameter`] for a parameter outside its range, a position that is not finite, and
+    /// more than 2^30 points.
     pub fn new(survey: &Survey<'a>, params: HiddenPointsParams) -> Result<Self> {
         survey.cloud.validate()?;
         if survey.cloud.is_empty() {
             return Err(Error::NoPoints { what: "hidden point removal needs the points of a cloud".to_owned() });
+        }
+        if survey.cloud.len() > hull::MOST_POINTS {
+            return Err(invalid("number of points", survey.cloud.len(), "at most 2^30"));
         }
         if !(0.0..=10.0).contains(&params.noise) {
             return Err(invalid("noise bound", params.noise, "0 to 10 m"));
@@ -92,15 +100,22 @@ impl<'a> HiddenPoints<'a> {
         Ok(Self { positions: &survey.cloud.positions, params, rows: OnceLock::new() })
     }
 
-    /// Where the eye of `viewer` is, local metres.
-    fn eye(&self, viewer: Viewer<'_>) -> Result<[f64; 3]> {
+    /// Where the eye of `viewer` is, local metres, and the viewpoint opposite it that Katz's rule compares with.
+    ///
+    /// For an eye that is its image in the centre of the cloud. For a direction from above it is the same elevation, at
+    /// most [`HIGHEST_OPPOSITE`], in the opposite azimuth: seen from straight below, all the ground would be visible, from
+    /// both sides, and the rule would take a radius ten times too small.
+    fn viewpoints(&self, viewer: Viewer<'_>) -> Result<[[f64; 3]; 2]> {
         viewer.validate()?;
+        let (centre, diagonal) = radius::extent(self.positions);
         match viewer {
-            Viewer::Eye(eye) => Ok(eye),
+            Viewer::Eye(eye) => Ok([eye, std::array::from_fn(|i| 2.0 * centre[i] - eye[i])]),
             Viewer::Direction(direction) => {
-                let (centre, diagonal) = radius::extent(self.positions);
                 let unit = belvedere::vector::unit(direction).unwrap_or_default();
-                Ok(std::array::from_fn(|i| centre[i] + FAR_EYE_DIAGONALS * diagonal.max(1.0) * unit[i]))
+                let far = |unit: [f64; 3]| -> [f64; 3] {
+                    std::array::from_fn(|i| centre[i] + FAR_EYE_DIAGONALS * diagonal.max(1.0) * unit[i])
+                };
+                Ok([far(unit), far(opposite_direction(unit))])
             }
             Viewer::Each(_) => Err(Error::UnsupportedViewer {
                 method: "hidden point removal",
@@ -114,17 +129,17 @@ impl<'a> HiddenPoints<'a> {
     /// # Errors
     /// As [`Visibility::seen_from`].
     pub fn choose_radius(&self, viewer: Viewer<'_>) -> Result<RadiusChoice> {
-        Ok(radius::by_opposite_views(self.positions, self.eye(viewer)?))
+        Ok(radius::by_opposite_views(self.positions, self.viewpoints(viewer)?))
     }
 
     /// The answer for each point of the cloud, and what answers for others.
     fn view(&self, viewer: Viewer<'_>) -> Result<(FlippedView, Vec<bool>)> {
-        let eye = self.eye(viewer)?;
+        let viewpoints = self.viewpoints(viewer)?;
         let exponent = match self.params.radius {
             FlipRadius::Exponent(exponent) => exponent,
-            FlipRadius::OppositeViews => radius::by_opposite_views(self.positions, eye).exponent,
+            FlipRadius::OppositeViews => radius::by_opposite_views(self.positions, viewpoints).exponent,
         };
-        let view = FlippedView::new(self.positions, eye, exponent);
+        let view = FlippedView::new(self.positions, viewpoints[0], exponent);
         let mut visible = view.corners(self.positions);
         if let Some(tolerance) = self.tolerance() {
             let within = view.outside(self.positions, Some(tolerance));
@@ -175,11 +190,22 @@ impl Visibility for HiddenPoints<'_> {
     }
 }
 
+/// The direction that Katz's rule compares `unit` with.
+fn opposite_direction(unit: [f64; 3]) -> [f64; 3] {
+    let [x, y, z] = unit;
+    if z <= 0.0 {
+        return [-x, -y, -z];
+    }
+    let elevation = z.atan2(x.hypot(y)).min(HIGHEST_OPPOSITE);
+    let (sin, cos) = (-y).atan2(-x).sin_cos();
+    [elevation.cos() * cos, elevation.cos() * sin, elevation.sin()]
+}
+
 /// A place as a key: −0 and 0 are the same.
 fn place(p: [f32; 3]) -> [u32; 3] {
     p.map(|v| (v + 0.0).to_bits())
 }
 
-fn invalid(name: &'static str, value: f64, expected: &'static str) -> Error {
+fn invalid(name: &'static str, value: impl ToString, expected: &'static str) -> Error {
     Error::InvalidParameter { name, value: value.to_string(), expected }
 }

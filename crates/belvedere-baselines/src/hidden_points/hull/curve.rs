@@ -1,5 +1,7 @@
 //! The order in which points are inserted and looked for.
 
+use super::number;
+
 /// Points in the first round of insertions; each later round holds as many as all before it.
 const FIRST_ROUND: usize = 1000;
 /// Cells per side of the space-filling curve: its keys fit beside the round in 64 bits.
@@ -8,7 +10,7 @@ const CURVE_CELLS: f64 = 262_143.0;
 /// All points but `first`: rounds that double in size, chosen at random, each along a space-filling curve.
 pub(super) fn insertion_order(points: &[[f64; 3]], first: &[u32; 4], curve: &Curve) -> Vec<u32> {
     let round_count = (points.len() / FIRST_ROUND).max(1).ilog2();
-    let mut keys: Vec<(u64, u32)> = (0..points.len() as u32)
+    let mut keys: Vec<(u64, u32)> = (0..number(points.len()))
         .filter(|index| !first.contains(index))
         .map(|index| {
             // half of the points come in the last round, a quarter in the one before

@@ -20,6 +20,8 @@ use start::{first_tetrahedron, middle, tetrahedron};
 /// How near to the eye walks aim from, as a share of the way from the eye to the middle of the first tetrahedron: a power of
 /// two, so that the centre stays on that way exactly, and small enough to count as the eye itself.
 const CENTRE_SHARE: f64 = 1.0 / 1_048_576.0;
+/// A hull of so many points has twice as many facets, whose numbers fit 32 bits.
+pub(crate) const MOST_POINTS: usize = 1 << 30;
 /// No facet.
 const NONE: u32 = u32::MAX;
 
@@ -72,7 +74,7 @@ impl Hull {
     /// method shows in [`Hull::is_extreme`].
     pub(crate) fn new(mut points: Vec<[f64; 3]>) -> Self {
         let given_count = points.len();
-        let eye = given_count as u32;
+        let eye = number(given_count);
         points.push([0.0; 3]);
         let first = first_tetrahedron(&mut points, eye);
         let mut hull = Self {
@@ -211,13 +213,13 @@ impl Hull {
             return number;
         }
         self.facets.push(facet);
-        self.facets.len() as u32 - 1
+        number(self.facets.len()) - 1
     }
 
     /// Closes the gaps that `free` (decreasing) leaves among the facets.
     fn drop_free_facets(&mut self, free: &[u32]) {
         for &gap in free {
-            let last = self.facets.len() as u32 - 1;
+            let last = number(self.facets.len()) - 1;
             self.facets.swap_remove(gap as usize);
             if gap == last {
                 continue;
@@ -256,6 +258,12 @@ impl Hull {
         }
         bent_edges.into_iter().map(|count| count >= 3).collect()
     }
+}
+
+/// A number of a point or facet.
+#[expect(clippy::cast_possible_truncation, reason = "clouds of more than `MOST_POINTS` are refused")]
+fn number(index: usize) -> u32 {
+    index as u32
 }
 
 /// Positive where `d` lies below the plane of `a`, `b` and `c`, which turn counter-clockwise as seen from above; exact sign.

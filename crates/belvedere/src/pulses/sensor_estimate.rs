@@ -1,0 +1,395 @@
+//! Where the scanner was when it sent each pulse: from a trajectory, or from the pulses themselves.
+
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+use rayon::prelude::*;
+
+use super::Pulses;
+use crate::trajectory::{ClockOffset, MAX_GAP_S, Trajectory};
+use crate::{Error, PointCloud, Result};
+
+/// Rounds of improvement and reweighting; position and weights settle after four.
+const ROUNDS: usize = 6;
+/// Misses beyond so many deviations count less (Huber): most of a clean set, two components together, lies within.
+const HUBER_DEVIATIONS: f64 = 2.0;
+/// Median length of a miss whose two components have deviation 1 (Rayleigh).
+const RAYLEIGH_MEDIAN: f64 = 1.177_41;
+
+/// How [`SensorPositions::from_returns`] works.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorEstimateParams {
+    /// Longest part of a flight line that is taken for straight and evenly flown, seconds, 0.5 to 60. Default 5: gusts move
+    /// an aircraft by a metre in that time, and a tile cut from a line often holds no more.
+    pub part_s: f64,
+    /// Least distance between first and last return for a pulse to tell its direction, metres, 0.5 to 50. Default 3: with
+    /// 2 cm noise the direction is then good to half a degree.
+    pub least_length: f64,
+    /// Fewest such pulses in a part, 6 to 100 000. Default 30.
+    pub least_pair_count: usize,
+    /// Standard deviation of the vertical speed about zero, metres per second, 0.1 to 100. Default 2: surveys fly level, and
+    /// a tile that took two seconds to pass hardly tells climb from scale.
+    pub vertical_speed_sd: f64,
+    /// Greatest standard deviation of the position that is accepted, horizontal and vertical, metres. Default 20 and 50:
+    /// seen from 450 m below, 20 m sideways tilt a pulse by 2.5°; upwards they tilt it less.
+    pub greatest_sd: [f64; 2],
+    /// Speeds that are accepted, metres per second. Default 15 to 120: helicopters to jets.
+    pub speeds: [f64; 2],
+    /// Least height above the middle of the returns that is accepted, metres. Default 30.
+    pub least_height: f64,
+}
+
+impl Default for SensorEstimateParams {
+    fn default() -> Self {
+        Self {
+            part_s: 5.0,
+            least_length: 3.0,
+            least_pair_count: 30,
+            vertical_speed_sd: 2.0,
+            greatest_sd: [20.0, 50.0],
+            speeds: [15.0, 120.0],
+            least_height: 30.0,
+        }
+    }
+}
+
+/// Scanner position of each pulse.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SensorPositions {
+    /// Local metres, (P, 3); NaN where unknown.
+    pub per_pulse: Vec<[f32; 3]>,
+}
+
+/// How scanner positions were found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SensorReport {
+    /// Pulses in all.
+    pub pulse_count: usize,
+    /// Pulses whose scanner position is known.
+    pub known_count: usize,
+    /// How GPS times became those of the trajectory, where one was used.
+    pub clock: Option<ClockOffset>,
+    /// The parts of flight lines that were estimated, by line and time.
+    pub parts: Vec<SensorPart>,
+}
+
+/// Estimate for a part of a flight line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SensorPart {
+    /// Flight line.
+    pub source_id: u16,
+    /// Time of its first and last pulse, seconds.
+    pub times: [f64; 2],
+    /// Its pulses.
+    pub pulse_count: usize,
+    /// Pulses whose first and last return lie far enough apart.
+    pub pair_count: usize,
+    /// Position half-way between the two times, local metres; NaN where nothing could be computed.
+    pub position: [f64; 3],
+    /// Its standard deviation by the residuals, metres.
+    pub position_sd: [f64; 3],
+    /// Metres per second.
+    pub velocity: [f64; 3],
+    /// Median angle between the pulses and the directions to the estimated path, radians.
+    pub median_angle: f64,
+    /// Whether it is used.
+    pub verdict: Verdict,
+}
+
+/// Whether the estimate for a part of a flight line is used, and why not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Used.
+    Accepted,
+    /// Too few pulses with returns far enough apart.
+    TooFewPairs,
+    /// The pulses do not fix a position, or not well enough: too parallel, or too few.
+    Uncertain,
+    /// No aircraft flies so slowly or so fast, or so low.
+    Implausible,
+}
+
+impl SensorPositions {
+    /// Positions at the times of `pulses` on `trajectory`; unknown where it has no position.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where it has none at any of the times.
+    pub fn from_trajectory(
+        cloud: &PointCloud,
+        pulses: &Pulses,
+        trajectory: &Trajectory,
+    ) -> Result<(Self, SensorReport)> {
+        let clock = trajectory.clock_offset_for(&pulses.times, cloud.attributes.gps_time_kind);
+        if clock.served_count == 0 && !pulses.is_empty() {
+            return Err(Error::InvalidParameter {
+                name: "trajectory",
+                value: format!("{} positions at other times", trajectory.times.len()),
+                expected: "to cover the GPS times of the cloud",
+            });
+        }
+        let position = |&time: &f64| match trajectory.position_at(clock.trajectory_time(time)) {
+            Some(place) => crate::cloud::to_local(place, cloud.origin),
+            None => [f32::NAN; 3],
+        };
+        let per_pulse: Vec<[f32; 3]> = pulses.times.par_iter().map(position).collect();
+        let known_count = per_pulse.iter().filter(|p| is_known(p)).count();
+        let report =
+            SensorReport { pulse_count: pulses.len(), known_count, clock: Some(clock), ..SensorReport::default() };
+        Ok((Self { per_pulse }, report))
+    }
+
+    /// Positions from the directions of pulses with several returns, by flight line.
+    ///
+    /// A line is cut where nothing was scanned for two seconds and then into equal parts of at most
+    /// [`SensorEstimateParams::part_s`]. In each part the scanner moves evenly, S + V t, such that the last return of each
+    /// pulse lies as near as possible to the line from the scanner through the first. Misses that stand out count less, and level flight is
+    /// assumed where the pulses tell nothing. Parts whose estimate is not fit for use are unknown; [`SensorReport::parts`] says why.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a parameter outside its range.
+    ///
+    /// # Source
+    /// The idea: Gatziolis & McGaughey 2019; Roussel, Bourdon & Achim 2020. Weights: Huber 1964. One least-squares problem
+    /// with velocity for each part instead of pairs of pulses is ours.
+    pub fn from_returns(
+        cloud: &PointCloud,
+        pulses: &Pulses,
+        params: &SensorEstimateParams,
+    ) -> Result<(Self, SensorReport)> {
+        params.validate()?;
+        let parts: Vec<(SensorPart, Vec<usize>)> = parts(pulses, params.part_s)
+            .into_par_iter()
+            .map(|members| (estimate(cloud, pulses, &members, params), members))
+            .collect();
+        let mut per_pulse = vec![[f32::NAN; 3]; pulses.len()];
+        let mut report = SensorReport { pulse_count: pulses.len(), ..SensorReport::default() };
+        for (part, members) in parts {
+            if part.verdict == Verdict::Accepted {
+                report.known_count += members.len();
+                let middle = f64::midpoint(part.times[0], part.times[1]);
+                for pulse in members {
+                    let since = pulses.times[pulse] - middle;
+                    let place = std::array::from_fn(|i| part.position[i] + part.velocity[i] * since);
+                    per_pulse[pulse] = crate::cloud::to_local(place, [0.0; 3]);
+                }
+            }
+            report.parts.push(part);
+        }
+        Ok((Self { per_pulse }, report))
+    }
+
+    /// Scanner position of each point of the cloud that `pulses` were grouped from, (N, 3), local metres; NaN where unknown.
+    #[must_use]
+    pub fn per_point(&self, pulses: &Pulses, point_count: usize) -> Vec<[f32; 3]> {
+        let mut per_point = vec![[f32::NAN; 3]; point_count];
+        for (pulse, position) in self.per_pulse.iter().enumerate() {
+            for &row in pulses.returns_of(pulse) {
+                if let Some(of_point) = per_point.get_mut(row as usize) {
+                    *of_point = *position;
+                }
+            }
+        }
+        per_point
+    }
+}
+
+fn is_known(position: &[f32; 3]) -> bool {
+    position.iter().all(|v| v.is_finite())
+}
+
+impl SensorEstimateParams {
+    fn validate(&self) -> Result<()> {
+        let check = |name, value: f64, range: std::ops::RangeInclusive<f64>, expected| {
+            let wrong = || Error::InvalidParameter { name, value: value.to_string(), expected };
+            range.contains(&value).then_some(()).ok_or_else(wrong)
+        };
+        check("part of a flight line", self.part_s, 0.5..=60.0, "0.5 to 60 s")?;
+        check("least length of a pulse", self.least_length, 0.5..=50.0, "0.5 to 50 m")?;
+        check("deviation of the vertical speed", self.vertical_speed_sd, 0.1..=100.0, "0.1 to 100 m/s")?;
+        check("least number of pulses", self.least_pair_count as f64, 6.0..=1e5, "6 to 100000")
+    }
+}
+
+/// Pulses of each part of each flight line, in order of time.
+fn parts(pulses: &Pulses, longest: f64) -> Vec<Vec<usize>> {
+    let mut order: Vec<usize> = (0..pulses.len()).collect();
+    let key = |&pulse: &usize| (pulses.source_ids[pulse], pulses.times[pulse]);
+    // lines may hold several channels, each in order of time
+    order.sort_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1)));
+    let mut parts = Vec::new();
+    for pass in order.chunk_by(|a, b| key(a).0 == key(b).0 && key(b).1 - key(a).1 <= MAX_GAP_S) {
+        let (Some(first), Some(last)) = (pass.first(), pass.last()) else { continue };
+        let (start, length) = (key(first).1, key(last).1 - key(first).1);
+        let count = (length / longest).ceil().max(1.0);
+        // the very last pulse belongs to the last part
+        let part_of = |pulse: &usize| {
+            let share = (key(pulse).1 - start) / length.max(f64::MIN_POSITIVE);
+            (share * count).floor().min(count - 1.0)
+        };
+        parts.extend(pass.chunk_by(|a, b| part_of(a).total_cmp(&part_of(b)).is_eq()).map(<[usize]>::to_vec));
+    }
+    parts
+}
+
+/// Straight line through the first and last return of a pulse.
+struct Pair {
+    first: Vector3<f64>,
+    /// Projects on the plane across the pulse.
+    across: Matrix3<f64>,
+    length: f64,
+    /// Seconds after the middle of the part.
+    since: f64,
+}
+
+fn estimate(cloud: &PointCloud, pulses: &Pulses, members: &[usize], params: &SensorEstimateParams) -> SensorPart {
+    let time = |at: Option<&usize>| at.and_then(|&pulse| pulses.times.get(pulse)).copied().unwrap_or(f64::NAN);
+    let times = [time(members.first()), time(members.last())];
+    let middle = f64::midpoint(times[0], times[1]);
+    let place = |row: &u32| {
+        let p = cloud.positions.get(*row as usize).copied().unwrap_or([f32::NAN; 3]);
+        Vector3::from(p.map(f64::from))
+    };
+    let pair = |&pulse: &usize| {
+        let returns = pulses.returns_of(pulse);
+        let (first, last) = (place(returns.first()?), place(returns.last()?));
+        let length = (last - first).norm();
+        let along = (last - first) / length;
+        (length >= params.least_length).then(|| Pair {
+            first,
+            across: Matrix3::identity() - along * along.transpose(),
+            length,
+            since: pulses.times[pulse] - middle,
+        })
+    };
+    let pairs: Vec<Pair> = members.iter().filter_map(pair).collect();
+    let mut part = SensorPart {
+        source_id: members.first().map_or(0, |&pulse| pulses.source_ids[pulse]),
+        times,
+        pulse_count: members.len(),
+        pair_count: pairs.len(),
+        position: [f64::NAN; 3],
+        position_sd: [f64::INFINITY; 3],
+        velocity: [f64::NAN; 3],
+        median_angle: f64::NAN,
+        verdict: Verdict::TooFewPairs,
+    };
+    if pairs.len() < params.least_pair_count {
+        return part;
+    }
+    part.verdict = Verdict::Uncertain;
+    let Some(Fit { position, velocity, position_sd, median_angle }) = fit(&pairs, params.vertical_speed_sd) else {
+        return part;
+    };
+    (part.position, part.velocity) = (position.into(), velocity.into());
+    (part.position_sd, part.median_angle) = (position_sd, median_angle);
+    let [x_sd, y_sd, z_sd] = position_sd;
+    if x_sd.max(y_sd) <= params.greatest_sd[0] && z_sd <= params.greatest_sd[1] {
+        let ground = median(pairs.iter().map(|pair| pair.first.z).collect());
+        let [slowest, fastest] = params.speeds;
+        let is_plausible = (slowest..=fastest).contains(&velocity.norm()) && position.z - ground >= params.least_height;
+        part.verdict = if is_plausible { Verdict::Accepted } else { Verdict::Implausible };
+    }
+    part
+}
+
+struct Fit {
+    position: Vector3<f64>,
+    velocity: Vector3<f64>,
+    position_sd: [f64; 3],
+    median_angle: f64,
+}
+
+/// Position and velocity for which the last returns of `pairs` lie nearest to the lines from the scanner through the first
+/// ones, or `None` where they fix none.
+///
+/// The first guess minimises how far the lines miss the scanner, which is linear. It lies too near, because a line with a
+/// wrong direction misses a far scanner by more, so the rounds that follow (Gauss and Newton) minimise the distance at the
+/// last return, where the error is.
+fn fit(pairs: &[Pair], vertical_speed_sd: f64) -> Option<Fit> {
+    let mut start = Equations::default();
+    for pair in pairs {
+        let weighted = pair.across * pair.length.powi(2);
+        start.add(&weighted, &(weighted * pair.first), pair.since);
+    }
+    let mut state = start.normal.cholesky()?.solve(&start.right);
+    let (mut misses, mut scale) = misses_of(pairs, &state);
+    let mut result = None;
+    for _ in 0..ROUNDS {
+        let greatest = HUBER_DEVIATIONS * scale;
+        let trust: Vec<f64> = misses.iter().map(|miss| if *miss > greatest { greatest / miss } else { 1.0 }).collect();
+        let mut step = Equations::default();
+        let level = (scale / vertical_speed_sd).powi(2);
+        step.normal[(5, 5)] = level;
+        step.right[5] = -level * state[5];
+        for (pair, trust) in pairs.iter().zip(&trust) {
+            let sight = pair.sight(&state);
+            let range = sight.norm();
+            let towards = sight / range;
+            let slope = pair.across * (Matrix3::identity() - towards * towards.transpose()) * (pair.length / range);
+            let weighted = slope.transpose() * *trust;
+            step.add(&(weighted * slope), &(-weighted * pair.miss(&state)), pair.since);
+        }
+        let factors = step.normal.cholesky()?;
+        state += factors.solve(&step.right);
+        (misses, scale) = misses_of(pairs, &state);
+        let squares: f64 = misses.iter().zip(&trust).map(|(miss, trust)| trust * miss * miss).sum();
+        let variance = squares / (2.0 * pairs.len() as f64 - 6.0).max(1.0);
+        let covariance = factors.inverse() * variance;
+        let angle = |(pair, miss): (&Pair, &f64)| (miss / pair.length).min(1.0).asin();
+        result = Some(Fit {
+            position: state.fixed_rows::<3>(0).into_owned(),
+            velocity: state.fixed_rows::<3>(3).into_owned(),
+            position_sd: std::array::from_fn(|i| covariance[(i, i)].sqrt()),
+            median_angle: median(pairs.iter().zip(&misses).map(angle).collect()),
+        });
+    }
+    result.filter(|fit| fit.position.iter().chain(&fit.velocity).all(|v| v.is_finite()))
+}
+
+/// Lengths of the misses, metres, and the standard deviation of their components as far as the middle ones tell.
+fn misses_of(pairs: &[Pair], state: &Vector6<f64>) -> (Vec<f64>, f64) {
+    let misses: Vec<f64> = pairs.iter().map(|pair| pair.miss(state).norm()).collect();
+    let scale = median(misses.clone()) / RAYLEIGH_MEDIAN;
+    (misses, scale)
+}
+
+impl Pair {
+    /// From the first return to the scanner of `state`, which is position then velocity.
+    fn sight(&self, state: &Vector6<f64>) -> Vector3<f64> {
+        state.fixed_rows::<3>(0) + state.fixed_rows::<3>(3) * self.since - self.first
+    }
+
+    /// How far the last return lies from the line through the scanner and the first, metres across the pulse.
+    fn miss(&self, state: &Vector6<f64>) -> Vector3<f64> {
+        let sight = self.sight(state);
+        self.across * sight * (self.length / sight.norm())
+    }
+}
+
+/// Normal equations for position and velocity.
+#[derive(Default)]
+struct Equations {
+    normal: Matrix6<f64>,
+    right: Vector6<f64>,
+}
+
+impl Equations {
+    /// Adds what says that `matrix` times the position at `since` is `right`.
+    fn add(&mut self, matrix: &Matrix3<f64>, right: &Vector3<f64>, since: f64) {
+        for (row, row_factor) in [(0, 1.0), (3, since)] {
+            for (column, column_factor) in [(0, 1.0), (3, since)] {
+                let mut block = self.normal.fixed_view_mut::<3, 3>(row, column);
+                block += matrix * (row_factor * column_factor);
+            }
+            let mut block = self.right.fixed_rows_mut::<3>(row);
+            block += right * row_factor;
+        }
+    }
+}
+
+/// The upper of the two middle values, NaN for none.
+fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return f64::NAN;
+    }
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
