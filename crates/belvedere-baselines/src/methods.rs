@@ -78,7 +78,7 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
         splats("depth-splats", "splats: sprites", SplatParams::depth_splats()),
         splats("elliptical-splats", "splats: ellipses", SplatParams::object_space()),
         Method::new("implicit-surface", "implicit surface", "implicit-surface", move || {
-            ImplicitSurface::new(cloud, &ImplicitSurfaceParams::default())
+            ImplicitSurface::new(survey, &ImplicitSurfaceParams::default())
         }),
         voxels("voxels-05", "voxels 0.5 m", 0.5),
         voxels("voxels-10", "voxels 1 m", 1.0),

@@ -20,7 +20,7 @@ type Method = (&'static str, Box<dyn Visibility>);
 
 /// Every method that answers each kind of viewer, of one place.
 fn ray_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<Method> {
-    let survey = Survey { cloud, scanner: &[], model: None };
+    let survey = Survey { cloud, scanner: &[], models: &[] };
     let dsm = |relief| Dsm::from_points(&cloud.positions, &DsmParams { relief, ..DsmParams::default() }).unwrap();
     vec![
         ("mesh rays", Box::new(MeshRays::new(mesh, cloud.origin, &MeshRaysParams::default()).unwrap())),

@@ -45,7 +45,7 @@ fn reference() -> Reference {
 }
 
 fn method<'a>(cloud: &'a PointCloud, params: HiddenPointsParams) -> HiddenPoints<'a> {
-    HiddenPoints::new(&Survey { cloud, scanner: &[], model: None }, params).unwrap()
+    HiddenPoints::new(&Survey { cloud, scanner: &[], models: &[] }, params).unwrap()
 }
 
 fn with_exponent(exponent: f64) -> HiddenPointsParams {
@@ -210,7 +210,7 @@ fn odd_clouds_and_viewers_have_defined_answers() {
     assert!(matches!(flat.visible(each, &ground.positions[..1]), Err(Error::UnsupportedViewer { .. })));
     let nowhere = Viewer::Eye([f64::NAN; 3]);
     assert!(matches!(flat.visible(nowhere, &ground.positions), Err(Error::InvalidParameter { .. })));
-    let survey = |cloud| Survey { cloud, scanner: &[], model: None };
+    let survey = |cloud| Survey { cloud, scanner: &[], models: &[] };
     let empty = PointCloud::default();
     assert!(matches!(HiddenPoints::new(&survey(&empty), with_exponent(1.0)), Err(Error::NoPoints { .. })));
     assert!(matches!(HiddenPoints::new(&survey(&ground), with_exponent(-1.0)), Err(Error::InvalidParameter { .. })));

@@ -126,7 +126,7 @@ fn rays_meet_the_implicit_surface_where_the_sphere_is() {
     let scanner = vec![[0.0, 0.0, 500.0]; cloud.len()];
     for signs in [NormalSigns::Agreeing, NormalSigns::Outward] {
         let params = ImplicitSurfaceParams { signs, ..ImplicitSurfaceParams::default() };
-        let surface = ImplicitSurface::new(&Survey { cloud: &cloud, scanner: &scanner, model: None }, &params).unwrap();
+        let surface = ImplicitSurface::new(&Survey { cloud: &cloud, scanner: &scanner, models: &[] }, &params).unwrap();
         assert_eq!(surface.left_out(), 0);
         let mut random = Lcg(3);
         for _ in 0..2000 {
@@ -164,7 +164,7 @@ fn rays_meet_the_implicit_surface_where_the_sphere_is() {
 fn the_implicit_plane_ends_at_its_rim_and_at_a_hole() {
     let mut cloud = grid(20, 0.5, 0.5);
     cloud.positions.retain(|p| p[0].hypot(p[1]) > 3.0);
-    let survey = Survey { cloud: &cloud, scanner: &[], model: None };
+    let survey = Survey { cloud: &cloud, scanner: &[], models: &[] };
     let surface = ImplicitSurface::new(&survey, &ImplicitSurfaceParams::default()).unwrap();
     let mut random = Lcg(11);
     // support: 0.9 diagonals of 0.5 m; twice that is beyond doubt on either side of the rim
@@ -193,7 +193,7 @@ fn the_implicit_plane_ends_at_its_rim_and_at_a_hole() {
 #[test]
 fn the_implicit_surface_refuses_parameters_out_of_range() {
     let cloud = grid(3, 1.0, 1.0);
-    let survey = Survey { cloud: &cloud, scanner: &[], model: None };
+    let survey = Survey { cloud: &cloud, scanner: &[], models: &[] };
     let default = ImplicitSurfaceParams::default;
     for params in [
         ImplicitSurfaceParams { step: 0.0, ..default() },
@@ -209,6 +209,6 @@ fn the_implicit_surface_refuses_parameters_out_of_range() {
     assert!(Splats::new(&cloud, &SplatParams { radius_neighbor: 0, ..SplatParams::surfels() }).is_err());
     assert!(Splats::new(&cloud, &SplatParams { radius_scale: f64::NAN, ..SplatParams::surfels() }).is_err());
     let empty = cloud_of(Vec::new());
-    let nothing = ImplicitSurface::new(&Survey { cloud: &empty, scanner: &[], model: None }, &default()).unwrap();
+    let nothing = ImplicitSurface::new(&Survey { cloud: &empty, scanner: &[], models: &[] }, &default()).unwrap();
     assert!(!blocked(&nothing, Viewer::Eye([1.0; 3]), &[[0.0; 3]])[0]);
 }

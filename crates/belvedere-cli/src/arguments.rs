@@ -358,17 +358,18 @@ pub(crate) struct Shrinking {
 
 #[derive(Args)]
 pub(crate) struct Compare {
-    /// Kinds of simulated towns: village, town, old-town, towers, park
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "town", help_heading = "Simulated places")]
-    pub(crate) presets: Vec<PresetChoice>,
+    /// Kinds of simulated towns, separated by commas
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "town", value_parser = presets(),
+        help_heading = "Simulated places")]
+    pub(crate) presets: Vec<Preset>,
     /// Seeds of the towns and their scans
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1", help_heading = "Simulated places")]
     pub(crate) seeds: Vec<u64>,
     /// Side of a town in metres
     #[arg(long, value_name = "M", default_value_t = 150.0, value_parser = above_zero::<f64>, help_heading = "Simulated places")]
     pub(crate) extent: f64,
-    /// Pulses per m² and flight strip
-    #[arg(long, value_name = "N", default_value_t = 4.0, value_parser = above_zero::<f64>, help_heading = "Simulated places")]
+    /// Pulses per m², all flight strips together
+    #[arg(long, value_name = "N", default_value_t = 10.0, value_parser = above_zero::<f64>, help_heading = "Simulated places")]
     pub(crate) density: f64,
     /// Point clouds of a place of your own, in place of simulated ones
     #[arg(long, value_name = "CLOUD", num_args = 1.., help_heading = "A place of your own")]
@@ -400,19 +401,6 @@ impl Compare {
     /// Whether a method was asked for.
     pub(crate) fn wants(&self, key: &str) -> bool {
         self.methods.is_empty() || self.methods.iter().any(|start| key.starts_with(start.as_str()))
-    }
-}
-
-#[derive(Clone, Copy)]
-pub(crate) struct PresetChoice(pub(crate) Preset);
-
-impl FromStr for PresetChoice {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let names = || Preset::ALL.map(Preset::name).join(", ");
-        let preset = Preset::ALL.into_iter().find(|preset| preset.name() == text);
-        preset.map(Self).ok_or_else(|| format!("use one of {}", names()))
     }
 }
 

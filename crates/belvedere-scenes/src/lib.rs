@@ -55,7 +55,7 @@ pub use airborne::{AirborneParams, scan_airborne};
 pub use beam::BeamParams;
 pub use lod1::blocks;
 pub use preset::Preset;
-pub use queries::{QuerySet, Site, Targets};
+pub use queries::{QuerySet, QuerySite, Targets};
 pub use scan::{Scan, ScanReport, SensorPath};
 pub use scan_pattern::{MirrorMotion, ScanPattern};
 pub use scene::{Material, Part, Scene};

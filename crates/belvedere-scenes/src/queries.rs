@@ -66,7 +66,7 @@ const DRAWS_PER_TARGET: u64 = 64;
 
 /// Where targets are looked for.
 #[derive(Clone, Copy, Debug)]
-pub struct Site<'a> {
+pub struct QuerySite<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// Its index.
@@ -84,11 +84,11 @@ pub struct Targets {
     pub eyes: Vec<[f64; 3]>,
 }
 
-impl Site<'_> {
+impl QuerySite<'_> {
     /// `count` targets of a kind, fewer where the place has no room for them (no roof, say).
     ///
     /// Every target draws from its own stream of `seed`, so that a longer list begins with the shorter one, whatever the
-    /// number of threads. Free air is what [`Site::is_inside`] denies.
+    /// number of threads. Free air is what [`QuerySite::is_inside`] denies.
     #[must_use]
     pub fn targets(&self, set: QuerySet, count: usize, seed: u64) -> Targets {
         let surfaces = match set {

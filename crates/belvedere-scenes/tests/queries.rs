@@ -1,11 +1,11 @@
 //! Targets lie where their kind says, by means that do not use the sampling code.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use belvedere_scenes::{Material, Placement, QuerySet, Scene, Site, TownParams, Truth, extruded, town};
+use belvedere_scenes::{Material, Placement, QuerySet, QuerySite, Scene, TownParams, Truth, extruded, town};
 
-fn site<'a>(scene: &'a Scene, truth: &'a Truth) -> Site<'a> {
+fn site<'a>(scene: &'a Scene, truth: &'a Truth) -> QuerySite<'a> {
     let (low, high) = scene.bounds().unwrap();
-    Site { scene, truth, bounds: [low, high] }
+    QuerySite { scene, truth, bounds: [low, high] }
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn observers_stand_in_the_open_and_above_the_highest_roof() {
     assert!((tower[2] - top - 6.0).abs() < 1e-9, "{tower:?} above {top}");
     let empty = Scene::default();
     let nothing = Truth::new(&empty);
-    let nowhere = Site { scene: &empty, truth: &nothing, bounds: [[0.0; 3], [1.0; 3]] };
+    let nowhere = QuerySite { scene: &empty, truth: &nothing, bounds: [[0.0; 3], [1.0; 3]] };
     assert_eq!(nowhere.observers(1), [None, None]);
     assert!(nowhere.targets(QuerySet::Roofs, 10, 1).positions.is_empty());
 }

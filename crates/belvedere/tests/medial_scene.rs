@@ -13,6 +13,7 @@ fn balls(centers: Vec<[f32; 3]>, radii: Vec<f32>) -> MedialBalls {
 }
 
 /// A number in 0 to 1 that belongs to `index`.
+#[expect(clippy::cast_possible_truncation, reason = "a random number")]
 fn at(seed: u64, index: u64) -> f32 {
     uniform(seed, index) as f32
 }
@@ -153,15 +154,16 @@ fn the_index_proposes_every_box_that_a_ray_meets() {
         let ray = Ray::new(start, direction, [0.0, 30.0]).unwrap();
         let range = |corners: &[[f32; 3]; 2]| {
             let (mut from, mut to) = (0.0, 30.0);
-            for axis in 0..3 {
-                let (l, h) = (f64::from(corners[0][axis]), f64::from(corners[1][axis]));
-                if ray.direction[axis] == 0.0 {
-                    if ray.origin[axis] < l || ray.origin[axis] > h {
+            for ((corners, origin), direction) in
+                (0..3).map(|i| [corners[0][i], corners[1][i]]).zip(ray.origin).zip(ray.direction)
+            {
+                let [low, high] = corners.map(|v| f64::from(v) - origin);
+                if direction == 0.0 {
+                    if low > 0.0 || high < 0.0 {
                         return None;
                     }
                 } else {
-                    let (a, b) =
-                        ((l - ray.origin[axis]) / ray.direction[axis], (h - ray.origin[axis]) / ray.direction[axis]);
+                    let (a, b) = (low / direction, high / direction);
                     from = f64::max(from, a.min(b));
                     to = f64::min(to, a.max(b));
                 }

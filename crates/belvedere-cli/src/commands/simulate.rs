@@ -2,7 +2,7 @@
 
 use crate::arguments::{Global, PatternChoice, ScannerChoice, Simulate, Usage};
 use crate::progress::Stages;
-use crate::simulated::{EPSG, cloud_of, crs, write_text};
+use crate::simulated::{EPSG, SUNS_DEG, cloud_of, crs, write_text};
 use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
 use belvedere::cloud::GpsTimeKind;
@@ -10,13 +10,11 @@ use belvedere::io::{ExtraColumn, ExtraValues, Heading, atomic, write_cloud, writ
 use belvedere::trajectory::Trajectory;
 use belvedere::view::to_sun;
 use belvedere_scenes::{
-    AirborneParams, BeamParams, MirrorMotion, Scan, ScanPattern, Scene, Stations, TerrestrialParams, Truth,
+    AirborneParams, BeamParams, MirrorMotion, Scan, ScanPattern, Scene, Stations, TerrestrialParams, Truth, blocks,
     scan_airborne, scan_terrestrial, town,
 };
 use std::path::Path;
 
-/// Suns whose light on each point is written, azimuth and elevation in degrees: morning, noon and afternoon.
-const SUNS_DEG: [[f64; 2]; 3] = [[110.0, 20.0], [180.0, 65.0], [240.0, 35.0]];
 /// Pulses per m² where none are asked for: what national surveys have.
 const DENSITY: f64 = 10.0;
 /// Most pulses: a scan of more would fill the memory of most machines, so that a slipped digit is an error and no crash.
@@ -232,8 +230,9 @@ fn write_paths(folder: &Path, scan: &Scan) -> Result<Vec<&'static str>> {
 
 /// Writes what was scanned; the names of the files.
 fn write_meshes(folder: &Path, scene: &Scene) -> Result<Vec<&'static str>> {
-    let files = vec!["mesh.obj", "mesh.city.json"];
-    for (name, text) in files.iter().zip([scene.to_obj(), scene.to_cityjson(&[], EPSG)]) {
+    let files = vec!["mesh.obj", "mesh.city.json", "blocks.obj"];
+    let texts = [scene.to_obj(), scene.to_cityjson(&scene.parts, EPSG), blocks(scene).to_obj()];
+    for (name, text) in files.iter().zip(texts) {
         write_text(&folder.join(name), &text)?;
     }
     Ok(files)

@@ -1,5 +1,6 @@
 //! A place made ready: cloud, scanner, models, and targets with their exact answers.
 
+use crate::simulated::SUNS_DEG;
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::cloud::to_local;
@@ -8,11 +9,9 @@ use belvedere::view::to_sun;
 use belvedere_baselines::agreement::Tiles;
 use belvedere_baselines::audit::Source;
 use belvedere_baselines::{Model, Survey};
-use belvedere_scenes::{Material, QuerySet, Scene, Site, Truth};
+use belvedere_scenes::{Material, QuerySet, QuerySite, Scene, Truth};
 use rayon::prelude::*;
 
-/// Azimuth and elevation of the suns, degrees: those of the published comparison of tools, from low to high.
-pub(super) const SUNS_DEG: [[f64; 2]; 3] = [[110.0, 20.0], [240.0, 35.0], [180.0, 65.0]];
 /// Side of the tiles that are resampled for intervals, metres: half a block of houses.
 const TILE_SIDE: f32 = 25.0;
 /// The cloud's own points, as a kind of target.
@@ -75,7 +74,7 @@ impl Case {
         let origin = cloud.origin;
         let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
         let (low, high) = crate::pipeline::bounds_of(&cloud)?;
-        let site = Site { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
+        let site = QuerySite { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
 
         let mut views: Vec<View> = SUNS_DEG
             .iter()
@@ -119,7 +118,7 @@ impl Case {
 
     /// Whether a local position lies in a solid or in the ground.
     pub(super) fn is_inside(&self, local: [f32; 3]) -> bool {
-        let site = Site { scene: &self.scene, truth: &self.truth, bounds: [[0.0; 3]; 2] };
+        let site = QuerySite { scene: &self.scene, truth: &self.truth, bounds: [[0.0; 3]; 2] };
         site.is_inside(std::array::from_fn(|i| f64::from(local[i]) + self.cloud.origin[i]))
     }
 
@@ -163,7 +162,11 @@ fn answered(
 }
 
 /// For each point what its surface is, and a point just outside that surface; `None` where that cannot be told.
-fn sources(site: &Site<'_>, cloud: &PointCloud, scanner: &[[f32; 3]]) -> Vec<Option<(Source<Material>, [f64; 3])>> {
+fn sources(
+    site: &QuerySite<'_>,
+    cloud: &PointCloud,
+    scanner: &[[f32; 3]],
+) -> Vec<Option<(Source<Material>, [f64; 3])>> {
     let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + cloud.origin[i]) };
     let source = |(i, &position): (usize, &[f32; 3])| {
         let from = scanner.get(i).copied().filter(|s| s.iter().all(|v| v.is_finite()))?;

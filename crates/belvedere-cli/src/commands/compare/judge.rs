@@ -16,7 +16,7 @@ use std::time::Instant;
 const GROUPS: [&str; 3] = ["suns", "observers", "pairs"];
 /// The set and the view that pictures show.
 pub(super) const SHOWN_SET: &str = "PED";
-pub(super) const SHOWN_VIEW: usize = 1;
+pub(super) const SHOWN_VIEW: usize = 2;
 
 /// What a method answered, for the picture.
 pub(super) struct Shown {

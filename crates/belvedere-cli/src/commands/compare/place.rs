@@ -9,7 +9,7 @@ use belvedere::io::{ReadOptions, read_cloud, read_mesh, read_trajectory};
 use belvedere::trajectory::Trajectory;
 use belvedere::{Mesh, PointCloud};
 use belvedere_baselines::Model;
-use belvedere_scenes::{AirborneParams, Material, Preset, Scene, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Material, Preset, Scene, blocks, scan_airborne, town};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -27,9 +27,9 @@ impl Place {
             let (clouds, trajectory) = (arguments.scene.clone(), arguments.trajectory.clone());
             return vec![Self::Given { clouds, mesh: mesh.clone(), trajectory, models }];
         }
-        let presets = arguments.presets.iter().map(|choice| choice.0);
+        let presets = arguments.presets.iter();
         presets
-            .flat_map(|preset| {
+            .flat_map(|&preset| {
                 arguments.seeds.iter().map(move |&seed| Self::Simulated {
                     preset,
                     extent: arguments.extent,
@@ -66,13 +66,14 @@ impl Place {
         match self {
             Self::Simulated { preset, extent, seed, pulses_per_m2 } => {
                 let scene = town(&preset.params(*extent, *seed));
-                let params = AirborneParams { seed: *seed, pulses_per_m2: *pulses_per_m2, ..AirborneParams::default() };
+                let params = AirborneParams { seed: *seed, ..AirborneParams::covering(&scene, *pulses_per_m2) };
                 let scan = scan_airborne(&scene, &params);
                 let cloud = cloud_of(&scan)?;
                 let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
                 let (trajectory, _) = Trajectory::from_records(path.collect());
                 let scanner = scanner_positions(&cloud, &trajectory)?;
                 let models = vec![
+                    Model { name: "blocks".to_owned(), mesh: mesh_of(&blocks(&scene), |_| true) },
                     Model { name: "no-trees".to_owned(), mesh: mesh_of(&scene, |material| !is_loose(material)) },
                     Model { name: "exact".to_owned(), mesh: mesh_of(&scene, |_| true) },
                 ];
