@@ -4,6 +4,16 @@ use crate::town::{BlockPlan, StreetTrees, TownParams};
 use crate::trees::Crowns;
 
 /// A kind of town, at any size and seed.
+///
+/// ```
+/// use belvedere_scenes::{Crowns, Preset, TownParams, blocks, town};
+///
+/// let params = TownParams { crowns: Crowns::Porous, ..Preset::OldTown.params(60.0, 7) };
+/// let scene = town(&params);
+/// assert!(scene.object_names.iter().any(|name| name.starts_with("building")));
+/// let city_model = blocks(&scene);
+/// assert!(city_model.object_names.iter().all(|name| name == "terrain" || name.starts_with("building")));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Preset {
     /// Detached houses with chimneys and dormers in fenced gardens, porous trees, cars, masts and wires on hilly ground.
