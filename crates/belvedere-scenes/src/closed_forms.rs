@@ -1,6 +1,15 @@
 //! Scenes whose shadows and views of the sky are known as formulas.
 //!
 //! All lie about the origin on a level square of ground at height 0, 2 km wide.
+//!
+//! ```
+//! use belvedere_scenes::{Truth, closed_forms::box_on_plane};
+//!
+//! // 10 m high, the sun in the east at 45°: the shadow ends 10 m west of the wall at x = −3
+//! let truth = Truth::new(&box_on_plane([6.0, 8.0], 10.0));
+//! assert!(truth.occluded_towards([-12.99, 0.0, 0.0], [1.0, 0.0, 1.0]));
+//! assert!(!truth.occluded_towards([-13.01, 0.0, 0.0], [1.0, 0.0, 1.0]));
+//! ```
 
 use std::f64::consts::{PI, TAU};
 

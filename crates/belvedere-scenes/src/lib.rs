@@ -1,7 +1,8 @@
 //! Simulated towns with exact meshes, and simulated laser scans of them.
 //!
-//! Tests and demonstrations need scenes whose answers are known. This crate makes a town out of triangles
-//! ([`town`], from a description or a [`Preset`]), generalises it to the blocks of a city model ([`blocks`]), answers exactly what blocks what in it ([`Truth`]), and flies a laser scanner over it
+//! Tests and demonstrations need scenes whose answers are known. This crate makes a town out of triangles ([`town`], from a
+//! description or a [`Preset`]) or a scene with a formula ([`closed_forms`]), generalises it to the blocks of a city model
+//! ([`blocks`]), answers exactly what blocks what in it ([`Truth`]), and flies a laser scanner over it
 //! ([`scan_airborne`]). It knows no other crate of the project: what comes out are plain columns and meshes.
 //!
 //! ```

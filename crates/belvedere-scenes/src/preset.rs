@@ -4,6 +4,16 @@ use crate::town::{BlockPlan, StreetTrees, TownParams};
 use crate::trees::Crowns;
 
 /// A kind of town, at any size and seed.
+///
+/// ```
+/// use belvedere_scenes::{Crowns, Preset, TownParams, blocks, town};
+///
+/// let params = TownParams { crowns: Crowns::Porous, ..Preset::OldTown.params(60.0, 7) };
+/// let scene = town(&params);
+/// assert!(scene.object_names.iter().any(|name| name.starts_with("building")));
+/// let city_model = blocks(&scene);
+/// assert!(city_model.object_names.iter().all(|name| name == "terrain" || name.starts_with("building")));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Preset {
     /// Detached houses with chimneys and dormers in fenced gardens, porous trees, cars, masts and wires on hilly ground.
@@ -62,9 +72,10 @@ impl Preset {
                     (BlockPlan::HighRise, 5),
                     (BlockPlan::Square, 2),
                     (BlockPlan::Gardens, 4),
-                    (BlockPlan::Courtyard, 2),
+                    (BlockPlan::Courtyard, 4),
                     (BlockPlan::Perimeter, 6),
                     (BlockPlan::PetrolStation, 1),
+                    (BlockPlan::LShapes, 1),
                 ],
                 area_per_garden_tree: 45.0,
                 street_furniture: 0.7,

@@ -137,8 +137,9 @@ impl Part {
 
 /// A scene of triangles, grouped in named objects.
 ///
-/// Buildings and trees consist of closed solids; the solids of one object may overlap (a trunk reaches into its crown).
-/// The terrain is a sheet that ends at the rim of the scene.
+/// Everything but the terrain consists of closed solids, a part each (all leaves of a crown are one part); solids may overlap,
+/// as a trunk reaches into its crown and neighbouring houses into each other. The terrain is a sheet that ends at the rim of
+/// the scene.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// Vertices, (V, 3), metres, absolute (the projected frame, not local).

@@ -1,7 +1,5 @@
 //! LoD1 blocks: closed prisms over the footprints, as high as 70 % of the roof.
 
-#![expect(clippy::unwrap_used, reason = "helpers of tests may panic like the tests themselves")]
-
 use std::collections::{HashMap, HashSet};
 
 use belvedere_scenes::{Material, Part, Placement, Preset, Scene, TownParams, blocks, extruded, ridged, town};

@@ -99,6 +99,15 @@ fn features(scene: &Scene) -> BTreeSet<&'static str> {
                 if part.vertices.len() + faces - faces * 3 / 2 == 0 {
                     found.insert("courtyard");
                 }
+                // Two rings of an L-shaped wall with or without a ridge; four stations of a U.
+                let roof_faces = part.materials.iter().filter(|&&m| m == Material::Roof).count();
+                match part.vertices.len() {
+                    12 | 15 => found.insert("l shape"),
+                    20 if faces == 36 => found.insert("u shape"),
+                    // Two slopes of two triangles each; hips are a triangle more at either end.
+                    10 => found.insert(if roof_faces == 6 { "hip roof" } else { "gable roof" }),
+                    _ => false,
+                };
                 let up = |t: &[u32; 3]| {
                     let [a, b, c] = t.map(|v| part.vertices[v as usize]);
                     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
@@ -155,7 +164,7 @@ fn presets_hold_what_they_promise() {
     let street = ["car", "mast", "wire"];
     let promised = |preset: Preset| -> Vec<&str> {
         let own: &[&str] = match preset {
-            Preset::Village => &["sloped roof", "flat roof", "chimney", "dormer", "fence", "porous crown"],
+            Preset::Village => &["gable roof", "hip roof", "flat roof", "chimney", "dormer", "fence", "porous crown"],
             Preset::Town => &[
                 "sloped roof",
                 "flat roof",
@@ -196,8 +205,22 @@ fn presets_hold_what_they_promise() {
         }
     }
     // What needs more than four blocks.
-    assert!(features(&town(&Preset::Town.params(230.0, 1))).contains("courtyard"));
+    let large = features(&town(&Preset::Town.params(300.0, 1)));
+    for feature in ["gable roof", "hip roof", "l shape", "u shape", "courtyard"] {
+        assert!(large.contains(feature), "no {feature} in {large:?}");
+    }
     assert!(features(&town(&Preset::Park.params(230.0, 1))).contains("deck"));
+}
+
+#[test]
+fn presets_give_the_same_bits_again_and_others_for_another_seed() {
+    for preset in Preset::ALL {
+        let [one, same, other] = [1, 1, 2].map(|seed| town(&preset.params(125.0, seed)));
+        let bits = |scene: &Scene| scene.vertices.as_flattened().iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&one), bits(&same));
+        assert_eq!((&one.triangles, &one.materials, &one.parts), (&same.triangles, &same.materials, &same.parts));
+        assert_ne!(bits(&one), bits(&other));
+    }
 }
 
 #[test]
