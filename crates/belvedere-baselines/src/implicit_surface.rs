@@ -88,7 +88,7 @@ struct Sample {
 /// determine no plane have no part in it.
 ///
 /// # Source
-/// Wald & Seidel 2005, "Interactive Ray Tracing of Point-based Models", sections 3 and 4, after Adamson & Alexa 2003. Their
+/// Wald & Seidel 2005, "Interactive Ray Tracing of Point-based Models", after Adamson & Alexa 2003. Their
 /// weights are Gaussian and cut off at a radius; ours are a polynomial that reaches zero at that radius. The rim is ours.
 pub struct ImplicitSurface {
     /// In the order of the index.

@@ -110,7 +110,7 @@ fn bounding_box([a, b, c]: &[[f64; 3]; 3]) -> [[f32; 3]; 2] {
 /// axes holds the origin.
 ///
 /// # Source
-/// Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection", sections 3 and 4: it gives the barycentric coordinates
+/// Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection": it gives the barycentric coordinates
 /// of Möller & Trumbore 1997, but two triangles compute the side of a shared edge from the same numbers, so that no ray slips
 /// between them. All in f64, hence without the paper's fallback.
 struct Crossing {

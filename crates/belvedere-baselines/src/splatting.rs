@@ -48,7 +48,7 @@ impl SplatParams {
     /// Discs: surfels.
     ///
     /// # Source
-    /// Pfister, Zwicker, van Baar & Gross 2000, "Surfels: Surface Elements as Rendering Primitives", section 7 (visibility
+    /// Pfister, Zwicker, van Baar & Gross 2000, "Surfels: Surface Elements as Rendering Primitives" (visibility
     /// splatting draws the tangent disc of each surfel into the depth buffer).
     #[must_use]
     pub fn surfels() -> Self {
@@ -66,7 +66,7 @@ impl SplatParams {
     /// Sprites that face the eye, with the depth offset of the visibility pass.
     ///
     /// # Source
-    /// Sainz & Pajarola 2004, "Point-based rendering techniques", sections 3 and 4 (opaque sprites, ε-depth visibility pass).
+    /// Sainz & Pajarola 2004, "Point-based rendering techniques" (opaque sprites, ε-depth visibility pass).
     #[must_use]
     pub fn depth_splats() -> Self {
         Self { shape: SplatShape::Facing, radius_scale: 0.4, clearance: 1.0, ..Self::surfels() }
@@ -75,7 +75,7 @@ impl SplatParams {
     /// Ellipses in object space.
     ///
     /// # Source
-    /// Kobbelt & Botsch 2004, "A survey of point-based techniques in computer graphics", sections 2 and 4 (elliptical splats
+    /// Kobbelt & Botsch 2004, "A survey of point-based techniques in computer graphics" (elliptical splats
     /// and their two-pass blending).
     #[must_use]
     pub fn object_space() -> Self {

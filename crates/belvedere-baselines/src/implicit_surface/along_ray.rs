@@ -7,6 +7,10 @@ use belvedere::vector::{dot, length, sub};
 /// Halvings of the step in which the sign changes: of a step of 0.2 m they leave a millimetre.
 const HALVINGS: usize = 8;
 
+/// How near the surface the aim of a local plane must come, as a share of the step: of 0.025 and 0.1 the latter missed fewer
+/// shadows of a simulated town (2.4 instead of 2.7 % of those in free space) at equal false ones.
+const AIM_TOLERANCE: f64 = 0.1;
+
 /// A sample met by a ray, and the ranges between which the ray is in its ball.
 #[derive(Clone, Copy)]
 struct Met {
@@ -21,6 +25,7 @@ struct Value {
     range: f64,
     /// f, metres; its sign goes with that of `normal`.
     distance: f64,
+    /// Weighted mean of the normals, of any length up to one.
     normal: [f64; 3],
     on_surface: OnSurface,
 }
@@ -123,12 +128,27 @@ impl<'a> Crossings<'a> {
         if agreeing && along.is_some_and(|along| dot(along, normal_sum) < 0.0) {
             normal_sum = normal_sum.map(|v| -v);
         }
+        let normal = normal_sum.map(|v| v / weight_sum);
         let supported = count >= self.params.min_samples && length(to_mean) <= self.params.rim * support / weight_sum;
         Some(Value {
             range,
-            distance: -dot(normal_sum, to_mean) / weight_sum,
-            normal: normal_sum,
+            distance: -dot(normal, to_mean),
+            normal,
             on_surface: if supported { OnSurface::Supported } else { OnSurface::BeyondRim },
+        })
+    }
+
+    /// Where the local plane of either end of a step meets the ray, if that is within the step and nearly on the surface: at ridges
+    /// and corners, signs that agree along the ray cannot tell the two sides apart.
+    fn aimed_at(&self, near: Value, far: Value) -> Option<Value> {
+        let tolerance = AIM_TOLERANCE * (far.range - near.range);
+        [near, far].into_iter().find_map(|end| {
+            let range = end.range - end.distance / dot(end.normal, self.ray.direction);
+            if !(near.range..=far.range).contains(&range) {
+                return None;
+            }
+            let value = self.value(range, Some(end.normal))?;
+            (value.distance.abs() <= tolerance && value.on_surface == OnSurface::Supported).then_some(value)
         })
     }
 
@@ -159,13 +179,14 @@ impl Iterator for Crossings<'_> {
             }
             let value = self.value(self.range, self.last.map(|last| last.normal));
             let before = std::mem::replace(&mut self.last, value);
-            if let (Some(near), Some(far)) = (before, value)
-                && (near.distance < 0.0) != (far.distance < 0.0)
-            {
-                let crossing = self.bisect(near, far);
-                if crossing.on_surface == OnSurface::Supported {
-                    return Some(crossing.range);
-                }
+            let (Some(near), Some(far)) = (before, value) else { continue };
+            let crossing = if (near.distance < 0.0) == (far.distance < 0.0) {
+                self.aimed_at(near, far)
+            } else {
+                Some(self.bisect(near, far)).filter(|crossing| crossing.on_surface == OnSurface::Supported)
+            };
+            if let Some(crossing) = crossing {
+                return Some(crossing.range);
             }
         }
         None
