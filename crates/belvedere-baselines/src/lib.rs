@@ -2,6 +2,7 @@
 //!
 //! Every method gets the same [`Survey`]: what a LAZ file and its trajectory hold, and for some a model.
 
+pub mod held_out;
 pub mod hidden_points;
 
 use belvedere::{Mesh, PointCloud};
