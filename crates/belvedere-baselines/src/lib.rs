@@ -6,6 +6,7 @@
 pub mod agreement;
 pub mod audit;
 pub mod dsm;
+pub mod held_out;
 pub mod hidden_points;
 pub mod implicit_surface;
 mod lines_of_sight;

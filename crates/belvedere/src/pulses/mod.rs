@@ -5,6 +5,7 @@
 
 mod group;
 mod sensor_estimate;
+mod sensor_fit;
 
 pub use group::{PulseReport, Pulses, group};
 pub use sensor_estimate::{SensorEstimateParams, SensorPart, SensorPositions, SensorReport, Verdict};

@@ -1,0 +1,271 @@
+//! A truth that every airborne cloud carries: pulses that were left out when the model was built.
+//!
+//! The way of a pulse to its first return is free, and what lies just behind its last return on ground or a building is not
+//! seen from the scanner. Pulses that a method never saw therefore tell how often it blocks what is free and sees through
+//! what is solid. Neighbouring pulses that it did see lie close by: the test says nothing of space that no pulse reached.
+
+use belvedere::pulses::{Pulses, SensorPositions};
+use belvedere::query::{Answer, Viewer, Visibility};
+use belvedere::vector::{length, sub, unit};
+use belvedere::{Error, PointCloud, Result};
+
+/// What is held out and where is asked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeldOutParams {
+    /// Any number; another one holds out other pulses. Default 1.
+    pub seed: u64,
+    /// Share of the pulses held out, 0 to 1, both excluded. Default 0.1.
+    pub share: f64,
+    /// From how far before the first return a path is asked about, metres, above `clearance`. Default 30: above all but
+    /// towers, whose own pulses are asked about too.
+    pub path_length: f64,
+    /// How far before the first return the path ends, metres, 0 to 10. Default 0.3: some ten times the noise.
+    pub clearance: f64,
+    /// How far behind the last return is asked, metres, each 0 to 10. Default 0.3, 0.5 and 1.
+    pub depths: Vec<f64>,
+}
+
+impl Default for HeldOutParams {
+    fn default() -> Self {
+        Self { seed: 1, share: 0.1, path_length: 30.0, clearance: 0.3, depths: vec![0.3, 0.5, 1.0] }
+    }
+}
+
+/// What a pulse met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surface {
+    /// Ground or water, class 2 or 9.
+    Ground,
+    /// Building, class 6.
+    Building,
+    /// Anything else, mostly trees; also where the cloud has no classes.
+    Other,
+}
+
+/// Pairs of target and eye, each of a held-out pulse.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HeldOutPairs {
+    /// Local metres, (M, 3).
+    pub targets: Vec<[f32; 3]>,
+    /// Local metres, (M, 3).
+    pub eyes: Vec<[f32; 3]>,
+    /// What the pulse met at the return that the target lies at, (M).
+    pub surfaces: Vec<Surface>,
+}
+
+/// A cloud without some of its pulses, and what those pulses know.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HeldOut {
+    /// Points to build from: all but the returns of pulses held out. Points that belong to no pulse are among them.
+    pub kept: Vec<u32>,
+    /// Pulses held out whose scanner position is known: the others ask nothing.
+    pub pulse_count: usize,
+    /// Paths that are free: from before the first return to higher up the pulse.
+    pub free: HeldOutPairs,
+    /// Places that are not seen, by how far they lie behind the last return, metres; the eye is the scanner. Only where
+    /// that return lies on ground or a building.
+    pub behind: Vec<(f64, HeldOutPairs)>,
+}
+
+/// How many answers of a kind were wrong.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Wrong answers.
+    pub wrong_count: usize,
+    /// Answers, right and wrong.
+    pub answered_count: usize,
+    /// [`Answer::OutsideView`] and whatever else decides nothing.
+    pub undecided_count: usize,
+}
+
+/// How a method does on pulses held out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HeldOutScore {
+    /// Free paths called blocked.
+    pub false_blocked: Tally,
+    /// Those to ground or water.
+    pub false_blocked_ground: Tally,
+    /// Those to buildings.
+    pub false_blocked_building: Tally,
+    /// Those to anything else.
+    pub false_blocked_other: Tally,
+    /// Places behind solid surfaces called visible, by depth.
+    pub false_visible: Vec<FalseVisible>,
+}
+
+/// Places called visible that lie behind a last return.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FalseVisible {
+    /// How far behind, metres.
+    pub depth: f64,
+    /// Behind ground or water.
+    pub ground: Tally,
+    /// Behind buildings.
+    pub building: Tally,
+}
+
+impl Tally {
+    /// Wrong answers as a share of all answers, 0 to 1; NaN without any.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        self.wrong_count as f64 / self.answered_count as f64
+    }
+
+    fn count(&mut self, answer: Answer, wrong: Answer) {
+        if !matches!(answer, Answer::Visible | Answer::Blocked) {
+            self.undecided_count += 1;
+            return;
+        }
+        self.answered_count += 1;
+        self.wrong_count += usize::from(answer == wrong);
+    }
+}
+
+impl HeldOutPairs {
+    fn push(&mut self, target: [f64; 3], eye: [f64; 3], surface: Surface) {
+        self.targets.push(belvedere::cloud::to_local(target, [0.0; 3]));
+        self.eyes.push(belvedere::cloud::to_local(eye, [0.0; 3]));
+        self.surfaces.push(surface);
+    }
+}
+
+/// Holds out a random share of `pulses` with all their returns, and asks with those whose position in `scanner` is known.
+///
+/// Which pulses are held out depends on the seed and their order alone. A pulse whose first return is missing asks nothing
+/// of the way to it, one whose last return is missing nothing of what is behind. A free path ends at the scanner if that is
+/// nearer than [`HeldOutParams::path_length`].
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a parameter outside its range, [`Error::LengthMismatch`] where `scanner` is of other
+/// pulses, [`Error::MissingAttribute`] where the scanner is known for no pulse held out.
+///
+/// # Source
+/// This project's own.
+pub fn split(
+    cloud: &PointCloud,
+    pulses: &Pulses,
+    scanner: &SensorPositions,
+    params: &HeldOutParams,
+) -> Result<HeldOut> {
+    cloud.validate()?;
+    params.validate()?;
+    if scanner.per_pulse.len() != pulses.len() {
+        let (expected, found) = (pulses.len(), scanner.per_pulse.len());
+        return Err(Error::LengthMismatch { what: "scanner positions of the pulses", expected, found });
+    }
+    let mut is_kept = vec![true; cloud.len()];
+    let mut held_out =
+        HeldOut { behind: params.depths.iter().map(|&d| (d, HeldOutPairs::default())).collect(), ..HeldOut::default() };
+    let place = |row: u32| cloud.positions.get(row as usize).map(|p| p.map(f64::from));
+    for (pulse, scanner) in scanner.per_pulse.iter().enumerate() {
+        if belvedere::random::uniform(params.seed, pulse as u64) >= params.share {
+            continue;
+        }
+        for &row in pulses.returns_of(pulse) {
+            if let Some(kept) = is_kept.get_mut(row as usize) {
+                *kept = false;
+            }
+        }
+        let scanner = scanner.map(f64::from);
+        if !scanner.iter().all(|v| v.is_finite()) {
+            continue;
+        }
+        held_out.pulse_count += 1;
+        let sight = |row: u32| {
+            let from = place(row)?;
+            let sight = sub(scanner, from);
+            unit(sight).map(|towards| (from, towards, length(sight)))
+        };
+        let along =
+            |from: [f64; 3], towards: [f64; 3], range: f64| std::array::from_fn(|i| from[i] + range * towards[i]);
+        if let Some(row) = pulses.first_return(pulse)
+            && let Some((from, towards, range)) = sight(row)
+            && range > params.clearance
+        {
+            let target = along(from, towards, params.clearance);
+            held_out.free.push(target, along(from, towards, params.path_length.min(range)), surface(cloud, row));
+        }
+        if let Some(row) = pulses.last_return(pulse)
+            && let Some((from, towards, _)) = sight(row)
+            && surface(cloud, row) != Surface::Other
+        {
+            for (depth, pairs) in &mut held_out.behind {
+                pairs.push(along(from, towards, -*depth), scanner, surface(cloud, row));
+            }
+        }
+    }
+    if held_out.pulse_count == 0 {
+        return Err(Error::MissingAttribute {
+            attribute: "known scanner position of any held-out pulse",
+            needed_for: "the test by held-out pulses",
+            advice: "give a trajectory",
+        });
+    }
+    held_out.kept = (0_u32..).zip(&is_kept).filter(|(_, kept)| **kept).map(|(row, _)| row).collect();
+    Ok(held_out)
+}
+
+/// How `method`, built from [`HeldOut::kept`] alone, answers what the pulses held out know.
+///
+/// # Errors
+/// What the method returns; those that know no [`Viewer::Each`] fail with [`Error::UnsupportedViewer`], those that answer
+/// for points of their own only with [`Error::UnsupportedTargets`].
+pub fn score(method: &dyn Visibility, held_out: &HeldOut) -> Result<HeldOutScore> {
+    let mut score = HeldOutScore::default();
+    for (answer, surface) in answers(method, &held_out.free)? {
+        score.false_blocked.count(answer, Answer::Blocked);
+        let of_surface = match surface {
+            Surface::Ground => &mut score.false_blocked_ground,
+            Surface::Building => &mut score.false_blocked_building,
+            Surface::Other => &mut score.false_blocked_other,
+        };
+        of_surface.count(answer, Answer::Blocked);
+    }
+    for (depth, pairs) in &held_out.behind {
+        let mut at_depth = FalseVisible { depth: *depth, ground: Tally::default(), building: Tally::default() };
+        for (answer, surface) in answers(method, pairs)? {
+            match surface {
+                Surface::Ground => at_depth.ground.count(answer, Answer::Visible),
+                Surface::Building => at_depth.building.count(answer, Answer::Visible),
+                Surface::Other => {}
+            }
+        }
+        score.false_visible.push(at_depth);
+    }
+    Ok(score)
+}
+
+fn answers<'a>(
+    method: &dyn Visibility,
+    pairs: &'a HeldOutPairs,
+) -> Result<impl Iterator<Item = (Answer, Surface)> + use<'a>> {
+    let answers = method.visible(Viewer::Each(&pairs.eyes), &pairs.targets)?;
+    Ok(answers.into_iter().zip(pairs.surfaces.iter().copied()))
+}
+
+fn surface(cloud: &PointCloud, row: u32) -> Surface {
+    match cloud.attributes.classification.as_deref().and_then(|classes| classes.get(row as usize)) {
+        Some(2 | 9) => Surface::Ground,
+        Some(6) => Surface::Building,
+        _ => Surface::Other,
+    }
+}
+
+impl HeldOutParams {
+    fn validate(&self) -> Result<()> {
+        let wrong = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        if !(self.share > 0.0 && self.share < 1.0) {
+            return wrong("share of the pulses held out", self.share.to_string(), "between 0 and 1");
+        }
+        if !(0.0..=10.0).contains(&self.clearance) {
+            return wrong("clearance before the first return", self.clearance.to_string(), "0 to 10 m");
+        }
+        if !(self.path_length > self.clearance) {
+            return wrong("length of the free path", self.path_length.to_string(), "above the clearance");
+        }
+        if !self.depths.iter().all(|depth| (0.0..=10.0).contains(depth)) {
+            return wrong("depths behind the last return", format!("{:?}", self.depths), "0 to 10 m");
+        }
+        Ok(())
+    }
+}
