@@ -157,7 +157,7 @@ fn answers_that_never_change_are_all_right_or_all_wrong() {
 fn methods_and_clouds_that_cannot_take_part_say_so() {
     let flown = flown(is_solid);
     let held_out = held_out(&flown);
-    let survey = Survey { cloud: &flown.cloud, scanner: &[], model: None };
+    let survey = Survey { cloud: &flown.cloud, scanner: &[], models: &[] };
     let hidden_points = HiddenPoints::new(&survey, HiddenPointsParams::default()).unwrap();
     assert!(matches!(score(&hidden_points, &held_out), Err(Error::UnsupportedViewer { .. })));
     let attempt = |scanner: &SensorPositions, params| split(&flown.cloud, &flown.pulses, scanner, &params);

@@ -358,8 +358,8 @@ pub(crate) struct Shrinking {
 
 #[derive(Args)]
 pub(crate) struct Compare {
-    /// Kinds of simulated towns, separated by commas
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "town", value_parser = presets(),
+    /// Kinds of simulated towns, separated by commas [default: town]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = presets(),
         help_heading = "Simulated places")]
     pub(crate) presets: Vec<Preset>,
     /// Seeds of the towns and their scans
@@ -383,6 +383,11 @@ pub(crate) struct Compare {
     /// A city model, or a surface reconstructed elsewhere, to trace as another method; may be repeated
     #[arg(long, value_name = "NAME=MESH", requires = "scene", help_heading = "A place of your own")]
     pub(crate) model: Vec<NamedFile>,
+    /// Point clouds, each of which is judged by its own laser pulses: a tenth is kept from the methods, which are then asked
+    /// whether the way of each was free and what lies behind it is hidden. Needs GPS times, return numbers and pulses with
+    /// several returns
+    #[arg(long, value_name = "CLOUD", num_args = 1.., help_heading = "Real clouds")]
+    pub(crate) held_out: Vec<PathBuf>,
     /// Only these methods, by the beginnings of their names [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', help_heading = "Questions")]
     pub(crate) methods: Vec<String>,

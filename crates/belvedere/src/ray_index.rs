@@ -3,10 +3,11 @@
 use crate::vector::unit;
 use crate::{Error, Result};
 use obvhs::aabb::Aabb;
-use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::cwbvh::{CwBvh, bvh2_to_cwbvh::bvh2_to_cwbvh};
+use obvhs::ploc::PlocBuilder;
 use obvhs::ray::RayHit;
 use obvhs::{Boundable, BvhBuildParams};
-use std::time::Duration;
 
 /// Padding of the boxes, as a share of the size of the scene: the tree works in f32 and a ray enters it at the box of the
 /// scene, so that its slab test errs by a few units of 6e-8 of that size.
@@ -95,7 +96,7 @@ impl RayIndex {
                 PaddedBox(Aabb::new(local(low, -padding).into(), local(high, padding).into()))
             })
             .collect();
-        let tree = build_cwbvh(&padded, BvhBuildParams::medium_build(), &mut Duration::default());
+        let tree = search_tree(&padded);
         Ok(Self { tree, center, half_size })
     }
 
@@ -159,6 +160,22 @@ impl RayIndex {
         let ray = obvhs::ray::Ray::new(origin.into(), direction.into(), 0.0, tree_reach(end - start));
         Some(Entry { ray, start })
     }
+}
+
+/// The tree over `boxes`, which must not be empty: the steps of `build_cwbvh`, but for its check of the boxes in debug builds,
+/// which allows for errors of 1e-5 and panics on sound trees wider than some hundred metres.
+fn search_tree(boxes: &[PaddedBox]) -> CwBvh {
+    let params = BvhBuildParams::medium_build();
+    let rows = (0..).take(boxes.len()).collect();
+    let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
+        params.ploc_search_distance,
+        boxes,
+        rows,
+        params.sort_precision,
+        params.search_depth_threshold,
+    );
+    ReinsertionOptimizer::default().run(&mut binary, params.reinsertion_batch_ratio, None);
+    bvh2_to_cwbvh(&binary, params.max_prims_per_leaf.clamp(1, 3), true, false)
 }
 
 /// A ray as the tree takes it.

@@ -1,6 +1,7 @@
 //! `belvedere compare`: every method on the same places and questions, held against exact answers.
 
 mod case;
+mod held_out;
 mod judge;
 mod memory;
 mod pictures;
@@ -32,6 +33,9 @@ pub(crate) fn run(arguments: &Compare, global: &Global) -> Result<Summary> {
     let mut found = report::Found::default();
     for place in Place::all(arguments) {
         compare_on(&place, arguments, global, &mut stages, &mut found)?;
+    }
+    for cloud in &arguments.held_out {
+        found.held_out.extend(held_out::judge_all(cloud, arguments, global, &mut stages)?);
     }
     found.write(folder, arguments.page.as_deref())?;
     let mut summary = Summary::default();

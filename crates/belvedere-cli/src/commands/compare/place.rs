@@ -27,7 +27,9 @@ impl Place {
             let (clouds, trajectory) = (arguments.scene.clone(), arguments.trajectory.clone());
             return vec![Self::Given { clouds, mesh: mesh.clone(), trajectory, models }];
         }
-        let presets = arguments.presets.iter();
+        // held-out pulses alone need no town, unless one was asked for
+        let usual = if arguments.held_out.is_empty() { &[Preset::Town][..] } else { &[] };
+        let presets = if arguments.presets.is_empty() { usual } else { &arguments.presets }.iter();
         presets
             .flat_map(|&preset| {
                 arguments.seeds.iter().map(move |&seed| Self::Simulated {

@@ -310,11 +310,14 @@ impl Found {
             let rows: Vec<_> = self.held_out.iter().filter(|result| result.cloud == *cloud).collect();
             let longest = rows.iter().max_by_key(|row| row.shares.len());
             let names = longest.map(|row| row.shares.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>());
+            let (pulses, known) = rows.first().map_or((0, String::new()), |r| (r.pulses, percent(r.scanner_known)));
             let mut table = Table::new(
                 &format!("Held-out pulses of {cloud}, %"),
-                "Built from nine tenths of the pulses, asked for the rest. False-blocked: paths from 30 m before to 0.3 m before \
-                 the first return, by its class. False-visible: points behind the last return of a pulse that are called \
-                 visible from the scanner.",
+                &format!(
+                    "Built from nine tenths of the pulses, asked for the rest ({pulses}; the scanner is known for {known} % of \
+                     all). False-blocked: paths from 30 m before to 0.3 m before the first return, by its class. False-visible: \
+                     points behind the last return of a pulse that are called visible from the scanner."
+                ),
                 [vec!["method"], names.unwrap_or_default()].concat(),
             );
             for row in rows.iter().filter(|row| row.failed.is_none()) {

@@ -97,6 +97,10 @@ pub(super) struct AblationRow {
 pub(super) struct HeldOutResult {
     pub(super) made_from: String,
     pub(super) cloud: String,
+    /// Pulses held out.
+    pub(super) pulses: usize,
+    /// Share of all pulses whose scanner position is known.
+    pub(super) scanner_known: f64,
     pub(super) method: String,
     pub(super) title: String,
     /// Name and share, 0 to 1, in the order of the table; `None` where nothing was asked.
