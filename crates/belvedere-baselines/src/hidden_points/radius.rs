@@ -8,7 +8,7 @@ use super::flip::FlippedView;
 /// visible even for the far eye of a direction.
 const LAST_HALF: u32 = 18;
 
-/// Between the best exponents for eyes in a street and above a roof in simulated towns (2 to 3.5).
+/// Between the best exponents for eyes in a street and above a roof in simulated towns (2 to 4).
 const FALLBACK_EXPONENT: f64 = 3.0;
 
 /// An exponent of the radius, and how it was found.
