@@ -75,6 +75,12 @@ pub(crate) fn rounded(value: f64, digits: i32) -> Value {
     Value::from(if rounded.is_finite() { rounded } else { value })
 }
 
+/// A number without decimals.
+#[expect(clippy::cast_possible_truncation, reason = "`as` saturates; counts and rates are far from 2^63")]
+pub(crate) fn whole(value: f64) -> Value {
+    Value::from(value.round() as i64)
+}
+
 /// A share as a percentage with one decimal.
 pub(crate) fn percent(part: usize, whole: usize) -> Value {
     rounded(100.0 * part as f64 / whole.max(1) as f64, 2)

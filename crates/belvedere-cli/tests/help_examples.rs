@@ -4,7 +4,8 @@ mod common;
 
 use common::{Workplace, house};
 
-const COMMANDS: [&str; 9] = ["demo", "info", "normals", "balls", "depth-map", "query", "compare", "completions", "man"];
+const COMMANDS: [&str; 10] =
+    ["demo", "simulate", "info", "normals", "balls", "depth-map", "query", "compare", "completions", "man"];
 
 /// The command lines in a help text: what follows a heading "Example:" or "Examples:", without remarks behind it.
 fn examples(help: &str) -> Vec<String> {

@@ -146,14 +146,14 @@ fn airborne_returns_of_every_pattern_agree_with_mesh_trajectory_and_angle() {
 
         let path = &scan.sensor_path;
         let angles = files.cloud.attributes.scan_angle.as_ref().unwrap();
-        for i in 0..scan.len() {
+        for (i, &angle) in angles.iter().enumerate() {
             let record = path.times.partition_point(|&t| t <= scan.gps_time[i]);
             let (sin, cos) = path.headings[record].sin_cos();
             let ray = sub(files.positions[i], files.sensors[i]);
             let geometric = (ray[0] * cos - ray[1] * sin).atan2(-ray[2]);
             // Half the divergence, half a step of 0.006 degrees, and a millimetre at 450 m.
             let tolerance = params.beam.divergence / 2.0 + 0.003_f64.to_radians() + 4e-6;
-            assert!((geometric - f64::from(angles[i])).abs() < tolerance, "{what}: {geometric} {}", angles[i]);
+            assert!((geometric - f64::from(angle)).abs() < tolerance, "{what}: {geometric} {angle}");
             if let ScanPattern::Conical { half_angle } = pattern {
                 let from_nadir = (-ray[2] / dot(ray, ray).sqrt()).acos();
                 assert!((from_nadir - half_angle).abs() < tolerance, "{from_nadir}");
@@ -177,12 +177,12 @@ fn tripod_returns_agree_with_mesh_trajectory_and_angle() {
         let files = delivered(&scan, folder.path(), name);
         check_ranges(&scene, &scan, &files, params.range_sd, name);
         let angles = files.cloud.attributes.scan_angle.as_ref().unwrap();
-        for i in 0..scan.len() {
+        for (i, &angle) in angles.iter().enumerate() {
             let ray = sub(files.positions[i], files.sensors[i]);
             let range = dot(ray, ray).sqrt();
             let from_nadir = (-ray[2] / range).acos();
             let tolerance = params.beam.divergence / 2.0 + 0.003_f64.to_radians() + 2.0 * FILE_STEP / range;
-            assert!((from_nadir - f64::from(angles[i])).abs() < tolerance, "{from_nadir} {}", angles[i]);
+            assert!((from_nadir - f64::from(angle)).abs() < tolerance, "{from_nadir} {angle}");
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::arguments::{Global, Info};
 use crate::pipeline;
 use crate::progress::Stages;
-use crate::summary::{Summary, rounded};
+use crate::summary::{Summary, rounded, whole};
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::io::{ReadOptions, read_cloud};
@@ -43,12 +43,12 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
         section
             .add("steep_points", facades.steep_point_count)
             .add("of_building_points", facades.building_point_count)
-            .add("estimated_wall_area_m2", rounded(facades.area, 0))
+            .add("estimated_wall_area_m2", whole(facades.area))
             .add("points_per_m2_of_wall", rounded(facades.density, 2));
         summary.add("facades", section);
     }
     if let Some(pulses) = facts.pulses {
-        summary.add("pulses", rounded(pulses.count, 0));
+        summary.add("pulses", whole(pulses.count));
         summary.add("pulses_with_several_returns_percent", rounded(100.0 * pulses.multi_return_share(), 2));
         if facts.occupied_area > 0.0 {
             summary.add("pulses_per_m2_of_covered_ground", rounded(pulses.count / facts.occupied_area, 2));

@@ -3,8 +3,8 @@
 use crate::arguments::{Global, PatternChoice, ScannerChoice, Simulate, Usage};
 use crate::progress::Stages;
 use crate::simulated::{EPSG, SUNS_DEG, cloud_of, crs, write_text};
-use crate::summary::{Summary, percent, rounded};
-use anyhow::Result;
+use crate::summary::{Summary, percent, rounded, whole};
+use anyhow::{Result, bail};
 use belvedere::cloud::GpsTimeKind;
 use belvedere::io::{ExtraColumn, ExtraValues, Heading, atomic, write_cloud, write_trajectory};
 use belvedere::trajectory::Trajectory;
@@ -22,6 +22,7 @@ const MOST_PULSES: f64 = 5e8;
 
 pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
     check_flags(arguments)?;
+    check_pulses(arguments)?;
     let folder = &arguments.output;
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
@@ -30,17 +31,20 @@ pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
     let scene = stages.run("building town", 0, |_| town(&town_params));
     let scan = match arguments.scanner {
         ScannerChoice::Airborne => {
-            let params = airborne(arguments, &scene, global.seed)?;
+            let params = airborne(arguments, &scene, global.seed);
             summary.add("survey", airborne_section(&params));
             stages.run("scanning", 0, |_| scan_airborne(&scene, &params))
         }
         ScannerChoice::Terrestrial => {
-            let params = terrestrial(arguments, global.seed)?;
+            let params = terrestrial(arguments, global.seed);
             let scan = stages.run("scanning", 0, |_| scan_terrestrial(&scene, &params));
             summary.add("survey", terrestrial_section(&params, &scan));
             scan
         }
     };
+    if scan.is_empty() {
+        bail!("no pulse came back from the town; lower --dropout, or give --stations room or --max-range");
+    }
     atomic::make_folder(folder)?;
     let lit = stages.run("asking what is lit", 0, |_| {
         let truth = Truth::new(&scene);
@@ -95,18 +99,28 @@ fn check_flags(arguments: &Simulate) -> Result<()> {
     }
 }
 
-/// Refuses more pulses than a machine holds.
-fn check_pulses(count: f64, advice: &str) -> Result<()> {
+/// Refuses more pulses than a machine holds, before a large town is built for them.
+fn check_pulses(arguments: &Simulate) -> Result<()> {
+    let (count, advice) = match arguments.scanner {
+        ScannerChoice::Airborne => {
+            let density = arguments.airborne.density.unwrap_or(DENSITY);
+            (density * arguments.extent.powi(2), "lower --density or --extent")
+        }
+        ScannerChoice::Terrestrial => {
+            let params = terrestrial(arguments, 0);
+            let stations = if let Stations::Chosen(count) = params.stations { f64::from(count) } else { 0.0 };
+            (stations * params.pulses_per_station() as f64, "raise --angular-step or lower --stations")
+        }
+    };
     if count <= MOST_PULSES {
         return Ok(());
     }
     Err(Usage(format!("{count:.1e} pulses are more than the {MOST_PULSES:.0e} that fit into memory; {advice}")).into())
 }
 
-fn airborne(arguments: &Simulate, scene: &Scene, seed: u64) -> Result<AirborneParams> {
+fn airborne(arguments: &Simulate, scene: &Scene, seed: u64) -> AirborneParams {
     let flags = &arguments.airborne;
     let density = flags.density.unwrap_or(DENSITY);
-    check_pulses(density * arguments.extent.powi(2), "lower --density or --extent")?;
     let usual = AirborneParams::default();
     let angle = flags.scan_angle.map(f64::to_radians);
     let pattern = match flags.pattern {
@@ -128,14 +142,14 @@ fn airborne(arguments: &Simulate, scene: &Scene, seed: u64) -> Result<AirbornePa
         dropout: arguments.pulses.dropout.unwrap_or(usual.dropout),
         ..usual
     };
-    Ok(params.spread_over(scene, flags.strips, density))
+    params.spread_over(scene, flags.strips, density)
 }
 
-fn terrestrial(arguments: &Simulate, seed: u64) -> Result<TerrestrialParams> {
+fn terrestrial(arguments: &Simulate, seed: u64) -> TerrestrialParams {
     let flags = &arguments.terrestrial;
     let usual = TerrestrialParams::default();
     let stations = flags.stations.map_or(usual.stations.clone(), Stations::Chosen);
-    let params = TerrestrialParams {
+    TerrestrialParams {
         seed,
         stations,
         angular_step: flags.angular_step.map_or(usual.angular_step, f64::to_radians),
@@ -144,10 +158,7 @@ fn terrestrial(arguments: &Simulate, seed: u64) -> Result<TerrestrialParams> {
         range_sd: arguments.pulses.noise.unwrap_or(usual.range_sd),
         dropout: arguments.pulses.dropout.unwrap_or(usual.dropout),
         ..usual
-    };
-    let station_count = if let Stations::Chosen(count) = params.stations { f64::from(count) } else { 0.0 };
-    check_pulses(station_count * params.pulses_per_station() as f64, "raise --angular-step or lower --stations")?;
-    Ok(params)
+    }
 }
 
 fn beam(arguments: &Simulate, usual: BeamParams) -> BeamParams {
@@ -171,7 +182,7 @@ fn airborne_section(params: &AirborneParams) -> Summary {
         .add("strips", params.strip_count + params.cross_strip_count)
         .add("strip_width_m", rounded(params.swath(), 1))
         .add("strip_spacing_m", rounded(params.strip_spacing, 1))
-        .add("pulses_per_second", rounded(params.pulse_rate(), 0))
+        .add("pulses_per_second", whole(params.pulse_rate()))
         .add("lines_per_second", rounded(params.line_rate(), 1));
     section
 }
