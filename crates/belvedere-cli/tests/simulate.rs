@@ -27,7 +27,7 @@ fn light(place: &Workplace, name: &str) -> Vec<[u8; 3]> {
 fn an_airborne_survey_comes_with_all_that_one_delivers() {
     let place = Workplace::new();
     let summary = place.summary("simulate village -o out --extent 120 --density 3");
-    for name in ["cloud.laz", "trajectory.csv", "trajectory.sbet", "mesh.obj", "mesh.city.json"] {
+    for name in ["cloud.laz", "trajectory.csv", "trajectory.sbet", "mesh.obj", "mesh.city.json", "blocks.obj"] {
         assert!(place.path("out").join(name).is_file(), "{name}");
         let listed = summary["files"].as_array().unwrap().iter().any(|f| f.as_str().unwrap().ends_with(name));
         assert!(listed, "{name} is named in the summary");
@@ -143,7 +143,7 @@ fn a_terrestrial_survey_names_its_stations() {
 #[test]
 fn surveys_have_the_same_bytes_for_any_number_of_threads_and_others_for_another_seed() {
     let place = Workplace::new();
-    let files = ["cloud.laz", "trajectory.csv", "trajectory.sbet", "mesh.obj", "mesh.city.json"];
+    let files = ["cloud.laz", "trajectory.csv", "trajectory.sbet", "mesh.obj", "mesh.city.json", "blocks.obj"];
     let run = |flags: &str| {
         place.summary(&format!("simulate -o out --extent 100 --density 1 {flags}"));
         files.map(|name| place.bytes(&format!("out/{name}")))

@@ -45,7 +45,7 @@ pub fn sphere_over_plane(radius: f64, centre_height: f64, tolerance: f64) -> Sce
     // A facet lies below the sphere by r (1 − cos ρ) for its angular circumradius ρ; the widest are half squares of side
     // π / rows at the equator, ρ = π / (√2 rows).
     let reach = (1.0 - (tolerance / radius).clamp(1e-8, 0.5)).acos();
-    let rows = crate::street_furniture::pieces(PI, reach * 2.0_f64.sqrt()).max(4);
+    let rows = crate::town::street_furniture::pieces(PI, reach * 2.0_f64.sqrt()).max(4);
     let columns = 2 * rows;
     let mut part = Part::default();
     let mut add_vertex = |latitude: f64, longitude: f64| {

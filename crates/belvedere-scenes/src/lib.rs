@@ -2,8 +2,8 @@
 //!
 //! Tests and demonstrations need scenes whose answers are known. This crate makes a town out of triangles ([`town`], from a
 //! description or a [`Preset`]) or a scene with a formula ([`closed_forms`]), generalises it to the blocks of a city model
-//! ([`blocks`]), answers exactly what blocks what in it ([`Truth`]), and flies a laser scanner over it
-//! ([`scan_airborne`]). It knows no other crate of the project: what comes out are plain columns and meshes.
+//! ([`blocks`]), answers exactly what blocks what in it ([`Truth`]), knows what is worth asking ([`QuerySite`]), and scans it
+//! from the air ([`scan_airborne`]) or from tripods ([`scan_terrestrial`]). It knows no other crate of the project: what comes out are plain columns and meshes.
 //!
 //! ```
 //! use belvedere_scenes::{AirborneParams, TownParams, Truth, scan_airborne, town};
@@ -20,49 +20,30 @@
 //! national grid. Everything follows from the parameters alone, seeds included, with the same bits for any number of
 //! threads; between platforms the last bits may differ where the mathematical library does.
 
-mod airborne;
-mod beam;
-mod buildings;
-mod cityjson;
 pub mod closed_forms;
-mod flight;
+mod formats;
 mod given_model;
 mod lod1;
-mod obj;
-mod open_blocks;
-mod plain_blocks;
-mod plan;
-mod preset;
 mod queries;
 mod random;
-mod recording;
-mod row_blocks;
 mod scan;
-mod scan_pattern;
 mod scene;
-mod site;
 mod solids;
-mod stations;
-mod street_furniture;
-mod streets;
-mod terrain;
-mod terrestrial;
 mod town;
-mod trees;
 mod truth;
 mod vector;
 
-pub use airborne::{AirborneParams, scan_airborne};
-pub use beam::BeamParams;
 pub use lod1::blocks;
-pub use preset::Preset;
 pub use queries::{QuerySet, QuerySite, Targets};
+pub use scan::airborne::{AirborneParams, scan_airborne};
+pub use scan::beam::BeamParams;
+pub use scan::scan_pattern::{MirrorMotion, ScanPattern};
+pub use scan::terrestrial::{Stations, TerrestrialParams, scan_terrestrial};
 pub use scan::{Scan, ScanReport, SensorPath};
-pub use scan_pattern::{MirrorMotion, ScanPattern};
 pub use scene::{Material, Part, Scene};
 pub use solids::{Placement, extruded, l_shaped_ridged, ridged};
-pub use terrain::Terrain;
-pub use terrestrial::{Stations, TerrestrialParams, scan_terrestrial};
+pub use town::preset::Preset;
+pub use town::terrain::Terrain;
+pub use town::trees::Crowns;
 pub use town::{BlockPlan, StreetTrees, TownParams, town};
-pub use trees::Crowns;
 pub use truth::{CONTACT, Hit, Truth};

@@ -1,8 +1,8 @@
 //! The plan of a town: rows of blocks, streets between them, a canal.
 
 use crate::solids::Placement;
-use crate::terrain::Canal;
 use crate::town::TownParams;
+use crate::town::terrain::Canal;
 
 /// Half the side of the square within a block that the block plans are drawn for, metres.
 const PLAN_HALF_SIDE: f64 = 20.0;

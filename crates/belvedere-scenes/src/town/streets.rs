@@ -2,14 +2,14 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::buildings::JOINT;
-use crate::plan::Layout;
 use crate::scene::Part;
-use crate::site::{Clearance, Site};
 use crate::solids::Placement;
-use crate::street_furniture::{PostedSlab, bridge, car, mast, posted_slab, wire};
+use crate::town::buildings::JOINT;
+use crate::town::plan::Layout;
+use crate::town::site::{Clearance, Site};
+use crate::town::street_furniture::{PostedSlab, bridge, car, mast, posted_slab, wire};
+use crate::town::trees::TreeShape;
 use crate::town::{StreetTrees, TownParams};
-use crate::trees::TreeShape;
 
 /// Distance between trees in the middle of a street, metres.
 const STREET_TREE_SPACING: f64 = 11.0;

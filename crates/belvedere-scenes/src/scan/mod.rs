@@ -1,5 +1,13 @@
 //! What a simulated scan hands out: returns as columns, and the path of the scanner.
 
+pub(crate) mod airborne;
+pub(crate) mod beam;
+pub(crate) mod flight;
+pub(crate) mod recording;
+pub(crate) mod scan_pattern;
+pub(crate) mod stations;
+pub(crate) mod terrestrial;
+
 use std::fmt::Write as _;
 
 use rayon::prelude::*;

@@ -2,10 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use crate::airborne::AirborneParams;
 use crate::random::Random;
 use crate::scan::SensorPath;
-use crate::scan_pattern::{Course, ScanPattern};
+use crate::scan::airborne::AirborneParams;
+use crate::scan::scan_pattern::{Course, ScanPattern};
 use crate::scene::Scene;
 use crate::vector::add_scaled;
 

@@ -1,9 +1,9 @@
 //! What stands about in streets, squares and gardens: cars, fences, masts and wires, canopies, decks, bridges.
 
-use crate::buildings::JOINT;
 use crate::scene::{Material, Part};
 use crate::solids::{Placement, prism, swept};
-use crate::terrain::Terrain;
+use crate::town::buildings::JOINT;
+use crate::town::terrain::Terrain;
 
 /// Height of the ground as the solids that stand on it need it.
 pub(crate) type Ground<'a> = &'a dyn Fn([f64; 2]) -> f64;

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use crate::random::Random;
 use crate::scene::{Part, Scene};
 use crate::solids::{Placement, extruded, ridged};
-use crate::terrain::Terrain;
-use crate::trees::{Crowns, TreeShape, tree};
+use crate::town::terrain::Terrain;
+use crate::town::trees::{Crowns, TreeShape, tree};
 
 /// How far solids reach below the lowest ground they stand on, metres.
 pub(crate) const BURIED: f64 = 1.0;
@@ -162,7 +162,7 @@ impl Site {
     /// Whether a rectangle lies inside the square and `gap` metres off everything that stands already, crowns excepted
     /// where only trunks count. Looked at in points a metre apart, so corners of others may reach in by half a metre.
     pub(crate) fn is_free(&self, placement: &Placement, [length, width]: [f64; 2], gap: f64) -> bool {
-        let steps = [length, width].map(|side| crate::street_furniture::pieces(side, 1.0));
+        let steps = [length, width].map(|side| crate::town::street_furniture::pieces(side, 1.0));
         let share = |step: u32, steps: u32| f64::from(step) / f64::from(steps) - 0.5;
         (0..=steps[0]).flat_map(|i| (0..=steps[1]).map(move |j| (i, j))).all(|(i, j)| {
             let point = placement.at(length * share(i, steps[0]), width * share(j, steps[1]));

@@ -2,12 +2,12 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::buildings::{JOINT, RoofShape, arcaded, balcony, chimney, dormer};
-use crate::plan::Plan;
 use crate::scene::Part;
-use crate::site::{Clearance, Site};
 use crate::solids::{Course, Placement, ridged, winged};
-use crate::street_furniture::fence;
+use crate::town::buildings::{JOINT, RoofShape, arcaded, balcony, chimney, dormer};
+use crate::town::plan::Plan;
+use crate::town::site::{Clearance, Site};
+use crate::town::street_furniture::fence;
 
 /// Height of a storey, metres.
 pub(crate) const STOREY: f64 = 2.9;
@@ -162,7 +162,7 @@ impl Site {
 
     /// A row of houses along u about `row`, their fronts towards −v. Returns how many.
     pub(crate) fn row(&mut self, row: &Placement, length: f64, style: &RowStyle) -> u32 {
-        let count = crate::street_furniture::pieces(length, style.house_width * 1.15);
+        let count = crate::town::street_furniture::pieces(length, style.house_width * 1.15);
         let width = length / f64::from(count);
         for house in 0..count {
             let u = -length / 2.0 + width * (f64::from(house) + 0.5);

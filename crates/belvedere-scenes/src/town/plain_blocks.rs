@@ -2,9 +2,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::plan::Plan;
-use crate::site::Site;
 use crate::solids::{Placement, extruded, l_shaped_ridged};
+use crate::town::plan::Plan;
+use crate::town::site::Site;
 
 impl Site {
     /// Two rows of terraced houses with sheds in the gardens between them.

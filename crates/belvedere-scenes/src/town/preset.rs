@@ -1,7 +1,7 @@
 //! Kinds of towns by name.
 
+use crate::town::trees::Crowns;
 use crate::town::{BlockPlan, StreetTrees, TownParams};
-use crate::trees::Crowns;
 
 /// A kind of town, at any size and seed.
 ///

@@ -4,13 +4,13 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use rayon::prelude::*;
 
-use crate::airborne::saturating_count;
-use crate::beam::{Axis, BeamParams};
 use crate::random::Random;
-use crate::recording::{Recorder, Shot};
+use crate::scan::airborne::saturating_count;
+use crate::scan::beam::{Axis, BeamParams};
+use crate::scan::recording::{Recorder, Shot};
+use crate::scan::stations::free_stations;
 use crate::scan::{Scan, SensorPath};
 use crate::scene::Scene;
-use crate::stations::free_stations;
 use crate::truth::Truth;
 
 /// Where the tripod is set up.

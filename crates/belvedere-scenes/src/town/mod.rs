@@ -1,13 +1,25 @@
 //! A town from a short description: streets, blocks of buildings and trees on undulating ground.
 
+pub(crate) mod buildings;
+pub(crate) mod open_blocks;
+pub(crate) mod plain_blocks;
+pub(crate) mod plan;
+pub(crate) mod preset;
+pub(crate) mod row_blocks;
+pub(crate) mod site;
+pub(crate) mod street_furniture;
+pub(crate) mod streets;
+pub(crate) mod terrain;
+pub(crate) mod trees;
+
 use std::f64::consts::FRAC_PI_4;
 
-use crate::plan::{Layout, Plan};
 use crate::random::Random;
 use crate::scene::Scene;
-use crate::site::{Clearance, Site};
-use crate::terrain::Terrain;
-use crate::trees::Crowns;
+use crate::town::plan::{Layout, Plan};
+use crate::town::site::{Clearance, Site};
+use crate::town::terrain::Terrain;
+use crate::town::trees::Crowns;
 
 /// What a block of a town holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::beam::Axis;
+use crate::scan::beam::Axis;
 use crate::vector::{add_scaled, scale};
 
 /// Path of the pulses over the ground.

@@ -1,7 +1,7 @@
 //! What a scanner writes down of a pulse: echoes with noise, or nothing where the pulse was lost.
 
-use crate::beam::{Axis, BeamParams, Echo, pulse_echoes};
 use crate::random::Random;
+use crate::scan::beam::{Axis, BeamParams, Echo, pulse_echoes};
 use crate::scan::{Return, Scan};
 use crate::scene::Scene;
 use crate::truth::Truth;

@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use crate::beam::BeamParams;
-use crate::flight::{Strip, mean_coverage, strips, width_across};
 use crate::random::Random;
-use crate::recording::{Recorder, Shot};
 use crate::scan::Scan;
-use crate::scan_pattern::{ScanPattern, Sweep};
+use crate::scan::beam::BeamParams;
+use crate::scan::flight::{Strip, mean_coverage, strips, width_across};
+use crate::scan::recording::{Recorder, Shot};
+use crate::scan::scan_pattern::{ScanPattern, Sweep};
 use crate::scene::Scene;
 use crate::truth::Truth;
 

@@ -2,12 +2,12 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::buildings::{JOINT, RoofShape, chimney, dormer, steeple};
-use crate::plan::Plan;
-use crate::row_blocks::{BALCONY_DEPTH, RowStyle, STOREY};
 use crate::scene::Material;
-use crate::site::Site;
 use crate::solids::{Placement, extruded, ridged};
+use crate::town::buildings::{JOINT, RoofShape, chimney, dormer, steeple};
+use crate::town::plan::Plan;
+use crate::town::row_blocks::{BALCONY_DEPTH, RowStyle, STOREY};
+use crate::town::site::Site;
 
 impl Site {
     /// A tower and a long building with balconies, a deck between them, a car park with a shelter.
@@ -55,7 +55,7 @@ impl Site {
         let top = ground + height;
         let room = extruded(&place.moved(0.12 * size[0], 0.5, 0.0).rectangle(5.0, 4.0), top - 0.5, top + 2.8);
         let mut parts = vec![extruded(&footprint, self.bottom(&footprint), top), room];
-        let bays = crate::street_furniture::pieces(size[0] - 1.0, 4.6);
+        let bays = crate::town::street_furniture::pieces(size[0] - 1.0, 4.6);
         let step = (size[0] - 1.0) / f64::from(bays);
         for &face in faces {
             let wall = place.moved(0.0, 0.0, face).moved(0.0, -size[1] / 2.0, 0.0);

@@ -1,0 +1,4 @@
+//! Scenes as text that other programs read.
+
+mod cityjson;
+mod obj;
