@@ -48,6 +48,10 @@ impl<'a> Method<'a> {
 /// scanners state.
 const NOISE: f64 = 0.06;
 
+/// How near to a target a mesh may lie without blocking it, metres: points of a cloud lie up to a decimetre behind the surface
+/// that the model gives them.
+const MESH_CLEARANCE: f64 = 0.1;
+
 /// The methods that a survey allows, in the order of tables: those that need the cloud alone, then for each model those that
 /// trace it.
 #[must_use]
@@ -82,9 +86,7 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
         }),
         voxels("voxels-05", "voxels 0.5 m", 0.5),
         voxels("voxels-10", "voxels 1 m", 1.0),
-        Method::new("dsm", "highest-point raster 0.5 m", "dsm", move || {
-            Dsm::from_points(positions, &DsmParams::default())
-        }),
+        Method::new("dsm", "highest-point raster", "dsm", move || Dsm::from_points(positions, &DsmParams::default())),
         Method::new("tin", "first-return TIN", "tin", move || Tin::new(cloud, &TinParams::default())),
     ];
     // as the paper did it: signs of normals from a city model
@@ -94,16 +96,18 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
             MedialBaseline::new(survey, Outward::Model(mesh), &MedialParams::published())
         })
     }));
+    let on_mesh = MeshRaysParams { clearance: MESH_CLEARANCE };
     for Model { name, mesh } in survey.models {
         methods.push(Method::new(format!("mesh-{name}"), format!("rays on {name}"), "mesh-rays", move || {
-            MeshRays::new(mesh, origin, &MeshRaysParams::default())
+            MeshRays::new(mesh, origin, &on_mesh)
         }));
-        methods.push(Method::new(
-            format!("shadow-map-{name}"),
-            format!("shadow map of {name}"),
-            "shadow-map",
-            move || ShadowMap::new(mesh, origin, &ShadowMapParams::default()),
-        ));
+        let (key, title) = (format!("shadow-map-{name}"), format!("shadow map of {name}"));
+        methods.push(Method::new(key, title, "shadow-map", move || {
+            ShadowMap::new(mesh, origin, &ShadowMapParams::default())
+        }));
+        methods.push(Method::new(format!("dsm-{name}"), format!("raster of {name}"), "dsm", move || {
+            Dsm::from_mesh(mesh, origin, &DsmParams::default())
+        }));
     }
     methods.push(medial("belvedere", "Belvedere, default balls", MedialParams::belvedere()));
     methods
