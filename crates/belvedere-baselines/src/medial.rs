@@ -2,11 +2,12 @@
 
 use crate::Survey;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
-use belvedere::medial::{MedialBalls, ShrinkMethod, ShrinkParams, Side, shrink};
+use belvedere::medial::{CarveParams, MedialBalls, ShrinkMethod, ShrinkParams, Side, carve, shrink};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, orient};
 use belvedere::progress::Progress;
+use belvedere::pulses::{NeedleParams, Needles};
 use belvedere::query::{MedialScene, Sight, Viewer, Visibility, query_points};
 use belvedere::view::View;
 use belvedere::{Mesh, Result};
@@ -34,6 +35,8 @@ pub struct MedialParams {
     pub parallel_views: ParallelViews,
     /// How far a target may lie inside a ball and still count as visible, metres, 0 or more.
     pub depth_bias: f64,
+    /// How pulses cut the balls, if they do.
+    pub carving: Option<CarveParams>,
 }
 
 /// How targets in a parallel view are answered.
@@ -56,6 +59,7 @@ impl MedialParams {
             profile: Profile::PaperCone,
             parallel_views: ParallelViews::DepthMap,
             depth_bias: 0.0,
+            carving: None,
         }
     }
 
@@ -80,6 +84,21 @@ impl MedialParams {
             shrinking: ShrinkParams { method, ..ShrinkParams::angles() },
             ..Self::published_with_spheres()
         }
+    }
+
+    /// Balls of bounded penetration, cut by what each pulse proves empty.
+    #[must_use]
+    pub fn carved() -> Self {
+        let method = ShrinkMethod::Tau { penetration: 0.02 };
+        let shrinking = ShrinkParams { method, initial_radius: 15.0, max_radius: f32::INFINITY };
+        let carving = CarveParams {
+            penetration: 0.02,
+            vegetation_radius: 1.0,
+            later_return_radius: 0.3,
+            ground_radius: 4.0,
+            least_radius: 0.15,
+        };
+        Self { neighbors: 16, shrinking, carving: Some(carving), ..Self::published_with_spheres() }
     }
 
     /// What Belvedere does by default so far: balls of bounded penetration, cut down to half a metre.
@@ -119,8 +138,22 @@ pub fn interior_balls(survey: &Survey<'_>, outward: Outward<'_>, params: &Medial
         Outward::Survey => Orientation::Pulses(survey.scanner),
     };
     let (oriented, _) = orient(survey.cloud, normals, &by)?;
-    let (balls, _) = shrink(&oriented, &index, Side::Interior, &params.shrinking, Progress::none())?;
+    let (mut balls, _) = shrink(&oriented, &index, Side::Interior, &params.shrinking, Progress::none())?;
+    if let Some(carving) = &params.carving {
+        let needles = needles(survey)?;
+        carve(&mut balls, survey.cloud, &oriented, &needles, carving)?;
+    }
     Ok(balls.shrunk())
+}
+
+/// The ways of the first returns of a survey.
+fn needles(survey: &Survey<'_>) -> Result<Needles> {
+    let numbers = survey.cloud.attributes.return_number.as_deref();
+    let is_first = |row: &usize| numbers.is_none_or(|numbers| numbers[*row] <= 1);
+    let rows: Vec<usize> = (0..survey.scanner.len()).filter(is_first).collect();
+    let returns: Vec<[f32; 3]> = rows.iter().map(|&row| survey.cloud.positions[row]).collect();
+    let scanner: Vec<[f32; 3]> = rows.iter().map(|&row| survey.scanner[row]).collect();
+    Ok(Needles::new(&returns, &scanner, &NeedleParams::default())?.0)
 }
 
 impl MedialBaseline {

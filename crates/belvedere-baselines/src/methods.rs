@@ -110,5 +110,6 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
         }));
     }
     methods.push(medial("belvedere", "Belvedere, default balls", MedialParams::belvedere()));
+    methods.push(medial("carved", "Belvedere, carved balls", MedialParams::carved()));
     methods
 }

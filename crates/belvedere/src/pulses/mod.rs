@@ -4,8 +4,10 @@
 //! things found here: [`group`] puts the returns of each pulse together, [`SensorPositions`] says where it came from.
 
 mod group;
+mod needles;
 mod sensor_estimate;
 mod sensor_fit;
 
 pub use group::{PulseReport, Pulses, group};
+pub use needles::{NeedleParams, NeedleReport, Needles};
 pub use sensor_estimate::{SensorEstimateParams, SensorPart, SensorPositions, SensorReport, Verdict};
