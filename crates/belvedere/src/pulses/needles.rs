@@ -175,11 +175,11 @@ impl Needles {
         let share = |z: f32| (z - self.planes[0]) / span;
         let (s, t) = (share(low), share(high));
         let mut square = 0.0;
-        for axis in 0..2 {
+        for (axis, center) in center.into_iter().take(2).enumerate() {
             let at = |share: f32, side: usize| node.below[side] + share * (node.above[side] - node.below[side]);
             let least = at(s, axis).min(at(t, axis));
             let most = at(s, axis + 2).max(at(t, axis + 2));
-            let off = (least - center[axis]).max(center[axis] - most).max(0.0);
+            let off = (least - center).max(center - most).max(0.0);
             square += off * off;
         }
         let off = (low - center[2]).max(center[2] - high).max(0.0);
