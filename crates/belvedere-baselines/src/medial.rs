@@ -86,7 +86,11 @@ impl MedialParams {
         }
     }
 
-    /// Balls of bounded penetration, cut by what each pulse proves empty.
+    /// Balls of bounded penetration, cut by what each pulse proves empty: what Belvedere is about to do.
+    ///
+    /// Chosen on towns of another seed than those reported. A penetration of 0.05 instead of 0.02 m costs 1.3 points on facades;
+    /// between 0.3 and 1 m the radius at vegetation moves pedestrians by 0.2 points; later returns cut to 0.15 instead of 0.3 m
+    /// let three points more of the shade of crowns through.
     #[must_use]
     pub fn carved() -> Self {
         let method = ShrinkMethod::Tau { penetration: 0.02 };

@@ -99,6 +99,34 @@ fn a_place_of_ones_own_takes_part() {
 }
 
 #[test]
+fn clouds_are_judged_by_the_pulses_kept_from_the_methods() {
+    let place = Workplace::new();
+    place.summary("simulate village -o town --extent 100 --density 6");
+    let run =
+        place.summary("compare --held-out town/cloud.laz --methods paper-sphere,carved,surfels,hidden-points -o out");
+    let results = run["results"]["held_out"].as_array().unwrap().clone();
+    assert!(run["results"]["methods"].as_array().unwrap().is_empty(), "no town was asked for");
+    let share = |method: &str, name: &str| {
+        let result = results.iter().find(|r| r["method"] == method).unwrap();
+        assert!(
+            result["pulses"].as_u64().unwrap() > 4000 && result["scanner_known"].as_f64().unwrap() > 0.9,
+            "{result}"
+        );
+        let shares = result["shares"].as_array().unwrap();
+        shares.iter().find(|s| s[0] == name).and_then(|s| s[1].as_f64()).unwrap()
+    };
+    // pulses cut the balls that would block them, and their neighbours held out fly the same way
+    assert!(share("carved", "ground") < 0.5 * share("paper-sphere", "ground"));
+    assert!(share("carved", "false-visible 1 m behind building") < 0.1);
+    let refused = results.iter().find(|r| r["method"] == "hidden-points").unwrap();
+    assert!(refused["failed"].as_str().unwrap().contains("eye"), "{refused}");
+    let markdown = fs::read_to_string(place.path("out/report.md")).unwrap();
+    assert!(markdown.contains("### Held-out pulses of cloud") && markdown.contains("### What has no answer"));
+    fs::write(place.path("bare.csv"), "x,y,z\n1,2,3\n2,3,4\n").unwrap();
+    place.refusal(1, "compare --held-out bare.csv -o out", &["bare.csv", "GPS time"]);
+}
+
+#[test]
 fn what_cannot_be_compared_is_refused() {
     let place = Workplace::new();
     place.refusal(2, "compare --scene a.laz -o out", &["--mesh"]);
