@@ -193,8 +193,9 @@ impl Found {
     fn costs(&self) -> Table {
         let mut table = Table::new(
             "Cost",
-            "Building once, preparing a view (mean), answering (all threads), and peak memory above that of the place itself; \
-             means over places. No answer: share of AIR targets under the suns.",
+            "Building once, preparing a view (mean), answering (all threads), and how much the resident memory grew at its peak; \
+             means over places. Memory that the process still held from the method before is not counted again, so that small \
+             numbers are lower bounds. No answer: share of AIR targets under the suns.",
             vec!["method", "build s", "view s", "million queries/s", "peak MiB", "no answer %"],
         );
         for (key, title) in self.method_names() {
