@@ -86,23 +86,11 @@ impl MedialParams {
         }
     }
 
-    /// Balls of bounded penetration, cut by what each pulse proves empty: what Belvedere is about to do.
-    ///
-    /// Chosen on towns of another seed than those reported. A penetration of 0.05 instead of 0.02 m costs 1.3 points on facades;
-    /// between 0.3 and 1 m the radius at vegetation moves pedestrians by 0.2 points; later returns cut to 0.15 instead of 0.3 m
-    /// let three points more of the shade of crowns through.
+    /// Balls of bounded penetration, cut by what each pulse proves empty: `--method carved`.
     #[must_use]
     pub fn carved() -> Self {
-        let method = ShrinkMethod::Tau { penetration: 0.02 };
-        let shrinking = ShrinkParams { method, initial_radius: 15.0, max_radius: f32::INFINITY };
-        let carving = CarveParams {
-            penetration: 0.02,
-            vegetation_radius: 1.0,
-            later_return_radius: 0.3,
-            ground_radius: 4.0,
-            least_radius: 0.15,
-        };
-        Self { neighbors: 16, shrinking, carving: Some(carving), ..Self::published_with_spheres() }
+        let carving = Some(CarveParams::default());
+        Self { neighbors: 16, shrinking: ShrinkParams::for_carving(), carving, ..Self::published_with_spheres() }
     }
 
     /// What Belvedere does by default so far: balls of bounded penetration, cut down to half a metre.
@@ -144,20 +132,10 @@ pub fn interior_balls(survey: &Survey<'_>, outward: Outward<'_>, params: &Medial
     let (oriented, _) = orient(survey.cloud, normals, &by)?;
     let (mut balls, _) = shrink(&oriented, &index, Side::Interior, &params.shrinking, Progress::none())?;
     if let Some(carving) = &params.carving {
-        let needles = needles(survey)?;
-        carve(&mut balls, survey.cloud, &oriented, &needles, carving)?;
+        let (needles, _) = Needles::of_cloud(survey.cloud, survey.scanner, &NeedleParams::default())?;
+        carve(&mut balls, &survey.cloud.attributes, &oriented, &needles, carving)?;
     }
     Ok(balls.shrunk())
-}
-
-/// The ways of the first returns of a survey.
-fn needles(survey: &Survey<'_>) -> Result<Needles> {
-    let numbers = survey.cloud.attributes.return_number.as_deref();
-    let is_first = |row: &usize| numbers.is_none_or(|numbers| numbers[*row] <= 1);
-    let rows: Vec<usize> = (0..survey.scanner.len()).filter(is_first).collect();
-    let returns: Vec<[f32; 3]> = rows.iter().map(|&row| survey.cloud.positions[row]).collect();
-    let scanner: Vec<[f32; 3]> = rows.iter().map(|&row| survey.scanner[row]).collect();
-    Ok(Needles::new(&returns, &scanner, &NeedleParams::default())?.0)
 }
 
 impl MedialBaseline {

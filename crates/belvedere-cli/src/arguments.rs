@@ -85,7 +85,7 @@ pub(crate) enum Command {
     DepthMap(DepthMap),
     /// Answer which targets are visible in a view
     #[command(
-        after_help = "Answers: 0 blocked, 1 visible, 3 outside the view: beside the picture, or behind the plane of a --viewport (2 is kept for answers not borne out by measured free space).\n\nA ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere query demo/town.laz --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/balls.npz --sun 235,30 --random 10000 -o demo/answers.csv\n  belvedere query demo/balls.npz --direction 0,0,-1 --targets demo/answers.csv -o demo/open-to-the-sky.csv"
+        after_help = "Answers: 0 blocked, 1 visible, 3 outside the view: beside the picture, or behind the plane of a --viewport (2 is kept for answers not borne out by measured free space).\n\nA ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere query demo/town.laz --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/balls.npz --sun 235,30 --random 10000 -o demo/answers.csv\n  belvedere query demo/balls.npz --direction 0,0,-1 --targets demo/answers.csv -o demo/open-to-the-sky.csv"
     )]
     Query(Query),
     /// Hold every method against exact answers on the same places: how right each is, and what it costs
@@ -327,7 +327,8 @@ pub(crate) struct Orienting {
     pub(crate) neighbors: NeighborChoice,
     /// How normals know what is outside: auto (the file's normals, else its scanner positions, else up; `normals` always
     /// estimates anew), given, up,
-    /// scanner (from the file), scanner=X,Y,Z, trajectory=FILE (.csv .txt .sbet), mesh=FILE (.obj .ply .json)
+    /// scanner (from the file), scanner=X,Y,Z, trajectory=FILE (.csv .txt .sbet), pulses (where the scanner was follows from
+    /// pulses with several returns), mesh=FILE (.obj .ply .json)
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub(crate) orient: OrientChoice,
 }
@@ -335,17 +336,18 @@ pub(crate) struct Orienting {
 #[derive(Args)]
 #[command(next_help_heading = "Balls")]
 pub(crate) struct Shrinking {
-    /// tau: no point lies deeper in a ball than --penetration; angles: the paper's (masbcpp's) heuristics [default: tau;
-    /// angles when a folder is written]
+    /// tau: no point lies deeper in a ball than --penetration; carved: no pulse either, which needs --orient trajectory=FILE,
+    /// scanner or pulses (taken for auto); angles: the paper's (masbcpp's) heuristics [default: tau; angles when a folder is
+    /// written]
     #[arg(long, value_enum)]
     pub(crate) method: Option<MethodChoice>,
-    /// Radius balls start with, in metres [default: 30 for tau, 200 for angles]
+    /// Radius balls start with, in metres [default: 30 for tau, 15 for carved, 200 for angles]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(crate) initial_radius: Option<f32>,
-    /// Most radius a ball is left with, in metres [default: 0.5 for tau, no limit for angles]
+    /// Most radius a ball is left with, in metres [default: 0.5 for tau, otherwise no limit]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(crate) max_radius: Option<f32>,
-    /// Depth to which a point may enter a ball, in metres [default: 0.05]
+    /// Depth to which a point or a pulse may enter a ball, in metres [default: 0.05 for tau, 0.02 for carved]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(crate) penetration: Option<f32>,
     /// The paper's t_a in degrees [default: 32]
@@ -498,6 +500,8 @@ pub(crate) enum SideChoice {
 pub(crate) enum MethodChoice {
     /// Bounded penetration
     Tau,
+    /// Bounded penetration by points and by the pulses that passed
+    Carved,
     /// The paper's separation angles
     Angles,
 }
@@ -535,6 +539,7 @@ pub(crate) enum OrientChoice {
     Scanner,
     ScannerAt([f64; 3]),
     Trajectory(PathBuf),
+    Pulses,
     Mesh(PathBuf),
 }
 
@@ -548,7 +553,10 @@ impl FromStr for OrientChoice {
                 "given" => Ok(Self::Given),
                 "up" => Ok(Self::Up),
                 "scanner" => Ok(Self::Scanner),
-                _ => Err("use auto, given, up, scanner, scanner=X,Y,Z, trajectory=FILE or mesh=FILE".to_owned()),
+                "pulses" => Ok(Self::Pulses),
+                _ => {
+                    Err("use auto, given, up, scanner, scanner=X,Y,Z, trajectory=FILE, pulses or mesh=FILE".to_owned())
+                }
             },
             Some(("scanner", position)) => Ok(Self::ScannerAt(position.parse::<Numbers<3>>()?.0)),
             Some(("trajectory", file)) => Ok(Self::Trajectory(file.into())),

@@ -13,10 +13,12 @@ use belvedere::depth::Profile;
 use belvedere::io::{
     ReadOptions, ReadReport, SavedBalls, is_ball_file, read_balls, read_cloud, read_mesh, read_trajectory,
 };
-use belvedere::medial::{MedialBalls, ShrinkMethod, ShrinkParams, ShrinkReport, Side, shrink};
+use belvedere::medial::{CarveParams, MedialBalls, ShrinkMethod, ShrinkParams, ShrinkReport, Side, carve, shrink};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
+use belvedere::pulses::{NeedleParams, Needles, SensorEstimateParams, SensorPositions, group};
+use belvedere::trajectory::Trajectory;
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere::{Attributes, Error, PointCloud};
 use std::borrow::Cow;
@@ -121,6 +123,38 @@ fn cleaning_section(report: &CleanReport) -> Summary {
     section
 }
 
+/// Whether balls are to be cut by pulses.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Carving {
+    Wanted,
+    Unwanted,
+}
+
+/// How balls are made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BallParams {
+    pub(crate) shrinking: ShrinkParams,
+    /// How pulses cut them, if they do.
+    pub(crate) carving: Option<CarveParams>,
+}
+
+impl BallParams {
+    pub(crate) fn uncarved(shrinking: ShrinkParams) -> Self {
+        Self { shrinking, carving: None }
+    }
+
+    pub(crate) fn carving(&self) -> Carving {
+        if self.carving.is_some() { Carving::Wanted } else { Carving::Unwanted }
+    }
+}
+
+/// What carving needs beside an oriented cloud.
+pub(crate) struct CarvingInput {
+    needles: Needles,
+    /// Classes and return numbers.
+    kinds: Attributes,
+}
+
 /// A cloud whose normals point outward, and its index.
 pub(crate) struct Prepared {
     pub(crate) oriented: OrientedCloud,
@@ -129,6 +163,8 @@ pub(crate) struct Prepared {
     pub(crate) kept: Vec<u32>,
     /// Lowest and highest local corner of these points: a stray point that was cleaned away must not widen a view.
     pub(crate) bounds: ([f32; 3], [f32; 3]),
+    /// Where carving was asked for.
+    pub(crate) carving: Option<CarvingInput>,
 }
 
 /// Cleans, estimates normals and orients them. A cloud that is given away is let go as soon as it has served.
@@ -136,6 +172,7 @@ pub(crate) fn prepare(
     cloud: Cow<'_, PointCloud>,
     cleaning: &Cleaning,
     orienting: &Orienting,
+    carving: Carving,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<Prepared> {
@@ -146,6 +183,28 @@ pub(crate) fn prepare(
         return Err(Error::NoPoints { what }.into());
     }
     let mut cloud = if kept.len() == cloud.len() { cloud } else { Cow::Owned(cloud.select(&kept)) };
+    let wants_pulses = carving == Carving::Wanted || matches!(orienting.orient, OrientChoice::Pulses);
+    let (scanner, trajectory) =
+        if wants_pulses { scanner_of_each_point(&cloud, orienting, stages, summary)? } else { (Vec::new(), None) };
+    let carving = match carving {
+        Carving::Unwanted => None,
+        Carving::Wanted => {
+            let (needles, report) =
+                stages.run("indexing pulses", 0, |_| Needles::of_cloud(&cloud, &scanner, &NeedleParams::default()))?;
+            let mut section = Summary::default();
+            section
+                .add("used_to_carve", report.used)
+                .add("without_scanner", report.without_scanner)
+                .add("too_flat", report.too_flat);
+            summary.add("pulses", section);
+            let kinds = Attributes {
+                classification: cloud.attributes.classification.clone(),
+                return_number: cloud.attributes.return_number.clone(),
+                ..Attributes::default()
+            };
+            Some(CarvingInput { needles, kinds })
+        }
+    };
     if let Cow::Owned(owned) = &mut cloud {
         // nothing but orientation asks for attributes from here on, and they weigh more than the positions
         let attributes = std::mem::take(&mut owned.attributes);
@@ -159,6 +218,7 @@ pub(crate) fn prepare(
     }
     let index = stages.run("indexing", 0, |_| NeighborIndex::new(&cloud.positions))?;
     let choice = match &orienting.orient {
+        OrientChoice::Auto if wants_pulses => OrientChoice::Pulses,
         OrientChoice::Auto if cloud.attributes.normals.is_some() => OrientChoice::Given,
         OrientChoice::Auto if !cloud.scanner_positions.is_empty() => OrientChoice::Scanner,
         OrientChoice::Auto => OrientChoice::Up,
@@ -175,7 +235,7 @@ pub(crate) fn prepare(
             flagged("--neighbors", normals)?
         }
     };
-    let (mesh, trajectory);
+    let (mesh, read);
     let by = match choice {
         OrientChoice::Auto | OrientChoice::Up => Orientation::Up,
         OrientChoice::Given => Orientation::Given,
@@ -185,20 +245,69 @@ pub(crate) fn prepare(
             Orientation::ScannerAt(vec![std::array::from_fn(|i| position[i] * scale[i])])
         }
         OrientChoice::Trajectory(path) => {
-            (trajectory, _) = stages.run("reading trajectory", 0, |_| read_trajectory(&path, &cloud.crs))?;
-            Orientation::Trajectory(&trajectory)
+            read = match trajectory {
+                Some(read) => read,
+                None => stages.run("reading trajectory", 0, |_| read_trajectory(&path, &cloud.crs))?.0,
+            };
+            Orientation::Trajectory(&read)
         }
+        OrientChoice::Pulses => Orientation::Pulses(&scanner),
         OrientChoice::Mesh(path) => {
-            let (read, _) = stages.run("reading mesh", 0, |_| read_mesh(&path))?;
+            let (model, _) = stages.run("reading mesh", 0, |_| read_mesh(&path))?;
             // like every position that is typed or read, in the unit of the cloud's file
-            mesh = read.scaled_to_metres(&cloud.crs);
+            mesh = model.scaled_to_metres(&cloud.crs);
             Orientation::Mesh(&mesh)
         }
     };
     let (oriented, report) = stages.run("orienting normals", 0, |_| orient(&cloud, normals, &by))?;
     summary.add("normals", orientation_section(&by, &report));
     let bounds = bounds_of(&cloud)?;
-    Ok(Prepared { oriented, index, kept, bounds })
+    Ok(Prepared { oriented, index, kept, bounds, carving })
+}
+
+/// Where the scanner was for each point, and the trajectory where that was read for it.
+fn scanner_of_each_point(
+    cloud: &PointCloud,
+    orienting: &Orienting,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<(Vec<[f32; 3]>, Option<Trajectory>)> {
+    let one_for_all = |position: [f32; 3]| Ok((vec![position; cloud.len()], None));
+    match &orienting.orient {
+        OrientChoice::Trajectory(path) => {
+            let (trajectory, _) = stages.run("reading trajectory", 0, |_| read_trajectory(path, &cloud.crs))?;
+            Ok((trajectory.scanner_positions(cloud)?, Some(trajectory)))
+        }
+        OrientChoice::ScannerAt(position) => one_for_all(cloud.from_file_coordinates(*position)),
+        OrientChoice::Scanner | OrientChoice::Auto if !cloud.scanner_positions.is_empty() => {
+            let unknown = [f32::NAN; 3];
+            let position = |index: &u16| cloud.scanner_positions.get(usize::from(*index)).copied().unwrap_or(unknown);
+            match (&cloud.attributes.scanner_index, &cloud.scanner_positions[..]) {
+                (Some(indices), _) => Ok((indices.iter().map(position).collect(), None)),
+                (None, [only]) => one_for_all(*only),
+                (None, _) => one_for_all(unknown),
+            }
+        }
+        _ => {
+            let (pulses, _) = group(cloud)?;
+            let (positions, report) = stages.run("finding the scanner", 0, |_| {
+                SensorPositions::from_returns(cloud, &pulses, &SensorEstimateParams::default())
+            })?;
+            if report.known_count == 0 {
+                bail!(
+                    "where the scanner was cannot be told from the pulses: too few have several returns far enough apart; \
+                     give --orient trajectory=FILE"
+                );
+            }
+            let mut section = Summary::default();
+            section
+                .add("pulses", report.pulse_count)
+                .add("served_percent", percent(report.known_count, report.pulse_count))
+                .add("parts_of_flight_lines", report.parts.len());
+            summary.add("scanner_found_from_pulses", section);
+            Ok((positions.per_point(&pulses, cloud.len()), None))
+        }
+    }
 }
 
 fn orientation_section(by: &Orientation<'_>, report: &OrientReport) -> Summary {
@@ -208,6 +317,7 @@ fn orientation_section(by: &Orientation<'_>, report: &OrientReport) -> Summary {
         Orientation::Given => "as given",
         Orientation::Scanner | Orientation::ScannerAt(_) => "scanner position",
         Orientation::Trajectory(_) => "trajectory",
+        Orientation::Pulses(_) => "pulses",
         Orientation::Mesh(_) => "mesh",
         _ => "other",
     };
@@ -235,10 +345,12 @@ fn orientation_section(by: &Orientation<'_>, report: &OrientReport) -> Summary {
 
 impl Shrinking {
     /// Parameters as typed, with `default` where no method was.
-    pub(crate) fn params(&self, default: MethodChoice) -> Result<ShrinkParams> {
+    pub(crate) fn params(&self, default: MethodChoice) -> Result<BallParams> {
         let method = self.method.unwrap_or(default);
+        let mut carving = (method == MethodChoice::Carved).then(CarveParams::default);
         let mut params = match method {
             MethodChoice::Tau => ShrinkParams::tau(),
+            MethodChoice::Carved => ShrinkParams::for_carving(),
             MethodChoice::Angles => ShrinkParams::angles(),
         };
         if let Some(radius) = self.initial_radius {
@@ -253,10 +365,13 @@ impl Shrinking {
                     return Err(Usage("--first-angle and --next-angle belong to --method angles".to_owned()).into());
                 }
                 *penetration = self.penetration.unwrap_or(*penetration);
+                if let Some(carving) = &mut carving {
+                    carving.penetration = *penetration;
+                }
             }
             ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
                 if self.penetration.is_some() {
-                    return Err(Usage("--penetration belongs to --method tau".to_owned()).into());
+                    return Err(Usage("--penetration belongs to --method tau and carved".to_owned()).into());
                 }
                 let typed = |angle: Option<f64>, default: f64| angle.map_or(default, f64::to_radians);
                 *first_separation_angle = typed(self.first_angle, *first_separation_angle);
@@ -274,7 +389,7 @@ impl Shrinking {
             }
             other => other.into(),
         })?;
-        Ok(params)
+        Ok(BallParams { shrinking: params, carving })
     }
 }
 
@@ -282,7 +397,7 @@ impl Shrinking {
 pub(crate) fn shrink_side(
     prepared: &Prepared,
     side: Side,
-    params: &ShrinkParams,
+    params: &BallParams,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<MedialBalls> {
@@ -291,10 +406,20 @@ pub(crate) fn shrink_side(
         Side::Exterior => "exterior_balls",
     };
     let count = prepared.oriented.len();
-    let (balls, report) = stages.run("shrinking balls", count, |progress| {
-        shrink(&prepared.oriented, &prepared.index, side, params, progress)
+    let (mut balls, report) = stages.run("shrinking balls", count, |progress| {
+        shrink(&prepared.oriented, &prepared.index, side, &params.shrinking, progress)
     })?;
-    summary.add(name, balls_section(&report));
+    let mut section = balls_section(&report);
+    if let (Some(carving), Some(input)) = (&params.carving, &prepared.carving) {
+        let report = stages.run("carving balls", 0, |_| {
+            carve(&mut balls, &input.kinds, &prepared.oriented, &input.needles, carving)
+        })?;
+        section
+            .add("cut_by_pulses", report.carved)
+            .add("limited_by_kind", report.limited)
+            .add("grown_to_least_radius", report.grown);
+    }
+    summary.add(name, section);
     Ok(balls)
 }
 
@@ -350,7 +475,7 @@ pub(crate) fn scene(
             Cow::Owned(std::mem::replace(&mut cloud, frame))
         }
     };
-    let prepared = prepare(given, &arguments.cleaning, &arguments.orienting, stages, summary)?;
+    let prepared = prepare(given, &arguments.cleaning, &arguments.orienting, params.carving(), stages, summary)?;
     // as in a ball file, so that rows of balls mean the same
     let balls = shrink_side(&prepared, Side::Interior, &params, stages, summary)?.shrunk();
     Ok(Scene { balls, cloud, bounds: prepared.bounds, left_out })

@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use crate::GpsTimeKind;
+use crate::cloud::to_local;
+use crate::{Error, GpsTimeKind, PointCloud, Result};
 
 /// Longest gap between two positions that is interpolated over: recorders write at 1 Hz or faster, and in two seconds an
 /// aircraft in a turn leaves the chord by a few metres; beyond that the path is not known.
@@ -142,6 +143,28 @@ impl Trajectory {
             }
         }
         best.unwrap_or(ClockOffset { clock: Same, leap_seconds: 0.0, served_count: 0, time_count: times.len() })
+    }
+
+    /// Local position of the scanner for each point of `cloud`, (N, 3), metres; NaN where the trajectory knows none.
+    ///
+    /// # Errors
+    /// [`Error::MissingAttribute`] without GPS times, [`Error::InvalidParameter`] where it knows a position at none of them.
+    pub fn scanner_positions(&self, cloud: &PointCloud) -> Result<Vec<[f32; 3]>> {
+        let times = cloud.attributes.gps_time.as_deref().ok_or(Error::MissingAttribute {
+            attribute: "GPS time",
+            needed_for: "a trajectory",
+            advice: "use the cloud as delivered by the survey",
+        })?;
+        let offset = self.clock_offset_for(times, cloud.attributes.gps_time_kind);
+        if offset.served_count == 0 && !cloud.is_empty() {
+            return Err(Error::InvalidParameter {
+                name: "trajectory",
+                value: format!("{} positions at other times", self.times.len()),
+                expected: "to cover the GPS times of the cloud",
+            });
+        }
+        let position = |&time: &f64| self.position_at(offset.trajectory_time(time));
+        Ok(times.par_iter().map(|time| position(time).map_or([f32::NAN; 3], |p| to_local(p, cloud.origin))).collect())
     }
 
     fn knows(&self, time: f64) -> bool {

@@ -140,16 +140,6 @@ fn balls_below(positions: Vec<[f32; 3]>) -> (PointCloud, belvedere::normals::Ori
     (cloud, oriented, balls)
 }
 
-fn params() -> CarveParams {
-    CarveParams {
-        penetration: 0.02,
-        vegetation_radius: 1.0,
-        later_return_radius: 0.3,
-        ground_radius: 4.0,
-        least_radius: 0.15,
-    }
-}
-
 #[test]
 fn a_deck_is_cut_to_what_slanted_pulses_leave_below_it() {
     // a deck at z = 6 whose underside slanted pulses pass: they hit the ground below it, coming in at 45 degrees
@@ -159,7 +149,7 @@ fn a_deck_is_cut_to_what_slanted_pulses_leave_below_it() {
     let returns = [returns, vec![[60.0, 0.0, 20.0]]].concat();
     let scanner = [scanner, vec![[60.0, 0.0, 400.0]]].concat();
     let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default()).unwrap();
-    let report = carve(&mut balls, &cloud, &oriented, &needles, &params()).unwrap();
+    let report = carve(&mut balls, &cloud.attributes, &oriented, &needles, &CarveParams::default()).unwrap();
     // the line x − z = −2 passes the axis of the balls at z = 2: the ball below (0, 0, 6 − τ) of empty radius r has its
     // centre 5.98 − r high, (3.98 − r)/√2 from the line; that equals r for r = 3.98/(1 + √2)
     let expected = 3.98 / (1.0 + 2f32.sqrt()) + 0.02;
@@ -174,14 +164,14 @@ fn kinds_of_points_bound_their_balls_and_carving_twice_changes_nothing() {
     cloud.attributes.classification = Some(vec![6, 5, 2, 6, 6]);
     cloud.attributes.return_number = Some(vec![1, 1, 1, 2, 1]);
     let (needles, _) = Needles::new(&[], &[], &NeedleParams::default()).unwrap();
-    let report = carve(&mut balls, &cloud, &oriented, &needles, &params()).unwrap();
+    let report = carve(&mut balls, &cloud.attributes, &oriented, &needles, &CarveParams::default()).unwrap();
     assert_eq!(balls.radii, [5.0, 1.0, 4.0, 0.3, 5.0]);
     assert_eq!((report.carved, report.limited, report.grown), (0, 3, 0));
     assert_eq!(balls.touch, [NO_TOUCH, PULSE_TOUCH, PULSE_TOUCH, PULSE_TOUCH, NO_TOUCH]);
     let once = balls.clone();
-    carve(&mut balls, &cloud, &oriented, &needles, &params()).unwrap();
+    carve(&mut balls, &cloud.attributes, &oriented, &needles, &CarveParams::default()).unwrap();
     assert_eq!(balls.radii, once.radii);
-    assert!(carve(&mut balls, &cloud.select(&[0]), &oriented, &needles, &params()).is_err());
+    assert!(carve(&mut balls, &cloud.select(&[0]).attributes, &oriented, &needles, &CarveParams::default()).is_err());
 }
 
 #[test]
@@ -198,7 +188,7 @@ fn carving_gives_the_same_bits_for_any_number_of_threads_and_order_of_pulses() {
             let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default()).unwrap();
             let points: Vec<[f32; 3]> = (0..3000).map(|i| pencil(i).point).collect();
             let (cloud, oriented, mut balls) = balls_below(points);
-            let report = carve(&mut balls, &cloud, &oriented, &needles, &params()).unwrap();
+            let report = carve(&mut balls, &cloud.attributes, &oriented, &needles, &CarveParams::default()).unwrap();
             (balls.radii, balls.centers, report)
         })
     };

@@ -2,14 +2,14 @@
 
 use super::{check_output, check_parent, is_folder, is_same};
 use crate::arguments::{Balls, Cleaning, Global, MethodChoice, SideChoice, Usage};
-use crate::pipeline::{self, Prepared};
+use crate::pipeline::{self, BallParams, Prepared};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::io::{MasbcppFolder, write_balls, write_masbcpp};
 use belvedere::medial::feature_size::{FeatureSizeParams, SimplifyParams, local_feature_size, simplify};
-use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkParams, Side};
+use belvedere::medial::{MedialBalls, NO_TOUCH, Side};
 use std::borrow::Cow;
 
 pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
@@ -26,6 +26,11 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
     }
     let method = if is_folder { MethodChoice::Angles } else { MethodChoice::Tau };
     let params = arguments.shrinking.params(method)?;
+    if params.carving.is_some() && (is_folder || arguments.side == SideChoice::Exterior) {
+        let what =
+            "--method carved makes interior balls in a ball file; a folder and --side exterior need tau or angles";
+        return Err(Usage(what.to_owned()).into());
+    }
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let cloud = if is_folder {
@@ -35,7 +40,8 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
     };
     let nothing = Cleaning::nothing();
     let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
-    let prepared = pipeline::prepare(Cow::Borrowed(&cloud), cleaning, &arguments.orienting, &mut stages, &mut summary)?;
+    let (orienting, carving) = (&arguments.orienting, params.carving());
+    let prepared = pipeline::prepare(Cow::Borrowed(&cloud), cleaning, orienting, carving, &mut stages, &mut summary)?;
     if is_folder {
         write_folder(arguments, global, &cloud, &prepared, &params, &mut stages, &mut summary)?;
     } else {
@@ -46,7 +52,8 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
         let mut balls = pipeline::shrink_side(&prepared, side, &params, &mut stages, &mut summary)?.shrunk();
         // rows of the cloud as read, not as cleaned
         for row in balls.source.iter_mut().chain(&mut balls.touch) {
-            *row = prepared.kept[*row as usize];
+            // a pulse has no row
+            *row = prepared.kept.get(*row as usize).copied().unwrap_or(*row);
         }
         let provenance = [
             ("program", concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned()),
@@ -67,7 +74,7 @@ fn write_folder(
     global: &Global,
     cloud: &PointCloud,
     prepared: &Prepared,
-    params: &ShrinkParams,
+    params: &BallParams,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<()> {

@@ -1,7 +1,7 @@
 //! `belvedere demo`: a simulated town, everything done on it, and how right the answers are.
 
 use crate::arguments::{Cleaning, CloudInput, Demo, Global, NeighborChoice, OrientChoice, Orienting};
-use crate::pipeline;
+use crate::pipeline::{self, BallParams, Carving};
 use crate::progress::Stages;
 use crate::simulated::{cloud_of, write_text};
 use crate::summary::{Summary, percent, rounded};
@@ -47,8 +47,9 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
         orient: OrientChoice::Trajectory(folder.join("trajectory.csv")),
     };
     let cleaning = Cleaning { keep_noise: false, keep_duplicates: false, keep_isolated: false };
-    let prepared = pipeline::prepare(Cow::Borrowed(&cloud), &cleaning, &orienting, &mut stages, &mut summary)?;
-    let shrinking = ShrinkParams::tau();
+    let prepared =
+        pipeline::prepare(Cow::Borrowed(&cloud), &cleaning, &orienting, Carving::Unwanted, &mut stages, &mut summary)?;
+    let shrinking = BallParams::uncarved(ShrinkParams::tau());
     let balls = pipeline::shrink_side(&prepared, Side::Interior, &shrinking, &mut stages, &mut summary)?.shrunk();
     drop(prepared);
 
@@ -85,7 +86,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
         )?;
         let provenance = [
             ("program", concat!("belvedere ", env!("CARGO_PKG_VERSION"), " demo").to_owned()),
-            ("parameters", format!("{shrinking:?}")),
+            ("parameters", format!("{:?}", shrinking.shrinking)),
         ];
         write_balls(
             &folder.join("balls.npz"),

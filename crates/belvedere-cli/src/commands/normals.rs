@@ -2,7 +2,7 @@
 
 use super::{NormalColumns, check_output, check_parent, is_folder, is_same};
 use crate::arguments::{Cleaning, Global, Normals, OrientChoice};
-use crate::pipeline;
+use crate::pipeline::{self, Carving};
 use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -31,7 +31,14 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
     let nothing = Cleaning::nothing();
     // the rows of a folder belong to the rows of its coords.npy
     let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
-    let prepared = pipeline::prepare(Cow::Borrowed(&cloud), cleaning, &arguments.orienting, &mut stages, &mut summary)?;
+    let prepared = pipeline::prepare(
+        Cow::Borrowed(&cloud),
+        cleaning,
+        &arguments.orienting,
+        Carving::Unwanted,
+        &mut stages,
+        &mut summary,
+    )?;
     let oriented = &prepared.oriented;
     let report = stages.run("writing", 0, |_| -> Result<WriteReport> {
         if is_folder {

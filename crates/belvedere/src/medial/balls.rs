@@ -24,9 +24,9 @@ pub struct MedialBalls {
     pub radii: Vec<f32>,
     /// Index of the point p each ball is tangent at, (B).
     pub source: Vec<u32>,
-    /// Index of the second point q each ball touches, or [`NO_TOUCH`], (B).
+    /// Index of the second point q each ball touches, [`super::PULSE_TOUCH`] where a pulse bounds it, or [`NO_TOUCH`], (B).
     pub touch: Vec<u32>,
-    /// Separation angle ∠pcq in radians, (B); NaN for a ball that never shrank.
+    /// Separation angle ∠pcq in radians, (B); NaN for a ball that never shrank or that a pulse bounds.
     pub separation_angles: Vec<f32>,
 }
 

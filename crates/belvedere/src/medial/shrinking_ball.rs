@@ -67,6 +67,14 @@ impl ShrinkParams {
         Self { method: ShrinkMethod::Tau { penetration: 0.05 }, initial_radius: 30.0, max_radius: 0.5 }
     }
 
+    /// Balls to be carved by pulses afterwards ([`super::carve`]): the penetration of [`super::CarveParams`], from 15 m, more than
+    /// half the thickness of most buildings, and no limit, since pulses set it.
+    #[must_use]
+    pub fn for_carving() -> Self {
+        let penetration = super::CarveParams::default().penetration;
+        Self { method: ShrinkMethod::Tau { penetration }, initial_radius: 15.0, max_radius: f32::INFINITY }
+    }
+
     /// Checks what [`shrink`] checks, before a cloud is there.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use crate::neighbors::Tangent;
 use crate::vector::{dot, sub};
-use crate::{Error, Result};
+use crate::{Error, PointCloud, Result};
 
 /// Needles in a leaf.
 const LEAF: usize = 8;
@@ -70,6 +70,28 @@ pub struct NeedleReport {
 }
 
 impl Needles {
+    /// Needles of the first returns of `cloud`, all its points where it has no return numbers, for scanners at `scanner`, (N, 3)
+    /// local metres, NaN where unknown.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] unless there is a scanner position for each point.
+    pub fn of_cloud(cloud: &PointCloud, scanner: &[[f32; 3]], params: &NeedleParams) -> Result<(Self, NeedleReport)> {
+        cloud.validate()?;
+        if scanner.len() != cloud.len() {
+            return Err(Error::LengthMismatch {
+                what: "scanner positions",
+                expected: cloud.len(),
+                found: scanner.len(),
+            });
+        }
+        let numbers = cloud.attributes.return_number.as_deref();
+        let is_first = |row: &usize| numbers.is_none_or(|numbers| numbers[*row] <= 1);
+        let rows = || (0..cloud.len()).filter(is_first);
+        let returns: Vec<[f32; 3]> = rows().map(|row| cloud.positions[row]).collect();
+        let scanner: Vec<[f32; 3]> = rows().map(|row| scanner[row]).collect();
+        Self::new(&returns, &scanner, params)
+    }
+
     /// Needles from `first_returns`, (N, 3) local metres, towards `scanner`, (N, 3) local metres, NaN where unknown.
     ///
     /// # Errors

@@ -3,14 +3,12 @@
 use super::case::Ingredients;
 use crate::arguments::Compare;
 use crate::simulated::cloud_of;
-use anyhow::{Context, Result, bail};
-use belvedere::cloud::to_local;
+use anyhow::Result;
+use belvedere::Mesh;
 use belvedere::io::{ReadOptions, read_cloud, read_mesh, read_trajectory};
 use belvedere::trajectory::Trajectory;
-use belvedere::{Mesh, PointCloud};
 use belvedere_baselines::Model;
 use belvedere_scenes::{AirborneParams, Material, Preset, Scene, blocks, scan_airborne, town};
-use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// A place by its description.
@@ -73,7 +71,7 @@ impl Place {
                 let cloud = cloud_of(&scan)?;
                 let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
                 let (trajectory, _) = Trajectory::from_records(path.collect());
-                let scanner = scanner_positions(&cloud, &trajectory)?;
+                let scanner = trajectory.scanner_positions(&cloud)?;
                 let models = vec![
                     Model { name: "blocks".to_owned(), mesh: mesh_of(&blocks(&scene), |_| true) },
                     Model { name: "no-trees".to_owned(), mesh: mesh_of(&scene, |material| !is_loose(material)) },
@@ -87,7 +85,7 @@ impl Place {
                 let mesh = in_metres(mesh)?;
                 let scene = Scene::from_model(mesh.vertices, mesh.triangles, mesh.objects, mesh.object_names);
                 let scanner = match trajectory {
-                    Some(path) => scanner_positions(&cloud, &read_trajectory(path, &cloud.crs)?.0)?,
+                    Some(path) => read_trajectory(path, &cloud.crs)?.0.scanner_positions(&cloud)?,
                     None => Vec::new(),
                 };
                 let models = models
@@ -125,16 +123,4 @@ pub(super) fn state_of(file: &Path) -> String {
     let changed = state.as_ref().and_then(|m| m.modified().ok());
     let seconds = changed.and_then(|t| t.duration_since(std::time::UNIX_EPOCH).ok()).map_or(0, |d| d.as_secs());
     format!("{} ({} bytes, {seconds})", file.display(), state.map_or(0, |m| m.len()))
-}
-
-/// Local position of the scanner for each point, NaN where the trajectory does not know it.
-fn scanner_positions(cloud: &PointCloud, trajectory: &Trajectory) -> Result<Vec<[f32; 3]>> {
-    let times =
-        cloud.attributes.gps_time.as_deref().context("the cloud has no GPS times to match the trajectory with")?;
-    let offset = trajectory.clock_offset_for(times, cloud.attributes.gps_time_kind);
-    if offset.served_count == 0 {
-        bail!("the trajectory knows a position at none of the cloud's GPS times");
-    }
-    let position = |&time: &f64| trajectory.position_at(offset.trajectory_time(time));
-    Ok(times.par_iter().map(|time| position(time).map_or([f32::NAN; 3], |p| to_local(p, cloud.origin))).collect())
 }

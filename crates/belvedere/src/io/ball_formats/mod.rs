@@ -31,7 +31,7 @@ fn as_cloud(balls: &SavedBalls) -> (PointCloud, Vec<Column<'_>>) {
         column("radius".into(), "in the unit of x and y".into(), Values::F32(radii)),
         column("separation_angle".into(), "radians".into(), Values::F32((&balls.separation_angles).into())),
         column("source".into(), "index of the tangent point".into(), signed(&balls.source)),
-        column("touch".into(), "index of second point, -1 none".into(), signed(&balls.touch)),
+        column("touch".into(), "second point, -1 none, -2 pulse".into(), signed(&balls.touch)),
     ];
     (cloud, columns)
 }
