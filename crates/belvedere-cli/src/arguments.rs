@@ -90,7 +90,7 @@ pub(crate) enum Command {
     Query(Query),
     /// Hold every method against exact answers on the same places: how right each is, and what it costs
     #[command(
-        after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, or over two observers, with 95 % intervals from resampled tiles of 25 m.\n\nA thorough comparison takes several places and seeds, such as --presets village,old-town,towers --seeds 1,2,3.\n\nExample:\n  belvedere compare --extent 100 --targets 2000 --methods paper-cone,belvedere -o compared"
+        after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, or over two observers, with 95 % intervals from resampled tiles of 25 m.\n\nMethods: paper-cone, paper-sphere, union, hidden-points, hidden-points-robust, surfels, depth-splats, elliptical-splats, implicit-surface, voxels-05, voxels-10, dsm, tin, belvedere, carved; for each model also mesh-NAME, shadow-map-NAME and dsm-NAME, and for the first paper-cone-NAME. Simulated places have the models blocks (LoD1), no-trees and exact. The project's docs/methods has a page on each.\n\nA thorough comparison takes several places and seeds, such as --presets village,old-town,towers --seeds 1,2,3.\n\nExample:\n  belvedere compare --extent 100 --targets 2000 --methods paper-cone,belvedere -o compared"
     )]
     Compare(Compare),
     /// Print a completion script for a shell
@@ -408,6 +408,17 @@ impl Compare {
     /// Whether a method was asked for.
     pub(crate) fn wants(&self, key: &str) -> bool {
         self.methods.is_empty() || self.methods.iter().any(|start| key.starts_with(start.as_str()))
+    }
+
+    /// Refuses names that no method of `keys` begins with.
+    pub(crate) fn check_methods(&self, keys: &[String]) -> Result<(), Usage> {
+        match self.methods.iter().find(|start| !keys.iter().any(|key| key.starts_with(start.as_str()))) {
+            Some(unknown) => {
+                let keys = keys.join(", ");
+                Err(Usage(format!("--methods: no method begins with {unknown:?}; there are {keys}")))
+            }
+            None => Ok(()),
+        }
     }
 }
 

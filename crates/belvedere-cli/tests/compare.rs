@@ -84,7 +84,7 @@ fn a_place_of_ones_own_takes_part() {
     assert_eq!(place.run("demo -o demo --extent 100").status, 0);
     let files =
         "--scene demo/town.laz --mesh demo/town.obj --trajectory demo/trajectory.csv --model city=demo/town.obj";
-    let run = place.summary(&format!("compare {files} --targets 1500 --methods belvedere,mesh -o out"));
+    let run = place.summary(&format!("compare {files} --targets 1500 --methods belvedere,mesh-city -o out"));
     let results = &run["results"];
     let street = rate(results, "belvedere", "PED", "suns", "false_blocked");
     assert!((0.01..0.3).contains(&street), "{street}");
@@ -134,4 +134,5 @@ fn what_cannot_be_compared_is_refused() {
     place.refusal(2, "compare --scene a.laz --mesh b.obj --model City=c.obj -o out", &["lower-case"]);
     place.refusal(1, "compare --scene a.laz --mesh b.obj -o out", &["a.laz"]);
     place.refusal(1, "compare -o missing/out", &["missing"]);
+    place.refusal(2, "compare --extent 60 --targets 10 --methods magic -o out", &["magic", "paper-cone"]);
 }

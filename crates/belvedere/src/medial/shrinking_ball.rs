@@ -67,7 +67,7 @@ impl ShrinkParams {
         Self { method: ShrinkMethod::Tau { penetration: 0.05 }, initial_radius: 30.0, max_radius: 0.5 }
     }
 
-    /// Balls to be carved by pulses afterwards ([`super::carve`]): the penetration of [`super::CarveParams`], from 15 m, more than
+    /// Balls to be carved by pulses afterwards ([`super::carve()`]): the penetration of [`super::CarveParams`], from 15 m, more than
     /// half the thickness of most buildings, and no limit, since pulses set it.
     #[must_use]
     pub fn for_carving() -> Self {

@@ -65,6 +65,7 @@ fn compare_on(
     let listed: Option<PlaceResult> = kept(&place_file, &made_from);
     let method_file = |key: &str| results.join(format!("{name}--{key}.json"));
     if let Some(done) = &listed {
+        arguments.check_methods(&done.methods)?;
         let all: Option<Vec<MethodResult>> = done
             .methods
             .iter()
@@ -82,6 +83,7 @@ fn compare_on(
     let case = stages.run("answering exactly", 0, |_| Case::new(ingredients, arguments.targets, global.seed))?;
     let survey = case.survey();
     let methods = methods(&survey);
+    arguments.check_methods(&methods.iter().map(|method| method.key.clone()).collect::<Vec<_>>())?;
     let described = match listed {
         Some(listed) => listed,
         None => {
