@@ -341,7 +341,7 @@ pub(crate) struct Shrinking {
     /// written]
     #[arg(long, value_enum)]
     pub(crate) method: Option<MethodChoice>,
-    /// Radius balls start with, in metres [default: 30 for tau, 15 for carved, 200 for angles]
+    /// Radius balls start with, in metres [default: 30 for tau, 5 for carved, 200 for angles]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(crate) initial_radius: Option<f32>,
     /// Most radius a ball is left with, in metres [default: 0.5 for tau, otherwise no limit]

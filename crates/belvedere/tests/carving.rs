@@ -165,7 +165,7 @@ fn kinds_of_points_bound_their_balls_and_carving_twice_changes_nothing() {
     cloud.attributes.return_number = Some(vec![1, 1, 1, 2, 1]);
     let (needles, _) = Needles::new(&[], &[], &NeedleParams::default()).unwrap();
     let report = carve(&mut balls, &cloud.attributes, &oriented, &needles, &CarveParams::default()).unwrap();
-    assert_eq!(balls.radii, [5.0, 1.0, 4.0, 0.3, 5.0]);
+    assert_eq!(balls.radii, [5.0, 1.0, 2.0, 0.3, 5.0]);
     assert_eq!((report.carved, report.limited, report.grown), (0, 3, 0));
     assert_eq!(balls.touch, [NO_TOUCH, PULSE_TOUCH, PULSE_TOUCH, PULSE_TOUCH, NO_TOUCH]);
     let once = balls.clone();
