@@ -145,26 +145,42 @@ impl Trajectory {
         best.unwrap_or(ClockOffset { clock: Same, leap_seconds: 0.0, served_count: 0, time_count: times.len() })
     }
 
-    /// Local position of the scanner for each point of `cloud`, (N, 3), metres; NaN where the trajectory knows none.
+    /// Local position of the scanner for each point of `cloud`, (N, 3), metres, NaN where the trajectory knows none; and how
+    /// the cloud's times became those of the trajectory.
     ///
     /// # Errors
     /// [`Error::MissingAttribute`] without GPS times, [`Error::InvalidParameter`] where it knows a position at none of them.
-    pub fn scanner_positions(&self, cloud: &PointCloud) -> Result<Vec<[f32; 3]>> {
+    pub fn scanner_positions(&self, cloud: &PointCloud) -> Result<(Vec<[f32; 3]>, ClockOffset)> {
         let times = cloud.attributes.gps_time.as_deref().ok_or(Error::MissingAttribute {
             attribute: "GPS time",
             needed_for: "a trajectory",
-            advice: "use the cloud as delivered by the survey",
+            advice: "use the cloud as delivered by the survey, or orient by up or by a mesh",
         })?;
+        self.scanner_positions_at(times, cloud)
+    }
+
+    /// As [`Trajectory::scanner_positions`], at `times`, (N), on the clock of `cloud`, in place of those of its points.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where it knows a position at none of the times.
+    pub fn scanner_positions_at(&self, times: &[f64], cloud: &PointCloud) -> Result<(Vec<[f32; 3]>, ClockOffset)> {
         let offset = self.clock_offset_for(times, cloud.attributes.gps_time_kind);
-        if offset.served_count == 0 && !cloud.is_empty() {
+        if offset.served_count == 0 && !times.is_empty() {
+            let span = |times: &[f64]| {
+                let least = times.iter().copied().fold(f64::INFINITY, f64::min);
+                format!("{least} to {} s", times.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+            };
             return Err(Error::InvalidParameter {
                 name: "trajectory",
-                value: format!("{} positions at other times", self.times.len()),
+                value: format!("from {}, the cloud from {}", span(&self.times), span(times)),
                 expected: "to cover the GPS times of the cloud",
             });
         }
-        let position = |&time: &f64| self.position_at(offset.trajectory_time(time));
-        Ok(times.par_iter().map(|time| position(time).map_or([f32::NAN; 3], |p| to_local(p, cloud.origin))).collect())
+        let position = |&time: &f64| match self.position_at(offset.trajectory_time(time)) {
+            Some(position) => to_local(position, cloud.origin),
+            None => [f32::NAN; 3],
+        };
+        Ok((times.par_iter().map(position).collect(), offset))
     }
 
     fn knows(&self, time: f64) -> bool {

@@ -2,9 +2,11 @@
 //! wrong against the exact mesh.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+#[path = "common/simulated.rs"]
+mod simulated;
+
 use belvedere::clean::{CleanParams, clean};
-use belvedere::cloud::{Attributes, GpsTimeKind, centre_rounded, to_local};
-use belvedere::crs::Crs;
+use belvedere::cloud::to_local;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::{ReadOptions, read_cloud, write_cloud};
 use belvedere::medial::{MedialBalls, ShrinkParams, Side, shrink};
@@ -17,6 +19,7 @@ use belvedere::trajectory::Trajectory;
 use belvedere::view::{View, to_sun};
 use belvedere::{PointCloud, Result};
 use belvedere_scenes::{AirborneParams, Scan, Scene, TownParams, Truth, scan_airborne, town};
+use simulated::cloud_of;
 use std::path::Path;
 
 fn simulated(pulses_per_m2: f64) -> (Scene, Scan) {
@@ -26,24 +29,7 @@ fn simulated(pulses_per_m2: f64) -> (Scene, Scan) {
 }
 
 fn write_scan(path: &Path, scan: &Scan) {
-    let coordinates: Vec<[f64; 3]> = (0..scan.len()).map(|i| [scan.x[i], scan.y[i], scan.z[i]]).collect();
-    let origin = centre_rounded(coordinates.iter().copied());
-    let cloud = PointCloud {
-        origin,
-        positions: coordinates.iter().map(|&c| to_local(c, origin)).collect(),
-        attributes: Attributes {
-            classification: Some(scan.classification.clone()),
-            gps_time: Some(scan.gps_time.clone()),
-            gps_time_kind: GpsTimeKind::AdjustedStandard,
-            return_number: Some(scan.return_number.clone()),
-            return_count: Some(scan.return_count.clone()),
-            point_source_id: Some(scan.point_source_id.clone()),
-            ..Attributes::default()
-        },
-        crs: Crs::parse("EPSG:7415").unwrap(),
-        ..PointCloud::default()
-    };
-    write_cloud(path, &cloud, &[]).unwrap();
+    write_cloud(path, &cloud_of(scan), &[]).unwrap();
 }
 
 fn trajectory(scan: &Scan) -> Trajectory {

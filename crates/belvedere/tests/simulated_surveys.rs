@@ -6,42 +6,23 @@
     reason = "tests stop at the first surprise; the numbers are small"
 )]
 
+#[path = "common/simulated.rs"]
+mod simulated;
+
+use simulated::cloud_of;
 use std::path::Path;
 
-use belvedere::cloud::{centre_rounded, to_local};
-use belvedere::crs::Crs;
 use belvedere::io::{
     Heading, LevelOfDetail, ReadOptions, read_cityjson, read_cloud, read_mesh, read_trajectory, write_cloud,
     write_trajectory,
 };
 use belvedere::summary::{CloudSummary, FacadeSummary};
 use belvedere::trajectory::Trajectory;
-use belvedere::{Attributes, GpsTimeKind, PointCloud};
+use belvedere::{GpsTimeKind, PointCloud};
 use belvedere_scenes::{
     AirborneParams, Material, MirrorMotion, Preset, Scan, ScanPattern, Scene, TerrestrialParams, TownParams, Truth,
     scan_airborne, scan_terrestrial, town,
 };
-
-fn cloud_of(scan: &Scan) -> PointCloud {
-    let coordinates = || (0..scan.len()).map(|i| [scan.x[i], scan.y[i], scan.z[i]]);
-    let origin = centre_rounded(coordinates());
-    PointCloud {
-        origin,
-        positions: coordinates().map(|c| to_local(c, origin)).collect(),
-        attributes: Attributes {
-            classification: Some(scan.classification.clone()),
-            gps_time: Some(scan.gps_time.clone()),
-            gps_time_kind: GpsTimeKind::AdjustedStandard,
-            return_number: Some(scan.return_number.clone()),
-            return_count: Some(scan.return_count.clone()),
-            scan_angle: Some(scan.scan_angle_deg.iter().map(|a| a.to_radians()).collect()),
-            point_source_id: Some(scan.point_source_id.clone()),
-            ..Attributes::default()
-        },
-        crs: Crs::parse("EPSG:7415").unwrap(),
-        ..PointCloud::default()
-    }
-}
 
 /// Cloud and trajectory as they come back from files: positions of the cloud in file coordinates, and of the scanner at the
 /// time of each point.

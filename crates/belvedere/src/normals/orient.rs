@@ -144,9 +144,9 @@ pub fn orient(cloud: &PointCloud, normals: Normals, by: &Orientation<'_>) -> Res
         Orientation::Scanner => by_own_scanner(cloud, &vectors)?,
         Orientation::ScannerAt(scanners) => by_nearest_scanner(cloud, &vectors, scanners)?,
         Orientation::Trajectory(trajectory) => {
-            let (verdicts, offset) = by_trajectory(cloud, &vectors, trajectory)?;
+            let (scanner, offset) = trajectory.scanner_positions(cloud)?;
             clock = Some(offset);
-            verdicts
+            by_pulses(cloud, &vectors, &scanner)?
         }
         Orientation::Pulses(scanner) => by_pulses(cloud, &vectors, scanner)?,
         Orientation::Mesh(mesh) => by_mesh(cloud, &vectors, mesh)?,
@@ -275,37 +275,6 @@ fn check_finite(scanners: &[[f64; 3]]) -> Result<()> {
         return Err(Error::InvalidParameter { name: "scanner positions", value, expected: "at least one, finite" });
     }
     Ok(())
-}
-
-fn by_trajectory(
-    cloud: &PointCloud,
-    vectors: &[[f32; 3]],
-    trajectory: &Trajectory,
-) -> Result<(Vec<Option<Verdict>>, ClockOffset)> {
-    let Some(times) = cloud.attributes.gps_time.as_deref() else {
-        return Err(Error::MissingAttribute {
-            attribute: "GPS time",
-            needed_for: "orientation by a trajectory",
-            advice: "orient by up or by a mesh",
-        });
-    };
-    let offset = trajectory.clock_offset_for(times, cloud.attributes.gps_time_kind);
-    if offset.served_count == 0 && !cloud.is_empty() {
-        let span = |times: &[f64]| {
-            let least = times.iter().copied().fold(f64::INFINITY, f64::min);
-            format!("{least} to {} s", times.iter().copied().fold(f64::NEG_INFINITY, f64::max))
-        };
-        return Err(Error::InvalidParameter {
-            name: "trajectory",
-            value: format!("from {}, the cloud from {}", span(&trajectory.times), span(times)),
-            expected: "to cover the GPS times of the cloud",
-        });
-    }
-    let verdicts = each(cloud, vectors, |index, position, normal| {
-        let sensor = trajectory.position_at(offset.trajectory_time(*times.get(index)?))?;
-        towards(std::array::from_fn(|i| sensor[i] - cloud.origin[i]), position, normal)
-    });
-    Ok((verdicts, offset))
 }
 
 fn by_pulses(cloud: &PointCloud, vectors: &[[f32; 3]], scanner: &[[f32; 3]]) -> Result<Vec<Option<Verdict>>> {

@@ -111,19 +111,7 @@ impl SensorPositions {
         pulses: &Pulses,
         trajectory: &Trajectory,
     ) -> Result<(Self, SensorReport)> {
-        let clock = trajectory.clock_offset_for(&pulses.times, cloud.attributes.gps_time_kind);
-        if clock.served_count == 0 && !pulses.is_empty() {
-            return Err(Error::InvalidParameter {
-                name: "trajectory",
-                value: format!("{} positions at other times", trajectory.times.len()),
-                expected: "to cover the GPS times of the cloud",
-            });
-        }
-        let position = |&time: &f64| match trajectory.position_at(clock.trajectory_time(time)) {
-            Some(place) => crate::cloud::to_local(place, cloud.origin),
-            None => [f32::NAN; 3],
-        };
-        let per_pulse: Vec<[f32; 3]> = pulses.times.par_iter().map(position).collect();
+        let (per_pulse, clock) = trajectory.scanner_positions_at(&pulses.times, cloud)?;
         let known_count = per_pulse.iter().filter(|p| is_known(p)).count();
         let report =
             SensorReport { pulse_count: pulses.len(), known_count, clock: Some(clock), ..SensorReport::default() };
