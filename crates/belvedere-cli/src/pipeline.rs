@@ -1,5 +1,7 @@
 //! From what was typed to clouds, oriented clouds, balls and views. Calls the core in order; computes nothing itself.
 
+mod scanner;
+
 use crate::arguments::{
     Cleaning, CloudInput, MethodChoice, NeighborChoice, OrientChoice, Orienting, ProfileChoice, SceneInput, Shrinking,
     Usage, ViewChoice,
@@ -17,8 +19,6 @@ use belvedere::medial::{CarveParams, MedialBalls, ShrinkMethod, ShrinkParams, Sh
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
-use belvedere::pulses::{NeedleParams, Needles, SensorEstimateParams, SensorPositions, group};
-use belvedere::trajectory::Trajectory;
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere::{Attributes, Error, PointCloud};
 use std::borrow::Cow;
@@ -148,13 +148,6 @@ impl BallParams {
     }
 }
 
-/// What carving needs beside an oriented cloud.
-pub(crate) struct CarvingInput {
-    needles: Needles,
-    /// Classes and return numbers.
-    kinds: Attributes,
-}
-
 /// A cloud whose normals point outward, and its index.
 pub(crate) struct Prepared {
     pub(crate) oriented: OrientedCloud,
@@ -164,7 +157,7 @@ pub(crate) struct Prepared {
     /// Lowest and highest local corner of these points: a stray point that was cleaned away must not widen a view.
     pub(crate) bounds: ([f32; 3], [f32; 3]),
     /// Where carving was asked for.
-    pub(crate) carving: Option<CarvingInput>,
+    pub(crate) carving: Option<scanner::CarvingInput>,
 }
 
 /// Cleans, estimates normals and orients them. A cloud that is given away is let go as soon as it has served.
@@ -185,25 +178,10 @@ pub(crate) fn prepare(
     let mut cloud = if kept.len() == cloud.len() { cloud } else { Cow::Owned(cloud.select(&kept)) };
     let wants_pulses = carving == Carving::Wanted || matches!(orienting.orient, OrientChoice::Pulses);
     let (scanner, trajectory) =
-        if wants_pulses { scanner_of_each_point(&cloud, orienting, stages, summary)? } else { (Vec::new(), None) };
+        if wants_pulses { scanner::of_each_point(&cloud, orienting, stages, summary)? } else { (Vec::new(), None) };
     let carving = match carving {
         Carving::Unwanted => None,
-        Carving::Wanted => {
-            let (needles, report) =
-                stages.run("indexing pulses", 0, |_| Needles::of_cloud(&cloud, &scanner, &NeedleParams::default()))?;
-            let mut section = Summary::default();
-            section
-                .add("used_to_carve", report.used)
-                .add("without_scanner", report.without_scanner)
-                .add("too_flat", report.too_flat);
-            summary.add("pulses", section);
-            let kinds = Attributes {
-                classification: cloud.attributes.classification.clone(),
-                return_number: cloud.attributes.return_number.clone(),
-                ..Attributes::default()
-            };
-            Some(CarvingInput { needles, kinds })
-        }
+        Carving::Wanted => Some(scanner::carving_input(&cloud, &scanner, stages, summary)?),
     };
     if let Cow::Owned(owned) = &mut cloud {
         // nothing but orientation asks for attributes from here on, and they weigh more than the positions
@@ -263,51 +241,6 @@ pub(crate) fn prepare(
     summary.add("normals", orientation_section(&by, &report));
     let bounds = bounds_of(&cloud)?;
     Ok(Prepared { oriented, index, kept, bounds, carving })
-}
-
-/// Where the scanner was for each point, and the trajectory where that was read for it.
-fn scanner_of_each_point(
-    cloud: &PointCloud,
-    orienting: &Orienting,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<(Vec<[f32; 3]>, Option<Trajectory>)> {
-    let one_for_all = |position: [f32; 3]| Ok((vec![position; cloud.len()], None));
-    match &orienting.orient {
-        OrientChoice::Trajectory(path) => {
-            let (trajectory, _) = stages.run("reading trajectory", 0, |_| read_trajectory(path, &cloud.crs))?;
-            Ok((trajectory.scanner_positions(cloud)?, Some(trajectory)))
-        }
-        OrientChoice::ScannerAt(position) => one_for_all(cloud.from_file_coordinates(*position)),
-        OrientChoice::Scanner | OrientChoice::Auto if !cloud.scanner_positions.is_empty() => {
-            let unknown = [f32::NAN; 3];
-            let position = |index: &u16| cloud.scanner_positions.get(usize::from(*index)).copied().unwrap_or(unknown);
-            match (&cloud.attributes.scanner_index, &cloud.scanner_positions[..]) {
-                (Some(indices), _) => Ok((indices.iter().map(position).collect(), None)),
-                (None, [only]) => one_for_all(*only),
-                (None, _) => one_for_all(unknown),
-            }
-        }
-        _ => {
-            let (pulses, _) = group(cloud)?;
-            let (positions, report) = stages.run("finding the scanner", 0, |_| {
-                SensorPositions::from_returns(cloud, &pulses, &SensorEstimateParams::default())
-            })?;
-            if report.known_count == 0 {
-                bail!(
-                    "where the scanner was cannot be told from the pulses: too few have several returns far enough apart; \
-                     give --orient trajectory=FILE"
-                );
-            }
-            let mut section = Summary::default();
-            section
-                .add("pulses", report.pulse_count)
-                .add("served_percent", percent(report.known_count, report.pulse_count))
-                .add("parts_of_flight_lines", report.parts.len());
-            summary.add("scanner_found_from_pulses", section);
-            Ok((positions.per_point(&pulses, cloud.len()), None))
-        }
-    }
 }
 
 fn orientation_section(by: &Orientation<'_>, report: &OrientReport) -> Summary {

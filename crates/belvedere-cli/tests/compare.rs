@@ -122,6 +122,10 @@ fn clouds_are_judged_by_the_pulses_kept_from_the_methods() {
     assert!(refused["failed"].as_str().unwrap().contains("eye"), "{refused}");
     let markdown = fs::read_to_string(place.path("out/report.md")).unwrap();
     assert!(markdown.contains("### Held-out pulses of cloud") && markdown.contains("### What has no answer"));
+    let by_path = "compare --held-out town/cloud.laz --trajectory town/trajectory.csv --methods carved -o by_path";
+    let known = place.summary(by_path)["results"]["held_out"][0]["scanner_known"].as_f64().unwrap();
+    // the trajectory covers every pulse
+    assert!((known - 1.0).abs() < 1e-9, "{known}");
     fs::write(place.path("bare.csv"), "x,y,z\n1,2,3\n2,3,4\n").unwrap();
     place.refusal(1, "compare --held-out bare.csv -o out", &["bare.csv", "GPS time"]);
 }
@@ -133,6 +137,7 @@ fn what_cannot_be_compared_is_refused() {
     place.refusal(2, "compare --presets metropolis -o out", &["metropolis", "old-town"]);
     place.refusal(2, "compare --scene a.laz --mesh b.obj --model City=c.obj -o out", &["lower-case"]);
     place.refusal(1, "compare --scene a.laz --mesh b.obj -o out", &["a.laz"]);
+    place.refusal(2, "compare --trajectory t.csv -o out", &["--trajectory", "--held-out"]);
     place.refusal(1, "compare -o missing/out", &["missing"]);
     place.refusal(2, "compare --extent 60 --targets 10 --methods magic -o out", &["magic", "paper-cone"]);
 }

@@ -5,7 +5,7 @@ use super::results::{HeldOutResult, keep, kept};
 use crate::arguments::{Compare, Global};
 use crate::progress::Stages;
 use anyhow::{Context, Result};
-use belvedere::io::{ReadOptions, read_cloud};
+use belvedere::io::{ReadOptions, read_cloud, read_trajectory};
 use belvedere::pulses::{SensorEstimateParams, SensorPositions, group};
 use belvedere_baselines::Survey;
 use belvedere_baselines::held_out::{HeldOut, HeldOutParams, HeldOutScore, Tally, score, split};
@@ -22,9 +22,13 @@ pub(super) fn judge_all(
     let (cloud, _) = stages.run("reading", 0, |_| read_cloud(&[path.to_owned()], &ReadOptions::default()))?;
     let named = || path.display().to_string();
     let (pulses, _) = group(&cloud).with_context(named)?;
-    let params = SensorEstimateParams::default();
-    let (scanner, report) =
-        stages.run("finding the scanner", 0, |_| SensorPositions::from_returns(&cloud, &pulses, &params))?;
+    let (scanner, report) = stages.run("finding the scanner", 0, |_| match &arguments.trajectory {
+        Some(file) => {
+            let (trajectory, _) = read_trajectory(file, &cloud.crs)?;
+            SensorPositions::from_trajectory(&cloud, &pulses, &trajectory)
+        }
+        None => SensorPositions::from_returns(&cloud, &pulses, &SensorEstimateParams::default()),
+    })?;
     let held_params = HeldOutParams { seed: global.seed, ..HeldOutParams::default() };
     let held_out = split(&cloud, &pulses, &scanner, &held_params).with_context(named)?;
     let kept_cloud = cloud.select(&held_out.kept);
@@ -35,9 +39,10 @@ pub(super) fn judge_all(
     let name = file_name(path);
     let served = 100.0 * report.known_count as f64 / report.pulse_count.max(1) as f64;
     let made_from = format!(
-        "belvedere {}; {}; {} of {} pulses held out, scanner known for {served:.1} %; seed {}",
+        "belvedere {}; {}; scanner by {}; {} of {} pulses held out, scanner known for {served:.1} %; seed {}",
         env!("CARGO_PKG_VERSION"),
         state_of(path),
+        arguments.trajectory.as_deref().map_or_else(|| "the pulses".to_owned(), state_of),
         held_out.pulse_count,
         pulses.len(),
         global.seed

@@ -71,7 +71,7 @@ impl Place {
                 let cloud = cloud_of(&scan)?;
                 let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
                 let (trajectory, _) = Trajectory::from_records(path.collect());
-                let scanner = trajectory.scanner_positions(&cloud)?;
+                let (scanner, _) = trajectory.scanner_positions(&cloud)?;
                 let models = vec![
                     Model { name: "blocks".to_owned(), mesh: mesh_of(&blocks(&scene), |_| true) },
                     Model { name: "no-trees".to_owned(), mesh: mesh_of(&scene, |material| !is_loose(material)) },
@@ -85,7 +85,7 @@ impl Place {
                 let mesh = in_metres(mesh)?;
                 let scene = Scene::from_model(mesh.vertices, mesh.triangles, mesh.objects, mesh.object_names);
                 let scanner = match trajectory {
-                    Some(path) => read_trajectory(path, &cloud.crs)?.0.scanner_positions(&cloud)?,
+                    Some(path) => read_trajectory(path, &cloud.crs)?.0.scanner_positions(&cloud)?.0,
                     None => Vec::new(),
                 };
                 let models = models
