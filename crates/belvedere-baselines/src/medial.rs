@@ -2,13 +2,15 @@
 
 use crate::Survey;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
-use belvedere::medial::{CarveParams, MedialBalls, ShrinkMethod, ShrinkParams, Side, carve, shrink};
+use belvedere::medial::{
+    CarvedInput, CarvedParams, MedialBalls, ShrinkMethod, ShrinkParams, Side, carved_balls, shrink,
+};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, orient};
 use belvedere::progress::Progress;
 use belvedere::pulses::{NeedleParams, Needles};
-use belvedere::query::{MedialScene, Sight, Viewer, Visibility, query_points};
+use belvedere::query::{MedialScene, SceneParams, Sight, Viewer, Visibility, query_points};
 use belvedere::view::View;
 use belvedere::{Mesh, Result};
 
@@ -27,16 +29,21 @@ pub const DEPTH_BIAS: f64 = 0.25;
 pub struct MedialParams {
     /// Neighbours that make a normal, 3 to 256.
     pub neighbors: usize,
-    /// How balls shrink.
-    pub shrinking: ShrinkParams,
-    /// Surface that stands for a ball.
-    pub profile: Profile,
+    /// How balls are made.
+    pub making: Making,
     /// How lines of sight of parallel views are answered.
     pub parallel_views: ParallelViews,
-    /// How far a target may lie inside a ball and still count as visible, metres, 0 or more.
-    pub depth_bias: f64,
-    /// How pulses cut the balls, if they do.
-    pub carving: Option<CarveParams>,
+    /// How balls block lines of sight.
+    pub blocking: SceneParams,
+}
+
+/// How balls are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Making {
+    /// By the points alone.
+    Shrinking(ShrinkParams),
+    /// By points and pulses.
+    Carving(CarvedParams),
 }
 
 /// How targets in a parallel view are answered.
@@ -55,11 +62,9 @@ impl MedialParams {
     pub fn published() -> Self {
         Self {
             neighbors: 6,
-            shrinking: ShrinkParams::angles(),
-            profile: Profile::PaperCone,
+            making: Making::Shrinking(ShrinkParams::angles()),
             parallel_views: ParallelViews::DepthMap,
-            depth_bias: 0.0,
-            carving: None,
+            blocking: SceneParams { profile: Profile::PaperCone, depth_bias: 0.0, shell: 0.0 },
         }
     }
 
@@ -67,9 +72,8 @@ impl MedialParams {
     #[must_use]
     pub fn published_with_spheres() -> Self {
         Self {
-            profile: Profile::Sphere,
             parallel_views: ParallelViews::Rays,
-            depth_bias: DEPTH_BIAS,
+            blocking: SceneParams { profile: Profile::Sphere, depth_bias: DEPTH_BIAS, shell: 0.0 },
             ..Self::published()
         }
     }
@@ -81,7 +85,7 @@ impl MedialParams {
         let method = ShrinkMethod::Angles { first_separation_angle: 0.0, next_separation_angle: 0.0 };
         Self {
             neighbors: 16,
-            shrinking: ShrinkParams { method, ..ShrinkParams::angles() },
+            making: Making::Shrinking(ShrinkParams { method, ..ShrinkParams::angles() }),
             ..Self::published_with_spheres()
         }
     }
@@ -89,14 +93,14 @@ impl MedialParams {
     /// Balls of bounded penetration, cut by what each pulse proves empty: `--method carved`.
     #[must_use]
     pub fn carved() -> Self {
-        let carving = Some(CarveParams::default());
-        Self { neighbors: 16, shrinking: ShrinkParams::for_carving(), carving, ..Self::published_with_spheres() }
+        let making = Making::Carving(CarvedParams::default());
+        Self { neighbors: 16, making, ..Self::published_with_spheres() }
     }
 
     /// What Belvedere does by default so far: balls of bounded penetration, cut down to half a metre.
     #[must_use]
     pub fn belvedere() -> Self {
-        Self { neighbors: 16, shrinking: ShrinkParams::tau(), ..Self::published_with_spheres() }
+        Self { neighbors: 16, making: Making::Shrinking(ShrinkParams::tau()), ..Self::published_with_spheres() }
     }
 }
 
@@ -130,12 +134,17 @@ pub fn interior_balls(survey: &Survey<'_>, outward: Outward<'_>, params: &Medial
         Outward::Survey => Orientation::Pulses(survey.scanner),
     };
     let (oriented, _) = orient(survey.cloud, normals, &by)?;
-    let (mut balls, _) = shrink(&oriented, &index, Side::Interior, &params.shrinking, Progress::none())?;
-    if let Some(carving) = &params.carving {
-        let (needles, _) = Needles::of_cloud(survey.cloud, survey.scanner, &NeedleParams::default())?;
-        carve(&mut balls, &survey.cloud.attributes, &oriented, &needles, carving)?;
+    match &params.making {
+        Making::Shrinking(shrinking) => {
+            Ok(shrink(&oriented, &index, Side::Interior, shrinking, Progress::none())?.0.shrunk())
+        }
+        Making::Carving(carving) => {
+            let (needles, _) = Needles::of_cloud(survey.cloud, survey.scanner, &NeedleParams::default())?;
+            let attributes = &survey.cloud.attributes;
+            let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles };
+            Ok(carved_balls(&input, carving, Progress::none())?.0)
+        }
     }
-    Ok(balls.shrunk())
 }
 
 impl MedialBaseline {
@@ -147,6 +156,18 @@ impl MedialBaseline {
         Self::of_balls(survey, interior_balls(survey, outward, params)?, params)
     }
 
+    /// The balls that block.
+    #[must_use]
+    pub fn scene(&self) -> &MedialScene {
+        &self.scene
+    }
+
+    /// The balls themselves.
+    #[must_use]
+    pub fn balls(&self) -> &MedialBalls {
+        &self.balls
+    }
+
     /// Takes balls that were made of a survey's cloud before.
     ///
     /// # Errors
@@ -155,7 +176,7 @@ impl MedialBaseline {
         let Some((low, high)) = survey.cloud.bounds() else {
             return Err(belvedere::Error::NoPoints { what: "a union of balls needs a cloud".to_owned() });
         };
-        let scene = MedialScene::new(&balls, params.profile, params.depth_bias)?;
+        let scene = MedialScene::new(&balls, &params.blocking)?;
         Ok(Self { scene, balls, bounds: [low.map(f64::from), high.map(f64::from)], params: *params })
     }
 }
@@ -168,9 +189,9 @@ impl Visibility for MedialBaseline {
         viewer.validate()?;
         let [low, high] = self.bounds;
         let view = View::parallel(to_viewer.map(|v| -v), low, high, PIXEL_SIZE)?;
-        let map = depth_map(&self.balls, &view, self.params.profile, ItemBuffer::Without)?;
+        let map = depth_map(&self.balls, &view, self.params.blocking.profile, ItemBuffer::Without)?;
         #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
-        let bias = self.params.depth_bias as f32;
+        let bias = self.params.blocking.depth_bias as f32;
         Ok(Box::new(move |targets| Ok(query_points(&map, targets, bias))))
     }
 }

@@ -15,7 +15,10 @@ use belvedere::depth::Profile;
 use belvedere::io::{
     ReadOptions, ReadReport, SavedBalls, is_ball_file, read_balls, read_cloud, read_mesh, read_trajectory,
 };
-use belvedere::medial::{CarveParams, MedialBalls, ShrinkMethod, ShrinkParams, ShrinkReport, Side, carve, shrink};
+use belvedere::medial::{
+    CarvedInput, CarvedParams, CarvedReport, MedialBalls, ShrinkMethod, ShrinkParams, ShrinkReport, Side, carved_balls,
+    shrink,
+};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
@@ -132,19 +135,19 @@ pub(crate) enum Carving {
 
 /// How balls are made.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BallParams {
-    pub(crate) shrinking: ShrinkParams,
-    /// How pulses cut them, if they do.
-    pub(crate) carving: Option<CarveParams>,
+pub(crate) enum BallParams {
+    /// By the points alone.
+    Shrunk(ShrinkParams),
+    /// By points and pulses.
+    Carved(CarvedParams),
 }
 
 impl BallParams {
-    pub(crate) fn uncarved(shrinking: ShrinkParams) -> Self {
-        Self { shrinking, carving: None }
-    }
-
     pub(crate) fn carving(&self) -> Carving {
-        if self.carving.is_some() { Carving::Wanted } else { Carving::Unwanted }
+        match self {
+            Self::Shrunk(_) => Carving::Unwanted,
+            Self::Carved(_) => Carving::Wanted,
+        }
     }
 }
 
@@ -280,12 +283,10 @@ impl Shrinking {
     /// Parameters as typed, with `default` where no method was.
     pub(crate) fn params(&self, default: MethodChoice) -> Result<BallParams> {
         let method = self.method.unwrap_or(default);
-        let mut carving = (method == MethodChoice::Carved).then(CarveParams::default);
-        let mut params = match method {
-            MethodChoice::Tau => ShrinkParams::tau(),
-            MethodChoice::Carved => ShrinkParams::for_carving(),
-            MethodChoice::Angles => ShrinkParams::angles(),
-        };
+        if method == MethodChoice::Carved {
+            return self.carved_params();
+        }
+        let mut params = if method == MethodChoice::Tau { ShrinkParams::tau() } else { ShrinkParams::angles() };
         if let Some(radius) = self.initial_radius {
             params.initial_radius = radius;
         }
@@ -294,13 +295,8 @@ impl Shrinking {
         }
         match &mut params.method {
             ShrinkMethod::Tau { penetration } => {
-                if self.first_angle.is_some() || self.next_angle.is_some() {
-                    return Err(Usage("--first-angle and --next-angle belong to --method angles".to_owned()).into());
-                }
+                self.refuse_angles()?;
                 *penetration = self.penetration.unwrap_or(*penetration);
-                if let Some(carving) = &mut carving {
-                    carving.penetration = *penetration;
-                }
             }
             ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
                 if self.penetration.is_some() {
@@ -311,19 +307,41 @@ impl Shrinking {
                 *next_separation_angle = typed(self.next_angle, *next_separation_angle);
             }
         }
-        params.check().map_err(|error| match error {
-            Error::InvalidParameter { name, .. } => {
-                let flag = match name {
-                    "separation angle" => "--first-angle, --next-angle".to_owned(),
-                    "greatest radius" => "--max-radius".to_owned(),
-                    _ => format!("--{}", name.replace(' ', "-")),
-                };
-                anyhow::Error::from(Usage(format!("{flag}: {error}")))
-            }
-            other => other.into(),
-        })?;
-        Ok(BallParams { shrinking: params, carving })
+        check_shrinking(&params)?;
+        Ok(BallParams::Shrunk(params))
     }
+
+    fn carved_params(&self) -> Result<BallParams> {
+        self.refuse_angles()?;
+        let mut params = CarvedParams::default();
+        params.penetration = self.penetration.unwrap_or(params.penetration);
+        params.initial_radius = self.initial_radius.unwrap_or(params.initial_radius);
+        params.max_radius = self.max_radius.unwrap_or(params.max_radius);
+        check_shrinking(&params.shrinking())?;
+        Ok(BallParams::Carved(params))
+    }
+
+    fn refuse_angles(&self) -> Result<()> {
+        if self.first_angle.is_some() || self.next_angle.is_some() {
+            return Err(Usage("--first-angle and --next-angle belong to --method angles".to_owned()).into());
+        }
+        Ok(())
+    }
+}
+
+/// Makes a parameter out of range an error about its flag.
+fn check_shrinking(params: &ShrinkParams) -> Result<()> {
+    params.check().map_err(|error| match error {
+        Error::InvalidParameter { name, .. } => {
+            let flag = match name {
+                "separation angle" => "--first-angle, --next-angle".to_owned(),
+                "greatest radius" => "--max-radius".to_owned(),
+                _ => format!("--{}", name.replace(' ', "-")),
+            };
+            anyhow::Error::from(Usage(format!("{flag}: {error}")))
+        }
+        other => other.into(),
+    })
 }
 
 /// Balls on one side, reported under `name`.
@@ -339,21 +357,32 @@ pub(crate) fn shrink_side(
         Side::Exterior => "exterior_balls",
     };
     let count = prepared.oriented.len();
-    let (mut balls, report) = stages.run("shrinking balls", count, |progress| {
-        shrink(&prepared.oriented, &prepared.index, side, &params.shrinking, progress)
-    })?;
-    let mut section = balls_section(&report);
-    if let (Some(carving), Some(input)) = (&params.carving, &prepared.carving) {
-        let report = stages.run("carving balls", 0, |_| {
-            carve(&mut balls, &input.kinds, &prepared.oriented, &input.needles, carving)
-        })?;
-        section
-            .add("cut_by_pulses", report.carved)
-            .add("limited_by_kind", report.limited)
-            .add("grown_to_least_radius", report.grown);
-    }
+    let (oriented, index) = (&prepared.oriented, &prepared.index);
+    let (balls, section) = match (params, &prepared.carving) {
+        (BallParams::Carved(params), Some(input)) => {
+            let input = CarvedInput { oriented, index, attributes: &input.kinds, needles: &input.needles };
+            let (balls, report) =
+                stages.run("making balls", count, |progress| carved_balls(&input, params, progress))?;
+            (balls, carved_section(&report))
+        }
+        (BallParams::Carved(_), None) => bail!("pulses were not asked for, so that nothing can carve"),
+        (BallParams::Shrunk(params), _) => {
+            let (balls, report) =
+                stages.run("shrinking balls", count, |progress| shrink(oriented, index, side, params, progress))?;
+            (balls, balls_section(&report))
+        }
+    };
     summary.add(name, section);
     Ok(balls)
+}
+
+fn carved_section(report: &CarvedReport) -> Summary {
+    let mut section = balls_section(&report.shrinking);
+    section
+        .add("cut_by_pulses", report.carving.carved)
+        .add("limited", report.carving.limited)
+        .add("grown_to_least_radius", report.carving.grown);
+    section
 }
 
 fn balls_section(report: &ShrinkReport) -> Summary {

@@ -2,12 +2,12 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
-use belvedere::PointCloud;
-use belvedere::medial::{CarveParams, MedialBalls, NO_TOUCH, PULSE_TOUCH, carve};
+use belvedere::medial::{KindBounds, MedialBalls, NO_TOUCH, PULSE_TOUCH, RadiusBounds, carve, kinds};
 use belvedere::neighbors::Tangent;
 use belvedere::normals::{Normals, Orientation, orient};
 use belvedere::pulses::{NeedleParams, Needles};
 use belvedere::random::uniform;
+use belvedere::{Attributes, PointCloud};
 
 fn at(seed: u64, index: u64) -> f64 {
     uniform(seed, index)
@@ -25,6 +25,13 @@ fn survey(count: u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
         scanner.push([side, (y + 10.0 * at(2, i)) as f32, 400.0]);
     }
     (returns, scanner)
+}
+
+const PENETRATION: f32 = 0.02;
+
+/// Bounds by kind of point.
+fn bounds(attributes: &Attributes, count: usize) -> RadiusBounds {
+    RadiusBounds::by_kind(&kinds(attributes, count), attributes, &KindBounds::default())
 }
 
 /// A pencil of balls at a random place, pointing anywhere.
@@ -149,7 +156,7 @@ fn a_deck_is_cut_to_what_slanted_pulses_leave_below_it() {
     let returns = [returns, vec![[60.0, 0.0, 20.0]]].concat();
     let scanner = [scanner, vec![[60.0, 0.0, 400.0]]].concat();
     let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default()).unwrap();
-    let report = carve(&mut balls, &cloud.attributes, &oriented, &needles, &CarveParams::default()).unwrap();
+    let report = carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, cloud.len())).unwrap();
     // the line x − z = −2 passes the axis of the balls at z = 2: the ball below (0, 0, 6 − τ) of empty radius r has its
     // centre 5.98 − r high, (3.98 − r)/√2 from the line; that equals r for r = 3.98/(1 + √2)
     let expected = 3.98 / (1.0 + 2f32.sqrt()) + 0.02;
@@ -164,14 +171,14 @@ fn kinds_of_points_bound_their_balls_and_carving_twice_changes_nothing() {
     cloud.attributes.classification = Some(vec![6, 5, 2, 6, 6]);
     cloud.attributes.return_number = Some(vec![1, 1, 1, 2, 1]);
     let (needles, _) = Needles::new(&[], &[], &NeedleParams::default()).unwrap();
-    let report = carve(&mut balls, &cloud.attributes, &oriented, &needles, &CarveParams::default()).unwrap();
+    let report = carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, cloud.len())).unwrap();
     assert_eq!(balls.radii, [5.0, 1.0, 2.0, 0.3, 5.0]);
     assert_eq!((report.carved, report.limited, report.grown), (0, 3, 0));
     assert_eq!(balls.touch, [NO_TOUCH, PULSE_TOUCH, PULSE_TOUCH, PULSE_TOUCH, NO_TOUCH]);
     let once = balls.clone();
-    carve(&mut balls, &cloud.attributes, &oriented, &needles, &CarveParams::default()).unwrap();
+    carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, cloud.len())).unwrap();
     assert_eq!(balls.radii, once.radii);
-    assert!(carve(&mut balls, &cloud.select(&[0]).attributes, &oriented, &needles, &CarveParams::default()).is_err());
+    assert!(carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, 1)).is_err());
 }
 
 #[test]
@@ -188,7 +195,8 @@ fn carving_gives_the_same_bits_for_any_number_of_threads_and_order_of_pulses() {
             let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default()).unwrap();
             let points: Vec<[f32; 3]> = (0..3000).map(|i| pencil(i).point).collect();
             let (cloud, oriented, mut balls) = balls_below(points);
-            let report = carve(&mut balls, &cloud.attributes, &oriented, &needles, &CarveParams::default()).unwrap();
+            let report =
+                carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, cloud.len())).unwrap();
             (balls.radii, balls.centers, report)
         })
     };

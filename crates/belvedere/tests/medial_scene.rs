@@ -3,13 +3,17 @@
 
 use belvedere::depth::Profile;
 use belvedere::medial::{MedialBalls, NO_TOUCH};
-use belvedere::query::{Answer, MedialScene, Viewer, Visibility};
+use belvedere::query::{Answer, MedialScene, SceneParams, Viewer, Visibility};
 use belvedere::random::uniform;
 use belvedere::ray_index::{Ray, RayIndex};
 
 fn balls(centers: Vec<[f32; 3]>, radii: Vec<f32>) -> MedialBalls {
     let count = radii.len();
     MedialBalls { centers, radii, source: vec![0; count], touch: vec![0; count], separation_angles: vec![1.0; count] }
+}
+
+fn params(profile: Profile, depth_bias: f64) -> SceneParams {
+    SceneParams { profile, depth_bias, shell: 0.0 }
 }
 
 /// A number in 0 to 1 that belongs to `index`.
@@ -49,7 +53,7 @@ fn answers_equal_those_of_every_ball_tried_in_turn() {
     let targets = random_points(11, 4000, 100.0);
     let eyes = random_points(12, 4000, 100.0);
     for bias in [0.0, 0.25] {
-        let scene = MedialScene::new(&balls, Profile::Sphere, bias).unwrap();
+        let scene = MedialScene::new(&balls, &params(Profile::Sphere, bias)).unwrap();
         let pairs = scene.visible(Viewer::Each(&eyes), &targets).unwrap();
         let eye = [50.3, 48.0, 130.0];
         let from_eye = scene.visible(Viewer::Eye(eye), &targets).unwrap();
@@ -68,7 +72,7 @@ fn answers_equal_those_of_every_ball_tried_in_turn() {
 fn a_direction_is_an_eye_very_far_away() {
     let balls = random_balls(2000);
     let targets = random_points(21, 5000, 100.0);
-    let scene = MedialScene::new(&balls, Profile::Sphere, 0.1).unwrap();
+    let scene = MedialScene::new(&balls, &params(Profile::Sphere, 0.1)).unwrap();
     for direction in [[0.3, -0.5, 0.4], [0.0, 0.0, 1.0], [-1.0, -0.0, 0.0]] {
         let far = scene.visible(Viewer::Eye(direction.map(|v: f64| 50.0 + 1e9 * v)), &targets).unwrap();
         let parallel = scene.visible(Viewer::Direction(direction), &targets).unwrap();
@@ -83,8 +87,8 @@ fn a_direction_is_an_eye_very_far_away() {
 fn the_cone_hides_less_than_the_sphere_by_the_depth_between_them() {
     // ball of radius 2 at the origin, seen from above; at 1 m beside the axis the sphere's top is at √3, the cone's at 1
     let one = balls(vec![[0.0; 3]], vec![2.0]);
-    let sphere = MedialScene::new(&one, Profile::Sphere, 0.0).unwrap();
-    let cone = MedialScene::new(&one, Profile::PaperCone, 0.0).unwrap();
+    let sphere = MedialScene::new(&one, &params(Profile::Sphere, 0.0)).unwrap();
+    let cone = MedialScene::new(&one, &params(Profile::PaperCone, 0.0)).unwrap();
     let up = Viewer::Direction([0.0, 0.0, 1.0]);
     let targets = [[1.0, 0.0, 0.99], [1.0, 0.0, 1.01], [1.0, 0.0, 1.73], [1.0, 0.0, 1.74], [2.01, 0.0, -5.0]];
     let (blocked, visible) = (Answer::Blocked, Answer::Visible);
@@ -96,7 +100,7 @@ fn the_cone_hides_less_than_the_sphere_by_the_depth_between_them() {
 fn balls_that_hold_the_viewer_lie_behind_it_or_never_shrank_hide_nothing() {
     let mut three = balls(vec![[0.0; 3], [20.0, 0.0, 0.0], [10.0, 0.0, 0.0]], vec![2.0, 3.0, 1.0]);
     three.touch[2] = NO_TOUCH;
-    let scene = MedialScene::new(&three, Profile::Sphere, 0.0).unwrap();
+    let scene = MedialScene::new(&three, &params(Profile::Sphere, 0.0)).unwrap();
     let target = [[5.0, 0.0, 0.0]];
     for (eye, expected) in [
         ([1.0, 0.0, 0.0], Answer::Visible),  // within the first ball
@@ -114,7 +118,7 @@ fn answers_are_the_same_for_any_number_of_threads() {
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let scene = MedialScene::new(&balls, Profile::Sphere, 0.1).unwrap();
+            let scene = MedialScene::new(&balls, &params(Profile::Sphere, 0.1)).unwrap();
             scene.visible(Viewer::Direction([0.4, 0.3, 0.5]), &targets).unwrap()
         })
     };
@@ -125,14 +129,14 @@ fn answers_are_the_same_for_any_number_of_threads() {
 
 #[test]
 fn what_cannot_be_looked_at_is_said() {
-    let scene = MedialScene::new(&random_balls(10), Profile::Sphere, 0.0).unwrap();
+    let scene = MedialScene::new(&random_balls(10), &params(Profile::Sphere, 0.0)).unwrap();
     let targets = [[f32::NAN, 0.0, 0.0], [1.0, 2.0, 3.0]];
     let answers = scene.visible(Viewer::Direction([0.0, 0.0, 1.0]), &targets).unwrap();
     assert_eq!(answers[0], Answer::OutsideView);
     assert!(scene.visible(Viewer::Direction([0.0; 3]), &targets).is_err());
     assert!(scene.visible(Viewer::Eye([f64::NAN, 0.0, 0.0]), &targets).is_err());
     assert!(scene.visible(Viewer::Each(&targets[..1]), &targets).is_err());
-    let empty = MedialScene::new(&MedialBalls::default(), Profile::Sphere, 0.0).unwrap();
+    let empty = MedialScene::new(&MedialBalls::default(), &params(Profile::Sphere, 0.0)).unwrap();
     assert_eq!(empty.visible(Viewer::Eye([0.0; 3]), &targets[1..]).unwrap(), [Answer::Visible]);
 }
 

@@ -2,7 +2,7 @@
 
 use super::{check_output, check_parent, is_folder, is_same};
 use crate::arguments::{Balls, Cleaning, Global, MethodChoice, SideChoice, Usage};
-use crate::pipeline::{self, BallParams, Prepared};
+use crate::pipeline::{self, BallParams, Carving, Prepared};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
     }
     let method = if is_folder { MethodChoice::Angles } else { MethodChoice::Tau };
     let params = arguments.shrinking.params(method)?;
-    if params.carving.is_some() && (is_folder || arguments.side == SideChoice::Exterior) {
+    if params.carving() == Carving::Wanted && (is_folder || arguments.side == SideChoice::Exterior) {
         let what =
             "--method carved makes interior balls in a ball file; a folder and --side exterior need tau or angles";
         return Err(Usage(what.to_owned()).into());

@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     let cleaning = Cleaning { keep_noise: false, keep_duplicates: false, keep_isolated: false };
     let prepared =
         pipeline::prepare(Cow::Borrowed(&cloud), &cleaning, &orienting, Carving::Unwanted, &mut stages, &mut summary)?;
-    let shrinking = BallParams::uncarved(ShrinkParams::tau());
+    let shrinking = BallParams::Shrunk(ShrinkParams::tau());
     let balls = pipeline::shrink_side(&prepared, Side::Interior, &shrinking, &mut stages, &mut summary)?.shrunk();
     drop(prepared);
 
@@ -86,7 +86,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
         )?;
         let provenance = [
             ("program", concat!("belvedere ", env!("CARGO_PKG_VERSION"), " demo").to_owned()),
-            ("parameters", format!("{:?}", shrinking.shrinking)),
+            ("parameters", format!("{:?}", shrinking)),
         ];
         write_balls(
             &folder.join("balls.npz"),

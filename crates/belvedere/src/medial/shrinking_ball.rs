@@ -67,17 +67,6 @@ impl ShrinkParams {
         Self { method: ShrinkMethod::Tau { penetration: 0.05 }, initial_radius: 30.0, max_radius: 0.5 }
     }
 
-    /// Balls to be carved by pulses afterwards ([`super::carve()`]): the penetration of [`super::CarveParams`], from 5 m, and no
-    /// limit, since pulses set it.
-    ///
-    /// On simulated towns of another seed than those of `docs/accuracy.md` 15 m answer the same and cost 40 % more a query, and
-    /// bulge farther where no pulse passes, as at the rim of a tile; 3 m let 1.2 points more of the shade of streets through.
-    #[must_use]
-    pub fn for_carving() -> Self {
-        let penetration = super::CarveParams::default().penetration;
-        Self { method: ShrinkMethod::Tau { penetration }, initial_radius: 5.0, max_radius: f32::INFINITY }
-    }
-
     /// Checks what [`shrink`] checks, before a cloud is there.
     ///
     /// # Errors

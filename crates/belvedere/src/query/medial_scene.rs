@@ -12,27 +12,44 @@ const CHUNK: usize = 1024;
 
 /// Medial balls indexed for exact lines of sight, for any number of viewers.
 ///
-/// A target is blocked if its line of sight to the viewer leaves a ball more than `depth_bias` metres on: the same rule as
+/// A target is blocked if its line of sight to the viewer leaves a ball more than [`SceneParams::depth_bias`] on: the same rule as
 /// for a depth map ([`super::query_points`]), without pixels. Balls that hold the viewer are left out for that line of
 /// sight, so that one wrong ball does not blind an observer; balls that hold the target are not.
 pub struct MedialScene {
     index: RayIndex,
     /// Centre and radius in the order of the index.
     balls: Vec<([f32; 3], f32)>,
-    profile: Profile,
-    depth_bias: f64,
+    /// Row of each of them among the balls given.
+    rows: Vec<u32>,
+    params: SceneParams,
+}
+
+/// How balls block lines of sight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneParams {
+    /// Surface that stands for a ball; the cone of the paper has its tip where the line of sight through the centre leaves it.
+    pub profile: Profile,
+    /// How far a target may lie inside a ball, along its line of sight, and still count as visible, metres, 0 or more.
+    pub depth_bias: f64,
+    /// How far a ball gives way to a target near its surface, metres, 0 or more: to a target less than this inside its surface it
+    /// counts with a radius smaller by this, to one outside with less of that the farther it lies, and with none of
+    /// it from this distance on. Balls bulge by centimetres between the points of a surface, and what lies on that surface
+    /// must not vanish in them.
+    pub shell: f64,
+}
+
+impl Default for SceneParams {
+    fn default() -> Self {
+        Self { profile: Profile::Sphere, depth_bias: 0.0, shell: 0.0 }
+    }
 }
 
 impl MedialScene {
     /// Indexes `balls`. Those that never shrank, or whose centre or radius is not finite, are left out.
     ///
-    /// `profile` says which surface stands for a ball; the cone of the paper has its tip where the line of sight through the
-    /// centre leaves the ball. `depth_bias`, metres, 0 or more, is how far a target may lie inside a ball, along its line of
-    /// sight, and still count as visible.
-    ///
     /// # Errors
     /// Only those of [`RayIndex::new`], which balls of finite size do not cause.
-    pub fn new(balls: &MedialBalls, profile: Profile, depth_bias: f64) -> Result<Self> {
+    pub fn new(balls: &MedialBalls, params: &SceneParams) -> Result<Self> {
         let usable = |&i: &usize| {
             balls.touch[i] != NO_TOUCH
                 && balls.radii[i].is_finite()
@@ -49,41 +66,65 @@ impl MedialScene {
             })
             .collect();
         let index = RayIndex::new(&boxes)?;
-        let in_order = index.order().iter().map(|&row| {
-            let i = rows[row as usize];
-            (balls.centers[i], balls.radii[i])
-        });
-        let balls = in_order.collect();
-        Ok(Self { index, balls, profile, depth_bias })
+        #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
+        let rows: Vec<u32> = index.order().iter().map(|&number| rows[number as usize] as u32).collect();
+        let balls = rows.iter().map(|&row| (balls.centers[row as usize], balls.radii[row as usize])).collect();
+        Ok(Self { index, balls, rows, params: *params })
+    }
+
+    /// Number of balls that can block.
+    #[must_use]
+    pub fn ball_count(&self) -> usize {
+        self.balls.len()
     }
 
     /// Whether any ball lies between a target and its viewer at `range` along the unit vector `towards`.
     fn blocked(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
-        let ray = Ray { origin: target, direction: towards, ranges: [self.depth_bias, range] };
-        self.index.any(&ray, |row| {
-            let Some(&(center, radius)) = self.balls.get(row) else { return false };
-            let radius = f64::from(radius);
-            let mut along = 0.0;
-            let mut square = 0.0;
-            for ((center, target), towards) in center.into_iter().zip(target).zip(towards) {
-                let offset = f64::from(center) - target;
-                along += offset * towards;
-                square += offset * offset;
+        let ray = Ray { origin: target, direction: towards, ranges: [self.params.depth_bias, range] };
+        self.index.any(&ray, |number| self.front(number, &ray).is_some())
+    }
+
+    /// The ball that a line of sight from `target` meets first on its way to `range` metres along the unit vector `towards`: its
+    /// row among the balls given, and where the line leaves it, metres from the target. `None` where nothing blocks.
+    #[must_use]
+    pub fn first_block(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Option<(usize, f64)> {
+        let ray = Ray { origin: target, direction: towards, ranges: [self.params.depth_bias, range] };
+        let (number, front) = self.index.nearest(&ray, |number| self.front(number, &ray))?;
+        Some((*self.rows.get(number)? as usize, front))
+    }
+
+    /// Where a line of sight leaves ball `number`, metres from its target, if that ball blocks it.
+    fn front(&self, number: usize, ray: &Ray) -> Option<f64> {
+        let &(center, radius) = self.balls.get(number)?;
+        let mut radius = f64::from(radius);
+        let mut along = 0.0;
+        let mut square = 0.0;
+        for ((center, target), towards) in center.into_iter().zip(ray.origin).zip(ray.direction) {
+            let offset = f64::from(center) - target;
+            along += offset * towards;
+            square += offset * offset;
+        }
+        let beside = (square - along * along).max(0.0);
+        if beside >= radius * radius {
+            return None;
+        }
+        let whole = along + (radius * radius - beside).sqrt();
+        if whole >= ray.ranges[1] {
+            return None;
+        }
+        let shell = self.params.shell;
+        let outside = square.sqrt() - radius;
+        if outside.abs() < shell {
+            radius -= shell - outside.max(0.0);
+            if radius <= 0.0 || beside >= radius * radius {
+                return None;
             }
-            let beside = (square - along * along).max(0.0);
-            if beside >= radius * radius {
-                return false;
-            }
-            let front = along + (radius * radius - beside).sqrt();
-            if front >= range {
-                return false;
-            }
-            let front = match self.profile {
-                Profile::Sphere => front,
-                Profile::PaperCone => along + (radius - beside.sqrt()),
-            };
-            front > self.depth_bias
-        })
+        }
+        let front = match self.params.profile {
+            Profile::Sphere => along + (radius * radius - beside).sqrt(),
+            Profile::PaperCone => along + (radius - beside.sqrt()),
+        };
+        (front > self.params.depth_bias).then_some(front)
     }
 }
 

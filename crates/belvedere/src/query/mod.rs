@@ -4,6 +4,6 @@ pub mod medial_scene;
 pub mod points;
 pub mod visibility;
 
-pub use medial_scene::MedialScene;
+pub use medial_scene::{MedialScene, SceneParams};
 pub use points::{Answer, AnswerCounts, query_points, random_targets};
 pub use visibility::{Sight, Viewer, Visibility};

@@ -1,0 +1,156 @@
+//! What each rule of carved balls is worth: the same towns and questions with all rules, and with each left out.
+//!
+//! ```sh
+//! cargo run --release -p belvedere-baselines --example carving_rules -- village,town,old-town,towers 1,2,3 [VARIANT,…] [blame]
+//! ```
+//!
+//! prints the table of docs/methods/carving.md. With `blame` it says which surfaces hide what is called visible, and at which
+//! surfaces the balls sit that hide what is visible.
+#![allow(clippy::print_stdout, reason = "an example talks")]
+
+mod place;
+
+use belvedere::medial::CarvedParams;
+use belvedere::query::{Answer, Viewer, Visibility};
+use belvedere::{Error, Result};
+use belvedere_baselines::agreement::{Counts, Rate};
+use belvedere_baselines::medial::{Making, MedialBaseline, MedialParams, Outward};
+use belvedere_scenes::Preset;
+use place::{Place, Question};
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// Everything, and everything but one rule.
+fn variants() -> Vec<(&'static str, MedialParams)> {
+    let all = MedialParams::carved();
+    let with = |name: &'static str, change: fn(&mut CarvedParams)| {
+        let mut carving = CarvedParams::default();
+        change(&mut carving);
+        (name, MedialParams { making: Making::Carving(carving), ..all })
+    };
+    vec![with("all", |_| ())]
+}
+
+fn main() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let list = |index: usize, usual: &str| -> Vec<String> {
+        let text = arguments.get(index).map_or(usual, String::as_str);
+        text.split(',').filter(|part| !part.is_empty()).map(str::to_owned).collect()
+    };
+    let presets: Vec<Preset> = list(0, "village,town,old-town,towers")
+        .iter()
+        .map(|name| {
+            Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or_else(|| Error::InvalidParameter {
+                name: "preset",
+                value: name.clone(),
+                expected: "village, town, old-town, towers or park",
+            })
+        })
+        .collect::<Result<_>>()?;
+    let seeds: Vec<u64> = list(1, "7").iter().filter_map(|seed| seed.parse().ok()).collect();
+    let wanted = list(2, "");
+    let blames = arguments.iter().any(|argument| argument == "blame");
+
+    let mut sums: BTreeMap<usize, Vec<Scores>> = BTreeMap::new();
+    for &preset in &presets {
+        for &seed in &seeds {
+            let place = Place::simulated(preset, seed)?;
+            for (number, (name, params)) in variants().into_iter().enumerate() {
+                if !wanted.is_empty() && !wanted.iter().any(|w| w == name || w == "blame") {
+                    continue;
+                }
+                let start = Instant::now();
+                let model = MedialBaseline::new(&place.survey(), Outward::Survey, &params)?;
+                let seconds = start.elapsed().as_secs_f64();
+                let scores = judge(&place, &model, seconds)?;
+                println!("{}-{seed} {name}: {scores}", preset.name());
+                if blames {
+                    place.blame(&model)?;
+                }
+                sums.entry(number).or_default().push(scores);
+            }
+        }
+    }
+    println!("\n| variant | {} |", Scores::HEADER);
+    for (number, scores) in sums {
+        println!("| {} | {} |", variants()[number].0, Scores::mean(&scores));
+    }
+    Ok(())
+}
+
+/// One line of the table.
+#[derive(Clone, Default)]
+struct Scores {
+    values: Vec<f64>,
+}
+
+impl Scores {
+    const HEADER: &str = "PED sun | fb | fv | AIR sun IoU | AIR eye IoU | ROOF | FACADE | PED eye | fb | fv | street mean | p10 | fb | fv | balls k | s";
+
+    fn mean(all: &[Self]) -> Self {
+        let count = all.len() as f64;
+        let columns = all.first().map_or(0, |first| first.values.len());
+        Self { values: (0..columns).map(|c| all.iter().map(|s| s.values[c]).sum::<f64>() / count).collect() }
+    }
+}
+
+impl std::fmt::Display for Scores {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let values: Vec<String> = self.values.iter().map(|value| format!("{value:.1}")).collect();
+        write!(f, "{}", values.join(" | "))
+    }
+}
+
+/// Counts of one question.
+fn counts(question: &Question, answers: &[Answer]) -> Counts {
+    let mut counts = Counts::default();
+    question.visible.iter().zip(answers).for_each(|(&visible, &answer)| counts.add(visible, answer));
+    counts
+}
+
+fn judge(place: &Place, model: &MedialBaseline, seconds: f64) -> Result<Scores> {
+    let mean = |set: &str, views: &str, rate: Rate| -> Result<f64> {
+        let mut values = Vec::new();
+        for question in place.questions.iter().filter(|q| q.set == set && q.views == views) {
+            let answers = model.visible(question.viewer, &place.targets[question.set])?;
+            values.extend(rate.of(&counts(question, &answers)).map(|value| 100.0 * value));
+        }
+        Ok(values.iter().sum::<f64>() / values.len().max(1) as f64)
+    };
+    let mut street: Vec<[f64; 3]> = Vec::new();
+    for question in place.questions.iter().filter(|q| q.views == "street") {
+        let answers = model.visible(question.viewer, &place.targets[question.set])?;
+        let counts = counts(question, &answers);
+        let rates = [Rate::Balanced, Rate::FalseBlocked, Rate::FalseVisible];
+        street.push(rates.map(|rate| rate.of(&counts).map_or(f64::NAN, |value| 100.0 * value)));
+    }
+    street.retain(|values| values[0].is_finite());
+    street.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let over =
+        |k: usize| street.iter().map(|values| values[k]).filter(|v| v.is_finite()).sum::<f64>() / street.len() as f64;
+    Ok(Scores {
+        values: vec![
+            mean("PED", "suns", Rate::Balanced)?,
+            mean("PED", "suns", Rate::FalseBlocked)?,
+            mean("PED", "suns", Rate::FalseVisible)?,
+            mean("AIR", "suns", Rate::BlockedIou)?,
+            mean("AIR", "eyes", Rate::BlockedIou)?,
+            mean("ROOF", "suns", Rate::Balanced)?,
+            mean("FACADE", "suns", Rate::Balanced)?,
+            mean("PED", "eyes", Rate::Balanced)?,
+            mean("PED", "eyes", Rate::FalseBlocked)?,
+            mean("PED", "eyes", Rate::FalseVisible)?,
+            over(0),
+            street.get(street.len() / 10).map_or(f64::NAN, |values| values[0]),
+            over(1),
+            over(2),
+            model.scene().ball_count() as f64 / 1000.0,
+            seconds,
+        ],
+    })
+}
+
+/// The line of sight of a viewer, for the questions asked here.
+fn towards(viewer: Viewer<'_>, target: [f32; 3]) -> Option<([f64; 3], f64)> {
+    viewer.line_of_sight(0, target)
+}

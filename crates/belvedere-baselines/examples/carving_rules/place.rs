@@ -1,0 +1,165 @@
+//! A simulated town with its survey, and questions with exact answers.
+
+use belvedere::cloud::{centre_rounded, to_local};
+use belvedere::query::{Answer, Viewer, Visibility};
+use belvedere::trajectory::Trajectory;
+use belvedere::view::to_sun;
+use belvedere::{Attributes, GpsTimeKind, PointCloud, Result};
+use belvedere_baselines::Survey;
+use belvedere_baselines::medial::MedialBaseline;
+use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Scene, Truth, scan_airborne, town};
+use std::collections::BTreeMap;
+
+const EXTENT: f64 = 150.0;
+const PULSES_PER_M2: f64 = 8.0;
+const TARGETS: usize = 20_000;
+/// Observers in streets.
+const STREET_OBSERVERS: usize = 40;
+/// Targets that each of them looks at.
+const STREET_TARGETS: usize = 4000;
+const SUNS_DEG: [[f64; 2]; 3] = [[110.0, 20.0], [180.0, 65.0], [240.0, 35.0]];
+
+/// What one viewer asks of one set of targets.
+pub(crate) struct Question {
+    pub(crate) set: &'static str,
+    pub(crate) views: &'static str,
+    pub(crate) viewer: Viewer<'static>,
+    /// Whether each target is visible in truth.
+    pub(crate) visible: Vec<bool>,
+}
+
+pub(crate) struct Place {
+    cloud: PointCloud,
+    scanner: Vec<[f32; 3]>,
+    scene: Scene,
+    truth: Truth,
+    /// Local positions by name of the set.
+    pub(crate) targets: BTreeMap<&'static str, Vec<[f32; 3]>>,
+    pub(crate) questions: Vec<Question>,
+}
+
+impl Place {
+    pub(crate) fn simulated(preset: Preset, seed: u64) -> Result<Self> {
+        let scene = town(&preset.params(EXTENT, seed));
+        let params = AirborneParams { seed, ..AirborneParams::covering(&scene, PULSES_PER_M2) };
+        let scan = scan_airborne(&scene, &params);
+        let coordinates = || (0..scan.len()).map(|i| [scan.x[i], scan.y[i], scan.z[i]]);
+        let origin = centre_rounded(coordinates());
+        let cloud = PointCloud {
+            origin,
+            positions: coordinates().map(|c| to_local(c, origin)).collect(),
+            attributes: Attributes {
+                classification: Some(scan.classification.clone()),
+                gps_time: Some(scan.gps_time.clone()),
+                gps_time_kind: GpsTimeKind::AdjustedStandard,
+                return_number: Some(scan.return_number.clone()),
+                return_count: Some(scan.return_count.clone()),
+                point_source_id: Some(scan.point_source_id.clone()),
+                ..Attributes::default()
+            },
+            ..PointCloud::default()
+        };
+        let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
+        let (scanner, _) = Trajectory::from_records(path.collect()).0.scanner_positions(&cloud)?;
+        let truth = Truth::new(&scene);
+        let mut place = Self { cloud, scanner, scene, truth, targets: BTreeMap::new(), questions: Vec::new() };
+        place.ask(seed);
+        Ok(place)
+    }
+
+    fn ask(&mut self, seed: u64) {
+        let origin = self.cloud.origin;
+        let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
+        let Some((low, high)) = self.cloud.bounds() else { return };
+        let site = QuerySite { scene: &self.scene, truth: &self.truth, bounds: [absolute(low), absolute(high)] };
+        let sets = [
+            ("AIR", QuerySet::Air, TARGETS),
+            ("PED", QuerySet::Pedestrians, TARGETS),
+            ("ROOF", QuerySet::Roofs, TARGETS),
+            ("FACADE", QuerySet::Facades, TARGETS),
+            ("STREET", QuerySet::Pedestrians, STREET_TARGETS),
+        ];
+        for (name, set, count) in sets {
+            let positions = site.targets(set, count, seed).positions;
+            self.targets.insert(name, positions.into_iter().map(|p| to_local(p, origin)).collect());
+        }
+        let suns = SUNS_DEG.map(|[a, e]| ("suns", Viewer::Direction(to_sun(a.to_radians(), e.to_radians()))));
+        let local = |eye: [f64; 3]| Viewer::Eye(std::array::from_fn(|i| eye[i] - origin[i]));
+        let eyes = site.observers(seed).into_iter().flatten().map(|eye| ("eyes", local(eye)));
+        let street = site.street_observers(STREET_OBSERVERS, seed).into_iter().map(|eye| ("street", local(eye)));
+        let viewers: Vec<(&'static str, Viewer<'static>)> = suns.into_iter().chain(eyes).chain(street).collect();
+        for (views, viewer) in viewers {
+            for (&set, targets) in &self.targets {
+                if (views == "street") != (set == "STREET") {
+                    continue;
+                }
+                let exact: Vec<[f64; 3]> = targets.iter().map(|&p| absolute(p)).collect();
+                let blocked = match viewer {
+                    Viewer::Direction(direction) => self.truth.occluded_towards_each(&exact, direction),
+                    Viewer::Eye(eye) => self.truth.occluded_each(&exact, std::array::from_fn(|i| eye[i] + origin[i])),
+                    Viewer::Each(_) => continue,
+                };
+                let visible = blocked.into_iter().map(|blocked| !blocked).collect();
+                self.questions.push(Question { set, views, viewer, visible });
+            }
+        }
+    }
+
+    pub(crate) fn survey(&self) -> Survey<'_> {
+        Survey { cloud: &self.cloud, scanner: &self.scanner, models: &[] }
+    }
+
+    /// Prints by surface what hides what a model calls visible, and at what its balls sit that hide what is visible.
+    pub(crate) fn blame(&self, model: &MedialBaseline) -> Result<()> {
+        let origin = self.cloud.origin;
+        let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
+        let site = QuerySite { scene: &self.scene, truth: &self.truth, bounds: [[0.0; 3]; 2] };
+        let kind = |triangle: u32| self.scene.materials.get(triangle as usize).map_or("?", |m| m.name());
+        for views in ["suns", "street"] {
+            for set in ["PED", "AIR", "ROOF", "FACADE", "STREET"] {
+                let (mut missed, mut blocking) = (BTreeMap::<&str, usize>::new(), BTreeMap::<String, usize>::new());
+                let (mut visible_count, mut blocked_count) = (0, 0);
+                for question in self.questions.iter().filter(|q| q.set == set && q.views == views) {
+                    let targets = &self.targets[set];
+                    let answers = model.visible(question.viewer, targets)?;
+                    for ((&target, &visible), &answer) in targets.iter().zip(&question.visible).zip(&answers) {
+                        let Some((towards, range)) = super::towards(question.viewer, target) else { continue };
+                        visible_count += usize::from(visible);
+                        blocked_count += usize::from(!visible);
+                        if !visible && answer == Answer::Visible {
+                            let hit = self.truth.first_hit(absolute(target), towards, range);
+                            *missed.entry(hit.map_or("?", |hit| kind(hit.triangle))).or_default() += 1;
+                        }
+                        if visible && answer == Answer::Blocked {
+                            let block = model.scene().first_block(target.map(f64::from), towards, range);
+                            let Some((row, _)) = block else { continue };
+                            let (source, radius) = (model.balls().source[row] as usize, model.balls().radii[row]);
+                            let surface = site
+                                .surface_of_return(
+                                    absolute(self.scanner[source]),
+                                    absolute(self.cloud.positions[source]),
+                                )
+                                .map_or("?", |(hit, _)| kind(hit.triangle));
+                            let size = ["<.2", "<.5", "<1", "<2", ">2"]
+                                [[0.2, 0.5, 1.0, 2.0].iter().filter(|&&r| radius > r).count()];
+                            *blocking.entry(format!("{surface} r{size}")).or_default() += 1;
+                        }
+                    }
+                }
+                let share = |count: usize, all: usize| 100.0 * count as f64 / all.max(1) as f64;
+                let list = |items: Vec<(String, f64)>| {
+                    let mut items = items;
+                    items.sort_by(|a, b| b.1.total_cmp(&a.1));
+                    items.iter().take(9).map(|(name, v)| format!("{name} {v:.2}")).collect::<Vec<_>>().join(", ")
+                };
+                let missed = missed.into_iter().map(|(k, v)| (k.to_owned(), share(v, blocked_count))).collect();
+                let blocking = blocking.into_iter().map(|(k, v)| (k, share(v, visible_count))).collect();
+                if visible_count > 0 {
+                    println!("  {views} {set}: false-visible by {}", list(missed));
+                    println!("  {views} {set}: false-blocked by {}", list(blocking));
+                }
+            }
+        }
+        Ok(())
+    }
+}
