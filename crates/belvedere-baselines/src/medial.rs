@@ -94,7 +94,8 @@ impl MedialParams {
     #[must_use]
     pub fn carved() -> Self {
         let making = Making::Carving(CarvedParams::default());
-        Self { neighbors: 16, making, ..Self::published_with_spheres() }
+        let blocking = SceneParams { profile: Profile::Sphere, depth_bias: 0.0, shell: 0.2 };
+        Self { neighbors: 16, making, blocking, ..Self::published_with_spheres() }
     }
 
     /// What Belvedere does by default so far: balls of bounded penetration, cut down to half a metre.

@@ -11,7 +11,7 @@
 mod place;
 
 use belvedere::medial::CarvedParams;
-use belvedere::query::{Answer, Viewer, Visibility};
+use belvedere::query::{Answer, SceneParams, Viewer, Visibility};
 use belvedere::{Error, Result};
 use belvedere_baselines::agreement::{Counts, Rate};
 use belvedere_baselines::medial::{Making, MedialBaseline, MedialParams, Outward};
@@ -28,7 +28,15 @@ fn variants() -> Vec<(&'static str, MedialParams)> {
         change(&mut carving);
         (name, MedialParams { making: Making::Carving(carving), ..all })
     };
-    vec![with("all", |_| ())]
+    let blocked = |name: &'static str, depth_bias: f64, shell: f64| {
+        (name, MedialParams { blocking: SceneParams { depth_bias, shell, ..all.blocking }, ..all })
+    };
+    vec![
+        with("all", |_| ()),
+        with("without pruning", |p| p.pruning = None),
+        blocked("a bias of 0.25 m instead of the shell", 0.25, 0.0),
+        blocked("no shell", 0.0, 0.0),
+    ]
 }
 
 fn main() -> Result<()> {

@@ -3,6 +3,7 @@
 use super::balls::{MedialBalls, Side};
 use super::bounds::{KindBounds, RadiusBounds, kinds};
 use super::carve::{CarveReport, carve};
+use super::prune::{PruneParams, prune};
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
@@ -24,11 +25,19 @@ pub struct CarvedParams {
     pub max_radius: f32,
     /// Bounds by kind of point.
     pub kind_bounds: KindBounds,
+    /// Leaves out balls that others make superfluous.
+    pub pruning: Option<PruneParams>,
 }
 
 impl Default for CarvedParams {
     fn default() -> Self {
-        Self { penetration: 0.02, initial_radius: 5.0, max_radius: f32::INFINITY, kind_bounds: KindBounds::default() }
+        Self {
+            penetration: 0.02,
+            initial_radius: 5.0,
+            max_radius: f32::INFINITY,
+            kind_bounds: KindBounds::default(),
+            pruning: Some(PruneParams::default()),
+        }
     }
 }
 
@@ -64,6 +73,8 @@ pub struct CarvedReport {
     pub shrinking: ShrinkReport,
     /// By the pulses.
     pub carving: CarveReport,
+    /// Balls left out because others make them superfluous.
+    pub pruned: usize,
 }
 
 /// The interior balls of a survey as far as its pulses leave them, those alone that are of use. [`MedialBalls::source`] and
@@ -83,5 +94,8 @@ pub fn carved_balls(
     let mut balls;
     (balls, report.shrinking) = shrink(oriented, index, Side::Interior, &params.shrinking(), progress)?;
     report.carving = carve(&mut balls, oriented, needles, params.penetration, &bounds)?;
+    if let Some(pruning) = &params.pruning {
+        report.pruned = prune(&mut balls, oriented, index, pruning)?;
+    }
     Ok((balls.shrunk(), report))
 }

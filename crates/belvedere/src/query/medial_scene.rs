@@ -10,6 +10,9 @@ use rayon::prelude::*;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
 
+/// Most of its radius that a ball gives way to a target near its surface.
+const SHELL_SHARE: f64 = 0.5;
+
 /// Medial balls indexed for exact lines of sight, for any number of viewers.
 ///
 /// A target is blocked if its line of sight to the viewer leaves a ball more than [`SceneParams::depth_bias`] on: the same rule as
@@ -34,7 +37,7 @@ pub struct SceneParams {
     /// How far a ball gives way to a target near its surface, metres, 0 or more: to a target less than this inside its surface it
     /// counts with a radius smaller by this, to one outside with less of that the farther it lies, and with none of
     /// it from this distance on. Balls bulge by centimetres between the points of a surface, and what lies on that surface
-    /// must not vanish in them.
+    /// must not vanish in them. Never more than half the radius: a wire must not vanish either.
     pub shell: f64,
 }
 
@@ -112,7 +115,7 @@ impl MedialScene {
         if whole >= ray.ranges[1] {
             return None;
         }
-        let shell = self.params.shell;
+        let shell = self.params.shell.min(SHELL_SHARE * radius);
         let outside = square.sqrt() - radius;
         if outside.abs() < shell {
             radius -= shell - outside.max(0.0);
