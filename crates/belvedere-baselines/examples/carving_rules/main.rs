@@ -5,9 +5,10 @@
 //! ```
 //!
 //! prints the table of docs/methods/carving.md. With `blame` it says which surfaces hide what is called visible, and at which
-//! surfaces the balls sit that hide what is visible.
+//! surfaces the balls sit that hide what is visible. `-- figures FOLDER` draws its pictures.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
+mod figures;
 mod place;
 
 use belvedere::medial::CarvedParams;
@@ -18,6 +19,7 @@ use belvedere_baselines::medial::{Making, MedialBaseline, MedialParams, Outward}
 use belvedere_scenes::Preset;
 use place::{Place, Question};
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::time::Instant;
 
 /// Everything, and everything but one rule.
@@ -41,6 +43,11 @@ fn variants() -> Vec<(&'static str, MedialParams)> {
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let [command, folder] = &arguments[..]
+        && command == "figures"
+    {
+        return figures::draw(Path::new(folder));
+    }
     let list = |index: usize, usual: &str| -> Vec<String> {
         let text = arguments.get(index).map_or(usual, String::as_str);
         text.split(',').filter(|part| !part.is_empty()).map(str::to_owned).collect()

@@ -30,6 +30,7 @@ pub(crate) struct Question {
 
 pub(crate) struct Place {
     cloud: PointCloud,
+    bounds: ([f32; 3], [f32; 3]),
     scanner: Vec<[f32; 3]>,
     scene: Scene,
     truth: Truth,
@@ -62,16 +63,22 @@ impl Place {
         let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
         let (scanner, _) = Trajectory::from_records(path.collect()).0.scanner_positions(&cloud)?;
         let truth = Truth::new(&scene);
-        let mut place = Self { cloud, scanner, scene, truth, targets: BTreeMap::new(), questions: Vec::new() };
+        let mut place = Self {
+            bounds: cloud.bounds().unwrap_or_default(),
+            cloud,
+            scanner,
+            scene,
+            truth,
+            targets: BTreeMap::new(),
+            questions: Vec::new(),
+        };
         place.ask(seed);
         Ok(place)
     }
 
     fn ask(&mut self, seed: u64) {
         let origin = self.cloud.origin;
-        let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
-        let Some((low, high)) = self.cloud.bounds() else { return };
-        let site = QuerySite { scene: &self.scene, truth: &self.truth, bounds: [absolute(low), absolute(high)] };
+        let site = self.site();
         let sets = [
             ("AIR", QuerySet::Air, TARGETS),
             ("PED", QuerySet::Pedestrians, TARGETS),
@@ -79,30 +86,65 @@ impl Place {
             ("FACADE", QuerySet::Facades, TARGETS),
             ("STREET", QuerySet::Pedestrians, STREET_TARGETS),
         ];
+        let mut sets_of_targets = BTreeMap::new();
         for (name, set, count) in sets {
             let positions = site.targets(set, count, seed).positions;
-            self.targets.insert(name, positions.into_iter().map(|p| to_local(p, origin)).collect());
+            sets_of_targets.insert(name, positions.into_iter().map(|p| to_local(p, origin)).collect::<Vec<_>>());
         }
         let suns = SUNS_DEG.map(|[a, e]| ("suns", Viewer::Direction(to_sun(a.to_radians(), e.to_radians()))));
         let local = |eye: [f64; 3]| Viewer::Eye(std::array::from_fn(|i| eye[i] - origin[i]));
         let eyes = site.observers(seed).into_iter().flatten().map(|eye| ("eyes", local(eye)));
         let street = site.street_observers(STREET_OBSERVERS, seed).into_iter().map(|eye| ("street", local(eye)));
         let viewers: Vec<(&'static str, Viewer<'static>)> = suns.into_iter().chain(eyes).chain(street).collect();
+        let mut questions = Vec::new();
         for (views, viewer) in viewers {
-            for (&set, targets) in &self.targets {
+            for (&set, targets) in &sets_of_targets {
                 if (views == "street") != (set == "STREET") {
                     continue;
                 }
-                let exact: Vec<[f64; 3]> = targets.iter().map(|&p| absolute(p)).collect();
+                let exact: Vec<[f64; 3]> = targets.iter().map(|&p| self.absolute(p)).collect();
                 let blocked = match viewer {
                     Viewer::Direction(direction) => self.truth.occluded_towards_each(&exact, direction),
                     Viewer::Eye(eye) => self.truth.occluded_each(&exact, std::array::from_fn(|i| eye[i] + origin[i])),
                     Viewer::Each(_) => continue,
                 };
                 let visible = blocked.into_iter().map(|blocked| !blocked).collect();
-                self.questions.push(Question { set, views, viewer, visible });
+                questions.push(Question { set, views, viewer, visible });
             }
         }
+        (self.targets, self.questions) = (sets_of_targets, questions);
+    }
+
+    fn absolute(&self, p: [f32; 3]) -> [f64; 3] {
+        std::array::from_fn(|i| f64::from(p[i]) + self.cloud.origin[i])
+    }
+
+    fn site(&self) -> QuerySite<'_> {
+        let (low, high) = self.bounds();
+        QuerySite { scene: &self.scene, truth: &self.truth, bounds: [self.absolute(low), self.absolute(high)] }
+    }
+
+    /// Corners of the cloud, local metres.
+    pub(crate) fn bounds(&self) -> ([f32; 3], [f32; 3]) {
+        self.bounds
+    }
+
+    /// Whether a local position lies in a solid or in the ground.
+    pub(crate) fn is_inside(&self, p: [f32; 3]) -> bool {
+        self.site().is_inside(self.absolute(p))
+    }
+
+    /// The free local position `height` above the ground, if there is one.
+    pub(crate) fn above_ground(&self, [x, y]: [f32; 2], height: f32) -> Option<[f32; 3]> {
+        let [east, north, _] = self.absolute([x, y, 0.0]);
+        let ground = to_local([east, north, self.site().ground_height([east, north])?], self.cloud.origin);
+        let p = [x, y, ground[2] + height];
+        (!self.is_inside(p)).then_some(p)
+    }
+
+    /// Whether nothing stands between a local position and the sun.
+    pub(crate) fn is_lit(&self, p: [f32; 3], sun: [f64; 3]) -> bool {
+        !self.truth.occluded_towards(self.absolute(p), sun)
     }
 
     pub(crate) fn survey(&self) -> Survey<'_> {
@@ -111,9 +153,8 @@ impl Place {
 
     /// Prints by surface what hides what a model calls visible, and at what its balls sit that hide what is visible.
     pub(crate) fn blame(&self, model: &MedialBaseline) -> Result<()> {
-        let origin = self.cloud.origin;
-        let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
-        let site = QuerySite { scene: &self.scene, truth: &self.truth, bounds: [[0.0; 3]; 2] };
+        let absolute = |p| self.absolute(p);
+        let site = self.site();
         let kind = |triangle: u32| self.scene.materials.get(triangle as usize).map_or("?", |m| m.name());
         for views in ["suns", "street"] {
             for set in ["PED", "AIR", "ROOF", "FACADE", "STREET"] {
