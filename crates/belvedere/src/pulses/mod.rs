@@ -4,6 +4,7 @@
 //! things found here: [`group`] puts the returns of each pulse together, [`SensorPositions`] says where it came from.
 
 mod group;
+mod line_path;
 mod needles;
 mod sensor_estimate;
 mod sensor_fit;
