@@ -5,10 +5,12 @@ pub mod bounds;
 pub mod carve;
 pub mod carved;
 pub mod feature_size;
+pub mod orient_by_carving;
 pub mod shrinking_ball;
 
 pub use balls::{MedialBalls, NO_TOUCH, Side};
 pub use bounds::{Kind, KindBounds, RadiusBounds, kinds};
 pub use carve::{CarveReport, PULSE_TOUCH, carve};
 pub use carved::{CarvedInput, CarvedParams, CarvedReport, carved_balls};
+pub use orient_by_carving::{OrientByCarvingParams, OrientByCarvingReport, orient_by_carving};
 pub use shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};

@@ -1,6 +1,59 @@
 //! The path of a scanner along a flight line, from estimates for its parts.
 
+use super::locate::ServedBy;
 use nalgebra::{Matrix3, Matrix6, Vector6};
+
+/// Where the scanner was along a flight line, and when that is known.
+#[derive(Clone, Debug)]
+pub struct LinePath {
+    /// Flight line; 0 where the cloud names none.
+    pub source_id: u16,
+    /// What it was found by.
+    pub means: ServedBy,
+    /// The times at which it is known, increasing.
+    pub stretches: Vec<Stretch>,
+    knots: Vec<Knot>,
+}
+
+/// A stretch of time over which the scanner's path is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// First and last, seconds.
+    pub times: [f64; 2],
+    /// Standard deviation of the positions, metres.
+    pub position_sd: [f64; 3],
+    /// Median angle between the pulses and the directions to the path, radians; NaN where no pulse of this stretch tells.
+    pub median_angle: f64,
+}
+
+impl LinePath {
+    /// The path through `knots`, which increase in time, over `stretches`.
+    pub(super) fn new(source_id: u16, means: ServedBy, stretches: Vec<Stretch>, knots: Vec<Knot>) -> Self {
+        Self { source_id, means, stretches, knots }
+    }
+
+    /// The stretch that `time` lies in.
+    #[must_use]
+    pub fn stretch_at(&self, time: f64) -> Option<&Stretch> {
+        let after = self.stretches.partition_point(|stretch| stretch.times[0] <= time);
+        self.stretches.get(after.checked_sub(1)?).filter(|stretch| time <= stretch.times[1])
+    }
+
+    /// Local position of the scanner at `time`, metres; `None` outside the stretches over which it is known.
+    #[must_use]
+    pub fn position_at(&self, time: f64) -> Option<[f64; 3]> {
+        self.stretch_at(time)?;
+        position_at(&self.knots, time)
+    }
+}
+
+/// The path among `paths`, which are in order of their lines, that knows the scanner of `line` at `time`, the first of several,
+/// and its local position, metres.
+pub(super) fn position_on(paths: &[LinePath], line: u16, time: f64) -> Option<(&LinePath, [f64; 3])> {
+    let start = paths.partition_point(|path| path.source_id < line);
+    let of_line = paths.get(start..)?.iter().take_while(|path| path.source_id == line);
+    of_line.filter_map(|path| Some((path, path.position_at(time)?))).next()
+}
 
 /// Parts farther apart than this are smoothed apart, seconds: aircraft do not hold their course for longer.
 const LONGEST_BRIDGE_S: f64 = 30.0;
@@ -26,7 +79,8 @@ pub(super) fn smoothed(times: &[f64], estimates: &[Option<Knot>], acceleration_s
     let known: Vec<usize> = (0..estimates.len().min(times.len())).filter(|&i| estimates[i].is_some()).collect();
     for chain in known.chunk_by(|&a, &b| times[b] - times[a] <= LONGEST_BRIDGE_S) {
         let (Some(&first), Some(&last)) = (chain.first(), chain.last()) else { continue };
-        let near = |i: &usize| times[first] - times[*i] <= LONGEST_BRIDGE_S && times[*i] - times[last] <= LONGEST_BRIDGE_S;
+        let near =
+            |i: &usize| times[first] - times[*i] <= LONGEST_BRIDGE_S && times[*i] - times[last] <= LONGEST_BRIDGE_S;
         for (i, knot) in smooth_chain(times, estimates, first..=last, acceleration_sd) {
             result[i] = Some(knot);
         }
@@ -127,12 +181,12 @@ impl Knot {
 
 /// Local position at `time` on the path through `knots`, which increase in time; `None` without any. Between knots a cubic with
 /// their velocities; beyond them, and where the next is half a minute away, straight on from the nearer.
-pub(super) fn position_at(knots: &[&Knot], time: f64) -> Option<[f64; 3]> {
+fn position_at(knots: &[Knot], time: f64) -> Option<[f64; 3]> {
     let after = knots.partition_point(|knot| knot.time <= time);
     let before = after.checked_sub(1).and_then(|i| knots.get(i));
     let straight_on = |knot: &Knot| std::array::from_fn(|i| knot.state[i] + knot.state[i + 3] * (time - knot.time));
     let (Some(a), Some(b)) = (before, knots.get(after)) else {
-        return before.or_else(|| knots.get(after)).map(|knot| straight_on(knot));
+        return before.or_else(|| knots.get(after)).map(straight_on);
     };
     let span = b.time - a.time;
     if span > LONGEST_BRIDGE_S {
@@ -181,7 +235,6 @@ mod tests {
     #[test]
     fn the_path_runs_through_its_knots_and_straight_on_beyond() {
         let knots = [knot(0.0, 0.0, 1.0), knot(2.0, 120.0, 1.0)];
-        let knots: Vec<&Knot> = knots.iter().collect();
         for time in [-1.0, 0.0, 0.7, 2.0, 3.0] {
             let [x, y, z] = position_at(&knots, time).unwrap();
             assert!((x - 60.0 * time).abs() < 1e-9 && y.abs() < 1e-9 && (z - 500.0).abs() < 1e-9, "{time}: {x}");

@@ -4,7 +4,8 @@ use nalgebra::{Vector3, Vector6};
 use rayon::prelude::*;
 
 use super::Pulses;
-use super::line_path::{Knot, position_at, smoothed};
+use super::line_path::{Knot, LinePath, Stretch, position_on, smoothed};
+use super::locate::ServedBy;
 use super::sensor_fit::{Fit, Pair, fit, median};
 use crate::trajectory::{ClockOffset, MAX_GAP_S, Trajectory};
 use crate::vector::length;
@@ -157,27 +158,14 @@ impl SensorPositions {
         pulses: &Pulses,
         params: &SensorEstimateParams,
     ) -> Result<(Self, SensorReport)> {
-        params.validate()?;
-        let mut estimates: Vec<Estimate> = parts(pulses, params.part_s)
-            .into_par_iter()
-            .map(|members| estimate(cloud, pulses, members, params))
-            .collect();
-        let mut per_pulse = vec![[f32::NAN; 3]; pulses.len()];
-        let mut report = SensorReport { pulse_count: pulses.len(), ..SensorReport::default() };
-        for line in estimates.chunk_by_mut(|a, b| a.part.source_id == b.part.source_id) {
-            let knots = join(line, params);
-            let knots: Vec<&Knot> = knots.iter().collect();
-            for Estimate { members, .. } in line.iter().filter(|estimate| estimate.part.verdict.is_used()) {
-                report.known_count += members.len();
-                for &pulse in members {
-                    if let Some(place) = position_at(&knots, pulses.times[pulse]) {
-                        per_pulse[pulse] = crate::cloud::to_local(place, [0.0; 3]);
-                    }
-                }
-            }
-        }
-        report.parts = estimates.into_iter().map(|estimate| estimate.part).collect();
-        Ok((Self { per_pulse }, report))
+        let (paths, parts) = paths_from_returns(cloud, pulses, params)?;
+        let position = |(&line, &time): (&u16, &f64)| match position_on(&paths, line, time) {
+            Some((_, place)) => crate::cloud::to_local(place, [0.0; 3]),
+            None => [f32::NAN; 3],
+        };
+        let per_pulse: Vec<[f32; 3]> = pulses.source_ids.iter().zip(&pulses.times).map(position).collect();
+        let known_count = per_pulse.iter().filter(|p| is_known(p)).count();
+        Ok((Self { per_pulse }, SensorReport { pulse_count: pulses.len(), known_count, clock: None, parts }))
     }
 
     /// Scanner position of each point of the cloud that `pulses` were grouped from, (N, 3), local metres; NaN where unknown.
@@ -237,15 +225,13 @@ fn parts(pulses: &Pulses, longest: f64) -> Vec<Vec<usize>> {
 /// A part of a flight line on its way to a path.
 struct Estimate {
     part: SensorPart,
-    /// Its pulses.
-    members: Vec<usize>,
     /// What its own pulses say, where that is to be used.
     knot: Option<Knot>,
     /// Middle height of its first returns, metres.
     ground: f64,
 }
 
-fn estimate(cloud: &PointCloud, pulses: &Pulses, members: Vec<usize>, params: &SensorEstimateParams) -> Estimate {
+fn estimate(cloud: &PointCloud, pulses: &Pulses, members: &[usize], params: &SensorEstimateParams) -> Estimate {
     let time = |at: Option<&usize>| at.and_then(|&pulse| pulses.times.get(pulse)).copied().unwrap_or(f64::NAN);
     let times = [time(members.first()), time(members.last())];
     let middle = f64::midpoint(times[0], times[1]);
@@ -286,14 +272,14 @@ fn estimate(cloud: &PointCloud, pulses: &Pulses, members: Vec<usize>, params: &S
             knot = Some(found).filter(|_| part.verdict == Verdict::Accepted);
         }
     }
-    Estimate { part, members, knot, ground }
+    Estimate { part, knot, ground }
 }
 
-/// Joins the parts of a line, and gives the path of those that are used.
-fn join(line: &mut [Estimate], params: &SensorEstimateParams) -> Vec<Knot> {
+/// Joins the parts of a line, and gives its path over those that are used.
+fn join(line: &mut [Estimate], params: &SensorEstimateParams) -> Option<LinePath> {
     let times: Vec<f64> = line.iter().map(|e| f64::midpoint(e.part.times[0], e.part.times[1])).collect();
     let own: Vec<Option<Knot>> = line.iter().map(|estimate| estimate.knot.clone()).collect();
-    let mut path = Vec::new();
+    let (mut stretches, mut path) = (Vec::new(), Vec::new());
     for (estimate, knot) in line.iter_mut().zip(smoothed(&times, &own, params.acceleration_sd)) {
         let Some(knot) = knot else { continue };
         let part = &mut estimate.part;
@@ -306,9 +292,33 @@ fn join(line: &mut [Estimate], params: &SensorEstimateParams) -> Vec<Knot> {
             }
             part.verdict = Verdict::Bridged;
         }
+        // no pulse between two parts of a pass, yet perhaps points that belong to none
+        let before: Option<&mut Stretch> = stretches.last_mut();
+        if let Some(before) = before.filter(|before| part.times[0] - before.times[1] <= MAX_GAP_S) {
+            before.times[1] = part.times[0];
+        }
+        stretches.push(Stretch { times: part.times, position_sd: part.position_sd, median_angle: part.median_angle });
         path.push(knot);
     }
-    path
+    let source_id = line.first()?.part.source_id;
+    (!path.is_empty()).then(|| LinePath::new(source_id, ServedBy::Returns, stretches, path))
+}
+
+/// The paths of flight lines that pulses with several returns tell, by line, and the parts of lines they were found in.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a parameter outside its range.
+pub(super) fn paths_from_returns(
+    cloud: &PointCloud,
+    pulses: &Pulses,
+    params: &SensorEstimateParams,
+) -> Result<(Vec<LinePath>, Vec<SensorPart>)> {
+    params.validate()?;
+    let mut estimates: Vec<Estimate> =
+        parts(pulses, params.part_s).into_par_iter().map(|members| estimate(cloud, pulses, &members, params)).collect();
+    let lines = estimates.chunk_by_mut(|a, b| a.part.source_id == b.part.source_id);
+    let paths = lines.filter_map(|line| join(line, params)).collect();
+    Ok((paths, estimates.into_iter().map(|estimate| estimate.part).collect()))
 }
 
 impl SensorPart {
