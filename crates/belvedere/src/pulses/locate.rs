@@ -269,16 +269,23 @@ fn remark_parts(report: &mut ScannerReport) {
         };
         *counts.entry(why).or_default() += 1;
     }
-    for part in &report.angle_parts {
+    let is_needed = |part: &&ScanAnglePart| {
+        let middle = f64::midpoint(part.times[0], part.times[1]);
+        position_on(&report.paths, part.source_id, middle).is_none_or(|(path, _)| path.means != ServedBy::Returns)
+    };
+    for part in report.angle_parts.iter().filter(is_needed) {
         let why = match part.verdict {
-            AngleVerdict::Accepted => continue,
+            AngleVerdict::Accepted if part.pitch.total_cmp(&0.0).is_ne() => continue,
+            AngleVerdict::Accepted => {
+                "parts are known by scan angles alone, which do not tell pitch: directions may be off by a few degrees"
+            }
             AngleVerdict::TooFewPoints => "parts have too few points for their scan angles to tell anything",
             AngleVerdict::TooNarrow => "parts have scan angles that span too little",
             AngleVerdict::NotAcross => {
                 "parts have scan angles that do not tell the place across the flight: a cone, a tilted scanner or rounded times"
             }
             AngleVerdict::Bent => "parts have scan lines that are bent as those of a cone, or too short to tell",
-            AngleVerdict::Contradicted => "parts have scan angles that the pulses contradict: the scanner is tilted",
+            AngleVerdict::Contradicted => "parts have scan angles that the pulses contradict",
             AngleVerdict::Implausible => "parts have scan angles that put the scanner where no aircraft flies",
         };
         *counts.entry(why).or_default() += 1;

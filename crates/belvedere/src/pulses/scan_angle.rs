@@ -73,7 +73,7 @@ pub enum AngleVerdict {
     NotAcross,
     /// Scan lines are bent, as those of a cone are, or cannot be told from bent ones.
     Bent,
-    /// Pulses with several returns point elsewhere: the scanner is tilted forward or backward.
+    /// Pulses with several returns point elsewhere.
     Contradicted,
     /// No aircraft flies so slowly or so fast, or so low.
     Implausible,
@@ -96,6 +96,8 @@ pub struct ScanAnglePart {
     pub height: f64,
     /// Median angles by which points miss their place, across and along the flight, radians.
     pub misses: [f64; 2],
+    /// Angle by which the scanner looks ahead, radians, as far as pulses with several returns tell; 0 where these are too few.
+    pub pitch: f64,
     /// Median angle to the pulses with several returns, radians; NaN where these are too few.
     pub contradiction: f64,
     /// Whether it is used.
@@ -115,9 +117,9 @@ struct Sample {
 /// angles (or whose angles are all 0) or times.
 ///
 /// Taken across the flight, an angle a puts a point beside the scanner's path by (height) tan a. Position, velocity, height and
-/// direction of the scan lines that fit this best follow from linear least squares. A line is not trusted where points miss
-/// their place, where scan lines are bent, or where the pulses with several returns among `pulses` point elsewhere: all that
-/// cones and tilted scanners give away.
+/// direction of the scan lines that fit this best follow from linear least squares. How far the scanner looks ahead, the angles do
+/// not tell; the pulses with several returns among `pulses` do, where there are some. A line is not trusted where points miss
+/// their place, where scan lines are bent, or where those pulses point elsewhere: all that cones and tilted scanners give away.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a length of parts outside 0.5 to 60 s.
@@ -202,6 +204,7 @@ fn estimate(part: &[Sample], pairs: &[Direction], params: &ScanAngleParams) -> (
         velocity: [f64::NAN; 3],
         height: f64::NAN,
         misses: [f64::NAN; 2],
+        pitch: 0.0,
         contradiction: f64::NAN,
         verdict: AngleVerdict::TooFewPoints,
     };
@@ -221,14 +224,16 @@ fn estimate(part: &[Sample], pairs: &[Direction], params: &ScanAngleParams) -> (
     let of_line =
         pairs.partition_point(|pair| pair.0 < result.source_id || (pair.0 == result.source_id && pair.1 < first));
     let within = pairs.iter().skip(of_line).take_while(|pair| pair.0 == result.source_id && pair.1 <= last);
-    let apart: Vec<f64> = within
-        .map(|(_, time, place, direction)| {
-            let scanner: Vector3<f64> = Vector3::from(fit.position) + Vector3::from(fit.velocity) * (time - middle);
+    let within: Vec<&Direction> = within.collect();
+    if within.len() >= LEAST_PAIRS {
+        result.pitch = fit.pitch(&within, middle);
+        let ahead = fit.height * result.pitch.tan();
+        result.position = std::array::from_fn(|i| fit.position[i] - ahead * fit.forward.get(i).copied().unwrap_or(0.0));
+        let apart = within.iter().map(|(_, time, place, direction)| {
+            let scanner: Vector3<f64> = Vector3::from(result.position) + Vector3::from(fit.velocity) * (time - middle);
             (scanner - place).angle(direction)
-        })
-        .collect();
-    if apart.len() >= LEAST_PAIRS {
-        result.contradiction = median(apart);
+        });
+        result.contradiction = median(apart.collect());
     }
     let [slowest, fastest] = params.speeds;
     let is_plausible = (slowest..=fastest).contains(&length(fit.velocity)) && fit.height >= params.least_height;
@@ -244,7 +249,7 @@ fn estimate(part: &[Sample], pairs: &[Direction], params: &ScanAngleParams) -> (
         AngleVerdict::Accepted
     };
     let path = (result.verdict == AngleVerdict::Accepted).then(|| {
-        let ([x, y, z], [u, v, w]) = (fit.position, fit.velocity);
+        let ([x, y, z], [u, v, w]) = (result.position, fit.velocity);
         // misses of a whole line share their cause, so that their number makes nothing surer
         let aside = fit.height * fit.misses[0].max(fit.misses[1]);
         let position_sd = [aside, aside, aside / fit.angle_spread.tan() * 0.1];
@@ -260,6 +265,8 @@ fn estimate(part: &[Sample], pairs: &[Direction], params: &ScanAngleParams) -> (
 struct Fit {
     position: [f64; 3],
     velocity: [f64; 3],
+    /// Level unit vector of the flight.
+    forward: [f64; 2],
     /// Above the mean of the points.
     height: f64,
     /// Standard deviation of the angles, radians.
@@ -327,6 +334,7 @@ impl Fit {
         Some(Self {
             position: [x[0], y[0], ground + height],
             velocity: [x[1], y[1], 0.0],
+            forward,
             height,
             angle_spread,
             crab: (part_along(forward) / part_along(right)).abs(),
@@ -334,6 +342,16 @@ impl Fit {
             bend: bent[3],
             bend_sd: (squares / count * inverse[(3, 3)]).max(0.0).sqrt(),
         })
+    }
+
+    /// Angle by which pulses look ahead of where scan angles put the scanner, radians.
+    fn pitch(&self, pairs: &[&Direction], middle: f64) -> f64 {
+        let along = |v: &Vector3<f64>| (v.x * self.forward[0] + v.y * self.forward[1]) / v.z;
+        let off = |(_, time, place, direction): &&Direction| {
+            let scanner = Vector3::from(self.position) + Vector3::from(self.velocity) * (time - middle);
+            along(&(scanner - place)) - along(direction)
+        };
+        median(pairs.iter().map(off).collect()).atan()
     }
 
     fn is_finite(&self) -> bool {
