@@ -5,10 +5,10 @@ use crate::pipeline::{self, scanner};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded, whole};
 use anyhow::Result;
-use belvedere::PointCloud;
 use belvedere::io::{ReadOptions, read_cloud};
 use belvedere::pulses::{LocateParams, Means, ScannerReport, ServedBy, locate};
 use belvedere::summary::{CloudSummary, FacadeSummary};
+use belvedere::{Error, PointCloud};
 
 pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
@@ -56,7 +56,13 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
         }
     }
     let scanner =
-        stages.run("finding the scanner", 0, |_| locate(&cloud, &Means::Automatic, &LocateParams::default()))?.1;
+        match stages.run("finding the scanner", 0, |_| locate(&cloud, &Means::Automatic, &LocateParams::default())) {
+            Ok((_, report)) => report,
+            Err(error @ Error::MissingAttribute { .. }) => {
+                ScannerReport { point_count: cloud.len(), remarks: vec![error.to_string()], ..ScannerReport::default() }
+            }
+            Err(error) => return Err(error.into()),
+        };
     summary.add("scanner", scanner::section(&scanner));
     summary.add("flight_line", scanner::line_sections(&scanner));
     let reading = pipeline::reading_section(&report);
@@ -145,6 +151,8 @@ fn can_serve(cloud: &PointCloud, facts: &CloudSummary, scanner: &ScannerReport) 
     section.add("--orient mesh=FILE", "yes");
     let carved = if !enough {
         "no: fewer than 4 points"
+    } else if scanner.served.is_empty() {
+        "no: nothing tells where the scanner was"
     } else if scanner.is_assumed() {
         "yes, with pulses assumed to be vertical"
     } else {

@@ -109,7 +109,7 @@ impl ScannerReport {
 ///
 /// # Errors
 /// [`Error::MissingAttribute`] where the means asked for serve no point; [`Means::Automatic`] serves at least one of every cloud
-/// that has any. [`Error::LengthMismatch`] for a column of another length than the positions, [`Error::InvalidParameter`] for
+/// but those with poses that no point refers to: a scanner on the ground does not look straight down. [`Error::LengthMismatch`] for a column of another length than the positions, [`Error::InvalidParameter`] for
 /// parameters out of range and a trajectory that covers no time of the cloud.
 pub fn locate(cloud: &PointCloud, means: &Means<'_>, params: &LocateParams) -> Result<(Vec<[f32; 3]>, ScannerReport)> {
     cloud.validate()?;
@@ -128,7 +128,7 @@ pub fn locate(cloud: &PointCloud, means: &Means<'_>, params: &LocateParams) -> R
         return Ok((positions, report));
     }
     match means {
-        Means::Automatic => {
+        Means::Automatic if cloud.scanner_positions.is_empty() => {
             let positions = vertical_pulses(&cloud.positions, &params.vertical)?;
             report.serve(ServedBy::Assumed, positions.iter().filter(|p| is_known(p)).count());
             report.remarks.push("pulses are assumed to fall straight down onto what nothing stands above".to_owned());
