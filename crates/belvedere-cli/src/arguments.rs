@@ -69,6 +69,11 @@ pub(crate) enum Command {
     /// Tell what is in a point cloud, what is missing, and what can be done with it
     #[command(after_help = "Example:\n  belvedere demo -o demo\n  belvedere info demo/town.laz")]
     Info(Info),
+    /// Find where the scanner was from the pulses of a cloud, and write its path
+    #[command(
+        after_help = "The path follows from pulses with several returns, else from scan angles where these can be trusted. OUT gets the columns time, x, y, z, sd_x, sd_y, sd_z (standard deviations), residual_deg (median angle between pulses and the directions to the path) and line, in the system and unit of the cloud, and can be given back as --orient trajectory=OUT.\n\nExample:\n  belvedere trajectory demo/town.laz -o demo/found.csv"
+    )]
+    Trajectory(Trajectory),
     /// Estimate normals and turn them outward
     #[command(
         after_help = "Examples:\n  belvedere normals demo/town.laz --orient trajectory=demo/trajectory.csv -o demo/normals.laz\n  belvedere normals FOLDER --neighbors 10 -o FOLDER      coords.npy to normals.npy, as masbcpp's compute_normals"
@@ -120,6 +125,18 @@ pub(crate) struct Demo {
 pub(crate) struct Info {
     #[command(flatten)]
     pub(crate) input: CloudInput,
+}
+
+#[derive(Args)]
+pub(crate) struct Trajectory {
+    #[command(flatten)]
+    pub(crate) input: CloudInput,
+    /// Seconds between positions, 0.01 to 2
+    #[arg(long, value_name = "S", default_value_t = 0.5, help_heading = "Result", allow_negative_numbers = true)]
+    pub(crate) step: f64,
+    /// Table for the path (.csv .txt)
+    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
+    pub(crate) output: PathBuf,
 }
 
 #[derive(Args)]

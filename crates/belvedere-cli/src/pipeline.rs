@@ -1,6 +1,6 @@
 //! From what was typed to clouds, oriented clouds, balls and views. Calls the core in order; computes nothing itself.
 
-mod scanner;
+pub(crate) mod scanner;
 
 use crate::arguments::{
     Cleaning, CloudInput, MethodChoice, NeighborChoice, OrientChoice, Orienting, ProfileChoice, SceneInput, Shrinking,
@@ -24,6 +24,7 @@ use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere::{Attributes, Error, PointCloud};
+use scanner::Located;
 use std::borrow::Cow;
 use std::path::Path;
 
@@ -180,8 +181,8 @@ pub(crate) fn prepare(
     }
     let mut cloud = if kept.len() == cloud.len() { cloud } else { Cow::Owned(cloud.select(&kept)) };
     let wants_pulses = carving == Carving::Wanted || matches!(orienting.orient, OrientChoice::Pulses);
-    let (scanner, trajectory) =
-        if wants_pulses { scanner::of_each_point(&cloud, orienting, stages, summary)? } else { (Vec::new(), None) };
+    let Located { positions: scanner, trajectory, is_assumed } =
+        if wants_pulses { scanner::of_each_point(&cloud, orienting, stages, summary)? } else { Located::default() };
     let carving = match carving {
         Carving::Unwanted => None,
         Carving::Wanted => Some(scanner::carving_input(&cloud, &scanner, stages, summary)?),
@@ -199,7 +200,7 @@ pub(crate) fn prepare(
     }
     let index = stages.run("indexing", 0, |_| NeighborIndex::new(&cloud.positions))?;
     let choice = match &orienting.orient {
-        OrientChoice::Auto if wants_pulses => OrientChoice::Pulses,
+        OrientChoice::Auto if wants_pulses && !is_assumed => OrientChoice::Pulses,
         OrientChoice::Auto if cloud.attributes.normals.is_some() => OrientChoice::Given,
         OrientChoice::Auto if !cloud.scanner_positions.is_empty() => OrientChoice::Scanner,
         OrientChoice::Auto => OrientChoice::Up,
@@ -240,8 +241,11 @@ pub(crate) fn prepare(
             Orientation::Mesh(&mesh)
         }
     };
-    let (oriented, report) = stages.run("orienting normals", 0, |_| orient(&cloud, normals, &by))?;
+    let (mut oriented, report) = stages.run("orienting normals", 0, |_| orient(&cloud, normals, &by))?;
     summary.add("normals", orientation_section(&by, &report));
+    if let (true, Some(carving), Orientation::Up) = (is_assumed, &carving, &by) {
+        oriented = scanner::turn_unsure(oriented, &index, carving, stages, summary)?;
+    }
     let bounds = bounds_of(&cloud)?;
     Ok(Prepared { oriented, index, kept, bounds, carving })
 }

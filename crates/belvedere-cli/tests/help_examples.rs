@@ -4,8 +4,19 @@ mod common;
 
 use common::{Workplace, house};
 
-const COMMANDS: [&str; 10] =
-    ["demo", "simulate", "info", "normals", "balls", "depth-map", "query", "compare", "completions", "man"];
+const COMMANDS: [&str; 11] = [
+    "demo",
+    "simulate",
+    "info",
+    "trajectory",
+    "normals",
+    "balls",
+    "depth-map",
+    "query",
+    "compare",
+    "completions",
+    "man",
+];
 
 /// The command lines in a help text: what follows a heading "Example:" or "Examples:", without remarks behind it.
 fn examples(help: &str) -> Vec<String> {

@@ -27,6 +27,28 @@ pub struct Trajectory {
     pub positions: Vec<[f64; 3]>,
 }
 
+/// A position of a scanner that was found, and how well it is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrajectorySample {
+    /// GPS time on the clock of the cloud, seconds.
+    pub time: f64,
+    /// Metres in the cloud's reference system (not local).
+    pub position: [f64; 3],
+    /// How well it is known.
+    pub quality: TrajectoryQuality,
+}
+
+/// How well a position on a trajectory is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrajectoryQuality {
+    /// Standard deviations along x, y and z, metres.
+    pub sd: [f64; 3],
+    /// Median angle between pulses and the directions to the path, radians; NaN where no pulse tells.
+    pub residual: f64,
+    /// Flight line.
+    pub line: u16,
+}
+
 /// How the times of a cloud become times of a trajectory, and how many that serves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClockOffset {

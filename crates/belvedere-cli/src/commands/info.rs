@@ -1,13 +1,14 @@
 //! `belvedere info`.
 
 use crate::arguments::{Global, Info};
-use crate::pipeline;
+use crate::pipeline::{self, scanner};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded, whole};
 use anyhow::Result;
-use belvedere::PointCloud;
 use belvedere::io::{ReadOptions, read_cloud};
+use belvedere::pulses::{LocateParams, Means, ScannerReport, ServedBy, locate};
 use belvedere::summary::{CloudSummary, FacadeSummary};
+use belvedere::{Error, PointCloud};
 
 pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
@@ -54,11 +55,21 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
             summary.add("pulses_per_m2_of_covered_ground", rounded(pulses.count / facts.occupied_area, 2));
         }
     }
+    let scanner =
+        match stages.run("finding the scanner", 0, |_| locate(&cloud, &Means::Automatic, &LocateParams::default())) {
+            Ok((_, report)) => report,
+            Err(error @ Error::MissingAttribute { .. }) => {
+                ScannerReport { point_count: cloud.len(), remarks: vec![error.to_string()], ..ScannerReport::default() }
+            }
+            Err(error) => return Err(error.into()),
+        };
+    summary.add("scanner", scanner::section(&scanner));
+    summary.add("flight_line", scanner::line_sections(&scanner));
     let reading = pipeline::reading_section(&report);
     summary.add("reading", reading);
     summary.add("attributes", attributes(&cloud, &facts));
     summary.add("missing", missing(&cloud, &facts));
-    summary.add("can_serve", can_serve(&cloud, &facts));
+    summary.add("can_serve", can_serve(&cloud, &facts, &scanner));
     summary.add("duplicate_points", facts.duplicate_count);
     Ok(summary)
 }
@@ -124,7 +135,7 @@ fn missing(cloud: &PointCloud, facts: &CloudSummary) -> Vec<&'static str> {
     wanted.into_iter().filter_map(|(is_missing, name)| is_missing.then_some(name)).collect()
 }
 
-fn can_serve(cloud: &PointCloud, facts: &CloudSummary) -> Summary {
+fn can_serve(cloud: &PointCloud, facts: &CloudSummary, scanner: &ScannerReport) -> Summary {
     let mut section = Summary::default();
     let enough = cloud.len() >= 4;
     let yes_if = |able: bool, why_not: &str| if able { "yes".to_owned() } else { format!("no: {why_not}") };
@@ -135,6 +146,18 @@ fn can_serve(cloud: &PointCloud, facts: &CloudSummary) -> Summary {
     section.add("--orient scanner", yes_if(!cloud.scanner_positions.is_empty(), "the file has no scanner positions"));
     let times = facts.gps_time.is_some_and(|t| t.can_tell_pulses_apart(cloud.len()));
     section.add("--orient trajectory=FILE", yes_if(times, "the file has no usable GPS times"));
+    let by_pulses = [ServedBy::Returns, ServedBy::ScanAngle].iter().any(|means| scanner.served.contains_key(means));
+    section.add("--orient pulses", yes_if(by_pulses, "the pulses do not tell where the scanner was"));
     section.add("--orient mesh=FILE", "yes");
+    let carved = if !enough {
+        "no: fewer than 4 points"
+    } else if scanner.served.is_empty() {
+        "no: nothing tells where the scanner was"
+    } else if scanner.is_assumed() {
+        "yes, with pulses assumed to be vertical"
+    } else {
+        "yes"
+    };
+    section.add("--method carved", carved);
     section
 }

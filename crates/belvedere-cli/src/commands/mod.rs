@@ -8,6 +8,7 @@ mod info;
 mod normals;
 mod query;
 mod simulate;
+mod trajectory;
 
 use crate::arguments::{Cli, Command, Usage};
 use crate::summary::Summary;
@@ -27,6 +28,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::Demo(arguments) => demo::run(arguments, global),
         Command::Simulate(arguments) => simulate::run(arguments, global),
         Command::Info(arguments) => info::run(arguments, global),
+        Command::Trajectory(arguments) => trajectory::run(arguments, global),
         Command::Normals(arguments) => normals::run(arguments, global),
         Command::Balls(arguments) => balls::run(arguments, global),
         Command::DepthMap(arguments) => depth_map::run(arguments, global),

@@ -56,4 +56,4 @@ pub use trajectory::{TrajectoryReport, read_trajectory};
 pub use write_cloud::{ExtraColumn, ExtraValues, WriteReport, write_cloud};
 pub use write_masbcpp::{MasbcppFolder, write_masbcpp};
 pub use write_npy::{write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d};
-pub use write_trajectory::{Heading, write_trajectory};
+pub use write_trajectory::{Heading, write_found_trajectory, write_trajectory};

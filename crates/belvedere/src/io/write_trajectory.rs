@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::crs::{Crs, GeographicProjection};
 use crate::io::atomic;
-use crate::trajectory::{ADJUSTED_STANDARD_S, MAX_GAP_S, Trajectory, WEEK_S};
+use crate::trajectory::{ADJUSTED_STANDARD_S, MAX_GAP_S, Trajectory, TrajectorySample, WEEK_S};
 use crate::{Error, GpsTimeKind, Result};
 
 /// Where the vehicle points.
@@ -71,6 +71,34 @@ fn write_table(path: &Path, trajectory: &Trajectory, crs: &Crs) -> Result<()> {
         for (time, position) in trajectory.times.iter().zip(&trajectory.positions) {
             let [x, y, z]: [f64; 3] = std::array::from_fn(|i| position[i] / scale[i]);
             writeln!(file, "{time:.6},{x:.4},{y:.4},{z:.4}").map_err(Error::io(path))?;
+        }
+        Ok(())
+    })
+}
+
+/// Writes positions that were found as a table for people and for [`crate::io::read_trajectory`]: `.csv` or `.txt` with the
+/// columns time, x, y, z, sd_x, sd_y, sd_z, residual_deg and line. Positions and deviations are in the unit of the file of the
+/// cloud in the system `crs`; what is not known is left empty.
+///
+/// # Errors
+/// [`Error::UnknownFormat`] for other extensions, and [`Error::Io`]. An existing file is replaced only by a complete one.
+pub fn write_found_trajectory(path: &Path, samples: &[TrajectorySample], crs: &Crs) -> Result<()> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+    if !["csv", "txt"].contains(&extension.as_str()) {
+        let supported = ".csv or .txt";
+        return Err(Error::UnknownFormat { path: path.to_owned(), kind: "found trajectory", supported });
+    }
+    let scale = crs.metres_per_unit_xyz();
+    let in_unit = |values: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| values[i] / scale[i]) };
+    let known = |value: f64, digits: usize| if value.is_finite() { format!("{value:.digits$}") } else { String::new() };
+    atomic::write(path, |file| {
+        writeln!(file, "time,x,y,z,sd_x,sd_y,sd_z,residual_deg,line").map_err(Error::io(path))?;
+        for TrajectorySample { time, position, quality } in samples {
+            let [x, y, z] = in_unit(*position);
+            let sd = in_unit(quality.sd).map(|sd| known(sd, 2)).join(",");
+            let residual = known(quality.residual.to_degrees(), 4);
+            writeln!(file, "{time:.6},{x:.3},{y:.3},{z:.3},{sd},{residual},{}", quality.line)
+                .map_err(Error::io(path))?;
         }
         Ok(())
     })

@@ -5,6 +5,7 @@ pub mod bounds;
 pub mod carve;
 pub mod carved;
 pub mod feature_size;
+pub mod orient_by_carving;
 pub mod prune;
 pub mod shrinking_ball;
 
@@ -12,5 +13,6 @@ pub use balls::{MedialBalls, NO_TOUCH, Side};
 pub use bounds::{Kind, KindBounds, RadiusBounds, kinds};
 pub use carve::{CarveReport, PULSE_TOUCH, carve};
 pub use carved::{CarvedInput, CarvedParams, CarvedReport, carved_balls};
+pub use orient_by_carving::{OrientByCarvingParams, OrientByCarvingReport, orient_by_carving};
 pub use prune::{PruneParams, prune};
 pub use shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};

@@ -1,13 +1,27 @@
 //! Laser pulses: which returns belong together, and where the scanner was.
 //!
 //! The way from the scanner to the first return of a pulse is proven to be free. Everything that uses this needs the two
-//! things found here: [`group`] puts the returns of each pulse together, [`SensorPositions`] says where it came from.
+//! things found here: [`group`] puts the returns of each pulse together, [`locate`] says where they came from, by the best means
+//! that a cloud has: poses or a trajectory ([`Means`]), pulses with several returns ([`SensorPositions`]), scan angles
+//! ([`ScanAngleParams`]), and at last the assumption that pulses fall straight down ([`vertical_pulses`]).
 
 mod group;
+mod height_offset;
+mod line_path;
+mod locate;
 mod needles;
+mod path_samples;
+mod scan_angle;
 mod sensor_estimate;
 mod sensor_fit;
+mod vertical;
 
 pub use group::{PulseReport, Pulses, group};
+pub use height_offset::HeightOffset;
+pub use line_path::{LinePath, Stretch};
+pub use locate::{LocateParams, Means, ScannerReport, ServedBy, locate};
 pub use needles::{NeedleParams, NeedleReport, Needles};
+pub use path_samples::path_samples;
+pub use scan_angle::{AngleVerdict, ScanAngleParams, ScanAnglePart};
 pub use sensor_estimate::{SensorEstimateParams, SensorPart, SensorPositions, SensorReport, Verdict};
+pub use vertical::{VerticalParams, vertical_pulses};

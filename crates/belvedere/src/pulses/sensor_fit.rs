@@ -2,31 +2,28 @@
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
-/// Rounds of improvement and reweighting; position and weights settle after four.
-const ROUNDS: usize = 6;
+/// Rounds of improvement and reweighting; from the linear first guess, which may lie at half the height, six settle.
+const ROUNDS: usize = 8;
 /// Misses beyond so many deviations count less (Huber): most of a clean set, two components together, lies within.
 const HUBER_DEVIATIONS: f64 = 2.0;
 /// Median length of a miss whose two components have deviation 1 (Rayleigh).
 const RAYLEIGH_MEDIAN: f64 = 1.177_41;
 
-/// Straight line through the first and last return of a pulse.
+/// First and last return of a pulse.
 pub(super) struct Pair {
     pub(super) first: Vector3<f64>,
-    /// Projects on the plane across the pulse.
-    across: Matrix3<f64>,
-    length: f64,
+    /// From the first to the last.
+    pub(super) along: Vector3<f64>,
     /// Seconds after the middle of the part.
-    since: f64,
+    pub(super) since: f64,
 }
 
 /// What the pulses of a part of a flight line say of the scanner.
 pub(super) struct Fit {
-    /// Half-way in time, local metres.
-    pub(super) position: Vector3<f64>,
-    /// Metres per second.
-    pub(super) velocity: Vector3<f64>,
-    /// By the residuals, metres.
-    pub(super) position_sd: [f64; 3],
+    /// Position half-way in time, local metres, then velocity, metres per second.
+    pub(super) state: Vector6<f64>,
+    /// Of the state, by the residuals.
+    pub(super) covariance: Matrix6<f64>,
     /// Between the pulses and the directions to the path, radians.
     pub(super) median_angle: f64,
 }
@@ -36,72 +33,82 @@ pub(super) struct Fit {
 ///
 /// The first guess minimises how far the lines miss the scanner, which is linear. It lies too near, because a line with a
 /// wrong direction misses a far scanner by more, so the rounds that follow (Gauss and Newton) minimise the distance at the
-/// last return, where the error is.
+/// last return, where the error is. That distance is measured across the way from the scanner, not across the measured
+/// pulse, whose own error would pull the scanner towards the ground.
 pub(super) fn fit(pairs: &[Pair], vertical_speed_sd: f64) -> Option<Fit> {
     let mut start = Equations::default();
     for pair in pairs {
-        let weighted = pair.across * pair.length.powi(2);
+        // across the measured pulse, weighted with the square of its length
+        let weighted = Matrix3::identity() * pair.along.norm_squared() - pair.along * pair.along.transpose();
         start.add(&weighted, &(weighted * pair.first), pair.since);
     }
     let mut state = start.normal.cholesky()?.solve(&start.right);
-    let (mut misses, mut scale) = misses_of(pairs, &state);
-    let mut result = None;
+    let mut covariance = Matrix6::zeros();
     for _ in 0..ROUNDS {
-        let greatest = HUBER_DEVIATIONS * scale;
-        let trust: Vec<f64> = misses.iter().map(|miss| if *miss > greatest { greatest / miss } else { 1.0 }).collect();
+        let misses: Vec<Miss> = pairs.iter().map(|pair| pair.miss(&state)).collect();
+        let trust = trust(&misses);
         let mut step = Equations::default();
-        let level = (scale / vertical_speed_sd).powi(2);
+        let level = (scale_of(&misses) / vertical_speed_sd).powi(2);
         step.normal[(5, 5)] = level;
         step.right[5] = -level * state[5];
-        for (pair, trust) in pairs.iter().zip(&trust) {
-            let sight = pair.sight(&state);
-            let range = sight.norm();
-            let towards = sight / range;
-            let slope = pair.across * (Matrix3::identity() - towards * towards.transpose()) * (pair.length / range);
-            let weighted = slope.transpose() * *trust;
-            step.add(&(weighted * slope), &(-weighted * pair.miss(&state)), pair.since);
+        for ((pair, miss), trust) in pairs.iter().zip(&misses).zip(&trust) {
+            step.add(&(miss.across * (trust * miss.slope.powi(2))), &(-miss.offset * (trust * miss.slope)), pair.since);
         }
         let factors = step.normal.cholesky()?;
         state += factors.solve(&step.right);
-        (misses, scale) = misses_of(pairs, &state);
-        let squares: f64 = misses.iter().zip(&trust).map(|(miss, trust)| trust * miss * miss).sum();
-        let variance = squares / (2.0 * pairs.len() as f64 - 6.0).max(1.0);
-        let covariance = factors.inverse() * variance;
-        let angle = |(pair, miss): (&Pair, &f64)| (miss / pair.length).min(1.0).asin();
-        result = Some(Fit {
-            position: state.fixed_rows::<3>(0).into_owned(),
-            velocity: state.fixed_rows::<3>(3).into_owned(),
-            position_sd: std::array::from_fn(|i| covariance[(i, i)].sqrt()),
-            median_angle: median(pairs.iter().zip(&misses).map(angle).collect()),
-        });
+        let squares: f64 =
+            pairs.iter().zip(&trust).map(|(pair, trust)| trust * pair.miss(&state).offset.norm_squared()).sum();
+        covariance = factors.inverse() * (squares / (2.0 * pairs.len() as f64 - 6.0).max(1.0));
     }
-    result.filter(|fit| fit.position.iter().chain(&fit.velocity).all(|v| v.is_finite()))
+    let angle = |pair: &Pair| (pair.miss(&state).offset.norm() / pair.along.norm()).min(1.0).asin();
+    let median_angle = median(pairs.iter().map(angle).collect());
+    let is_finite = state.iter().chain(covariance.iter()).all(|v| v.is_finite());
+    is_finite.then_some(Fit { state, covariance, median_angle })
 }
 
-/// Lengths of the misses, metres, and the standard deviation of their components as far as the middle ones tell.
-fn misses_of(pairs: &[Pair], state: &Vector6<f64>) -> (Vec<f64>, f64) {
-    let misses: Vec<f64> = pairs.iter().map(|pair| pair.miss(state).norm()).collect();
-    let scale = median(misses.clone()) / RAYLEIGH_MEDIAN;
-    (misses, scale)
+/// How much each of `misses` counts: those that stand out less.
+pub(super) fn trust(misses: &[Miss]) -> Vec<f64> {
+    let greatest = HUBER_DEVIATIONS * scale_of(misses);
+    let trust = |miss: &Miss| {
+        let length = miss.offset.norm();
+        if length > greatest { greatest / length } else { 1.0 }
+    };
+    misses.iter().map(trust).collect()
+}
+
+/// Standard deviation of the components of `misses` as far as the middle ones tell, metres.
+fn scale_of(misses: &[Miss]) -> f64 {
+    median(misses.iter().map(|miss| miss.offset.norm()).collect()) / RAYLEIGH_MEDIAN
+}
+
+/// How a pulse misses the way from a scanner.
+pub(super) struct Miss {
+    /// From the line through the scanner and the first return to the last return, metres.
+    pub(super) offset: Vector3<f64>,
+    /// Metres by which the offset changes with a metre of the scanner across the way.
+    pub(super) slope: f64,
+    /// Projects on the plane across the way.
+    pub(super) across: Matrix3<f64>,
 }
 
 impl Pair {
-    /// The line from `first` to `last`, which are apart, sent `since` seconds after the middle of the part.
+    /// The pulse with these returns, which are apart, sent `since` seconds after the middle of the part.
     pub(super) fn new(first: Vector3<f64>, last: Vector3<f64>, since: f64) -> Self {
-        let length = (last - first).norm();
-        let along = (last - first) / length;
-        Self { first, across: Matrix3::identity() - along * along.transpose(), length, since }
+        Self { first, along: last - first, since }
     }
 
-    /// From the first return to the scanner of `state`, which is position then velocity.
-    fn sight(&self, state: &Vector6<f64>) -> Vector3<f64> {
-        state.fixed_rows::<3>(0) + state.fixed_rows::<3>(3) * self.since - self.first
+    fn miss(&self, state: &Vector6<f64>) -> Miss {
+        self.miss_from(&(state.fixed_rows::<3>(0) + state.fixed_rows::<3>(3) * self.since))
     }
 
-    /// How far the last return lies from the line through the scanner and the first, metres across the pulse.
-    fn miss(&self, state: &Vector6<f64>) -> Vector3<f64> {
-        let sight = self.sight(state);
-        self.across * sight * (self.length / sight.norm())
+    /// How the pulse misses the way from a scanner at `position`.
+    pub(super) fn miss_from(&self, position: &Vector3<f64>) -> Miss {
+        let way = self.first - position;
+        let range = way.norm();
+        let towards = way / range;
+        let ahead = self.along.dot(&towards);
+        let across = Matrix3::identity() - towards * towards.transpose();
+        Miss { offset: self.along - towards * ahead, slope: ahead / range, across }
     }
 }
 

@@ -1,0 +1,31 @@
+//! `belvedere trajectory`.
+
+use super::check_output;
+use crate::arguments::{Global, Trajectory, Usage};
+use crate::pipeline::{self, scanner};
+use crate::progress::Stages;
+use crate::summary::Summary;
+use anyhow::Result;
+use belvedere::io::write_found_trajectory;
+use belvedere::pulses::{LocateParams, Means, locate, path_samples};
+
+pub(crate) fn run(arguments: &Trajectory, global: &Global) -> Result<Summary> {
+    check_output("-o", &arguments.output, &["csv", "txt"])?;
+    if !(0.01..=2.0).contains(&arguments.step) {
+        let step = arguments.step;
+        return Err(Usage(format!("--step is {step}, but must be 0.01 to 2 s: readers do not bridge more")).into());
+    }
+    let mut stages = Stages::new(global);
+    let mut summary = Summary::default();
+    let cloud = pipeline::read(&arguments.input, &mut stages, &mut summary)?;
+    let (_, report) =
+        stages.run("finding the scanner", 0, |_| locate(&cloud, &Means::Pulses, &LocateParams::default()))?;
+    summary.add("scanner", scanner::section(&report));
+    summary.add("flight_line", scanner::line_sections(&report));
+    let samples = path_samples(&report.paths, cloud.origin, arguments.step)?;
+    summary.add("positions", samples.len());
+    stages.run("writing", 0, |_| write_found_trajectory(&arguments.output, &samples, &cloud.crs))?;
+    summary.add("written", arguments.output.display().to_string());
+    summary.add_seconds(stages.into_seconds());
+    Ok(summary)
+}
