@@ -9,5 +9,5 @@ mod sensor_estimate;
 mod sensor_fit;
 
 pub use group::{PulseReport, Pulses, group};
-pub use needles::{NeedleParams, NeedleReport, Needles};
+pub use needles::{NeedleColumns, NeedleParams, NeedleReport, Needles};
 pub use sensor_estimate::{SensorEstimateParams, SensorPart, SensorPositions, SensorReport, Verdict};
