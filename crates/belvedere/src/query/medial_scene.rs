@@ -47,6 +47,14 @@ pub struct SceneParams {
     pub shell: f64,
 }
 
+impl SceneParams {
+    /// For carved balls: spheres with a bias of 0.25 m, which covers noise and how far balls bulge between points.
+    #[must_use]
+    pub fn carved() -> Self {
+        Self { profile: Profile::Sphere, depth_bias: 0.25, shell: 0.0 }
+    }
+}
+
 impl Default for SceneParams {
     fn default() -> Self {
         Self { profile: Profile::Sphere, depth_bias: 0.0, shell: 0.0 }

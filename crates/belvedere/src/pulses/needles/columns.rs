@@ -62,7 +62,7 @@ impl Needles {
             (f64::from(top) - end).abs() < REACHES_TOP
         };
         let length = |needle: &Needle| if reaches_top(needle) { f32::INFINITY } else { needle.length };
-        let all_reach = self.needles.iter().all(|needle| reaches_top(needle));
+        let all_reach = self.needles.iter().all(reaches_top);
         NeedleColumns {
             starts: self.lower_ends().collect(),
             slopes: self.needles.iter().map(slope).collect(),
