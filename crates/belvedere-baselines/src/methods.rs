@@ -28,7 +28,7 @@ pub enum Listing {
 pub enum PerEye {
     /// Nothing that takes long.
     Cheap,
-    /// It draws a depth map or builds a hull of all points.
+    /// A hull of all points, or six pictures of a shadow map.
     Costly,
 }
 
@@ -110,7 +110,7 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
         Method::new(key, title, "hidden-points", move || HiddenPoints::new(survey, params)).costly_per_eye()
     };
     let splats = |key: &str, title: &str, params: SplatParams| {
-        Method::new(key, title, "splats", move || Splats::new(cloud, &params)).costly_per_eye()
+        Method::new(key, title, "splats", move || Splats::new(cloud, &params))
     };
     let voxels = |key: &str, title: &str, size: f64| {
         let params = VoxelParams { size, ..VoxelParams::default() };
