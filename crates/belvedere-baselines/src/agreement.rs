@@ -1,6 +1,6 @@
 //! How right answers are: counts against the truth, rates, and how sure the rates are.
 
-use belvedere::query::Answer;
+use belvedere::query::{Answer, UnprovenAs};
 use belvedere::random::uniform;
 
 /// Answers for targets of known truth, counted.
@@ -8,41 +8,67 @@ use belvedere::random::uniform;
 pub struct Counts {
     /// Blocked in truth and answered so.
     pub blocked: u64,
-    /// Blocked in truth, answered visible.
+    /// Blocked in truth, answered visible or unproven.
     pub false_visible: u64,
-    /// Visible in truth and answered so.
+    /// Visible in truth and answered so, or unproven.
     pub visible: u64,
     /// Visible in truth, answered blocked.
     pub false_blocked: u64,
-    /// Neither answered visible nor blocked.
-    pub unproven: u64,
+    /// Those of `visible` that were answered unproven.
+    pub unproven_visible: u64,
+    /// Those of `false_visible` that were answered unproven.
+    pub unproven_blocked: u64,
+    /// Not answered: outside the view.
+    pub unanswered: u64,
 }
 
 impl Counts {
-    /// Counts one answer.
+    /// Counts one answer. Unproven counts as visible, since nothing blocks the line of sight, and beside that on its own.
     pub fn add(&mut self, visible_in_truth: bool, answer: Answer) {
-        let count = match (answer, visible_in_truth) {
+        if answer == Answer::Unproven {
+            *if visible_in_truth { &mut self.unproven_visible } else { &mut self.unproven_blocked } += 1;
+        }
+        let count = match (UnprovenAs::Visible.settle(answer), visible_in_truth) {
             (Answer::Blocked, false) => &mut self.blocked,
             (Answer::Visible, false) => &mut self.false_visible,
             (Answer::Visible, true) => &mut self.visible,
             (Answer::Blocked, true) => &mut self.false_blocked,
-            _ => &mut self.unproven,
+            _ => &mut self.unanswered,
         };
         *count += 1;
     }
 
-    fn plus(self, other: Self) -> Self {
+    /// These and `times` those of `other`.
+    #[must_use]
+    pub fn plus(self, other: &Self, times: u64) -> Self {
         Self {
-            blocked: self.blocked + other.blocked,
-            false_visible: self.false_visible + other.false_visible,
-            visible: self.visible + other.visible,
-            false_blocked: self.false_blocked + other.false_blocked,
-            unproven: self.unproven + other.unproven,
+            blocked: self.blocked + other.blocked * times,
+            false_visible: self.false_visible + other.false_visible * times,
+            visible: self.visible + other.visible * times,
+            false_blocked: self.false_blocked + other.false_blocked * times,
+            unproven_visible: self.unproven_visible + other.unproven_visible * times,
+            unproven_blocked: self.unproven_blocked + other.unproven_blocked * times,
+            unanswered: self.unanswered + other.unanswered * times,
         }
+    }
+
+    /// Targets that got `answer`, as a share of all answered ones, and the share of them that are right: visible or blocked in
+    /// truth as it says, visible for [`Answer::Unproven`]. `None` where none was answered, or none so.
+    #[must_use]
+    pub fn worth(&self, answer: Answer) -> [Option<f64>; 2] {
+        let (right, wrong) = match answer {
+            Answer::Blocked => (self.blocked, self.false_blocked),
+            Answer::Visible => (self.visible - self.unproven_visible, self.false_visible - self.unproven_blocked),
+            Answer::Unproven => (self.unproven_visible, self.unproven_blocked),
+            _ => (0, 0),
+        };
+        let all = self.visible + self.false_visible + self.blocked + self.false_blocked;
+        [(right + wrong, all), (right, right + wrong)]
+            .map(|(part, whole)| (whole > 0).then(|| part as f64 / whole as f64))
     }
 }
 
-/// A rate derived from [`Counts`]. Targets without an answer enter [`Rate::Unproven`] only.
+/// A rate derived from [`Counts`]. Targets without an answer enter [`Rate::Unanswered`] only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rate {
     /// Share of the visible that is called blocked.
@@ -54,13 +80,13 @@ pub enum Rate {
     /// Intersection over union of the blocked class: right blocked over all that is blocked in truth or by answer.
     BlockedIou,
     /// Share of all targets without an answer.
-    Unproven,
+    Unanswered,
 }
 
 impl Rate {
     /// Every rate.
     pub const ALL: [Self; 5] =
-        [Self::FalseBlocked, Self::FalseVisible, Self::Balanced, Self::BlockedIou, Self::Unproven];
+        [Self::FalseBlocked, Self::FalseVisible, Self::Balanced, Self::BlockedIou, Self::Unanswered];
 
     /// The rate, 0 to 1, or `None` where nothing of the kind was asked.
     #[must_use]
@@ -73,7 +99,7 @@ impl Rate {
             Self::FalseVisible => share(counts.false_visible, blocked),
             Self::Balanced => Some((share(counts.visible, visible)? + share(counts.blocked, blocked)?) / 2.0),
             Self::BlockedIou => share(counts.blocked, blocked + counts.false_blocked),
-            Self::Unproven => share(counts.unproven, visible + blocked + counts.unproven),
+            Self::Unanswered => share(counts.unanswered, visible + blocked + counts.unanswered),
         }
     }
 }
@@ -135,6 +161,19 @@ pub fn count_by_tile(tiles: &Tiles, truth: &[Option<bool>], answers: &[Answer]) 
     counts
 }
 
+/// The rate of that view, over all its tiles, below which `share` of the views lie, 0 to 1: 0.1 for the tenth percentile. Views
+/// without the rate are left out; `None` where none has it.
+#[must_use]
+pub fn quantile(views: &[Vec<Counts>], rate: Rate, share: f64) -> Option<f64> {
+    let of_view =
+        |tiles: &Vec<Counts>| rate.of(&tiles.iter().fold(Counts::default(), |total, tile| total.plus(tile, 1)));
+    let mut rates: Vec<f64> = views.iter().filter_map(of_view).collect();
+    rates.sort_by(f64::total_cmp);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the list")]
+    let index = (share.clamp(0.0, 1.0) * rates.len() as f64) as usize;
+    rates.get(index.min(rates.len().saturating_sub(1))).copied()
+}
+
 /// Resamples of tiles that an interval rests on.
 const RESAMPLES: u64 = 400;
 
@@ -154,13 +193,7 @@ pub fn interval(views: &[Vec<Counts>], rate: Rate, seed: u64) -> Option<Interval
         let rates = views.iter().filter_map(|tiles| {
             let total = tiles.iter().take(tile_count).enumerate().fold(Counts::default(), |total, (tile, counts)| {
                 let times = weights.map_or(1, |weights| u64::from(weights[tile]));
-                total.plus(Counts {
-                    blocked: counts.blocked * times,
-                    false_visible: counts.false_visible * times,
-                    visible: counts.visible * times,
-                    false_blocked: counts.false_blocked * times,
-                    unproven: counts.unproven * times,
-                })
+                total.plus(counts, times)
             });
             rate.of(&total)
         });
@@ -225,14 +258,50 @@ mod tests {
 
     #[test]
     fn rates_of_a_small_table_are_those_computed_by_hand() {
-        let counts = Counts { blocked: 30, false_visible: 10, visible: 45, false_blocked: 5, unproven: 10 };
+        let counts = Counts {
+            blocked: 30,
+            false_visible: 10,
+            visible: 45,
+            false_blocked: 5,
+            unproven_visible: 15,
+            unproven_blocked: 8,
+            unanswered: 10,
+        };
         let rates = Rate::ALL.map(|rate| rate.of(&counts).unwrap());
         let expected = [0.1, 0.25, 0.825, 30.0 / 45.0, 0.1];
         assert!(rates.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{rates:?}");
+        // of 90 answers 35 are blocked, 30 of them rightly; 32 visible, 30 rightly; 23 unproven, 15 rightly
+        let worths = [(Answer::Blocked, 35.0, 30.0), (Answer::Visible, 32.0, 30.0), (Answer::Unproven, 23.0, 15.0)];
+        for (answer, answered, right) in worths {
+            let [share, of_these] = counts.worth(answer).map(Option::unwrap);
+            assert!((share - answered / 90.0).abs() < 1e-12 && (of_these - right / answered).abs() < 1e-12);
+        }
+        assert_eq!(Counts::default().worth(Answer::Blocked), [None, None]);
         let nothing_blocked = Counts { visible: 3, ..Counts::default() };
         assert_eq!(Rate::FalseVisible.of(&nothing_blocked), None);
         assert_eq!(Rate::Balanced.of(&nothing_blocked), None);
         assert_eq!(Rate::FalseBlocked.of(&nothing_blocked), Some(0.0));
+    }
+
+    #[test]
+    fn unproven_is_visible_and_counted_on_its_own() {
+        let mut counts = Counts::default();
+        for (truth, answer) in [(true, Answer::Unproven), (false, Answer::Unproven), (true, Answer::Visible)] {
+            counts.add(truth, answer);
+        }
+        let expected =
+            Counts { visible: 2, false_visible: 1, unproven_visible: 1, unproven_blocked: 1, ..Counts::default() };
+        assert_eq!(counts, expected);
+    }
+
+    #[test]
+    fn the_tenth_percentile_of_twenty_views_is_the_third_lowest() {
+        // two of twenty, a tenth, lie below it
+        let view = |blocked: u64| vec![Counts { blocked, false_visible: 20 - blocked, ..Counts::default() }];
+        let views: Vec<_> = (1..=20).rev().map(view).collect();
+        assert_eq!(quantile(&views, Rate::FalseVisible, 0.1), Some(0.1));
+        assert_eq!(quantile(&views, Rate::FalseVisible, 1.0), Some(0.95));
+        assert_eq!(quantile(&views, Rate::FalseBlocked, 0.1), None);
     }
 
     #[test]
@@ -278,8 +347,8 @@ mod tests {
         let all_blocked = count_by_tile(&tiles, &[Some(false); 3], &[b, b, Answer::OutsideView]);
         let found = interval(&[view.clone(), all_blocked.clone()], Rate::FalseBlocked, 3).unwrap();
         assert!((found.value - 0.5).abs() < 1e-12);
-        let unproven = interval(&[all_blocked], Rate::Unproven, 3).unwrap();
-        assert!((unproven.value - 1.0 / 3.0).abs() < 1e-12);
+        let unanswered = interval(&[all_blocked], Rate::Unanswered, 3).unwrap();
+        assert!((unanswered.value - 1.0 / 3.0).abs() < 1e-12);
         assert_eq!(interval(&[], Rate::Balanced, 1), None);
     }
 

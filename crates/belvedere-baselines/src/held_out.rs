@@ -5,7 +5,7 @@
 //! what is solid. Neighbouring pulses that it did see lie close by: the test says nothing of space that no pulse reached.
 
 use belvedere::pulses::{Pulses, SensorPositions};
-use belvedere::query::{Answer, Viewer, Visibility};
+use belvedere::query::{Answer, UnprovenAs, Viewer, Visibility};
 use belvedere::vector::{length, sub, unit};
 use belvedere::{Error, PointCloud, Result};
 
@@ -74,7 +74,7 @@ pub struct Tally {
     pub wrong_count: usize,
     /// Answers, right and wrong.
     pub answered_count: usize,
-    /// [`Answer::OutsideView`] and whatever else decides nothing.
+    /// [`Answer::OutsideView`]. [`Answer::Unproven`] counts as visible: nothing blocks the line of sight.
     pub undecided_count: usize,
 }
 
@@ -112,6 +112,7 @@ impl Tally {
     }
 
     fn count(&mut self, answer: Answer, wrong: Answer) {
+        let answer = UnprovenAs::Visible.settle(answer);
         if !matches!(answer, Answer::Visible | Answer::Blocked) {
             self.undecided_count += 1;
             return;

@@ -3,7 +3,7 @@
 use crate::dsm::{Dsm, DsmParams};
 use crate::hidden_points::{ForeignTargets, HiddenPoints, HiddenPointsParams};
 use crate::implicit_surface::{ImplicitSurface, ImplicitSurfaceParams};
-use crate::medial::{MedialBaseline, MedialParams, Outward};
+use crate::medial::{Making, MedialBaseline, MedialParams, Outward};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
 use crate::shadow_map::{ShadowMap, ShadowMapParams};
 use crate::splatting::{SplatParams, Splats};
@@ -11,7 +11,26 @@ use crate::tin::{Tin, TinParams};
 use crate::voxels::{VoxelParams, Voxels};
 use crate::{Model, Survey};
 use belvedere::Result;
+use belvedere::medial::CarvedParams;
 use belvedere::query::Visibility;
+
+/// When a comparison of all methods takes one in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Listing {
+    /// Unless others are asked for.
+    Always,
+    /// Only where it is asked for by its full key: a variant that tells what a part of another method is worth.
+    WhenNamed,
+}
+
+/// What a method does anew for each eye.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PerEye {
+    /// Nothing that takes long.
+    Cheap,
+    /// A hull of all points, or six pictures of a shadow map.
+    Costly,
+}
 
 /// A way of answering visibility, not built yet.
 pub struct Method<'a> {
@@ -21,6 +40,10 @@ pub struct Method<'a> {
     pub title: String,
     /// Its page below `docs/methods`, without the extension.
     pub page: &'static str,
+    /// When a comparison takes it in.
+    pub listing: Listing,
+    /// What another eye costs.
+    pub per_eye: PerEye,
     build: Box<dyn Fn() -> Result<Box<dyn Visibility + 'a>> + Sync + 'a>,
 }
 
@@ -32,7 +55,15 @@ impl<'a> Method<'a> {
         build: impl Fn() -> Result<V> + Sync + 'a,
     ) -> Self {
         let build = Box::new(move || build().map(|built| Box::new(built) as Box<dyn Visibility + 'a>));
-        Self { key: key.into(), title: title.into(), page, build }
+        Self { key: key.into(), title: title.into(), page, listing: Listing::Always, per_eye: PerEye::Cheap, build }
+    }
+
+    fn costly_per_eye(self) -> Self {
+        Self { per_eye: PerEye::Costly, ..self }
+    }
+
+    fn when_named(self) -> Self {
+        Self { listing: Listing::WhenNamed, ..self }
     }
 
     /// Builds it.
@@ -52,8 +83,23 @@ const NOISE: f64 = 0.06;
 /// that the model gives them.
 const MESH_CLEARANCE: f64 = 0.1;
 
+/// Carved balls with something left out: key, title and parameters. They run when named.
+fn carved_variants() -> Vec<(&'static str, &'static str, MedialParams)> {
+    let with = |change: fn(&mut CarvedParams)| {
+        let mut carving = CarvedParams::default();
+        change(&mut carving);
+        MedialParams { making: Making::Carving(carving), ..MedialParams::carved() }
+    };
+    let no_kinds = with(|carving| {
+        let bounds = &mut carving.kind_bounds;
+        (bounds.ground_radius, bounds.vegetation_radius) = (f32::INFINITY, f32::INFINITY);
+        bounds.later_return_radius = f32::INFINITY;
+    });
+    vec![("carved-no-kind-bounds", "carved balls without bounds by kind of point", no_kinds)]
+}
+
 /// The methods that a survey allows, in the order of tables: those that need the cloud alone, then for each model those that
-/// trace it.
+/// trace it, then Belvedere's own and variants of them.
 #[must_use]
 pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
     let (cloud, positions, origin) = (survey.cloud, &survey.cloud.positions, survey.cloud.origin);
@@ -61,7 +107,7 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
         Method::new(key, title, "medial-balls", move || MedialBaseline::new(survey, Outward::Survey, &params))
     };
     let hidden_points = |key: &str, title: &str, params: HiddenPointsParams| {
-        Method::new(key, title, "hidden-points", move || HiddenPoints::new(survey, params))
+        Method::new(key, title, "hidden-points", move || HiddenPoints::new(survey, params)).costly_per_eye()
     };
     let splats = |key: &str, title: &str, params: SplatParams| {
         Method::new(key, title, "splats", move || Splats::new(cloud, &params))
@@ -102,14 +148,14 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
             MeshRays::new(mesh, origin, &on_mesh)
         }));
         let (key, title) = (format!("shadow-map-{name}"), format!("shadow map of {name}"));
-        methods.push(Method::new(key, title, "shadow-map", move || {
-            ShadowMap::new(mesh, origin, &ShadowMapParams::default())
-        }));
+        let shadow_map = move || ShadowMap::new(mesh, origin, &ShadowMapParams::default());
+        methods.push(Method::new(key, title, "shadow-map", shadow_map).costly_per_eye());
         methods.push(Method::new(format!("dsm-{name}"), format!("raster of {name}"), "dsm", move || {
             Dsm::from_mesh(mesh, origin, &DsmParams::default())
         }));
     }
     methods.push(medial("belvedere", "Belvedere, default balls", MedialParams::belvedere()));
     methods.push(medial("carved", "Belvedere, carved balls", MedialParams::carved()));
+    methods.extend(carved_variants().into_iter().map(|(key, title, params)| medial(key, title, params).when_named()));
     methods
 }

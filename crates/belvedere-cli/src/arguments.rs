@@ -92,12 +92,12 @@ pub(crate) enum Command {
     DepthMap(DepthMap),
     /// Answer which targets are visible in a view
     #[command(
-        after_help = "Answers: 0 blocked, 1 visible, 3 outside the view: beside the picture, or behind the plane of a --viewport (2 is kept for answers not borne out by measured free space).\n\nA ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere query demo/town.laz --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/balls.npz --sun 235,30 --random 10000 -o demo/answers.csv\n  belvedere query demo/balls.npz --direction 0,0,-1 --targets demo/answers.csv -o demo/open-to-the-sky.csv"
+        after_help = "Answers: 0 blocked, 1 visible, 3 outside the view: beside the picture, or behind the plane of a --viewport.\n\nCarved balls are asked by exact lines of sight, others through a depth map. Where carved balls know their pulses (a cloud, or an .npz of `belvedere balls`) there is one answer more, 2 unproven: nothing blocks the target, but more than half a metre of its line of sight runs through space that no pulse came within 0.7 m of. The project's docs/accuracy.md says how often each answer is right. Of space beside the survey nothing is asked.\n\nA ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere query demo/town.laz --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self --unproven as-blocked -o demo/proven-lit.laz\n  belvedere query demo/balls.npz --sun 235,30 --random 10000 -o demo/answers.csv\n  belvedere query demo/balls.npz --direction 0,0,-1 --targets demo/answers.csv -o demo/open-to-the-sky.csv"
     )]
     Query(Query),
     /// Hold every method against exact answers on the same places: how right each is, and what it costs
     #[command(
-        after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, or over two observers, with 95 % intervals from resampled tiles of 25 m.\n\nMethods: paper-cone, paper-sphere, union, hidden-points, hidden-points-robust, surfels, depth-splats, elliptical-splats, implicit-surface, voxels-05, voxels-10, dsm, tin, belvedere, carved; for each model also mesh-NAME, shadow-map-NAME and dsm-NAME, and for the first paper-cone-NAME. Simulated places have the models blocks (LoD1), no-trees and exact. The project's docs/methods has a page on each.\n\nA thorough comparison takes several places and seeds, such as --presets village,old-town,towers --seeds 1,2,3.\n\nExample:\n  belvedere compare --extent 100 --targets 2000 --methods paper-cone,belvedere -o compared"
+        after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, over two observers, or over 40 people in streets (4 for methods that build a hull or draw shadow maps for each eye), with 95 % intervals from resampled tiles of 25 m.\n\nMethods: paper-cone, paper-sphere, union, hidden-points, hidden-points-robust, surfels, depth-splats, elliptical-splats, implicit-surface, voxels-05, voxels-10, dsm, tin, belvedere, carved (and, only when named, carved-no-kind-bounds); for each model also mesh-NAME, shadow-map-NAME and dsm-NAME, and for the first paper-cone-NAME. Simulated places have the models blocks (LoD1), no-trees and exact. The project's docs/methods has a page on each.\n\nA thorough comparison takes several places and seeds, such as --presets village,old-town,towers --seeds 1,2,3.\n\nExample:\n  belvedere compare --extent 100 --targets 2000 --methods paper-cone,belvedere -o compared"
     )]
     Compare(Compare),
     /// Print a completion script for a shell
@@ -165,7 +165,8 @@ pub(crate) struct Balls {
     /// Side to make balls on; a folder always gets both [default: interior]
     #[arg(long, value_enum, default_value_t = SideChoice::Interior, hide_default_value = true)]
     pub(crate) side: SideChoice,
-    /// Ball file (.npz .ply .laz .las), or a folder for masbcpp's ma_coords_*.npy and ma_qidx_*.npy (one row per input
+    /// Ball file: .npz keeps all that later commands use, the pulses of --method carved among it; .ply .laz .las are for
+    /// looking at, with the radius as the size of a point, and hold the balls alone. Or a folder for masbcpp's ma_coords_*.npy and ma_qidx_*.npy (one row per input
     /// point: nothing is cleaned away, and the method is `angles` unless said otherwise)
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
@@ -206,10 +207,15 @@ pub(crate) struct Query {
     pub(crate) view: ViewChoice,
     #[command(flatten)]
     pub(crate) targets: Targets,
-    /// Metres a target may lie behind the depth of its pixel and still count as visible [default: what noise and half a
-    /// pixel are deep on a slope of 63 degrees, 0.58 at pixels of 0.25 m; 0 with --profile paper-cone]
+    /// Metres a target may lie behind the depth of its pixel, or, with carved balls, inside a ball along its line of sight, and
+    /// still count as visible [default: what noise and half a pixel are deep on a slope of 63 degrees, 0.58 at pixels of
+    /// 0.25 m; 0 with --profile paper-cone; 0.25 with carved balls]
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite, help_heading = "Result")]
     pub(crate) bias: Option<f32>,
+    /// What to make of targets that nothing blocks, but of whose line of sight more than half a metre runs through space that no
+    /// pulse came near to; needs carved balls with their pulses (from a cloud, or from an .npz) [default: report]
+    #[arg(long, value_enum, help_heading = "Result")]
+    pub(crate) unproven: Option<UnprovenChoice>,
     /// Targets with a column `answer` (.csv .xyz .txt .laz .las .ply), or the answers alone (.npy, u8); one row per target
     /// in their order
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]
@@ -355,6 +361,16 @@ pub(crate) enum MethodChoice {
     Carved,
     /// The paper's separation angles
     Angles,
+}
+
+#[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]
+pub(crate) enum UnprovenChoice {
+    /// An answer of its own: 2
+    Report,
+    /// Visible: 1
+    AsVisible,
+    /// Blocked: 0
+    AsBlocked,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

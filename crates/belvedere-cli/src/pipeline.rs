@@ -4,7 +4,7 @@ pub(crate) mod scanner;
 
 use crate::arguments::{
     Cleaning, CloudInput, MethodChoice, NeighborChoice, OrientChoice, Orienting, ProfileChoice, SceneInput, Shrinking,
-    Usage, ViewChoice,
+    UnprovenChoice, Usage, ViewChoice,
 };
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
@@ -13,15 +13,17 @@ use belvedere::clean::{CleanParams, CleanReport, Treatment, clean};
 use belvedere::crs::Crs;
 use belvedere::depth::Profile;
 use belvedere::io::{
-    ReadOptions, ReadReport, SavedBalls, is_ball_file, read_balls, read_cloud, read_mesh, read_trajectory,
+    ReadOptions, ReadReport, SavedBalls, SavedPulses, is_ball_file, read_balls, read_cloud, read_mesh, read_trajectory,
 };
 use belvedere::medial::{
-    CarvedInput, CarvedParams, CarvedReport, MedialBalls, ShrinkMethod, ShrinkParams, ShrinkReport, Side, carved_balls,
-    shrink,
+    CarvedInput, CarvedParams, CarvedReport, MedialBalls, PULSE_TOUCH, ShrinkMethod, ShrinkParams, ShrinkReport, Side,
+    carved_balls, shrink,
 };
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
+use belvedere::pulses::NeedleColumns;
+use belvedere::query::UnprovenAs;
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere::{Attributes, Error, PointCloud};
 use scanner::Located;
@@ -144,6 +146,15 @@ pub(crate) enum BallParams {
 }
 
 impl BallParams {
+    /// The method as typed.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Carved(_) => "carved",
+            Self::Shrunk(ShrinkParams { method: ShrinkMethod::Tau { .. }, .. }) => "tau",
+            Self::Shrunk(ShrinkParams { method: ShrinkMethod::Angles { .. }, .. }) => "angles",
+        }
+    }
+
     pub(crate) fn carving(&self) -> Carving {
         match self {
             Self::Shrunk(_) => Carving::Unwanted,
@@ -162,6 +173,13 @@ pub(crate) struct Prepared {
     pub(crate) bounds: ([f32; 3], [f32; 3]),
     /// Where carving was asked for.
     pub(crate) carving: Option<scanner::CarvingInput>,
+}
+
+impl Prepared {
+    /// What pulses proved empty, as ball files keep it, where carving was asked for.
+    pub(crate) fn pulses(&self) -> Option<NeedleColumns> {
+        self.carving.as_ref().map(|input| input.needles.to_columns())
+    }
 }
 
 /// Cleans, estimates normals and orients them. A cloud that is given away is let go as soon as it has served.
@@ -405,8 +423,17 @@ pub(crate) struct Scene {
     pub(crate) cloud: PointCloud,
     /// Lowest and highest local corner of the points that balls were made from.
     pub(crate) bounds: ([f32; 3], [f32; 3]),
+    /// What pulses proved empty, where balls were carved and the file kept it.
+    pub(crate) pulses: Option<NeedleColumns>,
     /// Rows of the files that reading left out.
     pub(crate) left_out: ReadReport,
+}
+
+impl Scene {
+    /// Whether pulses cut the balls.
+    pub(crate) fn is_carved(&self) -> bool {
+        self.pulses.is_some() || self.balls.touch.contains(&PULSE_TOUCH)
+    }
 }
 
 /// Whether a scene keeps the points that its balls were made from.
@@ -444,7 +471,8 @@ pub(crate) fn scene(
     let prepared = prepare(given, &arguments.cleaning, &arguments.orienting, params.carving(), stages, summary)?;
     // as in a ball file, so that rows of balls mean the same
     let balls = shrink_side(&prepared, Side::Interior, &params, stages, summary)?.shrunk();
-    Ok(Scene { balls, cloud, bounds: prepared.bounds, left_out })
+    let pulses = prepared.pulses();
+    Ok(Scene { balls, cloud, bounds: prepared.bounds, pulses, left_out })
 }
 
 /// Flags that say how to make balls are of no use where they are made already.
@@ -488,12 +516,24 @@ fn scene_of_saved(saved: SavedBalls, path: &Path) -> Result<Scene> {
         touch: saved.touch,
         separation_angles: saved.separation_angles,
     };
-    Ok(Scene { balls, cloud, bounds, left_out: ReadReport::default() })
+    let pulses =
+        saved.pulses.map(|SavedPulses { starts, slopes, lengths, top }| NeedleColumns { starts, slopes, lengths, top });
+    Ok(Scene { balls, cloud, bounds, pulses, left_out: ReadReport::default() })
 }
 
 /// Lowest and highest corner of a cloud that has points.
 pub(crate) fn bounds_of(cloud: &PointCloud) -> Result<([f32; 3], [f32; 3])> {
     Ok(cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?)
+}
+
+impl From<UnprovenChoice> for UnprovenAs {
+    fn from(choice: UnprovenChoice) -> Self {
+        match choice {
+            UnprovenChoice::Report => Self::Reported,
+            UnprovenChoice::AsVisible => Self::Visible,
+            UnprovenChoice::AsBlocked => Self::Blocked,
+        }
+    }
 }
 
 impl From<ProfileChoice> for Profile {
@@ -549,6 +589,7 @@ pub(crate) fn saved(
     balls: MedialBalls,
     place: (&[f64; 3], &Crs),
     bounds: ([f32; 3], [f32; 3]),
+    pulses: Option<NeedleColumns>,
     provenance: impl IntoIterator<Item = (&'static str, String)>,
 ) -> SavedBalls {
     SavedBalls {
@@ -560,6 +601,13 @@ pub(crate) fn saved(
         source: balls.source,
         touch: balls.touch,
         separation_angles: balls.separation_angles,
+        transmission: None,
+        pulses: pulses.map(|NeedleColumns { starts, slopes, lengths, top }| SavedPulses {
+            starts,
+            slopes,
+            lengths,
+            top,
+        }),
         provenance: provenance.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
     }
 }

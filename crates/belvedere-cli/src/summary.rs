@@ -17,6 +17,12 @@ impl Summary {
         self
     }
 
+    /// Adds all figures of `other`.
+    pub(crate) fn add_all(&mut self, other: Self) -> &mut Self {
+        self.0.extend(other.0);
+        self
+    }
+
     /// Adds the seconds of each stage and their sum.
     pub(crate) fn add_seconds(&mut self, seconds: Vec<(&'static str, f64)>) -> &mut Self {
         let mut section = Self::default();

@@ -68,6 +68,86 @@ fn answers_equal_those_of_every_ball_tried_in_turn() {
     }
 }
 
+/// The rule of the documentation for [`SceneParams::shell`], ball after ball: a ball whose whole extent the line leaves before
+/// the viewer counts with radius r − (shell − max(d − r, 0)) where the target at distance d from its centre lies less
+/// than the shell from its surface.
+fn brute_force_with_shell(balls: &MedialBalls, target: [f32; 3], eye: [f64; 3], bias: f64, shell: f64) -> bool {
+    (0..balls.len()).any(|i| {
+        let one = |radius: f64| {
+            let mut one = balls.clone();
+            one.centers = vec![balls.centers[i]];
+            #[expect(clippy::cast_possible_truncation, reason = "radii of balls are f32")]
+            (one.radii = vec![radius as f32]);
+            one
+        };
+        let radius = f64::from(balls.radii[i]);
+        let square = |(a, b): (&f32, f32)| (f64::from(*a) - f64::from(b)).powi(2);
+        let d = balls.centers[i].iter().zip(target).map(square).sum::<f64>().sqrt();
+        // the viewer must lie beyond the whole ball
+        let whole = brute_force(&one(radius), target, eye, f64::NEG_INFINITY);
+        let shell = shell.min(radius / 2.0);
+        let counts = if (d - radius).abs() < shell { radius - (shell - (d - radius).max(0.0)) } else { radius };
+        whole && counts > 0.0 && brute_force(&one(counts), target, eye, bias)
+    })
+}
+
+#[test]
+fn balls_give_way_to_targets_near_their_surface_by_the_written_rule() {
+    // half of the targets lie within a shell of the surface of some ball, where the rule does something
+    let balls = random_balls(150);
+    let mut targets = random_points(51, 1500, 100.0);
+    for (i, target) in targets.iter_mut().enumerate().step_by(2) {
+        let (center, radius) = (balls.centers[i % 150], balls.radii[i % 150]);
+        let away = random_points(52, 1500, 1.0)[i].map(|v| v - 0.5);
+        let length = away.iter().map(|v| v * v).sum::<f32>().sqrt();
+        let off = radius + 0.5 * (at(53, i as u64) - 0.5);
+        *target = std::array::from_fn(|k| center[k] + away[k] / length * off);
+    }
+    let eyes = random_points(54, 1500, 100.0);
+    for (bias, shell) in [(0.0, 0.2), (0.1, 0.25)] {
+        let scene =
+            MedialScene::new(&balls, &SceneParams { profile: Profile::Sphere, depth_bias: bias, shell }).unwrap();
+        let bare = MedialScene::new(&balls, &params(Profile::Sphere, bias)).unwrap();
+        let found = scene.visible(Viewer::Each(&eyes), &targets).unwrap();
+        let without = bare.visible(Viewer::Each(&eyes), &targets).unwrap();
+        let mut wrong = 0;
+        for (i, &target) in targets.iter().enumerate() {
+            let expected = brute_force_with_shell(&balls, target, eyes[i].map(f64::from), bias, shell);
+            wrong += usize::from((found[i] == Answer::Blocked) != expected);
+            // to give way reveals and never hides
+            assert!(found[i] == Answer::Visible || without[i] == Answer::Blocked, "target {i}");
+        }
+        // a radius rounded to f32 decides where a line grazes a ball
+        assert!(wrong <= 1, "{wrong}");
+        let revealed = found.iter().zip(&without).filter(|(a, b)| a != b).count();
+        assert!(revealed > 100, "the rule must matter: {revealed}");
+    }
+}
+
+#[test]
+fn a_shell_in_numbers() {
+    // a ball of radius 1 and a shell of 0.2; lines of sight run past it at a height, from 0.1 or 0.3 m off its surface
+    let one = balls(vec![[0.0; 3]], vec![1.0]);
+    let scene = MedialScene::new(&one, &SceneParams { shell: 0.2, ..params(Profile::Sphere, 0.0) }).unwrap();
+    let towards = |target: [f64; 3], height: f64| {
+        let d = [-target[0], 0.0, height];
+        let length = (d[0] * d[0] + height * height).sqrt();
+        scene.answer(target, d.map(|v| v / length), f64::INFINITY)
+    };
+    let (blocked, visible) = (Answer::Blocked, Answer::Visible);
+    // 0.1 outside: radius 0.9, so that a line that passes the centre at 0.95 is free and one at 0.85 is not. A line from
+    // (1.1, 0, 0) at angle a passes at 1.1 sin a
+    let at_angle = |x: f64, passes: f64| towards([x, 0.0, 0.0], x * (passes / x).asin().tan());
+    assert_eq!([at_angle(1.1, 0.95), at_angle(1.1, 0.85)], [visible, blocked]);
+    // 0.3 outside: the whole ball
+    assert_eq!([at_angle(1.3, 0.95), at_angle(1.3, 1.05)], [blocked, visible]);
+    // 0.1 inside: radius 0.8, out of which the target lies: looking out it is free, looking through it is not
+    assert_eq!(scene.answer([0.9, 0.0, 0.0], [1.0, 0.0, 0.0], f64::INFINITY), visible);
+    assert_eq!(scene.answer([0.9, 0.0, 0.0], [-1.0, 0.0, 0.0], f64::INFINITY), blocked);
+    // 0.3 inside: blocked whichever way
+    assert_eq!(scene.answer([0.7, 0.0, 0.0], [1.0, 0.0, 0.0], f64::INFINITY), blocked);
+}
+
 #[test]
 fn a_direction_is_an_eye_very_far_away() {
     let balls = random_balls(2000);

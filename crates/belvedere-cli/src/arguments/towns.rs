@@ -1,6 +1,7 @@
 //! Flags of the commands that make towns: `simulate` and `compare`.
 
 use super::{Usage, target_count};
+use belvedere_baselines::methods::Listing;
 use belvedere_scenes::Preset;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
@@ -137,7 +138,7 @@ pub(crate) struct Compare {
     /// several returns
     #[arg(long, value_name = "CLOUD", num_args = 1.., help_heading = "Real clouds")]
     pub(crate) held_out: Vec<PathBuf>,
-    /// Only these methods, by the beginnings of their names [default: all]
+    /// Only these methods, by the beginnings of their names [default: all but variants, which want their full name]
     #[arg(long, value_name = "LIST", value_delimiter = ',', help_heading = "Questions")]
     pub(crate) methods: Vec<String>,
     /// Targets of each kind
@@ -152,9 +153,14 @@ pub(crate) struct Compare {
 }
 
 impl Compare {
-    /// Whether a method was asked for.
-    pub(crate) fn wants(&self, key: &str) -> bool {
-        self.methods.is_empty() || self.methods.iter().any(|start| key.starts_with(start.as_str()))
+    /// Whether a method was asked for: by a beginning of its key, or, if it runs when named only, by all of it.
+    pub(crate) fn wants(&self, key: &str, listing: Listing) -> bool {
+        match listing {
+            Listing::Always => {
+                self.methods.is_empty() || self.methods.iter().any(|start| key.starts_with(start.as_str()))
+            }
+            Listing::WhenNamed => self.methods.iter().any(|name| name == key),
+        }
     }
 
     /// Refuses names that no method of `keys` begins with.

@@ -1,6 +1,6 @@
 //! `belvedere balls`.
 
-use super::{check_output, check_parent, is_folder, is_same};
+use super::{check_output, check_parent, extension, is_folder, is_same};
 use crate::arguments::{Balls, Cleaning, Global, MethodChoice, SideChoice, Usage};
 use crate::pipeline::{self, BallParams, Carving, Prepared};
 use crate::progress::Stages;
@@ -55,13 +55,18 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
             // a pulse has no row
             *row = prepared.kept.get(*row as usize).copied().unwrap_or(*row);
         }
+        let pulses = prepared.pulses();
+        if pulses.is_some() && extension(&arguments.output) != "npz" {
+            summary.add("not_written", "pulses: only .npz keeps what tells visible from unproven");
+        }
         let provenance = [
             ("program", concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned()),
             ("side", format!("{side:?}").to_lowercase()),
+            ("method", params.name().to_owned()),
             ("parameters", format!("{params:?}")),
             ("input", arguments.input.clouds.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(" ")),
         ];
-        let saved = pipeline::saved(balls, (&cloud.origin, &cloud.crs), prepared.bounds, provenance);
+        let saved = pipeline::saved(balls, (&cloud.origin, &cloud.crs), prepared.bounds, pulses, provenance);
         stages.run("writing", 0, |_| write_balls(&arguments.output, &saved))?;
     }
     summary.add("written", arguments.output.display().to_string());

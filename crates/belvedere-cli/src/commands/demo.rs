@@ -90,7 +90,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
         ];
         write_balls(
             &folder.join("balls.npz"),
-            &pipeline::saved(balls, (&cloud.origin, &cloud.crs), bounds, provenance),
+            &pipeline::saved(balls, (&cloud.origin, &cloud.crs), bounds, None, provenance),
         )?;
         Ok(())
     })?;

@@ -10,7 +10,13 @@ use belvedere::PointCloud;
 use belvedere::crs::{Crs, CrsKind};
 use belvedere::depth::{ItemBuffer, depth_map};
 use belvedere::io::{ExtraColumn, ExtraValues, ReadOptions, WriteReport, read_cloud, write_cloud, write_npy_u8};
-use belvedere::query::{AnswerCounts, query_points, random_targets};
+use belvedere::medial::MedialBalls;
+use belvedere::pulses::{NeedleColumns, Needles};
+use belvedere::query::{
+    Answer, AnswerCounts, MedialScene, Proof, ProofParams, SceneParams, UnprovenAs, Viewer, Visibility, query_points,
+    random_targets,
+};
+use belvedere::view::View;
 
 pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     let output = &arguments.output;
@@ -19,38 +25,42 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     let mut summary = Summary::default();
     let points = if arguments.targets.own { Points::Keep } else { Points::LetGo };
     let scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
+    if arguments.unproven.is_some() && scene.pulses.is_none() {
+        let what = "--unproven needs to know the pulses: a cloud with --method carved, or an .npz that `belvedere balls --method \
+                    carved` made of one";
+        return Err(Usage(what.to_owned()).into());
+    }
     let mut view = arguments.view.view(&scene, &mut summary)?;
     if arguments.targets.own && extension(output) == "npy" {
         pipeline::check_every_row(&scene.left_out)?;
     }
+    let blockers = Blockers { is_carved: scene.is_carved(), balls: scene.balls, pulses: scene.pulses };
     let mut targets = targets(arguments, scene.cloud, scene.bounds, global.seed, &mut stages, &mut summary)?;
     if arguments.view.kind.viewport.is_none() {
         // a view that fits the scene has no plane of its own that a target could lie before
         view = view.moved_before(&targets.positions);
     }
-    let map = stages.run("drawing depth map", 0, |_| {
-        depth_map(&scene.balls, &view, arguments.scene.profile.into(), ItemBuffer::Without)
-    })?;
-    let bias = arguments.bias.unwrap_or_else(|| map.default_depth_bias());
-    let answers = stages.run("querying", 0, |_| query_points(&map, &targets.positions, bias));
-    let counts = AnswerCounts::of(&answers);
     let mut section = Summary::default();
-    section
-        .add("targets", answers.len())
-        .add("visible", counts.visible)
-        .add("blocked", counts.blocked)
-        .add("outside_the_view", counts.outside_view)
-        .add("visible_percent", percent(counts.visible, answers.len()))
-        .add("depth_bias_m", rounded(f64::from(bias), 4));
-    summary.add("answers", section);
-    let codes: Vec<u8> = answers.iter().map(|&answer| answer as u8).collect();
+    let answers = if blockers.is_carved {
+        by_lines_of_sight(arguments, &blockers, &view, &targets.positions, &mut stages, &mut section)?
+    } else {
+        let map = stages.run("drawing depth map", 0, |_| {
+            depth_map(&blockers.balls, &view, arguments.scene.profile.into(), ItemBuffer::Without)
+        })?;
+        let bias = arguments.bias.unwrap_or_else(|| map.default_depth_bias());
+        section.add("answered_by", "depth map").add("depth_bias_m", rounded(f64::from(bias), 4));
+        stages.run("querying", 0, |_| query_points(&map, &targets.positions, bias))
+    };
+    let unproven_as = arguments.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
+    let codes: Vec<u8> = answers.iter().map(|&answer| unproven_as.settle(answer) as u8).collect();
+    summary.add("answers", counted(&answers, unproven_as, section));
     let report = stages.run("writing", 0, |_| {
         if extension(output) == "npy" {
             return write_npy_u8(output, &codes).map(|()| WriteReport::default());
         }
         let column = ExtraColumn {
             name: "answer",
-            description: "0 blocked 1 visible 3 outside",
+            description: "0 blocked 1 visible 2 unproven 3 out",
             values: ExtraValues::U8(&codes),
         };
         if is_las(output)
@@ -66,6 +76,68 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     summary.add("written", output.display().to_string());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
+}
+
+/// What lines of sight run into, and what is known of where they run.
+struct Blockers {
+    balls: MedialBalls,
+    pulses: Option<NeedleColumns>,
+    is_carved: bool,
+}
+
+/// Answers of carved balls, told apart by pulses where these are known.
+fn by_lines_of_sight(
+    arguments: &Query,
+    blockers: &Blockers,
+    view: &View,
+    targets: &[[f32; 3]],
+    stages: &mut Stages,
+    section: &mut Summary,
+) -> Result<Vec<Answer>> {
+    let usual = SceneParams::carved();
+    let depth_bias = arguments.bias.map_or(usual.depth_bias, f64::from);
+    let params = SceneParams { profile: arguments.scene.profile.into(), depth_bias, ..usual };
+    let mut scene = stages.run("indexing balls", 0, |_| MedialScene::new(&blockers.balls, &params))?;
+    section.add("answered_by", "lines of sight").add("depth_bias_m", rounded(depth_bias, 4));
+    if let Some(pulses) = &blockers.pulses {
+        let proof = stages.run("indexing pulses to prove by", 0, |_| {
+            Proof::new(Needles::from_columns(pulses)?, &ProofParams::default())
+        })?;
+        section
+            .add("seen_within_m", rounded(proof.nearness(), 3))
+            .add("unseen_length_tolerated_m", rounded(proof.tolerance(), 3));
+        scene = scene.with_pulses(proof);
+    }
+    let answers = stages.run("querying", 0, |_| {
+        if arguments.view.kind.viewport.is_some() {
+            return Ok(scene.query_view(view, targets));
+        }
+        // the view only says which way: without a picture there is nothing beside it
+        scene.visible(Viewer::Direction(view.frame.forward.map(|v| -v)), targets)
+    })?;
+    Ok(answers)
+}
+
+/// How many targets got which answer.
+fn counted(answers: &[Answer], unproven_as: UnprovenAs, how: Summary) -> Summary {
+    let settled: Vec<Answer> = answers.iter().map(|&answer| unproven_as.settle(answer)).collect();
+    let [raw, counts] = [answers, &settled].map(AnswerCounts::of);
+    let mut section = Summary::default();
+    section.add("targets", answers.len()).add("visible", counts.visible);
+    match unproven_as {
+        UnprovenAs::Reported => section.add("unproven", raw.unproven),
+        UnprovenAs::Visible => section.add("of_these_unproven", raw.unproven),
+        UnprovenAs::Blocked => &mut section,
+    };
+    section.add("blocked", counts.blocked);
+    if unproven_as == UnprovenAs::Blocked {
+        section.add("of_these_unproven", raw.unproven);
+    }
+    section
+        .add("outside_the_view", counts.outside_view)
+        .add("visible_percent", percent(counts.visible, answers.len()))
+        .add_all(how);
+    section
 }
 
 /// Whether the file of a cloud says in which reference system it is.

@@ -31,12 +31,53 @@ pub struct SavedBalls {
     pub touch: Vec<u32>,
     /// Separation angle in radians, NaN where the ball never shrank, (B).
     pub separation_angles: Vec<f32>,
+    /// Share of light that a ball lets through, 0 to 1, (B), where that is known.
+    pub transmission: Option<Vec<f32>>,
+    /// The pulses that say what is proven visible, where they are known. Only `.npz` files hold them.
+    pub pulses: Option<SavedPulses>,
     /// How the balls were made: parameters, version of the program, names of inputs.
     pub provenance: BTreeMap<String, String>,
 }
 
+/// The proven-empty lines above first returns, one per row.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SavedPulses {
+    /// Lower ends, (P, 3), local metres.
+    pub starts: Vec<[f32; 3]>,
+    /// Shift to the east and to the north for each metre of height, in steps of 0.0001, (P, 2).
+    pub slopes: Vec<[i16; 2]>,
+    /// Lengths, (P), metres, infinite for a line that reaches `top`; empty where all do.
+    pub lengths: Vec<f32>,
+    /// Height that no line rises above, local metres.
+    pub top: f32,
+}
+
+impl SavedPulses {
+    fn validate(&self) -> Result<()> {
+        let expected = self.starts.len();
+        if self.slopes.len() != expected {
+            return Err(Error::LengthMismatch { what: "slopes of pulses", expected, found: self.slopes.len() });
+        }
+        if !(self.lengths.is_empty() || self.lengths.len() == expected) {
+            return Err(Error::LengthMismatch { what: "lengths of pulses", expected, found: self.lengths.len() });
+        }
+        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        if let Some(start) = self.starts.iter().find(|start| !start.iter().all(|v| v.is_finite())) {
+            return invalid("lower end of a pulse", format!("{start:?}"), "finite");
+        }
+        if let Some(length) = self.lengths.iter().find(|length| !(**length > 0.0)) {
+            return invalid("length of a pulse", length.to_string(), "above zero");
+        }
+        if !self.top.is_finite() {
+            return invalid("top of all pulses", self.top.to_string(), "finite");
+        }
+        Ok(())
+    }
+}
+
 impl SavedBalls {
-    /// Checks that all columns are equally long, centres, bounds and origin finite, and radii finite and not negative.
+    /// Checks that all columns are equally long, centres, bounds and origin finite, radii finite and not negative, shares of
+    /// light between 0 and 1, and pulses likewise.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] or [`Error::InvalidParameter`] for the first fault.
@@ -47,6 +88,7 @@ impl SavedBalls {
             ("source points of balls", self.source.len()),
             ("second points of balls", self.touch.len()),
             ("separation angles of balls", self.separation_angles.len()),
+            ("transmissions of balls", self.transmission.as_ref().map_or(expected, Vec::len)),
         ];
         if let Some(&(what, found)) = lengths.iter().find(|&&(_, found)| found != expected) {
             return Err(Error::LengthMismatch { what, expected, found });
@@ -64,7 +106,10 @@ impl SavedBalls {
         if self.origin.iter().any(|v| !v.is_finite()) {
             return invalid("origin of balls", format!("{:?}", self.origin), "finite");
         }
-        Ok(())
+        if let Some(t) = self.transmission.iter().flatten().find(|t| !(0.0..=1.0).contains(*t)) {
+            return invalid("transmission of a ball", t.to_string(), "0 to 1");
+        }
+        self.pulses.as_ref().map_or(Ok(()), SavedPulses::validate)
     }
 }
 
@@ -72,10 +117,15 @@ impl SavedBalls {
 ///
 /// An `.npz` file keeps every bit: arrays `centers` (B, 3) f32 in metres relative to `origin` (3) f64 metres, `radii` (B)
 /// f32 metres, `source` and `touch` (B) u32, `separation_angles` (B) f32 radians, and `metadata`, JSON text as u8, which
-/// holds reference system, bounds and provenance.
+/// holds reference system, bounds and provenance; where known also `transmission` (B) f32, and the pulses that prove what
+/// is visible: `pulse_starts` (P, 3) f32 metres relative to the origin, `pulse_slopes` (P, 2) i16 in steps of 0.0001,
+/// `pulse_top` (1) f32 metres, and `pulse_lengths` (P) f32 metres unless all reach the top: 16 or 20 bytes each.
+///
 /// `.ply`, `.las` and `.laz` files are point clouds of the centres in the reference system and unit of the cloud (doubles
 /// in PLY, steps of at most a millimetre in LAS) with the columns `radius`, in the horizontal unit of the file,
-/// `separation_angle` in radians, `source` and `touch`, −1 where a ball never shrank.
+/// `separation_angle` in radians, `source` and `touch`, −1 where a ball never shrank, and `transmission` where that is known.
+/// They are for looking at, with the radius as the size of a point, and answer as the balls alone do: they hold no
+/// pulses.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] for other extensions, those of [`SavedBalls::validate`], and [`Error::Io`]. An existing file

@@ -41,7 +41,7 @@ mod write_table;
 mod write_trajectory;
 mod xyz;
 
-pub use balls::{SavedBalls, is_ball_file, read_balls, write_balls};
+pub use balls::{SavedBalls, SavedPulses, is_ball_file, read_balls, write_balls};
 pub use canvas::{Canvas, Colors};
 pub use cityjson::{LevelOfDetail, read_cityjson};
 pub use colors::{class_color, in_shadow, ramp_colors};

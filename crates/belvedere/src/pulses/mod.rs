@@ -20,7 +20,7 @@ pub use group::{PulseReport, Pulses, group};
 pub use height_offset::HeightOffset;
 pub use line_path::{LinePath, Stretch};
 pub use locate::{LocateParams, Means, ScannerReport, ServedBy, locate};
-pub use needles::{NeedleParams, NeedleReport, Needles};
+pub use needles::{NeedleColumns, NeedleParams, NeedleReport, Needles};
 pub use path_samples::path_samples;
 pub use scan_angle::{AngleVerdict, ScanAngleParams, ScanAnglePart};
 pub use sensor_estimate::{SensorEstimateParams, SensorPart, SensorPositions, SensorReport, Verdict};

@@ -1,5 +1,10 @@
 //! Pulses as proven-empty lines, indexed so that a pencil of balls finds the one that cuts it most.
 
+mod columns;
+mod proximity;
+
+pub use columns::NeedleColumns;
+
 use crate::neighbors::Tangent;
 use crate::vector::{dot, sub};
 use crate::{Error, PointCloud, Result};
@@ -133,9 +138,13 @@ impl Needles {
             }
         }
         report.used = items.len();
+        Ok((Self::index(items, planes), report))
+    }
+
+    fn index(mut items: Vec<Item>, planes: [f32; 2]) -> Self {
         let mut nodes = vec![Node::EMPTY; node_count(items.len())];
         build(&mut items, 0, &mut nodes, 0);
-        Ok((Self { needles: items.into_iter().map(|item| item.needle).collect(), nodes, planes }, report))
+        Self { needles: items.into_iter().map(|item| item.needle).collect(), nodes, planes }
     }
 
     /// The greatest radius, below `max_radius`, of the balls of a pencil that no needle enters, or `None` where no needle

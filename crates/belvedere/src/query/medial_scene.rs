@@ -1,10 +1,11 @@
 //! A union of medial balls that exact lines of sight are cut with.
 
-use super::{Answer, Sight, Viewer, Visibility};
+use super::{Answer, Proof, Sight, Viewer, Visibility};
 use crate::Result;
 use crate::depth::Profile;
 use crate::medial::{MedialBalls, NO_TOUCH};
 use crate::ray_index::{Ray, RayIndex};
+use crate::view::View;
 use rayon::prelude::*;
 
 /// Targets handed to a thread at once.
@@ -17,7 +18,11 @@ const SHELL_SHARE: f64 = 0.5;
 ///
 /// A target is blocked if its line of sight to the viewer leaves a ball more than [`SceneParams::depth_bias`] on: the same rule as
 /// for a depth map ([`super::query_points`]), without pixels. Balls that hold the viewer are left out for that line of
-/// sight, so that one wrong ball does not blind an observer; balls that hold the target are not.
+/// sight, so that one wrong ball does not blind an observer; balls that hold the target are not, but give way by
+/// [`SceneParams::shell`], which depth maps know nothing of.
+///
+/// With pulses ([`MedialScene::with_pulses`]) a target that nothing blocks is [`Answer::Unproven`] where too much of its
+/// line of sight runs through space that no pulse came near to.
 pub struct MedialScene {
     index: RayIndex,
     /// Centre and radius in the order of the index.
@@ -25,6 +30,7 @@ pub struct MedialScene {
     /// Row of each of them among the balls given.
     rows: Vec<u32>,
     params: SceneParams,
+    proof: Option<Proof>,
 }
 
 /// How balls block lines of sight.
@@ -37,8 +43,19 @@ pub struct SceneParams {
     /// How far a ball gives way to a target near its surface, metres, 0 or more: to a target less than this inside its surface it
     /// counts with a radius smaller by this, to one outside with less of that the farther it lies, and with none of
     /// it from this distance on. Balls bulge by centimetres between the points of a surface, and what lies on that surface
-    /// must not vanish in them. Never more than half the radius: a wire must not vanish either.
+    /// must not vanish in them. Never more than half the radius, so that a wire does not vanish either. Default 0. In numbers:
+    /// a ball of radius r whose centre lies d from the target counts with radius r − (s − max(d − r, 0)) where |d − r| < s
+    /// for s the lesser of shell and r/2; whether it holds the viewer is asked of its whole radius. Depth maps have no
+    /// shell: they do not know the target when balls are drawn.
     pub shell: f64,
+}
+
+impl SceneParams {
+    /// For carved balls: spheres with a bias of 0.25 m, which covers noise and how far balls bulge between points.
+    #[must_use]
+    pub fn carved() -> Self {
+        Self { profile: Profile::Sphere, depth_bias: 0.25, shell: 0.0 }
+    }
 }
 
 impl Default for SceneParams {
@@ -72,7 +89,51 @@ impl MedialScene {
         #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
         let rows: Vec<u32> = index.order().iter().map(|&number| rows[number as usize] as u32).collect();
         let balls = rows.iter().map(|&row| (balls.centers[row as usize], balls.radii[row as usize])).collect();
-        Ok(Self { index, balls, rows, params: *params })
+        Ok(Self { index, balls, rows, params: *params, proof: None })
+    }
+
+    /// The same balls, which from now on tell what is proven visible from what is not.
+    #[must_use]
+    pub fn with_pulses(mut self, proof: Proof) -> Self {
+        self.proof = Some(proof);
+        self
+    }
+
+    /// The pulses that prove what is visible, where they are known.
+    #[must_use]
+    pub fn proof(&self) -> Option<&Proof> {
+        self.proof.as_ref()
+    }
+
+    /// The answer for one line of sight from `target`, local metres, to `range` metres (infinite for a direction) along the unit
+    /// vector `towards`. All numbers but the range must be finite.
+    #[must_use]
+    pub fn answer(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
+        if self.blocked(target, towards, range) {
+            return Answer::Blocked;
+        }
+        match &self.proof {
+            Some(proof) if proof.is_unproven(target, towards, range) => Answer::Unproven,
+            _ => Answer::Visible,
+        }
+    }
+
+    /// Answers for `targets`, (M, 3) local metres, in `view`, as [`super::query_points`] gives them from its depth map, but
+    /// by exact lines of sight: each ends at the picture plane. What lies beside the picture or behind the plane is
+    /// [`Answer::OutsideView`], and balls that reach behind the plane block nothing, as those that hold a viewer.
+    #[must_use]
+    pub fn query_view(&self, view: &View, targets: &[[f32; 3]]) -> Vec<Answer> {
+        let towards = view.frame.forward.map(|v| -v);
+        let [width, height] = view.size_px.map(|size| size as f64 / view.pixels_per_metre());
+        let answer = |&target: &[f32; 3]| {
+            let [x, y, depth] = view.frame.view_from_local(target);
+            let in_view = (0.0..width).contains(&x) && (0.0..height).contains(&y) && depth >= 0.0;
+            if !(in_view && depth.is_finite()) {
+                return Answer::OutsideView;
+            }
+            self.answer(target.map(f64::from), towards, depth)
+        };
+        targets.par_iter().with_min_len(CHUNK).map(answer).collect()
     }
 
     /// Number of balls that can block.
@@ -138,8 +199,7 @@ impl Visibility for MedialScene {
             viewer.validate_count(targets)?;
             let answer = |(index, &target): (usize, &[f32; 3])| match viewer.line_of_sight(index, target) {
                 None => Answer::OutsideView,
-                Some((towards, range)) if self.blocked(target.map(f64::from), towards, range) => Answer::Blocked,
-                Some(_) => Answer::Visible,
+                Some((towards, range)) => self.answer(target.map(f64::from), towards, range),
             };
             Ok(targets.par_iter().enumerate().with_min_len(CHUNK).map(answer).collect())
         }))

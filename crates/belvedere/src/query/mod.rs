@@ -2,8 +2,11 @@
 
 pub mod medial_scene;
 pub mod points;
+pub mod proof;
+mod skyline;
 pub mod visibility;
 
 pub use medial_scene::{MedialScene, SceneParams};
-pub use points::{Answer, AnswerCounts, query_points, random_targets};
+pub use points::{Answer, AnswerCounts, UnprovenAs, query_points, random_targets};
+pub use proof::{Beside, Proof, ProofParams};
 pub use visibility::{Sight, Viewer, Visibility};

@@ -13,9 +13,33 @@ pub enum Answer {
     Blocked = 0,
     /// Nothing lies before it.
     Visible = 1,
-    /// It lies beside the picture or behind its plane, or its position is not finite: the view says nothing of it. (2 is
-    /// kept for answers that measured free space does not bear out.)
+    /// Nothing lies before it, but too much of the line of sight runs through space that no pulse came near to.
+    Unproven = 2,
+    /// It lies beside the picture or behind its plane, or its position is not finite: the view says nothing of it.
     OutsideView = 3,
+}
+
+/// What to make of [`Answer::Unproven`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnprovenAs {
+    /// An answer of its own.
+    Reported,
+    /// [`Answer::Visible`].
+    Visible,
+    /// [`Answer::Blocked`].
+    Blocked,
+}
+
+impl UnprovenAs {
+    /// `answer`, or what to take in place of [`Answer::Unproven`].
+    #[must_use]
+    pub fn settle(self, answer: Answer) -> Answer {
+        match (answer, self) {
+            (Answer::Unproven, Self::Visible) => Answer::Visible,
+            (Answer::Unproven, Self::Blocked) => Answer::Blocked,
+            _ => answer,
+        }
+    }
 }
 
 /// How many targets got which answer.
@@ -25,6 +49,8 @@ pub struct AnswerCounts {
     pub visible: usize,
     /// [`Answer::Blocked`].
     pub blocked: usize,
+    /// [`Answer::Unproven`].
+    pub unproven: usize,
     /// [`Answer::OutsideView`].
     pub outside_view: usize,
 }
@@ -37,6 +63,7 @@ impl AnswerCounts {
         Self {
             visible: count(Answer::Visible),
             blocked: count(Answer::Blocked),
+            unproven: count(Answer::Unproven),
             outside_view: count(Answer::OutsideView),
         }
     }

@@ -16,6 +16,14 @@ use rayon::prelude::*;
 const TILE_SIDE: f32 = 25.0;
 /// The cloud's own points, as a kind of target.
 pub(super) const OWN: &str = "OWN";
+/// Pedestrians as people in streets see them, and those people: one observer says little, since an error near it spoils a
+/// whole sector of its view.
+pub(super) const STREET: &str = "STREET";
+pub(super) const STREET_GROUP: &str = "street";
+/// People that look.
+pub(super) const STREET_OBSERVERS: usize = 40;
+/// Of other targets there are so many times more: each of these is looked at from many eyes.
+const FEWER_STREET_TARGETS: usize = 5;
 
 /// What a place consists of, before anything is asked.
 pub(super) struct Ingredients {
@@ -31,6 +39,16 @@ pub(super) struct View {
     pub(super) group: &'static str,
     /// `None` for pairs.
     pub(super) from: Option<From>,
+}
+
+impl View {
+    /// Its group, or the elevation of its sun.
+    pub(super) fn title(&self) -> String {
+        match self.from {
+            Some(From::Direction([.., up])) => format!("sun at {:.0}°", up.asin().to_degrees()),
+            _ => self.group.to_owned(),
+        }
+    }
 }
 
 /// A common viewer.
@@ -86,11 +104,15 @@ impl Case {
         let local = |eye: [f64; 3]| std::array::from_fn(|i| eye[i] - origin[i]);
         let observers = site.observers(seed).into_iter().flatten();
         views.extend(observers.map(|eye| View { group: "observers", from: Some(From::Eye(local(eye))) }));
+        let street = site.street_observers(STREET_OBSERVERS, seed);
+        views.extend(street.into_iter().map(|eye| View { group: STREET_GROUP, from: Some(From::Eye(local(eye))) }));
         views.push(View { group: "pairs", from: None });
 
         let sources = sources(&site, &cloud, &scanner);
         let mut sets = Vec::new();
-        for set in QuerySet::ALL {
+        let kinds = QuerySet::ALL.map(|set| (set.name(), set, count));
+        let street = (STREET, QuerySet::Pedestrians, (count / FEWER_STREET_TARGETS).max(1));
+        for (name, set, count) in kinds.into_iter().chain([street]) {
             let drawn = site.targets(set, count, seed);
             let local =
                 |points: &[[f64; 3]]| -> Vec<[f32; 3]> { points.iter().map(|&p| to_local(p, origin)).collect() };
@@ -98,7 +120,7 @@ impl Case {
             // the truth of what is asked: of positions as f32 holds them
             let exact: Vec<Option<[f64; 3]>> = targets.iter().map(|&p| Some(absolute(p))).collect();
             let ends: Vec<[f64; 3]> = eyes.iter().map(|&p| absolute(p)).collect();
-            sets.push(answered(set.name(), targets, eyes, &exact, &ends, &views, (&truth, origin)));
+            sets.push(answered(name, targets, eyes, &exact, &ends, &views, (&truth, origin)));
         }
         // the returns themselves, as far as their surface is known
         let step = (cloud.len() / count.max(1)).max(1);
@@ -144,7 +166,7 @@ fn answered(
     let truth = views
         .iter()
         .enumerate()
-        .filter(|(_, view)| view.from.is_none() != eyes.is_empty())
+        .filter(|(_, view)| view.from.is_none() != eyes.is_empty() && (view.group == STREET_GROUP) == (name == STREET))
         .map(|(number, view)| {
             let visible = |(i, point): (usize, &Option<[f64; 3]>)| {
                 let point = (*point)?;

@@ -50,7 +50,7 @@ pub(super) fn judge_all(
     let methods = methods(&survey);
     arguments.check_methods(&methods.iter().map(|method| method.key.clone()).collect::<Vec<_>>())?;
     let mut results = Vec::new();
-    for method in methods.iter().filter(|method| arguments.wants(&method.key)) {
+    for method in methods.iter().filter(|method| arguments.wants(&method.key, method.listing)) {
         let file = arguments.output.join("results").join(format!("{name}--held-out--{}.json", method.key));
         if let Some(result) = kept(&file, &made_from) {
             results.push(result);

@@ -1,19 +1,24 @@
 //! One method on one place: built, asked, scored, timed.
 
-use super::case::{Case, Set};
+use super::case::{Case, STREET, STREET_GROUP, Set};
 use super::memory::{reset_peak, resident_and_peak_mib};
-use super::results::{AblationRow, AuditRow, Cost, MethodResult, Rated, Score};
+use super::results::{AblationRow, AnswerRow, AuditRow, Cost, MethodResult, Rated, Score};
 use belvedere::medial::{MedialBalls, NO_TOUCH};
-use belvedere::query::{Answer, Visibility};
-use belvedere_baselines::agreement::{Counts, Interval, Rate, count_by_tile, interval};
+use belvedere::pulses::{NeedleParams, Needles};
+use belvedere::query::{Answer, MedialScene, Proof, ProofParams, Visibility};
+use belvedere_baselines::agreement::{Counts, Interval, Rate, count_by_tile, interval, quantile};
 use belvedere_baselines::audit::{Verdict, audit};
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward, interior_balls};
-use belvedere_baselines::methods::Method;
+use belvedere_baselines::methods::{Method, PerEye};
 use belvedere_scenes::Material;
 use std::time::Instant;
 
 /// Groups of views that rates are averaged over.
-const GROUPS: [&str; 3] = ["suns", "observers", "pairs"];
+const GROUPS: [&str; 4] = ["suns", "observers", STREET_GROUP, "pairs"];
+/// Observers in streets asked by methods that begin anew for each eye: with all forty they would take most of the time.
+const COSTLY_EYES: usize = 4;
+/// Share of the observers that see worse than the figure given for the worst of them.
+const WORST_SHARE: f64 = 0.1;
 /// The set and the view that pictures show.
 pub(super) const SHOWN_SET: &str = "PED";
 pub(super) const SHOWN_VIEW: usize = 2;
@@ -52,7 +57,7 @@ pub(super) fn judge(
     };
     result.cost.build_seconds = start.elapsed().as_secs_f64();
 
-    let asked = ask(case, built.as_ref());
+    let asked = ask(case, built.as_ref(), method.per_eye);
     let views = asked.view_seconds.len().max(1);
     result.cost.seconds_per_view = asked.view_seconds.iter().sum::<f64>() / views as f64;
     result.cost.queries_per_second =
@@ -81,7 +86,9 @@ pub(super) fn judge(
                 false_visible: rate(Rate::FalseVisible),
                 balanced: rate(Rate::Balanced),
                 blocked_iou: rate(Rate::BlockedIou),
-                unproven: rate(Rate::Unproven),
+                unanswered: rate(Rate::Unanswered),
+                observers: views.len(),
+                tenth_balanced: quantile(&views, Rate::Balanced, WORST_SHARE),
                 refused,
             });
         }
@@ -105,11 +112,18 @@ struct Asked {
     query_seconds: f64,
 }
 
-fn ask(case: &Case, method: &dyn Visibility) -> Asked {
+fn ask(case: &Case, method: &dyn Visibility, per_eye: PerEye) -> Asked {
+    let mut street_eyes = 0;
     let mut asked = Asked { answers: Vec::new(), view_seconds: Vec::new(), query_count: 0, query_seconds: 0.0 };
     for view in 0..case.views.len() {
         let sets = || case.sets.iter().filter(|set| set.truth.iter().any(|(number, _)| *number == view));
         let Some(first) = sets().next() else { continue };
+        if case.views[view].group == STREET_GROUP {
+            street_eyes += 1;
+            if per_eye == PerEye::Costly && street_eyes > COSTLY_EYES {
+                continue;
+            }
+        }
         let start = Instant::now();
         let sight = method.seen_from(case.viewer(view, first));
         let seconds = start.elapsed().as_secs_f64();
@@ -161,6 +175,34 @@ pub(super) fn blocked_in_truth(case: &Case) -> Vec<(String, String, f64)> {
         }
     }
     shares
+}
+
+/// What each of the three answers of carved balls is worth, by set and view; empty where the scanner is not known.
+pub(super) fn worth_of_answers(case: &Case) -> belvedere::Result<Vec<AnswerRow>> {
+    let survey = case.survey();
+    if survey.scanner.is_empty() {
+        return Ok(Vec::new());
+    }
+    let params = MedialParams::carved();
+    let balls = interior_balls(&survey, Outward::Survey, &params)?;
+    let (needles, _) = Needles::of_cloud(survey.cloud, survey.scanner, &NeedleParams::default())?;
+    // as ball files hold them
+    let proof = Proof::new(Needles::from_columns(&needles.to_columns())?, &ProofParams::default())?;
+    let scene = MedialScene::new(&balls, &params.blocking)?.with_pulses(proof);
+    let mut rows: Vec<AnswerRow> = Vec::new();
+    for set in case.sets.iter().filter(|set| ["PED", "AIR", STREET].contains(&set.name)) {
+        for (view, _) in &set.truth {
+            let answers = scene.visible(case.viewer(*view, set), &set.targets)?;
+            let counts = counts(set, *view, &answers).iter().fold(Counts::default(), |sum, tile| sum.plus(tile, 1));
+            let views = case.views[*view].title();
+            let at = rows.iter().position(|row| row.set == set.name && row.views == views).unwrap_or_else(|| {
+                rows.push(AnswerRow { set: set.name.to_owned(), views, ..AnswerRow::default() });
+                rows.len() - 1
+            });
+            rows[at].add(&counts);
+        }
+    }
+    Ok(rows)
 }
 
 /// Which of the published balls are wrong, by the surface they are tangent at, and what people under the suns would be told

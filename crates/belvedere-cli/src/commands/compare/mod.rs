@@ -15,8 +15,8 @@ use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::io::atomic;
-use belvedere_baselines::methods::methods;
-use case::Case;
+use belvedere_baselines::methods::{Listing, methods};
+use case::{Case, STREET_OBSERVERS};
 use place::Place;
 use results::{MethodResult, PlaceResult, keep, kept};
 use std::path::Path;
@@ -62,8 +62,12 @@ fn compare_on(
     let name = place.name();
     let results = arguments.output.join("results");
     let version = env!("CARGO_PKG_VERSION");
-    let made_from =
-        format!("belvedere {version}; {}; {} targets; seed {}", place.made_from(), arguments.targets, global.seed);
+    let made_from = format!(
+        "belvedere {version}; {}; {} targets; {STREET_OBSERVERS} in streets; seed {}",
+        place.made_from(),
+        arguments.targets,
+        global.seed
+    );
     let place_file = results.join(format!("{name}.json"));
     let listed: Option<PlaceResult> = kept(&place_file, &made_from);
     let method_file = |key: &str| results.join(format!("{name}--{key}.json"));
@@ -72,7 +76,7 @@ fn compare_on(
         let all: Option<Vec<MethodResult>> = done
             .methods
             .iter()
-            .filter(|key| arguments.wants(key))
+            .filter(|key| arguments.wants(key, done.listing(key)))
             .map(|key| kept(&method_file(key), &made_from))
             .collect();
         if let Some(all) = all {
@@ -97,7 +101,7 @@ fn compare_on(
         }
     };
     found.places.push(described);
-    for method in methods.iter().filter(|method| arguments.wants(&method.key)) {
+    for method in methods.iter().filter(|method| arguments.wants(&method.key, method.listing)) {
         let file = method_file(&method.key);
         if let Some(result) = kept(&file, &made_from) {
             found.methods.push(result);
@@ -134,9 +138,11 @@ fn describe(
         area_m2: f64::from(high[0] - low[0]) * f64::from(high[1] - low[1]),
         triangles: case.triangles,
         methods: methods.iter().map(|method| method.key.clone()).collect(),
+        when_named: methods.iter().filter(|m| m.listing == Listing::WhenNamed).map(|m| m.key.clone()).collect(),
         blocked_in_truth: judge::blocked_in_truth(case),
         audit,
         ablation,
+        answers: judge::worth_of_answers(case)?,
     })
 }
 

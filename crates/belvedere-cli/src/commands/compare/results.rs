@@ -2,6 +2,8 @@
 
 use anyhow::{Context, Result};
 use belvedere::io::atomic;
+use belvedere_baselines::agreement::Counts;
+use belvedere_baselines::methods::Listing;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::io::Write;
 use std::path::Path;
@@ -14,7 +16,7 @@ pub(super) type Rated = [f64; 3];
 pub(super) struct Score {
     /// Kind of target.
     pub(super) set: String,
-    /// Group of views: `suns`, `observers` or `pairs`.
+    /// Group of views: `suns`, `observers`, `street` or `pairs`.
     pub(super) views: String,
     /// Targets asked for in each view.
     pub(super) targets: usize,
@@ -22,7 +24,12 @@ pub(super) struct Score {
     pub(super) false_visible: Option<Rated>,
     pub(super) balanced: Option<Rated>,
     pub(super) blocked_iou: Option<Rated>,
-    pub(super) unproven: Option<Rated>,
+    /// Share of the targets without an answer.
+    pub(super) unanswered: Option<Rated>,
+    /// Views that were answered.
+    pub(super) observers: usize,
+    /// Balanced accuracy that a tenth of the views stay below.
+    pub(super) tenth_balanced: Option<f64>,
     /// Why there are no answers.
     pub(super) refused: Option<String>,
 }
@@ -64,12 +71,50 @@ pub(super) struct PlaceResult {
     pub(super) triangles: usize,
     /// Keys of the methods that can be judged here.
     pub(super) methods: Vec<String>,
+    /// Those of them that run only when named.
+    pub(super) when_named: Vec<String>,
     /// Name, and share of the targets that are blocked in truth, of each set and group of views.
     pub(super) blocked_in_truth: Vec<(String, String, f64)>,
     /// Balls of the published method by the surface they are tangent at.
     pub(super) audit: Vec<AuditRow>,
     /// Pedestrians under the suns with only some of these balls.
     pub(super) ablation: Vec<AblationRow>,
+    /// What each answer of carved balls is worth.
+    pub(super) answers: Vec<AnswerRow>,
+}
+
+impl PlaceResult {
+    /// When the method of a key runs.
+    pub(super) fn listing(&self, key: &str) -> Listing {
+        if self.when_named.iter().any(|name| name == key) { Listing::WhenNamed } else { Listing::Always }
+    }
+}
+
+/// Answers of carved balls to one set in one kind of view: how many, and how many of them are right.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
+pub(super) struct AnswerRow {
+    pub(super) set: String,
+    pub(super) views: String,
+    pub(super) visible: [u64; 2],
+    pub(super) unproven: [u64; 2],
+    pub(super) blocked: [u64; 2],
+}
+
+impl AnswerRow {
+    /// Counts more answers.
+    pub(super) fn add(&mut self, counts: &Counts) {
+        let proven = counts.visible - counts.unproven_visible;
+        let wrongly_proven = counts.false_visible - counts.unproven_blocked;
+        let pairs = [
+            (&mut self.visible, proven, wrongly_proven),
+            (&mut self.unproven, counts.unproven_visible, counts.unproven_blocked),
+            (&mut self.blocked, counts.blocked, counts.false_blocked),
+        ];
+        for ([given, correct], right, wrong) in pairs {
+            *given += right + wrong;
+            *correct += right;
+        }
+    }
 }
 
 /// Balls tangent at one kind of surface.

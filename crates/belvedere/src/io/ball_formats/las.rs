@@ -60,13 +60,15 @@ struct Fields {
     touch: ExtraField,
     separation_angle: Option<ExtraField>,
     source: Option<ExtraField>,
+    transmission: Option<ExtraField>,
 }
 
 impl Fields {
     /// `None` where radius or touch is missing.
     fn of(file: &LasFile<'_>) -> Option<Self> {
-        let [radius, touch, separation_angle, source] = file.columns(["radius", "touch", "separation_angle", "source"]);
-        Some(Self { radius: radius?, touch: touch?, separation_angle, source })
+        let [radius, touch, separation_angle, source, transmission] =
+            file.columns(["radius", "touch", "separation_angle", "source", "transmission"]);
+        Some(Self { radius: radius?, touch: touch?, separation_angle, source, transmission })
     }
 
     fn ball(&self, center: [f64; 3], record: &[u8]) -> FileBall {
@@ -77,6 +79,7 @@ impl Fields {
             separation_angle: self.separation_angle.map_or(f32::NAN, |field| narrow(number(field))),
             source: self.source.map_or(u32::MAX, |field| index(number(field))),
             touch: index(number(self.touch)),
+            transmission: self.transmission.map_or(f32::NAN, |field| narrow(number(field))),
         }
     }
 }

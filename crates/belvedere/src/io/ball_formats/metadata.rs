@@ -88,6 +88,12 @@ fn three(value: &Value) -> Option<[f64; 3]> {
     }
 }
 
+/// What balls let through, where a file says so of any.
+fn transmission(rows: &[FileBall]) -> Option<Vec<f32>> {
+    let known = rows.iter().any(|row| !row.transmission.is_nan());
+    known.then(|| rows.iter().map(|row| row.transmission).collect())
+}
+
 impl Metadata {
     /// Balls with these centres, local to `origin`, and no further columns yet. Bounds that the file lacks are those of
     /// the centres.
@@ -110,6 +116,7 @@ impl Metadata {
             separation_angles: rows.iter().map(|row| row.separation_angle).collect(),
             source: rows.iter().map(|row| row.source).collect(),
             touch: rows.iter().map(|row| row.touch).collect(),
+            transmission: transmission(rows),
             ..self.balls(origin, rows.iter().map(|row| to_local(metres(row), origin)).collect())
         }
     }

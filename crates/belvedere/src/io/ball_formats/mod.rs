@@ -27,12 +27,19 @@ fn as_cloud(balls: &SavedBalls) -> (PointCloud, Vec<Column<'_>>) {
     let radii = balls.radii.iter().map(|&r| (f64::from(r) / unit) as f32).collect();
     let signed = |indices: &[u32]| Values::I32(indices.iter().map(|&i| i.cast_signed()).collect());
     let column = |name, description, values| Column { name, description, values };
-    let columns = vec![
+    let mut columns = vec![
         column("radius".into(), "in the unit of x and y".into(), Values::F32(radii)),
         column("separation_angle".into(), "radians".into(), Values::F32((&balls.separation_angles).into())),
         column("source".into(), "index of the tangent point".into(), signed(&balls.source)),
         column("touch".into(), "second point, -1 none, -2 pulse".into(), signed(&balls.touch)),
     ];
+    if let Some(transmission) = &balls.transmission {
+        columns.push(column(
+            "transmission".into(),
+            "share of light let through".into(),
+            Values::F32(transmission.into()),
+        ));
+    }
     (cloud, columns)
 }
 
@@ -46,6 +53,8 @@ struct FileBall {
     separation_angle: f32,
     source: u32,
     touch: u32,
+    /// NaN where the file has none.
+    transmission: f32,
 }
 
 /// An index that was stored as a signed number: what is negative in 32 bits stands above 2³¹.

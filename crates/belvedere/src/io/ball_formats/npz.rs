@@ -10,11 +10,13 @@ use npyz::{AutoSerialize, Deserialize, Order, WriterBuilder};
 
 use super::metadata;
 use crate::io::atomic;
-use crate::io::balls::SavedBalls;
+use crate::io::balls::{SavedBalls, SavedPulses};
 use crate::{Error, Result};
 
 const UNITS: &str = "metres relative to origin, radians; coordinates in the crs are \
                      (origin + centers) / metres_per_unit";
+/// Arrays that files with pulses have.
+const PULSE_ARRAYS: [&str; 3] = ["pulse_starts", "pulse_slopes", "pulse_top"];
 /// Metadata longer than this is not ours.
 const MAX_METADATA_BYTES: u64 = 1 << 24;
 
@@ -34,6 +36,18 @@ fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, balls: &SavedBalls)
     array(archive, "source", &[n], balls.source.iter().copied())?;
     array(archive, "touch", &[n], balls.touch.iter().copied())?;
     array(archive, "separation_angles", &[n], balls.separation_angles.iter().copied())?;
+    if let Some(transmission) = &balls.transmission {
+        array(archive, "transmission", &[n], transmission.iter().copied())?;
+    }
+    if let Some(SavedPulses { starts, slopes, lengths, top }) = &balls.pulses {
+        let p = starts.len() as u64;
+        array(archive, "pulse_starts", &[p, 3], starts.iter().flatten().copied())?;
+        array(archive, "pulse_slopes", &[p, 2], slopes.iter().flatten().copied())?;
+        array(archive, "pulse_top", &[1], [*top].into_iter())?;
+        if !lengths.is_empty() {
+            array(archive, "pulse_lengths", &[p], lengths.iter().copied())?;
+        }
+    }
     array(archive, "metadata", &[metadata.len() as u64], metadata.bytes())?;
     archive.zip_writer().finish()?.flush()
 }
@@ -64,19 +78,54 @@ pub(crate) fn read_npz(path: &Path) -> Result<SavedBalls> {
         Err(_) => String::new(),
     };
     let metadata = metadata::from_json(&text);
-    let (centers, shape) = values::<f32, _>(&mut archive, "centers", u64::MAX).map_err(malformed)?;
-    if shape.len() != 2 || shape[1] != 3 {
-        return Err(Error::malformed(path, format!("centers have shape {shape:?}, but must be (B, 3)")));
-    }
+    let centers = rows::<f32, 3, _>(&mut archive, "centers").map_err(malformed)?;
     let (origin, _) = values::<f64, _>(&mut archive, "origin", 3).map_err(malformed)?;
     let origin = <[f64; 3]>::try_from(origin.as_slice())
         .map_err(|_| Error::malformed(path, format!("origin has {} numbers, but must have 3", origin.len())))?;
-    let mut balls = metadata.balls(origin, centers.as_chunks::<3>().0.to_vec());
+    let mut balls = metadata.balls(origin, centers);
     balls.radii = values(&mut archive, "radii", u64::MAX).map_err(malformed)?.0;
     balls.source = values(&mut archive, "source", u64::MAX).map_err(malformed)?.0;
     balls.touch = values(&mut archive, "touch", u64::MAX).map_err(malformed)?.0;
     balls.separation_angles = values(&mut archive, "separation_angles", u64::MAX).map_err(malformed)?.0;
+    if has(&archive, "transmission") {
+        balls.transmission = Some(values(&mut archive, "transmission", u64::MAX).map_err(malformed)?.0);
+    }
+    if PULSE_ARRAYS.iter().any(|name| has(&archive, name)) {
+        balls.pulses = Some(pulses(&mut archive).map_err(malformed)?);
+    }
     Ok(balls)
+}
+
+fn pulses<R: Read + Seek>(archive: &mut NpzArchive<R>) -> io::Result<SavedPulses> {
+    let lengths =
+        if has(archive, "pulse_lengths") { values(archive, "pulse_lengths", u64::MAX)?.0 } else { Vec::new() };
+    let top = values::<f32, _>(archive, "pulse_top", 1)?.0;
+    Ok(SavedPulses {
+        starts: rows::<f32, 3, _>(archive, "pulse_starts")?,
+        slopes: rows::<i16, 2, _>(archive, "pulse_slopes")?,
+        lengths,
+        top: top.first().copied().ok_or_else(|| invalid("pulse_top is empty".to_owned()))?,
+    })
+}
+
+/// The rows of an array of shape (M, N).
+fn rows<T: Deserialize + Clone, const N: usize, R: Read + Seek>(
+    archive: &mut NpzArchive<R>,
+    name: &str,
+) -> io::Result<Vec<[T; N]>> {
+    let (values, shape) = values(archive, name, u64::MAX)?;
+    if shape.len() != 2 || shape[1] != N as u64 {
+        return Err(invalid(format!("the array {name} has shape {shape:?}, but must be (M, {N})")));
+    }
+    Ok(values.as_chunks::<N>().0.to_vec())
+}
+
+fn has<R: Read + Seek>(archive: &NpzArchive<R>, name: &str) -> bool {
+    archive.array_names().any(|found| found == name)
+}
+
+fn invalid(what: String) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, what)
 }
 
 /// Values and shape of an array of at most `most` values.
@@ -85,7 +134,6 @@ fn values<T: Deserialize, R: Read + Seek>(
     name: &str,
     most: u64,
 ) -> io::Result<(Vec<T>, Vec<u64>)> {
-    let invalid = |what: String| io::Error::new(io::ErrorKind::InvalidData, what);
     let Some(array) = archive.by_name(name)? else {
         return Err(invalid(format!("there is no array {name}")));
     };
@@ -109,5 +157,5 @@ fn values<T: Deserialize, R: Read + Seek>(
 pub(crate) fn npz_has_balls(path: &Path) -> bool {
     let Ok(file) = File::open(path) else { return false };
     let Ok(archive) = NpzArchive::new(BufReader::new(file)) else { return false };
-    ["centers", "radii", "origin"].iter().all(|name| archive.array_names().any(|n| n == *name))
+    ["centers", "radii", "origin"].iter().all(|name| has(&archive, name))
 }

@@ -69,7 +69,13 @@ fn has_columns(file: &PlyFile<'_>) -> bool {
 
 impl PropertyAccess for FileBall {
     fn new() -> Self {
-        Self { separation_angle: f32::NAN, source: u32::MAX, touch: u32::MAX, ..Self::default() }
+        Self {
+            separation_angle: f32::NAN,
+            source: u32::MAX,
+            touch: u32::MAX,
+            transmission: f32::NAN,
+            ..Self::default()
+        }
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
@@ -82,6 +88,7 @@ impl PropertyAccess for FileBall {
             "separation_angle" => self.separation_angle = narrow(value),
             "source" => self.source = index(value),
             "touch" => self.touch = index(value),
+            "transmission" => self.transmission = narrow(value),
             _ => return PropertyAccessResult::Ignored,
         }
         PropertyAccessResult::Set
