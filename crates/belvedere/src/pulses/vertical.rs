@@ -79,6 +79,7 @@ mod tests {
     use crate::random::uniform;
 
     #[test]
+    #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
     fn what_stands_above_hides_as_in_a_search_through_all_pairs() {
         let mut count = 0;
         let mut next = |size: f64| {
