@@ -109,12 +109,10 @@ fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
         let moved: Vec<[f32; 3]> =
             place.scanner.iter().map(|s| [s[0] + 0.6 * aside, s[1] + 0.8 * aside, s[2] + up]).collect();
         let score = place.score(&moved, same, as_it_is);
-        println!("{aside}/{up} m: {score} of {exact}");
         assert!((score - exact).abs() < 1.0, "{aside}/{up} m: {score} of {exact}");
     }
     // pulses turn them whatever they were
     let flipped = place.score(&place.scanner, |normal| normal.map(|v| -v), as_it_is);
-    println!("flipped before: {flipped} of {exact}");
     assert!((flipped - exact).abs() < 1.0, "{flipped} of {exact}");
     // and what pulses leave of balls on either side turns them without that
     let params = OrientByCarvingParams { least_confidence: 1.0, ..OrientByCarvingParams::default() };
@@ -123,7 +121,6 @@ fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
     };
     let carved = place.score(&place.scanner, same, turn);
     let wrong = place.score(&place.scanner, same, |oriented, _, _| all_flipped(&oriented));
-    println!("flipped after: {wrong}, turned by carving {carved} of {exact}");
     assert!((carved - exact).abs() < 1.0, "{carved} of {exact}, {wrong} with all of them inward");
     assert!(wrong < exact - 5.0, "turning matters: {wrong}");
 }
@@ -139,6 +136,5 @@ fn pulses_that_are_merely_assumed_to_be_vertical_are_worth_carving_with() {
         orient_by_carving(&oriented, index, needles, &params).unwrap().0
     };
     let vertical = place.score(&assumed, same, turn);
-    println!("vertical: {vertical} of {exact}");
     assert!(vertical > exact - 6.0, "{vertical} of {exact}");
 }

@@ -259,11 +259,8 @@ pub(crate) fn prepare(
             Orientation::Mesh(&mesh)
         }
     };
-    let (mut oriented, report) = stages.run("orienting normals", 0, |_| orient(&cloud, normals, &by))?;
+    let (oriented, report) = stages.run("orienting normals", 0, |_| orient(&cloud, normals, &by))?;
     summary.add("normals", orientation_section(&by, &report));
-    if let (true, Some(carving), Orientation::Up) = (is_assumed, &carving, &by) {
-        oriented = scanner::turn_unsure(oriented, &index, carving, stages, summary)?;
-    }
     let bounds = bounds_of(&cloud)?;
     Ok(Prepared { oriented, index, kept, bounds, carving })
 }

@@ -1,5 +1,5 @@
 //! `belvedere trajectory`: the scanner's path from the pulses of a cloud, against the path that was flown.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod common;
 

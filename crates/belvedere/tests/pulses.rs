@@ -181,7 +181,6 @@ fn returns_alone_give_the_simulated_path_to_metres() {
         assert_eq!(report.known_count, pulses.len(), "{:#?}", report.parts);
         let [distances, angles] = errors(&cloud, &pulses, &sensor, &truth);
         let ([distance, far], [angle, wide]) = (spread(distances), spread(angles));
-        println!("{distance} {far} {} {}", angle.to_degrees(), wide.to_degrees());
         // the simulator places each echo where its part of the beam met the scene, up to 0.2 m from the axis, so the
         // directions are worse than real ones (residuals of 0.6° against 0.01° in Delft) and the scale errs by 1 or 2 %
         assert!(distance < 0.025 * params.flying_height && far < 0.03 * params.flying_height, "{distance} {far}");
@@ -259,6 +258,7 @@ fn a_cloud_with_rounded_times_has_no_pulses() {
 
 /// A line flown 1 km up at 60 m/s with a swing of a metre to the side and half a metre up and down, whose pulses of two returns
 /// each, 100 a second, reach 25° to either side; every return is off by 5 mm in each coordinate.
+#[expect(clippy::cast_possible_truncation, reason = "coordinates of a few hundred metres")]
 fn sparse_line() -> (PointCloud, Vec<[f64; 3]>) {
     let mut count = 0;
     let mut next = move || {
@@ -300,7 +300,6 @@ fn fifty_pulses_half_a_second_give_the_path_to_a_metre() {
         assert!(report.parts.iter().all(|part| part.pair_count.abs_diff(50) <= 1));
         let errors = (0..1000).map(|i| length(sub(sensor.per_pulse[i].map(f64::from), truth[i]))).collect();
         let [typical, most] = spread(errors);
-        println!("acceleration {acceleration_sd}: {typical} {most}");
         // the bar of the project; the sum of the covariances of 50 such pulses is half of it
         assert!(typical <= bar, "{acceleration_sd}: {typical} {most}");
     }

@@ -1,6 +1,10 @@
 //! Where the scanner was, by whatever a cloud has: simulated flights whose path is known, with one means after the other taken
 //! away, and real clouds.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::cast_possible_truncation,
+    reason = "a test that cannot go on fails; the numbers are small"
+)]
 
 mod common;
 #[path = "common/simulated.rs"]
@@ -75,7 +79,6 @@ fn scan_angles_give_the_path_of_scanners_that_look_across_the_flight() {
             let (positions, report) = found(&cloud);
             assert_eq!(report.served.get(&ServedBy::ScanAngle), Some(&cloud.len()), "{pattern:?}: {report:?}");
             let [metres, degrees] = apart(&cloud, &positions, &truth);
-            println!("{pattern:?} rounded {rounded}: {metres:.2} m {degrees:.3} deg");
             // the path wanders by a metre about the straight line that is fitted; half a degree of rounding averages out over
             // thousands of points
             assert!(metres < 3.0 && degrees < 0.3, "{pattern:?} {rounded}: {metres} m, {degrees} deg");
@@ -96,7 +99,6 @@ fn scan_angles_of_a_cone_are_refused() {
     for reach in [1000.0, 40.0, 20.0] {
         let cloud = cloud.select(&within(reach));
         let (_, report) = found(&cloud);
-        println!("{reach}: {} {:#?}", cloud.len(), report.angle_parts);
         assert!(report.is_assumed(), "{reach}: {report:?}");
         assert!(!report.angle_parts.is_empty());
         assert!(report.remarks.iter().any(|remark| remark.contains("cone")), "{:?}", report.remarks);
@@ -116,22 +118,22 @@ fn what_angles_do_not_tell_is_told_by_pulses_with_several_returns() {
         ..LocateParams::default()
     };
     let locate = |cloud: &PointCloud| locate(cloud, &Means::Automatic, &params).unwrap();
-    // times half a second late put the scanner 30 m ahead of where it was, as a pitch of 4° does
+    // a scanner that looks 4° ahead: every point lies 30 m farther along the flight for 450 m that it is below
     let mut late = cloud.clone();
     let (flight, times) = (trajectory(&scan, 0.0), cloud.attributes.gps_time.as_ref().unwrap());
     let shift = |(p, time): (&[f32; 3], &f64)| -> [f32; 3] {
-        let [a, b] = [*time, time + 0.1].map(|time| flight.position_at(time).unwrap());
-        // from the scanner's velocity over half a second, a tilt about the flight's own height
-        let height = (flight.position_at(*time).unwrap()[2] - cloud.origin[2]) as f32 - p[2];
-        std::array::from_fn(|i| if i == 2 { p[2] } else { p[i] + (b[i] - a[i]) as f32 * 5.0 * height / 450.0 })
+        let [now, soon] = [*time, time + 0.1].map(|time| flight.position_at(time).unwrap());
+        let below = now[2] - cloud.origin[2] - f64::from(p[2]);
+        // flown at 60 m/s: five times the way of a tenth of a second
+        let ahead = |i: usize| (5.0 * (soon[i] - now[i]) * below / 450.0) as f32;
+        [p[0] + ahead(0), p[1] + ahead(1), p[2]]
     };
     late.positions = cloud.positions.iter().zip(times).map(shift).collect();
     let (positions, report) = locate(&late);
     assert!(report.served.contains_key(&ServedBy::ScanAngle), "{report:?}");
     let [metres, degrees] = apart(&late, &positions, &truth);
-    println!("pitched: {metres} m {degrees} deg");
     assert!(degrees < 0.5, "{metres} m, {degrees} deg");
-    let [_, untold] = apart(&late, &self::locate_singles(&late), &truth);
+    let [_, untold] = apart(&late, &locate_singles(&late), &truth);
     assert!(untold > 3.0, "without them the pitch stays: {untold}");
     // every point is said to lie 14° farther to the right than it does: nothing can put that right
     let angles = cloud.attributes.scan_angle.as_mut().unwrap();
@@ -161,7 +163,6 @@ fn the_height_of_a_trajectory_is_checked_by_pulses() {
         let means = trajectory(&scan, raised);
         let (positions, report) = locate(&cloud, &Means::Trajectory(&means), &LocateParams::default()).unwrap();
         let offset = report.height_offset.unwrap();
-        println!("{raised}: {offset:?}");
         assert!((offset.offset + raised).abs() < 2.0, "{offset:?}");
         assert_eq!(offset.is_applied, applied);
         let [metres, _] = apart(&cloud, &positions, &truth);
@@ -285,7 +286,6 @@ fn real_clouds_are_served_by_what_they_have() {
         let path = common::data("real_clouds_are_served_by_what_they_have", file)?;
         Some(read_cloud(&[path], &ReadOptions::default()).unwrap().0)
     };
-    let folder = |file: &str| common::data("real_clouds_are_served_by_what_they_have", file);
     // scanners that look across the flight: angles alone put them where pulses with several returns do
     // (one block in Amsterdam is too narrow for two of its three lines)
     for (file, least_share) in
@@ -293,10 +293,8 @@ fn real_clouds_are_served_by_what_they_have() {
     {
         let Some(cloud) = read(file) else { return };
         let (_, by_returns) = found(&cloud);
-        println!("{file} {:?} {:#?}", by_returns.served, by_returns.remarks);
         let singles = singles(&cloud);
         let (by_angle, report) = found(&singles);
-        println!("{:?} {:#?} {:#?}", report.served, report.remarks, report.angle_parts);
         let served = report.served.get(&ServedBy::ScanAngle).copied().unwrap_or(0);
         assert!(served as f64 > least_share * singles.len() as f64, "{file}: {report:?}");
         let line = |row: usize| singles.attributes.point_source_id.as_ref().unwrap()[row];
@@ -309,22 +307,19 @@ fn real_clouds_are_served_by_what_they_have() {
             })
             .collect();
         let [metres, degrees] = apart(&singles, &by_angle, &truth);
-        println!("{file}: {metres} m {degrees} deg");
         // over Delft the scanner looked 4° ahead, which its angles do not tell
         assert!(degrees < 5.0, "{file}: {metres} m, {degrees} deg");
         assert!(report.remarks.iter().any(|remark| remark.contains("pitch")), "{:?}", report.remarks);
     }
     // cones, with and without pulses of several returns
-    for file in ["data/bresse_lidarhd/870000_6618000.subset.50mx100m.las"] {
-        let Some(cloud) = read(file) else { return };
-        let (_, report) = found(&cloud);
-        println!("{file} {:?} {:#?}", report.served, report.remarks);
-        assert!(report.served.contains_key(&ServedBy::Returns));
-        let (_, report) = found(&singles(&cloud));
-        println!("{:?} {:#?} {:#?}", report.served, report.remarks, report.angle_parts);
-        assert!(!report.served.contains_key(&ServedBy::ScanAngle), "{report:?}");
-    }
-    let Some(towns) = folder("data/ign_decimated_towns") else { return };
+    let Some(cloud) = read("data/bresse_lidarhd/870000_6618000.subset.50mx100m.las") else { return };
+    let (_, report) = found(&cloud);
+    assert_eq!(report.served.get(&ServedBy::Returns), Some(&cloud.len()));
+    let (_, report) = found(&singles(&cloud));
+    assert!(report.is_assumed(), "{report:?}");
+    let Some(towns) = common::data("real_clouds_are_served_by_what_they_have", "data/ign_decimated_towns") else {
+        return;
+    };
     for entry in std::fs::read_dir(towns).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|e| e != "laz") {
@@ -332,11 +327,9 @@ fn real_clouds_are_served_by_what_they_have() {
         }
         let (cloud, _) = read_cloud(&[path], &ReadOptions::default()).unwrap();
         let (_, report) = found(&cloud);
-        println!("towns {:?} {:#?} {:#?}", report.served, report.remarks, report.angle_parts.len());
         assert!(!report.served.contains_key(&ServedBy::ScanAngle), "{:?}", report.remarks);
     }
     let Some(rounded) = read("data/tudelft_ahn4_small/small.laz") else { return };
     let (_, report) = found(&rounded);
-    println!("{:?} {:#?}", report.served, report.remarks);
     assert!(report.is_assumed());
 }

@@ -5,9 +5,6 @@ use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
 use belvedere::io::read_trajectory;
-use belvedere::medial::{OrientByCarvingParams, orient_by_carving};
-use belvedere::neighbors::NeighborIndex;
-use belvedere::normals::OrientedCloud;
 use belvedere::pulses::{
     HeightOffset, LocateParams, Means, NeedleParams, Needles, ScannerReport, SensorPart, ServedBy, locate,
 };
@@ -157,21 +154,4 @@ fn name(means: ServedBy) -> &'static str {
         ServedBy::ScanAngle => "scan angles",
         ServedBy::Assumed => "nothing: pulses are assumed to be vertical",
     }
-}
-
-/// Turns the normals whose sign the scanner does not tell by what pulses leave of balls on either side, reported.
-pub(super) fn turn_unsure(
-    oriented: OrientedCloud,
-    index: &NeighborIndex,
-    carving: &CarvingInput,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<OrientedCloud> {
-    let params = OrientByCarvingParams { least_confidence: 1.0, ..OrientByCarvingParams::default() };
-    let (oriented, report) =
-        stages.run("orienting by carving", 0, |_| orient_by_carving(&oriented, index, &carving.needles, &params))?;
-    let mut section = Summary::default();
-    section.add("asked", report.asked).add("turned", report.flipped);
-    summary.add("normals_by_carving", section);
-    Ok(oriented)
 }

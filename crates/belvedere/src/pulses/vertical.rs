@@ -9,8 +9,9 @@ const HEIGHT: f32 = 1000.0;
 /// Which points count as ends of vertical pulses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VerticalParams {
-    /// How far beside a point another may stand above it and hide it, metres, 0.05 to 10. Default 0.5: about the spacing of
-    /// points, and what pulses tilted by usual angles move aside below eaves.
+    /// How far beside a point another may stand above it and hide it, metres, 0.05 to 10. Default 0.2, half the spacing of usual
+    /// surveys: on simulated towns 0.5 keeps so many pulses off walls that facades lose 9 points, 0.2 loses 3, and 0.1 lets
+    /// pulses through crowns.
     pub reach: f32,
     /// How far above the point it must stand for that, metres, 0 to 100. Default 0.5: less, and the slope of a roof hides
     /// itself.
@@ -19,7 +20,7 @@ pub struct VerticalParams {
 
 impl Default for VerticalParams {
     fn default() -> Self {
-        Self { reach: 0.5, rise: 0.5 }
+        Self { reach: 0.2, rise: 0.5 }
     }
 }
 
@@ -79,6 +80,7 @@ mod tests {
     use crate::random::uniform;
 
     #[test]
+    #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
     fn what_stands_above_hides_as_in_a_search_through_all_pairs() {
         let mut count = 0;
         let mut next = |size: f64| {
@@ -98,7 +100,7 @@ mod tests {
             assert!(hidden || scanner[2] > 900.0);
             hidden_count += usize::from(hidden);
         }
-        assert!((500..1900).contains(&hidden_count), "{hidden_count}");
+        assert!((200..1900).contains(&hidden_count), "{hidden_count}");
     }
 
     #[test]
