@@ -6,7 +6,7 @@ mod common;
 use common::Workplace;
 use std::fs;
 
-/// Answers of `belvedere query … --self` on the simulated town, row by row: 0 blocked, 1 visible.
+/// Answers of `belvedere query … --self` on the simulated town, row by row: 0 blocked, 1 visible, 2 unproven.
 fn answers(place: &Workplace, flags: &str) -> Vec<u8> {
     let run = place.run(&format!("query town/cloud.laz --sun 240,35 --self {flags} -o answers.npy"));
     assert_eq!(run.status, 0, "{flags}: {run:?}");
@@ -23,11 +23,11 @@ fn truth(place: &Workplace) -> Vec<(bool, bool)> {
     points.map(|p| (p.extra_bytes[2] == 1, u8::from(p.classification) != 5)).collect()
 }
 
-/// Shares of the lit called blocked and of the shaded called visible, off trees.
+/// Shares of the lit called blocked and of the shaded called visible or unproven, off trees.
 fn errors(answers: &[u8], truth: &[(bool, bool)]) -> [f64; 2] {
     let share = |lit: bool| {
         let of = || answers.iter().zip(truth).filter(move |(_, (is_lit, counts))| *counts && *is_lit == lit);
-        of().filter(|(answer, _)| (**answer == 1) != lit).count() as f64 / of().count() as f64
+        of().filter(|(answer, _)| (**answer != 0) != lit).count() as f64 / of().count() as f64
     };
     [share(true), share(false)]
 }
@@ -57,15 +57,96 @@ fn a_carved_ball_file_answers_as_the_cloud_does_and_reports_what_was_cut() {
     let cut = made["interior_balls"]["cut_by_pulses"].as_u64().unwrap();
     assert!(cut > 1000 && made["scanner"]["served_percent"].as_f64().unwrap() > 90.0, "{made}");
     assert!(made["pulses"]["used_to_carve"].as_u64().unwrap() > 10_000);
-    place.summary("query town/cloud.laz --method carved --sun 200,40 --random 20000 -o from_cloud.npy");
+    let asked = "--sun 200,40 --random 20000";
+    let run = place.summary(&format!("query town/cloud.laz --method carved {asked} -o from_cloud.npy"));
+    let cloud = place.npy::<u8>("from_cloud.npy").1;
+    let answers = &run["answers"];
+    assert_eq!(answers["answered_by"], "lines of sight");
+    let counts = ["blocked", "visible", "unproven"].map(|name| answers[name].as_u64().unwrap());
+    assert_eq!(counts, [0, 1, 2].map(|code| cloud.iter().filter(|&&answer| answer == code).count() as u64));
+    assert!(counts.iter().all(|&count| count > 10) && counts.iter().sum::<u64>() == 20_000, "{counts:?}");
     for file in ["balls.npz", "balls.ply", "balls.laz"] {
-        place.summary(&format!("balls town/cloud.laz --method carved -o {file}"));
-        place.summary(&format!("query {file} --sun 200,40 --random 20000 -o from_file.npy"));
-        let [cloud, saved] = ["from_cloud.npy", "from_file.npy"].map(|name| fs::read(place.path(name)).unwrap());
-        // LAZ keeps centres to a tenth of a millimetre
-        let differ = cloud.iter().zip(&saved).filter(|(a, b)| a != b).count();
+        let written = place.summary(&format!("balls town/cloud.laz --method carved -o {file}"));
+        place.summary(&format!("query {file} {asked} -o from_file.npy"));
+        let saved = place.npy::<u8>("from_file.npy").1;
+        let has_pulses = file == "balls.npz";
+        assert_eq!(written["not_written"].is_string(), !has_pulses);
+        // only .npz knows the pulses, and keeps every bit; LAZ keeps centres to a tenth of a millimetre
+        let as_file = |answer: u8| if !has_pulses && answer == 2 { 1 } else { answer };
+        let differ = cloud.iter().zip(&saved).filter(|(cloud, saved)| as_file(**cloud) != **saved).count();
         assert!(cloud.len() == saved.len() && differ <= if file == "balls.laz" { 20 } else { 0 }, "{file}: {differ}");
     }
+    for (choice, as_code) in [("report", 2), ("as-visible", 1), ("as-blocked", 0)] {
+        let run = place.summary(&format!("query balls.npz {asked} --unproven {choice} -o settled.npy"));
+        let expected: Vec<u8> = cloud.iter().map(|&answer| if answer == 2 { as_code } else { answer }).collect();
+        assert_eq!(place.npy::<u8>("settled.npy").1, expected, "{choice}");
+        let visible = expected.iter().filter(|&&answer| answer == 1).count() as u64;
+        assert_eq!(run["answers"]["visible"].as_u64().unwrap(), visible, "{choice}");
+    }
+    // the column of a table holds the same
+    place.summary(&format!("query balls.npz {asked} -o answers.csv"));
+    let column: Vec<u8> = place
+        .text("answers.csv")
+        .lines()
+        .skip(1)
+        .map(|line| line.rsplit(',').next().unwrap().parse().unwrap())
+        .collect();
+    assert_eq!(column, cloud);
+    place.refusal(2, &format!("query balls.ply {asked} --unproven as-blocked -o no.npy"), &["--unproven", ".npz"]);
+    place.refusal(
+        2,
+        &format!("query town/cloud.laz --method tau {asked} --unproven report -o no.npy"),
+        &["--unproven"],
+    );
+}
+
+#[test]
+fn proven_light_is_right_more_often_than_unproven_light() {
+    let place = Workplace::new();
+    place.summary("simulate town -o town --extent 120 --density 8");
+    let answers = answers(&place, "--method carved --orient trajectory=town/trajectory.csv");
+    let truth = truth(&place);
+    let right = |code: u8| {
+        let of: Vec<bool> =
+            answers.iter().zip(&truth).filter(|(answer, _)| **answer == code).map(|(_, (lit, _))| *lit).collect();
+        assert!(of.len() > 300, "answer {code}: {}", of.len());
+        of.iter().filter(|lit| **lit).count() as f64 / of.len() as f64
+    };
+    let [blocked, proven, unproven] = [0, 1, 2].map(right);
+    assert!(blocked < unproven && unproven < proven, "lit in truth: {blocked} {unproven} {proven}");
+}
+
+#[test]
+fn a_viewport_bounds_what_carved_balls_are_asked() {
+    let place = Workplace::new();
+    place.summary("simulate village -o town --extent 100 --density 6");
+    let made = place.summary("balls town/cloud.laz --method carved -o balls.npz");
+    assert!(made["points"].as_u64().unwrap() > 10_000);
+    // the whole town straight from above, once as a direction and once through a picture of a part of it
+    place.summary("query balls.npz --direction 0,0,-1 --random 5000 -o all.csv");
+    let rows: Vec<Vec<f64>> = place
+        .text("all.csv")
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|v| v.parse().unwrap()).collect())
+        .collect();
+    let middle = [0, 1].map(|axis| rows.iter().map(|row| row[axis]).sum::<f64>() / rows.len() as f64);
+    let corner = [middle[0].round() - 20.0, middle[1].round() + 20.0];
+    let viewport = format!("{},{},500 40,0,0 0,-40,0 2", corner[0], corner[1]);
+    place.write("targets.csv", place.text("all.csv"));
+    place.summary_with("query balls.npz --targets targets.csv -o part.npy --viewport", &[viewport.as_str()]);
+    let part = place.npy::<u8>("part.npy").1;
+    let mut inside = 0;
+    for (row, answer) in rows.iter().zip(part) {
+        let off = [row[0] - corner[0], corner[1] - row[1]];
+        if off.iter().all(|v| (0.001..39.999).contains(v)) {
+            inside += 1;
+            assert!((f64::from(answer) - row[3]).abs() < 0.5, "{row:?}: {answer}");
+        } else if off.iter().any(|v| !(-0.001..40.001).contains(v)) {
+            assert_eq!(answer, 3, "{row:?}");
+        }
+    }
+    assert!((300..3000).contains(&inside), "{inside}");
 }
 
 #[test]

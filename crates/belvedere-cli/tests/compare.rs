@@ -9,11 +9,16 @@ use std::fs;
 
 const SMALL: &str = "--extent 100 --density 2 --targets 1500 --methods paper-sphere,belvedere";
 
-/// The share, 0 to 1, of a rate of `method` on one set and group of views, at the first place.
-fn rate(results: &Value, method: &str, set: &str, views: &str, rate: &str) -> f64 {
+/// What is kept of `method` on one set and group of views, at the first place.
+fn score<'a>(results: &'a Value, method: &str, set: &str, views: &str) -> &'a Value {
     let of_method = results["methods"].as_array().unwrap().iter().find(|r| r["method"] == method).unwrap();
     let scores = of_method["scores"].as_array().unwrap();
-    let score = scores.iter().find(|s| s["set"] == set && s["views"] == views).unwrap();
+    scores.iter().find(|s| s["set"] == set && s["views"] == views).unwrap()
+}
+
+/// The share, 0 to 1, of a rate of `method` on one set and group of views, at the first place.
+fn rate(results: &Value, method: &str, set: &str, views: &str, rate: &str) -> f64 {
+    let score = score(results, method, set, views);
     let [value, low, high] = [0, 1, 2].map(|i| score[rate][i].as_f64().unwrap());
     assert!(low <= value + 1e-9 && value <= high + 1e-9 && (0.0..=1.0).contains(&value), "{score}");
     value
@@ -33,6 +38,10 @@ fn every_method_gets_scores_costs_and_pictures() {
             }
         }
         rate(results, method, "LOS", "pairs", "balanced");
+        let mean = rate(results, method, "STREET", "street", "balanced");
+        let street = score(results, method, "STREET", "street");
+        assert!(street["tenth_balanced"].as_f64().unwrap() <= mean && street["observers"] == 40, "{street}");
+        assert_eq!(street["targets"], 300);
         let picture = fs::read(place.path(&format!("out/pictures/town-100m-1--{method}.png"))).unwrap();
         assert!(picture.starts_with(b"\x89PNG"));
     }
@@ -41,6 +50,25 @@ fn every_method_gets_scores_costs_and_pictures() {
     assert!(street("paper-sphere") > 0.5 && street("belvedere") < 0.3);
     let html = fs::read_to_string(place.path("out/report.html")).unwrap();
     assert!(html.contains("town-100m-1--belvedere.png") && html.contains("Which balls of the published method"));
+    // of the four groups of views one holds the suns; each target of each sun gets one answer of three
+    let answers = results["places"][0]["answers"].as_array().unwrap();
+    let row = |set: &str, views: &str| {
+        let row = answers.iter().find(|row| row["set"] == set && row["views"] == views).unwrap();
+        ["visible", "unproven", "blocked"].map(|name| [0, 1].map(|i| row[name][i].as_u64().unwrap()))
+    };
+    for (set, views, asked) in [
+        ("PED", "sun at 20°", 1500),
+        ("AIR", "sun at 65°", 1500),
+        ("PED", "observers", 3000),
+        ("STREET", "street", 12_000),
+    ] {
+        let found = row(set, views);
+        assert_eq!(found.iter().map(|[given, _]| given).sum::<u64>(), asked, "{set} {views}");
+        assert!(found.iter().all(|[given, right]| right <= given && *given > 0), "{set} {views}: {found:?}");
+    }
+    let [visible, unproven, _] = row("PED", "sun at 65°").map(|[given, right]| right as f64 / given as f64);
+    assert!(visible > unproven, "what pulses bear out is right more often: {visible} {unproven}");
+    assert!(html.contains("What each answer of carved balls is worth") && html.contains("People in streets"));
     let audit = results["places"][0]["audit"].as_array().unwrap();
     assert!(audit.iter().any(|row| row["surface"] == "facade" && row["balls"].as_u64() > row["wrong"].as_u64()));
 }
@@ -128,6 +156,30 @@ fn clouds_are_judged_by_the_pulses_kept_from_the_methods() {
     assert!((known - 1.0).abs() < 1e-9, "{known}");
     fs::write(place.path("bare.csv"), "x,y,z\n1,2,3\n2,3,4\n").unwrap();
     place.refusal(1, "compare --held-out bare.csv -o out", &["bare.csv", "GPS time"]);
+}
+
+#[test]
+fn variants_run_only_when_named_in_full_and_costly_eyes_are_few() {
+    let place = Workplace::new();
+    let methods = |list: &str| -> Vec<Value> {
+        let run = place.summary(&format!("compare --extent 60 --density 2 --targets 200 --methods {list} -o out"));
+        run["results"]["methods"].as_array().unwrap().clone()
+    };
+    let keys = |results: &[Value]| -> Vec<String> {
+        results.iter().map(|result| result["method"].as_str().unwrap().to_owned()).collect()
+    };
+    // twice, the second time from what was kept
+    for _ in 0..2 {
+        assert_eq!(keys(&methods("carved")), ["carved"]);
+        assert_eq!(keys(&methods("carved-no-kind-bounds")), ["carved-no-kind-bounds"]);
+    }
+    let results = methods("mesh-exact,shadow-map-exact");
+    let eyes = |method: &str| {
+        let result = results.iter().find(|result| result["method"] == method).unwrap();
+        let scores = result["scores"].as_array().unwrap();
+        scores.iter().find(|score| score["set"] == "STREET").unwrap()["observers"].as_u64().unwrap()
+    };
+    assert!(eyes("mesh-exact") > 20 && eyes("shadow-map-exact") == 4);
 }
 
 #[test]
