@@ -5,15 +5,17 @@ use crate::progress::Stages;
 use crate::summary::{Summary, percent};
 use anyhow::{Result, bail};
 use belvedere::io::read_trajectory;
-use belvedere::pulses::{NeedleParams, Needles, SensorEstimateParams, SensorPositions, group};
+use belvedere::pulses::{NeedleParams, Needles, Pulses, SensorEstimateParams, SensorPositions, group};
 use belvedere::trajectory::Trajectory;
 use belvedere::{Attributes, PointCloud};
 
 /// What carving needs beside an oriented cloud.
 pub(crate) struct CarvingInput {
     pub(super) needles: Needles,
-    /// Classes and return numbers.
+    /// Classes, numbers and counts of returns.
     pub(super) kinds: Attributes,
+    /// Which returns share a pulse, where times tell.
+    pub(super) pulses: Option<Pulses>,
 }
 
 /// The needles of a cloud's pulses, reported, and the columns that carving asks for.
@@ -34,9 +36,11 @@ pub(super) fn carving_input(
     let kinds = Attributes {
         classification: cloud.attributes.classification.clone(),
         return_number: cloud.attributes.return_number.clone(),
+        return_count: cloud.attributes.return_count.clone(),
         ..Attributes::default()
     };
-    Ok(CarvingInput { needles, kinds })
+    let pulses = group(cloud).ok().map(|(pulses, _)| pulses);
+    Ok(CarvingInput { needles, kinds, pulses })
 }
 
 /// Where the scanner was for each point, and the trajectory where that was read for it.
