@@ -9,7 +9,7 @@ use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, orient};
 use belvedere::progress::Progress;
-use belvedere::pulses::{NeedleParams, Needles};
+use belvedere::pulses::{NeedleParams, Needles, group};
 use belvedere::query::{MedialScene, SceneParams, Sight, Viewer, Visibility, query_points};
 use belvedere::view::View;
 use belvedere::{Mesh, Result};
@@ -142,8 +142,11 @@ pub fn interior_balls(survey: &Survey<'_>, outward: Outward<'_>, params: &Medial
         Making::Carving(carving) => {
             let (needles, _) = Needles::of_cloud(survey.cloud, survey.scanner, &NeedleParams::default())?;
             let attributes = &survey.cloud.attributes;
-            let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles };
-            Ok(carved_balls(&input, carving, Progress::none())?.0)
+            // without times nothing tells what gets through crowns
+            let pulses = group(survey.cloud).ok().map(|(pulses, _)| pulses);
+            let pulses = pulses.as_ref();
+            let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses };
+            Ok(carved_balls(&input, carving, Progress::none())?.balls)
         }
     }
 }

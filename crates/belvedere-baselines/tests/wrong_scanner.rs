@@ -75,8 +75,8 @@ impl Place {
         let (needles, _) = Needles::of_cloud(&self.cloud, scanner, &NeedleParams::default()).unwrap();
         let oriented = turn(oriented, &index, &needles);
         let attributes = &self.cloud.attributes;
-        let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles };
-        let (balls, _) = carved_balls(&input, &CarvedParams::default(), Progress::none()).unwrap();
+        let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses: None };
+        let balls = carved_balls(&input, &CarvedParams::default(), Progress::none()).unwrap().balls;
         let blocking = SceneParams { depth_bias: DEPTH_BIAS, ..SceneParams::default() };
         let scene = MedialScene::new(&balls, &blocking).unwrap();
         let balanced = |(direction, visible): &([f64; 3], Vec<bool>)| {

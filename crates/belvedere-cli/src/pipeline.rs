@@ -16,8 +16,8 @@ use belvedere::io::{
     ReadOptions, ReadReport, SavedBalls, SavedPulses, is_ball_file, read_balls, read_cloud, read_mesh, read_trajectory,
 };
 use belvedere::medial::{
-    CarvedInput, CarvedParams, CarvedReport, MedialBalls, PULSE_TOUCH, ShrinkMethod, ShrinkParams, ShrinkReport, Side,
-    carved_balls, shrink,
+    CarvedBalls, CarvedInput, CarvedParams, CarvedReport, MedialBalls, PULSE_TOUCH, ShrinkMethod, ShrinkParams,
+    ShrinkReport, Side, carved_balls, shrink,
 };
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
@@ -379,8 +379,9 @@ pub(crate) fn shrink_side(
     let (oriented, index) = (&prepared.oriented, &prepared.index);
     let (balls, section) = match (params, &prepared.carving) {
         (BallParams::Carved(params), Some(input)) => {
-            let input = CarvedInput { oriented, index, attributes: &input.kinds, needles: &input.needles };
-            let (balls, report) =
+            let (attributes, needles, pulses) = (&input.kinds, &input.needles, input.pulses.as_ref());
+            let input = CarvedInput { oriented, index, attributes, needles, pulses };
+            let CarvedBalls { balls, report, .. } =
                 stages.run("making balls", count, |progress| carved_balls(&input, params, progress))?;
             (balls, carved_section(&report))
         }
@@ -400,7 +401,12 @@ fn carved_section(report: &CarvedReport) -> Summary {
     section
         .add("cut_by_pulses", report.carving.carved)
         .add("limited", report.carving.limited)
-        .add("grown_to_least_radius", report.carving.grown);
+        .add("grown_to_least_radius", report.carving.grown)
+        .add("told_to_be_vegetation", report.told_vegetation)
+        .add("in_crowns_with_gaps", report.in_crowns_with_gaps)
+        .add("balls_that_fill_crowns", report.crown_fills)
+        .add("on_fences_wires_and_the_like", report.slender)
+        .add("balls_that_fill_fences", report.slender_fills);
     section
 }
 

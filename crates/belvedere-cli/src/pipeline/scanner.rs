@@ -6,7 +6,8 @@ use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
 use belvedere::io::read_trajectory;
 use belvedere::pulses::{
-    HeightOffset, LocateParams, Means, NeedleParams, Needles, ScannerReport, SensorPart, ServedBy, locate,
+    HeightOffset, LocateParams, Means, NeedleParams, Needles, Pulses, ScannerReport, SensorPart, ServedBy, group,
+    locate,
 };
 use belvedere::trajectory::Trajectory;
 use belvedere::{Attributes, PointCloud};
@@ -14,8 +15,10 @@ use belvedere::{Attributes, PointCloud};
 /// What carving needs beside an oriented cloud.
 pub(crate) struct CarvingInput {
     pub(super) needles: Needles,
-    /// Classes and return numbers.
+    /// Classes, numbers and counts of returns.
     pub(super) kinds: Attributes,
+    /// Which returns share a pulse, where times tell.
+    pub(super) pulses: Option<Pulses>,
 }
 
 /// The needles of a cloud's pulses, reported, and the columns that carving asks for.
@@ -36,9 +39,11 @@ pub(super) fn carving_input(
     let kinds = Attributes {
         classification: cloud.attributes.classification.clone(),
         return_number: cloud.attributes.return_number.clone(),
+        return_count: cloud.attributes.return_count.clone(),
         ..Attributes::default()
     };
-    Ok(CarvingInput { needles, kinds })
+    let pulses = group(cloud).ok().map(|(pulses, _)| pulses);
+    Ok(CarvingInput { needles, kinds, pulses })
 }
 
 /// Where the scanner was.

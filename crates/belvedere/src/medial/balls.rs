@@ -50,6 +50,16 @@ impl MedialBalls {
         }
     }
 
+    /// Adds a ball at point `source` that touches `touch` and has no separation angle.
+    pub(super) fn push(&mut self, source: usize, center: [f32; 3], radius: f32, touch: u32) {
+        self.centers.push(center);
+        self.radii.push(radius);
+        #[expect(clippy::cast_possible_truncation, reason = "rows of a cloud are numbered with 32 bits everywhere")]
+        self.source.push(source as u32);
+        self.touch.push(touch);
+        self.separation_angles.push(f32::NAN);
+    }
+
     /// Whether there is no ball.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -3,12 +3,16 @@
 use super::balls::{MedialBalls, Side};
 use super::bounds::{KindBounds, RadiusBounds, kinds};
 use super::carve::{CarveReport, carve};
+use super::cells::lowest_near;
+use super::crowns::{self, CrownParams, Crowns};
 use super::prune::{PruneParams, prune};
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
+use super::slender::{Slender, SlenderParams};
+use super::vegetation::{VegetationParams, tell_vegetation};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use crate::progress::Progress;
-use crate::pulses::Needles;
+use crate::pulses::{Needles, Pulses};
 use crate::{Attributes, Result};
 
 /// How carved balls are made. Every rule that is `Some` is applied; [`CarvedParams::default`] applies those that the comparison
@@ -25,6 +29,12 @@ pub struct CarvedParams {
     pub max_radius: f32,
     /// Bounds by kind of point.
     pub kind_bounds: KindBounds,
+    /// How vegetation is told in clouds without its classes.
+    pub vegetation: Option<VegetationParams>,
+    /// How crowns of trees are measured, limited and filled.
+    pub crowns: Option<CrownParams>,
+    /// How fences, wires and the like are limited and filled.
+    pub slender: Option<SlenderParams>,
     /// Leaves out balls that others make superfluous.
     pub pruning: Option<PruneParams>,
 }
@@ -36,6 +46,9 @@ impl Default for CarvedParams {
             initial_radius: 5.0,
             max_radius: f32::INFINITY,
             kind_bounds: KindBounds::default(),
+            vegetation: Some(VegetationParams::default()),
+            crowns: Some(CrownParams::default()),
+            slender: Some(SlenderParams::default()),
             pruning: Some(PruneParams::default()),
         }
     }
@@ -60,10 +73,12 @@ pub struct CarvedInput<'a> {
     pub oriented: &'a OrientedCloud,
     /// Index of the same points.
     pub index: &'a NeighborIndex,
-    /// Class and return number are used where present.
+    /// Class, return number and return count are used where present.
     pub attributes: &'a Attributes,
     /// What the pulses prove empty.
     pub needles: &'a Needles,
+    /// Which returns share a pulse, rows as in the cloud; without it no crown is measured.
+    pub pulses: Option<&'a Pulses>,
 }
 
 /// What became of the balls in [`carved_balls`].
@@ -73,29 +88,77 @@ pub struct CarvedReport {
     pub shrinking: ShrinkReport,
     /// By the pulses.
     pub carving: CarveReport,
+    /// Points told to be vegetation in a cloud without its classes.
+    pub told_vegetation: usize,
+    /// Points in crowns with gaps.
+    pub in_crowns_with_gaps: usize,
+    /// Balls that fill solid crowns.
+    pub crown_fills: usize,
+    /// Points of fences, wires and the like.
+    pub slender: usize,
+    /// Balls that fill fences and the like.
+    pub slender_fills: usize,
     /// Balls left out because others make them superfluous.
     pub pruned: usize,
 }
 
-/// The interior balls of a survey as far as its pulses leave them, those alone that are of use. [`MedialBalls::source`] and
-/// [`MedialBalls::touch`] are rows of the cloud.
+/// Balls of a survey.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CarvedBalls {
+    /// Those that are of use. [`MedialBalls::source`] and [`MedialBalls::touch`] are rows of the cloud; several balls may have
+    /// the same source.
+    pub balls: MedialBalls,
+    /// Share of the pulses that got through the piece of crown that a ball is part of, (B), 0 to 1; NaN for balls that are not
+    /// vegetation. Empty where nothing was measured.
+    pub transmission: Vec<f32>,
+    /// What became of them.
+    pub report: CarvedReport,
+}
+
+/// The interior balls of a survey as far as its pulses leave them, and those that rules add.
 ///
 /// # Errors
 /// Those of [`shrink`] and [`carve`].
-pub fn carved_balls(
-    input: &CarvedInput<'_>,
-    params: &CarvedParams,
-    progress: Progress<'_>,
-) -> Result<(MedialBalls, CarvedReport)> {
-    let CarvedInput { oriented, index, attributes, needles } = *input;
-    let kinds = kinds(attributes, oriented.len());
-    let bounds = RadiusBounds::by_kind(&kinds, attributes, &params.kind_bounds);
+pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, progress: Progress<'_>) -> Result<CarvedBalls> {
+    let CarvedInput { oriented, index, attributes, needles, pulses } = *input;
+    let positions = oriented.positions();
     let mut report = CarvedReport::default();
+    let mut kinds = kinds(attributes, oriented.len());
+    if let Some(vegetation) = &params.vegetation {
+        report.told_vegetation = tell_vegetation(&mut kinds, oriented, index, attributes, vegetation)?;
+    }
+    let mut bounds = RadiusBounds::by_kind(&kinds, attributes, &params.kind_bounds);
+    let lowest = lowest_near(positions);
+    let through = match (&params.crowns, pulses) {
+        (Some(crowns), Some(pulses)) => crowns::transmission(positions, &kinds, &lowest, pulses, crowns),
+        _ => Vec::new(),
+    };
+    let crowns = params.crowns.as_ref().map(|params| Crowns {
+        positions,
+        kinds: &kinds,
+        attributes,
+        transmission: &through,
+        params,
+    });
+    let slender =
+        params.slender.as_ref().map(|params| Slender::find(positions, &kinds, attributes, &lowest, needles, params));
+    report.in_crowns_with_gaps = crowns.as_ref().map_or(0, |crowns| crowns.limit(&mut bounds));
+    report.slender = slender.as_ref().map_or(0, |slender| slender.limit(&mut bounds));
+
     let mut balls;
     (balls, report.shrinking) = shrink(oriented, index, Side::Interior, &params.shrinking(), progress)?;
     report.carving = carve(&mut balls, oriented, needles, params.penetration, &bounds)?;
     if let Some(pruning) = &params.pruning {
         report.pruned = prune(&mut balls, oriented, index, pruning)?;
     }
-    Ok((balls.shrunk(), report))
+    // what is only told to be vegetation may be anything that is not flat, and is better not filled
+    if report.told_vegetation == 0 {
+        report.crown_fills = crowns.as_ref().map_or(0, |crowns| crowns.fill(&mut balls, needles));
+    }
+    report.slender_fills = slender.as_ref().map_or(0, |slender| slender.fill(&mut balls, index, needles));
+
+    let balls = balls.shrunk();
+    let of = |&source: &u32| through.get(source as usize).copied();
+    let transmission = balls.source.iter().filter_map(of).collect();
+    Ok(CarvedBalls { balls, transmission, report })
 }
