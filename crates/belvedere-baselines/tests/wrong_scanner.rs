@@ -131,10 +131,7 @@ fn pulses_that_are_merely_assumed_to_be_vertical_are_worth_carving_with() {
     let same = |normal: [f32; 3]| normal;
     let exact = place.score(&place.scanner, same, as_it_is);
     let assumed = vertical_pulses(&place.cloud.positions, &VerticalParams::default()).unwrap();
-    let params = OrientByCarvingParams { least_confidence: 1.0, ..OrientByCarvingParams::default() };
-    let turn = |oriented: OrientedCloud, index: &NeighborIndex, needles: &Needles| {
-        orient_by_carving(&oriented, index, needles, &params).unwrap().0
-    };
-    let vertical = place.score(&assumed, same, turn);
-    assert!(vertical > exact - 6.0, "{vertical} of {exact}");
+    let vertical = place.score(&assumed, same, as_it_is);
+    // on the towns of the rules' table they cost streets nothing; one town is not their mean
+    assert!(vertical > exact - 2.0, "{vertical} of {exact}");
 }
