@@ -93,8 +93,8 @@ fn nearness_of_pulses_equals_that_of_every_pulse_tried_in_turn() {
 #[test]
 fn unproven_lengths_are_those_of_dense_samples() {
     const SPACING: f64 = 0.02;
-    // pulses so sparse that lines have many gaps, and pulses so dense that few are left
-    for (count, nearness) in [(500, 1.2), (2500, 0.7)] {
+    // pulses so sparse that lines have many gaps, and so dense that few are left and most boxes of space are near some
+    for (count, nearness, lines) in [(500, 1.2, 12), (2500, 0.7, 12), (25_000, 0.7, 6)] {
         let (returns, scanner) = survey(count);
         let segments = segments(&returns, &scanner);
         let top = returns.iter().map(|p| f64::from(p[2])).fold(0.0, f64::max) + 2.0;
@@ -104,7 +104,7 @@ fn unproven_lengths_are_those_of_dense_samples() {
         });
         let proof = proof(needles(&returns, &scanner), nearness, Beside::Unseen);
         let (mut sum, mut worst): (f64, f64) = (0.0, 0.0);
-        for i in 0..12 {
+        for i in 0..lines {
             let (from, to) = (random_point(12, i), random_point(13, i));
             let direction = unit(std::array::from_fn(|k| to[k] - from[k]));
             let range = (0..3).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt();

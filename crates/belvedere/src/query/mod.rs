@@ -3,7 +3,7 @@
 pub mod medial_scene;
 pub mod points;
 pub mod proof;
-mod skyline;
+mod seen_space;
 pub mod visibility;
 
 pub use medial_scene::{MedialScene, SceneParams};

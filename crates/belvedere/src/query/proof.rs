@@ -1,6 +1,6 @@
 //! Whether pulses saw the space that a line of sight runs through.
 
-use super::skyline::Skyline;
+use super::seen_space::SeenSpace;
 use crate::pulses::Needles;
 use crate::{Error, Result};
 use std::collections::BTreeMap;
@@ -48,7 +48,7 @@ pub struct Proof {
     needles: Needles,
     nearness: f64,
     params: ProofParams,
-    skyline: Skyline,
+    seen_space: SeenSpace,
     /// West, south and east, north of the lower ends.
     rim: [[f64; 2]; 2],
 }
@@ -98,8 +98,8 @@ impl Proof {
                 rim[1][axis] = rim[1][axis].max(f64::from(start[axis]));
             }
         }
-        let skyline = Skyline::new(rim, nearness);
-        Ok(Self { needles, nearness, params: *params, skyline, rim })
+        let seen_space = SeenSpace::new(&needles, rim, nearness);
+        Ok(Self { needles, nearness, params: *params, seen_space, rim })
     }
 
     /// How near a pulse must pass, metres.
@@ -161,7 +161,7 @@ impl Proof {
         let mut gap_from: Option<f64> = None;
         let mut at = from;
         while at < to {
-            let seen_to = self.skyline.free_until(&self.needles, origin, direction, at).or_else(|| {
+            let seen_to = self.seen_space.near_until(origin, direction, at).or_else(|| {
                 self.needles.near_piece(origin, direction, at, self.nearness).map(|[_, piece_to]| piece_to)
             });
             if let Some(seen_to) = seen_to {

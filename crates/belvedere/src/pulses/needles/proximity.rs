@@ -2,6 +2,7 @@
 
 use super::{Needle, Needles, Node};
 use crate::vector::{dot, sub};
+use rayon::prelude::*;
 use std::ops::ControlFlow;
 
 /// Pieces of a line shorter than this are not worth a step, metres.
@@ -29,6 +30,14 @@ impl Needles {
     /// Lower ends of the needles, local metres, in no particular order: just above the first returns.
     pub fn lower_ends(&self) -> impl ExactSizeIterator<Item = [f32; 3]> + '_ {
         self.needles.iter().map(|needle| needle.start)
+    }
+
+    /// Lower and upper end of each needle, local metres, in no particular order.
+    pub(crate) fn par_ends(&self) -> impl ParallelIterator<Item = [[f64; 3]; 2]> + '_ {
+        self.needles.par_iter().map(|needle| {
+            let (start, up) = (needle.start.map(f64::from), needle.up.map(f64::from));
+            [start, std::array::from_fn(|i| start[i] + f64::from(needle.length) * up[i])]
+        })
     }
 
     /// Whether a needle passes nearer than `distance` metres to `point`, local metres. The distance to the piece of a line is
