@@ -4,6 +4,7 @@ use super::balls::{MedialBalls, Side};
 use super::bounds::{KindBounds, RadiusBounds, kinds};
 use super::carve::{CarveReport, carve};
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
+use super::thin_surfaces::{ThinSurfaceParams, on_thin_surfaces};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use crate::progress::Progress;
@@ -24,11 +25,19 @@ pub struct CarvedParams {
     pub max_radius: f32,
     /// Bounds by kind of point.
     pub kind_bounds: KindBounds,
+    /// Small balls at surfaces that pulses run below.
+    pub thin_surfaces: Option<ThinSurfaceParams>,
 }
 
 impl Default for CarvedParams {
     fn default() -> Self {
-        Self { penetration: 0.02, initial_radius: 5.0, max_radius: f32::INFINITY, kind_bounds: KindBounds::default() }
+        Self {
+            penetration: 0.02,
+            initial_radius: 5.0,
+            max_radius: f32::INFINITY,
+            kind_bounds: KindBounds::default(),
+            thin_surfaces: Some(ThinSurfaceParams::default()),
+        }
     }
 }
 
@@ -64,6 +73,8 @@ pub struct CarvedReport {
     pub shrinking: ShrinkReport,
     /// By the pulses.
     pub carving: CarveReport,
+    /// Points found on thin surfaces.
+    pub thin: usize,
 }
 
 /// The interior balls of a survey as far as its pulses leave them, those alone that are of use. [`MedialBalls::source`] and
@@ -78,8 +89,15 @@ pub fn carved_balls(
 ) -> Result<(MedialBalls, CarvedReport)> {
     let CarvedInput { oriented, index, attributes, needles } = *input;
     let kinds = kinds(attributes, oriented.len());
-    let bounds = RadiusBounds::by_kind(&kinds, attributes, &params.kind_bounds);
+    let mut bounds = RadiusBounds::by_kind(&kinds, attributes, &params.kind_bounds);
     let mut report = CarvedReport::default();
+    if let Some(params) = &params.thin_surfaces {
+        let thin = on_thin_surfaces(oriented.positions(), &kinds, index, needles, params);
+        for row in (0..thin.len()).filter(|&row| thin[row]) {
+            bounds.limit(row, params.radius);
+            report.thin += 1;
+        }
+    }
     let mut balls;
     (balls, report.shrinking) = shrink(oriented, index, Side::Interior, &params.shrinking(), progress)?;
     report.carving = carve(&mut balls, oriented, needles, params.penetration, &bounds)?;

@@ -138,6 +138,25 @@ impl Needles {
         Ok((Self { needles: items.into_iter().map(|item| item.needle).collect(), nodes, planes }, report))
     }
 
+    /// Number of needles.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.needles.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.needles.is_empty()
+    }
+
+    /// Where needle `number` begins, local metres; the unit vector along it, upward; and its length, metres. `None` from
+    /// [`Needles::len`] on. Their order is that of the index.
+    #[must_use]
+    pub fn segment(&self, number: usize) -> Option<([f32; 3], [f32; 3], f32)> {
+        self.needles.get(number).map(|needle| (needle.start, needle.up, needle.length))
+    }
+
     /// The greatest radius, below `max_radius`, of the balls of a pencil that no needle enters, or `None` where no needle
     /// enters the ball of `max_radius`. Metres.
     ///
