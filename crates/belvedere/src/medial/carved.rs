@@ -8,6 +8,7 @@ use super::crowns::{self, CrownParams, Crowns};
 use super::prune::{PruneParams, prune};
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 use super::slender::{Slender, SlenderParams};
+use super::thin_surfaces::{ThinSurfaceParams, on_thin_surfaces};
 use super::vegetation::{VegetationParams, tell_vegetation};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
@@ -37,6 +38,8 @@ pub struct CarvedParams {
     pub slender: Option<SlenderParams>,
     /// Leaves out balls that others make superfluous.
     pub pruning: Option<PruneParams>,
+    /// Small balls at surfaces that pulses run below.
+    pub thin_surfaces: Option<ThinSurfaceParams>,
 }
 
 impl Default for CarvedParams {
@@ -50,6 +53,7 @@ impl Default for CarvedParams {
             crowns: Some(CrownParams::default()),
             slender: Some(SlenderParams::default()),
             pruning: Some(PruneParams::default()),
+            thin_surfaces: Some(ThinSurfaceParams::default()),
         }
     }
 }
@@ -100,6 +104,8 @@ pub struct CarvedReport {
     pub slender_fills: usize,
     /// Balls left out because others make them superfluous.
     pub pruned: usize,
+    /// Points found on thin surfaces.
+    pub thin: usize,
 }
 
 /// Balls of a survey.
@@ -144,6 +150,13 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, progress: Pr
         params.slender.as_ref().map(|params| Slender::find(positions, &kinds, attributes, &lowest, needles, params));
     report.in_crowns_with_gaps = crowns.as_ref().map_or(0, |crowns| crowns.limit(&mut bounds));
     report.slender = slender.as_ref().map_or(0, |slender| slender.limit(&mut bounds));
+    if let Some(params) = &params.thin_surfaces {
+        let thin = on_thin_surfaces(positions, &kinds, index, needles, params);
+        for row in (0..thin.len()).filter(|&row| thin[row]) {
+            bounds.limit(row, params.radius);
+            report.thin += 1;
+        }
+    }
 
     let mut balls;
     (balls, report.shrinking) = shrink(oriented, index, Side::Interior, &params.shrinking(), progress)?;

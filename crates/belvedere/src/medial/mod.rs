@@ -7,10 +7,12 @@ pub mod carved;
 mod cells;
 pub mod crowns;
 pub mod feature_size;
+mod layers;
 pub mod orient_by_carving;
 pub mod prune;
 pub mod shrinking_ball;
 pub mod slender;
+pub mod thin_surfaces;
 pub mod vegetation;
 
 pub use balls::{MedialBalls, NO_TOUCH, Side};
@@ -22,4 +24,5 @@ pub use orient_by_carving::{OrientByCarvingParams, OrientByCarvingReport, orient
 pub use prune::{PruneParams, prune};
 pub use shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 pub use slender::SlenderParams;
+pub use thin_surfaces::{ThinSurfaceParams, on_thin_surfaces};
 pub use vegetation::VegetationParams;

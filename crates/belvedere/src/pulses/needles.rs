@@ -147,6 +147,13 @@ impl Needles {
         Self { needles: items.into_iter().map(|item| item.needle).collect(), nodes, planes }
     }
 
+    /// Where needle `number` begins, local metres; the unit vector along it, upward; and its length, metres. `None` from
+    /// [`Needles::len`] on. Their order is that of the index.
+    #[must_use]
+    pub fn segment(&self, number: usize) -> Option<([f32; 3], [f32; 3], f32)> {
+        self.needles.get(number).map(|needle| (needle.start, needle.up, needle.length))
+    }
+
     /// The greatest radius, below `max_radius`, of the balls of a pencil that no needle enters, or `None` where no needle
     /// enters the ball of `max_radius`. Metres.
     ///
@@ -193,40 +200,6 @@ impl Needles {
         cut.then_some(radius)
     }
 
-    /// The distance from `center`, local metres, to the nearest needle, or `most` metres where none is nearer.
-    #[must_use]
-    pub fn clearance(&self, center: [f32; 3], most: f32) -> f32 {
-        let mut clearance = most.max(0.0);
-        if self.needles.is_empty() {
-            return clearance;
-        }
-        let mut stack = [0_u32; 64];
-        let mut depth = 1;
-        while depth > 0 {
-            depth -= 1;
-            let index = stack[depth] as usize;
-            let node = &self.nodes[index];
-            if !self.may_enter(node, center, clearance) {
-                continue;
-            }
-            if node.count == 0 {
-                #[expect(clippy::cast_possible_truncation, reason = "nodes are numbered with 32 bits")]
-                let first = index as u32 + 1;
-                stack[depth] = node.next;
-                stack[depth + 1] = first;
-                depth += 2;
-                continue;
-            }
-            let first = node.next as usize;
-            for needle in &self.needles[first..first + node.count as usize] {
-                #[expect(clippy::cast_possible_truncation, reason = "a distance in metres")]
-                let distance = needle.distance(center) as f32;
-                clearance = clearance.min(distance);
-            }
-        }
-        clearance
-    }
-
     /// Whether a needle below `node` may enter the ball.
     fn may_enter(&self, node: &Node, center: [f32; 3], radius: f32) -> bool {
         // rounding of f32 at coordinates of kilometres is a tenth of a millimetre
@@ -253,15 +226,6 @@ impl Needles {
 }
 
 impl Needle {
-    /// Distance from `point`, metres.
-    fn distance(&self, point: [f32; 3]) -> f64 {
-        let up = self.up.map(f64::from);
-        let from = sub(point.map(f64::from), self.start.map(f64::from));
-        let along = dot(from, up).clamp(0.0, f64::from(self.length));
-        let off: [f64; 3] = std::array::from_fn(|i| from[i] - along * up[i]);
-        dot(off, off).sqrt()
-    }
-
     /// Radius of the ball of the pencil through `touching` along `inward` that this needle touches, or `None` where it touches
     /// none.
     fn tangent_radius(&self, touching: [f32; 3], inward: [f32; 3]) -> Option<f64> {

@@ -68,6 +68,13 @@ impl Needles {
         found.then(|| least.sqrt())
     }
 
+    /// Distance of `center`, local metres, to the nearest needle, or `most` metres where none is nearer.
+    #[must_use]
+    pub fn clearance(&self, center: [f32; 3], most: f32) -> f32 {
+        #[expect(clippy::cast_possible_truncation, reason = "below `most`")]
+        self.nearest_distance(center.map(f64::from), most.into()).map_or(most, |distance| distance as f32)
+    }
+
     /// A piece of the line through `origin` along the unit vector `direction` on which one needle is nearer than `distance`
     /// metres everywhere: where it begins and ends, metres from the origin, `at` being well within. `None` where no needle is
     /// that near at `at`, or stays so for less than a millimetre.

@@ -1,0 +1,189 @@
+//! Points sorted into columns of small voxels, so that what lies above, below and beside a place is found at once.
+
+use std::ops::Range;
+
+/// Side of a cell, metres: two points of a survey of 8 pulses a square metre fall into one on the mean.
+const CELL: f32 = 0.5;
+/// Height of a voxel, metres.
+const STEP: f32 = 0.4;
+/// Voxels up and down that count as of the same height, which allows for slopes up to 45° and for the parapet of a balcony.
+const SAME_HEIGHT: i32 = 2;
+/// Most cells: beyond this the columns would take gigabytes.
+const MOST_CELLS: f32 = 5e8;
+
+/// East and north number of a cell.
+type Cell = [i32; 2];
+
+/// The voxels that hold points, column by column.
+pub(super) struct Layers {
+    low: [f32; 2],
+    size: [i32; 2],
+    /// Where the voxels of each cell begin, and one more.
+    first: Vec<u32>,
+    /// Number of each voxel upward.
+    level: Vec<i32>,
+    /// Cell of each voxel.
+    cell: Vec<u32>,
+    /// Whether a voxel holds a solid point.
+    solid: Vec<bool>,
+}
+
+impl Layers {
+    /// Voxels of `positions`, local metres, and which of them hold a point whose row is `solid`; `None` for no points, or for a
+    /// place too wide.
+    pub(super) fn new(positions: &[[f32; 3]], solid: impl Fn(usize) -> bool) -> Option<Self> {
+        let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
+        for p in positions {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(p[axis]);
+                high[axis] = high[axis].max(p[axis]);
+            }
+        }
+        let [width, height] = [0, 1].map(|axis| ((high[axis] - low[axis]) / CELL).floor() + 1.0);
+        if !(width > 0.0 && height > 0.0 && width * height < MOST_CELLS) {
+            return None;
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "checked to be small")]
+        let size = [width as i32, height as i32];
+        let mut layers = Self { low, size, first: Vec::new(), level: Vec::new(), cell: Vec::new(), solid: Vec::new() };
+        let voxel = |(row, &p): (usize, &[f32; 3])| {
+            Some((u32::try_from(layers.number(layers.cell(p))?).ok()?, level(p[2]), !solid(row)))
+        };
+        let mut voxels: Vec<(u32, i32, bool)> = positions.iter().enumerate().filter_map(voxel).collect();
+        voxels.sort_unstable();
+        // the first of each voxel is solid if any is
+        voxels.dedup_by_key(|&mut (cell, level, _)| (cell, level));
+        let count = usize::try_from(i64::from(size[0]) * i64::from(size[1])).ok()?;
+        layers.first = vec![0; count + 1];
+        for &(cell, ..) in &voxels {
+            layers.first[cell as usize + 1] += 1;
+        }
+        for cell in 0..count {
+            layers.first[cell + 1] += layers.first[cell];
+        }
+        layers.cell = voxels.iter().map(|voxel| voxel.0).collect();
+        layers.level = voxels.iter().map(|voxel| voxel.1).collect();
+        layers.solid = voxels.iter().map(|voxel| !voxel.2).collect();
+        Some(layers)
+    }
+
+    /// Number of voxels.
+    pub(super) fn len(&self) -> usize {
+        self.level.len()
+    }
+
+    /// Height of the upper side of the highest voxel.
+    pub(super) fn top(&self) -> f32 {
+        self.level.iter().max().map_or(f32::NEG_INFINITY, |&level| (level + 1) as f32 * STEP)
+    }
+
+    /// Height of the lower side of a voxel.
+    pub(super) fn bottom(&self, voxel: usize) -> f32 {
+        self.level[voxel] as f32 * STEP
+    }
+
+    /// Height of the middle of a voxel.
+    pub(super) fn middle(&self, voxel: usize) -> f32 {
+        self.bottom(voxel) + STEP / 2.0
+    }
+
+    /// The voxel that holds a point, if one does.
+    pub(super) fn voxel_of(&self, point: [f32; 3]) -> Option<usize> {
+        let column = self.column(self.cell(point));
+        let found = self.level[column.clone()].binary_search(&level(point[2])).ok()?;
+        Some(column.start + found)
+    }
+
+    /// How many of the eight cells beside speak for a surface that goes on from a solid voxel: they hold solid points of its
+    /// height, or none at all, which says nothing. 0 for a voxel that is not solid.
+    pub(super) fn count_beside(&self, voxel: usize) -> usize {
+        let own = self.cell_of(voxel);
+        let goes_on = |cell: Cell| self.same_height(cell, voxel).next().is_some() || self.column(cell).is_empty();
+        if self.solid[voxel] { square(own).filter(|&cell| cell != own && goes_on(cell)).count() } else { 0 }
+    }
+
+    /// Calls `visit` with the voxels of this and the four cells beside that lie at the height of `voxel` or one off.
+    pub(super) fn adjoining(&self, voxel: usize, mut visit: impl FnMut(usize)) {
+        let [x, y] = self.cell_of(voxel);
+        let own = self.level[voxel];
+        for cell in [[x, y], [x - 1, y], [x + 1, y], [x, y - 1], [x, y + 1]] {
+            self.column(cell).filter(|&other| (self.level[other] - own).abs() <= 1).for_each(&mut visit);
+        }
+    }
+
+    /// Calls `visit` with the solid voxels of this and the eight cells about that lie at about the height of `voxel`.
+    pub(super) fn around(&self, voxel: usize, mut visit: impl FnMut(usize)) {
+        square(self.cell_of(voxel)).for_each(|cell| self.same_height(cell, voxel).for_each(&mut visit));
+    }
+
+    /// Calls `visit` with the voxels of each cell that a line crosses and where along it, metres, it enters and leaves the
+    /// cell: from `start` along the unit vector `up` for `length` metres, until `visit` says no or the raster ends.
+    pub(super) fn walk(
+        &self,
+        start: [f32; 3],
+        up: [f32; 3],
+        length: f32,
+        mut visit: impl FnMut(Range<usize>, [f32; 2]) -> bool,
+    ) {
+        let mut cell = self.cell(start);
+        let mut from = 0.0;
+        // where along the line it leaves its cell over the side across one axis
+        let leave = |cell: Cell, axis: usize| {
+            let side = cell[axis].saturating_add(i32::from(up[axis] > 0.0)) as f32 * CELL + self.low[axis];
+            if up[axis] == 0.0 { f32::INFINITY } else { (side - start[axis]) / up[axis] }
+        };
+        loop {
+            let ends = [leave(cell, 0), leave(cell, 1)];
+            let axis = usize::from(ends[1] < ends[0]);
+            let to = ends[axis].clamp(from, length);
+            if !visit(self.column(cell), [from, to]) || !(ends[axis] < length) {
+                return;
+            }
+            cell[axis] += if up[axis] > 0.0 { 1 } else { -1 };
+            if !(0..self.size[axis]).contains(&cell[axis]) {
+                return;
+            }
+            from = to;
+        }
+    }
+
+    /// The voxels of a cell, upward; none beyond the raster.
+    fn column(&self, cell: Cell) -> Range<usize> {
+        self.number(cell).map_or(0..0, |number| self.first[number] as usize..self.first[number + 1] as usize)
+    }
+
+    /// The solid voxels of `cell` at about the height of `voxel`.
+    fn same_height(&self, cell: Cell, voxel: usize) -> impl Iterator<Item = usize> + '_ {
+        let own = self.level[voxel];
+        self.column(cell).filter(move |&other| self.solid[other] && (self.level[other] - own).abs() <= SAME_HEIGHT)
+    }
+
+    #[expect(clippy::cast_possible_wrap, reason = "fewer cells than 2³¹")]
+    fn cell_of(&self, voxel: usize) -> Cell {
+        let number = self.cell[voxel] as i32;
+        [number % self.size[0], number / self.size[0]]
+    }
+
+    /// Cell of a point, which may lie beyond the raster.
+    #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
+    fn cell(&self, point: [f32; 3]) -> Cell {
+        [0, 1].map(|axis| ((point[axis] - self.low[axis]) / CELL).floor() as i32)
+    }
+
+    fn number(&self, cell: Cell) -> Option<usize> {
+        let inside = (0..2).all(|axis| (0..self.size[axis]).contains(&cell[axis]));
+        let number = i64::from(cell[1]) * i64::from(self.size[0]) + i64::from(cell[0]);
+        if inside { usize::try_from(number).ok() } else { None }
+    }
+}
+
+/// Number upward of the voxel of height `z`.
+#[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
+fn level(z: f32) -> i32 {
+    (z / STEP).floor() as i32
+}
+
+/// A cell and the eight about it.
+fn square([x, y]: Cell) -> impl Iterator<Item = Cell> {
+    (y - 1..=y + 1).flat_map(move |y| (x - 1..=x + 1).map(move |x| [x, y]))
+}
