@@ -15,10 +15,13 @@ use std::f32::consts::FRAC_1_SQRT_2;
 /// How slender things are told and represented.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlenderParams {
-    /// A thing is slender where of two balls that touch each other at its point, one to either side, a pulse enters both
-    /// before they have this radius, metres, above 0. Default 0.35: pulses of usual scans are that far apart; 0.25 and 0.5
-    /// find nearly the same points.
+    /// A thing is slender where pulses enter the balls that touch its point from eight sides before any has this radius,
+    /// metres, above 0: into a wall, a car or a roof one of them can grow on. Default 0.5: some pulse passes within that of
+    /// most points of fences at eight pulses a square metre; 0.35 finds fewer.
     pub gap: f32,
+    /// How far below its point the balls touch, metres, 0 or more; above the lowest point near by in any case. Default
+    /// 0.7: more than the gap, so that pulses that end beside the point, on the same roof, do not count.
+    pub lowering: f32,
     /// Most radius of the balls at its points, metres, above 0. Default 0.1.
     pub radius: f32,
     /// Least height above the lowest point near by, metres, 0 or more. Default 0.3: kerbs and noise are lower.
@@ -39,7 +42,8 @@ pub struct SlenderParams {
 impl Default for SlenderParams {
     fn default() -> Self {
         Self {
-            gap: 0.35,
+            gap: 0.5,
+            lowering: 0.7,
             radius: 0.1,
             least_height: 0.3,
             standing_height: 2.5,
@@ -50,7 +54,7 @@ impl Default for SlenderParams {
     }
 }
 
-/// Directions to one side across which a thing may be slender; the other side is opposite.
+/// Half of the eight sides from which balls touch a point; the others are opposite.
 const SIDES: [[f32; 2]; 4] = [[1.0, 0.0], [FRAC_1_SQRT_2, FRAC_1_SQRT_2], [0.0, 1.0], [-FRAC_1_SQRT_2, FRAC_1_SQRT_2]];
 /// How far beside a point others say how high the thing is there, metres.
 const TOP_REACH_M: f32 = 0.4;
@@ -70,8 +74,8 @@ pub(super) struct Slender<'a> {
 }
 
 impl<'a> Slender<'a> {
-    /// Tells the points of slender things: neither ground, vegetation nor building (class 6), high enough above the
-    /// lowest point near by, and passed by pulses on both sides. `lowest` is [`super::cells::lowest_near`].
+    /// Tells the points of slender things: neither ground, vegetation nor building (class 6; what has no class and is
+    /// higher than what stands), high enough above the lowest point near by, and passed by pulses on all sides. `lowest` is [`super::cells::lowest_near`].
     pub(super) fn find(
         positions: &'a [[f32; 3]],
         kinds: &[Kind],
@@ -81,18 +85,25 @@ impl<'a> Slender<'a> {
         params: &'a SlenderParams,
     ) -> Self {
         let classes = attributes.classification.as_deref();
-        let is_building = |row: usize| classes.and_then(|classes| classes.get(row)) == Some(&6);
+        let class = |row: usize| classes.and_then(|classes| classes.get(row)).copied();
         let passed = |p: [f32; 3], [x, y]: [f32; 2]| {
             let tangent = Tangent { point: p, inward: [x, y, 0.0], margin: 0.0 };
             needles.smallest_tangent_ball(&tangent, params.gap).is_some()
         };
         let height = |(row, (&p, kind)): (usize, (&[f32; 3], &Kind))| {
-            if !matches!(kind, Kind::Other | Kind::Later) || is_building(row) {
+            let height = lowest.get(cell(p)).map_or(0.0, |lowest| p[2] - lowest);
+            // without a class what is high up may be the parapet of a roof
+            let may_be_building = match class(row) {
+                Some(6) => true,
+                None | Some(0) => height > params.standing_height,
+                Some(_) => false,
+            };
+            if !matches!(kind, Kind::Other | Kind::Later) || may_be_building {
                 return f32::NAN;
             }
-            let height = lowest.get(cell(p)).map_or(0.0, |lowest| p[2] - lowest);
+            let below = [p[0], p[1], p[2] - params.lowering.min(height / 2.0)];
             let is_slender = height >= params.least_height
-                && SIDES.iter().any(|&side| passed(p, side) && passed(p, side.map(|v| -v)));
+                && SIDES.iter().all(|&side| passed(below, side) && passed(below, side.map(|v| -v)));
             if is_slender { height } else { f32::NAN }
         };
         let heights = positions.par_iter().zip(kinds).enumerate().with_min_len(CHUNK).map(height).collect();
