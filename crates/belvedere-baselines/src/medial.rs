@@ -90,17 +90,16 @@ impl MedialParams {
         }
     }
 
-    /// Balls of bounded penetration, cut by what each pulse proves empty: `--method carved`.
+    /// Balls cut by what each pulse proves empty: what Belvedere does by default.
     #[must_use]
     pub fn carved() -> Self {
         let making = Making::Carving(CarvedParams::default());
-        let blocking = SceneParams { profile: Profile::Sphere, depth_bias: 0.0, shell: 0.2 };
-        Self { neighbors: 16, making, blocking, ..Self::published_with_spheres() }
+        Self { neighbors: 16, making, blocking: SceneParams::carved(), ..Self::published_with_spheres() }
     }
 
-    /// What Belvedere does by default so far: balls of bounded penetration, cut down to half a metre.
+    /// Balls of bounded penetration, cut down to half a metre: what Belvedere does without pulses, `--method tau`.
     #[must_use]
-    pub fn belvedere() -> Self {
+    pub fn cut_to_half_a_metre() -> Self {
         Self { neighbors: 16, making: Making::Shrinking(ShrinkParams::tau()), ..Self::published_with_spheres() }
     }
 }

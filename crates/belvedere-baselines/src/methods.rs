@@ -11,7 +11,7 @@ use crate::tin::{Tin, TinParams};
 use crate::voxels::{VoxelParams, Voxels};
 use crate::{Model, Survey};
 use belvedere::Result;
-use belvedere::medial::CarvedParams;
+use belvedere::medial::{CarvedParams, Rule};
 use belvedere::query::Visibility;
 
 /// When a comparison of all methods takes one in.
@@ -83,19 +83,14 @@ const NOISE: f64 = 0.06;
 /// that the model gives them.
 const MESH_CLEARANCE: f64 = 0.1;
 
-/// Carved balls with something left out: key, title and parameters. They run when named.
-fn carved_variants() -> Vec<(&'static str, &'static str, MedialParams)> {
-    let with = |change: fn(&mut CarvedParams)| {
-        let mut carving = CarvedParams::default();
-        change(&mut carving);
-        MedialParams { making: Making::Carving(carving), ..MedialParams::carved() }
-    };
-    let no_kinds = with(|carving| {
-        let bounds = &mut carving.kind_bounds;
-        (bounds.ground_radius, bounds.vegetation_radius) = (f32::INFINITY, f32::INFINITY);
-        bounds.later_return_radius = f32::INFINITY;
-    });
-    vec![("carved-no-kind-bounds", "carved balls without bounds by kind of point", no_kinds)]
+/// Carved balls without one rule: key, title and parameters. They run when named.
+fn carved_variants() -> impl Iterator<Item = (String, String, MedialParams)> {
+    Rule::ALL.into_iter().map(|rule| {
+        let making = Making::Carving(CarvedParams::default().without(rule));
+        let name = rule.name();
+        let params = MedialParams { making, ..MedialParams::carved() };
+        (format!("carved-without-{name}"), format!("carved balls without {name}"), params)
+    })
 }
 
 /// The methods that a survey allows, in the order of tables: those that need the cloud alone, then for each model those that
@@ -154,8 +149,8 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
             Dsm::from_mesh(mesh, origin, &DsmParams::default())
         }));
     }
-    methods.push(medial("belvedere", "Belvedere, default balls", MedialParams::belvedere()));
-    methods.push(medial("carved", "Belvedere, carved balls", MedialParams::carved()));
-    methods.extend(carved_variants().into_iter().map(|(key, title, params)| medial(key, title, params).when_named()));
+    methods.push(medial("tau", "balls cut to half a metre", MedialParams::cut_to_half_a_metre()));
+    methods.push(medial("carved", "Belvedere: carved balls", MedialParams::carved()));
+    methods.extend(carved_variants().map(|(key, title, params)| medial(&key, &title, params).when_named()));
     methods
 }

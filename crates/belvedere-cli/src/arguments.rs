@@ -5,6 +5,7 @@ mod towns;
 pub(crate) use towns::{Compare, PatternChoice, ScannerChoice, Simulate};
 
 use belvedere::crs::Crs;
+use belvedere::medial::Rule;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -97,7 +98,7 @@ pub(crate) enum Command {
     Query(Query),
     /// Hold every method against exact answers on the same places: how right each is, and what it costs
     #[command(
-        after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, over two observers, or over 40 people in streets (4 for methods that build a hull or draw shadow maps for each eye), with 95 % intervals from resampled tiles of 25 m.\n\nMethods: paper-cone, paper-sphere, union, hidden-points, hidden-points-robust, surfels, depth-splats, elliptical-splats, implicit-surface, voxels-05, voxels-10, dsm, tin, belvedere, carved (and, only when named, carved-no-kind-bounds); for each model also mesh-NAME, shadow-map-NAME and dsm-NAME, and for the first paper-cone-NAME. Simulated places have the models blocks (LoD1), no-trees and exact. The project's docs/methods has a page on each.\n\nA thorough comparison takes several places and seeds, such as --presets village,old-town,towers --seeds 1,2,3.\n\nExample:\n  belvedere compare --extent 100 --targets 2000 --methods paper-cone,belvedere -o compared"
+        after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, over two observers, or over 40 people in streets (4 for methods that build a hull or draw shadow maps for each eye), with 95 % intervals from resampled tiles of 25 m.\n\nMethods: paper-cone, paper-sphere, union, hidden-points, hidden-points-robust, surfels, depth-splats, elliptical-splats, implicit-surface, voxels-05, voxels-10, dsm, tin, tau, carved (and, only when named, carved-without-RULE); for each model also mesh-NAME, shadow-map-NAME and dsm-NAME, and for the first paper-cone-NAME. Simulated places have the models blocks (LoD1), no-trees and exact. The project's docs/methods has a page on each.\n\nA thorough comparison takes several places and seeds, such as --presets village,old-town,towers --seeds 1,2,3.\n\nExample:\n  belvedere compare --extent 100 --targets 2000 --methods paper-cone,carved -o compared"
     )]
     Compare(Compare),
     /// Print a completion script for a shell
@@ -261,14 +262,27 @@ pub(crate) struct Orienting {
     pub(crate) orient: OrientChoice,
 }
 
+fn rule(name: &str) -> Result<Rule, String> {
+    Rule::ALL
+        .into_iter()
+        .find(|rule| rule.name() == name)
+        .ok_or_else(|| format!("there is no such rule; there are {}", Rule::ALL.map(Rule::name).join(", ")))
+}
+
 #[derive(Args)]
 #[command(next_help_heading = "Balls")]
 pub(crate) struct Shrinking {
-    /// tau: no point lies deeper in a ball than --penetration; carved: no pulse either, which needs --orient trajectory=FILE,
-    /// scanner or pulses (taken for auto); angles: the paper's (masbcpp's) heuristics [default: tau; angles when a folder is
-    /// written]
+    /// carved: neither a point nor a pulse on its way lies deeper in a ball than --penetration; tau: no point does, and balls are
+    /// cut to half a metre; angles: the paper's (masbcpp's) heuristics [default: carved, but tau where pulses cannot carve
+    /// (scans from the ground) and with --side exterior, angles when a folder is written]
     #[arg(long, value_enum)]
     pub(crate) method: Option<MethodChoice>,
+    /// What crowns of trees are for carved balls: solid (in leaf), twigs (in winter), or as the pulses found each
+    #[arg(long, value_enum, value_name = "TREES")]
+    pub(crate) trees: Option<TreesChoice>,
+    /// Rules of carved balls to leave out, for research; docs/methods/carving.md says what each does
+    #[arg(long, value_name = "RULE,...", value_delimiter = ',', value_parser = rule)]
+    pub(crate) without: Vec<Rule>,
     /// Radius balls start with, in metres [default: 30 for tau, 5 for carved, 200 for angles]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(crate) initial_radius: Option<f32>,
@@ -351,6 +365,16 @@ pub(crate) enum SideChoice {
     Interior,
     /// In free space
     Exterior,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TreesChoice {
+    /// Solid down to the lowest return
+    Opaque,
+    /// Twigs with gaps between them
+    Porous,
+    /// Each piece by the share of pulses that got through it [the default]
+    Measured,
 }
 
 #[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]

@@ -1,9 +1,12 @@
 //! From what was typed to clouds, oriented clouds, balls and views. Calls the core in order; computes nothing itself.
 
+pub(crate) mod balls;
 pub(crate) mod scanner;
 
+pub(crate) use balls::{BallParams, Carving, Made, shrink_side};
+
 use crate::arguments::{
-    Cleaning, CloudInput, MethodChoice, NeighborChoice, OrientChoice, Orienting, ProfileChoice, SceneInput, Shrinking,
+    Cleaning, CloudInput, MethodChoice, NeighborChoice, OrientChoice, Orienting, ProfileChoice, SceneInput,
     UnprovenChoice, Usage, ViewChoice,
 };
 use crate::progress::Stages;
@@ -15,10 +18,7 @@ use belvedere::depth::Profile;
 use belvedere::io::{
     ReadOptions, ReadReport, SavedBalls, SavedPulses, is_ball_file, read_balls, read_cloud, read_mesh, read_trajectory,
 };
-use belvedere::medial::{
-    CarvedBalls, CarvedInput, CarvedParams, CarvedReport, MedialBalls, PULSE_TOUCH, ShrinkMethod, ShrinkParams,
-    ShrinkReport, Side, carved_balls, shrink,
-};
+use belvedere::medial::{MedialBalls, PULSE_TOUCH, Side};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
@@ -129,40 +129,6 @@ fn cleaning_section(report: &CleanReport) -> Summary {
     section
 }
 
-/// Whether balls are to be cut by pulses.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Carving {
-    Wanted,
-    Unwanted,
-}
-
-/// How balls are made.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum BallParams {
-    /// By the points alone.
-    Shrunk(ShrinkParams),
-    /// By points and pulses.
-    Carved(CarvedParams),
-}
-
-impl BallParams {
-    /// The method as typed.
-    pub(crate) fn name(&self) -> &'static str {
-        match self {
-            Self::Carved(_) => "carved",
-            Self::Shrunk(ShrinkParams { method: ShrinkMethod::Tau { .. }, .. }) => "tau",
-            Self::Shrunk(ShrinkParams { method: ShrinkMethod::Angles { .. }, .. }) => "angles",
-        }
-    }
-
-    pub(crate) fn carving(&self) -> Carving {
-        match self {
-            Self::Shrunk(_) => Carving::Unwanted,
-            Self::Carved(_) => Carving::Wanted,
-        }
-    }
-}
-
 /// A cloud whose normals point outward, and its index.
 pub(crate) struct Prepared {
     pub(crate) oriented: OrientedCloud,
@@ -198,12 +164,12 @@ pub(crate) fn prepare(
         return Err(Error::NoPoints { what }.into());
     }
     let mut cloud = if kept.len() == cloud.len() { cloud } else { Cow::Owned(cloud.select(&kept)) };
-    let wants_pulses = carving == Carving::Wanted || matches!(orienting.orient, OrientChoice::Pulses);
+    let wants_pulses = carving != Carving::Unwanted || matches!(orienting.orient, OrientChoice::Pulses);
     let Located { positions: scanner, trajectory, is_assumed } =
         if wants_pulses { scanner::of_each_point(&cloud, orienting, stages, summary)? } else { Located::default() };
     let carving = match carving {
         Carving::Unwanted => None,
-        Carving::Wanted => Some(scanner::carving_input(&cloud, &scanner, stages, summary)?),
+        _ => scanner::carving_input(&cloud, &scanner, carving, stages, summary)?,
     };
     if let Cow::Owned(owned) = &mut cloud {
         // nothing but orientation asks for attributes from here on, and they weigh more than the positions
@@ -298,127 +264,6 @@ fn orientation_section(by: &Orientation<'_>, report: &OrientReport) -> Summary {
     section
 }
 
-impl Shrinking {
-    /// Parameters as typed, with `default` where no method was.
-    pub(crate) fn params(&self, default: MethodChoice) -> Result<BallParams> {
-        let method = self.method.unwrap_or(default);
-        if method == MethodChoice::Carved {
-            return self.carved_params();
-        }
-        let mut params = if method == MethodChoice::Tau { ShrinkParams::tau() } else { ShrinkParams::angles() };
-        if let Some(radius) = self.initial_radius {
-            params.initial_radius = radius;
-        }
-        if let Some(radius) = self.max_radius {
-            params.max_radius = radius;
-        }
-        match &mut params.method {
-            ShrinkMethod::Tau { penetration } => {
-                self.refuse_angles()?;
-                *penetration = self.penetration.unwrap_or(*penetration);
-            }
-            ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
-                if self.penetration.is_some() {
-                    return Err(Usage("--penetration belongs to --method tau and carved".to_owned()).into());
-                }
-                let typed = |angle: Option<f64>, default: f64| angle.map_or(default, f64::to_radians);
-                *first_separation_angle = typed(self.first_angle, *first_separation_angle);
-                *next_separation_angle = typed(self.next_angle, *next_separation_angle);
-            }
-        }
-        check_shrinking(&params)?;
-        Ok(BallParams::Shrunk(params))
-    }
-
-    fn carved_params(&self) -> Result<BallParams> {
-        self.refuse_angles()?;
-        let mut params = CarvedParams::default();
-        params.penetration = self.penetration.unwrap_or(params.penetration);
-        params.initial_radius = self.initial_radius.unwrap_or(params.initial_radius);
-        params.max_radius = self.max_radius.unwrap_or(params.max_radius);
-        check_shrinking(&params.shrinking())?;
-        Ok(BallParams::Carved(params))
-    }
-
-    fn refuse_angles(&self) -> Result<()> {
-        if self.first_angle.is_some() || self.next_angle.is_some() {
-            return Err(Usage("--first-angle and --next-angle belong to --method angles".to_owned()).into());
-        }
-        Ok(())
-    }
-}
-
-/// Makes a parameter out of range an error about its flag.
-fn check_shrinking(params: &ShrinkParams) -> Result<()> {
-    params.check().map_err(|error| match error {
-        Error::InvalidParameter { name, .. } => {
-            let flag = match name {
-                "separation angle" => "--first-angle, --next-angle".to_owned(),
-                "greatest radius" => "--max-radius".to_owned(),
-                _ => format!("--{}", name.replace(' ', "-")),
-            };
-            anyhow::Error::from(Usage(format!("{flag}: {error}")))
-        }
-        other => other.into(),
-    })
-}
-
-/// Balls on one side, reported under `name`.
-pub(crate) fn shrink_side(
-    prepared: &Prepared,
-    side: Side,
-    params: &BallParams,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<MedialBalls> {
-    let name = match side {
-        Side::Interior => "interior_balls",
-        Side::Exterior => "exterior_balls",
-    };
-    let count = prepared.oriented.len();
-    let (oriented, index) = (&prepared.oriented, &prepared.index);
-    let (balls, section) = match (params, &prepared.carving) {
-        (BallParams::Carved(params), Some(input)) => {
-            let (attributes, needles, pulses) = (&input.kinds, &input.needles, input.pulses.as_ref());
-            let input = CarvedInput { oriented, index, attributes, needles, pulses };
-            let CarvedBalls { balls, report, .. } =
-                stages.run("making balls", count, |progress| carved_balls(&input, params, progress))?;
-            (balls, carved_section(&report))
-        }
-        (BallParams::Carved(_), None) => bail!("pulses were not asked for, so that nothing can carve"),
-        (BallParams::Shrunk(params), _) => {
-            let (balls, report) =
-                stages.run("shrinking balls", count, |progress| shrink(oriented, index, side, params, progress))?;
-            (balls, balls_section(&report))
-        }
-    };
-    summary.add(name, section);
-    Ok(balls)
-}
-
-fn carved_section(report: &CarvedReport) -> Summary {
-    let mut section = balls_section(&report.shrinking);
-    section
-        .add("cut_by_pulses", report.carving.carved)
-        .add("limited", report.carving.limited)
-        .add("grown_to_least_radius", report.carving.grown)
-        .add("told_to_be_vegetation", report.told_vegetation)
-        .add("in_crowns_with_gaps", report.in_crowns_with_gaps)
-        .add("balls_that_fill_crowns", report.crown_fills)
-        .add("on_fences_wires_and_the_like", report.slender)
-        .add("balls_that_fill_fences", report.slender_fills);
-    section
-}
-
-fn balls_section(report: &ShrinkReport) -> Summary {
-    let mut section = Summary::default();
-    section
-        .add("shrunk", report.shrunk)
-        .add("never_shrunk_and_unused", report.never_shrunk)
-        .add("without_normal", report.without_normal);
-    section
-}
-
 /// Balls that block, where they lie, and the cloud they came from unless they were read from a file.
 pub(crate) struct Scene {
     pub(crate) balls: MedialBalls,
@@ -462,7 +307,7 @@ pub(crate) fn scene(
         summary.add("balls_read", saved.radii.len());
         return scene_of_saved(saved, path);
     }
-    let params = arguments.shrinking.params(MethodChoice::Tau)?;
+    let params = arguments.shrinking.params(MethodChoice::Carved)?;
     let (mut cloud, left_out) = read_counted(&arguments.input, stages, summary)?;
     let given = match points {
         Points::Keep => Cow::Borrowed(&cloud),
@@ -473,7 +318,7 @@ pub(crate) fn scene(
     };
     let prepared = prepare(given, &arguments.cleaning, &arguments.orienting, params.carving(), stages, summary)?;
     // as in a ball file, so that rows of balls mean the same
-    let balls = shrink_side(&prepared, Side::Interior, &params, stages, summary)?.shrunk();
+    let balls = shrink_side(&prepared, Side::Interior, params, stages, summary)?.balls.shrunk();
     let pulses = prepared.pulses();
     Ok(Scene { balls, cloud, bounds: prepared.bounds, pulses, left_out })
 }
@@ -488,6 +333,8 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, path: &Path) -> Result<()> {
         ("--keep-isolated", cleaning.keep_isolated),
         ("--orient", !matches!(orienting.orient, OrientChoice::Auto)),
         ("--method", shrinking.method.is_some()),
+        ("--trees", shrinking.trees.is_some()),
+        ("--without", !shrinking.without.is_empty()),
         ("--initial-radius", shrinking.initial_radius.is_some()),
         ("--max-radius", shrinking.max_radius.is_some()),
         ("--penetration", shrinking.penetration.is_some()),
@@ -589,7 +436,7 @@ impl ViewChoice {
 
 /// What a ball file says of how it was made.
 pub(crate) fn saved(
-    balls: MedialBalls,
+    Made { balls, transmission }: Made,
     place: (&[f64; 3], &Crs),
     bounds: ([f32; 3], [f32; 3]),
     pulses: Option<NeedleColumns>,
@@ -604,7 +451,7 @@ pub(crate) fn saved(
         source: balls.source,
         touch: balls.touch,
         separation_angles: balls.separation_angles,
-        transmission: None,
+        transmission: (!transmission.is_empty()).then_some(transmission),
         pulses: pulses.map(|NeedleColumns { starts, slopes, lengths, top }| SavedPulses {
             starts,
             slopes,

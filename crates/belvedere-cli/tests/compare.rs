@@ -28,7 +28,7 @@ fn rate(results: &Value, method: &str, set: &str, views: &str, rate: &str) -> f6
 fn every_method_gets_scores_costs_and_pictures() {
     let place = Workplace::new();
     let results = &place.summary(&format!("compare {SMALL} -o out"))["results"];
-    for method in ["paper-sphere", "belvedere"] {
+    for method in ["paper-sphere", "tau"] {
         for set in ["AIR", "PED", "GRD", "ROOF", "FACADE", "VOL", "OWN"] {
             for views in ["suns", "observers"] {
                 let [blocked, visible, balanced] =
@@ -47,7 +47,7 @@ fn every_method_gets_scores_costs_and_pictures() {
     }
     // the finding of the paper's comparison: union as published blocks the street, the default does not
     let street = |method| rate(results, method, "PED", "suns", "false_blocked");
-    assert!(street("paper-sphere") > 0.5 && street("belvedere") < 0.3);
+    assert!(street("paper-sphere") > 0.5 && street("tau") < 0.3);
     let html = fs::read_to_string(place.path("out/report.html")).unwrap();
     assert!(html.contains("town-100m-1--belvedere.png") && html.contains("Which balls of the published method"));
     // of the four groups of views one holds the suns; each target of each sun gets one answer of three
@@ -77,7 +77,7 @@ fn every_method_gets_scores_costs_and_pictures() {
 fn a_run_goes_on_where_it_stopped_and_redoes_what_is_stale() {
     let place = Workplace::new();
     let first = place.summary(&format!("compare {SMALL} -o out"));
-    let [kept, lost] = ["belvedere", "paper-sphere"].map(|m| place.path(&format!("out/results/town-100m-1--{m}.json")));
+    let [kept, lost] = ["tau", "paper-sphere"].map(|m| place.path(&format!("out/results/town-100m-1--{m}.json")));
     let untouched = fs::metadata(&kept).unwrap().modified().unwrap();
     let old = fs::read_to_string(&lost).unwrap();
     // an interruption leaves results out, or, at worst, a file of something else
@@ -114,9 +114,9 @@ fn a_place_of_ones_own_takes_part() {
         "--scene demo/town.laz --mesh demo/town.obj --trajectory demo/trajectory.csv --model city=demo/town.obj";
     let run = place.summary(&format!("compare {files} --targets 1500 --methods belvedere,mesh-city -o out"));
     let results = &run["results"];
-    let street = rate(results, "belvedere", "PED", "suns", "false_blocked");
+    let street = rate(results, "tau", "PED", "suns", "false_blocked");
     assert!((0.01..0.3).contains(&street), "{street}");
-    assert!(rate(results, "belvedere", "OWN", "suns", "balanced") > 0.8);
+    assert!(rate(results, "tau", "OWN", "suns", "balanced") > 0.8);
     // the exact mesh as a method: what is left is the millimetre of the file
     let exact = rate(results, "mesh-city", "PED", "suns", "balanced");
     assert!(exact > 0.999, "{exact}");
@@ -171,7 +171,7 @@ fn variants_run_only_when_named_in_full_and_costly_eyes_are_few() {
     // twice, the second time from what was kept
     for _ in 0..2 {
         assert_eq!(keys(&methods("carved")), ["carved"]);
-        assert_eq!(keys(&methods("carved-no-kind-bounds")), ["carved-no-kind-bounds"]);
+        assert_eq!(keys(&methods("carved-without-crowns")), ["carved-without-crowns"]);
     }
     let results = methods("mesh-exact,shadow-map-exact");
     let eyes = |method: &str| {

@@ -217,7 +217,7 @@ fn a_trajectory_gives_every_point_its_own_sensor() {
         let t = f64::from(i) * 0.1 + 10.03;
         let side = if i % 2 == 0 { 1.0 } else { -1.0 };
         // a scanner mirror looks across the track; walls face it
-        positions.push([(60.0 * t) as f32, side * 250.0, 5.0]);
+        positions.push([(60.0 * t) as f32, side * 400.0, 5.0]);
         truth.push([0.0, -side, 0.0]);
         // adjusted standard GPS time, week 2000
         times.push(2000.0 * 604_800.0 + 345_600.0 + t - 1e9);

@@ -33,11 +33,11 @@ pub(crate) fn draw(folder: &Path) -> Result<()> {
     let place = Place::simulated(Preset::OldTown, 7)?;
     let uncarved = MedialParams {
         making: Making::Shrinking(ShrinkParams { max_radius: f32::INFINITY, ..ShrinkParams::tau() }),
-        ..MedialParams::belvedere()
+        ..MedialParams::cut_to_half_a_metre()
     };
     let ways = [
         ("cut by the points alone", uncarved),
-        ("cut to half a metre", MedialParams::belvedere()),
+        ("cut to half a metre", MedialParams::cut_to_half_a_metre()),
         ("cut by the pulses, with all rules", MedialParams::carved()),
     ];
     let (mut sections, mut shades, mut captions) = (Vec::new(), Vec::new(), Vec::new());

@@ -11,7 +11,7 @@
 mod figures;
 mod place;
 
-use belvedere::medial::CarvedParams;
+use belvedere::medial::{CarvedParams, CrownParams, Rule, Trees};
 use belvedere::query::{Answer, SceneParams, Viewer, Visibility};
 use belvedere::{Error, Result};
 use belvedere_baselines::agreement::{Counts, Rate};
@@ -22,23 +22,28 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
-/// Everything, and everything but one rule.
-fn variants() -> Vec<(&'static str, MedialParams)> {
+/// Everything, everything but one rule, and other ways to treat trees and targets near surfaces.
+fn variants() -> Vec<(String, MedialParams)> {
     let all = MedialParams::carved();
-    let with = |name: &'static str, change: fn(&mut CarvedParams)| {
-        let mut carving = CarvedParams::default();
-        change(&mut carving);
-        (name, MedialParams { making: Making::Carving(carving), ..all })
+    let carving = CarvedParams::default();
+    let with =
+        |name: &str, carving: CarvedParams| (name.to_owned(), MedialParams { making: Making::Carving(carving), ..all });
+    let trees =
+        |trees: Trees| CarvedParams { crowns: carving.crowns.map(|crowns| CrownParams { trees, ..crowns }), ..carving };
+    let blocked = |name: &str, depth_bias: f64, shell: f64| {
+        (name.to_owned(), MedialParams { blocking: SceneParams { depth_bias, shell, ..all.blocking }, ..all })
     };
-    let blocked = |name: &'static str, depth_bias: f64, shell: f64| {
-        (name, MedialParams { blocking: SceneParams { depth_bias, shell, ..all.blocking }, ..all })
-    };
-    vec![
-        with("all", |_| ()),
-        with("without pruning", |p| p.pruning = None),
+    let mut variants = vec![with("all", carving)];
+    variants.extend(Rule::ALL.map(|rule| with(&format!("without {}", rule.name()), carving.without(rule))));
+    let bare = Rule::ALL.into_iter().fold(carving, CarvedParams::without);
+    variants.extend([
+        with("carving alone", bare),
+        with("trees opaque", trees(Trees::Opaque)),
+        with("trees porous", trees(Trees::Porous)),
         blocked("a bias of 0.25 m instead of the shell", 0.25, 0.0),
-        blocked("no shell", 0.0, 0.0),
-    ]
+        blocked("neither", 0.0, 0.0),
+    ]);
+    variants
 }
 
 fn main() -> Result<()> {
@@ -71,7 +76,7 @@ fn main() -> Result<()> {
         for &seed in &seeds {
             let place = Place::simulated(preset, seed)?;
             for (number, (name, params)) in variants().into_iter().enumerate() {
-                if !wanted.is_empty() && !wanted.iter().any(|w| w == name || w == "blame") {
+                if !wanted.is_empty() && !wanted.iter().any(|w| *w == name || w == "blame") {
                     continue;
                 }
                 let start = Instant::now();

@@ -24,7 +24,11 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
     } else {
         check_output("-o", &arguments.output, &["npz", "ply", "laz", "las"])?;
     }
-    let method = if is_folder { MethodChoice::Angles } else { MethodChoice::Tau };
+    let method = match (is_folder, arguments.side) {
+        (true, _) => MethodChoice::Angles,
+        (false, SideChoice::Interior) => MethodChoice::Carved,
+        (false, SideChoice::Exterior) => MethodChoice::Tau,
+    };
     let params = arguments.shrinking.params(method)?;
     if params.carving() == Carving::Wanted && (is_folder || arguments.side == SideChoice::Exterior) {
         let what =
@@ -43,15 +47,16 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
     let (orienting, carving) = (&arguments.orienting, params.carving());
     let prepared = pipeline::prepare(Cow::Borrowed(&cloud), cleaning, orienting, carving, &mut stages, &mut summary)?;
     if is_folder {
-        write_folder(arguments, global, &cloud, &prepared, &params, &mut stages, &mut summary)?;
+        write_folder(arguments, global, &cloud, &prepared, params, &mut stages, &mut summary)?;
     } else {
         let side = match arguments.side {
             SideChoice::Interior => Side::Interior,
             SideChoice::Exterior => Side::Exterior,
         };
-        let mut balls = pipeline::shrink_side(&prepared, side, &params, &mut stages, &mut summary)?.shrunk();
+        let mut made = pipeline::shrink_side(&prepared, side, params, &mut stages, &mut summary)?;
+        made.balls = made.balls.shrunk();
         // rows of the cloud as read, not as cleaned
-        for row in balls.source.iter_mut().chain(&mut balls.touch) {
+        for row in made.balls.source.iter_mut().chain(&mut made.balls.touch) {
             // a pulse has no row
             *row = prepared.kept.get(*row as usize).copied().unwrap_or(*row);
         }
@@ -62,11 +67,11 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
         let provenance = [
             ("program", concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned()),
             ("side", format!("{side:?}").to_lowercase()),
-            ("method", params.name().to_owned()),
-            ("parameters", format!("{params:?}")),
+            ("method", params.settled(&prepared).name().to_owned()),
+            ("parameters", format!("{:?}", params.settled(&prepared))),
             ("input", arguments.input.clouds.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(" ")),
         ];
-        let saved = pipeline::saved(balls, (&cloud.origin, &cloud.crs), prepared.bounds, pulses, provenance);
+        let saved = pipeline::saved(made, (&cloud.origin, &cloud.crs), prepared.bounds, pulses, provenance);
         stages.run("writing", 0, |_| write_balls(&arguments.output, &saved))?;
     }
     summary.add("written", arguments.output.display().to_string());
@@ -79,12 +84,12 @@ fn write_folder(
     global: &Global,
     cloud: &PointCloud,
     prepared: &Prepared,
-    params: &BallParams,
+    params: BallParams,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<()> {
-    let interior = pipeline::shrink_side(prepared, Side::Interior, params, stages, summary)?;
-    let exterior = pipeline::shrink_side(prepared, Side::Exterior, params, stages, summary)?;
+    let interior = pipeline::shrink_side(prepared, Side::Interior, params, stages, summary)?.balls;
+    let exterior = pipeline::shrink_side(prepared, Side::Exterior, params, stages, summary)?.balls;
     let mut folder = MasbcppFolder::default();
     let centers = |balls: &MedialBalls| {
         let mut centers = pipeline::file_coordinates(cloud, &balls.centers);

@@ -12,8 +12,8 @@ use belvedere::io::{
     Canvas, Colors, ExtraColumn, ExtraValues, atomic, class_color, depth_picture, in_shadow, ramp_colors, side_by_side,
     write_balls, write_cloud, write_png, write_tif_f32,
 };
-use belvedere::medial::{MedialBalls, ShrinkParams, Side};
-use belvedere::query::{Answer, query_points};
+use belvedere::medial::{CarvedParams, MedialBalls, Side};
+use belvedere::query::{Answer, MedialScene, SceneParams, Viewer, Visibility};
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere_scenes::{AirborneParams, Scan, Scene, TownParams, Truth, scan_airborne, town};
 use std::borrow::Cow;
@@ -48,27 +48,29 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     };
     let cleaning = Cleaning { keep_noise: false, keep_duplicates: false, keep_isolated: false };
     let prepared =
-        pipeline::prepare(Cow::Borrowed(&cloud), &cleaning, &orienting, Carving::Unwanted, &mut stages, &mut summary)?;
-    let shrinking = BallParams::Shrunk(ShrinkParams::tau());
-    let balls = pipeline::shrink_side(&prepared, Side::Interior, &shrinking, &mut stages, &mut summary)?.shrunk();
+        pipeline::prepare(Cow::Borrowed(&cloud), &cleaning, &orienting, Carving::Wanted, &mut stages, &mut summary)?;
+    let params = BallParams::Carved(CarvedParams::default());
+    let made = pipeline::shrink_side(&prepared, Side::Interior, params, &mut stages, &mut summary)?;
+    let pulses = prepared.pulses();
     drop(prepared);
+    let balls = &made.balls;
 
     let [azimuth, elevation] = SUN_DEG.map(f64::to_radians);
     let sun = to_sun(azimuth, elevation);
     let bounds = pipeline::bounds_of(&cloud)?;
     let (low, high) = (bounds.0.map(f64::from), bounds.1.map(f64::from));
     let view = View::parallel(sun.map(|v| -v), low, high, default_pixel_size(low, high))?;
-    let map = stages.run("drawing depth map", 0, |_| depth_map(&balls, &view, Profile::Sphere, ItemBuffer::Without))?;
-    let bias = map.default_depth_bias();
-    let answers = stages.run("querying", 0, |_| query_points(&map, &cloud.positions, bias));
+    let map = stages.run("drawing depth map", 0, |_| depth_map(balls, &view, Profile::Sphere, ItemBuffer::Without))?;
+    let blockers = stages.run("indexing balls", 0, |_| MedialScene::new(balls, &SceneParams::carved()))?;
+    let answers = stages.run("querying", 0, |_| blockers.visible(Viewer::Direction(sun), &cloud.positions))?;
     let shadowed = answers.iter().filter(|&&a| a == Answer::Blocked).count();
     summary.add("own_points_in_shadow_percent", percent(shadowed, answers.len()));
 
-    let agreement = stages.run("comparing with the mesh", 0, |_| agreement(&scene, &scan, &cloud, &map, sun));
+    let agreement = stages.run("comparing with the mesh", 0, |_| agreement(&scene, &scan, &cloud, &blockers, sun))?;
     summary.add("sun_azimuth_elevation_degrees", SUN_DEG.to_vec());
     summary.add("against_the_exact_mesh", agreement);
 
-    stages.run("writing pictures", 0, |_| write_pictures(folder, &cloud, &balls, &map, &answers, (low, high)))?;
+    stages.run("writing pictures", 0, |_| write_pictures(folder, &cloud, balls, &map, &answers, (low, high)))?;
     stages.run("writing results", 0, |_| -> Result<()> {
         let codes: Vec<u8> = answers.iter().map(|&answer| answer as u8).collect();
         let column = ExtraColumn {
@@ -86,11 +88,13 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
         )?;
         let provenance = [
             ("program", concat!("belvedere ", env!("CARGO_PKG_VERSION"), " demo").to_owned()),
-            ("parameters", format!("{:?}", shrinking)),
+            ("side", "interior".to_owned()),
+            ("method", params.name().to_owned()),
+            ("parameters", format!("{params:?}")),
         ];
         write_balls(
             &folder.join("balls.npz"),
-            &pipeline::saved(balls, (&cloud.origin, &cloud.crs), bounds, None, provenance),
+            &pipeline::saved(made, (&cloud.origin, &cloud.crs), bounds, pulses, provenance),
         )?;
         Ok(())
     })?;
@@ -124,16 +128,15 @@ fn write_town(folder: &Path, scene: &Scene, scan: &Scan) -> Result<()> {
 }
 
 /// How many answers the exact mesh contradicts, each kind of error for itself.
-fn agreement(scene: &Scene, scan: &Scan, cloud: &PointCloud, map: &DepthMap, sun: [f64; 3]) -> Summary {
+fn agreement(scene: &Scene, scan: &Scan, cloud: &PointCloud, blockers: &MedialScene, sun: [f64; 3]) -> Result<Summary> {
     let truth = Truth::new(scene);
-    let bias = map.default_depth_bias();
     let ground = scan.exact_positions.iter().zip(&scan.classification).filter(|(_, class)| **class == 2);
     let pedestrians: Vec<[f64; 3]> = ground.map(|(p, _)| [p[0], p[1], p[2] + PEDESTRIAN]).collect();
     let mut section = Summary::default();
     for (name, exact) in [("pedestrians", &pedestrians), ("own_points", &scan.exact_positions)] {
         let shadowed = truth.occluded_towards_each(exact, sun);
         let asked: Vec<[f32; 3]> = exact.iter().map(|&p| to_local(p, cloud.origin)).collect();
-        let answers = query_points(map, &asked, bias);
+        let answers = blockers.visible(Viewer::Direction(sun), &asked)?;
         let lit_count = shadowed.iter().filter(|s| !**s).count();
         let wrong = |answer: Answer, truly_shadowed: bool| {
             answers.iter().zip(&shadowed).filter(|&(a, s)| *a == answer && *s == truly_shadowed).count()
@@ -149,7 +152,7 @@ fn agreement(scene: &Scene, scan: &Scan, cloud: &PointCloud, map: &DepthMap, sun
             );
         section.add(name, scores);
     }
-    section
+    Ok(section)
 }
 
 fn write_pictures(

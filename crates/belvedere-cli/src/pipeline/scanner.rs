@@ -1,5 +1,6 @@
 //! Where the scanner was, and what that gives to carve with.
 
+use super::Carving;
 use crate::arguments::{OrientChoice, Orienting};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
@@ -21,13 +22,15 @@ pub(crate) struct CarvingInput {
     pub(super) pulses: Option<Pulses>,
 }
 
-/// The needles of a cloud's pulses, reported, and the columns that carving asks for.
+/// The needles of a cloud's pulses, reported, and the columns that carving asks for; `None` where pulses are too flat to carve
+/// and need not.
 pub(super) fn carving_input(
     cloud: &PointCloud,
     scanner: &[[f32; 3]],
+    carving: Carving,
     stages: &mut Stages,
     summary: &mut Summary,
-) -> Result<CarvingInput> {
+) -> Result<Option<CarvingInput>> {
     let (needles, report) =
         stages.run("indexing pulses", 0, |_| Needles::of_cloud(cloud, scanner, &NeedleParams::default()))?;
     let mut section = Summary::default();
@@ -35,7 +38,17 @@ pub(super) fn carving_input(
         .add("used_to_carve", report.used)
         .add("without_scanner", report.without_scanner)
         .add("too_flat", report.too_flat);
+    let is_possible = report.used > report.too_flat;
+    if !is_possible && carving == Carving::IfPossible {
+        section.add(
+            "remark",
+            "pulses cannot carve here: most are too flat, as of a scanner on the ground; balls are cut to half a metre",
+        );
+    }
     summary.add("pulses", section);
+    if !is_possible && carving == Carving::IfPossible {
+        return Ok(None);
+    }
     let kinds = Attributes {
         classification: cloud.attributes.classification.clone(),
         return_number: cloud.attributes.return_number.clone(),
@@ -43,7 +56,7 @@ pub(super) fn carving_input(
         ..Attributes::default()
     };
     let pulses = group(cloud).ok().map(|(pulses, _)| pulses);
-    Ok(CarvingInput { needles, kinds, pulses })
+    Ok(Some(CarvingInput { needles, kinds, pulses }))
 }
 
 /// Where the scanner was.

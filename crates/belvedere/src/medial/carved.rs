@@ -58,7 +58,52 @@ impl Default for CarvedParams {
     }
 }
 
+/// A rule that can be left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// [`CarvedParams::vegetation`].
+    Vegetation,
+    /// [`CarvedParams::crowns`].
+    Crowns,
+    /// [`CarvedParams::slender`].
+    Slender,
+    /// [`CarvedParams::thin_surfaces`].
+    ThinSurfaces,
+    /// [`CarvedParams::pruning`].
+    Pruning,
+}
+
+impl Rule {
+    /// Every rule.
+    pub const ALL: [Self; 5] = [Self::Vegetation, Self::Crowns, Self::Slender, Self::ThinSurfaces, Self::Pruning];
+
+    /// Name on the command line and in tables: lower case and hyphens.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Vegetation => "vegetation",
+            Self::Crowns => "crowns",
+            Self::Slender => "slender",
+            Self::ThinSurfaces => "thin-surfaces",
+            Self::Pruning => "pruning",
+        }
+    }
+}
+
 impl CarvedParams {
+    /// The same without one rule.
+    #[must_use]
+    pub fn without(mut self, rule: Rule) -> Self {
+        match rule {
+            Rule::Vegetation => self.vegetation = None,
+            Rule::Crowns => self.crowns = None,
+            Rule::Slender => self.slender = None,
+            Rule::ThinSurfaces => self.thin_surfaces = None,
+            Rule::Pruning => self.pruning = None,
+        }
+        self
+    }
+
     /// How balls shrink before they are carved.
     #[must_use]
     pub fn shrinking(&self) -> ShrinkParams {

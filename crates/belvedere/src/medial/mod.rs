@@ -18,7 +18,7 @@ pub mod vegetation;
 pub use balls::{MedialBalls, NO_TOUCH, Side};
 pub use bounds::{Kind, KindBounds, RadiusBounds, kinds};
 pub use carve::{CarveReport, PULSE_TOUCH, carve};
-pub use carved::{CarvedBalls, CarvedInput, CarvedParams, CarvedReport, carved_balls};
+pub use carved::{CarvedBalls, CarvedInput, CarvedParams, CarvedReport, Rule, carved_balls};
 pub use crowns::{CrownParams, Trees};
 pub use orient_by_carving::{OrientByCarvingParams, OrientByCarvingReport, orient_by_carving};
 pub use prune::{PruneParams, prune};
