@@ -11,8 +11,8 @@ use crate::tin::{Tin, TinParams};
 use crate::voxels::{VoxelParams, Voxels};
 use crate::{Model, Survey};
 use belvedere::Result;
-use belvedere::medial::{CarvedParams, Rule};
-use belvedere::query::Visibility;
+use belvedere::medial::{CarvedParams, CrownParams, Rule, Trees};
+use belvedere::query::{SceneParams, Visibility};
 
 /// When a comparison of all methods takes one in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +21,8 @@ pub enum Listing {
     Always,
     /// Only where it is asked for by its full key: a variant that tells what a part of another method is worth.
     WhenNamed,
+    /// On held-out pulses, elsewhere only where it is asked for by its full key.
+    OnHeldOutPulses,
 }
 
 /// What a method does anew for each eye.
@@ -62,6 +64,10 @@ impl<'a> Method<'a> {
         Self { per_eye: PerEye::Costly, ..self }
     }
 
+    fn on_held_out_pulses(self) -> Self {
+        Self { listing: Listing::OnHeldOutPulses, ..self }
+    }
+
     fn when_named(self) -> Self {
         Self { listing: Listing::WhenNamed, ..self }
     }
@@ -82,6 +88,14 @@ const NOISE: f64 = 0.06;
 /// How near to a target a mesh may lie without blocking it, metres: points of a cloud lie up to a decimetre behind the surface
 /// that the model gives them.
 const MESH_CLEARANCE: f64 = 0.1;
+
+/// Carved balls for surveys in winter, of which targets in the air are asked: crowns are twigs, and nothing gives way to targets.
+fn carved_for_winter() -> MedialParams {
+    let carving = CarvedParams::default();
+    let crowns = carving.crowns.map(|crowns| CrownParams { trees: Trees::Porous, ..crowns });
+    let blocking = SceneParams { shell: 0.0, ..SceneParams::carved() };
+    MedialParams { making: Making::Carving(CarvedParams { crowns, ..carving }), blocking, ..MedialParams::carved() }
+}
 
 /// Carved balls without one rule: key, title and parameters. They run when named.
 fn carved_variants() -> impl Iterator<Item = (String, String, MedialParams)> {
@@ -151,6 +165,8 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
     }
     methods.push(medial("tau", "balls cut to half a metre", MedialParams::cut_to_half_a_metre()));
     methods.push(medial("carved", "Belvedere: carved balls", MedialParams::carved()));
+    let winter = medial("carved-porous", "the same, --trees porous --shell 0", carved_for_winter());
+    methods.push(winter.on_held_out_pulses());
     methods.extend(carved_variants().map(|(key, title, params)| medial(&key, &title, params).when_named()));
     methods
 }

@@ -210,9 +210,13 @@ pub(crate) struct Query {
     pub(crate) targets: Targets,
     /// Metres a target may lie behind the depth of its pixel, or, with carved balls, inside a ball along its line of sight, and
     /// still count as visible [default: what noise and half a pixel are deep on a slope of 63 degrees, 0.58 at pixels of
-    /// 0.25 m; 0 with --profile paper-cone; 0.25 with carved balls]
+    /// 0.25 m; 0 with --profile paper-cone and with carved balls]
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite, help_heading = "Result")]
     pub(crate) bias: Option<f32>,
+    /// Metres that carved balls give way to targets near their surface, since balls bulge between the points of walls and roofs; 0
+    /// for targets that do not lie on surfaces [default: 0.2]
+    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = length, help_heading = "Result")]
+    pub(crate) shell: Option<f32>,
     /// What to make of targets that nothing blocks, but of whose line of sight more than half a metre runs through space that no
     /// pulse came near to; needs carved balls with their pulses (from a cloud, or from an .npz) [default: report]
     #[arg(long, value_enum, help_heading = "Result")]
@@ -480,6 +484,11 @@ fn target_count(text: &str) -> Result<usize, String> {
 
 fn finite(text: &str) -> Result<f32, String> {
     text.parse().ok().filter(|v: &f32| v.is_finite()).ok_or_else(|| "must be a finite number".to_owned())
+}
+
+fn length(text: &str) -> Result<f32, String> {
+    finite(text)?;
+    text.parse().ok().filter(|v: &f32| *v >= 0.0).ok_or_else(|| "must be a number of metres, 0 or more".to_owned())
 }
 
 fn above_zero<T: FromStr + Copy + Into<f64>>(text: &str) -> Result<T, String> {

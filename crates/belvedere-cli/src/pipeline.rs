@@ -142,9 +142,9 @@ pub(crate) struct Prepared {
 }
 
 impl Prepared {
-    /// What pulses proved empty, as ball files keep it, where carving was asked for.
+    /// What pulses proved empty, as ball files keep it, where carving was asked for and pulses are known rather than assumed.
     pub(crate) fn pulses(&self) -> Option<NeedleColumns> {
-        self.carving.as_ref().map(|input| input.needles.to_columns())
+        self.carving.as_ref().filter(|input| !input.is_assumed).map(|input| input.needles.to_columns())
     }
 }
 
@@ -169,7 +169,7 @@ pub(crate) fn prepare(
         if wants_pulses { scanner::of_each_point(&cloud, orienting, stages, summary)? } else { Located::default() };
     let carving = match carving {
         Carving::Unwanted => None,
-        _ => scanner::carving_input(&cloud, &scanner, carving, stages, summary)?,
+        _ => scanner::carving_input(&cloud, (&scanner, is_assumed), carving, stages, summary)?,
     };
     if let Cow::Owned(owned) = &mut cloud {
         // nothing but orientation asks for attributes from here on, and they weigh more than the positions

@@ -159,7 +159,7 @@ impl Compare {
             Listing::Always => {
                 self.methods.is_empty() || self.methods.iter().any(|start| key.starts_with(start.as_str()))
             }
-            Listing::WhenNamed => self.methods.iter().any(|name| name == key),
+            Listing::WhenNamed | Listing::OnHeldOutPulses => self.methods.iter().any(|name| name == key),
         }
     }
 

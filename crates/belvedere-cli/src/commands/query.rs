@@ -26,9 +26,12 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     let points = if arguments.targets.own { Points::Keep } else { Points::LetGo };
     let scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
     if arguments.unproven.is_some() && scene.pulses.is_none() {
-        let what = "--unproven needs to know the pulses: a cloud with --method carved, or an .npz that `belvedere balls --method \
-                    carved` made of one";
+        let what = "--unproven needs to know the pulses: a cloud of which the scanner can be found (see `belvedere info`), or an \
+                    .npz that `belvedere balls` made of one";
         return Err(Usage(what.to_owned()).into());
+    }
+    if arguments.shell.is_some() && !scene.is_carved() {
+        return Err(Usage("--shell belongs to carved balls, which these are not".to_owned()).into());
     }
     let mut view = arguments.view.view(&scene, &mut summary)?;
     if arguments.targets.own && extension(output) == "npy" {
@@ -96,9 +99,13 @@ fn by_lines_of_sight(
 ) -> Result<Vec<Answer>> {
     let usual = SceneParams::carved();
     let depth_bias = arguments.bias.map_or(usual.depth_bias, f64::from);
-    let params = SceneParams { profile: arguments.scene.profile.into(), depth_bias, ..usual };
+    let shell = arguments.shell.map_or(usual.shell, f64::from);
+    let params = SceneParams { profile: arguments.scene.profile.into(), depth_bias, shell };
     let mut scene = stages.run("indexing balls", 0, |_| MedialScene::new(&blockers.balls, &params))?;
-    section.add("answered_by", "lines of sight").add("depth_bias_m", rounded(depth_bias, 4));
+    section
+        .add("answered_by", "lines of sight")
+        .add("depth_bias_m", rounded(depth_bias, 4))
+        .add("shell_m", rounded(shell, 4));
     if let Some(pulses) = &blockers.pulses {
         let proof = stages.run("indexing pulses to prove by", 0, |_| {
             Proof::new(Needles::from_columns(pulses)?, &ProofParams::default())

@@ -18,6 +18,8 @@ pub(crate) struct CarvingInput {
     pub(super) needles: Needles,
     /// Classes, numbers and counts of returns.
     pub(super) kinds: Attributes,
+    /// Whether pulses are merely assumed.
+    pub(super) is_assumed: bool,
     /// Which returns share a pulse, where times tell.
     pub(super) pulses: Option<Pulses>,
 }
@@ -26,7 +28,7 @@ pub(crate) struct CarvingInput {
 /// and need not.
 pub(super) fn carving_input(
     cloud: &PointCloud,
-    scanner: &[[f32; 3]],
+    (scanner, is_assumed): (&[[f32; 3]], bool),
     carving: Carving,
     stages: &mut Stages,
     summary: &mut Summary,
@@ -56,7 +58,7 @@ pub(super) fn carving_input(
         ..Attributes::default()
     };
     let pulses = group(cloud).ok().map(|(pulses, _)| pulses);
-    Ok(Some(CarvingInput { needles, kinds, pulses }))
+    Ok(Some(CarvingInput { needles, kinds, is_assumed, pulses }))
 }
 
 /// Where the scanner was.

@@ -31,7 +31,8 @@ pub struct SavedBalls {
     pub touch: Vec<u32>,
     /// Separation angle in radians, NaN where the ball never shrank, (B).
     pub separation_angles: Vec<f32>,
-    /// Share of light that a ball lets through, 0 to 1, (B), where that is known.
+    /// Share of the pulses that got through the piece of crown that a ball is part of, 0 to 1, NaN where it is part of none, (B),
+    /// where that was measured.
     pub transmission: Option<Vec<f32>>,
     /// The pulses that say what is proven visible, where they are known. Only `.npz` files hold them.
     pub pulses: Option<SavedPulses>,
@@ -106,8 +107,8 @@ impl SavedBalls {
         if self.origin.iter().any(|v| !v.is_finite()) {
             return invalid("origin of balls", format!("{:?}", self.origin), "finite");
         }
-        if let Some(t) = self.transmission.iter().flatten().find(|t| !(0.0..=1.0).contains(*t)) {
-            return invalid("transmission of a ball", t.to_string(), "0 to 1");
+        if let Some(t) = self.transmission.iter().flatten().find(|t| !(t.is_nan() || (0.0..=1.0).contains(*t))) {
+            return invalid("transmission of a ball", t.to_string(), "0 to 1, or NaN");
         }
         self.pulses.as_ref().map_or(Ok(()), SavedPulses::validate)
     }

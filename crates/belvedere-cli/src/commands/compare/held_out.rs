@@ -9,7 +9,7 @@ use belvedere::io::{ReadOptions, read_cloud, read_trajectory};
 use belvedere::pulses::{SensorEstimateParams, SensorPositions, group};
 use belvedere_baselines::Survey;
 use belvedere_baselines::held_out::{HeldOut, HeldOutParams, HeldOutScore, Tally, score, split};
-use belvedere_baselines::methods::methods;
+use belvedere_baselines::methods::{Listing, methods};
 use std::path::Path;
 
 /// Judges every method that needs the cloud alone on the pulses of `path` that were kept from it.
@@ -50,7 +50,8 @@ pub(super) fn judge_all(
     let methods = methods(&survey);
     arguments.check_methods(&methods.iter().map(|method| method.key.clone()).collect::<Vec<_>>())?;
     let mut results = Vec::new();
-    for method in methods.iter().filter(|method| arguments.wants(&method.key, method.listing)) {
+    let listing = |listing: Listing| if listing == Listing::OnHeldOutPulses { Listing::Always } else { listing };
+    for method in methods.iter().filter(|method| arguments.wants(&method.key, listing(method.listing))) {
         let file = arguments.output.join("results").join(format!("{name}--held-out--{}.json", method.key));
         if let Some(result) = kept(&file, &made_from) {
             results.push(result);

@@ -138,7 +138,7 @@ fn describe(
         area_m2: f64::from(high[0] - low[0]) * f64::from(high[1] - low[1]),
         triangles: case.triangles,
         methods: methods.iter().map(|method| method.key.clone()).collect(),
-        when_named: methods.iter().filter(|m| m.listing == Listing::WhenNamed).map(|m| m.key.clone()).collect(),
+        when_named: methods.iter().filter(|m| m.listing != Listing::Always).map(|m| m.key.clone()).collect(),
         blocked_in_truth: judge::blocked_in_truth(case),
         audit,
         ablation,
