@@ -406,7 +406,9 @@ fn carved_section(report: &CarvedReport) -> Summary {
         .add("in_crowns_with_gaps", report.in_crowns_with_gaps)
         .add("balls_that_fill_crowns", report.crown_fills)
         .add("on_fences_wires_and_the_like", report.slender)
-        .add("balls_that_fill_fences", report.slender_fills);
+        .add("balls_that_fill_fences", report.slender_fills)
+        .add("on_edges_and_low_walls", report.relief)
+        .add("balls_that_fill_edges", report.relief_fills);
     section
 }
 
