@@ -6,6 +6,7 @@ use super::carve::{CarveReport, carve};
 use super::cells::lowest_near;
 use super::crowns::{self, CrownParams, Crowns};
 use super::prune::{PruneParams, prune};
+use super::relief::{Relief, ReliefParams};
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 use super::slender::{Slender, SlenderParams};
 use super::thin_surfaces::{ThinSurfaceParams, on_thin_surfaces};
@@ -40,6 +41,8 @@ pub struct CarvedParams {
     pub pruning: Option<PruneParams>,
     /// Small balls at surfaces that pulses run below.
     pub thin_surfaces: Option<ThinSurfaceParams>,
+    /// Fills edges, ridges, chimneys and low walls down to the next lower level.
+    pub relief: Option<ReliefParams>,
 }
 
 impl Default for CarvedParams {
@@ -54,6 +57,7 @@ impl Default for CarvedParams {
             slender: Some(SlenderParams::default()),
             pruning: Some(PruneParams::default()),
             thin_surfaces: Some(ThinSurfaceParams::default()),
+            relief: Some(ReliefParams::default()),
         }
     }
 }
@@ -151,6 +155,10 @@ pub struct CarvedReport {
     pub pruned: usize,
     /// Points found on thin surfaces.
     pub thin: usize,
+    /// Points of thin relief.
+    pub relief: usize,
+    /// Balls that fill it.
+    pub relief_fills: usize,
 }
 
 /// Balls of a survey.
@@ -195,8 +203,9 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, progress: Pr
         params.slender.as_ref().map(|params| Slender::find(positions, &kinds, attributes, &lowest, needles, params));
     report.in_crowns_with_gaps = crowns.as_ref().map_or(0, |crowns| crowns.limit(&mut bounds));
     report.slender = slender.as_ref().map_or(0, |slender| slender.limit(&mut bounds));
+    let mut thin = Vec::new();
     if let Some(params) = &params.thin_surfaces {
-        let thin = on_thin_surfaces(positions, &kinds, index, needles, params);
+        thin = on_thin_surfaces(positions, &kinds, index, needles, params);
         for row in (0..thin.len()).filter(|&row| thin[row]) {
             bounds.limit(row, params.radius);
             report.thin += 1;
@@ -209,10 +218,19 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, progress: Pr
     if let Some(pruning) = &params.pruning {
         report.pruned = prune(&mut balls, oriented, index, pruning)?;
     }
+    // before anything is added: the ball of a point is still in its row
+    let relief = params.relief.as_ref().map(|params| {
+        // below thin surfaces is air, and what is slender is filled by its own rule
+        let is_left_out =
+            |row: usize| thin.get(row) == Some(&true) || slender.as_ref().is_some_and(|slender| slender.stands(row));
+        Relief::find(positions, &kinds, is_left_out, &balls, index, params)
+    });
+    report.relief = relief.as_ref().map_or(0, Relief::len);
     // what is only told to be vegetation may be anything that is not flat, and is better not filled
     if report.told_vegetation == 0 {
         report.crown_fills = crowns.as_ref().map_or(0, |crowns| crowns.fill(&mut balls, needles));
     }
+    report.relief_fills = relief.as_ref().map_or(0, |relief| relief.fill(&mut balls, needles));
     report.slender_fills = slender.as_ref().map_or(0, |slender| slender.fill(&mut balls, index, needles));
 
     let balls = balls.shrunk();

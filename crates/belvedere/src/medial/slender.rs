@@ -6,6 +6,7 @@ use super::balls::MedialBalls;
 use super::bounds::{Kind, RadiusBounds};
 use super::carve::PULSE_TOUCH;
 use super::cells::{Cells, cell};
+use super::chains::Chain;
 use crate::Attributes;
 use crate::neighbors::{NeighborIndex, Tangent};
 use crate::pulses::Needles;
@@ -58,10 +59,6 @@ impl Default for SlenderParams {
 const SIDES: [[f32; 2]; 4] = [[1.0, 0.0], [FRAC_1_SQRT_2, FRAC_1_SQRT_2], [0.0, 1.0], [-FRAC_1_SQRT_2, FRAC_1_SQRT_2]];
 /// How far beside a point others say how high the thing is there, metres.
 const TOP_REACH_M: f32 = 0.4;
-/// Least radius of a ball worth keeping, metres.
-const LEAST_RADIUS_M: f32 = 0.04;
-/// Most balls below each other, so that odd parameters cannot fill the memory.
-const MOST_BELOW: usize = 64;
 /// Points handed to a thread at once.
 const CHUNK: usize = 512;
 
@@ -130,7 +127,8 @@ impl<'a> Slender<'a> {
         found.len()
     }
 
-    fn stands(&self, row: usize) -> bool {
+    /// Whether point `row` is part of what [`Slender::fill`] fills.
+    pub(super) fn stands(&self, row: usize) -> bool {
         self.heights[row] <= self.params.standing_height
     }
 
@@ -144,7 +142,8 @@ impl<'a> Slender<'a> {
         let place = |other: &usize| self.positions[*other];
         let top = near.iter().map(place).filter(|q| apart(p, *q) < TOP_REACH_M).fold(p[2], |top, q| top.max(q[2]));
         let ground = p[2] - self.heights[row];
-        let mut balls = self.below([p[0], p[1], top], ground, needles);
+        let chain = Chain { radius: self.params.standing_radius, spacing: self.params.spacing };
+        let mut balls: Vec<_> = chain.below([p[0], p[1], top], ground, needles).collect();
         for other in &near {
             let q = place(other);
             let middle = [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, p[2].max(q[2])];
@@ -153,21 +152,9 @@ impl<'a> Slender<'a> {
             let is_first = p.iter().zip(&q).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).is_some_and(|o| o.is_lt());
             let has_third = || near.iter().any(|third| third != other && apart(place(third), middle) < gap / 2.0);
             if is_first && gap > self.params.spacing && !has_third() {
-                balls.extend(self.below(middle, ground.min(q[2] - self.heights[*other]), needles));
+                balls.extend(chain.below(middle, ground.min(q[2] - self.heights[*other]), needles));
             }
         }
         balls
-    }
-
-    /// Balls from `top` down to the height `ground`, as far as no pulse enters them.
-    fn below(&self, top: [f32; 3], ground: f32, needles: &Needles) -> Vec<([f32; 3], f32)> {
-        let radius = self.params.standing_radius;
-        let centers = (0_u8..).map(|step| [top[0], top[1], top[2] - radius - self.params.spacing * f32::from(step)]);
-        centers
-            .take(MOST_BELOW)
-            .take_while(|center| center[2] > ground)
-            .map(|center| (center, needles.clearance(center, radius)))
-            .filter(|&(_, radius)| radius >= LEAST_RADIUS_M)
-            .collect()
     }
 }
