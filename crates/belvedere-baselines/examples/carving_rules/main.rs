@@ -36,6 +36,7 @@ fn variants() -> Vec<(&'static str, MedialParams)> {
     vec![
         with("all", |_| ()),
         with("without pruning", |p| p.pruning = None),
+        with("without edges of roofs", |p| p.roof_edges = None),
         blocked("a bias of 0.25 m instead of the shell", 0.25, 0.0),
         blocked("no shell", 0.0, 0.0),
     ]

@@ -6,6 +6,7 @@ use super::carve::{CarveReport, carve};
 use super::cells::lowest_near;
 use super::crowns::{self, CrownParams, Crowns};
 use super::prune::{PruneParams, prune};
+use super::roof_edges::{RoofEdgeParams, RoofEdges};
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 use super::slender::{Slender, SlenderParams};
 use super::thin_surfaces::{ThinSurfaceParams, on_thin_surfaces};
@@ -40,6 +41,8 @@ pub struct CarvedParams {
     pub pruning: Option<PruneParams>,
     /// Small balls at surfaces that pulses run below.
     pub thin_surfaces: Option<ThinSurfaceParams>,
+    /// Cuts balls below the edges of roofs, where walls stand that no pulse reached.
+    pub roof_edges: Option<RoofEdgeParams>,
 }
 
 impl Default for CarvedParams {
@@ -54,6 +57,7 @@ impl Default for CarvedParams {
             slender: Some(SlenderParams::default()),
             pruning: Some(PruneParams::default()),
             thin_surfaces: Some(ThinSurfaceParams::default()),
+            roof_edges: Some(RoofEdgeParams::default()),
         }
     }
 }
@@ -106,6 +110,8 @@ pub struct CarvedReport {
     pub pruned: usize,
     /// Points found on thin surfaces.
     pub thin: usize,
+    /// Balls cut below the edges of roofs.
+    pub cut_at_edges: usize,
 }
 
 /// Balls of a survey.
@@ -161,6 +167,10 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, progress: Pr
     let mut balls;
     (balls, report.shrinking) = shrink(oriented, index, Side::Interior, &params.shrinking(), progress)?;
     report.carving = carve(&mut balls, oriented, needles, params.penetration, &bounds)?;
+    if let Some(params) = &params.roof_edges {
+        let edges = RoofEdges::find(oriented, &kinds, index, &lowest, params)?;
+        report.cut_at_edges = edges.cut(&mut balls, oriented, params);
+    }
     if let Some(pruning) = &params.pruning {
         report.pruned = prune(&mut balls, oriented, index, pruning)?;
     }

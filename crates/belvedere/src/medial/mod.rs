@@ -10,6 +10,7 @@ pub mod feature_size;
 mod layers;
 pub mod orient_by_carving;
 pub mod prune;
+pub mod roof_edges;
 pub mod shrinking_ball;
 pub mod slender;
 pub mod thin_surfaces;
@@ -22,6 +23,7 @@ pub use carved::{CarvedBalls, CarvedInput, CarvedParams, CarvedReport, carved_ba
 pub use crowns::{CrownParams, Trees};
 pub use orient_by_carving::{OrientByCarvingParams, OrientByCarvingReport, orient_by_carving};
 pub use prune::{PruneParams, prune};
+pub use roof_edges::RoofEdgeParams;
 pub use shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 pub use slender::SlenderParams;
 pub use thin_surfaces::{ThinSurfaceParams, on_thin_surfaces};
