@@ -37,7 +37,7 @@ pub struct RoofEdgeParams {
     /// Least height of an edge above the lowest point near by, metres, above 0. Default 2.
     pub least_height: f32,
     /// How far beyond its outermost points a roof is taken to reach, metres, 0 or more. Default 0.1: a third of their spacing. 0.3
-    /// cuts more and loses as much.
+    /// gains nothing more on facades and lets more through houses.
     pub outside: f32,
     /// Distance of the places on a wall below each other, metres, above 0. Default 0.5.
     pub spacing: f32,
