@@ -7,6 +7,7 @@ use super::cells::lowest_near;
 use super::crowns::{self, CrownParams, Crowns};
 use super::prune::{PruneParams, prune};
 use super::relief::{Relief, ReliefParams};
+use super::roof_edges::{RoofEdgeParams, RoofEdges};
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 use super::slender::{Slender, SlenderParams};
 use super::thin_surfaces::{ThinSurfaceParams, on_thin_surfaces};
@@ -43,6 +44,8 @@ pub struct CarvedParams {
     pub thin_surfaces: Option<ThinSurfaceParams>,
     /// Fills edges, ridges, chimneys and low walls down to the next lower level.
     pub relief: Option<ReliefParams>,
+    /// Cuts balls below the edges of roofs, where walls stand that no pulse reached.
+    pub roof_edges: Option<RoofEdgeParams>,
 }
 
 impl Default for CarvedParams {
@@ -58,6 +61,7 @@ impl Default for CarvedParams {
             pruning: Some(PruneParams::default()),
             thin_surfaces: Some(ThinSurfaceParams::default()),
             relief: Some(ReliefParams::default()),
+            roof_edges: Some(RoofEdgeParams::default()),
         }
     }
 }
@@ -73,13 +77,25 @@ pub enum Rule {
     Slender,
     /// [`CarvedParams::thin_surfaces`].
     ThinSurfaces,
+    /// [`CarvedParams::relief`].
+    Relief,
+    /// [`CarvedParams::roof_edges`].
+    RoofEdges,
     /// [`CarvedParams::pruning`].
     Pruning,
 }
 
 impl Rule {
     /// Every rule.
-    pub const ALL: [Self; 5] = [Self::Vegetation, Self::Crowns, Self::Slender, Self::ThinSurfaces, Self::Pruning];
+    pub const ALL: [Self; 7] = [
+        Self::Vegetation,
+        Self::Crowns,
+        Self::Slender,
+        Self::ThinSurfaces,
+        Self::Relief,
+        Self::RoofEdges,
+        Self::Pruning,
+    ];
 
     /// Name on the command line and in tables: lower case and hyphens.
     #[must_use]
@@ -89,6 +105,8 @@ impl Rule {
             Self::Crowns => "crowns",
             Self::Slender => "slender",
             Self::ThinSurfaces => "thin-surfaces",
+            Self::Relief => "relief",
+            Self::RoofEdges => "roof-edges",
             Self::Pruning => "pruning",
         }
     }
@@ -103,6 +121,8 @@ impl CarvedParams {
             Rule::Crowns => self.crowns = None,
             Rule::Slender => self.slender = None,
             Rule::ThinSurfaces => self.thin_surfaces = None,
+            Rule::Relief => self.relief = None,
+            Rule::RoofEdges => self.roof_edges = None,
             Rule::Pruning => self.pruning = None,
         }
         self
@@ -159,6 +179,8 @@ pub struct CarvedReport {
     pub relief: usize,
     /// Balls that fill it.
     pub relief_fills: usize,
+    /// Balls cut below the edges of roofs.
+    pub cut_at_edges: usize,
 }
 
 /// Balls of a survey.
@@ -215,6 +237,10 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, progress: Pr
     let mut balls;
     (balls, report.shrinking) = shrink(oriented, index, Side::Interior, &params.shrinking(), progress)?;
     report.carving = carve(&mut balls, oriented, needles, params.penetration, &bounds)?;
+    if let Some(params) = &params.roof_edges {
+        let edges = RoofEdges::find(oriented, &kinds, index, &lowest, params)?;
+        report.cut_at_edges = edges.cut(&mut balls, oriented, params);
+    }
     if let Some(pruning) = &params.pruning {
         report.pruned = prune(&mut balls, oriented, index, pruning)?;
     }

@@ -61,7 +61,7 @@ pub fn on_thin_surfaces(
     let beside: Vec<usize> = (0..layers.len()).into_par_iter().map(|voxel| layers.count_beside(voxel)).collect();
     let is_roof = |at: [f32; 3]| {
         let near = |row: usize| solid(row) && (positions[row][2] - at[2]).abs() < SAME_SURFACE;
-        widest_gap(positions, index, at, params.around, near) < params.widest_gap
+        widest_gap(positions, index, at, params.around, near).0 < params.widest_gap
     };
     let proven = run_below(&layers, &beside, needles, params.depths, is_roof);
     let thin = surfaces(&layers, &beside, &proven, params.least_proof);
@@ -104,15 +104,15 @@ fn run_below(
     proven.into_iter().map(AtomicBool::into_inner).collect()
 }
 
-/// Widest angle seen from above, radians, between neighbours among those points within `radius` of `at` whose row is `wanted`;
-/// a whole turn for fewer than two.
-fn widest_gap(
+/// Widest angle seen from above, radians, between neighbours among those points within `radius` of `at` whose row is `wanted`,
+/// and the azimuth of its middle, counter-clockwise from east; a whole turn for fewer than two.
+pub(super) fn widest_gap(
     positions: &[[f32; 3]],
     index: &NeighborIndex,
     at: [f32; 3],
     radius: f32,
     wanted: impl Fn(usize) -> bool,
-) -> f32 {
+) -> (f32, f32) {
     let mut angles: Vec<f32> = Vec::new();
     index.within_radius(at, radius, |found| {
         let row = found.index as usize;
@@ -121,8 +121,10 @@ fn widest_gap(
         }
     });
     angles.sort_unstable_by(f32::total_cmp);
-    let (Some(first), Some(last)) = (angles.first(), angles.last()) else { return TAU };
-    angles.windows(2).map(|pair| pair[1] - pair[0]).fold(first + TAU - last, f32::max)
+    let (Some(&first), Some(&last)) = (angles.first(), angles.last()) else { return (TAU, 0.0) };
+    let gap = |from: f32, to: f32| (to - from, (from + to) / 2.0);
+    let wider = |a: (f32, f32), b: (f32, f32)| if b.0 > a.0 { b } else { a };
+    angles.windows(2).map(|pair| gap(pair[0], pair[1])).fold(gap(last, first + TAU), wider)
 }
 
 /// Which voxels belong to a surface of which enough is proven. A surface is what hangs together of voxels that go on to all
