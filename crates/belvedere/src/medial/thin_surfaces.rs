@@ -14,6 +14,8 @@ const LEAST_BESIDE: usize = 5;
 /// How far points may lie above or below a surface and still be part of it where a pulse runs below, metres: a voxel and half
 /// of another, so that slopes up to 40° count.
 const SAME_SURFACE: f32 = 0.6;
+/// How far below a voxel a point no longer belongs to its surface, metres: more than a voxel is high.
+const OF_THE_SURFACE: f32 = 0.5;
 /// Needles handed to a thread at once.
 const CHUNK: usize = 1024;
 
@@ -37,11 +39,25 @@ pub struct ThinSurfaceParams {
     /// Proven cells a surface must have, in square roots of its number of cells, above 0: pulses look below a rim, and the rim
     /// grows with that root. Default 0.3.
     pub least_proof: f32,
+    /// Distance about a pulse below a surface within which hardly a solid point may lie below that surface, metres. Default 1.5.
+    /// Eaves stand out over walls, whose points betray them; without this rule two thirds of the roofs of real tiles (Delft,
+    /// Bresse) were taken for thin, with it 13 % and next to none.
+    pub open_radius: f32,
+    /// Points that may lie there all the same: posts, goods, the foot of the pulse itself. Default 1.
+    pub most_below: usize,
 }
 
 impl Default for ThinSurfaceParams {
     fn default() -> Self {
-        Self { radius: 0.3, depths: [1.0, 5.0], around: 0.75, widest_gap: 2.0, least_proof: 0.3 }
+        Self {
+            radius: 0.3,
+            depths: [1.0, 5.0],
+            around: 0.75,
+            widest_gap: 2.0,
+            least_proof: 0.3,
+            open_radius: 1.5,
+            most_below: 1,
+        }
     }
 }
 
@@ -63,7 +79,15 @@ pub fn on_thin_surfaces(
         let near = |row: usize| solid(row) && (positions[row][2] - at[2]).abs() < SAME_SURFACE;
         widest_gap(positions, index, at, params.around, near).0 < params.widest_gap
     };
-    let proven = run_below(&layers, &beside, needles, params.depths, is_roof);
+    let is_open = |needle: [f32; 3], bottom: f32| {
+        let mut walls = 0;
+        index.within_radius(needle, params.open_radius, |found| {
+            let row = found.index as usize;
+            walls += usize::from(solid(row) && positions[row][2] < bottom - OF_THE_SURFACE);
+        });
+        walls <= params.most_below
+    };
+    let proven = run_below(&layers, &beside, needles, params.depths, is_roof, is_open);
     let thin = surfaces(&layers, &beside, &proven, params.least_proof);
     (0..positions.len())
         .into_par_iter()
@@ -71,13 +95,15 @@ pub fn on_thin_surfaces(
         .collect()
 }
 
-/// Which voxels a needle runs below at these `depths`, where `is_roof` says that points lie around the place straight above it.
+/// Which voxels a needle runs below at these `depths`, where `is_roof` says that points lie around the place straight
+/// above it, and `is_open` that none stand beside it below the height given.
 fn run_below(
     layers: &Layers,
     beside: &[usize],
     needles: &Needles,
     depths: [f32; 2],
     is_roof: impl Fn([f32; 3]) -> bool + Sync,
+    is_open: impl Fn([f32; 3], f32) -> bool + Sync,
 ) -> Vec<bool> {
     let proven: Vec<AtomicBool> = beside.iter().map(|_| AtomicBool::new(false)).collect();
     let top = layers.top();
@@ -94,6 +120,7 @@ fn run_below(
                     && bottom - high <= depths[1]
                     && !proven[voxel].load(Ordering::Relaxed)
                     && is_roof([low[0], low[1], layers.middle(voxel)])
+                    && is_open(low, bottom)
                 {
                     proven[voxel].store(true, Ordering::Relaxed);
                 }
