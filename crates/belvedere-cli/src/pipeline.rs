@@ -210,6 +210,7 @@ pub(crate) fn prepare(
             let scale = cloud.crs.metres_per_unit_xyz();
             Orientation::ScannerAt(vec![std::array::from_fn(|i| position[i] * scale[i])])
         }
+        OrientChoice::Trajectory(_) if carving.is_some() => Orientation::Pulses(&scanner),
         OrientChoice::Trajectory(path) => {
             read = match trajectory {
                 Some(read) => read,

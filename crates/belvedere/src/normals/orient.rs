@@ -37,7 +37,7 @@ pub enum Orientation<'a> {
     Scanner,
     /// Towards the nearest of these positions, in the metres of the cloud's reference system (not local), (S, 3).
     ScannerAt(Vec<[f64; 3]>),
-    /// Towards where the scanner was at each point's GPS time, as [`Orientation::Pulses`].
+    /// Towards where the scanner was at each point's GPS time, whatever the angle, as the paper has it.
     Trajectory(&'a Trajectory),
     /// Towards where the scanner was when it measured each point, (N, 3), local metres; NaN where that is unknown. As
     /// [`Orientation::Up`] where that is so, and where the pulse ran within 17° of the surface.
@@ -152,9 +152,9 @@ pub fn orient(cloud: &PointCloud, normals: Normals, by: &Orientation<'_>) -> Res
         Orientation::Trajectory(trajectory) => {
             let (scanner, offset) = trajectory.scanner_positions(cloud)?;
             clock = Some(offset);
-            by_pulses(cloud, &vectors, &scanner)?
+            by_pulses(cloud, &vectors, &scanner, 0.0)?
         }
-        Orientation::Pulses(scanner) => by_pulses(cloud, &vectors, scanner)?,
+        Orientation::Pulses(scanner) => by_pulses(cloud, &vectors, scanner, GRAZING)?,
         Orientation::Mesh(mesh) => by_mesh(cloud, &vectors, mesh)?,
     };
     let mut report = OrientReport { point_count: cloud.len(), clock, ..OrientReport::default() };
@@ -283,14 +283,20 @@ fn check_finite(scanners: &[[f64; 3]]) -> Result<()> {
     Ok(())
 }
 
-fn by_pulses(cloud: &PointCloud, vectors: &[[f32; 3]], scanner: &[[f32; 3]]) -> Result<Vec<Option<Verdict>>> {
+/// Towards `scanner` where the cosine between normal and pulse is `least` or more.
+fn by_pulses(
+    cloud: &PointCloud,
+    vectors: &[[f32; 3]],
+    scanner: &[[f32; 3]],
+    least: f32,
+) -> Result<Vec<Option<Verdict>>> {
     if scanner.len() != cloud.len() {
         return Err(Error::LengthMismatch { what: "scanner positions", expected: cloud.len(), found: scanner.len() });
     }
     Ok(each(cloud, vectors, |index, position, normal| {
         let scanner = scanner.get(index)?.map(f64::from);
         let verdict = scanner.iter().all(|v| v.is_finite()).then(|| towards(scanner, position, normal))??;
-        (verdict.outward.abs() >= GRAZING).then_some(verdict)
+        (verdict.outward.abs() >= least).then_some(verdict)
     }))
 }
 
