@@ -122,7 +122,8 @@ fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
     let carved = place.score(&place.scanner, same, turn);
     let wrong = place.score(&place.scanner, same, |oriented, _, _| all_flipped(&oriented));
     assert!((carved - exact).abs() < 1.0, "{carved} of {exact}, {wrong} with all of them inward");
-    assert!(wrong < exact - 5.0, "turning matters: {wrong}");
+    // by more than what is tolerated above, so that the test would notice
+    assert!(wrong < exact - 1.0, "turning matters: {wrong} of {exact}");
 }
 
 #[test]

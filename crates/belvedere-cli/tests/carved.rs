@@ -38,9 +38,9 @@ fn carved_balls_know_light_from_shade_better_than_balls_cut_to_a_fixed_radius() 
     place.summary("simulate town -o town --extent 120 --density 8");
     let truth = truth(&place);
     let by = |flags: &str| errors(&answers(&place, flags), &truth);
-    let fixed = by("--orient trajectory=town/trajectory.csv");
-    let carved = by("--method carved --orient trajectory=town/trajectory.csv");
-    let found = by("--method carved");
+    let fixed = by("--method tau --orient trajectory=town/trajectory.csv");
+    let carved = by("--orient trajectory=town/trajectory.csv");
+    let found = by("");
     // balanced over both kinds of error; the exact light is that of points 3 cm outside, so that neither can reach zero
     let mean = |errors: [f64; 2]| (errors[0] + errors[1]) / 2.0;
     assert!(mean(carved) < mean(fixed), "carved {carved:?}, cut to half a metre {fixed:?}");

@@ -7,7 +7,7 @@ use common::Workplace;
 use serde_json::Value;
 use std::fs;
 
-const SMALL: &str = "--extent 100 --density 2 --targets 1500 --methods paper-sphere,belvedere";
+const SMALL: &str = "--extent 100 --density 2 --targets 1500 --methods paper-sphere,tau";
 
 /// What is kept of `method` on one set and group of views, at the first place.
 fn score<'a>(results: &'a Value, method: &str, set: &str, views: &str) -> &'a Value {
@@ -49,7 +49,7 @@ fn every_method_gets_scores_costs_and_pictures() {
     let street = |method| rate(results, method, "PED", "suns", "false_blocked");
     assert!(street("paper-sphere") > 0.5 && street("tau") < 0.3);
     let html = fs::read_to_string(place.path("out/report.html")).unwrap();
-    assert!(html.contains("town-100m-1--belvedere.png") && html.contains("Which balls of the published method"));
+    assert!(html.contains("town-100m-1--tau.png") && html.contains("Which balls of the published method"));
     // of the four groups of views one holds the suns; each target of each sun gets one answer of three
     let answers = results["places"][0]["answers"].as_array().unwrap();
     let row = |set: &str, views: &str| {
@@ -101,7 +101,7 @@ fn tables_go_between_the_marks_of_a_page() {
     place.summary(&format!("compare {SMALL} -o out --page page.md"));
     let page = fs::read_to_string(place.path("page.md")).unwrap();
     assert!(page.starts_with("# Ours\n<!-- tables -->\n") && page.ends_with("<!-- end of tables -->\nclosing words\n"));
-    assert!(page.contains("| Belvedere, default balls |") && !page.contains("old"));
+    assert!(page.contains("| balls cut to half a metre |") && !page.contains("old"));
     place.refusal(1, &format!("compare {SMALL} -o out --page bare.md"), &["bare.md", "<!-- tables -->"]);
     assert_eq!(fs::read_to_string(place.path("bare.md")).unwrap(), "# Nothing\n");
 }
@@ -112,7 +112,7 @@ fn a_place_of_ones_own_takes_part() {
     assert_eq!(place.run("demo -o demo --extent 100").status, 0);
     let files =
         "--scene demo/town.laz --mesh demo/town.obj --trajectory demo/trajectory.csv --model city=demo/town.obj";
-    let run = place.summary(&format!("compare {files} --targets 1500 --methods belvedere,mesh-city -o out"));
+    let run = place.summary(&format!("compare {files} --targets 1500 --methods tau,mesh-city -o out"));
     let results = &run["results"];
     let street = rate(results, "tau", "PED", "suns", "false_blocked");
     assert!((0.01..0.3).contains(&street), "{street}");
@@ -120,8 +120,7 @@ fn a_place_of_ones_own_takes_part() {
     // the exact mesh as a method: what is left is the millimetre of the file
     let exact = rate(results, "mesh-city", "PED", "suns", "balanced");
     assert!(exact > 0.999, "{exact}");
-    let upward =
-        place.summary("compare --scene demo/town.laz --mesh demo/town.obj --targets 800 --methods belvedere -o up");
+    let upward = place.summary("compare --scene demo/town.laz --mesh demo/town.obj --targets 800 --methods tau -o up");
     let sets = upward["results"]["methods"][0]["scores"].as_array().unwrap().clone();
     assert!(sets.iter().all(|score| score["set"] != "OWN"), "without a scanner own points have no truth");
 }
