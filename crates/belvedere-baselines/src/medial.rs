@@ -39,6 +39,7 @@ pub struct MedialParams {
 
 /// How balls are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is one of them for each method")]
 pub enum Making {
     /// By the points alone.
     Shrinking(ShrinkParams),
