@@ -135,7 +135,8 @@ fn a_folder_at_projected_coordinates_gives_the_balls_of_one_near_zero() {
     place.write_folder("far", &house());
     let radii = ["near", "far"].map(|name| {
         let out = format!("{name}.npz");
-        place.summary(&format!("balls {name} -o {out}"));
+        // pruning of carved balls goes by blocks of the reference system, which these two do not share
+        place.summary(&format!("balls {name} --method tau -o {out}"));
         (place.npz::<f32>(&out, "radii"), place.npz::<u32>(&out, "touch"))
     });
     assert!(radii[0] == radii[1], "coordinates in f64 lose nothing at a large offset");
