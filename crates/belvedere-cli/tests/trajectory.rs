@@ -25,7 +25,7 @@ fn the_path_is_the_one_flown_and_serves_as_a_trajectory() {
     place.summary("simulate town -o town --extent 100 --density 6");
     let made = place.summary("trajectory town/cloud.laz --step 0.25 -o found.csv");
     assert_eq!(made["scanner"]["found_by"], "pulses with several returns", "{made}");
-    let lines = made["flight_line"].as_array().unwrap();
+    let lines = made["scanner_by_line"].as_array().unwrap();
     assert_eq!(lines.len(), 2, "{made}");
     for line in lines {
         // simulated strips are flown 450 m up at 60 m/s; the echoes of the simulator are worth a percent of the height
@@ -51,7 +51,7 @@ fn the_path_is_the_one_flown_and_serves_as_a_trajectory() {
     assert_eq!(used["scanner"]["height_offset_corrected"].as_str().unwrap().get(..2), Some("no"), "{used}");
     let facts = place.summary("info town/cloud.laz");
     assert_eq!(facts["scanner"]["found_by"], made["scanner"]["found_by"]);
-    assert_eq!(facts["flight_line"], made["flight_line"]);
+    assert_eq!(facts["scanner_by_line"], made["flight_line"]);
 }
 
 #[test]

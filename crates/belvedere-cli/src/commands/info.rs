@@ -64,7 +64,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
             Err(error) => return Err(error.into()),
         };
     summary.add("scanner", scanner::section(&scanner));
-    summary.add("flight_line", scanner::line_sections(&scanner));
+    summary.add("scanner_by_line", scanner::line_sections(&scanner));
     let reading = pipeline::reading_section(&report);
     summary.add("reading", reading);
     summary.add("attributes", attributes(&cloud, &facts));

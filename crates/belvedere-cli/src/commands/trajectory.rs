@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &Trajectory, global: &Global) -> Result<Summary> {
     let (_, report) =
         stages.run("finding the scanner", 0, |_| locate(&cloud, &Means::Pulses, &LocateParams::default()))?;
     summary.add("scanner", scanner::section(&report));
-    summary.add("flight_line", scanner::line_sections(&report));
+    summary.add("scanner_by_line", scanner::line_sections(&report));
     let samples = path_samples(&report.paths, cloud.origin, arguments.step)?;
     summary.add("positions", samples.len());
     stages.run("writing", 0, |_| write_found_trajectory(&arguments.output, &samples, &cloud.crs))?;
