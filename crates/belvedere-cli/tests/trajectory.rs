@@ -51,7 +51,7 @@ fn the_path_is_the_one_flown_and_serves_as_a_trajectory() {
     assert_eq!(used["scanner"]["height_offset_corrected"].as_str().unwrap().get(..2), Some("no"), "{used}");
     let facts = place.summary("info town/cloud.laz");
     assert_eq!(facts["scanner"]["found_by"], made["scanner"]["found_by"]);
-    assert_eq!(facts["scanner_by_line"], made["flight_line"]);
+    assert_eq!(facts["scanner_by_line"], made["scanner_by_line"]);
 }
 
 #[test]
