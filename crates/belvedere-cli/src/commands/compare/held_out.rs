@@ -1,6 +1,6 @@
 //! The held-out pulse test on clouds of which nothing else is known.
 
-use super::place::{file_name, state_of};
+use super::place::{Place, file_name, state_of};
 use super::results::{HeldOutResult, keep, kept};
 use crate::arguments::{Compare, Global};
 use crate::progress::Stages;
@@ -48,7 +48,10 @@ pub(super) fn judge_all(
         global.seed
     );
     let methods = methods(&survey);
-    arguments.check_methods(&methods.iter().map(|method| method.key.clone()).collect::<Vec<_>>())?;
+    // places know methods of models, which a cloud alone does not have
+    if Place::all(arguments).is_empty() {
+        arguments.check_methods(&methods.iter().map(|method| method.key.clone()).collect::<Vec<_>>())?;
+    }
     let mut results = Vec::new();
     let listing = |listing: Listing| if listing == Listing::OnHeldOutPulses { Listing::Always } else { listing };
     for method in methods.iter().filter(|method| arguments.wants(&method.key, listing(method.listing))) {
