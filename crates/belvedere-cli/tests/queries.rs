@@ -223,10 +223,9 @@ fn the_points_of_the_cloud_keep_number_order_and_attributes_beside_their_answer(
     cloud.attributes.point_source_id = Some((0..n).map(|i| u16::from(byte(i, 5))).collect());
     place.write_cloud("house.laz", &cloud);
     // with much finer pixels the default bias no longer covers what balls may stand out from a wall seen aslant
-    // the return numbers here are arbitrary, and carving would take them at their word
-    let summary = place.summary("query house.laz --method tau --sun 180,45 --pixel 0.25 --self -o lit.laz");
+    let summary = place.summary("query house.laz --sun 180,45 --pixel 0.25 --self -o lit.laz");
     assert_eq!(count(&summary, "targets"), n);
-    place.summary("query house.laz --method tau --sun 180,45 --pixel 0.25 --self -o lit.npy");
+    place.summary("query house.laz --sun 180,45 --pixel 0.25 --self -o lit.npy");
     let answers = place.npy::<u8>("lit.npy").1;
     let mut reader = las::Reader::from_path(place.path("lit.laz")).unwrap();
     let points: Vec<las::Point> = reader.read_all().unwrap().points().map(Result::unwrap).collect();

@@ -18,6 +18,9 @@ use crate::progress::Progress;
 use crate::pulses::{Needles, Pulses};
 use crate::{Attributes, Result};
 
+/// Upward part of a normal below which a point lies on the face of a wall rather than on its edge: within 17° of upright.
+const FACE_NORMAL_Z: f32 = 0.3;
+
 /// How carved balls are made. Every rule that is `Some` is applied; [`CarvedParams::default`] applies those that the comparison
 /// of docs/methods/carving.md shows to earn their place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -246,9 +249,13 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, progress: Pr
     }
     // before anything is added: the ball of a point is still in its row
     let relief = params.relief.as_ref().map(|params| {
-        // below thin surfaces is air, and what is slender is filled by its own rule
-        let is_left_out =
-            |row: usize| thin.get(row) == Some(&true) || slender.as_ref().is_some_and(|slender| slender.stands(row));
+        // below thin surfaces is air, what is slender is filled by its own rule, and balls hung on the face of a wall would stand
+        // out of it where no pulse says how far
+        let is_left_out = |row: usize| {
+            thin.get(row) == Some(&true)
+                || slender.as_ref().is_some_and(|slender| slender.stands(row))
+                || oriented.normals()[row][2].abs() < FACE_NORMAL_Z
+        };
         Relief::find(positions, &kinds, is_left_out, &balls, index, params)
     });
     report.relief = relief.as_ref().map_or(0, Relief::len);
