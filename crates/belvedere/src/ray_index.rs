@@ -51,6 +51,35 @@ pub struct RayIndex {
     half_size: [f64; 3],
 }
 
+/// The parts of a node of a [`RayIndex`].
+pub struct Parts {
+    /// What they are.
+    pub parts: [Part; PARTS],
+    /// Middles of their boxes, local metres, by axis.
+    pub centers: [[f32; PARTS]; 3],
+    /// Half sizes of their boxes, metres, by axis.
+    pub half_sizes: [[f32; PARTS]; 3],
+}
+
+/// Most parts of a node of a [`RayIndex`].
+pub const PARTS: usize = 8;
+
+/// What a node of a [`RayIndex`] is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// A place that is not taken.
+    Nothing,
+    /// Another node.
+    Node(u32),
+    /// Rows of the index.
+    Rows {
+        /// The lowest row.
+        first: u32,
+        /// How many there are.
+        count: u32,
+    },
+}
+
 struct PaddedBox(Aabb);
 
 impl Boundable for PaddedBox {
@@ -136,6 +165,62 @@ impl RayIndex {
         if let Some(entry) = self.enter(ray) {
             self.tree.ray_traverse_anyhit(entry.ray, |_, row| visit(row));
         }
+    }
+
+    /// Where the boxes of nodes count from, local metres.
+    #[must_use]
+    pub fn center(&self) -> [f64; 3] {
+        self.center
+    }
+
+    /// Half the size of the box that holds every row, metres.
+    #[must_use]
+    pub fn half_size(&self) -> [f64; 3] {
+        self.half_size
+    }
+
+    /// Number of the node that holds all others, if there is any row.
+    #[must_use]
+    pub fn root(&self) -> Option<u32> {
+        (!self.tree.nodes.is_empty()).then_some(0)
+    }
+
+    /// The parts of a node and their boxes, each of which holds the boxes of all rows in it, but for what f32 rounds: a few units of
+    /// 6e-8 of the largest coordinate.
+    #[must_use]
+    #[inline]
+    pub fn parts(&self, node: u32) -> Option<Parts> {
+        let node = self.tree.nodes.get(node as usize)?;
+        let parts = std::array::from_fn(|child| {
+            if node.is_child_empty(child) {
+                Part::Nothing
+            } else if node.is_leaf(child) {
+                let (first, count) = node.child_primitives(child);
+                Part::Rows { first, count }
+            } else {
+                Part::Node(node.child_node_index(child))
+            }
+        });
+        let steps = node.compute_extent().to_array();
+        let origin = node.p.to_array();
+        let sides = [
+            (&node.child_min_x, &node.child_max_x),
+            (&node.child_min_y, &node.child_max_y),
+            (&node.child_min_z, &node.child_max_z),
+        ];
+        let (mut centers, mut half_sizes) = ([[0.0; PARTS]; 3], [[0.0; PARTS]; 3]);
+        for axis in 0..3 {
+            let (low, high) = sides[axis];
+            let half_step = 0.5 * steps[axis];
+            #[expect(clippy::cast_possible_truncation, reason = "a rounding that callers allow for")]
+            let start = (f64::from(origin[axis]) + self.center[axis]) as f32;
+            for child in 0..PARTS {
+                let (low, high) = (f32::from(low[child]), f32::from(high[child]));
+                centers[axis][child] = start + half_step * (low + high);
+                half_sizes[axis][child] = half_step * (high - low);
+            }
+        }
+        Some(Parts { parts, centers, half_sizes })
     }
 
     /// The part of a ray inside the box of the scene, as the tree takes it, or `None` where it misses the box.

@@ -57,6 +57,11 @@ impl SceneParams {
     pub fn carved() -> Self {
         Self { profile: Profile::Sphere, depth_bias: 0.0, shell: 0.2 }
     }
+
+    /// Most that a ball of this radius gives way to a target, metres.
+    pub(super) fn shell_of(&self, radius: f64) -> f64 {
+        self.shell.min(SHELL_SHARE * radius)
+    }
 }
 
 impl Default for SceneParams {
@@ -113,6 +118,11 @@ impl MedialScene {
         if self.blocked(target, towards, range) {
             return Answer::Blocked;
         }
+        self.unblocked_answer(target, towards, range)
+    }
+
+    /// The answer for a line of sight that no ball blocks.
+    pub(super) fn unblocked_answer(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
         match &self.proof {
             Some(proof) if proof.is_unproven(target, towards, range) => Answer::Unproven,
             _ => Answer::Visible,
@@ -143,9 +153,27 @@ impl MedialScene {
         self.balls.len()
     }
 
+    pub(super) fn params(&self) -> &SceneParams {
+        &self.params
+    }
+
+    pub(super) fn index(&self) -> &RayIndex {
+        &self.index
+    }
+
+    /// Centre and radius of a row of the index.
+    pub(super) fn ball(&self, number: usize) -> ([f32; 3], f32) {
+        self.balls[number]
+    }
+
+    /// The line of sight from `target` along the unit vector `towards`, as [`MedialScene::front`] takes it.
+    pub(super) fn ray(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Ray {
+        Ray { origin: target, direction: towards, ranges: [self.params.depth_bias, range] }
+    }
+
     /// Whether any ball lies between a target and its viewer at `range` along the unit vector `towards`.
     fn blocked(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
-        let ray = Ray { origin: target, direction: towards, ranges: [self.params.depth_bias, range] };
+        let ray = self.ray(target, towards, range);
         self.index.any(&ray, |number| self.front(number, &ray).is_some())
     }
 
@@ -153,13 +181,13 @@ impl MedialScene {
     /// row among the balls given, and where the line leaves it, metres from the target. `None` where nothing blocks.
     #[must_use]
     pub fn first_block(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Option<(usize, f64)> {
-        let ray = Ray { origin: target, direction: towards, ranges: [self.params.depth_bias, range] };
+        let ray = self.ray(target, towards, range);
         let (number, front) = self.index.nearest(&ray, |number| self.front(number, &ray))?;
         Some((*self.rows.get(number)? as usize, front))
     }
 
     /// Where a line of sight leaves ball `number`, metres from its target, if that ball blocks it.
-    fn front(&self, number: usize, ray: &Ray) -> Option<f64> {
+    pub(super) fn front(&self, number: usize, ray: &Ray) -> Option<f64> {
         let &(center, radius) = self.balls.get(number)?;
         let mut radius = f64::from(radius);
         let mut along = 0.0;
@@ -177,7 +205,7 @@ impl MedialScene {
         if whole >= ray.ranges[1] {
             return None;
         }
-        let shell = self.params.shell.min(SHELL_SHARE * radius);
+        let shell = self.params.shell_of(radius);
         let outside = square.sqrt() - radius;
         if outside.abs() < shell {
             radius -= shell - outside.max(0.0);

@@ -1,0 +1,602 @@
+//! Many targets for one viewer at once: a tree of targets against the tree of balls.
+//!
+//! All lines of sight of a box of targets run within a beam: from an eye the hull of eye and box, from the sun the box drawn out
+//! along the direction. Balls that the beam of a node misses are left out for all targets below it, a ball that covers
+//! the whole beam answers them all, and where no ball is left all are visible. What remains are targets at the rim of
+//! shadows and close to surfaces, which are asked one by one of the few balls in their beam. The answers are those of the exact
+//! lines of sight, to the last bit: a beam only ever leaves out balls that no line of sight in it can meet, and a shadow being
+//! convex, a ball that hides the corners of a box hides all in it.
+
+use super::medial_scene::MedialScene;
+use super::target_tree::{TargetNode, TargetTree};
+use super::{Answer, Viewer};
+use crate::depth::Profile;
+use crate::ray_index::{PARTS, Part, Parts};
+use crate::vector::{cross, dot, sub};
+use crate::{Error, Result};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// A node of balls is opened where it is larger than so many widths of the beam: with less, balls that only a part of the beam meets
+/// are looked at by all of it, with more, parts of the beam open the same nodes again. 4 suits targets high above the ground (a quarter
+/// faster at 1.5 m), 2 those on it.
+const OPENED_SHARE: f32 = 2.5;
+/// Targets of a subtree that one thread answers.
+const SHARE: usize = 4096;
+/// What f32 may err by in the test of a beam, as a share of the largest coordinate: a dozen roundings of 6e-8.
+const ROUNDING: f64 = 1e-6;
+/// How much smaller a ball counts where it is to hide a box, as a share of its squared radius and of squared distances: whatever f64
+/// rounds in the exact test, and then some.
+const COVER_MARGINS: [f64; 2] = [1e-9, 1e-14];
+/// Balls that are tested side by side.
+const LANES: usize = 8;
+
+impl MedialScene {
+    /// The answer for each target, in the order in which they were given: the same as those of
+    /// [`super::Visibility::visible`], at a cost that grows with the rim of what is visible rather than with the number of targets.
+    /// Targets that are not finite are [`Answer::OutsideView`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a viewer that is not finite, [`Error::UnsupportedViewer`] for [`Viewer::Each`].
+    pub fn answer_among(&self, viewer: Viewer<'_>, targets: &TargetTree) -> Result<Vec<Answer>> {
+        let sweep = Sweep::new(self, viewer, targets)?;
+        let mut answers = vec![Answer::OutsideView; targets.len()];
+        let subtrees = targets.subtrees(SHARE);
+        let answered: Vec<Vec<(u32, Answer)>> = subtrees
+            .into_par_iter()
+            .map(|subtree| {
+                let places = targets.nodes[subtree].first..targets.nodes[subtree].first + targets.nodes[subtree].count;
+                let first = places.start;
+                let mut seen = vec![false; places.len()];
+                sweep.run(subtree, &mut |place| seen[place - first] = true);
+                places
+                    .map(|place| {
+                        let target = targets.positions()[place];
+                        let answer = match viewer.line_of_sight(place, target) {
+                            None => Answer::OutsideView,
+                            Some(_) if !seen[place - first] => Answer::Blocked,
+                            Some((towards, range)) => self.unblocked_answer(target.map(f64::from), towards, range),
+                        };
+                        (targets.rows()[place], answer)
+                    })
+                    .collect()
+            })
+            .collect();
+        for (row, answer) in answered.into_iter().flatten() {
+            answers[row as usize] = answer;
+        }
+        Ok(answers)
+    }
+
+    /// Calls `visit` with the place, in the order of the tree, of every target that no ball blocks, one at the viewer itself among
+    /// them; what pulses prove is not asked. Runs on the calling thread; the places ascend.
+    ///
+    /// # Errors
+    /// As [`MedialScene::answer_among`].
+    pub fn visible_among(&self, viewer: Viewer<'_>, targets: &TargetTree, mut visit: impl FnMut(usize)) -> Result<()> {
+        let sweep = Sweep::new(self, viewer, targets)?;
+        if !targets.nodes.is_empty() {
+            sweep.run(0, &mut visit);
+        }
+        Ok(())
+    }
+}
+
+/// One viewer's look at a tree of targets.
+struct Sweep<'a> {
+    scene: &'a MedialScene,
+    targets: &'a TargetTree,
+    viewer: Viewer<'a>,
+    apex: Apex,
+    /// By how much f32 may misplace anything in the scene, metres.
+    room: f64,
+}
+
+/// Where beams come from.
+#[derive(Clone, Copy)]
+enum Apex {
+    /// Local metres.
+    Eye([f64; 3]),
+    /// Unit vector.
+    Direction([f64; 3]),
+}
+
+impl<'a> Sweep<'a> {
+    fn new(scene: &'a MedialScene, viewer: Viewer<'a>, targets: &'a TargetTree) -> Result<Self> {
+        viewer.validate()?;
+        let apex = match viewer {
+            Viewer::Eye(eye) => Apex::Eye(eye),
+            Viewer::Direction(direction) => Apex::Direction(crate::vector::unit(direction).unwrap_or(direction)),
+            Viewer::Each(_) => {
+                return Err(Error::UnsupportedViewer {
+                    method: "a tree of targets",
+                    what: "one viewer for all targets",
+                });
+            }
+        };
+        let index = scene.index();
+        let farthest = |v: [f64; 3]| v.into_iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+        let mut scale = (0..3).map(|i| index.half_size()[i] + index.center()[i].abs()).fold(0.0, f64::max);
+        if let Apex::Eye(eye) = apex {
+            scale = scale.max(farthest(eye));
+        }
+        if let Some(root) = targets.nodes.first() {
+            scale = scale.max(farthest(root.low.map(f64::from))).max(farthest(root.high.map(f64::from)));
+        }
+        Ok(Self { scene, targets, viewer, apex, room: ROUNDING * scale })
+    }
+
+    fn run(&self, node: usize, visit: &mut impl FnMut(usize)) {
+        let mut lists = Lists::default();
+        let index = self.scene.index();
+        if let Some(root) = index.root() {
+            #[expect(clippy::cast_possible_truncation, reason = "beams are widened by more than what is rounded")]
+            let [center, half] = [index.center(), index.half_size()].map(|v| v.map(|v| v as f32));
+            lists.nodes.push(Node { center, half, number: root });
+        }
+        let given = lists.end();
+        self.descend(node, &mut lists, [[0; 2], given], visit);
+    }
+
+    /// Answers the targets below `node`, whose beam can meet nothing but the `given` nodes and balls.
+    fn descend(&self, node: usize, lists: &mut Lists, given: [[usize; 2]; 2], visit: &mut impl FnMut(usize)) {
+        let target = &self.targets.nodes[node];
+        let beam = Beam::new(self, target);
+        let first = lists.end();
+        let [[first_node, first_ball], [end_node, end_ball]] = given;
+        let places = target.first..target.first + target.count;
+        if self.narrow_balls(target, &beam, lists, first_ball..end_ball) {
+            lists.truncate(first);
+            return;
+        }
+        let Some(halves) = target.halves else {
+            // nodes are opened only for targets that the balls at hand leave visible
+            lists.balls.pad();
+            let is_unblocked = |place: &usize| !self.is_blocked(*place, &lists.balls, first[1]);
+            let mut unblocked = [0; super::target_tree::LEAF];
+            let mut count = 0;
+            for place in places.filter(is_unblocked) {
+                unblocked[count] = place;
+                count += 1;
+            }
+            if count > 0 {
+                lists.fresh.truncate(0);
+                self.open_nodes(&beam, lists, first_node..end_node, Opening::Whole);
+                lists.fresh.pad();
+                unblocked[..count]
+                    .iter()
+                    .filter(|&&place| !self.is_blocked(place, &lists.fresh, 0))
+                    .for_each(|&place| visit(place));
+            }
+            lists.truncate(first);
+            return;
+        };
+        lists.fresh.truncate(0);
+        self.open_nodes(&beam, lists, first_node..end_node, Opening::WhatIsLarge);
+        let hidden = self.narrow_fresh(target, &beam, lists);
+        if !hidden {
+            if lists.end() == first {
+                places.for_each(&mut *visit);
+            } else {
+                lists.balls.pad();
+                let left = [first, lists.end()];
+                // two levels at once: the list is looked through half as often
+                for half in halves {
+                    match self.targets.nodes[half].halves {
+                        Some(quarters) => {
+                            for quarter in quarters {
+                                self.descend(quarter, lists, left, visit);
+                            }
+                        }
+                        None => self.descend(half, lists, left, visit),
+                    }
+                }
+            }
+        }
+        lists.truncate(first);
+    }
+
+    /// Appends those of the `given` balls that the beam may meet; true as soon as one hides all of the targets.
+    fn narrow_balls(&self, target: &TargetNode, beam: &Beam, lists: &mut Lists, given: Range<usize>) -> bool {
+        given.step_by(LANES).any(|start| {
+            let met = beam.meets(lists.balls.lanes(start));
+            (0..LANES).any(|lane| {
+                met.is_hit[lane] && {
+                    let ball = lists.balls.get(start + lane);
+                    lists.balls.push(ball);
+                    met.may_be_covered[lane] && self.hides(ball.row, target)
+                }
+            })
+        })
+    }
+
+    /// The same for the fresh balls.
+    fn narrow_fresh(&self, target: &TargetNode, beam: &Beam, lists: &mut Lists) -> bool {
+        let Lists { balls, fresh, .. } = lists;
+        fresh.pad();
+        (0..fresh.len()).step_by(LANES).any(|start| {
+            let met = beam.meets(fresh.lanes(start));
+            (0..LANES).any(|lane| {
+                met.is_hit[lane] && {
+                    let ball = fresh.get(start + lane);
+                    balls.push(ball);
+                    met.may_be_covered[lane] && self.hides(ball.row, target)
+                }
+            })
+        })
+    }
+
+    /// Opens those of the `given` nodes that the beam may meet: their balls become fresh, nodes that need no opening are appended.
+    fn open_nodes(&self, beam: &Beam, lists: &mut Lists, given: Range<usize>, opening: Opening) {
+        let Lists { nodes, unopened, fresh, .. } = lists;
+        for place in given {
+            if beam.meets_box(&nodes[place]) {
+                unopened.push(nodes[place]);
+            }
+            while let Some(node) = unopened.pop() {
+                let size = 2.0 * node.half.into_iter().fold(0.0, f32::max);
+                if opening == Opening::WhatIsLarge && !beam.is_narrower_than(size, node.center) {
+                    nodes.push(node);
+                    continue;
+                }
+                let Some(parts) = self.scene.index().parts(node.number) else { continue };
+                let hits = beam.meets_boxes(&parts);
+                for (lane, part) in parts.parts.into_iter().enumerate().filter(|&(lane, _)| hits[lane]) {
+                    match part {
+                        Part::Nothing => {}
+                        Part::Node(number) => unopened.push(Node::of(number, &parts, lane)),
+                        Part::Rows { first, count } => {
+                            (first..first + count).for_each(|row| fresh.push(self.ball(row)));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn ball(&self, row: u32) -> Ball {
+        let (center, radius) = self.scene.ball(row as usize);
+        Ball { center, radius, row }
+    }
+
+    /// Whether a ball blocks every line of sight of the targets, wherever in their box they lie.
+    ///
+    /// The shadow of a ball is convex: a box lies in it if its corners do. Targets near its surface meet a ball smaller by up
+    /// to the shell, so the shadow of that one is asked; a target counts as `depth_bias` nearer to the viewer.
+    fn hides(&self, ball: u32, target: &TargetNode) -> bool {
+        let params = self.scene.params();
+        if params.profile == Profile::PaperCone {
+            return false;
+        }
+        let (center, whole) = self.scene.ball(ball as usize);
+        let (center, whole) = (center.map(f64::from), f64::from(whole));
+        let radius = whole - params.shell_of(whole);
+        let corners = target.corners(params.depth_bias);
+        let squared = |v: [f64; 3]| dot(v, v);
+        let farthest = corners.iter().map(|&corner| squared(sub(center, corner))).fold(0.0, f64::max);
+        match (self.apex, self.viewer) {
+            (Apex::Direction(direction), _) => {
+                let square = radius * radius * (1.0 - COVER_MARGINS[0]) - COVER_MARGINS[1] * farthest;
+                corners.iter().all(|&corner| {
+                    let offset = sub(center, corner);
+                    let (along, distance) = (dot(offset, direction), squared(offset));
+                    distance < square || (along > 0.0 && distance - along * along < square)
+                })
+            }
+            (Apex::Eye(_), Viewer::Eye(eye)) => {
+                let offset = sub(center, eye);
+                let distance = squared(offset);
+                // a ball that holds the viewer blocks nothing
+                if distance <= whole * whole * (1.0 + COVER_MARGINS[0]) {
+                    return false;
+                }
+                let square = radius * radius * (1.0 - COVER_MARGINS[0]) - COVER_MARGINS[1] * (farthest + distance);
+                let tangent = distance - square;
+                corners.iter().all(|&corner| {
+                    let sight = sub(corner, eye);
+                    let (along, range) = (dot(offset, sight), squared(sight));
+                    let is_behind = along > 0.0 && along * along > tangent * range && range > tangent;
+                    is_behind || squared(sub(corner, center)) < square
+                })
+            }
+            (Apex::Eye(_), _) => false,
+        }
+    }
+
+    /// Whether one of the balls from place `first` on blocks the target at `place`.
+    #[expect(clippy::cast_possible_truncation, reason = "balls count as larger by more than what is rounded")]
+    fn is_blocked(&self, place: usize, balls: &Balls, first: usize) -> bool {
+        let target = self.targets.positions()[place].map(f64::from);
+        let Some((towards, range)) = self.viewer.line_of_sight(place, self.targets.positions()[place]) else {
+            // at the viewer itself
+            return false;
+        };
+        let ray = self.scene.ray(target, towards, range);
+        let origin = self.targets.positions()[place];
+        let direction = towards.map(|v| v as f32);
+        let room = self.room as f32;
+        (first..balls.len()).step_by(LANES).any(|start| {
+            let near = balls.near_line(start, origin, direction, room);
+            (0..LANES).any(|lane| near[lane] && self.scene.front(balls.row[start + lane] as usize, &ray).is_some())
+        })
+    }
+}
+
+/// Which nodes are opened.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Opening {
+    WhatIsLarge,
+    Whole,
+}
+
+/// A node of the index as a box, local metres.
+#[derive(Clone, Copy)]
+struct Node {
+    center: [f32; 3],
+    half: [f32; 3],
+    number: u32,
+}
+
+impl Node {
+    fn of(number: u32, parts: &Parts, lane: usize) -> Self {
+        let part = |sides: &[[f32; PARTS]; 3]| sides.map(|sides| sides[lane]);
+        Self { center: part(&parts.centers), half: part(&parts.half_sizes), number }
+    }
+}
+
+/// A ball, local metres.
+#[derive(Clone, Copy)]
+struct Ball {
+    center: [f32; 3],
+    radius: f32,
+    row: u32,
+}
+
+/// Balls by column, so that several are tested at once; padded to whole lanes with balls that nothing meets.
+#[derive(Default)]
+struct Balls {
+    x: Vec<f32>,
+    y: Vec<f32>,
+    z: Vec<f32>,
+    radius: Vec<f32>,
+    row: Vec<u32>,
+}
+
+/// What the beams of a node of targets and of all above it may meet.
+#[derive(Default)]
+struct Lists {
+    nodes: Vec<Node>,
+    balls: Balls,
+    /// Nodes still to be looked at.
+    unopened: Vec<Node>,
+    /// Balls out of opened nodes.
+    fresh: Balls,
+}
+
+impl Lists {
+    /// Numbers of nodes and of balls.
+    fn end(&self) -> [usize; 2] {
+        [self.nodes.len(), self.balls.len()]
+    }
+
+    fn truncate(&mut self, [nodes, balls]: [usize; 2]) {
+        self.nodes.truncate(nodes);
+        self.balls.truncate(balls);
+    }
+}
+
+impl Balls {
+    /// Fills up the lanes.
+    fn pad(&mut self) {
+        while !self.len().is_multiple_of(LANES) {
+            self.push(Ball { center: [0.0; 3], radius: f32::NEG_INFINITY, row: 0 });
+        }
+    }
+
+    fn len(&self) -> usize {
+        self.row.len()
+    }
+
+    #[inline]
+    fn push(&mut self, ball: Ball) {
+        self.x.push(ball.center[0]);
+        self.y.push(ball.center[1]);
+        self.z.push(ball.center[2]);
+        self.radius.push(ball.radius);
+        self.row.push(ball.row);
+    }
+
+    #[inline]
+    fn get(&self, place: usize) -> Ball {
+        let center = [self.x[place], self.y[place], self.z[place]];
+        Ball { center, radius: self.radius[place], row: self.row[place] }
+    }
+
+    fn truncate(&mut self, length: usize) {
+        self.x.truncate(length);
+        self.y.truncate(length);
+        self.z.truncate(length);
+        self.radius.truncate(length);
+        self.row.truncate(length);
+    }
+
+    /// Centres and radii of `LANES` balls from `start` on.
+    #[inline(always)]
+    fn lanes(&self, start: usize) -> [[f32; LANES]; 4] {
+        [&self.x, &self.y, &self.z, &self.radius].map(|column| {
+            column.get(start..start + LANES).and_then(|lanes| lanes.try_into().ok()).unwrap_or([f32::NAN; LANES])
+        })
+    }
+
+    /// Which of the balls from `start` on may touch the half line from `origin` along the unit vector `direction`.
+    #[inline]
+    fn near_line(&self, start: usize, origin: [f32; 3], direction: [f32; 3], room: f32) -> [bool; LANES] {
+        let [x, y, z, radius] = self.lanes(start);
+        std::array::from_fn(|lane| {
+            let m = [x[lane] - origin[0], y[lane] - origin[1], z[lane] - origin[2]];
+            let across = cross(m, direction);
+            let reach = radius[lane] + room;
+            (dot(across, across) <= reach * reach) & (dot(m, direction) >= -reach) & (reach > 0.0)
+        })
+    }
+}
+
+/// All lines of sight of a box of targets lie between these planes.
+struct Beam {
+    /// Outward unit normals, and how far out the planes lie along them, local metres; widened by what f32 rounds.
+    normals: [[f32; 3]; PLANES],
+    offsets: [f32; PLANES],
+    /// Width of the beam as a linear function of the position: at the local origin, and how it grows.
+    width: f32,
+    growth: [f32; 3],
+}
+
+/// Two on either side, one behind the targets and one behind the eye.
+const PLANES: usize = 6;
+
+/// What a beam has to do with some balls.
+struct Met {
+    /// It may meet the ball.
+    is_hit: [bool; LANES],
+    /// The ball reaches about as far on all sides as the beam: worth the exact question whether it hides all of it.
+    may_be_covered: [bool; LANES],
+}
+
+impl Beam {
+    fn new(sweep: &Sweep<'_>, target: &TargetNode) -> Self {
+        let corners = target.corners(0.0);
+        let width = (0..3).map(|i| f64::from(target.high[i]) - f64::from(target.low[i])).fold(0.0, f64::max);
+        let middle = std::array::from_fn(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 8.0);
+        let forward = match sweep.apex {
+            Apex::Eye(eye) => crate::vector::unit(sub(middle, eye)),
+            Apex::Direction(direction) => Some(direction),
+        };
+        let mut beam = Self { normals: [[0.0; 3]; PLANES], offsets: [f32::MAX; PLANES], width: 0.0, growth: [0.0; 3] };
+        #[expect(clippy::cast_possible_truncation, reason = "widened by more than what is rounded")]
+        let mut bound = |plane: usize, normal: [f64; 3], offset: f64| {
+            beam.normals[plane] = normal.map(|v| v as f32);
+            beam.offsets[plane] = (offset + sweep.room) as f32;
+        };
+        let range = |value: &dyn Fn(&[f64; 3]) -> f64| {
+            let values = corners.iter().map(value);
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+        };
+        let mut growth = [0.0; 3];
+        let mut start_width = width;
+        if let Some(forward) = forward {
+            let up = if forward[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
+            let right = crate::vector::unit(cross(forward, up)).unwrap_or([1.0, 0.0, 0.0]);
+            let sides = [right, cross(right, forward)];
+            let [near, far] = range(&|corner| dot(*corner, forward));
+            match sweep.apex {
+                Apex::Direction(_) => {
+                    for (number, side) in sides.into_iter().enumerate() {
+                        let [low, high] = range(&|corner| dot(*corner, side));
+                        bound(2 * number, side, high);
+                        bound(2 * number + 1, side.map(|v| -v), -low);
+                    }
+                    bound(4, forward.map(|v| -v), -near);
+                }
+                Apex::Eye(eye) => {
+                    bound(4, forward, far);
+                    let start = dot(eye, forward);
+                    let slopes = |side: [f64; 3]| {
+                        range(&|corner| dot(sub(*corner, eye), side) / (dot(*corner, forward) - start))
+                    };
+                    // an eye between the targets, or almost, sees them all around
+                    if near - start > 10.0 * sweep.room {
+                        for (number, side) in sides.into_iter().enumerate() {
+                            let [low, high] = slopes(side);
+                            let edge = |slope: f64| -> [f64; 3] {
+                                let normal: [f64; 3] = std::array::from_fn(|i| side[i] - slope * forward[i]);
+                                let length = crate::vector::length(normal);
+                                normal.map(|v| v / length)
+                            };
+                            let [left, right] = [edge(low).map(|v| -v), edge(high)];
+                            bound(2 * number, right, dot(right, eye));
+                            bound(2 * number + 1, left, dot(left, eye));
+                        }
+                        bound(5, forward.map(|v| -v), -start);
+                        growth = forward.map(|v| v * width / (far - start));
+                        start_width = -start * width / (far - start);
+                    } else {
+                        bound(4, [0.0; 3], f64::from(f32::MAX));
+                    }
+                }
+            }
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "only decides which nodes are opened")]
+        {
+            beam.width = start_width as f32;
+            beam.growth = growth.map(|v| v as f32);
+        }
+        beam
+    }
+
+    /// What the beam has to do with balls given by their centres and radii.
+    #[inline(always)]
+    fn meets(&self, [x, y, z, radius]: [[f32; LANES]; 4]) -> Met {
+        let mut depths = [[0.0; LANES]; PLANES];
+        for ((depths, normal), offset) in depths.iter_mut().zip(&self.normals).zip(self.offsets) {
+            for lane in 0..LANES {
+                depths[lane] = offset - (normal[0] * x[lane] + normal[1] * y[lane] + normal[2] * z[lane]);
+            }
+        }
+        let mut met = Met { is_hit: [false; LANES], may_be_covered: [false; LANES] };
+        for lane in 0..LANES {
+            let mut least = radius[lane];
+            for depths in &depths {
+                least = if depths[lane] < least { depths[lane] } else { least };
+            }
+            let larger = |a: f32, b: f32| if a > b { a } else { b };
+            let [across, along] = [[0, 1], [2, 3]].map(|[a, b]| larger(depths[a][lane], depths[b][lane]));
+            met.is_hit[lane] = -least <= radius[lane];
+            met.may_be_covered[lane] = across * across + along * along <= radius[lane] * radius[lane];
+        }
+        met
+    }
+
+    /// Which parts of a node the beam may meet.
+    #[inline(always)]
+    fn meets_boxes(&self, parts: &Parts) -> [bool; PARTS] {
+        let Parts { centers, half_sizes: halves, .. } = parts;
+        let mut most = [f32::NEG_INFINITY; PARTS];
+        for (normal, offset) in self.normals.iter().zip(self.offsets) {
+            for lane in 0..PARTS {
+                let center = normal[0] * centers[0][lane] + normal[1] * centers[1][lane] + normal[2] * centers[2][lane];
+                let half = normal[0].abs() * halves[0][lane]
+                    + normal[1].abs() * halves[1][lane]
+                    + normal[2].abs() * halves[2][lane];
+                let beyond = center - half - offset;
+                most[lane] = if beyond > most[lane] { beyond } else { most[lane] };
+            }
+        }
+        most.map(|most| most <= 0.0)
+    }
+
+    fn meets_box(&self, node: &Node) -> bool {
+        self.normals
+            .iter()
+            .zip(self.offsets)
+            .all(|(&normal, offset)| dot(normal, node.center) - dot(normal.map(f32::abs), node.half) <= offset)
+    }
+
+    /// Whether something of this size is large against the beam at `center`.
+    #[inline]
+    fn is_narrower_than(&self, size: f32, center: [f32; 3]) -> bool {
+        size > OPENED_SHARE * (self.width + dot(self.growth, center))
+    }
+}
+
+impl TargetNode {
+    /// Corners of the box, moved outward by `room` metres.
+    fn corners(&self, room: f64) -> [[f64; 3]; 8] {
+        std::array::from_fn(|corner| {
+            std::array::from_fn(|axis| {
+                let is_high = corner >> axis & 1 == 1;
+                if is_high { f64::from(self.high[axis]) + room } else { f64::from(self.low[axis]) - room }
+            })
+        })
+    }
+}
