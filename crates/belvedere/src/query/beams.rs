@@ -8,10 +8,10 @@
 //! convex, a ball that hides the corners of a box hides all in it.
 
 use super::medial_scene::MedialScene;
-use super::target_tree::{TargetNode, TargetTree};
+use super::target_tree::{LEAF, TargetNode, TargetTree};
 use super::{Answer, Viewer};
 use crate::depth::Profile;
-use crate::ray_index::{PARTS, Part, Parts};
+use crate::ray_index::{PARTS, Part, Parts, Ray};
 use crate::vector::{cross, dot, sub};
 use crate::{Error, Result};
 use rayon::prelude::*;
@@ -28,6 +28,8 @@ const ROUNDING: f64 = 1e-6;
 /// How much smaller a ball counts where it is to hide a box, as a share of its squared radius and of squared distances: whatever f64
 /// rounds in the exact test, and then some.
 const COVER_MARGINS: [f64; 2] = [1e-9, 1e-14];
+/// Balls that blocked the last targets and are asked first for the next; more find little more.
+const RECENT: usize = 4;
 /// Balls that are tested side by side.
 const LANES: usize = 8;
 
@@ -141,56 +143,66 @@ impl<'a> Sweep<'a> {
     /// Answers the targets below `node`, whose beam can meet nothing but the `given` nodes and balls.
     fn descend(&self, node: usize, lists: &mut Lists, given: [[usize; 2]; 2], visit: &mut impl FnMut(usize)) {
         let target = &self.targets.nodes[node];
+        let Some(halves) = target.halves else { return self.finish(target, lists, given, visit) };
+        // what hides one box often hides the next
+        if lists.hider.is_some_and(|ball| self.hides(ball, target)) {
+            return;
+        }
         let beam = Beam::new(self, target);
         let first = lists.end();
         let [[first_node, first_ball], [end_node, end_ball]] = given;
-        let places = target.first..target.first + target.count;
-        if self.narrow_balls(target, &beam, lists, first_ball..end_ball) {
-            lists.truncate(first);
-            return;
-        }
-        let Some(halves) = target.halves else {
-            // nodes are opened only for targets that the balls at hand leave visible
-            lists.balls.pad();
-            let is_unblocked = |place: &usize| !self.is_blocked(*place, &lists.balls, first[1]);
-            let mut unblocked = [0; super::target_tree::LEAF];
-            let mut count = 0;
-            for place in places.filter(is_unblocked) {
-                unblocked[count] = place;
-                count += 1;
-            }
-            if count > 0 {
-                lists.fresh.truncate(0);
-                self.open_nodes(&beam, lists, first_node..end_node, Opening::Whole);
-                lists.fresh.pad();
-                unblocked[..count]
-                    .iter()
-                    .filter(|&&place| !self.is_blocked(place, &lists.fresh, 0))
-                    .for_each(|&place| visit(place));
-            }
-            lists.truncate(first);
-            return;
+        let is_hidden = self.narrow_balls(target, &beam, lists, first_ball..end_ball) || {
+            self.open_nodes(&beam, lists, first_node..end_node, Opening::WhatIsLarge);
+            self.narrow_fresh(target, &beam, lists)
         };
-        lists.fresh.truncate(0);
-        self.open_nodes(&beam, lists, first_node..end_node, Opening::WhatIsLarge);
-        let hidden = self.narrow_fresh(target, &beam, lists);
-        if !hidden {
-            if lists.end() == first {
-                places.for_each(&mut *visit);
-            } else {
-                lists.balls.pad();
-                let left = [first, lists.end()];
-                // two levels at once: the list is looked through half as often
-                for half in halves {
-                    match self.targets.nodes[half].halves {
-                        Some(quarters) => {
-                            for quarter in quarters {
-                                self.descend(quarter, lists, left, visit);
-                            }
-                        }
-                        None => self.descend(half, lists, left, visit),
+        if !is_hidden && lists.end() == first {
+            (target.first..target.first + target.count).for_each(&mut *visit);
+        } else if !is_hidden {
+            lists.balls.pad();
+            let left = [first, lists.end()];
+            // two levels at once: the list is looked through half as often
+            for half in halves {
+                match self.targets.nodes[half].halves {
+                    Some(quarters) => quarters.into_iter().for_each(|node| self.descend(node, lists, left, visit)),
+                    None => self.descend(half, lists, left, visit),
+                }
+            }
+        }
+        lists.truncate(first);
+    }
+
+    /// Answers the targets of a leaf one by one: by what blocked the last ones, then by the balls at hand, and only where these leave
+    /// them visible by those of the nodes too.
+    fn finish(&self, target: &TargetNode, lists: &mut Lists, given: [[usize; 2]; 2], visit: &mut impl FnMut(usize)) {
+        let mut visible = [true; LEAF];
+        let mut sift = |lists: &mut Lists, by: &dyn Fn(&Lists, usize) -> Option<u32>| {
+            for (visible, place) in visible.iter_mut().zip(target.first..target.first + target.count) {
+                if *visible && let Some(ball) = by(lists, place) {
+                    *visible = false;
+                    if !lists.recent.contains(&ball) {
+                        lists.recent.rotate_right(1);
+                        lists.recent[0] = ball;
                     }
                 }
+            }
+            visible[..target.count].contains(&true)
+        };
+        if !sift(lists, &|lists, place| self.blocked_by(place, lists.recent.iter().copied())) {
+            return;
+        }
+        let beam = Beam::new(self, target);
+        let first = lists.end();
+        let [[first_node, first_ball], [end_node, end_ball]] = given;
+        let is_hidden = self.narrow_balls(target, &beam, lists, first_ball..end_ball) || {
+            lists.balls.pad();
+            !sift(lists, &|lists, place| self.blocked_among(place, &lists.balls, first[1]))
+        };
+        if !is_hidden {
+            self.open_nodes(&beam, lists, first_node..end_node, Opening::Whole);
+            lists.fresh.pad();
+            sift(lists, &|lists, place| self.blocked_among(place, &lists.fresh, 0));
+            for (place, _) in (target.first..).zip(&visible[..target.count]).filter(|&(_, &visible)| visible) {
+                visit(place);
             }
         }
         lists.truncate(first);
@@ -204,7 +216,10 @@ impl<'a> Sweep<'a> {
                 met.is_hit[lane] && {
                     let ball = lists.balls.get(start + lane);
                     lists.balls.push(ball);
-                    met.may_be_covered[lane] && self.hides(ball.row, target)
+                    met.may_be_covered[lane] && self.hides(ball.row, target) && {
+                        lists.hider = Some(ball.row);
+                        true
+                    }
                 }
             })
         })
@@ -212,7 +227,7 @@ impl<'a> Sweep<'a> {
 
     /// The same for the fresh balls.
     fn narrow_fresh(&self, target: &TargetNode, beam: &Beam, lists: &mut Lists) -> bool {
-        let Lists { balls, fresh, .. } = lists;
+        let Lists { balls, fresh, hider, .. } = lists;
         fresh.pad();
         (0..fresh.len()).step_by(LANES).any(|start| {
             let met = beam.meets(fresh.lanes(start));
@@ -220,7 +235,10 @@ impl<'a> Sweep<'a> {
                 met.is_hit[lane] && {
                     let ball = fresh.get(start + lane);
                     balls.push(ball);
-                    met.may_be_covered[lane] && self.hides(ball.row, target)
+                    met.may_be_covered[lane] && self.hides(ball.row, target) && {
+                        *hider = Some(ball.row);
+                        true
+                    }
                 }
             })
         })
@@ -229,6 +247,7 @@ impl<'a> Sweep<'a> {
     /// Opens those of the `given` nodes that the beam may meet: their balls become fresh, nodes that need no opening are appended.
     fn open_nodes(&self, beam: &Beam, lists: &mut Lists, given: Range<usize>, opening: Opening) {
         let Lists { nodes, unopened, fresh, .. } = lists;
+        fresh.truncate(0);
         for place in given {
             if beam.meets_box(&nodes[place]) {
                 unopened.push(nodes[place]);
@@ -304,21 +323,29 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Whether one of the balls from place `first` on blocks the target at `place`.
-    #[expect(clippy::cast_possible_truncation, reason = "balls count as larger by more than what is rounded")]
-    fn is_blocked(&self, place: usize, balls: &Balls, first: usize) -> bool {
-        let target = self.targets.positions()[place].map(f64::from);
-        let Some((towards, range)) = self.viewer.line_of_sight(place, self.targets.positions()[place]) else {
-            // at the viewer itself
-            return false;
-        };
-        let ray = self.scene.ray(target, towards, range);
+    /// The line of sight of the target at `place`; `None` for one at the viewer itself, which nothing blocks.
+    fn ray(&self, place: usize) -> Option<Ray> {
+        let target = self.targets.positions()[place];
+        let (towards, range) = self.viewer.line_of_sight(place, target)?;
+        Some(self.scene.ray(target.map(f64::from), towards, range))
+    }
+
+    /// The first of these balls that blocks the target at `place`.
+    fn blocked_by(&self, place: usize, mut balls: impl Iterator<Item = u32>) -> Option<u32> {
+        let ray = self.ray(place)?;
+        balls.find(|&ball| self.scene.front(ball as usize, &ray).is_some())
+    }
+
+    /// The first of the balls from place `first` on that blocks the target at `place`.
+    fn blocked_among(&self, place: usize, balls: &Balls, first: usize) -> Option<u32> {
+        let ray = self.ray(place)?;
         let origin = self.targets.positions()[place];
-        let direction = towards.map(|v| v as f32);
-        let room = self.room as f32;
-        (first..balls.len()).step_by(LANES).any(|start| {
+        #[expect(clippy::cast_possible_truncation, reason = "balls count as larger by more than what is rounded")]
+        let (direction, room) = (ray.direction.map(|v| v as f32), self.room as f32);
+        (first..balls.len()).step_by(LANES).find_map(|start| {
             let near = balls.near_line(start, origin, direction, room);
-            (0..LANES).any(|lane| near[lane] && self.scene.front(balls.row[start + lane] as usize, &ray).is_some())
+            let rows = balls.row[start..].iter().zip(near).filter(|&(_, near)| near).map(|(&row, _)| row);
+            rows.into_iter().find(|&row| self.scene.front(row as usize, &ray).is_some())
         })
     }
 }
@@ -372,6 +399,10 @@ struct Lists {
     unopened: Vec<Node>,
     /// Balls out of opened nodes.
     fresh: Balls,
+    /// The last ball that hid a whole box.
+    hider: Option<u32>,
+    /// The last balls that blocked single targets.
+    recent: [u32; RECENT],
 }
 
 impl Lists {
