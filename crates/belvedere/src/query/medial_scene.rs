@@ -12,7 +12,7 @@ use rayon::prelude::*;
 const CHUNK: usize = 1024;
 
 /// Most of its radius that a ball gives way to a target near its surface.
-const SHELL_SHARE: f64 = 0.5;
+pub(super) const SHELL_SHARE: f64 = 0.5;
 
 /// Medial balls indexed for exact lines of sight, for any number of viewers.
 ///
@@ -24,13 +24,13 @@ const SHELL_SHARE: f64 = 0.5;
 /// With pulses ([`MedialScene::with_pulses`]) a target that nothing blocks is [`Answer::Unproven`] where too much of its
 /// line of sight runs through space that no pulse came near to.
 pub struct MedialScene {
-    index: RayIndex,
+    pub(super) index: RayIndex,
     /// Centre and radius in the order of the index.
-    balls: Vec<([f32; 3], f32)>,
+    pub(super) balls: Vec<([f32; 3], f32)>,
     /// Row of each of them among the balls given.
-    rows: Vec<u32>,
-    params: SceneParams,
-    proof: Option<Proof>,
+    pub(super) rows: Vec<u32>,
+    pub(super) params: SceneParams,
+    pub(super) proof: Option<Proof>,
 }
 
 /// How balls block lines of sight.
@@ -56,6 +56,13 @@ impl SceneParams {
     #[must_use]
     pub fn carved() -> Self {
         Self { profile: Profile::Sphere, depth_bias: 0.0, shell: 0.2 }
+    }
+
+    /// For balls that no pulse has cut: spheres with a bias of 0.25 m. They stand out over noisy surfaces by about a decimetre,
+    /// and lines of sight meet surfaces at a slant.
+    #[must_use]
+    pub fn uncarved() -> Self {
+        Self { profile: Profile::Sphere, depth_bias: 0.25, shell: 0.0 }
     }
 }
 
@@ -159,7 +166,7 @@ impl MedialScene {
     }
 
     /// Where a line of sight leaves ball `number`, metres from its target, if that ball blocks it.
-    fn front(&self, number: usize, ray: &Ray) -> Option<f64> {
+    pub(super) fn front(&self, number: usize, ray: &Ray) -> Option<f64> {
         let &(center, radius) = self.balls.get(number)?;
         let mut radius = f64::from(radius);
         let mut along = 0.0;

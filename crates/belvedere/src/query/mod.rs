@@ -1,12 +1,16 @@
 //! Queries: which targets can be seen.
 
+pub mod earth;
 pub mod medial_scene;
 pub mod points;
 pub mod proof;
 mod seen_space;
+pub mod segments;
 pub mod visibility;
 
+pub use earth::{Curvature, EarthParams};
 pub use medial_scene::{MedialScene, SceneParams};
 pub use points::{Answer, AnswerCounts, UnprovenAs, query_points, random_targets};
 pub use proof::{Beside, Proof, ProofParams};
+pub use segments::{Block, Crossing, Enclosure, LineOfSight, merged_crossings};
 pub use visibility::{Sight, Viewer, Visibility};
