@@ -1,5 +1,6 @@
 //! Queries: which targets can be seen.
 
+mod clear_height;
 pub mod earth;
 pub mod medial_scene;
 pub mod points;

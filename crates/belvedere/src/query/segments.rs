@@ -172,6 +172,32 @@ impl MedialScene {
         enclosure
     }
 
+    /// Calls `visit` with the number in the index of every ball that blocks the line of sight from `observer` to `target`.
+    pub(super) fn each_blocker(
+        &self,
+        observer: [f64; 3],
+        target: [f64; 3],
+        earth: &EarthParams,
+        mut visit: impl FnMut(usize),
+    ) {
+        if earth.bends(target, observer) {
+            for (piece, _) in self.pieces(observer, target, earth) {
+                self.index.each(&piece.ray, |number| {
+                    if self.front_on(number, &piece).is_some() {
+                        visit(number);
+                    }
+                });
+            }
+        } else if let Some(ray) = Ray::new(target, sub(observer, target), [0.0, length(sub(observer, target))]) {
+            let ray = self.biased(ray);
+            self.index.each(&ray, |number| {
+                if self.front(number, &ray).is_some() {
+                    visit(number);
+                }
+            });
+        }
+    }
+
     /// The chords of a curved line from the observer on, each with what the line passed before it, metres.
     fn pieces(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<(Piece, f64)> {
         let corners = earth.corners(observer, target);
