@@ -70,6 +70,12 @@ impl MapGrid {
         [self.corner[0] + (column as f64 + 0.5) * self.cell, self.corner[1] - (row as f64 + 0.5) * self.cell]
     }
 
+    /// Where a corner of cells lies, in whole columns from the west and rows from the north, local metres.
+    #[must_use]
+    pub fn corner_at(&self, [column, row]: [usize; 2]) -> [f64; 2] {
+        [self.corner[0] + column as f64 * self.cell, self.corner[1] - row as f64 * self.cell]
+    }
+
     /// Where a local position lies, in columns from the west and rows from the north, fractions counted; `None` outside the grid.
     #[must_use]
     pub fn cell_position(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {

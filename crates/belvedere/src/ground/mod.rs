@@ -3,10 +3,12 @@
 pub mod find;
 pub mod map_grid;
 mod morphology;
+mod relief;
 mod triangulate;
 
 pub use find::{FinderParams, find_ground};
 pub use map_grid::MapGrid;
+pub use relief::highest_points;
 
 use crate::neighbors::NeighborIndex;
 use crate::raster::Raster;

@@ -15,7 +15,7 @@ const UNKNOWN: [f64; 3] = [236.0, 237.0, 240.0];
 /// Share of a pixel that the colour of the map takes, the rest is relief.
 const TINT: f64 = 0.5;
 /// Towards the light, from the north-west, 45° high (east, north, up).
-const TO_LIGHT: [f64; 3] = [-0.5, 0.5, 0.707_106_781_186_547_6];
+const TO_LIGHT: [f64; 3] = [-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2];
 /// Colours of a mark: its disc and the ring around it.
 const MARK: [[u8; 3]; 2] = [[225, 30, 45], [255, 255, 255]];
 

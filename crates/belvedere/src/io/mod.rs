@@ -25,6 +25,7 @@ mod mesh;
 mod mesh_ply;
 mod npy;
 mod obj;
+mod observers;
 mod outline;
 mod part;
 mod pcd;
@@ -60,6 +61,7 @@ pub use geotiff::{
 };
 pub use map_picture::{MapLegend, MapPicture, map_picture};
 pub use mesh::read_mesh;
+pub use observers::{ObserverRow, RowsAre, read_observers};
 pub use outline::{GridPolygon, outlines};
 pub use picture::{Picture, side_by_side};
 pub use png::write_png;

@@ -117,7 +117,7 @@ pub enum Cells<'a> {
     /// Whole numbers; empty where there is none.
     Whole(&'a [Option<u64>]),
     /// Words without separators.
-    Words(&'a [&'static str]),
+    Words(&'a [&'a str]),
 }
 
 impl Cells<'_> {

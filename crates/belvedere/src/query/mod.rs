@@ -13,5 +13,5 @@ pub use earth::{Curvature, EarthParams};
 pub use medial_scene::{MedialScene, SceneParams};
 pub use points::{Answer, AnswerCounts, UnprovenAs, query_points, random_targets};
 pub use proof::{Beside, Proof, ProofParams};
-pub use segments::{Block, Crossing, Enclosure, LineOfSight, merged_crossings};
+pub use segments::{Block, Crossing, Enclosure, LineOfSight, merged_crossings, random_pairs};
 pub use visibility::{Sight, Viewer, Visibility};

@@ -264,6 +264,14 @@ impl MedialScene {
     }
 }
 
+/// `count` pairs of points spread evenly at random over the local box from `low` to `high`, observer and target. The same seed gives
+/// the same pairs for any number of threads.
+#[must_use]
+pub fn random_pairs(low: [f32; 3], high: [f32; 3], count: usize, seed: u64) -> Vec<[[f64; 3]; 2]> {
+    let ends = super::random_targets(low, high, 2 * count, seed);
+    ends.as_chunks::<2>().0.iter().map(|pair| pair.map(|end| end.map(f64::from))).collect()
+}
+
 /// The ranges that `crossings` cover together: apart from each other, in order, (from, to) metres from the observer.
 #[must_use]
 pub fn merged_crossings(crossings: &[Crossing]) -> Vec<[f64; 2]> {

@@ -63,6 +63,21 @@ pub const TARGET_HEIGHT: f64 = 0.0;
 /// Default side of a cell, metres: what points of usual airborne surveys (0.3 to 0.5 m apart) can tell.
 pub const CELL: f64 = 0.5;
 
+/// Most cells of a default grid.
+const USUAL_CELLS: f64 = 4e6;
+
+/// The side of the cells of a default grid over the box on the map from `low` to `high`, metres: [`CELL`], doubled until there are at
+/// most 4 million cells.
+#[must_use]
+pub fn cell_for(low: [f64; 2], high: [f64; 2]) -> f64 {
+    let area = (high[0] - low[0]).max(0.0) * (high[1] - low[1]).max(0.0);
+    let mut cell = CELL;
+    while area / (cell * cell) > USUAL_CELLS && cell < 1e9 {
+        cell *= 2.0;
+    }
+    cell
+}
+
 /// A target in the middle of each cell of `ground`, `height` metres above it, (M, 3) local metres, rows from the north; NaN where no
 /// ground is known.
 #[must_use]
