@@ -1,5 +1,6 @@
 //! Lines of sight and viewsheds around a house, worked out by hand, in every kind of file.
 #![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
+#![expect(clippy::cast_possible_truncation, reason = "cells of a small grid")]
 
 mod common;
 
