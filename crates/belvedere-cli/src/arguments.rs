@@ -1,7 +1,9 @@
 //! What can be typed: flags as entered. What they build is made in `pipeline` and in each command.
 
+mod observers;
 mod towns;
 
+pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Viewshed};
 pub(crate) use towns::{Compare, PatternChoice, ScannerChoice, Simulate};
 
 use belvedere::crs::Crs;
@@ -96,6 +98,17 @@ pub(crate) enum Command {
         after_help = "Answers: 0 blocked, 1 visible, 3 outside the view: beside the picture, or behind the plane of a --viewport.\n\nCarved balls are asked by exact lines of sight, others through a depth map. Where carved balls know their pulses (a cloud, or an .npz of `belvedere balls`) there is one answer more, 2 unproven: nothing blocks the target, but more than half a metre of its line of sight runs through space that no pulse came within 0.7 m of. The project's docs/accuracy.md says how often each answer is right. Of space beside the survey nothing is asked.\n\nA ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere query demo/town.laz --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self --unproven as-blocked -o demo/proven-lit.laz\n  belvedere query demo/balls.npz --sun 235,30 --random 10000 -o demo/answers.csv\n  belvedere query demo/balls.npz --direction 0,0,-1 --targets demo/answers.csv -o demo/open-to-the-sky.csv"
     )]
     Query(Query),
+    /// Answer lines of sight between pairs of points: what blocks each first, and where
+    #[command(
+        name = "line-of-sight",
+        after_help = "A ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink. Balls that hold A are left out; those near B give way by --shell.\n\nOn lines of more than 2 km the earth's curvature and refraction count: the line is a parabola over the map, cut into chords of 500 m.\n\nThe profile has the columns distance_m, ground, line (heights in the unit of the file), blocked (1 where a ball lies on the line) and blocks (the ranges of heights that lie in balls there).\n\nExamples:\n  belvedere line-of-sight demo/balls.npz --from 155000,462985,3 --to 155020,463030,12\n  belvedere line-of-sight demo/town.laz --from 155000,462985,3 --to 155020,463030,12 --profile-out demo/profile.png\n  belvedere line-of-sight demo/balls.npz --random 10000 -o demo/sights.csv\n  belvedere line-of-sight demo/balls.npz --pairs demo/sights.csv --unproven as-blocked -o demo/proven-sights.csv"
+    )]
+    LineOfSight(LineOfSight),
+    /// Map what observers see, or from where a target is seen, on the ground and on the points of a cloud
+    #[command(
+        after_help = "Cells have their targets on the ground, --target-height above it. What lies beyond --max-distance or is not looked at is nodata, as are cells without ground. An observer inside something solid or below the ground is reported.\n\nWhere carved balls know their pulses, unproven marks what nothing blocks but whose line of sight runs for more than half a metre through space that no pulse came near to; --heights asks the balls alone.\n\nA ball file of `belvedere balls` may stand in place of the clouds, with --ground cloud=FILE.\n\nExamples:\n  belvedere viewshed demo/town.laz --observer 155000,462985 --max-distance 50 -o demo/seen.tif -o demo/seen.png\n  belvedere viewshed demo/balls.npz --ground cloud=demo/town.laz --observer 155000,462985 --heights demo/hidden-below.tif -o demo/seen.geojson\n  belvedere viewshed demo/balls.npz --ground cloud=demo/town.laz --target 155000,462985 --target-height 10 --cell 1 -o demo/seen-from.tif"
+    )]
+    Viewshed(Viewshed),
     /// Hold every method against exact answers on the same places: how right each is, and what it costs
     #[command(
         after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, over two observers, or over 40 people in streets (4 for methods that build a hull or draw shadow maps for each eye), with 95 % intervals from resampled tiles of 25 m.\n\nMethods: paper-cone, paper-sphere, union, hidden-points, hidden-points-robust, surfels, depth-splats, elliptical-splats, implicit-surface, voxels-05, voxels-10, dsm, tin, tau, carved (and, only when named, carved-without-RULE); for each model also mesh-NAME, shadow-map-NAME and dsm-NAME, and for the first paper-cone-NAME. Simulated places have the models blocks (LoD1), no-trees and exact. The project's docs/methods has a page on each.\n\nA thorough comparison takes several places and seeds, such as --presets village,old-town,towers --seeds 1,2,3.\n\nExample:\n  belvedere compare --extent 100 --targets 2000 --methods paper-cone,carved -o compared"

@@ -45,11 +45,13 @@
 //! Units are metres and radians; positions are local f32 on an f64 origin ([`PointCloud`]). Every parallel result is the same,
 //! bit by bit, for any number of threads. The crate prints nothing and reads no clock or environment.
 
+pub mod apps;
 pub mod clean;
 pub mod cloud;
 pub mod crs;
 pub mod depth;
 pub mod error;
+pub mod ground;
 pub mod io;
 pub mod medial;
 pub mod mesh;

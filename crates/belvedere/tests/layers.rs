@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 /// Level of each module of the core; a module imports from lower levels, or from its own folder.
-const LEVELS: [(&str, u8); 21] = [
+const LEVELS: [(&str, u8); 23] = [
     ("error", 0),
     ("crs", 0),
     ("cloud", 0),
@@ -21,18 +21,22 @@ const LEVELS: [(&str, u8); 21] = [
     ("clean", 2),
     ("normals", 2),
     ("pulses", 2),
+    ("ground", 2),
     ("summary", 3),
     ("medial", 3),
     ("depth", 4),
     ("query", 5),
     ("backend", 5),
+    ("apps", 6),
 ];
 
 /// Crates that only one file or folder may name, below `src`.
-const ONE_HOME: [(&str, &str); 14] = [
+const ONE_HOME: [(&str, &str); 16] = [
     ("las::", "io/"),
     ("laz::", "io/laz.rs"),
     ("npyz::", "io/"),
+    ("csv::", "io/table.rs"),
+    ("delaunator::", "ground/triangulate.rs"),
     ("e57::", "io/e57.rs"),
     ("tiff::", "io/geotiff.rs"),
     ("png::", "io/png.rs"),

@@ -5,10 +5,13 @@ mod compare;
 mod demo;
 mod depth_map;
 mod info;
+mod line_of_sight;
 mod normals;
 mod query;
+mod sights;
 mod simulate;
 mod trajectory;
+mod viewshed;
 
 use crate::arguments::{Cli, Command, Usage};
 use crate::summary::Summary;
@@ -33,6 +36,8 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::Balls(arguments) => balls::run(arguments, global),
         Command::DepthMap(arguments) => depth_map::run(arguments, global),
         Command::Query(arguments) => query::run(arguments, global),
+        Command::LineOfSight(arguments) => line_of_sight::run(arguments, global),
+        Command::Viewshed(arguments) => viewshed::run(arguments, global),
         Command::Compare(arguments) => compare::run(arguments, global),
         Command::Completions { shell } => {
             let mut script = Vec::new();

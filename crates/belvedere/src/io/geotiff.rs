@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use tiff::encoder::colortype::{ColorType, Gray32, Gray32Float};
+use tiff::encoder::colortype::{ColorType, Gray8, Gray16, Gray32, Gray32Float};
 use tiff::encoder::{Compression, DeflateLevel, TiffEncoder, TiffKind, TiffValue};
 use tiff::tags::Tag;
 
@@ -66,6 +66,34 @@ pub fn write_u32(
     description: Option<&str>,
 ) -> Result<()> {
     write::<Gray32>(path, raster, &Marks { georeference, nodata: nodata.map(|v| v.to_string()), description })
+}
+
+/// Writes `raster` as bytes, compressed without loss; `nodata` marks the value that stands for nothing.
+///
+/// # Errors
+/// As [`write_f32`].
+pub fn write_u8(
+    path: &Path,
+    raster: &Raster<u8>,
+    georeference: Option<&Georeference>,
+    nodata: Option<u8>,
+    description: Option<&str>,
+) -> Result<()> {
+    write::<Gray8>(path, raster, &Marks { georeference, nodata: nodata.map(|v| v.to_string()), description })
+}
+
+/// Writes `raster` as unsigned 16-bit integers, compressed without loss; `nodata` marks the value that stands for nothing.
+///
+/// # Errors
+/// As [`write_f32`].
+pub fn write_u16(
+    path: &Path,
+    raster: &Raster<u16>,
+    georeference: Option<&Georeference>,
+    nodata: Option<u16>,
+    description: Option<&str>,
+) -> Result<()> {
+    write::<Gray16>(path, raster, &Marks { georeference, nodata: nodata.map(|v| v.to_string()), description })
 }
 
 struct Marks<'a> {

@@ -63,3 +63,15 @@ pub fn write_npy_f32_2d(path: &Path, raster: &Raster<f32>) -> Result<()> {
 pub fn write_npy_u32_2d(path: &Path, raster: &Raster<u32>) -> Result<()> {
     write_array(path, &[raster.height(), raster.width()], raster.values().iter().copied())
 }
+
+/// Writes `bands`, (B) of (height · width) values each, as (B, height, width) u32, row 0 at the top.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] for a band of another size, [`Error::Io`].
+pub fn write_npy_u32_bands(path: &Path, bands: &[Vec<u32>], width: usize, height: usize) -> Result<()> {
+    let expected = width * height;
+    if let Some(band) = bands.iter().find(|band| band.len() != expected) {
+        return Err(Error::LengthMismatch { what: "band", expected, found: band.len() });
+    }
+    write_array(path, &[bands.len(), height, width], bands.iter().flatten().copied())
+}

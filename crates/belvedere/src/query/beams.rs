@@ -116,7 +116,7 @@ impl<'a> Sweep<'a> {
                 });
             }
         };
-        let index = scene.index();
+        let index = &scene.index;
         let farthest = |v: [f64; 3]| v.into_iter().fold(0.0, |most: f64, v| most.max(v.abs()));
         let mut scale = (0..3).map(|i| index.half_size()[i] + index.center()[i].abs()).fold(0.0, f64::max);
         if let Apex::Eye(eye) = apex {
@@ -130,7 +130,7 @@ impl<'a> Sweep<'a> {
 
     fn run(&self, node: usize, visit: &mut impl FnMut(usize)) {
         let mut lists = Lists::default();
-        let index = self.scene.index();
+        let index = &self.scene.index;
         if let Some(root) = index.root() {
             #[expect(clippy::cast_possible_truncation, reason = "beams are widened by more than what is rounded")]
             let [center, half] = [index.center(), index.half_size()].map(|v| v.map(|v| v as f32));
@@ -258,7 +258,7 @@ impl<'a> Sweep<'a> {
                     nodes.push(node);
                     continue;
                 }
-                let Some(parts) = self.scene.index().parts(node.number) else { continue };
+                let Some(parts) = self.scene.index.parts(node.number) else { continue };
                 let hits = beam.meets_boxes(&parts);
                 for (lane, part) in parts.parts.into_iter().enumerate().filter(|&(lane, _)| hits[lane]) {
                     match part {
@@ -284,7 +284,7 @@ impl<'a> Sweep<'a> {
     /// The shadow of a ball is convex: a box lies in it if its corners do. Targets near its surface meet a ball smaller by up
     /// to the shell, so the shadow of that one is asked; a target counts as `depth_bias` nearer to the viewer.
     fn hides(&self, ball: u32, target: &TargetNode) -> bool {
-        let params = self.scene.params();
+        let params = &self.scene.params;
         if params.profile == Profile::PaperCone {
             return false;
         }

@@ -24,13 +24,13 @@ const SHELL_SHARE: f64 = 0.5;
 /// With pulses ([`MedialScene::with_pulses`]) a target that nothing blocks is [`Answer::Unproven`] where too much of its
 /// line of sight runs through space that no pulse came near to.
 pub struct MedialScene {
-    index: RayIndex,
+    pub(super) index: RayIndex,
     /// Centre and radius in the order of the index.
-    balls: Vec<([f32; 3], f32)>,
+    pub(super) balls: Vec<([f32; 3], f32)>,
     /// Row of each of them among the balls given.
-    rows: Vec<u32>,
-    params: SceneParams,
-    proof: Option<Proof>,
+    pub(super) rows: Vec<u32>,
+    pub(super) params: SceneParams,
+    pub(super) proof: Option<Proof>,
 }
 
 /// How balls block lines of sight.
@@ -61,6 +61,13 @@ impl SceneParams {
     /// Most that a ball of this radius gives way to a target, metres.
     pub(super) fn shell_of(&self, radius: f64) -> f64 {
         self.shell.min(SHELL_SHARE * radius)
+    }
+
+    /// For balls that no pulse has cut: spheres with a bias of 0.25 m. They stand out over noisy surfaces by about a decimetre,
+    /// and lines of sight meet surfaces at a slant.
+    #[must_use]
+    pub fn uncarved() -> Self {
+        Self { profile: Profile::Sphere, depth_bias: 0.25, shell: 0.0 }
     }
 }
 
@@ -151,14 +158,6 @@ impl MedialScene {
     #[must_use]
     pub fn ball_count(&self) -> usize {
         self.balls.len()
-    }
-
-    pub(super) fn params(&self) -> &SceneParams {
-        &self.params
-    }
-
-    pub(super) fn index(&self) -> &RayIndex {
-        &self.index
     }
 
     /// Centre and radius of a row of the index.

@@ -1,15 +1,20 @@
 //! Queries: which targets can be seen.
 
 mod beams;
+mod clear_height;
+pub mod earth;
 pub mod medial_scene;
 pub mod points;
 pub mod proof;
 mod seen_space;
+pub mod segments;
 pub mod target_tree;
 pub mod visibility;
 
+pub use earth::{Curvature, EarthParams};
 pub use medial_scene::{MedialScene, SceneParams};
 pub use points::{Answer, AnswerCounts, UnprovenAs, query_points, random_targets};
 pub use proof::{Beside, Proof, ProofParams};
+pub use segments::{Block, Crossing, Enclosure, LineOfSight, merged_crossings, random_pairs};
 pub use target_tree::TargetTree;
 pub use visibility::{Sight, Viewer, Visibility};

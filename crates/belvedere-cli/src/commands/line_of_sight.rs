@@ -1,0 +1,243 @@
+//! `belvedere line-of-sight`.
+
+use super::sights::{blockers, enclosure_note, file, ground, ground_cloud, local, on_map};
+use super::{check_output, extension, is_same};
+use crate::arguments::{Global, GroundChoice, LineOfSight, Usage};
+use crate::pipeline::{self, Points, Scene, flagged};
+use crate::progress::Stages;
+use crate::summary::{Summary, percent, rounded};
+use anyhow::Result;
+use belvedere::apps::profile::{SightProfile, sight_profile};
+use belvedere::ground::{Ground, MapGrid};
+use belvedere::io::{self, Cells, profile_picture, read_table, write_png, write_table};
+use belvedere::query::{Answer, AnswerCounts, EarthParams, MedialScene, UnprovenAs, random_pairs};
+use std::path::Path;
+
+/// Columns of a table of pairs.
+const ENDS: [&str; 6] = ["ax", "ay", "az", "bx", "by", "bz"];
+
+pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
+    if let Some(output) = &arguments.output {
+        check_output("-o", output, &["csv"])?;
+    }
+    if let Some(profile) = &arguments.profile_out {
+        check_output("--profile-out", profile, &["csv", "png"])?;
+        if arguments.output.as_ref().is_some_and(|output| is_same(profile, output)) {
+            return Err(Usage(format!("--profile-out {}: -o writes there too", profile.display())).into());
+        }
+    }
+    let earth = arguments.earth.params()?;
+    let mut stages = Stages::new(global);
+    let mut summary = Summary::default();
+    let points = if arguments.profile_out.is_some() { Points::Keep } else { Points::LetGo };
+    let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
+    let pairs = pairs(arguments, &scene, global.seed, &mut stages)?;
+    let mut section = Summary::default();
+    let (blockers, unproven_as) =
+        blockers(&scene, arguments.scene.profile.into(), &arguments.giving_way, &mut stages, &mut section)?;
+    let sights = stages.run("answering", 0, |_| blockers.lines_of_sight(&pairs, &earth));
+    let settled = |sight: &Option<belvedere::query::LineOfSight>| {
+        sight.map_or(Answer::OutsideView, |sight| unproven_as.settle(sight.answer))
+    };
+    let answers: Vec<Answer> = sights.iter().map(settled).collect();
+    summary.add("lines_of_sight", counted(&answers, unproven_as, section));
+    if let ([[observer, _]], [sight]) = (&pairs[..], &sights[..]) {
+        let mut one = Summary::default();
+        if let Some(sight) = sight {
+            one.add("answer", name(unproven_as.settle(sight.answer)));
+            if let Some(block) = sight.first_block {
+                one.add("first_block_range_m", rounded(block.range, 3))
+                    .add("block_at", file(&scene.cloud, block.place).map(|v| rounded(v, 3)).to_vec())
+                    .add("block_ball", block.ball)
+                    .add("block_source_point", scene.balls.source.get(block.ball).copied().unwrap_or_default());
+            }
+            if scene.pulses.is_some() {
+                one.add("unproven_m", rounded(sight.unproven_length, 3));
+            }
+        }
+        one.add("note", enclosure_note(&blockers, *observer, "the observer").into_iter().collect::<Vec<_>>());
+        summary.add("line", one);
+    }
+    if let Some(output) = &arguments.output {
+        stages.run("writing", 0, |_| write(output, &scene, &pairs, &sights, &answers))?;
+        summary.add("written", output.display().to_string());
+    }
+    if let (Some(output), [pair]) = (&arguments.profile_out, &pairs[..]) {
+        write_profile(output, arguments, &mut scene, &blockers, *pair, &earth, &mut stages, &mut summary)?;
+    }
+    summary.add_seconds(stages.into_seconds());
+    Ok(summary)
+}
+
+/// Observer and target of each line, local metres.
+fn pairs(arguments: &LineOfSight, scene: &Scene, seed: u64, stages: &mut Stages) -> Result<Vec<[[f64; 3]; 2]>> {
+    let lines = &arguments.lines;
+    if let (Some(from), Some(to)) = (&lines.from, &lines.to) {
+        return Ok(vec![[local(&scene.cloud, from.0), local(&scene.cloud, to.0)]]);
+    }
+    if let Some(count) = lines.random {
+        return Ok(random_pairs(scene.bounds.0, scene.bounds.1, count, seed));
+    }
+    let Some(path) = &lines.pairs else {
+        return Err(Usage("say which lines: --pairs, --random, or --from and --to".to_owned()).into());
+    };
+    let table = stages.run("reading pairs", 0, |_| read_table(path))?;
+    let mut columns: [&[f64]; 6] = [&[]; 6];
+    for (column, name) in columns.iter_mut().zip(ENDS) {
+        *column = table.full_column(path, name)?;
+    }
+    let end = |row: usize, first: usize| {
+        local(&scene.cloud, std::array::from_fn(|i| columns[first + i].get(row).copied().unwrap_or(f64::NAN)))
+    };
+    Ok((0..table.row_count()).map(|row| [end(row, 0), end(row, 3)]).collect())
+}
+
+fn write(
+    output: &Path,
+    scene: &Scene,
+    pairs: &[[[f64; 3]; 2]],
+    sights: &[Option<belvedere::query::LineOfSight>],
+    answers: &[Answer],
+) -> Result<()> {
+    let ends: [Vec<f64>; 6] = std::array::from_fn(|column| {
+        pairs.iter().map(|pair| file(&scene.cloud, pair[column / 3])[column % 3]).collect()
+    });
+    let block = |i: usize| sights[i].and_then(|sight| sight.first_block);
+    let count = sights.len();
+    let place: [Vec<f64>; 3] = std::array::from_fn(|axis| {
+        (0..count).map(|i| block(i).map_or(f64::NAN, |block| file(&scene.cloud, block.place)[axis])).collect()
+    });
+    let range: Vec<f64> = (0..count).map(|i| block(i).map_or(f64::NAN, |block| block.range)).collect();
+    let unproven: Vec<f64> = sights
+        .iter()
+        .map(|sight| sight.filter(|s| s.first_block.is_none()).map_or(f64::NAN, |s| s.unproven_length))
+        .collect();
+    let codes: Vec<Option<u64>> = answers.iter().map(|&answer| Some(u64::from(answer as u8))).collect();
+    let balls: Vec<Option<u64>> = (0..count).map(|i| block(i).map(|block| block.ball as u64)).collect();
+    let sources: Vec<Option<u64>> =
+        (0..count).map(|i| scene.balls.source.get(block(i)?.ball).map(|&row| u64::from(row))).collect();
+    let mut columns: Vec<(&'static str, Cells<'_>)> =
+        ENDS.iter().zip(&ends).map(|(&name, values)| (name, Cells::Real(values, 4))).collect();
+    columns.push(("answer", Cells::Whole(&codes)));
+    columns.push(("first_block_range_m", Cells::Real(&range, 3)));
+    if scene.pulses.is_some() {
+        columns.push(("unproven_m", Cells::Real(&unproven, 3)));
+    }
+    columns.extend(["block_x", "block_y", "block_z"].into_iter().zip(&place).map(|(n, v)| (n, Cells::Real(v, 3))));
+    columns.push(("block_ball", Cells::Whole(&balls)));
+    columns.push(("block_source", Cells::Whole(&sources)));
+    Ok(write_table(output, &columns)?)
+}
+
+#[expect(clippy::too_many_arguments, reason = "what a run knows, handed on once")]
+fn write_profile(
+    output: &Path,
+    arguments: &LineOfSight,
+    scene: &mut Scene,
+    blockers: &MedialScene,
+    pair: [[f64; 3]; 2],
+    earth: &EarthParams,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<()> {
+    let ground = profile_ground(arguments, scene, stages, summary)?;
+    let made = stages
+        .run("making profile", 0, |_| sight_profile(blockers, ground.as_ref(), pair, earth, arguments.profile_step));
+    let profile = flagged("--profile-out", made)?;
+    let up = scene.cloud.crs.vertical_metres_per_unit;
+    let height = |local: f64| (local + scene.cloud.origin[2]) / up;
+    let ground: Vec<f64> = profile.ground.iter().map(|&v| height(v)).collect();
+    let line: Vec<f64> = profile.line.iter().map(|&v| height(v)).collect();
+    if extension(output) == "png" {
+        let solid: Vec<Vec<[f64; 2]>> =
+            profile.solid.iter().map(|pieces| pieces.iter().map(|piece| piece.map(height)).collect()).collect();
+        let title = match profile.blocked_at {
+            Some(at) => format!("Line of sight, {:.1} m: blocked after {at:.1} m", span(&profile)),
+            None => format!("Line of sight, {:.1} m: nothing blocks", span(&profile)),
+        };
+        let picture = profile_picture(&io::Profile {
+            distances: &profile.distances,
+            ground: &ground,
+            line: &line,
+            solid: &solid,
+            blocked_at: profile.blocked_at,
+            title: &title,
+        });
+        stages.run("writing", 0, |_| write_png(output, &picture))?;
+    } else {
+        let blocked: Vec<Option<u64>> = profile
+            .solid
+            .iter()
+            .zip(&profile.line)
+            .map(|(pieces, line)| Some(u64::from(pieces.iter().any(|[low, high]| low < line && line < high))))
+            .collect();
+        let blocks: Vec<String> = profile
+            .solid
+            .iter()
+            .map(|pieces| {
+                let pieces: Vec<String> =
+                    pieces.iter().map(|piece| piece.map(|v| format!("{:.2}", height(v))).join("..")).collect();
+                pieces.join(" ")
+            })
+            .collect();
+        let blocks: Vec<&str> = blocks.iter().map(String::as_str).collect();
+        stages.run("writing", 0, |_| {
+            write_table(
+                output,
+                &[
+                    ("distance_m", Cells::Real(&profile.distances, 3)),
+                    ("ground", Cells::Real(&ground, 3)),
+                    ("line", Cells::Real(&line, 3)),
+                    ("blocked", Cells::Whole(&blocked)),
+                    ("blocks", Cells::Words(&blocks)),
+                ],
+            )
+        })?;
+    }
+    summary.add("profile_written", output.display().to_string());
+    Ok(())
+}
+
+fn span(profile: &SightProfile) -> f64 {
+    profile.distances.last().copied().unwrap_or(0.0)
+}
+
+/// The ground below a profile; none for a ball file without a cloud beside it.
+fn profile_ground(
+    arguments: &LineOfSight,
+    scene: &mut Scene,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<Option<Ground>> {
+    if scene.cloud.is_empty() && matches!(arguments.ground, GroundChoice::OfScene(_)) {
+        return Ok(None);
+    }
+    let [low, high] = on_map(scene.bounds);
+    let origin = [scene.cloud.origin[0], scene.cloud.origin[1]];
+    let grid = MapGrid::covering(low, high, belvedere::apps::viewshed::cell_for(low, high), origin)?;
+    let (cloud, points) = ground_cloud(&arguments.ground, scene, stages)?;
+    Ok(Some(ground(&cloud, points, grid, stages, summary)?))
+}
+
+fn counted(answers: &[Answer], unproven_as: UnprovenAs, how: Summary) -> Summary {
+    let counts = AnswerCounts::of(answers);
+    let mut section = Summary::default();
+    section.add("pairs", answers.len()).add("visible", counts.visible).add("blocked", counts.blocked);
+    if unproven_as == UnprovenAs::Reported {
+        section.add("unproven", counts.unproven);
+    }
+    section
+        .add("no_line", counts.outside_view)
+        .add("visible_percent", percent(counts.visible, answers.len()))
+        .add_all(how);
+    section
+}
+
+fn name(answer: Answer) -> &'static str {
+    match answer {
+        Answer::Visible => "visible",
+        Answer::Blocked => "blocked",
+        Answer::Unproven => "unproven",
+        _ => "no line",
+    }
+}

@@ -1,0 +1,151 @@
+//! What commands that ask lines of sight have in common: the scene, the earth and the ground.
+
+use crate::arguments::{Earth, GivingWay, GroundChoice, Usage};
+use crate::pipeline::{Scene, flagged};
+use crate::progress::Stages;
+use crate::summary::{Summary, rounded};
+use anyhow::{Result, bail};
+use belvedere::PointCloud;
+use belvedere::depth::Profile;
+use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
+use belvedere::io::{ReadOptions, read_cloud};
+use belvedere::pulses::Needles;
+use belvedere::query::{EarthParams, MedialScene, Proof, ProofParams, SceneParams, UnprovenAs};
+
+/// Balls that lines of sight are cut with, and what to make of what is not proven.
+pub(crate) fn blockers(
+    scene: &Scene,
+    profile: Profile,
+    flags: &GivingWay,
+    stages: &mut Stages,
+    section: &mut Summary,
+) -> Result<(MedialScene, UnprovenAs)> {
+    if flags.unproven.is_some() && scene.pulses.is_none() {
+        let what = "--unproven needs to know the pulses: a cloud of which the scanner can be found (see `belvedere info`), or an \
+                    .npz that `belvedere balls` made of one";
+        return Err(Usage(what.to_owned()).into());
+    }
+    if flags.shell.is_some() && !scene.is_carved() {
+        return Err(Usage("--shell belongs to carved balls, which these are not".to_owned()).into());
+    }
+    let usual = if scene.is_carved() { SceneParams::carved() } else { SceneParams::uncarved() };
+    let params = SceneParams { profile, shell: flags.shell.map_or(usual.shell, f64::from), ..usual };
+    let mut blockers = stages.run("indexing balls", 0, |_| MedialScene::new(&scene.balls, &params))?;
+    section
+        .add("balls", blockers.ball_count())
+        .add("depth_bias_m", rounded(params.depth_bias, 4))
+        .add("shell_m", rounded(params.shell, 4));
+    if let Some(pulses) = &scene.pulses {
+        let proof = stages.run("indexing pulses to prove by", 0, |_| {
+            Proof::new(Needles::from_columns(pulses)?, &ProofParams::default())
+        })?;
+        section
+            .add("seen_within_m", rounded(proof.nearness(), 3))
+            .add("unseen_length_tolerated_m", rounded(proof.tolerance(), 3));
+        blockers = blockers.with_pulses(proof);
+    }
+    Ok((blockers, flags.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from)))
+}
+
+impl Earth {
+    /// Parameters as typed.
+    pub(crate) fn params(&self) -> Result<EarthParams> {
+        let usual = EarthParams::default();
+        let refraction = self.refraction.unwrap_or(usual.refraction);
+        let params = EarthParams { curvature: self.curvature.into(), refraction, ..usual };
+        flagged("--refraction", params.validate())?;
+        Ok(params)
+    }
+}
+
+/// The cloud whose points show the ground: the scene's own, or the one that was named, in the frame of the scene.
+pub(crate) fn ground_cloud(
+    choice: &GroundChoice,
+    scene: &mut Scene,
+    stages: &mut Stages,
+) -> Result<(PointCloud, GroundPoints)> {
+    match choice {
+        GroundChoice::OfScene(points) => {
+            if scene.cloud.is_empty() {
+                let what = "a ball file holds no points, so that its ground is not known: name the cloud, as in --ground cloud=FILE";
+                return Err(Usage(what.to_owned()).into());
+            }
+            let frame = scene.cloud.without_points();
+            Ok((std::mem::replace(&mut scene.cloud, frame), *points))
+        }
+        GroundChoice::Cloud(path) => {
+            let (mut cloud, _) =
+                stages.run("reading ground", 0, |_| read_cloud(std::slice::from_ref(path), &ReadOptions::default()))?;
+            let known = |crs: &belvedere::crs::Crs| crs.kind != belvedere::crs::CrsKind::Unknown;
+            if known(&cloud.crs) && known(&scene.cloud.crs) && !cloud.crs.same_system(&scene.cloud.crs) {
+                bail!(
+                    "{}: the ground is in {}, but the scene is in {}; convert one of them",
+                    path.display(),
+                    cloud.crs.describe(),
+                    scene.cloud.crs.describe()
+                );
+            }
+            let origin = scene.cloud.origin;
+            for position in &mut cloud.positions {
+                let absolute = std::array::from_fn(|i| f64::from(position[i]) + cloud.origin[i]);
+                *position = belvedere::cloud::to_local(absolute, origin);
+            }
+            cloud.origin = origin;
+            Ok((cloud, GroundPoints::Auto))
+        }
+    }
+}
+
+/// The ground of a cloud on a grid, reported.
+pub(crate) fn ground(
+    cloud: &PointCloud,
+    points: GroundPoints,
+    grid: MapGrid,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<Ground> {
+    let params = GroundParams { points, ..GroundParams::default() };
+    let (ground, report) = stages.run("making ground", 0, |_| Ground::of_cloud(cloud, grid, &params))?;
+    let mut section = Summary::default();
+    let from = match report.from {
+        GroundPoints::Found => "points found among all (no class 2)",
+        _ => "class 2",
+    };
+    section
+        .add("from", from)
+        .add("points", report.point_count)
+        .add("columns", grid.width)
+        .add("rows", grid.height)
+        .add("cell_m", rounded(grid.cell, 4))
+        .add("cells_without_ground", grid.len() - report.cell_count);
+    summary.add("ground", section);
+    Ok(ground)
+}
+
+/// Local metres of a place in file coordinates.
+pub(crate) fn local(cloud: &PointCloud, file: [f64; 3]) -> [f64; 3] {
+    let scale = cloud.crs.metres_per_unit_xyz();
+    std::array::from_fn(|i| file[i] * scale[i] - cloud.origin[i])
+}
+
+/// File coordinates of a local place.
+pub(crate) fn file(cloud: &PointCloud, local: [f64; 3]) -> [f64; 3] {
+    let scale = cloud.crs.metres_per_unit_xyz();
+    std::array::from_fn(|i| (local[i] + cloud.origin[i]) / scale[i])
+}
+
+/// Lowest and highest corner of a scene on the map, local metres.
+pub(crate) fn on_map(bounds: ([f32; 3], [f32; 3])) -> [[f64; 2]; 2] {
+    [bounds.0, bounds.1].map(|p| [f64::from(p[0]), f64::from(p[1])])
+}
+
+/// Notes for people on an eye inside something solid.
+pub(crate) fn enclosure_note(blockers: &MedialScene, eye: [f64; 3], who: &str) -> Option<String> {
+    let enclosure = blockers.enclosure(eye);
+    (enclosure.ball_count > 0).then(|| {
+        format!(
+            "{who} is inside what the cloud takes for solid: {} balls, up to {:.2} m deep; these are left out",
+            enclosure.ball_count, enclosure.depth
+        )
+    })
+}

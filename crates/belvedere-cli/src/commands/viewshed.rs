@@ -1,0 +1,180 @@
+//! `belvedere viewshed`.
+
+mod results;
+mod who;
+
+use super::sights::{blockers, enclosure_note, file, ground, ground_cloud, on_map};
+use super::{check_output, is_same};
+use crate::arguments::{Global, Usage, Viewshed};
+use crate::pipeline::{self, Points, flagged};
+use crate::progress::Stages;
+use crate::summary::{Summary, percent, rounded};
+use anyhow::Result;
+use belvedere::PointCloud;
+use belvedere::apps::viewshed::{
+    Masks, OBSERVER_HEIGHT, Observer, TARGET_HEIGHT, ViewshedParams, cell_for, cell_targets, least_visible_heights,
+    viewshed,
+};
+use belvedere::ground::{Ground, MapGrid};
+use belvedere::query::{Answer, AnswerCounts, MedialScene, UnprovenAs};
+use results::{on_cells, on_points, write_heights, write_masks};
+use std::path::Path;
+
+/// Outputs that hold points rather than cells.
+const OF_POINTS: [&str; 4] = ["laz", "las", "ply", "csv"];
+/// Most notes on observers that stand wrong.
+const MOST_NOTES: usize = 5;
+
+pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
+    check_outputs(arguments)?;
+    let earth = arguments.earth.params()?;
+    let mut stages = Stages::new(global);
+    let mut summary = Summary::default();
+    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
+    let rows = who::rows(arguments, &scene.cloud)?;
+    let grid = grid(arguments, &scene, &rows)?;
+    let (cloud, ground_points) = ground_cloud(&arguments.ground, &mut scene, &mut stages)?;
+    let ground = ground(&cloud, ground_points, grid, &mut stages, &mut summary)?;
+    let observers = who::observers(arguments, &rows, &ground, &scene.cloud)?;
+    let is_reverse = arguments.who.target.is_some();
+    let target_height = match is_reverse {
+        true => arguments.looking.observer_height.unwrap_or(OBSERVER_HEIGHT),
+        false => arguments.looking.target_height.unwrap_or(TARGET_HEIGHT),
+    };
+    flagged("--target-height, --observer-height", finite(target_height))?;
+    let mut section = Summary::default();
+    let (blockers, unproven) =
+        blockers(&scene, arguments.scene.profile.into(), &arguments.giving_way, &mut stages, &mut section)?;
+    summary.add("lines_of_sight", section);
+    summary.add(if is_reverse { "target" } else { "observers" }, told(&observers, &ground, &blockers, &cloud));
+
+    let masks = if arguments.masks.is_some() { Masks::Kept } else { Masks::NotKept };
+    let params = ViewshedParams { earth, unproven, masks };
+    let is_of_points = |path: &Path| OF_POINTS.contains(&super::extension(path).as_str());
+    if arguments.masks.is_some() || arguments.output.iter().any(|path| !is_of_points(path)) {
+        let targets = cell_targets(&ground, target_height);
+        let seen = stages.run("looking at cells", observers.len(), |progress| {
+            viewshed(&blockers, &observers, &targets, &params, progress)
+        })?;
+        summary.add("cells", counted(&seen.answers, unproven, Some(grid.cell)));
+        let eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
+        for output in arguments.output.iter().filter(|path| !is_of_points(path)) {
+            stages.run("writing", 0, |_| on_cells(output, &seen, &eyes, &ground, &cloud, is_reverse))?;
+        }
+        if let Some(output) = &arguments.masks {
+            stages.run("writing", 0, |_| write_masks(output, &seen, &ground, &cloud))?;
+        }
+    }
+    if arguments.output.iter().any(|path| is_of_points(path)) {
+        let params = ViewshedParams { masks: Masks::NotKept, ..params };
+        let seen = stages.run("looking at points", observers.len(), |progress| {
+            viewshed(&blockers, &observers, &cloud.positions, &params, progress)
+        })?;
+        summary.add("own_points", counted(&seen.answers, unproven, None));
+        for output in arguments.output.iter().filter(|path| is_of_points(path)) {
+            let report = stages.run("writing", 0, |_| on_points(output, &seen, &cloud))?;
+            summary.add_writing(&report);
+        }
+    }
+    if let Some(output) = &arguments.heights {
+        let heights = stages.run("looking for heights", observers.len(), |progress| {
+            least_visible_heights(&blockers, &observers, &ground, arguments.ceiling, &earth, progress)
+        })?;
+        stages.run("writing", 0, |_| write_heights(output, &heights, &ground, &cloud))?;
+    }
+    let written = arguments.output.iter().chain(&arguments.heights).chain(&arguments.masks);
+    summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
+    summary.add_seconds(stages.into_seconds());
+    Ok(summary)
+}
+
+fn check_outputs(arguments: &Viewshed) -> Result<()> {
+    for output in &arguments.output {
+        check_output("-o", output, &["tif", "tiff", "png", "geojson", "laz", "las", "ply", "csv"])?;
+    }
+    if let Some(output) = &arguments.heights {
+        check_output("--heights", output, &["tif", "tiff", "npy"])?;
+    }
+    if let Some(output) = &arguments.masks {
+        check_output("--masks", output, &["tif", "tiff", "npy"])?;
+    }
+    let all: Vec<_> = arguments.output.iter().chain(&arguments.heights).chain(&arguments.masks).collect();
+    for (i, a) in all.iter().enumerate() {
+        if let Some(b) = all.iter().skip(i + 1).find(|b| is_same(a, b)) {
+            return Err(Usage(format!("{}: two results would be written there", b.display())).into());
+        }
+    }
+    Ok(())
+}
+
+/// The cells looked at: those of the cloud that are near enough to any observer.
+fn grid(arguments: &Viewshed, scene: &pipeline::Scene, rows: &[who::Row]) -> Result<MapGrid> {
+    let [mut low, mut high] = on_map(scene.bounds);
+    let [all_low, all_high] = [low, high];
+    let reach = |row: &who::Row| row.limits.distance[1];
+    for axis in 0..2 {
+        let places = || rows.iter().map(|row| (row.place[axis], reach(row)));
+        low[axis] = low[axis].max(places().map(|(at, reach)| at - reach).fold(f64::INFINITY, f64::min));
+        high[axis] = high[axis].min(places().map(|(at, reach)| at + reach).fold(f64::NEG_INFINITY, f64::max));
+    }
+    if low[0] > high[0] || low[1] > high[1] {
+        [low, high] = [all_low, all_high];
+    }
+    let cell = arguments.cell.unwrap_or_else(|| cell_for(low, high));
+    let origin = [scene.cloud.origin[0], scene.cloud.origin[1]];
+    flagged("--cell", MapGrid::covering(low, high, cell, origin))
+}
+
+fn finite(height: f64) -> belvedere::Result<()> {
+    if height.is_finite() {
+        return Ok(());
+    }
+    let value = height.to_string();
+    Err(belvedere::Error::InvalidParameter { name: "height above the ground", value, expected: "finite" })
+}
+
+/// How many observers there are and which stand where nobody can.
+fn told(observers: &[Observer], ground: &Ground, blockers: &MedialScene, cloud: &PointCloud) -> Summary {
+    let mut section = Summary::default();
+    section.add("count", observers.len());
+    if let [one] = observers {
+        section.add("eye", file(cloud, one.eye).map(|v| rounded(v, 3)).to_vec());
+        if let Some(height) = ground.height_at([one.eye[0], one.eye[1]]) {
+            section.add("above_ground_m", rounded(one.eye[2] - height, 3));
+        }
+    }
+    let mut notes = Vec::new();
+    for (number, observer) in observers.iter().enumerate() {
+        let who = format!("eye {}", number + 1);
+        let height = ground.height_at([observer.eye[0], observer.eye[1]]);
+        if let Some(height) = height.filter(|height| observer.eye[2] < *height) {
+            notes.push(format!("{who} is {:.2} m below the ground", height - observer.eye[2]));
+        }
+        notes.extend(enclosure_note(blockers, observer.eye, &who));
+    }
+    if notes.len() > MOST_NOTES {
+        let more = format!("and {} more such notes", notes.len() - MOST_NOTES);
+        notes.truncate(MOST_NOTES);
+        notes.push(more);
+    }
+    section.add("notes", notes);
+    section
+}
+
+fn counted(answers: &[Answer], unproven: UnprovenAs, cell: Option<f64>) -> Summary {
+    let counts = AnswerCounts::of(answers);
+    let asked = answers.len() - counts.outside_view;
+    let mut section = Summary::default();
+    section.add("looked_at", asked).add("visible", counts.visible);
+    if unproven == UnprovenAs::Reported {
+        section.add("unproven", counts.unproven);
+    }
+    section
+        .add("blocked", counts.blocked)
+        .add("not_looked_at", counts.outside_view)
+        .add("visible_percent", percent(counts.visible, asked));
+    if let Some(cell) = cell {
+        section.add("visible_m2", rounded(counts.visible as f64 * cell * cell, 1));
+    }
+    section
+}

@@ -1,0 +1,185 @@
+//! Viewsheds as files.
+
+use crate::arguments::Usage;
+use crate::commands::extension;
+use anyhow::Result;
+use belvedere::PointCloud;
+use belvedere::apps::viewshed::Viewshed;
+use belvedere::ground::{Ground, MapGrid, highest_points};
+use belvedere::io::{
+    Area, ExtraColumn, ExtraValues, Georeference, GridPolygon, MapLegend, MapPicture, WriteReport, map_picture,
+    outlines, ramp_colors, write_cloud, write_geojson_areas, write_npy_f32_2d, write_npy_u32_bands, write_png,
+    write_tif_f32, write_tif_u8, write_tif_u16, write_tif_u32,
+};
+use belvedere::query::Answer;
+use belvedere::raster::Raster;
+use std::path::Path;
+
+/// Values of a raster of answers: visible and invisible as in GDAL.
+const VISIBLE: u8 = 255;
+const UNPROVEN: u8 = 128;
+const INVISIBLE: u8 = 0;
+const NOTHING: u8 = 254;
+/// No count.
+const NO_COUNT: u16 = u16::MAX;
+/// No height.
+const NO_HEIGHT: f32 = -9999.0;
+
+const SEEN_COLOR: [u8; 3] = [255, 176, 0];
+const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
+const HIDDEN_COLOR: [u8; 3] = [176, 176, 180];
+
+/// Writes what is seen of cells as a raster, a map or areas.
+pub(super) fn on_cells(
+    output: &Path,
+    seen: &Viewshed,
+    eyes: &[[f64; 3]],
+    ground: &Ground,
+    cloud: &PointCloud,
+    is_reverse: bool,
+) -> Result<()> {
+    let grid = ground.grid;
+    let one = seen.seen_counts.len() == 1;
+    match extension(output).as_str() {
+        "geojson" => write_areas(output, seen, &grid, cloud),
+        "png" => {
+            let title = match (is_reverse, one) {
+                (true, _) => "From where the target is seen",
+                (false, true) => "What the observer sees",
+                (false, false) => "How many observers see it",
+            };
+            write_map(output, seen, eyes, ground, cloud, title)
+        }
+        _ if one => {
+            let code = |answer: &Answer| match answer {
+                Answer::Visible => VISIBLE,
+                Answer::Unproven => UNPROVEN,
+                Answer::Blocked => INVISIBLE,
+                _ => NOTHING,
+            };
+            let values = seen.answers.iter().map(code).collect();
+            let raster = Raster::from_values(grid.width, grid.height, values)?;
+            let what = "255 visible, 128 unproven, 0 invisible, 254 nodata";
+            Ok(write_tif_u8(output, &raster, Some(&georeference(&grid, cloud)), Some(NOTHING), Some(what))?)
+        }
+        _ => {
+            let count = |(answer, &count): (&Answer, &u32)| match answer {
+                Answer::OutsideView => NO_COUNT,
+                _ => u16::try_from(count).unwrap_or(NO_COUNT).min(NO_COUNT - 1),
+            };
+            let values = seen.answers.iter().zip(&seen.counts).map(count).collect();
+            let raster = Raster::from_values(grid.width, grid.height, values)?;
+            let what = "number of observers that see the cell, 65535 nodata";
+            Ok(write_tif_u16(output, &raster, Some(&georeference(&grid, cloud)), Some(NO_COUNT), Some(what))?)
+        }
+    }
+}
+
+/// Writes which observers see which cell.
+pub(super) fn write_masks(output: &Path, seen: &Viewshed, ground: &Ground, cloud: &PointCloud) -> Result<()> {
+    let grid = ground.grid;
+    if extension(output) == "npy" {
+        return Ok(write_npy_u32_bands(output, &seen.masks, grid.width, grid.height)?);
+    }
+    let [band] = &seen.masks[..] else {
+        let count = seen.seen_counts.len();
+        return Err(Usage(format!("--masks as .tif holds 32 observers, these are {count}: use .npy")).into());
+    };
+    let raster = Raster::from_values(grid.width, grid.height, band.clone())?;
+    let what = "bit i: observer i sees the cell";
+    Ok(write_tif_u32(output, &raster, Some(&georeference(&grid, cloud)), None, Some(what))?)
+}
+
+/// Writes how high a thing must reach to be seen.
+pub(super) fn write_heights(output: &Path, heights: &Raster<f32>, ground: &Ground, cloud: &PointCloud) -> Result<()> {
+    if extension(output) == "npy" {
+        return Ok(write_npy_f32_2d(output, heights)?);
+    }
+    let what = "least height above the ground in metres that is seen; -9999: none, or nodata";
+    let place = georeference(&ground.grid, cloud);
+    Ok(write_tif_f32(output, heights, Some(&place), Some(NO_HEIGHT), Some(what))?)
+}
+
+/// Writes the points of the cloud with what is seen of them.
+pub(super) fn on_points(output: &Path, seen: &Viewshed, cloud: &PointCloud) -> Result<WriteReport> {
+    let codes: Vec<u8> = seen.answers.iter().map(|&answer| answer as u8).collect();
+    let mut columns = vec![ExtraColumn {
+        name: "answer",
+        description: "0 blocked 1 visible 2 unproven 3 no",
+        values: ExtraValues::U8(&codes),
+    }];
+    if seen.seen_counts.len() > 1 {
+        columns.push(ExtraColumn {
+            name: "observers",
+            description: "number that see the point",
+            values: ExtraValues::U32(&seen.counts),
+        });
+    }
+    Ok(write_cloud(output, cloud, &columns)?)
+}
+
+fn write_areas(output: &Path, seen: &Viewshed, grid: &MapGrid, cloud: &PointCloud) -> Result<()> {
+    let mut areas = Vec::new();
+    for (answer, name) in [(Answer::Visible, "visible"), (Answer::Unproven, "unproven")] {
+        let cells = Raster::from_values(grid.width, grid.height, seen.answers.iter().map(|&a| a == answer).collect())?;
+        let polygons = outlines(&cells);
+        if polygons.is_empty() {
+            continue;
+        }
+        let cell_count: usize = polygons.iter().map(|polygon| polygon.cell_count).sum();
+        let mut area = Area::default();
+        area.properties.insert("answer".to_owned(), name.into());
+        area.properties.insert("area_m2".to_owned(), (cell_count as f64 * grid.cell * grid.cell).into());
+        area.polygons = polygons.iter().map(|polygon| rings(polygon, grid, cloud)).collect();
+        areas.push(area);
+    }
+    write_geojson_areas(output, &areas, &cloud.crs)?;
+    Ok(())
+}
+
+/// Rim and holes in metres of the system of the cloud.
+fn rings(polygon: &GridPolygon, grid: &MapGrid, cloud: &PointCloud) -> Vec<Vec<[f64; 2]>> {
+    let place = |&corner: &[usize; 2]| {
+        let [x, y] = grid.corner_at(corner);
+        [x + cloud.origin[0], y + cloud.origin[1]]
+    };
+    std::iter::once(&polygon.rim).chain(&polygon.holes).map(|ring| ring.iter().map(place).collect()).collect()
+}
+
+fn write_map(
+    output: &Path,
+    seen: &Viewshed,
+    eyes: &[[f64; 3]],
+    ground: &Ground,
+    cloud: &PointCloud,
+    title: &str,
+) -> Result<()> {
+    let relief = highest_points(&cloud.positions, ground);
+    let marks: Vec<[f64; 2]> = eyes.iter().filter_map(|eye| ground.grid.cell_position([eye[0], eye[1]])).collect();
+    let most = seen.counts.iter().copied().max().unwrap_or(0).max(1);
+    let one = seen.seen_counts.len() == 1;
+    // from one observer on: what nobody sees is bare relief
+    let ramp = ramp_colors(&(1..=most).map(|i| i as f32).collect::<Vec<f32>>());
+    let color = |(answer, &count): (&Answer, &u32)| match answer {
+        Answer::Visible if one => Some(SEEN_COLOR),
+        Answer::Visible => ramp.get((count as usize).saturating_sub(1)).copied(),
+        Answer::Unproven if one => Some(UNPROVEN_COLOR),
+        _ => None,
+    };
+    let colors: Vec<Option<[u8; 3]>> = seen.answers.iter().zip(&seen.counts).map(color).collect();
+    let mut meanings = vec![(SEEN_COLOR, "visible"), (HIDDEN_COLOR, "invisible")];
+    if seen.answers.contains(&Answer::Unproven) {
+        meanings.insert(1, (UNPROVEN_COLOR, "unproven"));
+    }
+    let legend = if one { MapLegend::Colors(&meanings) } else { MapLegend::Ramp("observers", [1.0, f64::from(most)]) };
+    let cell = ground.grid.cell;
+    let map = MapPicture { relief: &relief, cell, colors: &colors, marks: &marks, title, legend };
+    Ok(write_png(output, &map_picture(&map)?)?)
+}
+
+fn georeference(grid: &MapGrid, cloud: &PointCloud) -> Georeference {
+    let unit = cloud.crs.metres_per_unit;
+    let upper_left = [0, 1].map(|i| (grid.corner[i] + cloud.origin[i]) / unit);
+    let step = grid.cell / unit;
+    Georeference { upper_left, column_step: [step, 0.0], row_step: [0.0, -step], crs: cloud.crs.clone() }
+}

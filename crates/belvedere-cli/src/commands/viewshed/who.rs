@@ -1,0 +1,116 @@
+//! Who looks: from flags and files to eyes.
+
+use crate::arguments::{Usage, Viewshed};
+use crate::commands::sights::local;
+use crate::pipeline::flagged;
+use anyhow::{Result, bail};
+use belvedere::PointCloud;
+use belvedere::apps::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, places_along};
+use belvedere::ground::Ground;
+use belvedere::io::{ObserverRow, RowsAre, read_observers};
+
+/// Metres between the observers on a line of GeoJSON.
+const STEP: f64 = 5.0;
+
+/// An observer before the ground below it is known.
+pub(super) struct Row {
+    /// Local metres; the height of the eye is NaN where it follows from the ground.
+    pub(super) place: [f64; 3],
+    pub(super) height: f64,
+    pub(super) limits: SightLimits,
+}
+
+/// The observers that were typed or are in the file named.
+pub(super) fn rows(arguments: &Viewshed, cloud: &PointCloud) -> Result<Vec<Row>> {
+    let (who, looking) = (&arguments.who, &arguments.looking);
+    let unlimited = SightLimits::default();
+    let limits = SightLimits {
+        azimuth: looking.azimuth.map(|v| v.0.map(f64::to_radians)),
+        elevation: looking.elevation.map(|v| v.0.map(f64::to_radians)),
+        distance: [
+            looking.min_distance.map_or(unlimited.distance[0], f64::from),
+            looking.max_distance.unwrap_or(unlimited.distance[1]),
+        ],
+    };
+    flagged("--min-distance, --max-distance, --azimuth, --elevation", limits.validate())?;
+    let height = looking.observer_height.unwrap_or(OBSERVER_HEIGHT);
+    let typed = |place: &crate::arguments::Place, height: f64| {
+        let &crate::arguments::Place([x, y], z) = place;
+        Row { place: local(cloud, [x, y, z.unwrap_or(f64::NAN)]), height, limits }
+    };
+    if let Some(target) = &who.target {
+        if limits.azimuth.is_some() || limits.elevation.is_some() {
+            let what = "--azimuth and --elevation say where an observer looks; --target has many";
+            return Err(Usage(what.to_owned()).into());
+        }
+        return Ok(vec![typed(target, looking.target_height.unwrap_or(TARGET_HEIGHT))]);
+    }
+    let Some(path) = &who.observers else {
+        return Ok(who.observer.iter().map(|place| typed(place, height)).collect());
+    };
+    let rows_are = if looking.step.is_some() { RowsAre::Corners } else { RowsAre::Places };
+    let mut rows = Vec::new();
+    for row in read_observers(path, &cloud.crs, rows_are)? {
+        let limits = limits_of(&row, limits);
+        flagged(&path.display().to_string(), limits.validate())?;
+        let corners: Vec<[f64; 3]> =
+            row.corners.iter().map(|c| std::array::from_fn(|i| c[i] - cloud.origin[i])).collect();
+        let places = flagged("--step", places_along(&corners, looking.step.unwrap_or(STEP)))?;
+        let height = row.height.unwrap_or(height);
+        rows.extend(places.into_iter().map(|place| Row { place, height, limits }));
+    }
+    Ok(rows)
+}
+
+/// What a file says of its observer goes before what was typed.
+fn limits_of(row: &ObserverRow, typed: SightLimits) -> SightLimits {
+    let pair = |given: [Option<f64>; 2], typed: Option<[f64; 2]>| match given {
+        [Some(from), Some(to)] => Some([from.to_radians(), to.to_radians()]),
+        _ => typed,
+    };
+    SightLimits {
+        azimuth: pair(row.azimuth_deg, typed.azimuth),
+        elevation: pair(row.elevation_deg, typed.elevation),
+        distance: [row.distance[0].unwrap_or(typed.distance[0]), row.distance[1].unwrap_or(typed.distance[1])],
+    }
+}
+
+/// The observers with their eyes above the ground.
+pub(super) fn observers(
+    arguments: &Viewshed,
+    rows: &[Row],
+    ground: &Ground,
+    cloud: &PointCloud,
+) -> Result<Vec<Observer>> {
+    let mut observers = Vec::with_capacity(rows.len());
+    for (number, row) in rows.iter().enumerate() {
+        let mut eye = row.place;
+        if eye[2].is_nan() {
+            let Some(height) = ground.height_at([eye[0], eye[1]]) else {
+                let scale = cloud.crs.metres_per_unit;
+                let [x, y] = [0, 1].map(|i| (eye[i] + cloud.origin[i]) / scale);
+                let who = if arguments.who.target.is_some() { "the target" } else { "observer" };
+                bail!(
+                    "{who} {} at {x:.3},{y:.3}: there is no ground known below it; is it in the coordinates of the cloud? Else give its \
+                     height as a third number",
+                    number + 1
+                );
+            };
+            eye[2] = height + row.height;
+        }
+        observers.push(Observer { eye, limits: row.limits });
+    }
+    flagged("--observer-height", check(&observers))?;
+    Ok(observers)
+}
+
+fn check(observers: &[Observer]) -> belvedere::Result<()> {
+    match observers.iter().find(|observer| !observer.eye.iter().all(|v| v.is_finite())) {
+        None => Ok(()),
+        Some(observer) => Err(belvedere::Error::InvalidParameter {
+            name: "eye of an observer",
+            value: format!("{:?}", observer.eye),
+            expected: "finite",
+        }),
+    }
+}

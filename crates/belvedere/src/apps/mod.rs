@@ -1,0 +1,4 @@
+//! What users ask of a scene: each application puts questions to [`crate::query`] and sums up the answers.
+
+pub mod profile;
+pub mod viewshed;
