@@ -57,7 +57,7 @@ impl MedialScene {
                         let answer = match viewer.line_of_sight(place, target) {
                             None => Answer::OutsideView,
                             Some(_) if !seen[place - first] => Answer::Blocked,
-                            Some((towards, range)) => self.unblocked_answer(target.map(f64::from), towards, range),
+                            Some((towards, range)) => self.answer_unblocked(target.map(f64::from), towards, range),
                         };
                         (targets.rows()[place], answer)
                     })
@@ -81,6 +81,17 @@ impl MedialScene {
             sweep.run(0, &mut visit);
         }
         Ok(())
+    }
+
+    /// Whether the view from `eye` of a target that no ball blocks is proven, both local metres; [`Answer::OutsideView`] where the two
+    /// are one.
+    #[must_use]
+    pub fn answer_unblocked_from(&self, eye: [f64; 3], target: [f64; 3]) -> Answer {
+        let towards = sub(eye, target);
+        match crate::vector::unit(towards) {
+            None => Answer::OutsideView,
+            Some(unit) => self.answer_unblocked(target, unit, crate::vector::length(towards)),
+        }
     }
 }
 

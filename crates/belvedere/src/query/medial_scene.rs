@@ -125,11 +125,11 @@ impl MedialScene {
         if self.blocked(target, towards, range) {
             return Answer::Blocked;
         }
-        self.unblocked_answer(target, towards, range)
+        self.answer_unblocked(target, towards, range)
     }
 
-    /// The answer for a line of sight that no ball blocks.
-    pub(super) fn unblocked_answer(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
+    /// The same for a line of sight of which it is known that no ball blocks it.
+    pub(super) fn answer_unblocked(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
         match &self.proof {
             Some(proof) if proof.is_unproven(target, towards, range) => Answer::Unproven,
             _ => Answer::Visible,

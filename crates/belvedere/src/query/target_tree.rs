@@ -68,6 +68,12 @@ impl TargetTree {
         &self.positions
     }
 
+    /// Lowest and highest corner of the box that just holds them, local metres; `None` without any that is finite.
+    #[must_use]
+    pub fn bounds(&self) -> Option<[[f32; 3]; 2]> {
+        self.nodes.first().map(|root| [root.low, root.high])
+    }
+
     /// Nodes of at most `most` targets, or leaves, that together hold every target, in the order of the tree.
     pub(super) fn subtrees(&self, most: usize) -> Vec<usize> {
         let mut found = Vec::new();

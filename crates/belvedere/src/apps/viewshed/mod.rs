@@ -6,7 +6,7 @@ pub use observers::{Observer, SightLimits, places_along};
 
 use crate::ground::Ground;
 use crate::progress::Progress;
-use crate::query::{Answer, EarthParams, MedialScene, UnprovenAs};
+use crate::query::{Answer, EarthParams, MedialScene, TargetTree, UnprovenAs, Viewer};
 use crate::raster::Raster;
 use crate::{Error, Result};
 use rayon::prelude::*;
@@ -92,20 +92,6 @@ pub fn cell_targets(ground: &Ground, height: f64) -> Vec<[f32; 3]> {
     ground.heights.values().par_iter().enumerate().with_min_len(CHUNK).map(target).collect()
 }
 
-/// What one observer sees of `targets`, (M, 3) local metres: the one place where the targets of an eye are answered. Targets that the
-/// observer is not turned to, that are not finite or lie in the eye are [`Answer::OutsideView`].
-#[must_use]
-pub fn seen_by(scene: &MedialScene, observer: &Observer, targets: &[[f32; 3]], earth: &EarthParams) -> Vec<Answer> {
-    let answer = |target: &[f32; 3]| {
-        let target = target.map(f64::from);
-        if !observer.limits.allow(observer.eye, target) {
-            return Answer::OutsideView;
-        }
-        scene.sight_answer(observer.eye, target, earth)
-    };
-    targets.par_iter().with_min_len(CHUNK).map(answer).collect()
-}
-
 /// What `observers` see of `targets`, (M, 3) local metres; progress counts observers.
 ///
 /// A reverse viewshed, from where a target is seen, is the viewshed of an observer in its place, of the eyes that might see it: a
@@ -121,33 +107,149 @@ pub fn viewshed(
     progress: Progress<'_>,
 ) -> Result<Viewshed> {
     check(observers, &params.earth)?;
-    let bands = if params.masks == Masks::Kept { observers.len().div_ceil(32) } else { 0 };
+    let asked = Asked { scene, tree: TargetTree::new(targets), targets, params };
     let mut result = Viewshed {
-        answers: vec![Answer::OutsideView; targets.len()],
+        answers: asked.before_anybody_sees(observers),
         counts: vec![0; targets.len()],
-        masks: vec![vec![0; targets.len()]; bands],
+        masks: Vec::new(),
         seen_counts: Vec::with_capacity(observers.len()),
     };
-    for (number, observer) in observers.iter().enumerate() {
-        let answers: Vec<Answer> = seen_by(scene, observer, targets, &params.earth)
-            .into_iter()
-            .map(|answer| params.unproven.settle(answer))
-            .collect();
-        for ((best, count), &answer) in result.answers.iter_mut().zip(&mut result.counts).zip(&answers) {
-            if worth(answer) > worth(*best) {
-                *best = answer;
-            }
-            *count += u32::from(answer == Answer::Visible);
+    // few observers share the threads, each of many has one to itself; as many bands at once as there are threads bound the memory
+    let threads = rayon::current_num_threads();
+    let (threading, at_once) =
+        if observers.len() < 2 * threads { (Threading::Shared, 1) } else { (Threading::OneEach, threads) };
+    let bands: Vec<&[Observer]> = observers.chunks(BAND).collect();
+    for round in bands.chunks(at_once) {
+        let seen: Result<Vec<Band>> = round.par_iter().map(|band| asked.band(band, threading, progress)).collect();
+        for band in seen? {
+            add(&mut result, band, params.masks);
         }
-        if let Some(band) = result.masks.get_mut(number / 32) {
-            for (bits, _) in band.iter_mut().zip(&answers).filter(|(_, answer)| **answer == Answer::Visible) {
-                *bits |= 1 << (number % 32);
-            }
-        }
-        result.seen_counts.push(answers.iter().filter(|answer| **answer == Answer::Visible).count());
-        progress.advance(1);
     }
     Ok(result)
+}
+
+/// Observers of a band of masks.
+const BAND: usize = 32;
+
+/// Targets in a tree, and how they are asked about.
+struct Asked<'a> {
+    scene: &'a MedialScene,
+    tree: TargetTree,
+    targets: &'a [[f32; 3]],
+    params: &'a ViewshedParams,
+}
+
+/// How threads are shared.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Threading {
+    /// All threads work for one observer.
+    Shared,
+    /// An observer is one thread's.
+    OneEach,
+}
+
+/// What up to 32 observers see.
+struct Band {
+    /// Bit i: observer i sees the target, (M).
+    seen: Vec<u32>,
+    /// Rows of targets that some of them see without proof.
+    unproven: Vec<u32>,
+    seen_counts: Vec<usize>,
+}
+
+impl Asked<'_> {
+    /// Blocked for what somebody looks at, otherwise outside the view.
+    fn before_anybody_sees(&self, observers: &[Observer]) -> Vec<Answer> {
+        let is_looked_at = |&target: &[f32; 3]| {
+            let target = target.map(f64::from);
+            observers.iter().any(|observer| observer.eye != target && observer.limits.allow(observer.eye, target))
+        };
+        let answer = |target| if is_looked_at(target) { Answer::Blocked } else { Answer::OutsideView };
+        self.targets.par_iter().with_min_len(CHUNK).map(answer).collect()
+    }
+
+    fn band(&self, observers: &[Observer], threading: Threading, progress: Progress<'_>) -> Result<Band> {
+        let mut band = Band { seen: vec![0; self.targets.len()], unproven: Vec::new(), seen_counts: Vec::new() };
+        for (number, observer) in observers.iter().enumerate() {
+            let mut count = 0;
+            let mut note = |row: usize, answer: Answer| match self.params.unproven.settle(answer) {
+                Answer::Visible => {
+                    band.seen[row] |= 1 << number;
+                    count += 1;
+                }
+                #[expect(clippy::cast_possible_truncation, reason = "targets are numbered with 32 bits")]
+                Answer::Unproven => band.unproven.push(row as u32),
+                _ => {}
+            };
+            if self.bends(observer) || threading == Threading::Shared {
+                let answers = self.seen_by(observer)?;
+                answers.into_iter().enumerate().for_each(|(row, answer)| note(row, answer));
+            } else {
+                self.scene.visible_among(Viewer::Eye(observer.eye), &self.tree, |place| {
+                    let target = self.tree.positions()[place].map(f64::from);
+                    if observer.limits.allow(observer.eye, target) {
+                        let answer = match self.params.unproven {
+                            UnprovenAs::Visible => Answer::Visible,
+                            _ => self.scene.answer_unblocked_from(observer.eye, target),
+                        };
+                        note(self.tree.rows()[place] as usize, answer);
+                    }
+                })?;
+            }
+            band.seen_counts.push(count);
+            progress.advance(1);
+        }
+        Ok(band)
+    }
+
+    /// Whether any line of sight of an observer is curved.
+    fn bends(&self, observer: &Observer) -> bool {
+        self.tree.bounds().is_some_and(|bounds| {
+            (0..8).any(|corner| {
+                let corner = std::array::from_fn(|axis| f64::from(bounds[corner >> axis & 1][axis]));
+                self.params.earth.bends(corner, observer.eye)
+            })
+        })
+    }
+
+    /// What one observer sees, all threads at work: (M), blocked where the observer does not look.
+    fn seen_by(&self, observer: &Observer) -> Result<Vec<Answer>> {
+        let allowed = |target: [f32; 3]| observer.limits.allow(observer.eye, target.map(f64::from));
+        if !self.bends(observer) {
+            let mut answers = self.scene.answer_among(Viewer::Eye(observer.eye), &self.tree)?;
+            let targets = self.targets.par_iter().with_min_len(CHUNK);
+            answers.par_iter_mut().zip(targets).filter(|(_, target)| !allowed(**target)).for_each(|(answer, _)| {
+                *answer = Answer::Blocked;
+            });
+            return Ok(answers);
+        }
+        let answer = |&target: &[f32; 3]| {
+            if !allowed(target) {
+                return Answer::Blocked;
+            }
+            self.scene.sight_answer(observer.eye, target.map(f64::from), &self.params.earth)
+        };
+        Ok(self.targets.par_iter().with_min_len(CHUNK).map(answer).collect())
+    }
+}
+
+/// Adds what a band sees.
+fn add(result: &mut Viewshed, band: Band, masks: Masks) {
+    for row in band.unproven {
+        let answer = &mut result.answers[row as usize];
+        if *answer != Answer::Visible {
+            *answer = Answer::Unproven;
+        }
+    }
+    let targets = result.answers.par_iter_mut().zip(&mut result.counts).zip(&band.seen).with_min_len(CHUNK);
+    targets.filter(|(_, bits)| **bits != 0).for_each(|((answer, count), bits)| {
+        *answer = Answer::Visible;
+        *count += bits.count_ones();
+    });
+    result.seen_counts.extend(band.seen_counts);
+    if masks == Masks::Kept {
+        result.masks.push(band.seen);
+    }
 }
 
 /// How high above the ground a thing must reach in each cell for its top to be seen by one of the observers, metres: 0 where the
@@ -204,13 +306,4 @@ fn check(observers: &[Observer], earth: &EarthParams) -> Result<()> {
         }
     }
     Ok(())
-}
-
-fn worth(answer: Answer) -> u8 {
-    match answer {
-        Answer::OutsideView => 0,
-        Answer::Blocked => 1,
-        Answer::Unproven => 2,
-        Answer::Visible => 3,
-    }
 }
