@@ -1,0 +1,176 @@
+//! Exact answers at the speed of a depth map: targets that bounds of depth settle, and lines of sight for the rest.
+
+use super::{Answer, MedialScene, Viewer};
+use crate::depth::{BoundsParams, DepthBounds, Profile, depth_bounds};
+use crate::view::{Projection, View};
+use crate::{Error, Result};
+use rayon::prelude::*;
+
+/// Targets handed to a thread at once.
+const CHUNK: usize = 1024;
+/// Depth beyond which bounds settle nothing, metres: there f64 itself errs by as much as bounds allow for.
+const FARTHEST_SETTLED: f64 = 1e7;
+
+/// Which answers a [`CertifiedMap`] gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scope {
+    /// Those of [`MedialScene::query_view`]: the picture and its limits of depth count, and lines of sight end there.
+    View,
+    /// Those of [`MedialScene::answer`] for every target, as `visible` gives them for the viewer of the view, whose picture
+    /// only saves lines of sight: an eye, or a viewer infinitely far away.
+    Viewer,
+}
+
+/// Bounds of depth for each pixel of one view, or of several from one eye, over the balls of a [`MedialScene`]: a target nearer
+/// than the lower bound of its pixel is visible, one farther than the upper bound is blocked, and only what lies between
+/// needs a line of sight. Answers are those of the scene, every one; the resolution decides no more than the cost.
+///
+/// # Source
+/// Bounds of the depth within a pixel serve as in Williams 1978, but from both sides; the proof is on the project's page on
+/// depth maps.
+pub struct CertifiedMap<'a> {
+    scene: &'a MedialScene,
+    bounds: Vec<DepthBounds>,
+    scope: Scope,
+}
+
+/// How the answers of a [`CertifiedMap`] came about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CertifiedReport {
+    /// Targets asked about.
+    pub target_count: usize,
+    /// Of these, settled by a bound or outside the view.
+    pub settled_count: usize,
+}
+
+impl<'a> CertifiedMap<'a> {
+    /// Draws the bounds of `scene` for `views`: one, or several from the same eye of which a target is looked up in the first that
+    /// shows it, such as [`View::panorama`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for no view, for several that do not look from one eye, for balls with
+    /// [`Profile::PaperCone`], and as [`depth_bounds`].
+    pub fn new(scene: &'a MedialScene, views: &[View], scope: Scope) -> Result<Self> {
+        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let Some(first) = views.first() else {
+            return invalid("number of views", "0".to_owned(), "at least 1");
+        };
+        if let Some(other) = views[1..].iter().find(|v| !v.is_central() || v.frame.eye != first.frame.eye) {
+            let eyes = format!("{:?} and {:?}", first.frame.eye, other.frame.eye);
+            return invalid("views", eyes, "from one eye, where there are several");
+        }
+        let params = scene.params();
+        if params.profile != Profile::Sphere {
+            return invalid("profile", "the paper's cone".to_owned(), "the sphere, for certified answers");
+        }
+        let bounds_of = |view: &View| {
+            let start = match scope {
+                Scope::View => view.limits()[0],
+                Scope::Viewer if view.is_central() => 0.0,
+                Scope::Viewer => f64::NEG_INFINITY,
+            };
+            depth_bounds(scene.balls(), view, &BoundsParams { shell: params.shell, start })
+        };
+        Ok(Self { scene, bounds: views.iter().map(bounds_of).collect::<Result<_>>()?, scope })
+    }
+
+    /// The bounds of each view.
+    #[must_use]
+    pub fn bounds(&self) -> &[DepthBounds] {
+        &self.bounds
+    }
+
+    /// The answer for each of `targets`, (M, 3) local metres, in their order, and how many were settled without a line of sight.
+    #[must_use]
+    pub fn answers(&self, targets: &[[f32; 3]]) -> (Vec<Answer>, CertifiedReport) {
+        let mut answers = vec![Answer::OutsideView; targets.len()];
+        let settled_count = answers
+            .par_chunks_mut(CHUNK)
+            .zip(targets.par_chunks(CHUNK))
+            .map(|(answers, targets)| {
+                let mut settled = 0;
+                for (answer, &target) in answers.iter_mut().zip(targets) {
+                    let way;
+                    (*answer, way) = self.answer(target);
+                    settled += usize::from(way == Way::Settled);
+                }
+                settled
+            })
+            .sum();
+        (answers, CertifiedReport { target_count: targets.len(), settled_count })
+    }
+
+    fn answer(&self, target: [f32; 3]) -> (Answer, Way) {
+        let line = match self.scope {
+            Scope::View => self.bounds.iter().find_map(|bounds| line_in_view(&bounds.view, target)),
+            Scope::Viewer => self.bounds.first().and_then(|bounds| viewer(&bounds.view).line_of_sight(0, target)),
+        };
+        let Some((towards, range)) = line else { return (Answer::OutsideView, Way::Settled) };
+        let position = target.map(f64::from);
+        match self.bounds.iter().find_map(|bounds| self.bracket(bounds, target)) {
+            Some((depth, [lower, _])) if depth < lower => {
+                (self.scene.answer_unblocked(position, towards, range), Way::Settled)
+            }
+            Some((depth, [_, upper])) if depth > upper => (Answer::Blocked, Way::Settled),
+            _ => (self.scene.answer(position, towards, range), Way::ByLineOfSight),
+        }
+    }
+
+    /// The depth of a target less the bias, and the bounds of its pixel, where the picture shows it.
+    fn bracket(&self, bounds: &DepthBounds, target: [f32; 3]) -> Option<(f64, [f64; 2])> {
+        let view = &bounds.view;
+        let [x, y, depth] = view.project(target)?;
+        if !(x >= 0.0 && y >= 0.0) {
+            return None;
+        }
+        // bounds are ranges in views from an eye
+        let depth = match view.projection {
+            Projection::Perspective { .. } => {
+                view.frame.view_from_local(target).map(|v| v * v).iter().sum::<f64>().sqrt()
+            }
+            _ => depth,
+        };
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "not negative: rounds down, saturates"
+        )]
+        let (column, row) = (x as usize, y as usize);
+        let [lower, upper] = [&bounds.lower, &bounds.upper].map(|raster| raster.get(column, row).map(f64::from));
+        (depth.abs() < FARTHEST_SETTLED).then_some((depth - self.scene.params().depth_bias, [lower?, upper?]))
+    }
+}
+
+/// Whether a bound was enough.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    Settled,
+    ByLineOfSight,
+}
+
+/// Who looks through a view.
+fn viewer(view: &View) -> Viewer<'static> {
+    if view.is_central() { Viewer::Eye(view.frame.eye) } else { Viewer::Direction(view.frame.forward.map(|v| -v)) }
+}
+
+/// The line of sight of a target within the picture and limits of `view`: unit vector from the target to the viewer, and the range
+/// at which it meets the picture plane or the near limit; `None` for any other target.
+pub(super) fn line_in_view(view: &View, target: [f32; 3]) -> Option<([f64; 3], f64)> {
+    let place = view.project(target)?;
+    view.pixel(place)?;
+    let depth = place[2];
+    if !depth.is_finite() {
+        return None;
+    }
+    match view.projection {
+        Projection::Orthographic { .. } => Some((view.frame.forward.map(|v| -v), depth)),
+        Projection::Perspective { near, .. } => {
+            let (towards, range) = viewer(view).line_of_sight(0, target)?;
+            Some((towards, range - near * (range / depth)))
+        }
+        Projection::Hemispherical { near, .. } => {
+            let (towards, range) = viewer(view).line_of_sight(0, target)?;
+            Some((towards, range - near))
+        }
+    }
+}
