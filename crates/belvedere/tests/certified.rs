@@ -126,8 +126,7 @@ fn the_first_surface_of_every_place_of_a_pixel_lies_within_its_bounds() {
                 // corners of pixels too
                 let place = if i % 3 == 0 { [x.floor() + 1e-9, y.floor() + 1.0 - 1e-9] } else { [x, y] };
                 let [column, row] = place.map(|v| v as usize);
-                let mut least = f64::from(bounds.lower.get(column, row).unwrap());
-                let most = f64::from(bounds.upper.get(column, row).unwrap());
+                let [mut least, most] = bounds.bounds.get(column, row).unwrap().map(f64::from);
                 if start == 0.0 {
                     least = least.max(0.0);
                 }
@@ -150,7 +149,7 @@ fn answers_of_a_certified_map_are_the_same_for_any_number_of_threads() {
             let scene = MedialScene::new(&balls, &SceneParams::carved()).unwrap();
             let map = CertifiedMap::new(&scene, &View::panorama(EYE, 200).unwrap(), Scope::Viewer).unwrap();
             let bits: Vec<u32> =
-                map.bounds().iter().flat_map(|b| b.upper.values().iter().map(|v| v.to_bits())).collect();
+                map.bounds().iter().flat_map(|b| b.bounds.values().iter().flat_map(|v| v.map(f32::to_bits))).collect();
             (bits, map.answers(&targets))
         })
     };

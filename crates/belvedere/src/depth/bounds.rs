@@ -40,12 +40,10 @@ impl Default for BoundsParams {
 pub struct DepthBounds {
     /// The view they were made for.
     pub view: View,
-    /// At most the depth of the first surface at any point of the pixel, metres: depth in parallel views, range from the eye in all
-    /// others. +∞ where no ball touches the pixel.
-    pub lower: Raster<f32>,
-    /// At least the depth of the first surface at every point of the pixel, even where balls give way by the shell. +∞ where no
-    /// single ball covers the pixel.
-    pub upper: Raster<f32>,
+    /// For each pixel, metres (depth in parallel views, range from the eye in all others): at most the depth of the first surface at
+    /// any point of it, +∞ where no ball touches it; and at least that depth at every point of it, even where balls give way
+    /// by the shell, +∞ where no single ball covers it.
+    pub bounds: Raster<[f32; 2]>,
 }
 
 /// Bounds of depth in `view` over the balls given as centre (local) and radius, metres; those that are not finite are left out, and
@@ -89,7 +87,10 @@ pub fn depth_bounds(balls: &[([f32; 3], f32)], view: &View, params: &BoundsParam
         };
         drawn.0
     };
-    Ok(DepthBounds { view: *view, lower: draw(BoundSide::Lower), upper: draw(BoundSide::Upper) })
+    let (lower, upper) = (draw(BoundSide::Lower), draw(BoundSide::Upper));
+    let bounds = lower.values().iter().zip(upper.values()).map(|(&lower, &upper)| [lower, upper]).collect();
+    let [width, height] = view.size_px;
+    Ok(DepthBounds { view: *view, bounds: Raster::from_values(width, height, bounds)? })
 }
 
 /// Which of both bounds is drawn.
@@ -110,16 +111,16 @@ pub(super) struct BallBound {
 
 impl BallBound {
     /// The radius to draw a ball with, `None` where it does not count. `size` is at least the largest of its coordinates, metres;
-    /// `fronts` the least and the most depth of its front.
+    /// `fronts` the least and the most depth of its front; nothing smaller than `least_cover` covers a pixel at its distance.
     #[expect(clippy::cast_possible_truncation, reason = "rounded outward on purpose")]
-    pub(super) fn radius(&self, radius: f32, size: f64, [least, most]: [f64; 2]) -> Option<f32> {
+    pub(super) fn radius(&self, radius: f32, size: f64, [least, most]: [f64; 2], least_cover: f64) -> Option<f32> {
         let radius = f64::from(radius);
         let margin = margin(size, radius);
         match self.side {
             BoundSide::Lower => (most + margin > self.start[0]).then(|| ((radius + margin) as f32).next_up()),
             BoundSide::Upper => {
                 let drawn = radius - self.shell.min(SHELL_SHARE * radius) - margin;
-                (drawn > 0.0 && least - margin > self.start[1]).then(|| (drawn as f32).next_down())
+                (drawn > least_cover && least - margin > self.start[1]).then(|| (drawn as f32).next_down())
             }
         }
     }

@@ -6,6 +6,7 @@
 use super::bounds::{BallBound, BoundSide, margin};
 use super::outline::{ALL, outline};
 use super::tiles::{BLOCK, Shape, TILE};
+use crate::vector::{cross, length};
 use crate::view::{Projection, View};
 
 /// A ball as seen from the eye.
@@ -101,8 +102,9 @@ pub(super) trait Surface: Sync {
     const BEYOND_PX: f32;
     /// Whether depths are ranges whatever the view.
     const IN_RANGE: bool;
-    /// The radius to draw with, or `None` where a ball does not count. `fronts` is the least and the most range of its front.
-    fn radius(&self, radius: f32, size: f64, fronts: [f64; 2]) -> Option<f32>;
+    /// The radius to draw with, or `None` where a ball does not count. `fronts` is the least and the most range of its front; nothing
+    /// smaller than `least_cover` covers a pixel at its range.
+    fn radius(&self, radius: f32, size: f64, fronts: [f64; 2], least_cover: f64) -> Option<f32>;
     /// Limits of depth of what is drawn.
     fn limits(&self, view: &View) -> [f64; 2];
     /// What a ball covers whose outline says nothing because its surface runs through the eye, as far as can be told.
@@ -126,13 +128,20 @@ pub(super) struct Pixel<'a> {
 pub(super) struct Central<S> {
     view: View,
     limits: [f32; 2],
+    /// At most the sine of the angle from the middle of any pixel to its corners.
+    least_pixel: f64,
     surface: S,
 }
 
 impl<S: Surface> Central<S> {
     #[expect(clippy::cast_possible_truncation, reason = "limits of depth in metres")]
     pub(super) fn new(view: &View, surface: S) -> Self {
-        Self { view: *view, limits: surface.limits(view).map(|v| v as f32), surface }
+        let limits = surface.limits(view).map(|v| v as f32);
+        // pixels are smallest at the corners of a perspective picture and at those of a stereographic map
+        let corner = view.direction([0.0; 2]);
+        let inward = view.direction([0.5; 2]);
+        let least_pixel = length(cross(corner, inward)) * 0.5;
+        Self { view: *view, limits, least_pixel, surface }
     }
 
     fn is_in_range(&self) -> bool {
@@ -171,7 +180,7 @@ impl<S: Surface> Shape for Central<S> {
         let size = center.iter().map(|v| v.abs()).sum();
         let margin = margin(size, whole);
         let silhouette = ((distance - whole) * (distance + whole)).max(0.0).sqrt();
-        let radius = self.surface.radius(radius, size, [distance - whole, silhouette])?;
+        let radius = self.surface.radius(radius, size, [distance - whole, silhouette], distance * self.least_pixel)?;
         let extent = outline(&self.view, center, whole).or_else(|| self.surface.at_eye(distance, whole, margin))?;
         let inside = |[least, most]: [f64; 2], size: usize| most > -1.0 && least < size as f64 + 1.0;
         if !(inside(extent[0], self.view.size_px[0]) && inside(extent[1], self.view.size_px[1])) {
@@ -282,7 +291,7 @@ impl Surface for Sphere {
     const BEYOND_PX: f32 = 0.1;
     const IN_RANGE: bool = false;
 
-    fn radius(&self, radius: f32, _: f64, [least, _]: [f64; 2]) -> Option<f32> {
+    fn radius(&self, radius: f32, _: f64, [least, _]: [f64; 2], _: f64) -> Option<f32> {
         // a ball that holds the eye is left out
         (least > 0.0).then_some(radius)
     }
@@ -311,8 +320,8 @@ impl Surface for Bound {
     const BEYOND_PX: f32 = 1.0;
     const IN_RANGE: bool = true;
 
-    fn radius(&self, radius: f32, size: f64, fronts: [f64; 2]) -> Option<f32> {
-        self.0.radius(radius, size, fronts)
+    fn radius(&self, radius: f32, size: f64, fronts: [f64; 2], least_cover: f64) -> Option<f32> {
+        self.0.radius(radius, size, fronts, least_cover)
     }
 
     fn limits(&self, _: &View) -> [f64; 2] {

@@ -176,7 +176,7 @@ impl Surface for Bound {
     fn place(&self, x: f64, y: f64, z: f64, radius: f32, ball: u32) -> Option<Splat> {
         let size = (x.abs() + y.abs()) * self.metres_per_px + z.abs();
         let whole = f64::from(radius);
-        let radius = self.bound.radius(radius, size, [z - whole, z])?;
+        let radius = self.bound.radius(radius, size, [z - whole, z], f64::from(self.half_px))?;
         Some(Splat { x: x as f32, y: y as f32, z: z as f32, radius, ball })
     }
 

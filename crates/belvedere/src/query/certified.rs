@@ -136,8 +136,8 @@ impl<'a> CertifiedMap<'a> {
             reason = "not negative: rounds down, saturates"
         )]
         let (column, row) = (x as usize, y as usize);
-        let [lower, upper] = [&bounds.lower, &bounds.upper].map(|raster| raster.get(column, row).map(f64::from));
-        (depth.abs() < FARTHEST_SETTLED).then_some((depth - self.scene.params().depth_bias, [lower?, upper?]))
+        let bracket = bounds.bounds.get(column, row)?.map(f64::from);
+        (depth.abs() < FARTHEST_SETTLED).then_some((depth - self.scene.params().depth_bias, bracket))
     }
 }
 
