@@ -115,6 +115,13 @@ const SURFACE_DEVIATION: f64 = 0.1;
 /// 27° high.
 const SLOPE: f64 = 2.0;
 
+/// The bias, metres, by which a target may lie inside a ball along its line of sight and still count as visible, where noise and balls
+/// are all that stands between a point and its surface: [`DepthMap::default_depth_bias`] for pixels without extent, 0.22 m.
+#[must_use]
+pub fn surface_bias() -> f64 {
+    SURFACE_DEVIATION * (1.0 + SLOPE * SLOPE).sqrt()
+}
+
 impl DepthMap {
     /// The bias, metres, by which a target may lie behind the depth of its pixel and still count as visible, unless the
     /// caller knows better.

@@ -45,7 +45,7 @@ pub use balls::{SavedBalls, SavedPulses, is_ball_file, read_balls, write_balls};
 pub use canvas::{Canvas, Colors};
 pub use cityjson::{LevelOfDetail, read_cityjson};
 pub use colors::{class_color, in_shadow, ramp_colors};
-pub use depth_picture::depth_picture;
+pub use depth_picture::{camera_picture, depth_picture, panorama_picture};
 pub use geotiff::{Georeference, write_f32 as write_tif_f32, write_u32 as write_tif_u32};
 pub use mesh::read_mesh;
 pub use picture::{Picture, side_by_side};

@@ -43,6 +43,61 @@ pub struct CertifiedReport {
     pub settled_count: usize,
 }
 
+/// Targets for each pixel from which on drawing bounds costs less than the lines of sight they save: a pixel costs 0.4 to 1.2 µs, a
+/// line of sight 0.4 to 0.8, of which a certified map saves three quarters (a town of 700 000 balls on two cores).
+const TARGETS_PER_PIXEL: usize = 3;
+
+/// The answer for each of `targets`, (M, 3) local metres, in `views` of one eye or of one parallel viewer: by a [`CertifiedMap`] where
+/// there are more than a few targets a pixel, which then reports, by a line of sight each where not. The answers are the same.
+///
+/// # Errors
+/// As [`CertifiedMap::new`], the paper's cone excepted, which lines of sight answer.
+pub fn answer_views(
+    scene: &MedialScene,
+    views: &[View],
+    scope: Scope,
+    targets: &[[f32; 3]],
+) -> Result<(Vec<Answer>, Option<CertifiedReport>)> {
+    check_views(views)?;
+    let pixel_count: usize = views.iter().map(|view| view.size_px[0] * view.size_px[1]).sum();
+    if scene.params().profile == Profile::Sphere && targets.len() / TARGETS_PER_PIXEL > pixel_count {
+        let (answers, report) = CertifiedMap::new(scene, views, scope)?.answers(targets);
+        return Ok((answers, Some(report)));
+    }
+    let answer = |&target: &[f32; 3]| match line_of_sight(views.iter(), scope, target) {
+        None => Answer::OutsideView,
+        Some((towards, range)) => scene.answer(target.map(f64::from), towards, range),
+    };
+    Ok((targets.par_iter().with_min_len(CHUNK).map(answer).collect(), None))
+}
+
+/// Refuses views of no or of several viewers.
+fn check_views(views: &[View]) -> Result<()> {
+    let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+    let Some((first, others)) = views.split_first() else {
+        return invalid("number of views", "0".to_owned(), "at least 1");
+    };
+    match others.iter().find(|view| !(view.is_central() && first.is_central() && view.frame.eye == first.frame.eye)) {
+        None => Ok(()),
+        Some(other) => {
+            let eyes = format!("{:?} and {:?}", first.frame.eye, other.frame.eye);
+            invalid("views", eyes, "from one eye, where there are several")
+        }
+    }
+}
+
+/// The line of sight of a target in the first of `views` that has one: unit vector towards the viewer, and its range.
+fn line_of_sight<'v>(
+    mut views: impl Iterator<Item = &'v View>,
+    scope: Scope,
+    target: [f32; 3],
+) -> Option<([f64; 3], f64)> {
+    match scope {
+        Scope::View => views.find_map(|view| line_in_view(view, target)),
+        Scope::Viewer => views.next().and_then(|view| viewer(view).line_of_sight(0, target)),
+    }
+}
+
 impl<'a> CertifiedMap<'a> {
     /// Draws the bounds of `scene` for `views`: one, or several from the same eye of which a target is looked up in the first that
     /// shows it, such as [`View::panorama`].
@@ -51,17 +106,14 @@ impl<'a> CertifiedMap<'a> {
     /// [`Error::InvalidParameter`] for no view, for several that do not look from one eye, for balls with
     /// [`Profile::PaperCone`], and as [`depth_bounds`].
     pub fn new(scene: &'a MedialScene, views: &[View], scope: Scope) -> Result<Self> {
-        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
-        let Some(first) = views.first() else {
-            return invalid("number of views", "0".to_owned(), "at least 1");
-        };
-        if let Some(other) = views[1..].iter().find(|v| !v.is_central() || v.frame.eye != first.frame.eye) {
-            let eyes = format!("{:?} and {:?}", first.frame.eye, other.frame.eye);
-            return invalid("views", eyes, "from one eye, where there are several");
-        }
+        check_views(views)?;
         let params = scene.params();
         if params.profile != Profile::Sphere {
-            return invalid("profile", "the paper's cone".to_owned(), "the sphere, for certified answers");
+            return Err(Error::InvalidParameter {
+                name: "profile",
+                value: "the paper's cone".to_owned(),
+                expected: "the sphere, for certified answers",
+            });
         }
         let bounds_of = |view: &View| {
             let start = match scope {
@@ -101,10 +153,7 @@ impl<'a> CertifiedMap<'a> {
     }
 
     fn answer(&self, target: [f32; 3]) -> (Answer, Way) {
-        let line = match self.scope {
-            Scope::View => self.bounds.iter().find_map(|bounds| line_in_view(&bounds.view, target)),
-            Scope::Viewer => self.bounds.first().and_then(|bounds| viewer(&bounds.view).line_of_sight(0, target)),
-        };
+        let line = line_of_sight(self.bounds.iter().map(|bounds| &bounds.view), self.scope, target);
         let Some((towards, range)) = line else { return (Answer::OutsideView, Way::Settled) };
         let position = target.map(f64::from);
         match self.bounds.iter().find_map(|bounds| self.bracket(bounds, target)) {

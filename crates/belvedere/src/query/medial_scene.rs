@@ -3,7 +3,7 @@
 use super::certified::line_in_view;
 use super::{Answer, Proof, Sight, Viewer, Visibility};
 use crate::Result;
-use crate::depth::{Profile, SHELL_SHARE};
+use crate::depth::{Profile, SHELL_SHARE, surface_bias};
 use crate::medial::{MedialBalls, NO_TOUCH};
 use crate::ray_index::{Ray, RayIndex};
 use crate::vector::{length, sub};
@@ -55,6 +55,14 @@ impl SceneParams {
     #[must_use]
     pub fn carved() -> Self {
         Self { profile: Profile::Sphere, depth_bias: 0.0, shell: 0.2 }
+    }
+}
+
+impl SceneParams {
+    /// For balls that no pulse cut, which are seen from outside only: spheres with the bias of [`surface_bias`] and no shell.
+    #[must_use]
+    pub fn uncarved() -> Self {
+        Self { profile: Profile::Sphere, depth_bias: surface_bias(), shell: 0.0 }
     }
 }
 

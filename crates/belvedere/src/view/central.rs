@@ -1,6 +1,6 @@
 //! Views from an eye: perspective, hemispheres, and the full sphere as two of them.
 
-use super::{MAX_PIXEL_COUNT, Projection, View, ViewFrame};
+use super::{MAX_PIXEL_COUNT, Projection, View, ViewFrame, to_sun};
 use crate::vector::{sub, unit};
 use crate::{Error, Result};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -111,4 +111,13 @@ impl View {
         let around = |z: f64| Self::hemisphere(eye, [0.0, 0.0, z], size_px);
         Ok([around(1.0)?, around(-1.0)?])
     }
+}
+
+/// Unit vector (local) through the middle of a pixel (column, row) of a panorama of `width` columns and half as many rows: a column is
+/// an azimuth, clockwise from south at the left edge over west, north in the middle and east to south again, a row an elevation, from
+/// the zenith to the nadir.
+#[must_use]
+pub fn panorama_direction(width: usize, [column, row]: [usize; 2]) -> [f64; 3] {
+    let step = 2.0 * PI / width.max(1) as f64;
+    to_sun((column as f64 + 0.5) * step - PI, FRAC_PI_2 - (row as f64 + 0.5) * step)
 }

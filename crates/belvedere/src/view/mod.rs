@@ -5,6 +5,7 @@ mod frame;
 mod parallel;
 mod projection;
 
+pub use central::panorama_direction;
 pub use frame::ViewFrame;
 pub use projection::Projection;
 

@@ -1,6 +1,7 @@
 //! From positions to places of the picture and back.
 
-use super::View;
+use super::{View, ViewFrame};
+use crate::vector::dot;
 
 /// How space is projected onto the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +42,21 @@ impl View {
     #[must_use]
     #[inline]
     pub fn project(&self, local: [f32; 3]) -> Option<[f64; 3]> {
-        let [x, y, z] = self.frame.view_from_local(local);
+        self.place(self.frame.view_from_local(local))
+    }
+
+    /// Where a direction from the eye (local, any length) lies in the picture of a view from an eye, pixels, whether within or beside
+    /// it; `None` where [`View::project`] gives none.
+    #[must_use]
+    pub fn place_of_direction(&self, direction: [f64; 3]) -> Option<[f64; 2]> {
+        let ViewFrame { right, down, forward, .. } = self.frame;
+        let [x, y, _] = self.place([right, down, forward].map(|axis| dot(axis, direction)))?;
+        Some([x, y])
+    }
+
+    /// Place and depth of a position along right, down and forward.
+    #[inline]
+    fn place(&self, [x, y, z]: [f64; 3]) -> Option<[f64; 3]> {
         let middle = self.middle();
         match self.projection {
             Projection::Orthographic { pixels_per_metre } => Some([x * pixels_per_metre, y * pixels_per_metre, z]),
