@@ -4,6 +4,7 @@ use super::depth_map::{ItemBuffer, NO_BALL, Profile, depth_map};
 use crate::Result;
 use crate::medial::MedialBalls;
 use crate::raster::Raster;
+use crate::vector::{cross, dot, length, sub};
 use crate::view::{View, panorama_direction};
 use rayon::prelude::*;
 
@@ -19,17 +20,28 @@ pub struct Panorama {
     pub around_eye_count: usize,
 }
 
+/// Range from `eye` to a ball along a unit vector, both local, if it meets the ball.
+fn front(balls: &MedialBalls, ball: usize, eye: [f64; 3], direction: [f64; 3]) -> Option<f32> {
+    let (center, radius) = (balls.centers.get(ball)?, f64::from(*balls.radii.get(ball)?));
+    let offset = sub(center.map(f64::from), eye);
+    let along = dot(offset, direction);
+    let beside = length(cross(offset, direction));
+    #[expect(clippy::cast_possible_truncation, reason = "a range in metres")]
+    let range = (along - (radius * radius - beside * beside).max(0.0).sqrt()) as f32;
+    (beside < radius).then_some(range)
+}
+
 /// The panorama of `balls` around `eye`, local metres, `width` pixels wide (made even) and half as high.
 ///
-/// It is looked up in two stereographic depth maps as fine as half to a third of its pixels, so that a pixel shows the range in
-/// a direction within a third of a pixel of its own.
+/// Which ball a pixel shows is looked up in two stereographic depth maps with pixels of a third to two thirds of its own; the range is that
+/// of this ball in the very direction of the pixel, or, where it just misses the ball, that of the map.
 ///
 /// # Errors
 /// As [`View::panorama`] and [`depth_map`].
 pub fn panorama(balls: &MedialBalls, eye: [f64; 3], width: usize, items: ItemBuffer) -> Result<Panorama> {
     let maps = View::panorama(eye, width.max(1))?
         .iter()
-        .map(|view| depth_map(balls, view, Profile::Sphere, items))
+        .map(|view| depth_map(balls, view, Profile::Sphere, ItemBuffer::With))
         .collect::<Result<Vec<_>>>()?;
     let width = width.max(1).next_multiple_of(2);
     let height = width / 2;
@@ -43,8 +55,10 @@ pub fn panorama(balls: &MedialBalls, eye: [f64; 3], width: usize, items: ItemBuf
                 map.view.pixel([place[0], place[1], 0.0]).map(|pixel| (map, pixel))
             });
             let Some((map, [column, row])) = place else { return (f32::INFINITY, NO_BALL) };
-            let ball = map.balls.as_ref().and_then(|balls| balls.get(column, row));
-            (map.depth.get(column, row).unwrap_or(f32::INFINITY), ball.unwrap_or(NO_BALL))
+            let sampled = map.depth.get(column, row).unwrap_or(f32::INFINITY);
+            let ball = map.balls.as_ref().and_then(|balls| balls.get(column, row)).unwrap_or(NO_BALL);
+            let exact = (ball != NO_BALL).then(|| front(balls, ball as usize, eye, direction)).flatten();
+            (exact.unwrap_or(sampled), ball)
         })
         .collect();
     let range = Raster::from_values(width, height, pixels.iter().map(|pixel| pixel.0).collect())?;

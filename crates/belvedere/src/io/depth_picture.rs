@@ -26,7 +26,7 @@ pub fn depth_picture(depth: &Raster<f32>, title: &str) -> Picture {
     let (near, far) =
         percentiles(depth.values(), 0.01, 0.99).map_or((0.0, 1.0), |(near, far)| (f64::from(near), f64::from(far)));
     let colors = DepthColors::Even { near, span: if far > near { far - near } else { 1.0 } };
-    with_legend(&enlarged(colored(depth, &colors, |_| 1.0)), &colors, title)
+    with_legend(&enlarged(colored(depth, &colors, |_| 1.0)), &colors, title, "depth (m)")
 }
 
 /// A picture of the depths that `view` shows, as [`depth_picture`], but for an eye: equal ratios of depth are equal steps of colour,
@@ -39,7 +39,7 @@ pub fn camera_picture(view: &View, depth: &Raster<f32>, title: &str) -> Picture 
     let shaded = colored(depth, &colors, |pixel| {
         facing(depth, pixel, position).map_or(1.0, |(normal, to_eye)| lit(normal, to_eye, [-0.4, -0.6, 0.0]))
     });
-    with_legend(&enlarged(shaded), &colors, title)
+    with_legend(&enlarged(shaded), &colors, title, "depth (m)")
 }
 
 /// A picture of the ranges around an eye, columns and rows as in [`panorama_direction`], coloured and shaded as [`camera_picture`],
@@ -56,7 +56,7 @@ pub fn panorama_picture(range: &Raster<f32>, title: &str) -> Picture {
             lit(normal, to_eye, [left[0], left[1], 0.6])
         })
     });
-    with_legend(&with_compass(&enlarged(shaded)), &colors, title)
+    with_legend(&with_compass(&enlarged(shaded)), &colors, title, "range (m)")
 }
 
 /// How depths become colours.
@@ -100,9 +100,16 @@ impl DepthColors {
                 ((0..6).find(digits).map_or(6, |d| usize::try_from(d).unwrap_or(0)), ticks)
             }
             Self::ByRatio { .. } => {
-                let series = (-1..9).flat_map(|power| [1.0, 2.0, 5.0].map(|m| m * 10.0_f64.powi(power)));
-                let ticks: Vec<f64> = series.filter(|v| (near..=far).contains(v)).collect();
-                (usize::from(near < 1.0), ticks)
+                let coarse = [1.0, 2.0, 5.0];
+                let fine = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0];
+                let series = |steps: &[f64]| -> Vec<f64> {
+                    let powers = (-1..9).map(|power| 10.0_f64.powi(power));
+                    let all = powers.flat_map(|power| steps.iter().map(move |step| step * power));
+                    all.filter(|v| (near..=far).contains(v)).collect()
+                };
+                let ticks = series(&coarse);
+                let ticks = if ticks.len() < 4 { series(&fine) } else { ticks };
+                (usize::from(ticks.iter().any(|v| v.fract() != 0.0)), ticks)
             }
         }
     }
@@ -178,7 +185,7 @@ fn with_compass(map: &Picture) -> Picture {
     sheet
 }
 
-fn with_legend(map: &Picture, colors: &DepthColors, title: &str) -> Picture {
+fn with_legend(map: &Picture, colors: &DepthColors, title: &str, legend: &str) -> Picture {
     let scale = text_scale(map.width.max(map.height));
     let (margin, line) = (8 * scale, (HEIGHT + 4) * scale);
     let (decimals, ticks) = colors.ticks();
@@ -189,8 +196,7 @@ fn with_legend(map: &Picture, colors: &DepthColors, title: &str) -> Picture {
     // room for the swatch of "nothing hit" below the bar, whatever the height of the map
     let bar_height = map.height.max(line * 7).saturating_sub(line * 4).min(320 * scale);
     let label_left = margin * 2 + map.width + bar_width + 5 * scale;
-    let widest =
-        labels.iter().map(String::as_str).chain(["depth (m)"]).map(|t| text_width(t, scale)).max().unwrap_or(0);
+    let widest = labels.iter().map(String::as_str).chain([legend]).map(|t| text_width(t, scale)).max().unwrap_or(0);
     let legend_right =
         (label_left + widest).max(margin * 2 + map.width + bar_width + 5 * scale + text_width(NOTHING_LABEL, scale));
     let header = if title.is_empty() { 0 } else { line + TITLE_GAP * scale };
@@ -202,7 +208,7 @@ fn with_legend(map: &Picture, colors: &DepthColors, title: &str) -> Picture {
     sheet.paste(map, [margin, top]);
 
     let left = margin * 2 + map.width;
-    draw_text(&mut sheet, left, top, "depth (m)", scale, INK);
+    draw_text(&mut sheet, left, top, legend, scale, INK);
     let bar_top = top + line + HEIGHT * scale / 2;
     let rim = scale.div_ceil(2);
     sheet.fill_rectangle([left - rim, bar_top - rim], [bar_width + 2 * rim, bar_height + 2 * rim], INK);
