@@ -355,20 +355,20 @@ pub(crate) struct ViewChoice {
         allow_negative_numbers = true)]
     pub(crate) pixel: Option<f64>,
     /// Place in the middle of the picture of --eye, in file coordinates
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "eye")]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, conflicts_with_all = ["viewport", "sun", "direction", "panorama"])]
     pub(crate) look_at: Option<Numbers<3>>,
     /// Angle from the left to the right edge of the picture of --eye in degrees, up to 175 [default: 60]
-    #[arg(long, value_name = "DEG", requires = "eye", allow_negative_numbers = true, value_parser = above_zero::<f64>)]
+    #[arg(long, value_name = "DEG", conflicts_with_all = ["viewport", "sun", "direction", "panorama"], allow_negative_numbers = true, value_parser = above_zero::<f64>)]
     pub(crate) fov: Option<f64>,
     /// Width and height of the picture of --eye in pixels [default: 1280x720], or width of a --panorama, which is half as
     /// high [default: 2048]
     #[arg(long, value_name = "WxH|N", conflicts_with_all = ["viewport", "sun", "direction"])]
     pub(crate) size: Option<SizeChoice>,
     /// Least depth that --eye sees in metres; balls that it cuts block from there on in a depth map [default: 0]
-    #[arg(long, value_name = "M", requires = "eye", allow_negative_numbers = true, value_parser = length)]
+    #[arg(long, value_name = "M", conflicts_with_all = ["viewport", "sun", "direction", "panorama"], allow_negative_numbers = true, value_parser = length)]
     pub(crate) near: Option<f32>,
     /// Most depth that --eye sees in metres [default: no limit]
-    #[arg(long, value_name = "M", requires = "eye", allow_negative_numbers = true, value_parser = above_zero::<f64>)]
+    #[arg(long, value_name = "M", conflicts_with_all = ["viewport", "sun", "direction", "panorama"], allow_negative_numbers = true, value_parser = above_zero::<f64>)]
     pub(crate) far: Option<f64>,
 }
 
