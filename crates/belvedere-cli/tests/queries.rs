@@ -355,7 +355,7 @@ fn many_targets_for_few_pixels_are_settled_by_a_certified_map_with_the_same_answ
     place.summary("balls house.laz -o balls.npz");
     let [x, y, z] = at(-20.0, -25.0, 12.0);
     let [ahead_x, ahead_y, ahead_z] = at(0.0, 0.0, 3.0);
-    let view = |size: &str| format!("--eye {x},{y},{z} --look-at {ahead_x},{ahead_y},{ahead_z} --fov 80 --size {size}");
+    let view = |size: &str| format!("--eye {x},{y},{z} --look-at {ahead_x},{ahead_y},{ahead_z} --fov 40 --size {size}");
     // pictures of the same proportions differ in nothing but their pixels
     let ask =
         |size: &str, name: &str| place.summary(&format!("query balls.npz --random 30000 -o {name} {}", view(size)));

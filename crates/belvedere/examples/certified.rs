@@ -37,18 +37,17 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let [l, h] = [low, high].map(|corner| corner.map(f64::from));
     let middle: [f64; 3] = std::array::from_fn(|i| (l[i] + h[i]) / 2.0);
     let sun = to_sun(235f64.to_radians(), 30f64.to_radians());
-    // an eye above the roofs at a corner, and one in the middle at 30 m, from where pixels of a perspective view are 0.25 m wide at
-    // the middle of the scene, as they are in the parallel view
+    // an eye above the roofs at a corner, for which no pixel is wider than the 0.25 m of the parallel view anywhere in the scene
     let corner = [l[0], l[1], h[2] + 10.0];
-    let distance = (0..3).map(|i| (middle[i] - corner[i]).powi(2)).sum::<f64>().sqrt();
+    let distance = (0..3).map(|i| (if i == 2 { l[i] } else { h[i] } - corner[i]).powi(2)).sum::<f64>().sqrt();
     let width = (4.0 * distance * 2.0 * 0.7f64.tan()).round();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a picture of some thousand pixels")]
     let width = width as usize;
     let camera = View::perspective(corner, middle, 1.4, [width, width * 3 / 4], 0.0, f64::INFINITY)?;
     let extent = (h[0] - l[0]).max(h[1] - l[1]);
-    // over the half extent, with two radii of pixels a radian at the axis
+    // pixels of 0.25 m at the axis, half the extent away, and half as wide at the horizon
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a picture of some thousand pixels")]
-    let sphere = (4.0 * extent / 2.0).round().max(16.0) as usize * 2;
+    let sphere = (4.0 * extent).round().max(16.0) as usize * 2;
     let street = [middle[0], middle[1], l[2] + 1.7];
     println!(
         "| view | pixels | depth map | bounds | settled | certified | lines of sight | differ |\n|---|---|---|---|---|---|---|---|"
