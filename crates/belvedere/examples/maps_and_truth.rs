@@ -15,7 +15,10 @@ use belvedere::progress::Progress;
 use belvedere::random::uniform;
 use belvedere::vector::{cross, length, sub, unit};
 use belvedere::view::{View, to_sun};
-use belvedere_scenes::{Scene, TownParams, Truth, town};
+use belvedere_scenes::{Material, Scene, TownParams, Truth, town};
+
+/// The ground is a sheet without thickness: a ball below it touches nothing. Its underside is put this far below, metres.
+const UNDERSIDE: f64 = 3.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = town(&TownParams { extent: 60.0, ..TownParams::default() });
@@ -105,7 +108,7 @@ fn sampled(scene: &Scene, spacing: f64) -> (Vec<[f64; 3]>, Vec<[f32; 3]>) {
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
     let mut owed = 0.0;
     let mut draw = 0;
-    for [a, b, c] in (0..scene.triangles.len()).filter_map(|i| scene.corners(i)) {
+    for ([a, b, c], &material) in (0..scene.triangles.len()).filter_map(|i| scene.corners(i)).zip(&scene.materials) {
         let (ab, ac) = (sub(b, a), sub(c, a));
         let across = cross(ab, ac);
         let Some(normal) = unit(across) else { continue };
@@ -117,9 +120,15 @@ fn sampled(scene: &Scene, spacing: f64) -> (Vec<[f64; 3]>, Vec<[f32; 3]>) {
             if u + v > 1.0 {
                 (u, v) = (1.0 - u, 1.0 - v);
             }
-            positions.push(std::array::from_fn(|i| a[i] + u * ab[i] + v * ac[i]));
+            let point: [f64; 3] = std::array::from_fn(|i| a[i] + u * ab[i] + v * ac[i]);
             #[expect(clippy::cast_possible_truncation, reason = "a unit vector")]
-            normals.push(normal.map(|v| v as f32));
+            let normal = normal.map(|v| v as f32);
+            positions.push(point);
+            normals.push(normal);
+            if material == Material::Terrain {
+                positions.push([point[0], point[1], point[2] - UNDERSIDE]);
+                normals.push(normal.map(|v| -v));
+            }
         }
     }
     (positions, normals)
