@@ -55,7 +55,7 @@ fn certified_answers_are_those_of_exact_lines_of_sight() {
     balls.centers[..3].copy_from_slice(&[[31.0, 28.0, 12.2], [30.0, 27.5, 11.0], [31.0, 28.0, 11.5]]);
     balls.radii[..3].copy_from_slice(&[0.3, 2.0, 0.5]);
     let targets = targets(&balls, 10_000);
-    for (depth_bias, shell) in [(0.0, 0.0), (0.0, 0.2), (0.1, 0.25)] {
+    for (depth_bias, shell) in [(0.0, 0.0), (0.0, 0.2), (0.1, 0.25), (-0.1, 0.3)] {
         let scene = MedialScene::new(&balls, &SceneParams { profile: Profile::Sphere, depth_bias, shell }).unwrap();
         for (name, views) in views() {
             let viewer = match views[0].is_central() {

@@ -51,7 +51,8 @@ pub struct DepthBounds {
 ///
 /// Over the square of a pixel the front of a ball is nearest at the point nearest to the ball's middle and farthest at a
 /// corner. The lower bound is the least of the former over all balls that touch the square, the upper bound the least of
-/// the latter over all balls that cover it. In views from an eye the circle of directions around the square takes its place. Balls
+/// the latter over all balls that cover it even when they give way by the shell. Balls that cover it only with all of their radius count
+/// too, but from the depth on from which no target lies within the shell of them. In views from an eye the circle of directions around the square takes its place. Balls
 /// are drawn a little too large for the one and too small for the other, by more than f32 can err.
 ///
 /// # Errors
@@ -119,10 +120,28 @@ impl BallBound {
         match self.side {
             BoundSide::Lower => (most + margin > self.start[0]).then(|| ((radius + margin) as f32).next_up()),
             BoundSide::Upper => {
-                let drawn = radius - self.shell.min(SHELL_SHARE * radius) - margin;
+                // twice, since giving way halves what is left of one
+                let drawn = radius - 2.0 * margin;
                 (drawn > least_cover && least - margin > self.start[1]).then(|| (drawn as f32).next_down())
             }
         }
+    }
+}
+
+impl BallBound {
+    /// The radius that is left of a ball drawn with `radius` for any target, however near to its surface.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "a length and a share")]
+    pub(super) fn least_radius(&self, radius: f32) -> f32 {
+        radius - (self.shell as f32).min(SHELL_SHARE as f32 * radius)
+    }
+
+    /// A depth behind which every target lies farther than the shell from a ball drawn with `radius` around `center` deep, so that
+    /// it counts with all of its radius.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "a length")]
+    pub(super) fn behind(&self, center: f32, radius: f32, margin: f32) -> f32 {
+        center + radius + self.shell as f32 + 4.0 * margin
     }
 }
 

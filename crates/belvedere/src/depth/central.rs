@@ -339,9 +339,19 @@ impl Surface for Bound {
             BoundSide::Lower => pixel.turns[0].nearest(pixel.passing, pixel.distance),
             BoundSide::Upper => pixel.turns[1].farthest(pixel.passing),
         };
-        let square = splat.radius * splat.radius - passing.beside_square;
-        let half_chord = square.max(0.0).sqrt();
-        let front = (passing.along - half_chord).max(0.0);
-        if (square > 0.0) & (passing.along + half_chord > 0.0) { front } else { f32::INFINITY }
+        let front = |radius: f32| {
+            let square = radius * radius - passing.beside_square;
+            let half_chord = square.max(0.0).sqrt();
+            let front = (passing.along - half_chord).max(0.0);
+            if (square > 0.0) & (passing.along + half_chord > 0.0) { front } else { f32::INFINITY }
+        };
+        match self.0.side {
+            BoundSide::Lower => front(splat.radius),
+            BoundSide::Upper => {
+                let is_covered = (passing.beside_square < splat.radius * splat.radius) & (passing.along > 0.0);
+                let behind = self.0.behind(pixel.distance, splat.radius, splat.margin);
+                front(self.0.least_radius(splat.radius)).min(if is_covered { behind } else { f32::INFINITY })
+            }
+        }
     }
 }

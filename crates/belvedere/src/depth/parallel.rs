@@ -1,6 +1,6 @@
 //! Balls in parallel views: where a ball lies on the picture plane and how deep its surface is at a pixel.
 
-use super::bounds::{BallBound, BoundSide};
+use super::bounds::{BallBound, BoundSide, margin};
 use super::tiles::{BLOCK, Shape};
 use crate::view::View;
 
@@ -186,7 +186,21 @@ impl Surface for Bound {
             BoundSide::Lower => [dx, dy].map(|d| (d.abs() - self.half_px).max(0.0)),
             BoundSide::Upper => [dx, dy].map(|d| d.abs() + self.half_px),
         };
-        let square = (splat.radius * splat.radius - dy * dy) - dx * dx;
-        if square > 0.0 { splat.z - square.sqrt() } else { f32::INFINITY }
+        let beside = dx * dx + dy * dy;
+        let front = |radius: f32| {
+            let square = radius * radius - beside;
+            if square > 0.0 { splat.z - square.sqrt() } else { f32::INFINITY }
+        };
+        match self.bound.side {
+            BoundSide::Lower => front(splat.radius),
+            BoundSide::Upper => {
+                let size = (splat.x.abs() + splat.y.abs()) * self.half_px * 2.0 + splat.z.abs();
+                let margin = margin(f64::from(size), f64::from(splat.radius));
+                #[expect(clippy::cast_possible_truncation, reason = "a length")]
+                let behind = self.bound.behind(splat.z, splat.radius, margin as f32);
+                let behind = if beside < splat.radius * splat.radius { behind } else { f32::INFINITY };
+                front(self.bound.least_radius(splat.radius)).min(behind)
+            }
+        }
     }
 }

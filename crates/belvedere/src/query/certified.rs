@@ -160,7 +160,10 @@ impl<'a> CertifiedMap<'a> {
             Some((depth, [lower, _])) if depth < lower => {
                 (self.scene.answer_unblocked(position, towards, range), Way::Settled)
             }
-            Some((depth, [_, upper])) if depth > upper => (Answer::Blocked, Way::Settled),
+            // before its surface a target may lie in the shell of a ball that reaches past it
+            Some((depth, [_, upper])) if depth > upper && self.scene.params().depth_bias >= 0.0 => {
+                (Answer::Blocked, Way::Settled)
+            }
             _ => (self.scene.answer(position, towards, range), Way::ByLineOfSight),
         }
     }
