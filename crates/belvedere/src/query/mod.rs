@@ -1,6 +1,7 @@
 //! Queries: which targets can be seen.
 
 mod beams;
+pub mod certified;
 mod clear_height;
 pub mod earth;
 pub mod medial_scene;
@@ -11,6 +12,7 @@ pub mod segments;
 pub mod target_tree;
 pub mod visibility;
 
+pub use certified::{CertifiedMap, CertifiedReport, Scope, answer_views};
 pub use earth::{Curvature, EarthParams};
 pub use medial_scene::{MedialScene, SceneParams};
 pub use points::{Answer, AnswerCounts, UnprovenAs, query_points, random_targets};
