@@ -2,16 +2,23 @@
 
 mod clear_height;
 pub mod earth;
+mod free_range;
 pub mod medial_scene;
+pub mod mesh;
 pub mod points;
 pub mod proof;
 mod seen_space;
 pub mod segments;
+pub mod skyline;
+pub mod surface;
 pub mod visibility;
 
 pub use earth::{Curvature, EarthParams};
 pub use medial_scene::{MedialScene, SceneParams};
+pub use mesh::{BackFaces, SeenArea, seen_faces, seen_in_all, seen_objects};
 pub use points::{Answer, AnswerCounts, UnprovenAs, query_points, random_targets};
 pub use proof::{Beside, Proof, ProofParams};
 pub use segments::{Block, Crossing, Enclosure, LineOfSight, merged_crossings, random_pairs};
+pub use skyline::SkylinePoint;
+pub use surface::{Piece, Sides, SurfacePieces};
 pub use visibility::{Sight, Viewer, Visibility};

@@ -1,0 +1,175 @@
+//! Mesh targets: how much of each face and of each object a viewer sees.
+
+use super::surface::{Piece, Sides, SurfacePieces};
+use super::{Answer, Viewer, Visibility};
+use crate::Result;
+use crate::vector::{dot, sub};
+
+/// What to make of faces that are turned away from the viewer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BackFaces {
+    /// They count as not visible: shares are those of the whole surface.
+    #[default]
+    NotVisible,
+    /// They are not counted: shares are those of what is turned to the viewer.
+    LeftOut,
+    /// They are asked as any other: for open surfaces and meshes whose triangles do not know their outside.
+    BothSides,
+}
+
+/// What is seen of a face, of an object, or of anything put together of them, m².
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SeenArea {
+    /// Area that counts; 0 where [`BackFaces::LeftOut`] leaves all of it out.
+    pub area: f64,
+    /// Of this, what is seen.
+    pub visible: f64,
+    /// Of this, what nothing blocks but is not proven; not among the visible.
+    pub unproven: f64,
+    /// Square of the standard error of `visible`, m⁴.
+    pub variance: f64,
+}
+
+impl SeenArea {
+    /// Share of the area that is seen, 0 to 1; NaN without area.
+    #[must_use]
+    pub fn visible_share(&self) -> f64 {
+        self.visible / self.area
+    }
+
+    /// Standard error of the visible area, m²: what sampling leaves open. What balls get wrong is not in it.
+    #[must_use]
+    pub fn standard_error(&self) -> f64 {
+        self.variance.sqrt()
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.area += other.area;
+        self.visible += other.visible;
+        self.unproven += other.unproven;
+        self.variance += other.variance;
+    }
+}
+
+/// Whether each piece of `surface` is turned to `viewer`. Pieces seen exactly edge-on are not; those of a surface without a known outside
+/// all are. For [`Viewer::Each`] the viewer of a piece is that of its row.
+#[must_use]
+pub fn facing(surface: &SurfacePieces, viewer: Viewer<'_>) -> Vec<bool> {
+    let turned = |(row, piece): (usize, &Piece)| {
+        let Some(normal) = piece.normal() else { return false };
+        let towards = match viewer {
+            Viewer::Direction(direction) => direction,
+            Viewer::Eye(eye) => sub(eye, piece.corners[0].map(f64::from)),
+            Viewer::Each(eyes) => match eyes.get(row) {
+                Some(eye) => sub(eye.map(f64::from), piece.corners[0].map(f64::from)),
+                None => return false,
+            },
+        };
+        dot(normal, towards) > 0.0
+    };
+    match surface.sides {
+        Sides::Both => vec![true; surface.pieces.len()],
+        Sides::Known => surface.pieces.iter().enumerate().map(turned).collect(),
+    }
+}
+
+/// What `viewer` sees of each face of `surface`, (faces).
+///
+/// Each piece counts as its place does. The standard error of a face follows from pairs of neighbouring pieces that differ (collapsed
+/// strata), and errs to the large side; a face of one piece has the greatest there can be, half its area. Areas and
+/// squares of errors of faces add up to those of objects.
+///
+/// # Errors
+/// Those of [`Visibility::visible`].
+///
+/// # Source
+/// Cochran 1977, Sampling Techniques, section 5A.12 (one unit per stratum).
+pub fn seen_faces(
+    scene: &(impl Visibility + ?Sized),
+    viewer: Viewer<'_>,
+    surface: &SurfacePieces,
+    back_faces: BackFaces,
+) -> Result<Vec<SeenArea>> {
+    viewer.validate()?;
+    let facing = match back_faces {
+        BackFaces::BothSides => vec![true; surface.pieces.len()],
+        _ => facing(surface, viewer),
+    };
+    let asked: Vec<usize> = (0..surface.pieces.len()).filter(|&row| facing[row]).collect();
+    let places: Vec<[f32; 3]> = asked.iter().map(|&row| surface.pieces[row].place).collect();
+    let eyes: Vec<[f32; 3]>;
+    let viewer = match viewer {
+        Viewer::Each(each) => {
+            eyes = asked.iter().filter_map(|&row| each.get(row).copied()).collect();
+            Viewer::Each(&eyes)
+        }
+        common => common,
+    };
+    let mut answers = vec![Answer::Blocked; surface.pieces.len()];
+    for (&row, answer) in asked.iter().zip(scene.visible(viewer, &places)?) {
+        answers[row] = answer;
+    }
+    let mut faces = vec![SeenArea::default(); surface.face_count];
+    let mut row = 0;
+    for group in surface.pieces.chunk_by(|a, b| a.face == b.face) {
+        let answers = &answers[row..row + group.len()];
+        let is_facing = facing[row];
+        row += group.len();
+        let Some(face) = group.first().and_then(|piece| faces.get_mut(piece.face as usize)) else { continue };
+        if is_facing || back_faces != BackFaces::LeftOut {
+            *face = seen_of(group, answers, is_facing);
+        }
+    }
+    Ok(faces)
+}
+
+/// What is seen of the pieces of one face.
+fn seen_of(pieces: &[Piece], answers: &[Answer], is_asked: bool) -> SeenArea {
+    let mut seen = SeenArea::default();
+    for (piece, answer) in pieces.iter().zip(answers) {
+        let area = f64::from(piece.area);
+        seen.area += area;
+        match answer {
+            Answer::Visible => seen.visible += area,
+            Answer::Unproven => seen.unproven += area,
+            _ => {}
+        }
+    }
+    let differ = |a: usize, b: usize| {
+        if (answers[a] == Answer::Visible) == (answers[b] == Answer::Visible) {
+            return 0.0;
+        }
+        (f64::from(pieces[a].area).powi(2) + f64::from(pieces[b].area).powi(2)) / 2.0
+    };
+    let last = pieces.len() - 1;
+    seen.variance = match last {
+        _ if !is_asked => 0.0,
+        0 => seen.area * seen.area / 4.0,
+        _ => {
+            let pairs: f64 = (0..pieces.len() / 2).map(|pair| differ(2 * pair, 2 * pair + 1)).sum();
+            // an odd one is compared with its neighbour, which then counts twice
+            pairs + if last.is_multiple_of(2) { differ(last - 1, last) } else { 0.0 }
+        }
+    };
+    seen
+}
+
+/// What is seen of each of `count` objects, given the object of each face, (faces); faces of others are left out.
+#[must_use]
+pub fn seen_objects(faces: &[SeenArea], objects: &[u32], count: usize) -> Vec<SeenArea> {
+    let mut seen = vec![SeenArea::default(); count];
+    for (face, &object) in faces.iter().zip(objects) {
+        if let Some(sum) = seen.get_mut(object as usize) {
+            sum.add(face);
+        }
+    }
+    seen
+}
+
+/// What is seen of all faces together.
+#[must_use]
+pub fn seen_in_all(faces: &[SeenArea]) -> SeenArea {
+    let mut sum = SeenArea::default();
+    faces.iter().for_each(|face| sum.add(face));
+    sum
+}
