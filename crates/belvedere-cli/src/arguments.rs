@@ -90,12 +90,12 @@ pub(crate) enum Command {
     /// Draw how far one sees along each pixel of a view
     #[command(
         name = "depth-map",
-        after_help = "A ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere depth-map demo/town.laz --sun 235,30 -o demo/seen-from-the-sun.png\n  belvedere depth-map demo/balls.npz --viewport \"154940,463060,60 120,0,0 0,-120,0 4\" -o demo/from-above.tif"
+        after_help = "A ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere depth-map demo/town.laz --sun 235,30 -o demo/seen-from-the-sun.png\n  belvedere depth-map demo/balls.npz --eye 154950,462950,40 --look-at 155000,463000,0 -o demo/seen-by-a-camera.png\n  belvedere depth-map demo/balls.npz --panorama 155000,463000,30 --size 1200 -o demo/all-around.png\n  belvedere depth-map demo/balls.npz --viewport \"154940,463060,60 120,0,0 0,-120,0 4\" -o demo/from-above.tif"
     )]
     DepthMap(DepthMap),
     /// Answer which targets are visible in a view
     #[command(
-        after_help = "Answers: 0 blocked, 1 visible, 3 outside the view: beside the picture, or behind the plane of a --viewport.\n\nCarved balls are asked by exact lines of sight, others through a depth map. Where carved balls know their pulses (a cloud, or an .npz of `belvedere balls`) there is one answer more, 2 unproven: nothing blocks the target, but more than half a metre of its line of sight runs through space that no pulse came within 0.7 m of. The project's docs/accuracy.md says how often each answer is right. Of space beside the survey nothing is asked.\n\nA ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere query demo/town.laz --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self --unproven as-blocked -o demo/proven-lit.laz\n  belvedere query demo/balls.npz --sun 235,30 --random 10000 -o demo/answers.csv\n  belvedere query demo/balls.npz --direction 0,0,-1 --targets demo/answers.csv -o demo/open-to-the-sky.csv"
+        after_help = "Answers: 0 blocked, 1 visible, 3 outside the view: beside the picture, behind the plane of a --viewport, or beyond the limits of depth of an --eye.\n\nCarved balls are asked by exact lines of sight, and so are all in a view from --eye or --panorama, others through a depth map. Where targets are many for each pixel, a certified depth map settles most of them; the answers are the same. Where carved balls know their pulses (a cloud, or an .npz of `belvedere balls`) there is one answer more, 2 unproven: nothing blocks the target, but more than half a metre of its line of sight runs through space that no pulse came within 0.7 m of. The project's docs/accuracy.md says how often each answer is right. Of space beside the survey nothing is asked.\n\nA ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere query demo/town.laz --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self --unproven as-blocked -o demo/proven-lit.laz\n  belvedere query demo/balls.npz --sun 235,30 --random 10000 -o demo/answers.csv\n  belvedere query demo/balls.npz --direction 0,0,-1 --targets demo/answers.csv -o demo/open-to-the-sky.csv\n  belvedere query demo/balls.npz --panorama 155000,463000,30 --random 10000 -o demo/seen-from-the-middle.csv"
     )]
     Query(Query),
     /// Answer lines of sight between pairs of points: what blocks each first, and where
@@ -203,8 +203,10 @@ pub(crate) struct DepthMap {
     pub(crate) scene: SceneInput,
     #[command(flatten)]
     pub(crate) view: ViewChoice,
-    /// Depth in metres from the picture plane as .tif or .npy (rows from the top; nothing hit: nodata -9999 in .tif, infinity
-    /// in .npy), or a picture with a legend as .png. A .tif of a view straight down lies on the map
+    /// Depth in metres from the picture plane, or from --eye along the axis of its camera, or straight from the place of a --panorama,
+    /// as .tif or .npy (rows from the top; nothing hit: nodata -9999 in .tif, infinity in .npy), or a picture with a legend as
+    /// .png. A .tif of a view straight down lies on the map. A panorama has a column for each azimuth, north in the middle
+    /// and east right of it, and a row for each elevation from the zenith to the nadir
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
     /// Also write which ball each pixel shows (.tif or .npy): its row in the ball file, counted from 0, or in the one that
@@ -221,9 +223,9 @@ pub(crate) struct Query {
     pub(crate) view: ViewChoice,
     #[command(flatten)]
     pub(crate) targets: Targets,
-    /// Metres a target may lie behind the depth of its pixel, or, with carved balls, inside a ball along its line of sight, and
-    /// still count as visible [default: what noise and half a pixel are deep on a slope of 63 degrees, 0.58 at pixels of
-    /// 0.25 m; 0 with --profile paper-cone and with carved balls]
+    /// Metres a target may lie behind the depth of its pixel, or, with carved balls and from an eye, inside a ball along its line of
+    /// sight, and still count as visible [default: what noise and half a pixel are deep on a slope of 63 degrees, 0.58 at
+    /// pixels of 0.25 m and 0.22 from an eye; 0 with --profile paper-cone and with carved balls]
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite, help_heading = "Result")]
     pub(crate) bias: Option<f32>,
     /// Metres that carved balls give way to targets near their surface, since balls bulge between the points of walls and roofs; 0
@@ -349,6 +351,12 @@ pub(crate) struct ViewKind {
     /// Parallel view onto the whole scene along a direction, of any length: 0,0,-1 looks straight down
     #[arg(long, value_name = "DX,DY,DZ", allow_hyphen_values = true)]
     pub(crate) direction: Option<Numbers<3>>,
+    /// What a camera at this place sees, in file coordinates and their height; say where to with --look-at
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "look_at")]
+    pub(crate) eye: Option<Numbers<3>>,
+    /// Everything around this place, in file coordinates and their height
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub(crate) panorama: Option<Numbers<3>>,
 }
 
 #[derive(Args)]
@@ -356,9 +364,25 @@ pub(crate) struct ViewChoice {
     #[command(flatten)]
     pub(crate) kind: ViewKind,
     /// Pixel size of --sun and --direction in metres [default: 0.25, finer for small objects]
-    #[arg(long, value_name = "M", conflicts_with = "viewport", value_parser = above_zero::<f64>,
+    #[arg(long, value_name = "M", conflicts_with_all = ["viewport", "eye", "panorama"], value_parser = above_zero::<f64>,
         allow_negative_numbers = true)]
     pub(crate) pixel: Option<f64>,
+    /// Place in the middle of the picture of --eye, in file coordinates
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, conflicts_with_all = ["viewport", "sun", "direction", "panorama"])]
+    pub(crate) look_at: Option<Numbers<3>>,
+    /// Angle from the left to the right edge of the picture of --eye in degrees, up to 175 [default: 60]
+    #[arg(long, value_name = "DEG", conflicts_with_all = ["viewport", "sun", "direction", "panorama"], allow_negative_numbers = true, value_parser = above_zero::<f64>)]
+    pub(crate) fov: Option<f64>,
+    /// Width and height of the picture of --eye in pixels [default: 1280x720], or width of a --panorama, which is half as
+    /// high [default: 2048]
+    #[arg(long, value_name = "WxH|N", conflicts_with_all = ["viewport", "sun", "direction"])]
+    pub(crate) size: Option<SizeChoice>,
+    /// Least depth that --eye sees in metres; balls that it cuts block from there on in a depth map [default: 0]
+    #[arg(long, value_name = "M", conflicts_with_all = ["viewport", "sun", "direction", "panorama"], allow_negative_numbers = true, value_parser = length)]
+    pub(crate) near: Option<f32>,
+    /// Most depth that --eye sees in metres [default: no limit]
+    #[arg(long, value_name = "M", conflicts_with_all = ["viewport", "sun", "direction", "panorama"], allow_negative_numbers = true, value_parser = above_zero::<f64>)]
+    pub(crate) far: Option<f64>,
 }
 
 #[derive(Args)]
@@ -527,6 +551,25 @@ impl<const N: usize> FromStr for Numbers<N> {
             return Err(format!("{bad} is not finite"));
         }
         numbers.try_into().map(Self).map_err(|_| format!("expected {N} numbers separated by commas"))
+    }
+}
+
+/// Size of a picture in pixels.
+#[derive(Clone, Copy)]
+pub(crate) enum SizeChoice {
+    Width(usize),
+    WidthAndHeight([usize; 2]),
+}
+
+impl FromStr for SizeChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| at_least_one(text).map_err(|_| "use two numbers as 1280x720, or one".to_owned());
+        match text.split_once(['x', 'X']) {
+            Some((width, height)) => Ok(Self::WidthAndHeight([number(width)?, number(height)?])),
+            None => number(text).map(Self::Width),
+        }
     }
 }
 

@@ -6,7 +6,7 @@ pub(crate) mod scanner;
 pub(crate) use balls::{BallParams, Carving, Made, shrink_side};
 
 use crate::arguments::{
-    Cleaning, CloudInput, MethodChoice, NeighborChoice, OrientChoice, Orienting, ProfileChoice, SceneInput,
+    Cleaning, CloudInput, MethodChoice, NeighborChoice, OrientChoice, Orienting, ProfileChoice, SceneInput, SizeChoice,
     UnprovenChoice, Usage, ViewChoice,
 };
 use crate::progress::Stages;
@@ -29,6 +29,13 @@ use belvedere::{Attributes, Error, PointCloud};
 use scanner::Located;
 use std::borrow::Cow;
 use std::path::Path;
+
+/// Picture of a camera that nobody gave a size: what screens show.
+const DEFAULT_CAMERA: [usize; 2] = [1280, 720];
+/// Field of view of a camera that nobody gave one, degrees: a little wider than what people look at.
+const DEFAULT_FOV_DEG: f64 = 60.0;
+/// Width of a panorama in pixels: 0.18 degrees each.
+const DEFAULT_PANORAMA: usize = 2048;
 
 /// Makes a parameter out of range an error about the flag that gave it, which is wrong usage.
 pub(crate) fn flagged<T>(flag: &str, result: belvedere::Result<T>) -> Result<T> {
@@ -279,6 +286,12 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
+    /// Local metres of a place in the coordinates and unit of the file.
+    pub(crate) fn local_from_file(&self, place: [f64; 3]) -> [f64; 3] {
+        let scale = self.cloud.crs.metres_per_unit_xyz();
+        std::array::from_fn(|i| place[i] * scale[i] - self.cloud.origin[i])
+    }
+
     /// Whether pulses cut the balls.
     pub(crate) fn is_carved(&self) -> bool {
         self.pulses.is_some() || self.balls.touch.contains(&PULSE_TOUCH)
@@ -397,8 +410,60 @@ impl From<ProfileChoice> for Profile {
 }
 
 impl ViewChoice {
-    /// The view on a scene, reported.
-    pub(crate) fn view(&self, scene: &Scene, summary: &mut Summary) -> Result<View> {
+    /// The views on a scene, reported: one, or the two halves of a panorama.
+    pub(crate) fn views(&self, scene: &Scene, summary: &mut Summary) -> Result<Vec<View>> {
+        let views = match self.kind.panorama {
+            Some(eye) => {
+                let eye = scene.local_from_file(eye.0);
+                flagged("--panorama, --size", View::panorama(eye, self.panorama_width()?))?.to_vec()
+            }
+            None => vec![self.view(scene)?],
+        };
+        let mut section = Summary::default();
+        if let [view] = &views[..] {
+            section.add("width_px", view.size_px[0]).add("height_px", view.size_px[1]);
+            if let Some(pixels_per_metre) = view.pixels_per_metre() {
+                section.add("pixel_m", rounded(1.0 / pixels_per_metre, 4));
+            } else {
+                section.add("pixel_m_at_100_m", rounded(view.pixel_width(100.0), 4));
+            }
+            section.add("looks_along", view.frame.forward.map(|v| rounded(v, 4)).to_vec());
+        } else {
+            let width = self.panorama_width()?.next_multiple_of(2);
+            section.add("width_px", width).add("height_px", width / 2).add("looks_along", "all around");
+        }
+        summary.add("view", section);
+        Ok(views)
+    }
+
+    /// Width of a panorama in pixels.
+    pub(crate) fn panorama_width(&self) -> Result<usize> {
+        match self.size {
+            None => Ok(DEFAULT_PANORAMA),
+            Some(SizeChoice::Width(width)) => Ok(width),
+            Some(SizeChoice::WidthAndHeight([width, height])) if height * 2 == width => Ok(width),
+            Some(SizeChoice::WidthAndHeight(_)) => {
+                Err(Usage("--size: a panorama is twice as wide as high; give its width alone".to_owned()).into())
+            }
+        }
+    }
+
+    fn camera(&self, eye: [f64; 3], scene: &Scene) -> Result<View> {
+        let Some(look_at) = self.look_at else { return Err(Usage("--eye needs --look-at".to_owned()).into()) };
+        let size = match self.size {
+            None => DEFAULT_CAMERA,
+            Some(SizeChoice::WidthAndHeight(size)) => size,
+            Some(SizeChoice::Width(_)) => {
+                return Err(Usage("--size: --eye needs width and height, such as 1280x720".to_owned()).into());
+            }
+        };
+        let fov = self.fov.unwrap_or(DEFAULT_FOV_DEG).to_radians();
+        let (near, far) = (self.near.map_or(0.0, f64::from), self.far.unwrap_or(f64::INFINITY));
+        let [eye, look_at] = [eye, look_at.0].map(|place| scene.local_from_file(place));
+        flagged("--eye, --look-at, --fov, --size, --near, --far", View::perspective(eye, look_at, fov, size, near, far))
+    }
+
+    fn view(&self, scene: &Scene) -> Result<View> {
         let (low, high) = (scene.bounds.0.map(f64::from), scene.bounds.1.map(f64::from));
         let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));
         let view = if let Some(sun) = &self.kind.sun {
@@ -412,25 +477,21 @@ impl ViewChoice {
             flagged("--direction, --pixel", View::parallel(direction.0, low, high, pixel))?
         } else if let Some(viewport) = &self.kind.viewport {
             let scale = scene.cloud.crs.metres_per_unit_xyz();
-            let local = |v: [f64; 3]| std::array::from_fn(|i| v[i] * scale[i] - scene.cloud.origin[i]);
             let metres = |v: [f64; 3]| std::array::from_fn(|i| v[i] * scale[i]);
             let view = View::from_viewport(
-                local(viewport.p0),
+                scene.local_from_file(viewport.p0),
                 metres(viewport.vx),
                 metres(viewport.vy),
                 viewport.pixels_per_unit / scale[0],
             );
             flagged("--viewport", view)?
+        } else if let Some(eye) = &self.kind.eye {
+            self.camera(eye.0, scene)?
         } else {
-            return Err(Usage("say what to look at: --viewport, --sun or --direction".to_owned()).into());
+            return Err(
+                Usage("say what to look at: --viewport, --sun, --direction, --eye or --panorama".to_owned()).into()
+            );
         };
-        let mut section = Summary::default();
-        section
-            .add("width_px", view.size_px[0])
-            .add("height_px", view.size_px[1])
-            .add("pixel_m", rounded(1.0 / view.pixels_per_metre(), 4))
-            .add("looks_along", view.frame.forward.map(|v| rounded(v, 4)).to_vec());
-        summary.add("view", section);
         Ok(view)
     }
 }

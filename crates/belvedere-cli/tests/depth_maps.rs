@@ -198,3 +198,103 @@ fn the_cone_of_the_paper_lies_behind_the_sphere() {
     let farther = sphere.iter().zip(&cone).filter(|(s, c)| c > s).count();
     assert!(farther * 2 > sphere.len(), "{farther} of {}", sphere.len());
 }
+
+/// South of the house at the height of its middle, looking north at the wall 16 m away.
+fn camera(size: &str) -> String {
+    format!("--eye {EAST},{},3 --look-at {EAST},{NORTH},3 --fov 60 --size {size}", NORTH - 20.0)
+}
+
+#[test]
+fn a_camera_sees_a_wall_at_its_depth_wherever_it_looks_at_it() {
+    let place = with_house();
+    let summary = place.summary(&format!("depth-map house.laz -o depth.npy --balls-id ids.npy {}", camera("160x120")));
+    assert_eq!(summary["balls_around_the_eye_left_out"], 0);
+    let ((shape, depth), (_, ids)) = (place.npy::<f32>("depth.npy"), place.npy::<u32>("ids.npy"));
+    assert_eq!(shape, [120, 160]);
+    let focal = 80.0 / 30f64.to_radians().tan();
+    let at = |x: f64, z: f64| {
+        let (column, row) = (80.0 + focal * x / 16.0, 60.0 - focal * (z - 3.0) / 16.0);
+        assert!((0.0..160.0).contains(&column) && (0.0..120.0).contains(&row));
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
+        let pixel = row as usize * 160 + column as usize;
+        (f64::from(depth[pixel]), ids[pixel])
+    };
+    for (x, z) in [(0.0, 3.0), (-4.0, 1.5), (4.0, 5.0), (2.0, 4.0)] {
+        // depth runs along the axis: the same over all of the wall; 0.05 m that a point may lie in a ball, and the sag of balls between
+        // points half a metre apart
+        assert!((at(x, z).0 - 16.0).abs() < 0.15, "{:?} at {x}, {z}", at(x, z));
+        assert_ne!(at(x, z).1, NO_BALL);
+    }
+    // beside the house and above its ridge, 9 m high and 4 m behind the wall, there is sky
+    for (x, z) in [(7.0, 5.0), (0.0, 8.2)] {
+        assert_eq!(at(x, z), (f64::INFINITY, NO_BALL));
+    }
+    // beyond the limits nothing is seen
+    let summary = place.summary(&format!("depth-map house.laz -o far.npy --far 10 --near 5 {}", camera("160x120")));
+    assert!(summary["pixels_hit_percent"].as_f64().unwrap() < 20.0);
+    assert!(place.npy::<f32>("far.npy").1.iter().all(|d| (5.0..=10.0).contains(d) || d.is_infinite()));
+}
+
+#[test]
+fn a_panorama_has_north_in_the_middle_and_the_horizon_half_way_down() {
+    let place = with_house();
+    let eye = format!("--panorama {EAST},{},3", NORTH - 20.0);
+    let summary = place.summary(&format!("depth-map house.laz -o range.npy {eye} --size 360"));
+    assert_eq!((&summary["view"]["width_px"], &summary["view"]["height_px"]), (&360.into(), &180.into()));
+    let (shape, range) = place.npy::<f32>("range.npy");
+    assert_eq!(shape, [180, 360]);
+    let at = |azimuth: usize, below_zenith: usize| f64::from(range[below_zenith * 360 + (azimuth + 180) % 360]);
+    // half a degree off the middle of a pixel, 0.14 m on the wall; the wall as above
+    assert!((at(0, 90) - 16.0).abs() < 0.15, "{}", at(0, 90));
+    assert!((at(10, 90) - 16.0 / 10.5f64.to_radians().cos()).abs() < 0.2, "{}", at(10, 90));
+    // west and up is sky, straight down the ground 3 m below, which ends 15 m around the house
+    assert_eq!((at(270, 80), at(0, 10)), (f64::INFINITY, f64::INFINITY));
+    let down = 10f64.to_radians();
+    assert!((at(45, 179) - 3.0).abs() < 0.2 || at(45, 179).is_infinite());
+    assert!((at(0, 100) - 3.0 / down.sin()).abs() < 1.5, "{}", at(0, 100));
+    for name in ["all-around.png", "all-around.tif"] {
+        place.summary(&format!("depth-map house.laz -o {name} {eye} --size 200x100"));
+    }
+    assert_eq!(tif(&place, "all-around.tif").size, (200, 100));
+    place.summary(&format!("depth-map house.laz -o camera.png {}", camera("100x80")));
+    for name in ["all-around.png", "camera.png"] {
+        assert!(place.bytes(name).starts_with(b"\x89PNG\r\n\x1a\n"), "{name}");
+    }
+}
+
+#[test]
+fn an_eye_within_a_ball_is_reported_and_sees() {
+    let place = with_house();
+    let inside = format!("--eye {EAST},{NORTH},3 --look-at {},{NORTH},3 --size 40x30", EAST + 1.0);
+    place.summary("balls house.laz --method tau --max-radius 5 -o balls.npz");
+    let summary = place.summary(&format!("depth-map balls.npz -o depth.npy {inside}"));
+    assert!(summary["balls_around_the_eye_left_out"].as_u64().unwrap() > 0, "{summary}");
+}
+
+#[test]
+fn views_from_an_eye_that_make_no_sense_are_wrong_usage() {
+    let place = with_house();
+    let eye = format!("--eye {EAST},{NORTH},30");
+    let look = format!("{eye} --look-at {EAST},{NORTH},0");
+    for (flags, words) in [
+        (eye.clone(), vec!["--look-at"]),
+        (format!("--look-at {EAST},{NORTH},0 --sun 180,30"), vec!["--look-at", "--sun"]),
+        (format!("--look-at {EAST},{NORTH},0"), vec!["--eye"]),
+        (format!("{eye} --look-at {EAST},{NORTH},30"), vec!["--look-at", "not where the eye is"]),
+        (format!("{look} --fov 180"), vec!["--fov", "175"]),
+        (format!("{look} --size 100"), vec!["--size", "1280x720"]),
+        (format!("{look} --size 0x5"), vec!["--size"]),
+        (format!("{look} --size 100000x100000"), vec!["--size", "pixels"]),
+        (format!("{look} --near 5 --far 4"), vec!["--near", "far"]),
+        (format!("{look} --pixel 0.5"), vec!["--pixel"]),
+        (format!("{look} --profile paper-cone"), vec!["--profile", "parallel"]),
+        (format!("--panorama {EAST},{NORTH},30 --size 100x80"), vec!["--size", "twice"]),
+        (format!("--panorama {EAST},{NORTH},30 --fov 80"), vec!["--fov"]),
+        (format!("--panorama {EAST},{NORTH},30 --profile paper-cone"), vec!["--profile", "parallel"]),
+        (format!("{look} --sun 180,30"), vec!["--sun"]),
+        ("--sun 180,30 --size 100x80".to_owned(), vec!["--size"]),
+    ] {
+        place.refusal(2, &format!("depth-map house.laz -o out.png {flags}"), &words);
+    }
+    assert!(!place.path("out.png").exists());
+}

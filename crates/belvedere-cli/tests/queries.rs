@@ -314,3 +314,54 @@ fn balls_in_free_space_are_not_taken_for_what_blocks() {
     place.refusal(1, "query air.npz --sun 180,45 --random 10 -o out.csv", &["air.npz", "--side exterior"]);
     place.refusal(1, "depth-map air.npz --sun 180,45 -o out.tif", &["air.npz", "--side exterior"]);
 }
+
+#[test]
+fn a_camera_and_a_panorama_answer_by_exact_lines_of_sight() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let targets = [
+        (at(0.0, -5.0, 3.0), [VISIBLE, VISIBLE]),   // before the south wall
+        (at(0.0, 0.0, 3.0), [BLOCKED, BLOCKED]),    // in the living room
+        (at(0.0, 10.0, 3.0), [BLOCKED, BLOCKED]),   // behind the house
+        (at(0.0, 0.0, 12.0), [VISIBLE, VISIBLE]),   // above the ridge
+        (at(14.0, -20.0, 3.0), [OUTSIDE, VISIBLE]), // right of the camera
+        (at(0.0, -30.0, 3.0), [OUTSIDE, VISIBLE]),  // behind the camera
+        (at(0.0, -19.0, 2.9), [OUTSIDE, VISIBLE]),  // nearer than its near limit
+    ];
+    let positions: Vec<[f64; 3]> = targets.iter().map(|t| t.0).collect();
+    place.write_targets("targets.npy", &positions);
+    let [x, y, z] = at(0.0, -20.0, 3.0);
+    let [ahead_x, ahead_y, ahead_z] = at(0.0, 0.0, 3.0);
+    let camera = format!("--eye {x},{y},{z} --look-at {ahead_x},{ahead_y},{ahead_z} --fov 70 --size 400x400 --near 2");
+    let panorama = format!("--panorama {x},{y},{z}");
+    for (i, view) in [&camera, &panorama].into_iter().enumerate() {
+        let summary = place.summary(&format!("query house.laz --targets targets.npy -o answers.npy {view}"));
+        let expected: Vec<u8> = targets.iter().map(|t| t.1[i]).collect();
+        assert_eq!(place.npy::<u8>("answers.npy").1, expected, "{view}");
+        assert_eq!(summary["answers"]["answered_by"], "lines of sight");
+        assert_eq!(summary["answers"]["balls_around_the_eye_left_out"], 0);
+    }
+    place.refusal(
+        2,
+        &format!("query house.laz --targets targets.npy -o a.npy --profile paper-cone {camera}"),
+        &["cone"],
+    );
+}
+
+#[test]
+fn many_targets_for_few_pixels_are_settled_by_a_certified_map_with_the_same_answers() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    place.summary("balls house.laz -o balls.npz");
+    let [x, y, z] = at(-20.0, -25.0, 12.0);
+    let [ahead_x, ahead_y, ahead_z] = at(0.0, 0.0, 3.0);
+    let view = |size: &str| format!("--eye {x},{y},{z} --look-at {ahead_x},{ahead_y},{ahead_z} --fov 40 --size {size}");
+    // pictures of the same proportions differ in nothing but their pixels
+    let ask =
+        |size: &str, name: &str| place.summary(&format!("query balls.npz --random 30000 -o {name} {}", view(size)));
+    let (few, many) = (ask("80x60", "few.npy"), ask("800x600", "many.npy"));
+    assert!(few["answers"]["settled_by_the_map_percent"].as_f64().unwrap() > 50.0, "{few}");
+    assert_eq!(many["answers"]["answered_by"], "lines of sight");
+    let [few, many] = ["few.npy", "many.npy"].map(|name| place.npy::<u8>(name).1);
+    assert!(few == many && few.contains(&BLOCKED) && few.contains(&VISIBLE) && few.contains(&OUTSIDE));
+}

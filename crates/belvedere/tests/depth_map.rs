@@ -48,7 +48,7 @@ fn views() -> Vec<View> {
 
 /// Depth by the definition: the front of the sphere at the pixel's centre, in f64, for radii larger by `grown`.
 fn exact_depth(balls: &MedialBalls, view: &View, pixel: [usize; 2], grown: f64) -> f64 {
-    let s = view.pixels_per_metre();
+    let s = view.pixels_per_metre().unwrap();
     let at = pixel.map(|v| (v as f64 + 0.5) / s);
     let mut nearest = f64::INFINITY;
     for i in 0..balls.len() {
@@ -117,11 +117,11 @@ fn write_ball(depths: &mut [f32], size: [usize; 2], c: [f32; 3], rs: f32) {
 fn the_paper_cone_equals_algorithm_1_as_printed_bit_by_bit() {
     let balls = mixed(900, 5);
     for view in views() {
-        let s = view.pixels_per_metre() as f32;
+        let s = view.pixels_per_metre().unwrap() as f32;
         let mut printed = vec![f32::INFINITY; view.size_px[0] * view.size_px[1]];
         for i in 0..balls.len() {
             let [x, y, z] = view.frame.view_from_local(balls.centers[i]);
-            let in_pixels = [x * view.pixels_per_metre(), y * view.pixels_per_metre()];
+            let in_pixels = [x * view.pixels_per_metre().unwrap(), y * view.pixels_per_metre().unwrap()];
             let c = [in_pixels[0] as f32, in_pixels[1] as f32, z as f32 * s];
             // the pixel of a centre is taken before rounding to f32
             let c = [in_pixels[0].floor() as f32, in_pixels[1].floor() as f32, c[2]];

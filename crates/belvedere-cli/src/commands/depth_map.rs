@@ -2,20 +2,21 @@
 
 use super::{check_output, extension, is_same};
 use crate::arguments::{DepthMap, Global, Usage};
-use crate::pipeline::{self, Points};
+use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::PointCloud;
-use belvedere::depth::{ItemBuffer, NO_BALL, depth_map};
+use belvedere::depth::{ItemBuffer, NO_BALL, Profile, depth_map, panorama};
 use belvedere::io::{
-    Georeference, depth_picture, write_npy_f32_2d, write_npy_u32_2d, write_png, write_tif_f32, write_tif_u32,
+    Georeference, Picture, camera_picture, depth_picture, panorama_picture, write_npy_f32_2d, write_npy_u32_2d,
+    write_png, write_tif_f32, write_tif_u32,
 };
+use belvedere::raster::Raster;
 use belvedere::view::View;
 
 /// What GIS programs expect where a raster of heights or depths has no value.
 const NOTHING_HIT: f32 = -9999.0;
-const DESCRIPTION: &str = "depth in metres along the line of sight";
 
 pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["tif", "tiff", "npy", "png"])?;
@@ -28,18 +29,20 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let scene = pipeline::scene(&arguments.scene, Points::LetGo, &mut stages, &mut summary)?;
-    let view = arguments.view.view(&scene, &mut summary)?;
+    let views = arguments.view.views(&scene, &mut summary)?;
     let items = if arguments.balls_id.is_some() { ItemBuffer::With } else { ItemBuffer::Without };
-    let map = stages
-        .run("drawing depth map", 0, |_| depth_map(&scene.balls, &view, arguments.scene.profile.into(), items))?;
+    let map = stages.run("drawing depth map", 0, |_| draw(arguments, &scene, &views, items))?;
     let hit = map.depth.values().iter().filter(|d| d.is_finite()).count();
     summary.add("pixels_hit_percent", percent(hit, map.depth.values().len()));
+    if views.iter().any(View::is_central) {
+        summary.add("balls_around_the_eye_left_out", map.around_eye_count);
+    }
     let output = &arguments.output;
-    let place = georeference(&scene.cloud, &view);
+    let place = views.first().and_then(|view| georeference(&scene.cloud, view));
     stages.run("writing", 0, |_| match extension(output).as_str() {
         "npy" => write_npy_f32_2d(output, &map.depth),
-        "png" => write_png(output, &depth_picture(&map.depth, "depth in metres")),
-        _ => write_tif_f32(output, &map.depth, place.as_ref(), Some(NOTHING_HIT), Some(DESCRIPTION)),
+        "png" => write_png(output, &map.picture()),
+        _ => write_tif_f32(output, &map.depth, place.as_ref(), Some(NOTHING_HIT), Some(map.description())),
     })?;
     summary.add("written", output.display().to_string());
     if let (Some(path), Some(balls)) = (&arguments.balls_id, &map.balls) {
@@ -51,6 +54,55 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     }
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
+}
+
+/// What was drawn.
+struct Drawn {
+    depth: Raster<f32>,
+    balls: Option<Raster<u32>>,
+    around_eye_count: usize,
+    look: Look,
+}
+
+/// How it is to be shown.
+#[derive(Clone, Copy)]
+enum Look {
+    Parallel,
+    Camera(View),
+    Panorama,
+}
+
+impl Drawn {
+    fn description(&self) -> &'static str {
+        match self.look {
+            Look::Parallel => "depth in metres along the line of sight",
+            Look::Camera(_) => "depth in metres along the axis of the camera",
+            Look::Panorama => "range in metres from the eye",
+        }
+    }
+
+    fn picture(&self) -> Picture {
+        match self.look {
+            Look::Parallel => depth_picture(&self.depth, "depth in metres"),
+            Look::Camera(view) => camera_picture(&view, &self.depth, "depth in metres"),
+            Look::Panorama => panorama_picture(&self.depth, "range in metres"),
+        }
+    }
+}
+
+fn draw(arguments: &DepthMap, scene: &Scene, views: &[View], items: ItemBuffer) -> Result<Drawn> {
+    let profile = arguments.scene.profile.into();
+    if let [view] = views {
+        let look = if view.is_central() { Look::Camera(*view) } else { Look::Parallel };
+        let map = flagged("--profile", depth_map(&scene.balls, view, profile, items))?;
+        return Ok(Drawn { depth: map.depth, balls: map.balls, around_eye_count: map.around_eye_count, look });
+    }
+    if profile != Profile::Sphere {
+        return Err(Usage("--profile: the paper's cone is for parallel views only".to_owned()).into());
+    }
+    let eye = views.first().map_or([0.0; 3], |view| view.frame.eye);
+    let map = panorama(&scene.balls, eye, arguments.view.panorama_width()?, items)?;
+    Ok(Drawn { depth: map.range, balls: map.balls, around_eye_count: map.around_eye_count, look: Look::Panorama })
 }
 
 /// Where the picture lies on the map, if it looks straight down or up.

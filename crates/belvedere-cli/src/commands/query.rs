@@ -8,13 +8,13 @@ use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::PointCloud;
 use belvedere::crs::{Crs, CrsKind};
-use belvedere::depth::{ItemBuffer, depth_map};
+use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::{ExtraColumn, ExtraValues, ReadOptions, WriteReport, read_cloud, write_cloud, write_npy_u8};
 use belvedere::medial::MedialBalls;
 use belvedere::pulses::{NeedleColumns, Needles};
 use belvedere::query::{
-    Answer, AnswerCounts, MedialScene, Proof, ProofParams, SceneParams, UnprovenAs, Viewer, Visibility, query_points,
-    random_targets,
+    Answer, AnswerCounts, CertifiedReport, MedialScene, Proof, ProofParams, SceneParams, Scope, UnprovenAs,
+    answer_views, query_points, random_targets,
 };
 use belvedere::view::View;
 
@@ -33,7 +33,11 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     if arguments.shell.is_some() && !scene.is_carved() {
         return Err(Usage("--shell belongs to carved balls, which these are not".to_owned()).into());
     }
-    let mut view = arguments.view.view(&scene, &mut summary)?;
+    let mut views = arguments.view.views(&scene, &mut summary)?;
+    let is_central = views.iter().any(View::is_central);
+    if is_central && Profile::from(arguments.scene.profile) != Profile::Sphere {
+        return Err(Usage("--profile: the paper's cone is for parallel views only".to_owned()).into());
+    }
     if arguments.targets.own && extension(output) == "npy" {
         pipeline::check_every_row(&scene.left_out)?;
     }
@@ -41,14 +45,15 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     let mut targets = targets(arguments, scene.cloud, scene.bounds, global.seed, &mut stages, &mut summary)?;
     if arguments.view.kind.viewport.is_none() {
         // a view that fits the scene has no plane of its own that a target could lie before
-        view = view.moved_before(&targets.positions);
+        views = views.iter().map(|view| view.moved_before(&targets.positions)).collect();
     }
     let mut section = Summary::default();
-    let answers = if blockers.is_carved {
-        by_lines_of_sight(arguments, &blockers, &view, &targets.positions, &mut stages, &mut section)?
+    let answers = if blockers.is_carved || is_central {
+        by_lines_of_sight(arguments, &blockers, &views, &targets.positions, &mut stages, &mut section)?
     } else {
+        let Some(view) = views.first() else { bail!("there is no view") };
         let map = stages.run("drawing depth map", 0, |_| {
-            depth_map(&blockers.balls, &view, arguments.scene.profile.into(), ItemBuffer::Without)
+            depth_map(&blockers.balls, view, arguments.scene.profile.into(), ItemBuffer::Without)
         })?;
         let bias = arguments.bias.unwrap_or_else(|| map.default_depth_bias());
         section.add("answered_by", "depth map").add("depth_bias_m", rounded(f64::from(bias), 4));
@@ -88,24 +93,24 @@ struct Blockers {
     is_carved: bool,
 }
 
-/// Answers of carved balls, told apart by pulses where these are known.
+/// Answers by exact lines of sight, told apart by pulses where these are known.
 fn by_lines_of_sight(
     arguments: &Query,
     blockers: &Blockers,
-    view: &View,
+    views: &[View],
     targets: &[[f32; 3]],
     stages: &mut Stages,
     section: &mut Summary,
 ) -> Result<Vec<Answer>> {
-    let usual = SceneParams::carved();
+    let usual = if blockers.is_carved { SceneParams::carved() } else { SceneParams::uncarved() };
     let depth_bias = arguments.bias.map_or(usual.depth_bias, f64::from);
     let shell = arguments.shell.map_or(usual.shell, f64::from);
     let params = SceneParams { profile: arguments.scene.profile.into(), depth_bias, shell };
     let mut scene = stages.run("indexing balls", 0, |_| MedialScene::new(&blockers.balls, &params))?;
-    section
-        .add("answered_by", "lines of sight")
-        .add("depth_bias_m", rounded(depth_bias, 4))
-        .add("shell_m", rounded(shell, 4));
+    section.add("depth_bias_m", rounded(depth_bias, 4)).add("shell_m", rounded(shell, 4));
+    if let Some(view) = views.iter().find(|view| view.is_central()) {
+        section.add("balls_around_the_eye_left_out", scene.around_eye_count(view.frame.eye));
+    }
     if let Some(pulses) = &blockers.pulses {
         let proof = stages.run("indexing pulses to prove by", 0, |_| {
             Proof::new(Needles::from_columns(pulses)?, &ProofParams::default())
@@ -115,13 +120,16 @@ fn by_lines_of_sight(
             .add("unseen_length_tolerated_m", rounded(proof.tolerance(), 3));
         scene = scene.with_pulses(proof);
     }
-    let answers = stages.run("querying", 0, |_| {
-        if arguments.view.kind.viewport.is_some() {
-            return Ok(scene.query_view(view, targets));
-        }
-        // the view only says which way: without a picture there is nothing beside it
-        scene.visible(Viewer::Direction(view.frame.forward.map(|v| -v)), targets)
-    })?;
+    // the sun, a direction and a panorama only say from where: without a picture there is nothing beside it
+    let has_picture = arguments.view.kind.viewport.is_some() || arguments.view.kind.eye.is_some();
+    let scope = if has_picture { Scope::View } else { Scope::Viewer };
+    let (answers, report) = stages.run("querying", 0, |_| answer_views(&scene, views, scope, targets))?;
+    match report {
+        None => section.add("answered_by", "lines of sight"),
+        Some(CertifiedReport { target_count, settled_count }) => section
+            .add("answered_by", "certified depth map and lines of sight")
+            .add("settled_by_the_map_percent", percent(settled_count, target_count)),
+    };
     Ok(answers)
 }
 

@@ -47,7 +47,7 @@ pub(crate) fn oblique(model: &Model, viewer: [f64; 2], pixels_per_unit: f64) -> 
 pub(crate) fn compare_profiles(model: &Model, views: &[(&str, View)], tables: &mut Tables) -> Result<Vec<Look>> {
     let targets = random_targets(model.low, model.high, TARGET_COUNT, SEED);
     for (name, view) in views {
-        let s = view.pixels_per_metre();
+        let Some(s) = view.pixels_per_metre() else { continue };
         let show = |v: [f64; 3]| format!("({:.2}, {:.2}, {:.2})", v[0], v[1], v[2]);
         let [width, height] = view.size_px.map(|v| v as f64 / s);
         tables.line(&format!(

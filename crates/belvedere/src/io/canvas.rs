@@ -4,7 +4,8 @@ use rayon::prelude::*;
 
 use crate::io::picture::Picture;
 use crate::raster::Raster;
-use crate::view::{Projection, View};
+use crate::vector::{sub, unit};
+use crate::view::View;
 use crate::{Error, Result};
 
 /// Rows that one task draws; tasks never share a pixel, so that the result does not depend on their order.
@@ -108,7 +109,6 @@ impl Canvas {
         }
         colors.check(centers.len())?;
         let (width, view) = (self.view.size_px[0].max(1), self.view);
-        let Projection::Orthographic { pixels_per_metre } = view.projection;
         self.picture
             .rgb
             .par_chunks_mut(3)
@@ -116,17 +116,14 @@ impl Canvas {
             .zip(depth.values().par_iter().zip(items.values()))
             .enumerate()
             .for_each(|(pixel, ((rgb, nearest), (&depth, &ball)))| {
-                let (Some(&center), Some(&radius)) = (centers.get(ball as usize), radii.get(ball as usize)) else {
-                    return;
-                };
+                let Some(&center) = centers.get(ball as usize) else { return };
                 if depth >= *nearest {
                     return;
                 }
-                let [right, down, _] = view.frame.view_from_local(center);
-                let from_center =
-                    |pixel: usize, center: f64| ((pixel as f64 + 0.5) / pixels_per_metre - center) / f64::from(radius);
-                let (dx, dy) = (from_center(pixel % width, right), from_center(pixel / width, down));
-                let normal = [dx, dy, -(1.0 - dx * dx - dy * dy).max(0.0).sqrt()];
+                let center = view.frame.view_from_local(center);
+                let place = [pixel % width, pixel / width].map(|pixel| pixel as f64 + 0.5);
+                let surface = view.position(place, f64::from(depth));
+                let Some(normal) = unit(sub(surface, center)) else { return };
                 let facing = (0..3).map(|i| normal[i] * TO_LIGHT[i]).sum::<f64>().max(0.0);
                 *nearest = depth;
                 rgb.copy_from_slice(&colors.get(ball as usize).map(|c| scaled(c, AMBIENT + (1.0 - AMBIENT) * facing)));
@@ -147,9 +144,8 @@ impl Canvas {
             .par_iter()
             .enumerate()
             .filter_map(|(index, &point)| {
-                let Projection::Orthographic { pixels_per_metre } = self.view.projection;
-                let [right, down, depth] = self.view.frame.view_from_local(point);
-                let (x, y, half) = (right * pixels_per_metre, down * pixels_per_metre, half(index));
+                let [x, y, depth] = self.view.project(point)?;
+                let half = half(index);
                 let inside = x + half > 0.0 && x - half < width && y + half > 0.0 && y - half < height;
                 (inside && depth.is_finite()).then_some(Mark { x, y, half, depth, index })
             })

@@ -52,7 +52,7 @@ pub use balls::{SavedBalls, SavedPulses, is_ball_file, read_balls, write_balls};
 pub use canvas::{Canvas, Colors};
 pub use cityjson::{LevelOfDetail, read_cityjson};
 pub use colors::{class_color, in_shadow, ramp_colors};
-pub use depth_picture::depth_picture;
+pub use depth_picture::{camera_picture, depth_picture, panorama_picture};
 pub use geojson::{Area, GeojsonCoordinates, write_geojson_areas};
 pub use geojson_read::{GeojsonFeature, Shape, read_geojson};
 pub use geotiff::{

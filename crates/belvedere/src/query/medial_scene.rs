@@ -1,18 +1,17 @@
 //! A union of medial balls that exact lines of sight are cut with.
 
+use super::certified::line_in_view;
 use super::{Answer, Proof, Sight, Viewer, Visibility};
 use crate::Result;
-use crate::depth::Profile;
+use crate::depth::{Profile, SHELL_SHARE, surface_bias};
 use crate::medial::{MedialBalls, NO_TOUCH};
 use crate::ray_index::{Ray, RayIndex};
+use crate::vector::{length, sub};
 use crate::view::View;
 use rayon::prelude::*;
 
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
-
-/// Most of its radius that a ball gives way to a target near its surface.
-pub(super) const SHELL_SHARE: f64 = 0.5;
 
 /// Medial balls indexed for exact lines of sight, for any number of viewers.
 ///
@@ -57,12 +56,13 @@ impl SceneParams {
     pub fn carved() -> Self {
         Self { profile: Profile::Sphere, depth_bias: 0.0, shell: 0.2 }
     }
+}
 
-    /// For balls that no pulse has cut: spheres with a bias of 0.25 m. They stand out over noisy surfaces by about a decimetre,
-    /// and lines of sight meet surfaces at a slant.
+impl SceneParams {
+    /// For balls that no pulse cut, which are seen from outside only: spheres with the bias of [`surface_bias`] and no shell.
     #[must_use]
     pub fn uncarved() -> Self {
-        Self { profile: Profile::Sphere, depth_bias: 0.25, shell: 0.0 }
+        Self { profile: Profile::Sphere, depth_bias: surface_bias(), shell: 0.0 }
     }
 }
 
@@ -120,26 +120,45 @@ impl MedialScene {
         if self.blocked(target, towards, range) {
             return Answer::Blocked;
         }
+        self.answer_unblocked(target, towards, range)
+    }
+
+    /// The same for a line of sight of which it is known that no ball blocks it.
+    pub(super) fn answer_unblocked(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
         match &self.proof {
             Some(proof) if proof.is_unproven(target, towards, range) => Answer::Unproven,
             _ => Answer::Visible,
         }
     }
 
+    /// Centre and radius of the balls that can block, in no particular order.
+    pub(super) fn balls(&self) -> &[([f32; 3], f32)] {
+        &self.balls
+    }
+
+    /// How its balls block.
+    #[must_use]
+    pub fn params(&self) -> &SceneParams {
+        &self.params
+    }
+
+    /// How many balls hold `eye`, local metres: these are left out of lines of sight to it.
+    #[must_use]
+    pub fn around_eye_count(&self, eye: [f64; 3]) -> usize {
+        let holds =
+            |&&(center, radius): &&([f32; 3], f32)| length(sub(center.map(f64::from), eye)) <= f64::from(radius);
+        self.balls.par_iter().with_min_len(CHUNK).filter(|ball| holds(ball)).count()
+    }
+
     /// Answers for `targets`, (M, 3) local metres, in `view`, as [`super::query_points`] gives them from its depth map, but
-    /// by exact lines of sight: each ends at the picture plane. What lies beside the picture or behind the plane is
-    /// [`Answer::OutsideView`], and balls that reach behind the plane block nothing, as those that hold a viewer.
+    /// by exact lines of sight: each ends at the picture plane, or at the near limit of a view from an eye. What lies beside the
+    /// picture or beyond its limits is [`Answer::OutsideView`], and balls that reach before the plane or the limit block
+    /// nothing, as those that hold a viewer. [`super::CertifiedMap`] gives the same answers faster where there are many.
     #[must_use]
     pub fn query_view(&self, view: &View, targets: &[[f32; 3]]) -> Vec<Answer> {
-        let towards = view.frame.forward.map(|v| -v);
-        let [width, height] = view.size_px.map(|size| size as f64 / view.pixels_per_metre());
-        let answer = |&target: &[f32; 3]| {
-            let [x, y, depth] = view.frame.view_from_local(target);
-            let in_view = (0.0..width).contains(&x) && (0.0..height).contains(&y) && depth >= 0.0;
-            if !(in_view && depth.is_finite()) {
-                return Answer::OutsideView;
-            }
-            self.answer(target.map(f64::from), towards, depth)
+        let answer = |&target: &[f32; 3]| match line_in_view(view, target) {
+            None => Answer::OutsideView,
+            Some((towards, range)) => self.answer(target.map(f64::from), towards, range),
         };
         targets.par_iter().with_min_len(CHUNK).map(answer).collect()
     }

@@ -1,5 +1,6 @@
 //! Queries: which targets can be seen.
 
+pub mod certified;
 mod clear_height;
 pub mod earth;
 mod free_range;
@@ -13,6 +14,7 @@ pub mod skyline;
 pub mod surface;
 pub mod visibility;
 
+pub use certified::{CertifiedMap, CertifiedReport, Scope, answer_views};
 pub use earth::{Curvature, EarthParams};
 pub use medial_scene::{MedialScene, SceneParams};
 pub use mesh::{BackFaces, SeenArea, seen_faces, seen_in_all, seen_objects};

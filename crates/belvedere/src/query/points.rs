@@ -81,22 +81,22 @@ const CHUNK: usize = 16_384;
 /// Peters, Ledoux & Biljecki 2015, section 3.3 and Algorithm 2 (`QUERYPOINT`); Williams 1978. The bias is not in the paper.
 #[must_use]
 pub fn query_points(map: &DepthMap, targets: &[[f32; 3]], depth_bias: f32) -> Vec<Answer> {
-    let pixels_per_metre = map.view.pixels_per_metre();
+    #[expect(clippy::cast_possible_truncation, reason = "the depth map holds f32")]
+    let [near, far] = map.view.limits().map(|v| v as f32);
     // the paper's picture plane has no behind
     let least_depth = match map.profile {
-        Profile::Sphere => 0.0,
+        Profile::Sphere => near,
         Profile::PaperCone => f32::NEG_INFINITY,
     };
     targets
         .par_iter()
         .with_min_len(CHUNK)
         .map(|&target| {
-            let [x, y, z] = map.view.frame.view_from_local(target);
-            let (x, y) = (x * pixels_per_metre, y * pixels_per_metre);
+            let Some([x, y, z]) = map.view.project(target) else { return Answer::OutsideView };
             #[expect(clippy::cast_possible_truncation, reason = "the depth map holds f32")]
             let z = z as f32;
-            // beside the picture, or not a number
-            if !(x >= 0.0 && y >= 0.0 && z + depth_bias >= least_depth) {
+            // beside the picture or beyond its limits, or not a number
+            if !(x >= 0.0 && y >= 0.0 && z + depth_bias >= least_depth && z <= far) {
                 return Answer::OutsideView;
             }
             #[expect(

@@ -1,8 +1,8 @@
 //! Lines of sight between pairs of points: what blocks them first, and all that lies on them.
 
-use super::medial_scene::SHELL_SHARE;
 use super::{Answer, EarthParams, MedialScene};
 use crate::depth::Profile;
+use crate::depth::SHELL_SHARE;
 use crate::ray_index::Ray;
 use crate::vector::{dot, length, sub};
 use rayon::prelude::*;

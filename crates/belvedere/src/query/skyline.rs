@@ -1,7 +1,7 @@
 //! The skyline around a place: how high the sky begins in each direction.
 
-use super::medial_scene::SHELL_SHARE;
 use super::{EarthParams, MedialScene};
+use crate::depth::SHELL_SHARE;
 use crate::vector::{dot, sub};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};

@@ -1,78 +1,8 @@
-//! Views: from where, in which direction, and how densely a scene is looked at.
+//! Parallel views: the paper's viewport, and views that fit a scene.
 
+use super::{MAX_PIXEL_COUNT, Projection, View, ViewFrame};
 use crate::vector::{cross, dot, unit};
 use crate::{Error, Result};
-
-/// Most pixels a view may have, so that a mistyped pixel size is an error and not a crash: 4 GiB of f32.
-pub const MAX_PIXEL_COUNT: usize = 1 << 30;
-
-/// Position and orientation of a viewer in local coordinates.
-///
-/// `right`, `down` and `forward` are orthonormal and right-handed: `right × down = forward`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ViewFrame {
-    /// The upper left corner of the picture plane for a parallel view, local metres.
-    pub eye: [f64; 3],
-    /// Unit vector along the rows of the picture.
-    pub right: [f64; 3],
-    /// Unit vector along the columns of the picture, downward.
-    pub down: [f64; 3],
-    /// Unit vector of sight.
-    pub forward: [f64; 3],
-}
-
-/// How space is projected onto the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Projection {
-    /// Parallel rays along `forward`.
-    Orthographic {
-        /// The paper's s: pixels per metre, the same in both directions.
-        pixels_per_metre: f64,
-    },
-}
-
-/// A view: frame, projection and picture size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
-    /// Position and orientation.
-    pub frame: ViewFrame,
-    /// Projection.
-    pub projection: Projection,
-    /// Width and height in pixels.
-    pub size_px: [usize; 2],
-}
-
-impl ViewFrame {
-    /// Coordinates of a local position in this frame: along right, down and forward, metres.
-    #[must_use]
-    pub fn view_from_local(&self, local: [f32; 3]) -> [f64; 3] {
-        let d: [f64; 3] = std::array::from_fn(|i| f64::from(local[i]) - self.eye[i]);
-        [dot(self.right, d), dot(self.down, d), dot(self.forward, d)]
-    }
-
-    /// Local position of coordinates along right, down and forward.
-    #[must_use]
-    pub fn local_from_view(&self, view: [f64; 3]) -> [f64; 3] {
-        std::array::from_fn(|i| {
-            self.eye[i] + view[0] * self.right[i] + view[1] * self.down[i] + view[2] * self.forward[i]
-        })
-    }
-}
-
-/// Unit vector from the scene to the sun, for an azimuth clockwise from grid north and an elevation, radians.
-#[must_use]
-pub fn to_sun(azimuth: f64, elevation: f64) -> [f64; 3] {
-    [azimuth.sin() * elevation.cos(), azimuth.cos() * elevation.cos(), elevation.sin()]
-}
-
-/// Pixel size, metres, that suits a scene between two corners: 0.25 m, half the usual spacing of airborne scans, or a
-/// thousandth of the extent where the scene is a small object.
-#[must_use]
-pub fn default_pixel_size(low: [f64; 3], high: [f64; 3]) -> f64 {
-    let extent = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
-    if extent > 0.0 { (extent / 1000.0).min(0.25) } else { 0.25 }
-}
 
 impl View {
     /// The paper's viewport: `p0` is the upper left corner, `vx` spans the rows and `vy` the columns (their lengths give
@@ -139,10 +69,7 @@ impl View {
                 expected: "above zero metres",
             });
         }
-        // within a thousandth of straight up or down there is no usable sideways vector from the world's up
-        let up = if forward[2].abs() < 1.0 - 1e-6 { [0.0, 0.0, 1.0] } else { [0.0, 1.0, 0.0] };
-        let right = unit(cross(forward, up)).unwrap_or([1.0, 0.0, 0.0]);
-        let down = cross(forward, right);
+        let ViewFrame { right, down, .. } = ViewFrame::looking([0.0; 3], forward);
         let mut least = [f64::INFINITY; 3];
         let mut most = [f64::NEG_INFINITY; 3];
         for corner in 0..8 {
@@ -158,10 +85,13 @@ impl View {
         Self::from_viewport(eye, right.map(|v| v * span(0)), down.map(|v| v * span(1)), 1.0 / pixel_size)
     }
 
-    /// The same view with its picture plane moved back as far as needed for none of `positions`, local metres, to lie before
-    /// it. Pixels stay the same lines of sight.
+    /// The same view with the picture plane of a parallel view moved back as far as needed for none of `positions`, local metres,
+    /// to lie before it. Pixels stay the same lines of sight. Views from an eye stay as they are.
     #[must_use]
     pub fn moved_before(mut self, positions: &[[f32; 3]]) -> Self {
+        if self.is_central() {
+            return self;
+        }
         let depth = |&p: &[f32; 3]| self.frame.view_from_local(p)[2];
         let nearest = positions.iter().map(depth).fold(0.0, f64::min);
         if nearest < 0.0 {
@@ -173,22 +103,15 @@ impl View {
     }
 
     /// Where the picture of a parallel view straight down or up lies in the plane: easting and northing of its upper left
-    /// corner, of the step to the next column and of the step to the next row, local metres; `None` for an oblique view.
+    /// corner, of the step to the next column and of the step to the next row, local metres; `None` for any other view.
     #[must_use]
     pub fn ground_grid(&self) -> Option<[[f64; 2]; 3]> {
+        let pixels_per_metre = self.pixels_per_metre()?;
         let plane = |v: [f64; 3]| [v[0], v[1]];
-        let step = |v: [f64; 3]| plane(v).map(|v| v / self.pixels_per_metre());
+        let step = |v: [f64; 3]| plane(v).map(|v| v / pixels_per_metre);
         // a tilt that moves the far side of a kilometre by a millimetre is no tilt
         let upright = self.frame.forward[2].abs() > 1.0 - 0.5e-12;
         upright.then(|| [plane(self.frame.eye), step(self.frame.right), step(self.frame.down)])
-    }
-
-    /// Pixels per metre of a parallel view.
-    #[must_use]
-    pub fn pixels_per_metre(&self) -> f64 {
-        match self.projection {
-            Projection::Orthographic { pixels_per_metre } => pixels_per_metre,
-        }
     }
 }
 

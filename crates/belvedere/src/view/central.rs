@@ -1,0 +1,123 @@
+//! Views from an eye: perspective, hemispheres, and the full sphere as two of them.
+
+use super::{MAX_PIXEL_COUNT, Projection, View, ViewFrame, to_sun};
+use crate::vector::{sub, unit};
+use crate::{Error, Result};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Widest angle of a perspective view, radians: beyond, its rim is stretched past all use, and its pixels past f32.
+const WIDEST: f64 = 175.0 * PI / 180.0;
+/// Widest half-angle of a stereographic view, radians, for the same reason.
+const WIDEST_HALF: f64 = 170.0 * PI / 180.0;
+
+fn checked_eye(eye: [f64; 3]) -> Result<[f64; 3]> {
+    if eye.iter().all(|v| v.is_finite()) {
+        return Ok(eye);
+    }
+    Err(Error::InvalidParameter { name: "eye", value: format!("{eye:?}"), expected: "finite" })
+}
+
+fn checked_size(size_px: [usize; 2]) -> Result<[usize; 2]> {
+    match size_px[0].checked_mul(size_px[1]) {
+        Some(1..=MAX_PIXEL_COUNT) => Ok(size_px),
+        _ => Err(Error::InvalidParameter {
+            name: "picture size",
+            value: format!("{} x {} pixels", size_px[0], size_px[1]),
+            expected: "at least one pixel and at most 1073741824",
+        }),
+    }
+}
+
+impl View {
+    /// What a pinhole camera at `eye` sees that looks at `look_at`, both local metres: a picture of `size_px` pixels (width,
+    /// height) and `fov` radians from its left to its right edge, of what is `near` to `far` metres deep. The picture's up is the
+    /// world's up, or north when looking straight down or up.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where a position is not finite or both are the same, for an angle that is not above 0 and at
+    /// most 175°, for an empty picture or one of more than [`MAX_PIXEL_COUNT`] pixels, and for limits of depth that are not
+    /// 0 ≤ `near` < `far`.
+    pub fn perspective(
+        eye: [f64; 3],
+        look_at: [f64; 3],
+        fov: f64,
+        size_px: [usize; 2],
+        near: f64,
+        far: f64,
+    ) -> Result<Self> {
+        let Some(forward) = unit(sub(look_at, checked_eye(eye)?)) else {
+            return Err(Error::InvalidParameter {
+                name: "point to look at",
+                value: format!("{look_at:?}"),
+                expected: "finite and not where the eye is",
+            });
+        };
+        if !(fov > 0.0 && fov <= WIDEST) {
+            return Err(Error::InvalidParameter {
+                name: "field of view",
+                value: format!("{} degrees", fov.to_degrees()),
+                expected: "above 0 and at most 175 degrees; a hemispherical view sees more",
+            });
+        }
+        let size_px = checked_size(size_px)?;
+        let focal_px = size_px[0] as f64 / 2.0 / (fov / 2.0).tan();
+        let projection = Projection::Perspective { focal_px, near: 0.0, far: f64::INFINITY };
+        Self { frame: ViewFrame::looking(eye, forward), projection, size_px }.with_limits(near, far)
+    }
+
+    /// Everything up to `half_angle` radians off `axis` (local, any length), as seen from `eye`, local metres, in a stereographic map
+    /// of `size_px` by `size_px` pixels. The corners of the square show what lies farther off. The picture's up is the
+    /// world's up, or north for an axis straight up or down; one looks from the inside, so that east lies left of north on
+    /// a map around the zenith.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where the eye is not finite, the axis has no direction, the half-angle is not above 0 and at most
+    /// 170°, or the picture is empty or has more than [`MAX_PIXEL_COUNT`] pixels.
+    pub fn fisheye(eye: [f64; 3], axis: [f64; 3], half_angle: f64, size_px: usize) -> Result<Self> {
+        let Some(forward) = unit(axis) else {
+            return Err(Error::InvalidParameter {
+                name: "axis of the view",
+                value: format!("{axis:?}"),
+                expected: "finite and longer than zero",
+            });
+        };
+        if !(half_angle > 0.0 && half_angle <= WIDEST_HALF) {
+            return Err(Error::InvalidParameter {
+                name: "half-angle of the view",
+                value: format!("{} degrees", half_angle.to_degrees()),
+                expected: "above 0 and at most 170 degrees; two maps show everything",
+            });
+        }
+        let size_px = checked_size([size_px; 2])?;
+        let radius_px = size_px[0] as f64 / 2.0 / (half_angle / 2.0).tan();
+        let projection = Projection::Hemispherical { radius_px, near: 0.0, far: f64::INFINITY };
+        Ok(Self { frame: ViewFrame::looking(checked_eye(eye)?, forward), projection, size_px })
+    }
+
+    /// The hemisphere around `axis`: [`View::fisheye`] with a half-angle of 90°.
+    ///
+    /// # Errors
+    /// As [`View::fisheye`].
+    pub fn hemisphere(eye: [f64; 3], axis: [f64; 3], size_px: usize) -> Result<Self> {
+        Self::fisheye(eye, axis, FRAC_PI_2, size_px)
+    }
+
+    /// Everything around `eye`, local metres: the hemispheres around the zenith and the nadir, `size_px` by `size_px` pixels each,
+    /// which meet at the horizon.
+    ///
+    /// # Errors
+    /// As [`View::fisheye`].
+    pub fn panorama(eye: [f64; 3], size_px: usize) -> Result<[Self; 2]> {
+        let around = |z: f64| Self::hemisphere(eye, [0.0, 0.0, z], size_px);
+        Ok([around(1.0)?, around(-1.0)?])
+    }
+}
+
+/// Unit vector (local) through the middle of a pixel (column, row) of a panorama of `width` columns and half as many rows: a column is
+/// an azimuth, clockwise from south at the left edge over west, north in the middle and east to south again, a row an elevation, from
+/// the zenith to the nadir.
+#[must_use]
+pub fn panorama_direction(width: usize, [column, row]: [usize; 2]) -> [f64; 3] {
+    let step = 2.0 * PI / width.max(1) as f64;
+    to_sun((column as f64 + 0.5) * step - PI, FRAC_PI_2 - (row as f64 + 0.5) * step)
+}
