@@ -1,9 +1,9 @@
 //! Mesh targets: how much of each face and of each object a viewer sees.
 
 use super::surface::{Piece, Sides, SurfacePieces};
-use super::{Answer, Viewer, Visibility};
-use crate::Result;
+use super::{Answer, Viewer};
 use crate::vector::{dot, sub};
+use crate::{Error, Result};
 
 /// What to make of faces that are turned away from the viewer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,61 +52,60 @@ impl SeenArea {
 }
 
 /// Whether each piece of `surface` is turned to `viewer`. Pieces seen exactly edge-on are not; those of a surface without a known outside
-/// all are. For [`Viewer::Each`] the viewer of a piece is that of its row.
-#[must_use]
-pub fn facing(surface: &SurfacePieces, viewer: Viewer<'_>) -> Vec<bool> {
-    let turned = |(row, piece): (usize, &Piece)| {
+/// all are.
+///
+/// # Errors
+/// [`Error::UnsupportedViewer`] for [`Viewer::Each`], and those of [`Viewer::validate`].
+pub fn facing(surface: &SurfacePieces, viewer: Viewer<'_>) -> Result<Vec<bool>> {
+    viewer.validate()?;
+    let turned = |piece: &Piece| {
         let Some(normal) = piece.normal() else { return false };
         let towards = match viewer {
             Viewer::Direction(direction) => direction,
             Viewer::Eye(eye) => sub(eye, piece.corners[0].map(f64::from)),
-            Viewer::Each(eyes) => match eyes.get(row) {
-                Some(eye) => sub(eye.map(f64::from), piece.corners[0].map(f64::from)),
-                None => return false,
-            },
+            Viewer::Each(_) => [0.0; 3],
         };
         dot(normal, towards) > 0.0
     };
-    match surface.sides {
-        Sides::Both => vec![true; surface.pieces.len()],
-        Sides::Known => surface.pieces.iter().enumerate().map(turned).collect(),
+    match (surface.sides, viewer) {
+        (_, Viewer::Each(_)) => {
+            Err(Error::UnsupportedViewer { method: "a surface", what: "from one eye or along one direction" })
+        }
+        (Sides::Both, _) => Ok(vec![true; surface.pieces.len()]),
+        (Sides::Known, _) => Ok(surface.pieces.iter().map(turned).collect()),
     }
 }
 
-/// What `viewer` sees of each face of `surface`, (faces).
+/// What `viewer` sees of each face of `surface`, (faces). `ask` answers for places, (M, 3) local metres, such as
+/// [`super::Visibility::visible`] for the same viewer; whatever is not [`Answer::Visible`] or [`Answer::Unproven`] counts as not seen.
 ///
 /// Each piece counts as its place does. The standard error of a face follows from pairs of neighbouring pieces that differ (collapsed
 /// strata), and errs to the large side; a face of one piece has the greatest there can be, half its area. Areas and
 /// squares of errors of faces add up to those of objects.
 ///
 /// # Errors
-/// Those of [`Visibility::visible`].
+/// Those of [`facing`] and of `ask`, and [`Error::LengthMismatch`] where it answers for another number of places.
 ///
 /// # Source
 /// Cochran 1977, Sampling Techniques, section 5A.12 (one unit per stratum).
 pub fn seen_faces(
-    scene: &(impl Visibility + ?Sized),
-    viewer: Viewer<'_>,
     surface: &SurfacePieces,
+    viewer: Viewer<'_>,
     back_faces: BackFaces,
+    ask: impl FnOnce(&[[f32; 3]]) -> Result<Vec<Answer>>,
 ) -> Result<Vec<SeenArea>> {
-    viewer.validate()?;
     let facing = match back_faces {
         BackFaces::BothSides => vec![true; surface.pieces.len()],
-        _ => facing(surface, viewer),
+        _ => facing(surface, viewer)?,
     };
     let asked: Vec<usize> = (0..surface.pieces.len()).filter(|&row| facing[row]).collect();
     let places: Vec<[f32; 3]> = asked.iter().map(|&row| surface.pieces[row].place).collect();
-    let eyes: Vec<[f32; 3]>;
-    let viewer = match viewer {
-        Viewer::Each(each) => {
-            eyes = asked.iter().filter_map(|&row| each.get(row).copied()).collect();
-            Viewer::Each(&eyes)
-        }
-        common => common,
-    };
+    let given = ask(&places)?;
+    if given.len() != places.len() {
+        return Err(Error::LengthMismatch { what: "answers", expected: places.len(), found: given.len() });
+    }
     let mut answers = vec![Answer::Blocked; surface.pieces.len()];
-    for (&row, answer) in asked.iter().zip(scene.visible(viewer, &places)?) {
+    for (&row, answer) in asked.iter().zip(given) {
         answers[row] = answer;
     }
     let mut faces = vec![SeenArea::default(); surface.face_count];
