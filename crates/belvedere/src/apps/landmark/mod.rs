@@ -72,6 +72,23 @@ impl LandmarkView {
     }
 }
 
+/// Default side of the cells that observers of a grid stand in, metres: a step or two.
+const OBSERVER_CELL: f64 = 2.0;
+/// Most cells of a default grid of observers: a thousand lines of sight each take about a minute.
+const USUAL_OBSERVERS: f64 = 40_000.0;
+
+/// The side of the cells of a default grid of observers over the box on the map from `low` to `high`, metres: 2, doubled until there are
+/// at most 40 000.
+#[must_use]
+pub fn observer_cell_for(low: [f64; 2], high: [f64; 2]) -> f64 {
+    let area = (high[0] - low[0]).max(0.0) * (high[1] - low[1]).max(0.0);
+    let mut cell = OBSERVER_CELL;
+    while area / (cell * cell) > USUAL_OBSERVERS && cell < 1e9 {
+        cell *= 2.0;
+    }
+    cell
+}
+
 /// The spacing at which a surface of `area` m² has about a thousand pieces, metres; 0.25 at least.
 #[must_use]
 pub fn spacing_for(area: f64) -> f64 {
