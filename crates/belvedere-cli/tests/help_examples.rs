@@ -4,7 +4,7 @@ mod common;
 
 use common::{Workplace, house};
 
-const COMMANDS: [&str; 11] = [
+const COMMANDS: [&str; 13] = [
     "demo",
     "simulate",
     "info",
@@ -13,6 +13,8 @@ const COMMANDS: [&str; 11] = [
     "balls",
     "depth-map",
     "query",
+    "line-of-sight",
+    "viewshed",
     "compare",
     "completions",
     "man",

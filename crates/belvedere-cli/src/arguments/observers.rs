@@ -19,9 +19,9 @@ pub(crate) struct LineOfSight {
     pub(crate) giving_way: GivingWay,
     /// With --from and --to: what the line passes, as a table (.csv) or a diagram (.png)
     #[arg(long, value_name = "OUT", requires = "from", help_heading = "Result")]
-    pub(crate) profile: Option<PathBuf>,
+    pub(crate) profile_out: Option<PathBuf>,
     /// Metres between the rows of the profile [default: a thousandth of the line, 0.1 at least]
-    #[arg(long, value_name = "M", requires = "profile", value_parser = above_zero::<f64>, allow_negative_numbers = true,
+    #[arg(long, value_name = "M", requires = "profile_out", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Result")]
     pub(crate) profile_step: Option<f64>,
     /// Where the ground of the profile comes from

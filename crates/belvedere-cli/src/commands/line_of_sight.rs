@@ -20,16 +20,16 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     if let Some(output) = &arguments.output {
         check_output("-o", output, &["csv"])?;
     }
-    if let Some(profile) = &arguments.profile {
-        check_output("--profile", profile, &["csv", "png"])?;
+    if let Some(profile) = &arguments.profile_out {
+        check_output("--profile-out", profile, &["csv", "png"])?;
         if arguments.output.as_ref().is_some_and(|output| is_same(profile, output)) {
-            return Err(Usage(format!("--profile {}: -o writes there too", profile.display())).into());
+            return Err(Usage(format!("--profile-out {}: -o writes there too", profile.display())).into());
         }
     }
     let earth = arguments.earth.params()?;
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
-    let points = if arguments.profile.is_some() { Points::Keep } else { Points::LetGo };
+    let points = if arguments.profile_out.is_some() { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
     let pairs = pairs(arguments, &scene, global.seed, &mut stages)?;
     let mut section = Summary::default();
@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
         stages.run("writing", 0, |_| write(output, &scene, &pairs, &sights, &answers))?;
         summary.add("written", output.display().to_string());
     }
-    if let (Some(output), [pair]) = (&arguments.profile, &pairs[..]) {
+    if let (Some(output), [pair]) = (&arguments.profile_out, &pairs[..]) {
         write_profile(output, arguments, &mut scene, &blockers, *pair, &earth, &mut stages, &mut summary)?;
     }
     summary.add_seconds(stages.into_seconds());
@@ -143,7 +143,7 @@ fn write_profile(
     let ground = profile_ground(arguments, scene, stages, summary)?;
     let made = stages
         .run("making profile", 0, |_| sight_profile(blockers, ground.as_ref(), pair, earth, arguments.profile_step));
-    let profile = flagged("--profile", made)?;
+    let profile = flagged("--profile-out", made)?;
     let up = scene.cloud.crs.vertical_metres_per_unit;
     let height = |local: f64| (local + scene.cloud.origin[2]) / up;
     let ground: Vec<f64> = profile.ground.iter().map(|&v| height(v)).collect();

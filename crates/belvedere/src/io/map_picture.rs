@@ -130,15 +130,21 @@ fn framed(map: &Picture, what: &MapPicture<'_>, pixel: f64) -> Picture {
     let swatch = 12 * scale;
     let lines: Vec<([u8; 3], String)> = match &what.legend {
         MapLegend::Colors(colors) => colors.iter().map(|(color, text)| (*color, (*text).to_owned())).collect(),
-        MapLegend::Ramp(_, [low, high]) => (0..6)
-            .rev()
-            .map(|i| {
-                let share = f64::from(i) / 5.0;
-                let value = low + share * (high - low);
-                let text = if high - low >= 5.0 { format!("{value:.0}") } else { format!("{value:.1}") };
-                (ramp(share), text)
-            })
-            .collect(),
+        MapLegend::Ramp(_, [low, high]) => {
+            let (span, whole) = (high - low, high - low >= 5.0);
+            let mut lines: Vec<([u8; 3], String)> = (0..6)
+                .rev()
+                .map(|i| {
+                    let value = low + f64::from(i) / 5.0 * span;
+                    // a whole number beside the colour of that number
+                    let value = if whole { value.round() } else { value };
+                    let share = if span > 0.0 { (value - low) / span } else { 0.5 };
+                    (ramp(share), if whole || span == 0.0 { format!("{value:.0}") } else { format!("{value:.1}") })
+                })
+                .collect();
+            lines.dedup();
+            lines
+        }
     };
     let heading = if let MapLegend::Ramp(name, _) = &what.legend { *name } else { "" };
     let (bar, bar_text) = scale_bar(map.width as f64 * pixel / 4.0);

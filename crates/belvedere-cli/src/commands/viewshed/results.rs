@@ -158,10 +158,11 @@ fn write_map(
     let marks: Vec<[f64; 2]> = eyes.iter().filter_map(|eye| ground.grid.cell_position([eye[0], eye[1]])).collect();
     let most = seen.counts.iter().copied().max().unwrap_or(0).max(1);
     let one = seen.seen_counts.len() == 1;
-    let ramp = ramp_colors(&(0..=most).map(|i| i as f32).collect::<Vec<f32>>());
+    // from one observer on: what nobody sees is bare relief
+    let ramp = ramp_colors(&(1..=most).map(|i| i as f32).collect::<Vec<f32>>());
     let color = |(answer, &count): (&Answer, &u32)| match answer {
         Answer::Visible if one => Some(SEEN_COLOR),
-        Answer::Visible => ramp.get(count as usize).copied(),
+        Answer::Visible => ramp.get((count as usize).saturating_sub(1)).copied(),
         Answer::Unproven if one => Some(UNPROVEN_COLOR),
         _ => None,
     };
@@ -170,7 +171,7 @@ fn write_map(
     if seen.answers.contains(&Answer::Unproven) {
         meanings.insert(1, (UNPROVEN_COLOR, "unproven"));
     }
-    let legend = if one { MapLegend::Colors(&meanings) } else { MapLegend::Ramp("observers", [0.0, f64::from(most)]) };
+    let legend = if one { MapLegend::Colors(&meanings) } else { MapLegend::Ramp("observers", [1.0, f64::from(most)]) };
     let cell = ground.grid.cell;
     let map = MapPicture { relief: &relief, cell, colors: &colors, marks: &marks, title, legend };
     Ok(write_png(output, &map_picture(&map)?)?)
