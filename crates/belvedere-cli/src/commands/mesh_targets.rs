@@ -84,6 +84,10 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     let profile = arguments.scene.profile.into();
     let (blockers, unproven) = sights::blockers(&scene, profile, &giving_way, &mut stages, &mut section)?;
     summary.add("lines_of_sight", section);
+    if let Some(view) = views.first().filter(|view| view.is_central()) {
+        let note = sights::enclosure_note(&blockers, view.frame.eye, "the eye");
+        summary.add("notes", note.into_iter().collect::<Vec<_>>());
+    }
     let spacing = arguments.mesh.spacing.unwrap_or(SPACING);
     let surface =
         stages.run("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.origin, spacing, global.seed));

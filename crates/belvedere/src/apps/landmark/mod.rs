@@ -92,8 +92,8 @@ pub fn observer_cell_for(low: [f64; 2], high: [f64; 2]) -> f64 {
 /// The spacing at which a surface of `area` m² has about a thousand pieces, metres; 0.25 at least.
 #[must_use]
 pub fn spacing_for(area: f64) -> f64 {
-    // halving leaves pieces of half to a quarter of the square of the spacing
-    (2.0 * area / USUAL_PIECES).sqrt().max(LEAST_SPACING)
+    // halving until no side is longer leaves pieces of about a sixth of the square of the spacing
+    (6.0 * area / USUAL_PIECES).sqrt().max(LEAST_SPACING)
 }
 
 /// What an eye at `eye`, local metres, sees of `landmark`.
