@@ -3,8 +3,8 @@
 
 use belvedere::medial::MedialBalls;
 use belvedere::query::{
-    Answer, BackFaces, MedialScene, SceneParams, SeenArea, Sides, SurfacePieces, Viewer, Visibility, seen_faces,
-    seen_in_all, seen_objects,
+    Answer, BackFaces, MedialScene, MeshTargetParams, SceneParams, SeenArea, Sides, SurfacePieces, Viewer, Visibility,
+    seen_faces, seen_in_all, seen_objects,
 };
 use belvedere::{Error, Mesh};
 use std::f64::consts::PI;
@@ -42,9 +42,14 @@ fn wall() -> Mesh {
     }
 }
 
+/// Places exactly on their faces, as closed forms have them.
+fn on_faces(back_faces: BackFaces) -> MeshTargetParams {
+    MeshTargetParams { back_faces, lift: 0.0 }
+}
+
 fn seen(scene: &MedialScene, mesh: &Mesh, viewer: Viewer<'_>, spacing: f64, back: BackFaces) -> Vec<SeenArea> {
     let surface = SurfacePieces::of_mesh(mesh, [0.0; 3], spacing, 5).unwrap();
-    seen_faces(&surface, viewer, back, |places| scene.visible(viewer, places)).unwrap()
+    seen_faces(&surface, viewer, &on_faces(back), |places| scene.visible(viewer, places)).unwrap()
 }
 
 #[test]
@@ -79,7 +84,7 @@ fn the_shadow_of_a_ball_on_a_wall_is_its_disc_within_the_error_stated() {
             let surface = SurfacePieces::of_mesh(&wall(), [0.0; 3], spacing, seed).unwrap();
             let viewer = Viewer::Direction([0.0, -1.0, 0.0]);
             let ask = |places: &[[f32; 3]]| ball.visible(viewer, places);
-            let all = seen_in_all(&seen_faces(&surface, viewer, BackFaces::NotVisible, ask).unwrap());
+            let all = seen_in_all(&seen_faces(&surface, viewer, &on_faces(BackFaces::NotVisible), ask).unwrap());
             assert!((all.area - 100.0).abs() < 1e-3);
             let off = (all.visible - (100.0 - PI * 4.0)).abs();
             outside += usize::from(off > 2.0 * all.standard_error());
@@ -109,6 +114,23 @@ fn a_near_ball_hides_its_central_projection_from_an_eye() {
 }
 
 #[test]
+fn places_are_asked_before_their_faces_on_the_side_of_the_viewer() {
+    let surface = SurfacePieces::of_mesh(&wall(), [0.0; 3], 1.0, 1).unwrap();
+    for (south, expected) in [(-1.0, -0.25), (1.0, 0.25)] {
+        let params = MeshTargetParams { back_faces: BackFaces::BothSides, lift: 0.25 };
+        let ask = |places: &[[f32; 3]]| {
+            assert!(!places.is_empty() && places.iter().all(|p| (p[1] - expected).abs() < 1e-6));
+            Ok(vec![Answer::Visible; places.len()])
+        };
+        seen_faces(&surface, Viewer::Direction([0.0, south, 0.0]), &params, ask).unwrap();
+        seen_faces(&surface, Viewer::Eye([3.0, 20.0 * south, 9.0]), &params, ask).unwrap();
+    }
+    let params = MeshTargetParams { lift: f64::NAN, ..MeshTargetParams::default() };
+    let refused = seen_faces(&surface, Viewer::Direction([0.0, -1.0, 0.0]), &params, |_| Ok(Vec::new()));
+    assert!(matches!(refused, Err(Error::InvalidParameter { .. })));
+}
+
+#[test]
 fn every_face_gets_a_sample_however_small_and_a_single_one_has_the_greatest_error() {
     let faces = seen(&scene(&[]), &cube([0.0; 3]), Viewer::Eye([0.0, -9.0, 0.0]), 50.0, BackFaces::NotVisible);
     let south: Vec<&SeenArea> = faces.iter().filter(|face| face.visible > 0.0).collect();
@@ -122,17 +144,20 @@ fn unproven_and_outside_are_not_visible_and_wrong_viewers_are_refused() {
     let viewer = Viewer::Direction([0.0, -1.0, 0.0]);
     let with = |answer| {
         let ask = |places: &[[f32; 3]]| Ok(vec![answer; places.len()]);
-        seen_in_all(&seen_faces(&surface, viewer, BackFaces::NotVisible, ask).unwrap())
+        seen_in_all(&seen_faces(&surface, viewer, &on_faces(BackFaces::NotVisible), ask).unwrap())
     };
     let unproven = with(Answer::Unproven);
     assert!(unproven.visible == 0.0 && (unproven.unproven - 100.0).abs() < 1e-3);
     assert_eq!((with(Answer::OutsideView).visible, with(Answer::OutsideView).unproven), (0.0, 0.0));
     let ask = |_: &[[f32; 3]]| Ok(vec![Answer::Visible]);
-    assert!(matches!(seen_faces(&surface, viewer, BackFaces::NotVisible, ask), Err(Error::LengthMismatch { .. })));
+    assert!(matches!(
+        seen_faces(&surface, viewer, &on_faces(BackFaces::NotVisible), ask),
+        Err(Error::LengthMismatch { .. })
+    ));
     let eyes = [[0.0; 3]];
-    let each = seen_faces(&surface, Viewer::Each(&eyes), BackFaces::NotVisible, ask);
+    let each = seen_faces(&surface, Viewer::Each(&eyes), &on_faces(BackFaces::NotVisible), ask);
     assert!(matches!(each, Err(Error::UnsupportedViewer { .. })));
-    let nowhere = seen_faces(&surface, Viewer::Eye([f64::NAN; 3]), BackFaces::NotVisible, ask);
+    let nowhere = seen_faces(&surface, Viewer::Eye([f64::NAN; 3]), &on_faces(BackFaces::NotVisible), ask);
     assert!(matches!(nowhere, Err(Error::InvalidParameter { .. })));
 }
 

@@ -15,7 +15,7 @@ use belvedere::apps::landmark::{LandmarkParams, LandmarkView, landmark_views, ob
 use belvedere::apps::viewshed::{OBSERVER_HEIGHT, cell_targets};
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::io::{RowsAre, read_observers};
-use belvedere::query::{BackFaces, MedialScene};
+use belvedere::query::{BackFaces, MedialScene, MeshTargetParams};
 
 pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     check_outputs(arguments)?;
@@ -40,8 +40,9 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
         None => cell_targets(&ground, height).iter().map(|eye| eye.map(f64::from)).collect(),
     };
     let enclosed = stages.run("finding who is inside", 0, |_| shut_out(&mut eyes, rows.is_none(), &blockers));
+    let usual = LandmarkParams::default().faces;
     let params = LandmarkParams {
-        back_faces: arguments.back_faces.map_or(LandmarkParams::default().back_faces, BackFaces::from),
+        faces: MeshTargetParams { back_faces: arguments.back_faces.map_or(usual.back_faces, BackFaces::from), ..usual },
         unproven,
         earth,
         max_range: arguments.max_distance.unwrap_or(f64::INFINITY),

@@ -10,7 +10,8 @@ use belvedere::Mesh;
 use belvedere::crs::CrsKind;
 use belvedere::io::{Cells, read_mesh, write_mesh_values, write_table};
 use belvedere::query::{
-    BackFaces, Scope, SeenArea, SurfacePieces, Viewer, answer_views, seen_faces, seen_in_all, seen_objects,
+    BackFaces, MeshTargetParams, Scope, SeenArea, SurfacePieces, Viewer, answer_views, seen_faces, seen_in_all,
+    seen_objects,
 };
 use belvedere::view::View;
 use std::io::Read;
@@ -99,9 +100,11 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     };
     let has_picture = arguments.view.kind.viewport.is_some() || arguments.view.kind.eye.is_some();
     let scope = if has_picture { Scope::View } else { Scope::Viewer };
-    let back_faces = arguments.mesh.back_faces.map_or(BackFaces::default(), BackFaces::from);
+    let usual = MeshTargetParams::default();
+    let back_faces = arguments.mesh.back_faces.map_or(usual.back_faces, BackFaces::from);
+    let params = MeshTargetParams { back_faces, ..usual };
     let faces = stages.run("querying", 0, |_| {
-        seen_faces(&surface, viewer, back_faces, |places| {
+        seen_faces(&surface, viewer, &params, |places| {
             // as for points, a view that fits the scene has no plane that a target could lie before
             let moved = |view: &View| if has_picture { *view } else { view.moved_before(places) };
             let views: Vec<View> = views.iter().map(moved).collect();

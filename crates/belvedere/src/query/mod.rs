@@ -17,7 +17,7 @@ pub mod visibility;
 pub use certified::{CertifiedMap, CertifiedReport, Scope, answer_views};
 pub use earth::{Curvature, EarthParams};
 pub use medial_scene::{MedialScene, SceneParams};
-pub use mesh::{BackFaces, SeenArea, facing, seen_faces, seen_in_all, seen_objects};
+pub use mesh::{BackFaces, MeshTargetParams, SeenArea, facing, seen_faces, seen_in_all, seen_objects};
 pub use points::{Answer, AnswerCounts, UnprovenAs, query_points, random_targets};
 pub use proof::{Beside, Proof, ProofParams};
 pub use segments::{Block, Crossing, Enclosure, LineOfSight, merged_crossings, random_pairs};

@@ -6,7 +6,9 @@ mod points;
 pub use points::{LandmarkPoints, landmark_points};
 
 use crate::progress::Progress;
-use crate::query::{Answer, BackFaces, EarthParams, MedialScene, Sides, SurfacePieces, UnprovenAs};
+use crate::query::{
+    Answer, BackFaces, EarthParams, MedialScene, MeshTargetParams, Sides, SurfacePieces, UnprovenAs, Viewer,
+};
 use crate::vector::{cross, dot, length, sub, unit};
 use crate::{Error, Result};
 use extent::{Arcs, SkyBox, sky_box};
@@ -22,8 +24,8 @@ const NEAREST: f64 = 1e-3;
 /// How landmarks are looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LandmarkParams {
-    /// What to make of faces turned away from the observer. Default: not visible, so that shares are those of the whole landmark.
-    pub back_faces: BackFaces,
+    /// How its faces are asked. Default: those turned away are not visible, so that shares are those of the whole landmark.
+    pub faces: MeshTargetParams,
     /// What to make of pieces that nothing blocks but whose view is not proven. Default: reported apart from the visible.
     pub unproven: UnprovenAs,
     /// How lines of sight run over the earth.
@@ -35,7 +37,7 @@ pub struct LandmarkParams {
 impl Default for LandmarkParams {
     fn default() -> Self {
         Self {
-            back_faces: BackFaces::NotVisible,
+            faces: MeshTargetParams::default(),
             unproven: UnprovenAs::Reported,
             earth: EarthParams::default(),
             max_range: f64::INFINITY,
@@ -118,17 +120,17 @@ pub fn landmark_view(
     for piece in &landmark.pieces {
         let corners = piece.corners.map(|corner| sub(corner.map(f64::from), eye));
         let area = f64::from(piece.area);
-        if params.back_faces != BackFaces::BothSides && landmark.sides == Sides::Known {
+        if params.faces.back_faces != BackFaces::BothSides && landmark.sides == Sides::Known {
             let normal = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
             if !(dot(normal, corners[0]) < 0.0) {
-                if params.back_faces == BackFaces::NotVisible {
+                if params.faces.back_faces == BackFaces::NotVisible {
                     view.area += area;
                 }
                 continue;
             }
         }
         view.area += area;
-        let place = piece.place.map(f64::from);
+        let place = piece.lifted(Viewer::Eye(eye), params.faces.lift).map(f64::from);
         let range = length(sub(place, eye));
         if !(range <= params.max_range && range > NEAREST) {
             continue;
@@ -143,7 +145,7 @@ pub fn landmark_view(
         }
         view.visible_area += area;
         view.solid_angle += solid_angle(corners);
-        let sky = sky_box(corners, sub(place, eye));
+        let sky = sky_box(corners, sub(piece.place.map(f64::from), eye));
         arcs.add(sky.azimuths);
         seen = Some(seen.map_or(sky, |seen| seen.around(&sky)));
     }
@@ -170,6 +172,7 @@ pub fn landmark_views(
     progress: Progress<'_>,
 ) -> Result<Vec<LandmarkView>> {
     params.earth.validate()?;
+    params.faces.validate()?;
     if !(params.max_range > 0.0) {
         return Err(Error::InvalidParameter {
             name: "greatest range",
