@@ -1,9 +1,11 @@
 //! What can be typed: flags as entered. What they build is made in `pipeline` and in each command.
 
 mod observers;
+mod surroundings;
 mod towns;
 
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Viewshed};
+pub(crate) use surroundings::{BelowChoice, Eyes, Horizon, Isovist, Landmark, MeshTargets, NorthChoice};
 pub(crate) use towns::{Compare, PatternChoice, ScannerChoice, Simulate};
 
 use belvedere::crs::Crs;
@@ -95,7 +97,7 @@ pub(crate) enum Command {
     DepthMap(DepthMap),
     /// Answer which targets are visible in a view
     #[command(
-        after_help = "Answers: 0 blocked, 1 visible, 3 outside the view: beside the picture, behind the plane of a --viewport, or beyond the limits of depth of an --eye.\n\nCarved balls are asked by exact lines of sight, and so are all in a view from --eye or --panorama, others through a depth map. Where targets are many for each pixel, a certified depth map settles most of them; the answers are the same. Where carved balls know their pulses (a cloud, or an .npz of `belvedere balls`) there is one answer more, 2 unproven: nothing blocks the target, but more than half a metre of its line of sight runs through space that no pulse came within 0.7 m of. The project's docs/accuracy.md says how often each answer is right. Of space beside the survey nothing is asked.\n\nA ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere query demo/town.laz --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self --unproven as-blocked -o demo/proven-lit.laz\n  belvedere query demo/balls.npz --sun 235,30 --random 10000 -o demo/answers.csv\n  belvedere query demo/balls.npz --direction 0,0,-1 --targets demo/answers.csv -o demo/open-to-the-sky.csv\n  belvedere query demo/balls.npz --panorama 155000,463000,30 --random 10000 -o demo/seen-from-the-middle.csv"
+        after_help = "Answers: 0 blocked, 1 visible, 3 outside the view: beside the picture, behind the plane of a --viewport, or beyond the limits of depth of an --eye.\n\nCarved balls are asked by exact lines of sight, and so are all in a view from --eye or --panorama, others through a depth map. Where targets are many for each pixel, a certified depth map settles most of them; the answers are the same. Where carved balls know their pulses (a cloud, or an .npz of `belvedere balls`) there is one answer more, 2 unproven: nothing blocks the target, but more than half a metre of its line of sight runs through space that no pulse came within 0.7 m of. The project's docs/accuracy.md says how often each answer is right. Of space beside the survey nothing is asked.\n\nTargets that are a mesh (.obj, CityJSON, .ply with faces) are answered face by face: a table (.csv) with a row for each object and then for each triangle, with area, visible and unproven area in square metres, share, and standard error of sampling; or the mesh coloured by the share (.ply).\n\nA ball file of `belvedere balls` may stand in place of the clouds; nothing is then left to clean, orient or shrink.\n\nExamples:\n  belvedere query demo/town.laz --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self -o demo/lit.laz\n  belvedere query demo/town.laz --method carved --orient trajectory=demo/trajectory.csv --sun 235,30 --self --unproven as-blocked -o demo/proven-lit.laz\n  belvedere query demo/balls.npz --sun 235,30 --random 10000 -o demo/answers.csv\n  belvedere query demo/balls.npz --direction 0,0,-1 --targets demo/answers.csv -o demo/open-to-the-sky.csv\n  belvedere query demo/balls.npz --panorama 155000,463000,30 --random 10000 -o demo/seen-from-the-middle.csv\n  belvedere query demo/balls.npz --sun 235,30 --targets demo/town.obj -o demo/lit-faces.csv\n  belvedere query demo/balls.npz --panorama 154980,462970,5 --targets demo/town.obj --back-faces left-out -o demo/seen-faces.ply"
     )]
     Query(Query),
     /// Answer lines of sight between pairs of points: what blocks each first, and where
@@ -109,6 +111,21 @@ pub(crate) enum Command {
         after_help = "Cells have their targets on the ground, --target-height above it. What lies beyond --max-distance or is not looked at is nodata, as are cells without ground. An observer inside something solid or below the ground is reported.\n\nWhere carved balls know their pulses, unproven marks what nothing blocks but whose line of sight runs for more than half a metre through space that no pulse came near to; --heights asks the balls alone.\n\nA ball file of `belvedere balls` may stand in place of the clouds, with --ground cloud=FILE.\n\nExamples:\n  belvedere viewshed demo/town.laz --observer 155000,462985 --max-distance 50 -o demo/seen.tif -o demo/seen.png\n  belvedere viewshed demo/balls.npz --ground cloud=demo/town.laz --observer 155000,462985 --heights demo/hidden-below.tif -o demo/seen.geojson\n  belvedere viewshed demo/balls.npz --ground cloud=demo/town.laz --target 155000,462985 --target-height 10 --cell 1 -o demo/seen-from.tif"
     )]
     Viewshed(Viewshed),
+    /// Tell how much of a landmark is seen from every place, and how large it stands before it
+    #[command(
+        after_help = "A landmark is a mesh, or points of the cloud, which stand for the surface around them. For each observer: area seen in square metres, share of the whole surface, of which half and more is always turned away, solid angle in steradians, share of all azimuths in which some of it is seen, angles between its outermost, and between its lowest and highest parts seen, in degrees, and range of the nearest and of the farthest part. Cells whose eye would be inside something solid are nodata.\n\nExamples:\n  belvedere landmark demo/town.laz --target demo/town.obj --object building_10 -o demo/landmark.png -o demo/landmark.tif\n  belvedere landmark demo/town.laz --target-class 6 --cell 12 --measures demo/buildings -o demo/buildings.csv"
+    )]
+    Landmark(Landmark),
+    /// Measure the space that an eye sees: volume, area, openness, occlusivity, drift
+    #[command(
+        after_help = "Rays run in equal steps of azimuth and elevation, each counting by its solid angle. The plan is the level plane through the eye; it has more rays where ranges jump. Occlusivity is the length of these jumps: edges behind which something hides. Balls that hold the eye are left out, and such eyes reported.\n\nExample:\n  belvedere isovist demo/town.laz --eye 154980,462970 -o demo/isovist.csv -o demo/isovist.png"
+    )]
+    Isovist(Isovist),
+    /// Find above which elevation the sky is free around a place, in each direction
+    #[command(
+        after_help = "Exact for the balls: what floats above a gap counts. The elevation is that above which nothing stands up to the zenith. The eye may lie on a surface: balls give way to it by 0.2 m. Beyond the rim of the cloud nothing is known.\n\nPVGIS reads .txt (one height a line, from north clockwise, equal steps); pvlib's users read .csv. Both count from true north: --north true.\n\nExamples:\n  belvedere horizon demo/town.laz --eye 154980,462970 -o demo/horizon.csv -o demo/horizon.png\n  belvedere horizon demo/balls.npz --eye 154980,462970,12 --step 7.5 --north true -o demo/horizon.txt"
+    )]
+    Horizon(Horizon),
     /// Hold every method against exact answers on the same places: how right each is, and what it costs
     #[command(
         after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, over two observers, or over 40 people in streets (4 for methods that build a hull or draw shadow maps for each eye), with 95 % intervals from resampled tiles of 25 m.\n\nMethods: paper-cone, paper-sphere, union, hidden-points, hidden-points-robust, surfels, depth-splats, elliptical-splats, implicit-surface, voxels-05, voxels-10, dsm, tin, tau, carved (and, only when named, carved-without-RULE); for each model also mesh-NAME, shadow-map-NAME and dsm-NAME, and for the first paper-cone-NAME. Simulated places have the models blocks (LoD1), no-trees and exact. The project's docs/methods has a page on each.\n\nA thorough comparison takes several places and seeds, such as --presets village,old-town,towers --seeds 1,2,3.\n\nExample:\n  belvedere compare --extent 100 --targets 2000 --methods paper-cone,carved -o compared"
@@ -223,6 +240,8 @@ pub(crate) struct Query {
     pub(crate) view: ViewChoice,
     #[command(flatten)]
     pub(crate) targets: Targets,
+    #[command(flatten)]
+    pub(crate) mesh: MeshTargets,
     /// Metres a target may lie behind the depth of its pixel, or, with carved balls and from an eye, inside a ball along its line of
     /// sight, and still count as visible [default: what noise and half a pixel are deep on a slope of 63 degrees, 0.58 at
     /// pixels of 0.25 m and 0.22 from an eye; 0 with --profile paper-cone and with carved balls]

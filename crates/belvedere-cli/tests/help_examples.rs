@@ -4,7 +4,7 @@ mod common;
 
 use common::{Workplace, house};
 
-const COMMANDS: [&str; 13] = [
+const COMMANDS: [&str; 16] = [
     "demo",
     "simulate",
     "info",
@@ -15,6 +15,9 @@ const COMMANDS: [&str; 13] = [
     "query",
     "line-of-sight",
     "viewshed",
+    "landmark",
+    "isovist",
+    "horizon",
     "compare",
     "completions",
     "man",

@@ -1,6 +1,7 @@
 //! Triangle meshes: city models to orient normals with, exact scenes, query objects.
 
 use crate::crs::Crs;
+use crate::vector::{cross, length, sub};
 
 /// A triangle mesh in metres.
 #[derive(Clone, Debug, Default)]
@@ -34,5 +35,12 @@ impl Mesh {
         let [a, b, c] = *self.triangles.get(index)?;
         let vertex = |i: u32| self.vertices.get(i as usize).copied();
         Some([vertex(a)?, vertex(b)?, vertex(c)?])
+    }
+
+    /// Area of all triangles, m², those without all vertices left out.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        let area = |[a, b, c]: [[f64; 3]; 3]| length(cross(sub(b, a), sub(c, a))) / 2.0;
+        (0..self.triangles.len()).filter_map(|index| self.corners(index)).map(area).sum()
     }
 }

@@ -4,12 +4,17 @@ mod balls;
 mod compare;
 mod demo;
 mod depth_map;
+mod horizon;
 mod info;
+mod isovist;
+mod landmark;
 mod line_of_sight;
+mod mesh_targets;
 mod normals;
 mod query;
 mod sights;
 mod simulate;
+mod surroundings;
 mod trajectory;
 mod viewshed;
 
@@ -38,6 +43,9 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::Query(arguments) => query::run(arguments, global),
         Command::LineOfSight(arguments) => line_of_sight::run(arguments, global),
         Command::Viewshed(arguments) => viewshed::run(arguments, global),
+        Command::Landmark(arguments) => landmark::run(arguments, global),
+        Command::Isovist(arguments) => isovist::run(arguments, global),
+        Command::Horizon(arguments) => horizon::run(arguments, global),
         Command::Compare(arguments) => compare::run(arguments, global),
         Command::Completions { shell } => {
             let mut script = Vec::new();

@@ -1,6 +1,6 @@
 //! `belvedere query`.
 
-use super::{NormalColumns, check_output, extension, is_las};
+use super::{NormalColumns, check_output, extension, is_las, mesh_targets};
 use crate::arguments::{Global, Query, Usage};
 use crate::pipeline::{self, Points};
 use crate::progress::Stages;
@@ -19,6 +19,10 @@ use belvedere::query::{
 use belvedere::view::View;
 
 pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
+    if let Some(path) = arguments.targets.targets.as_deref().filter(|path| mesh_targets::is_mesh(path)) {
+        return mesh_targets::run(arguments, path, global);
+    }
+    mesh_targets::refuse_flags(&arguments.mesh)?;
     let output = &arguments.output;
     check_output("-o", output, &["csv", "txt", "xyz", "laz", "las", "ply", "npy"])?;
     let mut stages = Stages::new(global);

@@ -14,6 +14,7 @@ mod font;
 mod geojson;
 mod geojson_read;
 mod geotiff;
+mod horizon_picture;
 mod las;
 mod las_columns;
 mod las_extra;
@@ -42,6 +43,7 @@ mod trajectory;
 mod write_cloud;
 mod write_las;
 mod write_masbcpp;
+mod write_mesh;
 mod write_npy;
 mod write_ply;
 mod write_table;
@@ -59,6 +61,7 @@ pub use geotiff::{
     Georeference, write_f32 as write_tif_f32, write_u8 as write_tif_u8, write_u16 as write_tif_u16,
     write_u32 as write_tif_u32,
 };
+pub use horizon_picture::horizon_picture;
 pub use map_picture::{MapLegend, MapPicture, map_picture};
 pub use mesh::read_mesh;
 pub use observers::{ObserverRow, RowsAre, read_observers};
@@ -72,5 +75,6 @@ pub use table::{Cells, Table, read_table, write_table};
 pub use trajectory::{TrajectoryReport, read_trajectory};
 pub use write_cloud::{ExtraColumn, ExtraValues, WriteReport, write_cloud};
 pub use write_masbcpp::{MasbcppFolder, write_masbcpp};
+pub use write_mesh::write_mesh_values;
 pub use write_npy::{write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_npy_u32_bands};
 pub use write_trajectory::{Heading, write_found_trajectory, write_trajectory};

@@ -1,0 +1,101 @@
+//! `belvedere horizon`.
+
+use super::sights::blockers;
+use super::surroundings::{eyes, needs_ground, note_enclosed};
+use super::{check_output, extension};
+use crate::arguments::{BelowChoice, GivingWay, Global, Horizon, NorthChoice, Usage};
+use crate::pipeline::{self, Points, flagged};
+use crate::progress::Stages;
+use crate::summary::{Summary, rounded};
+use anyhow::Result;
+use belvedere::apps::horizon::{HorizonParams, azimuth_count, convergence, horizons};
+use belvedere::io::{atomic, horizon_picture, write_png};
+use std::io::Write;
+use std::path::Path;
+
+pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
+    for output in &arguments.output {
+        check_output("-o", output, &["csv", "txt", "png"])?;
+    }
+    let earth = arguments.earth.params()?;
+    let usual = HorizonParams::default();
+    let azimuth_count = match arguments.step {
+        Some(step) => flagged("--step", azimuth_count(step.to_radians()))?,
+        None => usual.azimuth_count,
+    };
+    let mut stages = Stages::new(global);
+    let mut summary = Summary::default();
+    let points = if needs_ground(&arguments.eyes) { Points::Keep } else { Points::LetGo };
+    let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
+    let places = eyes(&arguments.eyes, &mut scene, &mut stages, &mut summary)?;
+    let only_one = |output: &&std::path::PathBuf| extension(output) != "csv" && places.len() > 1;
+    if let Some(output) = arguments.output.iter().find(only_one) {
+        let what = format!("{}: it holds a single eye, these are {}; use .csv", output.display(), places.len());
+        return Err(Usage(what).into());
+    }
+    let turn = match (arguments.north, places.first()) {
+        (NorthChoice::True, Some(eye)) => {
+            let origin = scene.cloud.origin;
+            let turn = convergence(&scene.cloud.crs, [eye[0] + origin[0], eye[1] + origin[1]]);
+            let turn = flagged("--north", turn)?;
+            summary.add("meridian_convergence_deg", rounded(turn.to_degrees(), 4));
+            turn
+        }
+        _ => 0.0,
+    };
+    let mut section = Summary::default();
+    let giving_way = GivingWay { shell: None, unproven: None };
+    let (blockers, _) = blockers(&scene, arguments.scene.profile.into(), &giving_way, &mut stages, &mut section)?;
+    summary.add("lines_of_sight", section);
+    note_enclosed(&blockers, &places, &mut summary);
+    let params = HorizonParams { azimuth_count, turn, earth };
+    let found = stages.run("looking around", 0, |_| horizons(&blockers, &places, &params))?;
+    let least = if arguments.below == BelowChoice::Zero { 0.0 } else { -90.0 };
+    let elevations: Vec<Vec<f64>> = found
+        .iter()
+        .map(|skyline| skyline.iter().map(|point| point.elevation.to_degrees().max(least)).collect())
+        .collect();
+    summary.add("horizons", told(&elevations));
+    for output in &arguments.output {
+        stages.run("writing", 0, |_| match (extension(output).as_str(), elevations.first()) {
+            ("png", Some(one)) => write_png(output, &horizon_picture(one, "Horizon, degrees")),
+            ("txt", Some(one)) => write_lines(output, one.iter().map(|v| format!("{v:.2}"))),
+            _ => write_columns(output, &elevations, azimuth_count),
+        })?;
+    }
+    summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    summary.add_seconds(stages.into_seconds());
+    Ok(summary)
+}
+
+fn told(elevations: &[Vec<f64>]) -> Summary {
+    let mut section = Summary::default();
+    let all = || elevations.iter().flatten().copied();
+    let count = elevations.iter().map(Vec::len).sum::<usize>().max(1);
+    section
+        .add("eyes", elevations.len())
+        .add("azimuths", elevations.first().map_or(0, Vec::len))
+        .add("mean_elevation_deg", rounded(all().sum::<f64>() / count as f64, 3))
+        .add("highest_elevation_deg", rounded(all().fold(-90.0, f64::max), 3));
+    section
+}
+
+/// Azimuths, and a column of elevations for each eye.
+fn write_columns(output: &Path, elevations: &[Vec<f64>], count: usize) -> belvedere::Result<()> {
+    let header = match elevations.len() {
+        1 => "azimuth,elevation".to_owned(),
+        eyes => (1..=eyes).fold("azimuth".to_owned(), |header, eye| format!("{header},elevation_{eye}")),
+    };
+    let row = |i: usize| {
+        // six decimals for steps that are no whole numbers, without the zeros of those that are
+        let azimuth = format!("{:.6}", 360.0 * i as f64 / count as f64);
+        let azimuth = azimuth.trim_end_matches('0').trim_end_matches('.').to_owned();
+        elevations.iter().fold(azimuth, |row, eye| format!("{row},{:.4}", eye.get(i).copied().unwrap_or(f64::NAN)))
+    };
+    write_lines(output, std::iter::once(header).chain((0..count).map(row)))
+}
+
+fn write_lines(output: &Path, lines: impl Iterator<Item = String>) -> belvedere::Result<()> {
+    let text: String = lines.map(|line| line + "\n").collect();
+    atomic::write(output, |file| file.write_all(text.as_bytes()).map_err(belvedere::Error::io(output)))
+}

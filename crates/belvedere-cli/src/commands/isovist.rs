@@ -1,0 +1,140 @@
+//! `belvedere isovist`.
+
+use super::sights::{blockers, file};
+use super::surroundings::{eyes, needs_ground, note_enclosed};
+use super::{check_output, extension};
+use crate::arguments::{GivingWay, Global, Isovist, Usage};
+use crate::pipeline::{self, Points, flagged};
+use crate::progress::Stages;
+use crate::summary::{Summary, rounded};
+use anyhow::Result;
+use belvedere::PointCloud;
+use belvedere::apps::isovist::{self, IsovistParams, RadialStatistics};
+use belvedere::io::{Cells, atomic, panorama_picture, write_png, write_table};
+use serde_json::{Map, Value, json};
+use std::io::Write;
+use std::path::Path;
+
+pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
+    for output in &arguments.output {
+        check_output("-o", output, &["csv", "json", "png"])?;
+    }
+    let mut stages = Stages::new(global);
+    let mut summary = Summary::default();
+    let points = if needs_ground(&arguments.eyes) { Points::Keep } else { Points::LetGo };
+    let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
+    let places = eyes(&arguments.eyes, &mut scene, &mut stages, &mut summary)?;
+    if places.len() > 1
+        && let Some(output) = arguments.output.iter().find(|output| extension(output) == "png")
+    {
+        let what = format!("{}: a picture shows a single eye, these are {}", output.display(), places.len());
+        return Err(Usage(what).into());
+    }
+    let mut section = Summary::default();
+    let giving_way = GivingWay { shell: None, unproven: None };
+    let (blockers, _) = blockers(&scene, arguments.scene.profile.into(), &giving_way, &mut stages, &mut section)?;
+    let usual = IsovistParams::default();
+    let params = IsovistParams {
+        step: arguments.step.map_or(usual.step, f64::to_radians),
+        max_range: arguments.max_distance.unwrap_or(usual.max_range),
+        jump: arguments.jump.unwrap_or(usual.jump),
+    };
+    note_enclosed(&blockers, &places, &mut summary);
+    let isovists = stages.run("looking around", places.len(), |progress| {
+        places
+            .iter()
+            .map(|&eye| {
+                let isovist = isovist::isovist(&blockers, eye, &params);
+                progress.advance(1);
+                isovist
+            })
+            .collect::<belvedere::Result<Vec<_>>>()
+    });
+    let isovists = flagged("--step, --max-distance, --jump", isovists)?;
+    let rows: Vec<Row> = places.iter().zip(&isovists).map(|(&eye, isovist)| row(&scene.cloud, eye, isovist)).collect();
+    if let [row] = &rows[..] {
+        let mut section = Summary::default();
+        for &(name, value, decimals) in row {
+            section.add(name, rounded(value, i32::try_from(decimals).unwrap_or(4)));
+        }
+        summary.add("isovist", section);
+    } else {
+        summary.add("eyes", rows.len());
+    }
+    for output in &arguments.output {
+        stages.run("writing", 0, |_| match extension(output).as_str() {
+            "json" => write_json(output, &rows, &isovists),
+            "png" => {
+                let Some(isovist) = isovists.first() else { return Ok(()) };
+                write_png(output, &panorama_picture(&isovist.panorama, "Ranges around the eye"))
+            }
+            _ => write_rows(output, &rows),
+        })?;
+    }
+    summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    summary.add_seconds(stages.into_seconds());
+    Ok(summary)
+}
+
+/// Name, value and decimals of every measure.
+type Row = Vec<(&'static str, f64, usize)>;
+
+fn row(cloud: &PointCloud, eye: [f64; 3], isovist: &isovist::Isovist) -> Row {
+    let [x, y, z] = file(cloud, eye);
+    let plan = &isovist.plan;
+    let mut row: Row = vec![
+        ("x", x, 3),
+        ("y", y, 3),
+        ("z", z, 3),
+        ("volume_m3", isovist.volume, 2),
+        ("openness", isovist.openness, 5),
+        ("sky_openness", isovist.sky_openness, 5),
+    ];
+    let mut statistics = |names: [&'static str; 5], ranges: &RadialStatistics| {
+        let values = [ranges.least, ranges.mean, ranges.greatest, ranges.variance, ranges.skewness];
+        row.extend(names.into_iter().zip(values).map(|(name, value)| (name, value, 4)));
+    };
+    statistics(["range_min_m", "range_mean_m", "range_max_m", "range_variance_m2", "range_skewness"], &isovist.ranges);
+    statistics(
+        ["plan_range_min_m", "plan_range_mean_m", "plan_range_max_m", "plan_range_variance_m2", "plan_range_skewness"],
+        &plan.ranges,
+    );
+    let [east, north, up] = isovist.drift;
+    row.extend([
+        ("drift_east_m", east, 4),
+        ("drift_north_m", north, 4),
+        ("drift_up_m", up, 4),
+        ("plan_area_m2", plan.area, 2),
+        ("plan_perimeter_m", plan.perimeter, 2),
+        ("plan_compactness", plan.compactness(), 5),
+        ("plan_openness", plan.openness, 5),
+        ("plan_occlusivity_m", plan.occlusivity, 2),
+        ("plan_drift_m", plan.drift_length(), 4),
+        ("plan_drift_azimuth_deg", plan.drift[0].atan2(plan.drift[1]).to_degrees().rem_euclid(360.0), 2),
+    ]);
+    row
+}
+
+fn write_rows(output: &Path, rows: &[Row]) -> belvedere::Result<()> {
+    let Some(first) = rows.first() else { return Ok(()) };
+    let columns: Vec<Vec<f64>> = (0..first.len()).map(|i| rows.iter().map(|row| row[i].1).collect()).collect();
+    let named: Vec<(&'static str, Cells<'_>)> = first
+        .iter()
+        .zip(&columns)
+        .map(|(&(name, _, decimals), values)| (name, Cells::Real(values, decimals)))
+        .collect();
+    write_table(output, &named)
+}
+
+fn write_json(output: &Path, rows: &[Row], isovists: &[isovist::Isovist]) -> belvedere::Result<()> {
+    let object = |(row, isovist): (&Row, &isovist::Isovist)| {
+        let mut object: Map<String, Value> =
+            row.iter().map(|&(name, value, _)| (name.to_owned(), json!(value))).collect();
+        let corners = isovist.plan.corners.iter();
+        let corners: Vec<Value> = corners.map(|[azimuth, range]| json!([azimuth.to_degrees(), range])).collect();
+        object.insert("plan_corners_azimuth_deg_range_m".to_owned(), corners.into());
+        Value::Object(object)
+    };
+    let all: Vec<Value> = rows.iter().zip(isovists).map(object).collect();
+    atomic::write(output, |file| writeln!(file, "{}", json!({ "isovists": all })).map_err(belvedere::Error::io(output)))
+}

@@ -1,0 +1,124 @@
+//! Views of a landmark as files.
+
+use crate::commands::sights::file;
+use anyhow::Result;
+use belvedere::PointCloud;
+use belvedere::apps::landmark::LandmarkView;
+use belvedere::ground::{Ground, highest_points};
+use belvedere::io::{
+    Cells, Georeference, MapLegend, MapPicture, atomic, map_picture, ramp_colors, write_png, write_table, write_tif_f32,
+};
+use belvedere::raster::Raster;
+use std::path::Path;
+
+/// No measure: there is no ground, or the observer would be inside something solid.
+const NO_VALUE: f32 = -9999.0;
+/// Colours of shares on a map.
+const COLORS: usize = 101;
+
+/// A measure: its name, what it is, its decimals in tables and how it is had.
+type Measure = (&'static str, &'static str, usize, fn(&LandmarkView) -> f64);
+
+const MEASURES: [Measure; 9] = [
+    ("visible_share", "share of the surface of the landmark that is seen, 0 to 1", 5, LandmarkView::visible_share),
+    ("visible_area_m2", "area of the landmark that is seen, square metres", 3, |view| view.visible_area),
+    ("unproven_area_m2", "area that nothing blocks but is not proven, square metres", 3, |view| view.unproven_area),
+    ("solid_angle_sr", "solid angle of what is seen, steradians", 7, |view| view.solid_angle),
+    ("horizon_share", "share of all azimuths in which some of it is seen, 0 to 1", 6, |view| view.horizon_share),
+    ("horizontal_extent_deg", "angle between the outermost parts seen, degrees", 4, |view| {
+        view.horizontal_extent.to_degrees()
+    }),
+    ("vertical_extent_deg", "angle between the lowest and the highest part seen, degrees", 4, |view| {
+        view.vertical_extent.to_degrees()
+    }),
+    ("nearest_m", "range of the nearest part seen, metres", 3, |view| view.ranges.map_or(f64::NAN, |ranges| ranges[0])),
+    ("farthest_m", "range of the farthest part seen, metres", 3, |view| {
+        view.ranges.map_or(f64::NAN, |ranges| ranges[1])
+    }),
+];
+
+/// A row for each observer that stands somewhere.
+pub(super) fn write_rows(output: &Path, views: &[LandmarkView], eyes: &[[f64; 3]], cloud: &PointCloud) -> Result<()> {
+    let rows: Vec<usize> = (0..eyes.len()).filter(|&row| eyes[row].iter().all(|v| v.is_finite())).collect();
+    let mut columns: Vec<(&'static str, Vec<f64>, usize)> = Vec::new();
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        columns.push((name, rows.iter().map(|&row| file(cloud, eyes[row])[axis]).collect(), 3));
+    }
+    for (name, _, decimals, value) in MEASURES {
+        columns.push((name, rows.iter().map(|&row| value(&views[row])).collect(), decimals));
+    }
+    let named: Vec<(&'static str, Cells<'_>)> =
+        columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))).collect();
+    Ok(write_table(output, &named)?)
+}
+
+/// The share seen as a raster.
+pub(super) fn write_share(output: &Path, views: &[LandmarkView], ground: &Ground, cloud: &PointCloud) -> Result<()> {
+    write_measure(output, &MEASURES[0], views, ground, cloud)
+}
+
+/// Every measure as a raster of its own in `folder`; the files written.
+pub(super) fn write_measures(
+    folder: &Path,
+    views: &[LandmarkView],
+    ground: &Ground,
+    cloud: &PointCloud,
+) -> Result<Vec<String>> {
+    atomic::make_folder(folder)?;
+    let mut written = Vec::new();
+    for measure in &MEASURES {
+        let path = folder.join(format!("{}.tif", measure.0));
+        write_measure(&path, measure, views, ground, cloud)?;
+        written.push(path.display().to_string());
+    }
+    Ok(written)
+}
+
+fn write_measure(
+    output: &Path,
+    (_, what, _, value): &Measure,
+    views: &[LandmarkView],
+    ground: &Ground,
+    cloud: &PointCloud,
+) -> Result<()> {
+    let grid = ground.grid;
+    let standing = |view: &LandmarkView| if view.area > 0.0 { value(view) } else { f64::NAN };
+    #[expect(clippy::cast_possible_truncation, reason = "rasters of measures are f32")]
+    let values = views.iter().map(|view| standing(view) as f32).collect();
+    let raster = Raster::from_values(grid.width, grid.height, values)?;
+    let unit = cloud.crs.metres_per_unit;
+    let upper_left = [0, 1].map(|i| (grid.corner[i] + cloud.origin[i]) / unit);
+    let step = grid.cell / unit;
+    let place = Georeference { upper_left, column_step: [step, 0.0], row_step: [0.0, -step], crs: cloud.crs.clone() };
+    Ok(write_tif_f32(output, &raster, Some(&place), Some(NO_VALUE), Some(what))?)
+}
+
+/// The share seen as a map; where nothing is seen the bare relief shows.
+pub(super) fn write_map(
+    output: &Path,
+    views: &[LandmarkView],
+    ground: &Ground,
+    cloud: &PointCloud,
+    middle: [f64; 2],
+) -> Result<()> {
+    let relief = highest_points(&cloud.positions, ground);
+    let shares: Vec<f64> = views.iter().map(LandmarkView::visible_share).collect();
+    let most = shares.iter().copied().filter(|share| share.is_finite()).fold(0.0, f64::max).max(0.01);
+    let ramp = ramp_colors(&(0..COLORS).map(|i| i as f32).collect::<Vec<f32>>());
+    let color = |&share: &f64| {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place in the ramp")]
+        let place = (share / most * (COLORS - 1) as f64).round() as usize;
+        if share > 0.0 { ramp.get(place.min(COLORS - 1)).copied() } else { None }
+    };
+    let colors: Vec<Option<[u8; 3]>> = shares.iter().map(color).collect();
+    let marks: Vec<[f64; 2]> = ground.grid.cell_position(middle).into_iter().collect();
+    let map = MapPicture {
+        relief: &relief,
+        cell: ground.grid.cell,
+        colors: &colors,
+        marks: &marks,
+        title: "How much of the landmark is seen",
+        legend: MapLegend::Ramp("percent", [0.0, 100.0 * most]),
+    };
+    Ok(write_png(output, &map_picture(&map)?)?)
+}

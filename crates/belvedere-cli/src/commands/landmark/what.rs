@@ -1,0 +1,119 @@
+//! The landmark: a mesh, or points of the cloud.
+
+use crate::arguments::{Landmark, Usage};
+use crate::commands::extension;
+use crate::commands::mesh_targets::mesh_of;
+use crate::pipeline::{Scene, flagged};
+use crate::progress::Stages;
+use crate::summary::{Summary, rounded};
+use anyhow::{Result, bail};
+use belvedere::Mesh;
+use belvedere::apps::landmark::{LandmarkPoints, landmark_points, spacing_for};
+use belvedere::io::{Shape, read_geojson, read_table};
+use belvedere::query::SurfacePieces;
+use std::path::Path;
+
+/// The surface of the landmark, and its middle on the map, local metres.
+pub(super) fn surface(
+    arguments: &Landmark,
+    scene: &Scene,
+    seed: u64,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<(SurfacePieces, [f64; 2])> {
+    let mut section = Summary::default();
+    let surface = if let Some(path) = &arguments.what.target {
+        let mesh = objects_of(mesh_of(path, scene, stages, summary)?, &arguments.object, path)?;
+        let spacing = arguments.spacing.unwrap_or_else(|| spacing_for(mesh.area()));
+        section.add("triangles", mesh.triangles.len()).add("spacing_m", rounded(spacing, 3));
+        let surface =
+            stages.run("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.origin, spacing, seed));
+        flagged("--spacing", surface)?
+    } else {
+        if scene.cloud.is_empty() {
+            let what = "a ball file holds no points that could be a landmark: give the cloud, or a mesh with --target";
+            return Err(Usage(what.to_owned()).into());
+        }
+        let polygons;
+        let which = match (arguments.what.target_class, &arguments.what.target_polygon) {
+            (Some(class), _) => LandmarkPoints::Class(class),
+            (None, Some(path)) => {
+                polygons = polygons_of(path, scene)?;
+                LandmarkPoints::Inside(&polygons)
+            }
+            (None, None) => {
+                return Err(
+                    Usage("say what the landmark is: --target, --target-class or --target-polygon".to_owned()).into()
+                );
+            }
+        };
+        let (rows, surface) = stages.run("finding the landmark", 0, |_| landmark_points(&scene.cloud, &which))?;
+        section.add("points", rows.len());
+        surface
+    };
+    section.add("samples", surface.pieces.len()).add("area_m2", rounded(surface.area(), 2));
+    summary.add("landmark", section);
+    let count = surface.pieces.len().max(1) as f64;
+    let middle = [0, 1].map(|i| surface.pieces.iter().map(|piece| f64::from(piece.place[i])).sum::<f64>() / count);
+    Ok((surface, middle))
+}
+
+/// The triangles of the objects named, all where none is.
+fn objects_of(mut mesh: Mesh, names: &[String], path: &Path) -> Result<Mesh> {
+    if names.is_empty() {
+        return Ok(mesh);
+    }
+    let mut wanted = vec![false; mesh.object_names.len()];
+    for name in names {
+        let mut found = false;
+        for (own, wanted) in mesh.object_names.iter().zip(&mut wanted).filter(|(own, _)| *own == name) {
+            *wanted = own == name;
+            found = true;
+        }
+        if !found {
+            let some: Vec<&str> = mesh.object_names.iter().take(8).map(String::as_str).collect();
+            bail!(
+                "{}: there is no object {name}; it has {} objects, such as {}",
+                path.display(),
+                wanted.len(),
+                some.join(", ")
+            );
+        }
+    }
+    let is_wanted = |&object: &u32| wanted.get(object as usize) == Some(&true);
+    let kept: Vec<usize> = (0..mesh.triangles.len()).filter(|&t| mesh.objects.get(t).is_some_and(is_wanted)).collect();
+    mesh.triangles = kept.iter().map(|&t| mesh.triangles[t]).collect();
+    mesh.objects = kept.iter().map(|&t| mesh.objects[t]).collect();
+    Ok(mesh)
+}
+
+/// Polygons of a file, each a rim and holes, local metres.
+fn polygons_of(path: &Path, scene: &Scene) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
+    let cloud = &scene.cloud;
+    let polygons: Vec<Vec<Vec<[f64; 2]>>> = match extension(path).as_str() {
+        "geojson" | "json" => {
+            let place = |corner: &[f64; 3]| [corner[0] - cloud.origin[0], corner[1] - cloud.origin[1]];
+            read_geojson(path, &cloud.crs)?
+                .into_iter()
+                .filter_map(|feature| match feature.shape {
+                    Shape::Polygon(rings) => Some(rings.iter().map(|ring| ring.iter().map(place).collect()).collect()),
+                    _ => None,
+                })
+                .collect()
+        }
+        "csv" | "txt" => {
+            let table = read_table(path)?;
+            let (x, y) = (table.full_column(path, "x")?, table.full_column(path, "y")?);
+            let ring: Vec<[f64; 2]> = x.iter().zip(y).map(|(&x, &y)| super::on_map_of(cloud, [x, y])).collect();
+            if ring.len() < 3 {
+                bail!("{}: a polygon has three corners at least, this one has {}", path.display(), ring.len());
+            }
+            vec![vec![ring]]
+        }
+        _ => return Err(Usage(format!("--target-polygon {}: use .geojson .json .csv or .txt", path.display())).into()),
+    };
+    if polygons.is_empty() {
+        bail!("{}: there is no polygon in it", path.display());
+    }
+    Ok(polygons)
+}

@@ -1,0 +1,182 @@
+//! `belvedere query` for targets that are a mesh.
+
+use super::{check_output, extension, sights};
+use crate::arguments::{GivingWay, Global, MeshTargets, Query, Usage};
+use crate::pipeline::{self, Points, Scene};
+use crate::progress::Stages;
+use crate::summary::{Summary, rounded};
+use anyhow::{Result, bail};
+use belvedere::Mesh;
+use belvedere::crs::CrsKind;
+use belvedere::io::{Cells, read_mesh, write_mesh_values, write_table};
+use belvedere::query::{
+    BackFaces, MeshTargetParams, Scope, SeenArea, SurfacePieces, Viewer, answer_views, seen_faces, seen_in_all,
+    seen_objects,
+};
+use belvedere::view::View;
+use std::io::Read;
+use std::path::Path;
+
+/// Longest side of a piece, metres: what points of usual airborne surveys tell of a wall.
+const SPACING: f64 = 0.5;
+
+/// Whether a file of targets is a mesh: by its extension, or, for PLY, by its faces.
+pub(crate) fn is_mesh(path: &Path) -> bool {
+    match extension(path).as_str() {
+        "obj" | "json" | "cityjson" => true,
+        "ply" => {
+            let mut start = Vec::new();
+            let read = std::fs::File::open(path).and_then(|file| file.take(1 << 16).read_to_end(&mut start));
+            let text = String::from_utf8_lossy(&start);
+            let header = text.split("end_header").next().unwrap_or_default();
+            let count = header.lines().find_map(|line| line.trim().strip_prefix("element face "));
+            read.is_ok() && count.is_some_and(|count| count.trim() != "0")
+        }
+        _ => false,
+    }
+}
+
+/// Refuses flags of meshes for targets that are points.
+pub(super) fn refuse_flags(flags: &MeshTargets) -> Result<()> {
+    let given = [("--spacing", flags.spacing.is_some()), ("--back-faces", flags.back_faces.is_some())];
+    match given.into_iter().find(|(_, given)| *given) {
+        Some((flag, _)) => Err(Usage(format!("{flag} belongs to targets that are a mesh")).into()),
+        None => Ok(()),
+    }
+}
+
+/// Reads a mesh in the coordinates of a scene, as metres.
+pub(super) fn mesh_of(path: &Path, scene: &Scene, stages: &mut Stages, summary: &mut Summary) -> Result<Mesh> {
+    let (mesh, report) = stages.run("reading mesh", 0, |_| read_mesh(path))?;
+    let known = |kind: CrsKind| kind != CrsKind::Unknown;
+    if known(mesh.crs.kind) && known(scene.cloud.crs.kind) && !mesh.crs.same_system(&scene.cloud.crs) {
+        bail!(
+            "{}: the mesh is in {}, but the scene is in {}; convert one of them",
+            path.display(),
+            mesh.crs.describe(),
+            scene.cloud.crs.describe()
+        );
+    }
+    let mut section = Summary::default();
+    section
+        .add("triangles", mesh.triangles.len())
+        .add("objects", mesh.object_names.len())
+        .add("triangles_without_area", report.degenerate_triangle_count);
+    summary.add("mesh", section);
+    Ok(mesh.scaled_to_metres(&scene.cloud.crs))
+}
+
+pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Summary> {
+    let output = &arguments.output;
+    check_output("-o", output, &["csv", "ply"])?;
+    if arguments.bias.is_some() {
+        return Err(Usage(
+            "--bias is for targets that are points; --shell says how balls give way to a mesh".to_owned(),
+        )
+        .into());
+    }
+    let mut stages = Stages::new(global);
+    let mut summary = Summary::default();
+    let scene = pipeline::scene(&arguments.scene, Points::LetGo, &mut stages, &mut summary)?;
+    let mesh = mesh_of(path, &scene, &mut stages, &mut summary)?;
+    let views = arguments.view.views(&scene, &mut summary)?;
+    let mut section = Summary::default();
+    let giving_way = GivingWay { shell: arguments.shell, unproven: arguments.unproven };
+    let profile = arguments.scene.profile.into();
+    let (blockers, unproven) = sights::blockers(&scene, profile, &giving_way, &mut stages, &mut section)?;
+    summary.add("lines_of_sight", section);
+    if let Some(view) = views.first().filter(|view| view.is_central()) {
+        let note = sights::enclosure_note(&blockers, view.frame.eye, "the eye");
+        summary.add("notes", note.into_iter().collect::<Vec<_>>());
+    }
+    let spacing = arguments.mesh.spacing.unwrap_or(SPACING);
+    let surface =
+        stages.run("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.origin, spacing, global.seed));
+    let surface = pipeline::flagged("--spacing", surface)?;
+    let Some(view) = views.first() else { bail!("there is no view") };
+    let viewer = match view.is_central() {
+        true => Viewer::Eye(view.frame.eye),
+        false => Viewer::Direction(view.frame.forward.map(|v| -v)),
+    };
+    let has_picture = arguments.view.kind.viewport.is_some() || arguments.view.kind.eye.is_some();
+    let scope = if has_picture { Scope::View } else { Scope::Viewer };
+    let usual = MeshTargetParams::default();
+    let back_faces = arguments.mesh.back_faces.map_or(usual.back_faces, BackFaces::from);
+    let params = MeshTargetParams { back_faces, ..usual };
+    let faces = stages.run("querying", 0, |_| {
+        seen_faces(&surface, viewer, &params, |places| {
+            // as for points, a view that fits the scene has no plane that a target could lie before
+            let moved = |view: &View| if has_picture { *view } else { view.moved_before(places) };
+            let views: Vec<View> = views.iter().map(moved).collect();
+            let (answers, _) = answer_views(&blockers, &views, scope, places)?;
+            Ok(answers.into_iter().map(|answer| unproven.settle(answer)).collect())
+        })
+    })?;
+    summary.add("faces", told(&faces, &surface, spacing));
+    stages.run("writing", 0, |_| match extension(output).as_str() {
+        "ply" => {
+            let shares: Vec<f64> = faces.iter().map(SeenArea::visible_share).collect();
+            let unit = scene.cloud.crs.metres_per_unit_xyz();
+            write_mesh_values(output, &mesh, unit, "visible_share", &shares)
+        }
+        _ => write_rows(output, &mesh, &faces),
+    })?;
+    summary.add("written", output.display().to_string());
+    summary.add_seconds(stages.into_seconds());
+    Ok(summary)
+}
+
+fn told(faces: &[SeenArea], surface: &SurfacePieces, spacing: f64) -> Summary {
+    let all = seen_in_all(faces);
+    let mut section = Summary::default();
+    section
+        .add("count", faces.len())
+        .add("spacing_m", rounded(spacing, 4))
+        .add("samples", surface.pieces.len())
+        .add("area_m2", rounded(all.area, 2))
+        .add("visible_m2", rounded(all.visible, 2))
+        .add("standard_error_m2", rounded(all.standard_error(), 2))
+        .add("visible_percent", rounded(100.0 * all.visible_share(), 2))
+        .add("unproven_m2", rounded(all.unproven, 2));
+    section
+}
+
+/// A row for each object, without a face, then one for each face.
+fn write_rows(output: &Path, mesh: &Mesh, faces: &[SeenArea]) -> belvedere::Result<()> {
+    let names: Vec<String> = mesh.object_names.iter().map(|name| quoted(name)).collect();
+    let mut rows: Vec<(&str, Option<u64>, SeenArea)> = Vec::new();
+    if names.is_empty() {
+        rows.push(("", None, seen_in_all(faces)));
+    }
+    let objects = seen_objects(faces, &mesh.objects, names.len());
+    rows.extend(names.iter().zip(objects).map(|(name, seen)| (name.as_str(), None, seen)));
+    for ((face, seen), number) in faces.iter().enumerate().zip(0_u64..) {
+        let object = mesh.objects.get(face).and_then(|&object| names.get(object as usize));
+        rows.push((object.map_or("", String::as_str), Some(number), *seen));
+    }
+    let words: Vec<&str> = rows.iter().map(|row| row.0).collect();
+    let numbers: Vec<Option<u64>> = rows.iter().map(|row| row.1).collect();
+    let column = |value: &dyn Fn(&SeenArea) -> f64| -> Vec<f64> { rows.iter().map(|row| value(&row.2)).collect() };
+    let area = column(&|seen| seen.area);
+    let visible = column(&|seen| seen.visible);
+    let share = column(&SeenArea::visible_share);
+    let unproven = column(&|seen| seen.unproven);
+    let error = column(&SeenArea::standard_error);
+    write_table(
+        output,
+        &[
+            ("object", Cells::Words(&words)),
+            ("face", Cells::Whole(&numbers)),
+            ("area_m2", Cells::Real(&area, 4)),
+            ("visible_m2", Cells::Real(&visible, 4)),
+            ("visible_share", Cells::Real(&share, 4)),
+            ("unproven_m2", Cells::Real(&unproven, 4)),
+            ("standard_error_m2", Cells::Real(&error, 4)),
+        ],
+    )
+}
+
+/// A name as a cell of a table.
+fn quoted(name: &str) -> String {
+    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
+}
