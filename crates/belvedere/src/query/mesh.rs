@@ -98,8 +98,19 @@ impl Piece {
     /// The place moved `lift` metres off the plane of the piece to the side of a common viewer, local metres.
     #[must_use]
     pub fn lifted(&self, viewer: Viewer<'_>, lift: f64) -> [f32; 3] {
+        self.lifted_along_normal(if self.is_before(viewer) { lift } else { -lift })
+    }
+
+    /// Whether the viewer is on the side that the normal points to, or edge-on; true for a piece without a normal.
+    #[must_use]
+    pub fn is_before(&self, viewer: Viewer<'_>) -> bool {
+        self.normal().is_none_or(|normal| !(dot(normal, self.towards(viewer)) < 0.0))
+    }
+
+    /// The place moved by `lift` metres along the normal, where there is one.
+    #[must_use]
+    pub fn lifted_along_normal(&self, lift: f64) -> [f32; 3] {
         let Some(normal) = self.normal() else { return self.place };
-        let lift = if dot(normal, self.towards(viewer)) < 0.0 { -lift } else { lift };
         #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
         std::array::from_fn(|i| (f64::from(self.place[i]) + lift * normal[i]) as f32)
     }

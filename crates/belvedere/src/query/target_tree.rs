@@ -74,6 +74,13 @@ impl TargetTree {
         self.nodes.first().map(|root| [root.low, root.high])
     }
 
+    /// Whether a corner of that box fulfils `condition`, for one that holds beyond some distance if it holds anywhere.
+    pub fn any_corner(&self, condition: impl Fn([f64; 3]) -> bool) -> bool {
+        self.bounds().is_some_and(|bounds| {
+            (0..8).any(|corner| condition(std::array::from_fn(|axis| f64::from(bounds[corner >> axis & 1][axis]))))
+        })
+    }
+
     /// Nodes of at most `most` targets, or leaves, that together hold every target, in the order of the tree.
     pub(super) fn subtrees(&self, most: usize) -> Vec<usize> {
         let mut found = Vec::new();

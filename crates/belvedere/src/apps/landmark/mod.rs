@@ -7,7 +7,7 @@ pub use points::{LandmarkPoints, landmark_points};
 
 use crate::progress::Progress;
 use crate::query::{
-    Answer, BackFaces, EarthParams, MedialScene, MeshTargetParams, Sides, SurfacePieces, UnprovenAs, Viewer,
+    Answer, BackFaces, EarthParams, MedialScene, MeshTargetParams, Sides, SurfacePieces, TargetTree, UnprovenAs, Viewer,
 };
 use crate::vector::{cross, dot, length, sub, unit};
 use crate::{Error, Result};
@@ -94,8 +94,8 @@ pub fn observer_cell_for(low: [f64; 2], high: [f64; 2]) -> f64 {
 /// The spacing at which a surface of `area` m² has about a thousand pieces, metres; 0.25 at least.
 #[must_use]
 pub fn spacing_for(area: f64) -> f64 {
-    // halving until no side is longer leaves pieces of about a sixth of the square of the spacing
-    (6.0 * area / USUAL_PIECES).sqrt().max(LEAST_SPACING)
+    // most pieces are half a cell, whose diagonal is the spacing
+    (4.0 * area / USUAL_PIECES).sqrt().max(LEAST_SPACING)
 }
 
 /// What an eye at `eye`, local metres, sees of `landmark`.
@@ -114,10 +114,20 @@ pub fn landmark_view(
     eye: [f64; 3],
     params: &LandmarkParams,
 ) -> LandmarkView {
+    measured(landmark, eye, params, |_, place| scene.sight_answer(eye, place, &params.earth))
+}
+
+/// What an eye sees of a landmark if `answer` tells what it sees of the places of pieces, given by their rows.
+fn measured(
+    landmark: &SurfacePieces,
+    eye: [f64; 3],
+    params: &LandmarkParams,
+    answer: impl Fn(usize, [f64; 3]) -> Answer,
+) -> LandmarkView {
     let mut view = LandmarkView::default();
     let mut arcs = Arcs::default();
     let mut seen: Option<SkyBox> = None;
-    for piece in &landmark.pieces {
+    for (row, piece) in landmark.pieces.iter().enumerate() {
         let corners = piece.corners.map(|corner| sub(corner.map(f64::from), eye));
         let area = f64::from(piece.area);
         if params.faces.back_faces != BackFaces::BothSides && landmark.sides == Sides::Known {
@@ -135,7 +145,7 @@ pub fn landmark_view(
         if !(range <= params.max_range && range > NEAREST) {
             continue;
         }
-        match params.unproven.settle(scene.sight_answer(eye, place, &params.earth)) {
+        match params.unproven.settle(answer(row, place)) {
             Answer::Visible => {}
             Answer::Unproven => {
                 view.unproven_area += area;
@@ -183,13 +193,61 @@ pub fn landmark_views(
     if landmark.pieces.is_empty() {
         return Err(Error::NoPoints { what: "the landmark has no surface".to_owned() });
     }
+    let places = Places::new(landmark, params);
     let look = |&eye: &[f64; 3]| {
-        let finite = eye.iter().all(|v| v.is_finite());
-        let view = if finite { landmark_view(scene, landmark, eye, params) } else { LandmarkView::default() };
+        let view = if !eye.iter().all(|v| v.is_finite()) {
+            LandmarkView::default()
+        } else if places.bend(eye, &params.earth) {
+            landmark_view(scene, landmark, eye, params)
+        } else {
+            let unblocked = places.unblocked_from(scene, landmark, eye)?;
+            measured(landmark, eye, params, |row, place| match (unblocked[row], params.unproven) {
+                (false, _) => Answer::Blocked,
+                (true, UnprovenAs::Visible) => Answer::Visible,
+                (true, _) => scene.answer_unblocked_from(eye, place),
+            })
+        };
         progress.advance(1);
-        view
+        Ok(view)
     };
-    Ok(eyes.par_iter().map(look).collect())
+    eyes.par_iter().map(look).collect()
+}
+
+/// Where the pieces of a landmark are asked about, in trees that serve all eyes.
+struct Places {
+    /// For eyes before the face of a piece.
+    fronts: TargetTree,
+    /// For eyes behind it, where these count.
+    backs: TargetTree,
+}
+
+impl Places {
+    fn new(landmark: &SurfacePieces, params: &LandmarkParams) -> Self {
+        let both = params.faces.back_faces == BackFaces::BothSides || landmark.sides == Sides::Both;
+        let lifted = |side: f64| -> Vec<[f32; 3]> {
+            landmark.pieces.iter().map(|piece| piece.lifted_along_normal(side * params.faces.lift)).collect()
+        };
+        let backs = if both { lifted(-1.0) } else { Vec::new() };
+        Self { fronts: TargetTree::new(&lifted(1.0)), backs: TargetTree::new(&backs) }
+    }
+
+    /// Whether any line of sight from `eye` is curved.
+    fn bend(&self, eye: [f64; 3], earth: &EarthParams) -> bool {
+        [&self.fronts, &self.backs].into_iter().any(|tree| tree.any_corner(|corner| earth.bends(corner, eye)))
+    }
+
+    /// Whether nothing blocks the place of each piece on the side that `eye` is on.
+    fn unblocked_from(&self, scene: &MedialScene, landmark: &SurfacePieces, eye: [f64; 3]) -> Result<Vec<bool>> {
+        let viewer = Viewer::Eye(eye);
+        let mut unblocked = vec![false; landmark.pieces.len()];
+        for (tree, is_front) in [(&self.fronts, true), (&self.backs, false)] {
+            scene.visible_among(viewer, tree, |place| {
+                let row = tree.rows()[place] as usize;
+                unblocked[row] |= landmark.pieces[row].is_before(viewer) == is_front;
+            })?;
+        }
+        Ok(unblocked)
+    }
 }
 
 /// Solid angle of a triangle whose corners are given from the eye, steradians, 0 to 2π.

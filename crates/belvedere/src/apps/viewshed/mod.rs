@@ -204,12 +204,7 @@ impl Asked<'_> {
 
     /// Whether any line of sight of an observer is curved.
     fn bends(&self, observer: &Observer) -> bool {
-        self.tree.bounds().is_some_and(|bounds| {
-            (0..8).any(|corner| {
-                let corner = std::array::from_fn(|axis| f64::from(bounds[corner >> axis & 1][axis]));
-                self.params.earth.bends(corner, observer.eye)
-            })
-        })
+        self.tree.any_corner(|corner| self.params.earth.bends(corner, observer.eye))
     }
 
     /// What one observer sees, all threads at work: (M), blocked where the observer does not look.
