@@ -101,18 +101,17 @@ impl Piece {
         self.lifted_along_normal(if self.is_before(viewer) { lift } else { -lift })
     }
 
-    /// Whether the viewer is on the side that the normal points to, or edge-on; true for a piece without a normal.
+    /// Whether the viewer is on the side that the normal points to, or edge-on.
     #[must_use]
     pub fn is_before(&self, viewer: Viewer<'_>) -> bool {
-        self.normal().is_none_or(|normal| !(dot(normal, self.towards(viewer)) < 0.0))
+        !(dot(self.normal.map(f64::from), self.towards(viewer)) < 0.0)
     }
 
-    /// The place moved by `lift` metres along the normal, where there is one.
+    /// The place moved by `lift` metres along the normal, local metres.
     #[must_use]
     pub fn lifted_along_normal(&self, lift: f64) -> [f32; 3] {
-        let Some(normal) = self.normal() else { return self.place };
         #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-        std::array::from_fn(|i| (f64::from(self.place[i]) + lift * normal[i]) as f32)
+        std::array::from_fn(|i| (f64::from(self.place[i]) + lift * f64::from(self.normal[i])) as f32)
     }
 }
 
@@ -123,10 +122,7 @@ impl Piece {
 /// [`Error::UnsupportedViewer`] for [`Viewer::Each`], and those of [`Viewer::validate`].
 pub fn facing(surface: &SurfacePieces, viewer: Viewer<'_>) -> Result<Vec<bool>> {
     viewer.validate()?;
-    let turned = |piece: &Piece| {
-        let Some(normal) = piece.normal() else { return false };
-        dot(normal, piece.towards(viewer)) > 0.0
-    };
+    let turned = |piece: &Piece| dot(piece.normal.map(f64::from), piece.towards(viewer)) > 0.0;
     match (surface.sides, viewer) {
         (_, Viewer::Each(_)) => {
             Err(Error::UnsupportedViewer { method: "a surface", what: "from one eye or along one direction" })

@@ -18,6 +18,8 @@ pub struct Piece {
     pub corners: [[f32; 3]; 3],
     /// A place drawn evenly on it, local metres.
     pub place: [f32; 3],
+    /// Unit normal outward: that of its face, which small corners in f32 would not tell.
+    pub normal: [f32; 3],
     /// Area it stands for, m².
     pub area: f32,
     /// Face that it belongs to: a triangle of a mesh, or a point.
@@ -42,15 +44,6 @@ pub struct SurfacePieces {
     pub face_count: usize,
     /// Whether faces have an outside.
     pub sides: Sides,
-}
-
-impl Piece {
-    /// Unit normal outward, or `None` for a piece without area.
-    #[must_use]
-    pub fn normal(&self) -> Option<[f64; 3]> {
-        let [a, b, c] = self.corners.map(|corner| corner.map(f64::from));
-        unit(cross(sub(b, a), sub(c, a)))
-    }
 }
 
 impl SurfacePieces {
@@ -86,6 +79,7 @@ impl SurfacePieces {
             if let Some(corners) = corners.filter(|corners| area_of(*corners) > 0.0) {
                 cut(corners, spacing, &mut pieces);
             }
+            let normal = corners.and_then(|[a, b, c]| unit(cross(sub(b, a), sub(c, a)))).map_or([0.0; 3], to_f32);
             let number = index_u32(face);
             let piece = move |(i, corners): (usize, [[f64; 3]; 3])| {
                 let counter = ((face as u64) << 32) | ((i as u64) << 1);
@@ -93,6 +87,7 @@ impl SurfacePieces {
                 Piece {
                     corners: corners.map(to_f32),
                     place: to_f32(place),
+                    normal,
                     area: single(area_of(corners)),
                     face: number,
                 }
@@ -140,7 +135,7 @@ impl SurfacePieces {
                 to_f32(std::array::from_fn(|i| f64::from(point[i]) + reach * (cos * right[i] + sin * up[i])))
             };
             let corners = [corner(0.0), corner(1.0 / 3.0), corner(2.0 / 3.0)];
-            Piece { corners, place: point, area: single(area), face: index_u32(face) }
+            Piece { corners, place: point, normal: to_f32(normal), area: single(area), face: index_u32(face) }
         };
         let pieces = points.par_iter().zip(normals).enumerate().map(piece).collect();
         Ok(Self { pieces, face_count: points.len(), sides: Sides::Both })

@@ -130,14 +130,12 @@ fn measured(
     for (row, piece) in landmark.pieces.iter().enumerate() {
         let corners = piece.corners.map(|corner| sub(corner.map(f64::from), eye));
         let area = f64::from(piece.area);
-        if params.faces.back_faces != BackFaces::BothSides && landmark.sides == Sides::Known {
-            let normal = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
-            if !(dot(normal, corners[0]) < 0.0) {
-                if params.faces.back_faces == BackFaces::NotVisible {
-                    view.area += area;
-                }
-                continue;
+        let backs_count = params.faces.back_faces == BackFaces::BothSides || landmark.sides == Sides::Both;
+        if !backs_count && !(dot(piece.normal.map(f64::from), corners[0]) < 0.0) {
+            if params.faces.back_faces == BackFaces::NotVisible {
+                view.area += area;
             }
+            continue;
         }
         view.area += area;
         let place = piece.lifted(Viewer::Eye(eye), params.faces.lift).map(f64::from);
