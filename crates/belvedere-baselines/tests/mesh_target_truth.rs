@@ -132,7 +132,7 @@ fn judge(
         .zip(&facing)
         .filter(|(_, facing)| **facing)
         .map(|(piece, _)| {
-            let normal = piece.normal().unwrap();
+            let normal = piece.normal.map(f64::from);
             let place: [f64; 3] = std::array::from_fn(|i| f64::from(piece.place[i]) + origin[i] + OUTSIDE * normal[i]);
             let blocked = match viewer {
                 Viewer::Direction(direction) => truth.occluded_towards(place, direction),
