@@ -77,7 +77,8 @@ impl From<Summary> for Value {
 /// A number with `digits` decimals.
 pub(crate) fn rounded(value: f64, digits: i32) -> Value {
     let scale = 10f64.powi(digits);
-    let rounded = (value * scale).round() / scale;
+    // no minus before a zero
+    let rounded = (value * scale).round() / scale + 0.0;
     Value::from(if rounded.is_finite() { rounded } else { value })
 }
 

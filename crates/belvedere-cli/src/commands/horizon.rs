@@ -7,7 +7,7 @@ use crate::arguments::{BelowChoice, GivingWay, Global, Horizon, NorthChoice, Usa
 use crate::pipeline::{self, Points, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
-use anyhow::Result;
+use anyhow::{Context, Result};
 use belvedere::apps::horizon::{HorizonParams, azimuth_count, convergence, horizons};
 use belvedere::io::{atomic, horizon_picture, write_png};
 use std::io::Write;
@@ -37,7 +37,9 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
         (NorthChoice::True, Some(eye)) => {
             let origin = scene.cloud.origin;
             let turn = convergence(&scene.cloud.crs, [eye[0] + origin[0], eye[1] + origin[1]]);
-            let turn = flagged("--north", turn)?;
+            let turn = flagged("--north", turn).context(
+                "--north true needs to know where on earth the scene lies: give its cloud with --crs EPSG:CODE, or take --north grid",
+            )?;
             summary.add("meridian_convergence_deg", rounded(turn.to_degrees(), 4));
             turn
         }
