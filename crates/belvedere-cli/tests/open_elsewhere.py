@@ -71,4 +71,16 @@ with rasterio.open(count) as raster:
     assert raster.dtypes == ("uint16",) and raster.nodata == 65535
 bits = numpy.load(masks)
 assert bits.shape == (1, *counts.shape) and (numpy.bitwise_count(bits[0]) == counts).all()
+# a landmark as a raster, and a horizon as a table of one elevation an azimuth, from north on
+share = folder / "share.tif"
+told = run("landmark", *scene, "--target", folder / "town.obj", "--max-distance", 60, "--cell", 10, "-o", share)
+with rasterio.open(share) as raster:
+    values = raster.read(1, masked=True)
+    assert raster.dtypes == ("float32",) and raster.crs.to_epsg() in (7415, 28992), (raster.dtypes, raster.crs)
+    assert raster.res == (10, 10) and values.count() > 50 and 0 < values.max() <= 1 and values.min() >= 0, values
+horizon = folder / "horizon.csv"
+run("horizon", *scene, "--eye", f"{x},{y}", "--north", "true", "-o", horizon)
+table = numpy.genfromtxt(horizon, delimiter=",", names=True)
+assert len(table) == 360 and (table[table.dtype.names[0]] == numpy.arange(360)).all(), table.dtype.names
+assert 0 <= table[table.dtype.names[1]].min() and 10 < table[table.dtype.names[1]].max() < 90
 print("rasterio", rasterio.__version__, "geopandas", geopandas.__version__, "laspy", laspy.__version__, "open all results")
