@@ -1,6 +1,6 @@
 //! `belvedere horizon`.
 
-use super::sights::blockers;
+use super::sights::{Proving, blockers};
 use super::surroundings::{eyes, needs_ground, note_enclosed};
 use super::{check_output, extension};
 use crate::arguments::{BelowChoice, GivingWay, Global, Horizon, NorthChoice, Usage};
@@ -47,7 +47,8 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
     };
     let mut section = Summary::default();
     let giving_way = GivingWay { shell: None, unproven: None };
-    let (blockers, _) = blockers(&scene, arguments.scene.profile.into(), &giving_way, &mut stages, &mut section)?;
+    let (blockers, _) =
+        blockers(&scene, arguments.scene.profile.into(), &giving_way, Proving::Never, &mut stages, &mut section)?;
     summary.add("lines_of_sight", section);
     note_enclosed(&blockers, &places, &mut summary);
     let params = HorizonParams { azimuth_count, turn, earth };

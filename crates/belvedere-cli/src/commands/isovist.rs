@@ -1,6 +1,6 @@
 //! `belvedere isovist`.
 
-use super::sights::{blockers, file};
+use super::sights::{Proving, blockers, file};
 use super::surroundings::{eyes, needs_ground, note_enclosed};
 use super::{check_output, extension};
 use crate::arguments::{GivingWay, Global, Isovist, Usage};
@@ -32,7 +32,8 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
     }
     let mut section = Summary::default();
     let giving_way = GivingWay { shell: None, unproven: None };
-    let (blockers, _) = blockers(&scene, arguments.scene.profile.into(), &giving_way, &mut stages, &mut section)?;
+    let (blockers, _) =
+        blockers(&scene, arguments.scene.profile.into(), &giving_way, Proving::Never, &mut stages, &mut section)?;
     let usual = IsovistParams::default();
     let params = IsovistParams {
         step: arguments.step.map_or(usual.step, f64::to_radians),

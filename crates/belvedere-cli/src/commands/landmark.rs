@@ -3,7 +3,7 @@
 mod results;
 mod what;
 
-use super::sights::{self, blockers, ground_cloud, local, on_map};
+use super::sights::{self, Proving, blockers, ground_cloud, local, on_map};
 use super::{check_output, extension, is_same};
 use crate::arguments::{Global, Landmark, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
@@ -30,8 +30,14 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     let (cloud, points) = ground_cloud(&arguments.ground, &mut scene, &mut stages)?;
     let ground = sights::ground(&cloud, points, grid, &mut stages, &mut summary)?;
     let mut section = Summary::default();
-    let (blockers, unproven) =
-        blockers(&scene, arguments.scene.profile.into(), &arguments.giving_way, &mut stages, &mut section)?;
+    let (blockers, unproven) = blockers(
+        &scene,
+        arguments.scene.profile.into(),
+        &arguments.giving_way,
+        Proving::IfItDecides,
+        &mut stages,
+        &mut section,
+    )?;
     summary.add("lines_of_sight", section);
 
     let height = arguments.observer_height.unwrap_or(OBSERVER_HEIGHT);

@@ -1,6 +1,6 @@
 //! `belvedere line-of-sight`.
 
-use super::sights::{blockers, enclosure_note, file, ground, ground_cloud, local, on_map};
+use super::sights::{Proving, blockers, enclosure_note, file, ground, ground_cloud, local, on_map};
 use super::{check_output, extension, is_same};
 use crate::arguments::{Global, GroundChoice, LineOfSight, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
@@ -33,8 +33,14 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
     let pairs = pairs(arguments, &scene, global.seed, &mut stages)?;
     let mut section = Summary::default();
-    let (blockers, unproven_as) =
-        blockers(&scene, arguments.scene.profile.into(), &arguments.giving_way, &mut stages, &mut section)?;
+    let (blockers, unproven_as) = blockers(
+        &scene,
+        arguments.scene.profile.into(),
+        &arguments.giving_way,
+        Proving::Always,
+        &mut stages,
+        &mut section,
+    )?;
     let sights = stages.run("answering", 0, |_| blockers.lines_of_sight(&pairs, &earth));
     let settled = |sight: &Option<belvedere::query::LineOfSight>| {
         sight.map_or(Answer::OutsideView, |sight| unproven_as.settle(sight.answer))

@@ -83,7 +83,8 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     let mut section = Summary::default();
     let giving_way = GivingWay { shell: arguments.shell, unproven: arguments.unproven };
     let profile = arguments.scene.profile.into();
-    let (blockers, unproven) = sights::blockers(&scene, profile, &giving_way, &mut stages, &mut section)?;
+    let (blockers, unproven) =
+        sights::blockers(&scene, profile, &giving_way, sights::Proving::IfItDecides, &mut stages, &mut section)?;
     summary.add("lines_of_sight", section);
     if let Some(view) = views.first().filter(|view| view.is_central()) {
         let note = sights::enclosure_note(&blockers, view.frame.eye, "the eye");

@@ -12,11 +12,23 @@ use belvedere::io::{ReadOptions, read_cloud};
 use belvedere::pulses::Needles;
 use belvedere::query::{EarthParams, MedialScene, Proof, ProofParams, SceneParams, UnprovenAs};
 
+/// Whether pulses are asked about lines of sight that nothing blocks.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Proving {
+    /// Balls alone count.
+    Never,
+    /// Where that can change an answer.
+    IfItDecides,
+    /// Lengths are reported too.
+    Always,
+}
+
 /// Balls that lines of sight are cut with, and what to make of what is not proven.
 pub(crate) fn blockers(
     scene: &Scene,
     profile: Profile,
     flags: &GivingWay,
+    proving: Proving,
     stages: &mut Stages,
     section: &mut Summary,
 ) -> Result<(MedialScene, UnprovenAs)> {
@@ -35,7 +47,13 @@ pub(crate) fn blockers(
         .add("balls", blockers.ball_count())
         .add("depth_bias_m", rounded(params.depth_bias, 4))
         .add("shell_m", rounded(params.shell, 4));
-    if let Some(pulses) = &scene.pulses {
+    let unproven_as = flags.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
+    let is_asked = match proving {
+        Proving::Never => false,
+        Proving::IfItDecides => unproven_as != UnprovenAs::Visible,
+        Proving::Always => true,
+    };
+    if is_asked && let Some(pulses) = &scene.pulses {
         let proof = stages.run("indexing pulses to prove by", 0, |_| {
             Proof::new(Needles::from_columns(pulses)?, &ProofParams::default())
         })?;
@@ -44,7 +62,7 @@ pub(crate) fn blockers(
             .add("unseen_length_tolerated_m", rounded(proof.tolerance(), 3));
         blockers = blockers.with_pulses(proof);
     }
-    Ok((blockers, flags.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from)))
+    Ok((blockers, unproven_as))
 }
 
 impl Earth {

@@ -3,7 +3,7 @@
 mod results;
 mod who;
 
-use super::sights::{blockers, enclosure_note, file, ground, ground_cloud, on_map};
+use super::sights::{Proving, blockers, enclosure_note, file, ground, ground_cloud, on_map};
 use super::{check_output, is_same};
 use crate::arguments::{Global, Usage, Viewshed};
 use crate::pipeline::{self, Points, flagged};
@@ -43,8 +43,14 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     };
     flagged("--target-height, --observer-height", finite(target_height))?;
     let mut section = Summary::default();
-    let (blockers, unproven) =
-        blockers(&scene, arguments.scene.profile.into(), &arguments.giving_way, &mut stages, &mut section)?;
+    let (blockers, unproven) = blockers(
+        &scene,
+        arguments.scene.profile.into(),
+        &arguments.giving_way,
+        Proving::IfItDecides,
+        &mut stages,
+        &mut section,
+    )?;
     summary.add("lines_of_sight", section);
     summary.add(if is_reverse { "target" } else { "observers" }, told(&observers, &ground, &blockers, &cloud));
 
