@@ -68,6 +68,7 @@ fn many_at_once_are_answered_as_one_by_one() {
         SceneParams::default(),
         SceneParams::carved(),
         SceneParams { depth_bias: 0.4, ..SceneParams::carved() },
+        SceneParams { depth_bias: -0.6, ..SceneParams::carved() },
         SceneParams { profile: Profile::PaperCone, ..SceneParams::default() },
     ];
     // 20 km from the origin f32 steps by 2 mm, and beams must still not miss a ball

@@ -101,7 +101,7 @@ struct Sweep<'a> {
     targets: &'a TargetTree,
     viewer: Viewer<'a>,
     apex: Apex,
-    /// By how much f32 may misplace anything in the scene, metres.
+    /// By how much beams are widened, metres: what f32 may misplace anything in the scene by.
     room: f64,
 }
 
@@ -136,7 +136,9 @@ impl<'a> Sweep<'a> {
         if let Some(root) = targets.nodes.first() {
             scale = scale.max(farthest(root.low.map(f64::from))).max(farthest(root.high.map(f64::from)));
         }
-        Ok(Self { scene, targets, viewer, apex, room: ROUNDING * scale })
+        // with a bias below zero what lies that much behind a target blocks it too
+        let behind = (-scene.params.depth_bias).max(0.0);
+        Ok(Self { scene, targets, viewer, apex, room: ROUNDING * scale + behind })
     }
 
     fn run(&self, node: usize, visit: &mut impl FnMut(usize)) {
@@ -302,7 +304,7 @@ impl<'a> Sweep<'a> {
         let (center, whole) = self.scene.ball(ball as usize);
         let (center, whole) = (center.map(f64::from), f64::from(whole));
         let radius = whole - params.shell_of(whole);
-        let corners = target.corners(params.depth_bias);
+        let corners = target.corners(params.depth_bias.max(0.0));
         let squared = |v: [f64; 3]| dot(v, v);
         let farthest = corners.iter().map(|&corner| squared(sub(center, corner))).fold(0.0, f64::max);
         match (self.apex, self.viewer) {
