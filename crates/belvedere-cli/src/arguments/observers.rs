@@ -28,8 +28,8 @@ pub(crate) struct LineOfSight {
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Result")]
     pub(crate) ground: GroundChoice,
     /// Table (.csv), a row per pair in their order: ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line),
-    /// first_block_range_m from A, unproven_m, block_x, block_y, block_z, and block_ball and block_source, the rows of the ball that blocks
-    /// first and of the point it touches
+    /// first_block_range_m from A, unproven_m (not with --unproven as-visible, which is quicker), block_x, block_y, block_z, and
+    /// block_ball and block_source, the rows of the ball that blocks first and of the point it touches
     #[arg(short, long, value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
     pub(crate) output: Option<PathBuf>,
 }

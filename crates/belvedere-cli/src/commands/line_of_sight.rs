@@ -37,10 +37,14 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
         &scene,
         arguments.scene.profile.into(),
         &arguments.giving_way,
-        Proving::Always,
+        Proving::IfItDecides,
         &mut stages,
         &mut section,
     )?;
+    if blockers.proof().is_none() {
+        // nothing then says how much of a line no pulse came near to
+        scene.pulses = None;
+    }
     let sights = stages.run("answering", 0, |_| blockers.lines_of_sight(&pairs, &earth));
     let settled = |sight: &Option<belvedere::query::LineOfSight>| {
         sight.map_or(Answer::OutsideView, |sight| unproven_as.settle(sight.answer))

@@ -19,8 +19,6 @@ pub(crate) enum Proving {
     Never,
     /// Where that can change an answer.
     IfItDecides,
-    /// Lengths are reported too.
-    Always,
 }
 
 /// Balls that lines of sight are cut with, and what to make of what is not proven.
@@ -48,12 +46,8 @@ pub(crate) fn blockers(
         .add("depth_bias_m", rounded(params.depth_bias, 4))
         .add("shell_m", rounded(params.shell, 4));
     let unproven_as = flags.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
-    let is_asked = match proving {
-        Proving::Never => false,
-        Proving::IfItDecides => unproven_as != UnprovenAs::Visible,
-        Proving::Always => true,
-    };
-    if is_asked && let Some(pulses) = &scene.pulses {
+    let decides = proving == Proving::IfItDecides && unproven_as != UnprovenAs::Visible;
+    if decides && let Some(pulses) = &scene.pulses {
         let proof = stages.run("indexing pulses to prove by", 0, |_| {
             Proof::new(Needles::from_columns(pulses)?, &ProofParams::default())
         })?;
