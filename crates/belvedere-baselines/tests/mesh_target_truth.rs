@@ -1,17 +1,19 @@
 //! What is seen of buildings: carved balls against the exact mesh of a simulated town.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use belvedere::cloud::{centre_rounded, to_local};
+#[path = "common/flown.rs"]
+mod flown;
+
+use belvedere::Mesh;
 use belvedere::query::{
     Answer, BackFaces, MedialScene, MeshTargetParams, SceneParams, SeenArea, SurfacePieces, Viewer, Visibility,
     seen_faces, seen_objects,
 };
-use belvedere::trajectory::Trajectory;
 use belvedere::view::to_sun;
-use belvedere::{Attributes, GpsTimeKind, Mesh, PointCloud};
 use belvedere_baselines::Survey;
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
-use belvedere_scenes::{AirborneParams, Material, Preset, QuerySite, Scene, Truth, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Material, Preset, QuerySite, Scene, Truth, town};
+use flown::flown;
 
 /// How far outside its face a place is asked in truth, metres: places are f32, to hundredths of a millimetre here.
 const OUTSIDE: f64 = 0.01;
@@ -47,25 +49,9 @@ struct Score {
 #[test]
 fn shares_of_buildings_that_are_seen_are_those_of_the_mesh() {
     let scene = town(&Preset::Town.params(120.0, 11));
-    let scan = scan_airborne(&scene, &AirborneParams { seed: 11, ..AirborneParams::covering(&scene, 8.0) });
-    let coordinates = || (0..scan.len()).map(|i| [scan.x[i], scan.y[i], scan.z[i]]);
-    let origin = centre_rounded(coordinates());
-    let cloud = PointCloud {
-        origin,
-        positions: coordinates().map(|c| to_local(c, origin)).collect(),
-        attributes: Attributes {
-            classification: Some(scan.classification.clone()),
-            gps_time: Some(scan.gps_time.clone()),
-            gps_time_kind: GpsTimeKind::AdjustedStandard,
-            return_number: Some(scan.return_number.clone()),
-            return_count: Some(scan.return_count.clone()),
-            point_source_id: Some(scan.point_source_id.clone()),
-            ..Attributes::default()
-        },
-        ..PointCloud::default()
-    };
-    let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
-    let (scanner, _) = Trajectory::from_records(path.collect()).0.scanner_positions(&cloud).unwrap();
+    let params = AirborneParams { seed: 11, ..AirborneParams::covering(&scene, 8.0) };
+    let (cloud, scanner) = flown(&scene, &params).unwrap();
+    let origin = cloud.origin;
     let survey = Survey { cloud: &cloud, scanner: &scanner, models: &[] };
     let made = MedialBaseline::new(&survey, Outward::Survey, &MedialParams::carved()).unwrap();
     let truth = Truth::new(&scene);

@@ -2,7 +2,11 @@
 //! simulated town, against its exact mesh.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use belvedere::cloud::{centre_rounded, to_local};
+#[path = "common/flown.rs"]
+mod flown;
+
+use belvedere::PointCloud;
+use belvedere::cloud::to_local;
 use belvedere::medial::{CarvedInput, CarvedParams, OrientByCarvingParams, carved_balls, orient_by_carving};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
@@ -10,12 +14,11 @@ use belvedere::normals::{Orientation, OrientedCloud, orient};
 use belvedere::progress::Progress;
 use belvedere::pulses::{NeedleParams, Needles, VerticalParams, vertical_pulses};
 use belvedere::query::{MedialScene, SceneParams, Viewer, Visibility};
-use belvedere::trajectory::Trajectory;
 use belvedere::view::to_sun;
-use belvedere::{Attributes, PointCloud};
 use belvedere_baselines::agreement::{Counts, Rate};
 use belvedere_baselines::medial::DEPTH_BIAS;
-use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Truth, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Truth, town};
+use flown::flown;
 
 /// A town, its scan, where the scanner was, and places in its streets with what is known of their light.
 struct Place {
@@ -29,23 +32,8 @@ struct Place {
 impl Place {
     fn new() -> Self {
         let scene = town(&Preset::Town.params(80.0, 5));
-        let scan = scan_airborne(&scene, &AirborneParams::covering(&scene, 8.0));
-        let coordinates = || (0..scan.len()).map(|i| [scan.x[i], scan.y[i], scan.z[i]]);
-        let origin = centre_rounded(coordinates());
-        let cloud = PointCloud {
-            origin,
-            positions: coordinates().map(|c| to_local(c, origin)).collect(),
-            attributes: Attributes {
-                classification: Some(scan.classification.clone()),
-                gps_time: Some(scan.gps_time.clone()),
-                return_number: Some(scan.return_number.clone()),
-                return_count: Some(scan.return_count.clone()),
-                ..Attributes::default()
-            },
-            ..PointCloud::default()
-        };
-        let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
-        let scanner = Trajectory::from_records(path.collect()).0.scanner_positions(&cloud).unwrap().0;
+        let (cloud, scanner) = flown(&scene, &AirborneParams::covering(&scene, 8.0)).unwrap();
+        let origin = cloud.origin;
         let truth = Truth::new(&scene);
         let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
         let (low, high) = cloud.bounds().unwrap();

@@ -1,13 +1,16 @@
 //! A simulated town with its survey, and questions with exact answers.
 
-use belvedere::cloud::{centre_rounded, to_local};
+#[path = "../../tests/common/flown.rs"]
+mod flown;
+
+use belvedere::cloud::to_local;
 use belvedere::query::{Answer, Viewer, Visibility};
-use belvedere::trajectory::Trajectory;
 use belvedere::view::to_sun;
-use belvedere::{Attributes, GpsTimeKind, PointCloud, Result};
+use belvedere::{PointCloud, Result};
 use belvedere_baselines::Survey;
 use belvedere_baselines::medial::MedialBaseline;
-use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Scene, Truth, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Scene, Truth, town};
+use flown::flown;
 use std::collections::BTreeMap;
 
 const EXTENT: f64 = 150.0;
@@ -43,25 +46,7 @@ impl Place {
     pub(crate) fn simulated(preset: Preset, seed: u64) -> Result<Self> {
         let scene = town(&preset.params(EXTENT, seed));
         let params = AirborneParams { seed, ..AirborneParams::covering(&scene, PULSES_PER_M2) };
-        let scan = scan_airborne(&scene, &params);
-        let coordinates = || (0..scan.len()).map(|i| [scan.x[i], scan.y[i], scan.z[i]]);
-        let origin = centre_rounded(coordinates());
-        let cloud = PointCloud {
-            origin,
-            positions: coordinates().map(|c| to_local(c, origin)).collect(),
-            attributes: Attributes {
-                classification: Some(scan.classification.clone()),
-                gps_time: Some(scan.gps_time.clone()),
-                gps_time_kind: GpsTimeKind::AdjustedStandard,
-                return_number: Some(scan.return_number.clone()),
-                return_count: Some(scan.return_count.clone()),
-                point_source_id: Some(scan.point_source_id.clone()),
-                ..Attributes::default()
-            },
-            ..PointCloud::default()
-        };
-        let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
-        let (scanner, _) = Trajectory::from_records(path.collect()).0.scanner_positions(&cloud)?;
+        let (cloud, scanner) = flown(&scene, &params)?;
         let truth = Truth::new(&scene);
         let mut place = Self {
             bounds: cloud.bounds().unwrap_or_default(),

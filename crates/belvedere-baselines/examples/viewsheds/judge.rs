@@ -1,17 +1,19 @@
 //! Viewsheds of carved balls on a simulated town, against the rays of its exact mesh.
 
+#[path = "../../tests/common/flown.rs"]
+mod flown;
+
 use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, cell_targets, viewshed};
-use belvedere::cloud::{centre_rounded, to_local};
 use belvedere::ground::{Ground, GroundParams, MapGrid};
 use belvedere::medial::MedialBalls;
 use belvedere::progress::Progress;
 use belvedere::pulses::{NeedleParams, Needles};
 use belvedere::query::{Answer, MedialScene, Proof, ProofParams, SceneParams};
-use belvedere::trajectory::Trajectory;
-use belvedere::{Attributes, GpsTimeKind, PointCloud, Result};
+use belvedere::{PointCloud, Result};
 use belvedere_baselines::Survey;
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
-use belvedere_scenes::{AirborneParams, Preset, QuerySite, Truth, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Preset, QuerySite, Truth, town};
+use flown::flown;
 
 /// How far from an observer cells are judged, metres: beyond, few are seen by anybody in a street.
 const REACH: f64 = 150.0;
@@ -62,25 +64,8 @@ impl Town {
     /// A town of `extent` metres with cells of `cell` metres, and `eyes` people in its streets.
     pub(crate) fn new(preset: Preset, extent: f64, cell: f64, eyes: usize, seed: u64) -> Result<Self> {
         let scene = town(&preset.params(extent, seed));
-        let scan = scan_airborne(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, 8.0) });
-        let coordinates = || (0..scan.len()).map(|i| [scan.x[i], scan.y[i], scan.z[i]]);
-        let origin = centre_rounded(coordinates());
-        let cloud = PointCloud {
-            origin,
-            positions: coordinates().map(|c| to_local(c, origin)).collect(),
-            attributes: Attributes {
-                classification: Some(scan.classification.clone()),
-                gps_time: Some(scan.gps_time.clone()),
-                gps_time_kind: GpsTimeKind::AdjustedStandard,
-                return_number: Some(scan.return_number.clone()),
-                return_count: Some(scan.return_count.clone()),
-                point_source_id: Some(scan.point_source_id.clone()),
-                ..Attributes::default()
-            },
-            ..PointCloud::default()
-        };
-        let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
-        let (scanner, _) = Trajectory::from_records(path.collect()).0.scanner_positions(&cloud)?;
+        let (cloud, scanner) = flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, 8.0) })?;
+        let origin = cloud.origin;
         let survey = Survey { cloud: &cloud, scanner: &scanner, models: &[] };
         let balls = MedialBaseline::new(&survey, Outward::Survey, &MedialParams::carved())?.balls().clone();
         let truth = Truth::new(&scene);
