@@ -4,4 +4,5 @@ pub mod horizon;
 pub mod isovist;
 pub mod landmark;
 pub mod profile;
+pub mod sky_view;
 pub mod viewshed;

@@ -183,7 +183,7 @@ impl MedialScene {
     }
 
     /// Whether any ball lies between a target and its viewer at `range` along the unit vector `towards`.
-    fn blocked(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
+    pub(super) fn blocked(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         let ray = self.ray(target, towards, range);
         self.index.any(&ray, |number| self.front(number, &ray).is_some())
     }

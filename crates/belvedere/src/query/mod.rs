@@ -15,6 +15,7 @@ pub mod skyline;
 pub mod surface;
 pub mod target_tree;
 pub mod visibility;
+pub mod visibility_matrix;
 
 pub use certified::{CertifiedMap, CertifiedReport, Scope, answer_views};
 pub use earth::{Curvature, EarthParams};
@@ -27,3 +28,4 @@ pub use skyline::SkylinePoint;
 pub use surface::{Piece, Sides, SurfacePieces};
 pub use target_tree::TargetTree;
 pub use visibility::{Sight, Viewer, Visibility};
+pub use visibility_matrix::{VisibilityMatrix, visibility_matrix};
