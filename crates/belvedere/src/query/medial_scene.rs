@@ -197,6 +197,13 @@ impl MedialScene {
         Some((*self.rows.get(number)? as usize, front))
     }
 
+    /// The radius that a ball counts with for a target `distance` metres from its centre.
+    pub(super) fn radius_for(&self, radius: f64, distance: f64) -> f64 {
+        let shell = self.params.shell_of(radius);
+        let outside = distance - radius;
+        if outside.abs() < shell { radius - (shell - outside.max(0.0)) } else { radius }
+    }
+
     /// Where a line of sight leaves ball `number`, metres from its target, if that ball blocks it.
     pub(super) fn front(&self, number: usize, ray: &Ray) -> Option<f64> {
         let &(center, radius) = self.balls.get(number)?;
@@ -216,13 +223,10 @@ impl MedialScene {
         if whole >= ray.ranges[1] {
             return None;
         }
-        let shell = self.params.shell_of(radius);
-        let outside = square.sqrt() - radius;
-        if outside.abs() < shell {
-            radius -= shell - outside.max(0.0);
-            if radius <= 0.0 || beside >= radius * radius {
-                return None;
-            }
+        let whole_radius = radius;
+        radius = self.radius_for(radius, square.sqrt());
+        if radius < whole_radius && (radius <= 0.0 || beside >= radius * radius) {
+            return None;
         }
         let front = match self.params.profile {
             Profile::Sphere => along + (radius * radius - beside).sqrt(),

@@ -1,0 +1,240 @@
+//! Which of many directions each of many targets sees free: what sun hours, sky views and irradiance are sums over.
+
+mod nearby;
+mod space_layers;
+mod sweep;
+
+use super::{MedialScene, TargetTree};
+use crate::depth::Profile;
+use crate::progress::Progress;
+use crate::ray_index::Ray;
+use crate::vector::length;
+use crate::{Error, Result};
+use nearby::{NEAR, Nearby};
+use rayon::prelude::*;
+use space_layers::SpaceLayers;
+use sweep::{Descending, Settled, sweep};
+
+/// Bits in a word.
+const WORD: usize = 64;
+
+/// One bit for each target and direction: set where no ball blocks the line of sight that leaves the target in the direction.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct VisibilityMatrix {
+    /// Where the row of each target lies, `u32::MAX` for one that is not finite.
+    places: Vec<u32>,
+    direction_count: usize,
+    /// Words of a row.
+    width: usize,
+    words: Vec<u64>,
+}
+
+impl VisibilityMatrix {
+    /// Number of rows.
+    #[must_use]
+    pub fn target_count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Number of columns.
+    #[must_use]
+    pub fn direction_count(&self) -> usize {
+        self.direction_count
+    }
+
+    /// Whether a target sees the sky in a direction; never beyond the rows and columns.
+    #[must_use]
+    pub fn is_free(&self, target: usize, direction: usize) -> bool {
+        let word = self.row(target).get(direction / WORD).copied().unwrap_or(0);
+        direction < self.direction_count && word >> (direction % WORD) & 1 == 1
+    }
+
+    /// The bits of a target, 64 directions a word from the lowest bit on, those beyond the last unset; empty beyond the last target
+    /// and for one that is not finite.
+    #[must_use]
+    pub fn row(&self, target: usize) -> &[u64] {
+        let place = self.places.get(target).copied().unwrap_or(u32::MAX) as usize;
+        self.words.get(place.saturating_mul(self.width)..).and_then(|words| words.get(..self.width)).unwrap_or_default()
+    }
+
+    /// Sum of `weights`, one for each direction, over the directions that a target sees free.
+    #[must_use]
+    pub fn sum(&self, target: usize, weights: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for (&word, weights) in self.row(target).iter().zip(weights.chunks(WORD)) {
+            let mut left = word;
+            while left != 0 {
+                sum += weights.get(left.trailing_zeros() as usize).copied().unwrap_or(0.0);
+                left &= left - 1;
+            }
+        }
+        sum
+    }
+}
+
+/// Targets handed to a thread at once: neighbours, which tell each other what blocks.
+const CHUNK: usize = 256;
+/// Directions from which on it pays to gather what is near a target, and to sweep them.
+const WORTH_GATHERING: usize = 16;
+/// Lines of sight for each ball from which on it pays to sweep.
+const WORTH_SWEEPING: f64 = 4.0;
+/// Directions swept before targets are looked at: two bits of each are kept for every target meanwhile.
+const BATCH: usize = 512;
+
+/// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls: for every pair the same as
+/// [`MedialScene::answer`] at infinite range, pulses not being asked. A target that is not finite sees nothing. Progress counts targets.
+///
+/// Where there are many, each direction is swept through cells of space first, 64 lines of sight at a time, which tells of most whether
+/// they meet cells that no ball reaches only, or one that a ball fills. The balls near a target are gathered once for all
+/// directions. What is then open is asked of the ball that blocked its neighbours, and last of all balls.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a direction that is not of unit length (to a millionth).
+pub fn visibility_matrix(
+    scene: &MedialScene,
+    targets: &[[f32; 3]],
+    directions: &[[f64; 3]],
+    progress: Progress<'_>,
+) -> Result<VisibilityMatrix> {
+    if let Some(bad) = directions.iter().find(|direction| !((length(**direction) - 1.0).abs() < 1e-6)) {
+        return Err(Error::InvalidParameter {
+            name: "direction",
+            value: format!("{bad:?}"),
+            expected: "a vector of length 1",
+        });
+    }
+    let width = directions.len().div_ceil(WORD);
+    let tree = TargetTree::new(targets);
+    let mut words = vec![0; width * tree.positions().len()];
+    let mut places = vec![u32::MAX; targets.len()];
+    for (place, &row) in (0..).zip(tree.rows()) {
+        places[row as usize] = place;
+    }
+    if scene.ball_count() == 0 {
+        let row: Vec<u64> = directions.chunks(WORD).map(|part| u64::MAX >> (WORD - part.len())).collect();
+        words = row.repeat(tree.positions().len());
+        return Ok(VisibilityMatrix { places, direction_count: directions.len(), width, words });
+    }
+    let headings = headings(directions);
+    let lines = targets.len() as f64 * directions.len() as f64;
+    let is_swept = scene.params().profile == Profile::Sphere
+        && directions.len() >= WORTH_GATHERING
+        && lines > WORTH_SWEEPING * scene.ball_count() as f64;
+    let space = is_swept.then(|| {
+        let space = SpaceLayers::new(scene.balls(), |radius| scene.params().shell_of(radius));
+        let descending = Descending::new(&space, tree.positions());
+        (space, descending)
+    });
+    for batch in headings.chunks(BATCH) {
+        let settled = match &space {
+            None => Vec::new(),
+            Some((space, descending)) => batch
+                .par_iter()
+                .map(|heading| sweep(space, descending, heading.direction, heading.near.max(scene.params().depth_bias)))
+                .collect(),
+        };
+        let sky = Sky { scene, headings: batch, settled };
+        let chunks = words.par_chunks_mut(width * CHUNK).zip(tree.positions().par_chunks(CHUNK));
+        chunks.enumerate().for_each(|(chunk, (rows, targets))| {
+            sky.look(targets, chunk * CHUNK, rows, width);
+        });
+    }
+    progress.advance(targets.len());
+    Ok(VisibilityMatrix { places, direction_count: directions.len(), width, words })
+}
+
+/// A direction and what of it is needed again and again.
+struct Heading {
+    direction: [f64; 3],
+    /// Range at which it has left the near space of a target.
+    near: f64,
+    column: usize,
+}
+
+/// Directions in bands of elevation, to and fro, so that each is close to the one before.
+fn headings(directions: &[[f64; 3]]) -> Vec<Heading> {
+    /// Height of a band as a share of the sine of elevation: about as far apart as 600 directions are.
+    const BANDS: f64 = 16.0;
+    let key = |direction: [f64; 3]| {
+        let band = (direction[2] * BANDS).floor();
+        let azimuth = direction[0].atan2(direction[1]);
+        (band, if band % 2.0 == 0.0 { azimuth } else { -azimuth })
+    };
+    let mut order: Vec<usize> = (0..directions.len()).collect();
+    order.sort_by(|&a, &b| {
+        let (a, b) = (key(directions[a]), key(directions[b]));
+        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    let heading = |column: usize| {
+        let direction = directions[column];
+        let across = direction[0].abs().max(direction[1].abs());
+        Heading { direction, near: (NEAR[1] / direction[2]).min(NEAR[0] / across), column }
+    };
+    order.into_iter().map(heading).collect()
+}
+
+/// What all targets look at.
+struct Sky<'a> {
+    scene: &'a MedialScene,
+    headings: &'a [Heading],
+    /// What a sweep of each direction found; empty without sweeps.
+    settled: Vec<Option<Settled>>,
+}
+
+impl Sky<'_> {
+    /// Fills the rows of neighbouring targets, the first of which is at `first` in the order of the tree.
+    fn look(&self, targets: &[[f32; 3]], first: usize, rows: &mut [u64], width: usize) {
+        // what blocked the target before, in each direction
+        let mut blocks: Vec<Option<u32>> = vec![None; self.headings.len()];
+        let mut nearby = Nearby::default();
+        let is_swept = !self.settled.is_empty();
+        for (i, (target, row)) in targets.iter().zip(rows.chunks_mut(width)).enumerate() {
+            let target = target.map(f64::from);
+            if is_swept {
+                nearby.gather(self.scene, target);
+            }
+            let (word, bit) = ((first + i) / WORD, (first + i) % WORD);
+            let is_set = |bits: &[u64]| bits.get(word).is_some_and(|word| word >> bit & 1 == 1);
+            let mut before = None;
+            for (number, (heading, block)) in self.headings.iter().zip(&mut blocks).enumerate() {
+                let settled = self.settled.get(number).and_then(Option::as_ref);
+                if settled.is_some_and(|settled| is_set(&settled.blocked)) {
+                    continue;
+                }
+                let ray = self.scene.ray(target, heading.direction, f64::INFINITY);
+                let is_by = |&ball: &u32| self.scene.front(ball as usize, &ray).is_some();
+                let found = match settled {
+                    Some(settled) if is_set(&settled.free) => nearby.block(self.scene, &ray),
+                    Some(_) => block
+                        .filter(is_by)
+                        .or_else(|| before.filter(is_by))
+                        .or_else(|| nearby.block(self.scene, &ray))
+                        .or_else(|| self.block_from(heading.near, &ray)),
+                    None => block
+                        .filter(is_by)
+                        .or_else(|| before.filter(is_by))
+                        .or_else(|| self.block_from(ray.ranges[0], &ray)),
+                };
+                match found {
+                    None => row[heading.column / WORD] |= 1 << (heading.column % WORD),
+                    Some(_) => (*block, before) = (found, found),
+                }
+            }
+        }
+    }
+
+    /// A ball that blocks `ray`, where none does before the range `start`.
+    fn block_from(&self, start: f64, ray: &Ray) -> Option<u32> {
+        let mut block = None;
+        let far = Ray { ranges: [start.max(ray.ranges[0]), ray.ranges[1]], ..*ray };
+        self.scene.index.any(&far, |number| {
+            let blocks = self.scene.front(number, ray).is_some();
+            #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
+            if blocks {
+                block = Some(number as u32);
+            }
+            blocks
+        });
+        block
+    }
+}
