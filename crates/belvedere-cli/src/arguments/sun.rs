@@ -79,7 +79,12 @@ pub(crate) struct SunHours {
     pub(crate) giving_way: GivingWay,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
-    /// Also keep what each place sees of each direction, to ask again without looking again (.npz)
+    /// Also keep what each place sees of each direction, to ask about other days and rules without looking again (.npz): NumPy arrays bits
+    /// (places x words of 64 directions, lowest bit first), directions, targets, origin
     #[arg(long, value_name = "MATRIX", help_heading = "Result")]
     pub(crate) keep: Option<PathBuf>,
+    /// Take what places see from a matrix that --keep wrote for the same balls and places. Each sun is stood for by the next direction
+    /// kept, at most --within degrees off [default: 1]
+    #[arg(long, value_name = "MATRIX", conflicts_with = "keep", help_heading = "When")]
+    pub(crate) from_matrix: Option<PathBuf>,
 }

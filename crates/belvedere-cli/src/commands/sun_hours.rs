@@ -1,15 +1,17 @@
 //! `belvedere sun-hours`.
 
-use super::sights::{Proving, blockers};
+use super::sights::{Proving, blockers, scene_params};
 use super::sky_targets::{Measure, SkyTargets};
+use super::{check_output, is_same};
 use crate::arguments::{Global, SunHours, Usage};
-use crate::pipeline::{self, Points, flagged};
+use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
-use anyhow::Result;
+use anyhow::{Result, bail};
 use belvedere::apps::sun::{Binning, DayParams, Period, Site, SunSchedule, Zone, sun_days};
 use belvedere::apps::sun_hours::{SunHours as Found, SunHoursParams, SunRule, sun_hours};
-use belvedere::query::{VisibilityMatrix, visibility_matrix};
+use belvedere::io::{SavedMatrix, read_matrix, write_matrix};
+use belvedere::query::{VisibilityMatrix, scene_fingerprint, visibility_matrix};
 
 /// Names of the columns of rules of one's own, in the order given.
 const OWN_RULES: [&str; 8] = ["rule_1", "rule_2", "rule_3", "rule_4", "rule_5", "rule_6", "rule_7", "rule_8"];
@@ -21,26 +23,33 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
         return Err(Usage("say when: --date DAY, --from and --to, or --rule NAME".to_owned()).into());
     }
     let params = arguments.when.params(&arguments.sun)?;
-    let binning = match arguments.within {
-        None => Binning::Auto,
-        Some(0.0) => Binning::Exact,
-        Some(degrees) => Binning::Within(degrees.to_radians()),
+    if let Some(keep) = &arguments.keep {
+        check_output("--keep", keep, &["npz"])?;
+        if arguments.outputs.output.iter().any(|output| is_same(output, keep)) {
+            return Err(Usage(format!("{}: two results would be written there", keep.display())).into());
+        }
+    }
+    let kept = arguments.from_matrix.as_deref().map(read_matrix).transpose()?;
+    let suns = match (&kept, arguments.within) {
+        (Some(kept), degrees) => Suns::Among(&kept.directions, degrees.unwrap_or(1.0).to_radians()),
+        (None, None) => Suns::Of(Binning::Auto),
+        (None, Some(0.0)) => Suns::Of(Binning::Exact),
+        (None, Some(degrees)) => Suns::Of(Binning::Within(degrees.to_radians())),
     };
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let points = if arguments.places.needs_points() { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
     let site = arguments.sun.site(&scene, &mut summary)?;
-    let plan = Plan::new(arguments, &site, rules, &params, binning, &mut summary)?;
+    let plan = Plan::new(arguments, &site, rules, &params, &suns, &mut summary)?;
     let targets = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
-    let mut section = Summary::default();
-    let profile = arguments.scene.profile.into();
-    let (blockers, _) = blockers(&scene, profile, &arguments.giving_way, Proving::Never, &mut stages, &mut section)?;
-    section.add("directions", plan.directions.len());
-    summary.add("lines_of_sight", section);
-    let matrix = stages.run("looking at the sun", targets.positions.len(), |progress| {
-        visibility_matrix(&blockers, &targets.positions, &plan.directions, progress)
-    })?;
+    let matrix = match kept {
+        Some(kept) => {
+            let scene_number = matrix_scene(&scene, arguments);
+            taken(kept, &targets, scene_number)?
+        }
+        None => look(arguments, &scene, &plan, &targets, &mut stages, &mut summary)?,
+    };
     let found = stages.run("summing up", 0, |_| plan.sum_up(&matrix, &targets))?;
     let columns = found.columns(&plan, &targets);
     let measures: Vec<Measure<'_>> = columns.iter().map(Column::measure).collect();
@@ -49,6 +58,69 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
     targets.write(&arguments.outputs, &measures, &title, &mut stages, &mut summary)?;
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
+}
+
+/// What each place sees of the directions, kept where that is asked for.
+fn look(
+    arguments: &SunHours,
+    scene: &Scene,
+    plan: &Plan,
+    targets: &SkyTargets,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<VisibilityMatrix> {
+    let mut section = Summary::default();
+    let profile = arguments.scene.profile.into();
+    let (blockers, _) = blockers(scene, profile, &arguments.giving_way, Proving::Never, stages, &mut section)?;
+    section.add("directions", plan.directions.len());
+    summary.add("lines_of_sight", section);
+    let matrix = stages.run("looking at the sun", targets.positions.len(), |progress| {
+        visibility_matrix(&blockers, &targets.positions, &plan.directions, progress)
+    })?;
+    if let Some(keep) = &arguments.keep {
+        let saved = SavedMatrix {
+            origin: targets.frame().origin,
+            targets: targets.positions.clone(),
+            directions: plan.directions.clone(),
+            words: (0..matrix.target_count()).flat_map(|target| matrix.row(target)).copied().collect(),
+            scene: matrix_scene(scene, arguments),
+        };
+        stages.run("keeping what is seen", 0, |_| write_matrix(keep, &saved))?;
+        summary.add("kept", keep.display().to_string());
+    }
+    Ok(matrix)
+}
+
+/// The number by which a matrix knows the balls that it was made of.
+fn matrix_scene(scene: &Scene, arguments: &SunHours) -> u64 {
+    scene_fingerprint(&scene.balls, &scene_params(scene, arguments.scene.profile.into(), &arguments.giving_way))
+}
+
+/// The bits that were kept, if they belong to these places and balls.
+fn taken(kept: SavedMatrix, targets: &SkyTargets, scene: u64) -> Result<VisibilityMatrix> {
+    if kept.scene != scene {
+        bail!(
+            "--from-matrix: it was made of other balls, or with another --shell or --profile; make it again with --keep"
+        );
+    }
+    let same = |a: &[f32; 3], b: &[f32; 3]| a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
+    let is_same = kept.origin == targets.frame().origin
+        && kept.targets.len() == targets.positions.len()
+        && kept.targets.iter().zip(&targets.positions).all(|(a, b)| same(a, b));
+    if !is_same {
+        bail!(
+            "--from-matrix: it was made for {} other places; ask with the flags of places it was kept with, or make it again with --keep",
+            kept.targets.len()
+        );
+    }
+    Ok(VisibilityMatrix::from_words(kept.targets.len(), kept.directions.len(), kept.words)?)
+}
+
+/// Which directions stand for suns.
+enum Suns<'a> {
+    Of(Binning),
+    /// These, each for suns within an angle.
+    Among(&'a [[f64; 3]], f64),
 }
 
 fn rules(typed: &[String]) -> Result<Vec<(&'static str, SunRule)>> {
@@ -89,14 +161,20 @@ impl Plan {
         site: &Site,
         rules: Vec<(&'static str, SunRule)>,
         params: &DayParams,
-        binning: Binning,
+        suns: &Suns<'_>,
         summary: &mut Summary,
     ) -> Result<Self> {
         let when = &arguments.when;
         let zone = arguments.sun.zone(site, &when.times())?;
         let schedule = |period: &Period, params: &DayParams| {
             let days = flagged("--step, --least-elevation or --from", sun_days(site, &zone, period, params))?;
-            flagged("--within", SunSchedule::new(&days, binning))
+            flagged(
+                "--within",
+                match suns {
+                    Suns::Of(binning) => SunSchedule::new(&days, *binning),
+                    Suns::Among(directions, angle) => SunSchedule::among(&days, directions, *angle),
+                },
+            )
         };
         let mut of_rules = Vec::new();
         for (column, rule) in rules {
@@ -112,7 +190,8 @@ impl Plan {
         };
         let mut directions = main.directions.clone();
         for (.., schedule, first) in &mut of_rules {
-            let is_main = *schedule == main;
+            // directions that were kept are those of all
+            let is_main = *schedule == main || matches!(suns, Suns::Among(..));
             *first = if is_main { 0 } else { directions.len() };
             if !is_main {
                 directions.extend(&schedule.directions);

@@ -20,6 +20,19 @@ pub struct VisibilityMatrix {
 }
 
 impl VisibilityMatrix {
+    /// The matrix of bits that were kept: `words` hold row after row, as [`VisibilityMatrix::row`] gives them.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] where the words are not those of so many targets and directions.
+    pub fn from_words(target_count: usize, direction_count: usize, words: Vec<u64>) -> Result<Self> {
+        let width = direction_count.div_ceil(WORD);
+        let (expected, found) = (target_count.saturating_mul(width), words.len());
+        if expected != found {
+            return Err(Error::LengthMismatch { what: "words of the matrix", expected, found });
+        }
+        Ok(Self { target_count, direction_count, width, words })
+    }
+
     /// Number of rows.
     #[must_use]
     pub fn target_count(&self) -> usize {

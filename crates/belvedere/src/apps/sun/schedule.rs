@@ -88,14 +88,7 @@ impl SunSchedule {
         let angle = match binning {
             Binning::Exact => None,
             Binning::Auto => (step_count > MOST_EXACT).then_some(USUAL_ANGLE),
-            Binning::Within(angle) if angle > 0.0 && angle <= 5f64.to_radians() => Some(angle),
-            Binning::Within(angle) => {
-                return Err(Error::InvalidParameter {
-                    name: "angle between suns that share a direction",
-                    value: angle.to_degrees().to_string(),
-                    expected: "above 0 to 5 degrees",
-                });
-            }
+            Binning::Within(angle) => Some(checked(angle)?),
         };
         let mut schedule = Self {
             days: days.iter().map(of_day).collect(),
@@ -114,6 +107,37 @@ impl SunSchedule {
             }
             Some(angle) => schedule.share(days, angle)?,
         }
+        Ok(schedule)
+    }
+
+    /// The schedule of `days` with `directions` that are there already, (D, 3) unit vectors: each sun is stood for by the next of them.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where there is no day, for an angle that is not above 0 to 5°, and for a sun that stands farther than
+    /// `angle`, radians, from all directions.
+    pub fn among(days: &[SunDay], directions: &[[f64; 3]], angle: f64) -> Result<Self> {
+        // the checks of a schedule that shares suns are those here
+        let mut schedule = Self::new(days, Binning::Exact)?;
+        let angle = checked(angle)?;
+        schedule.directions = directions.to_vec();
+        let [mut squares, mut weights] = [0.0, 0.0];
+        for (day, light) in days.iter().zip(&mut schedule.days) {
+            for (step, light) in day.steps.iter().zip(&mut light.steps) {
+                let next = directions.iter().enumerate().map(|(i, d)| (dot(*d, step.direction), i));
+                let next = next.reduce(|best, other| if other.0 > best.0 { other } else { best });
+                let Some((number, error)) = next.map(|(_, i)| (i, between(directions[i], step.direction))) else {
+                    return Err(too_far(day.date, f64::INFINITY));
+                };
+                if error > angle {
+                    return Err(too_far(day.date, error));
+                }
+                light.direction = row(number);
+                schedule.greatest_error = schedule.greatest_error.max(error);
+                squares += (step.end - step.start) * error * error;
+                weights += step.end - step.start;
+            }
+        }
+        schedule.rms_error = if weights > 0.0 { f64::sqrt(squares / weights) } else { 0.0 };
         Ok(schedule)
     }
 
@@ -192,6 +216,26 @@ fn of_day(day: &SunDay) -> DayOfLight {
         })
         .collect();
     DayOfLight { date: day.date, steps, possible_hours: day.possible_hours() }
+}
+
+fn checked(angle: f64) -> Result<f64> {
+    if angle > 0.0 && angle <= 5f64.to_radians() {
+        return Ok(angle);
+    }
+    let value = angle.to_degrees().to_string();
+    Err(Error::InvalidParameter {
+        name: "angle between suns that share a direction",
+        value,
+        expected: "above 0 to 5 degrees",
+    })
+}
+
+fn too_far(date: Date, error: f64) -> Error {
+    Error::InvalidParameter {
+        name: "angle between a sun and the next direction",
+        value: format!("{:.2} degrees on {date}", error.to_degrees()),
+        expected: "within the angle told: take days among those that the directions were made for, or a wider angle",
+    }
 }
 
 /// Angle between unit vectors, exact for small ones, radians.
