@@ -5,9 +5,10 @@ use belvedere::apps::sun::{
     Binning, Date, DayParams, Period, Refraction, Site, SunSchedule, Zone, sun_days, sun_position_with,
 };
 use belvedere::apps::sun_hours::{RuleDays, SunHours, SunHoursParams, SunRule, sun_hours};
+use belvedere::io::{SavedMatrix, read_matrix, write_matrix};
 use belvedere::medial::{MedialBalls, NO_TOUCH};
 use belvedere::progress::Progress;
-use belvedere::query::{MedialScene, SceneParams, visibility_matrix};
+use belvedere::query::{MedialScene, SceneParams, VisibilityMatrix, visibility_matrix};
 use belvedere::random::uniform;
 
 fn scene(centers: &[[f32; 3]], radii: &[f32]) -> MedialScene {
@@ -245,4 +246,86 @@ fn polar_night_has_no_share() {
     let blockers = scene(&[[0.0, 0.0, -1000.0]], &[1.0]);
     let found = hours_at(&blockers, &schedule, &[[0.0; 3]], None);
     assert!(found.hours[0] == 0.0 && found.share[0].is_nan() && found.first[0].is_nan() && found.days[0] == 0);
+}
+
+#[test]
+fn a_matrix_of_a_year_answers_any_of_its_days() {
+    let site = site(52.0);
+    let zone = Zone::mean_solar(&site);
+    let year: Vec<Date> = date("2025-01-01").to(date("2025-12-31")).collect();
+    let params = DayParams { step: 1800.0, ..DayParams::default() };
+    let kept = schedule(&site, year, &params, Binning::Within(1f64.to_radians()));
+    let day = sun_days(&site, &zone, &Period::Days(vec![date("2025-05-03")]), &params).unwrap();
+    let among = SunSchedule::among(&day, &kept.directions, 1f64.to_radians()).unwrap();
+    assert_eq!(among.directions, kept.directions);
+    assert!(among.greatest_error > 0.0 && among.greatest_error <= 1f64.to_radians());
+    for (step, light) in day[0].steps.iter().zip(&among.days[0].steps) {
+        let cosine = |d: &[f64; 3]| (0..3).map(|i| d[i] * step.direction[i]).sum::<f64>();
+        let best = kept.directions.iter().map(cosine).fold(-1.0, f64::max);
+        assert_eq!(cosine(&kept.directions[light.direction as usize]), best);
+    }
+    let other = SunSchedule::among(&day, &kept.directions[..3], 1f64.to_radians()).unwrap_err().to_string();
+    assert!(other.contains("2025-05-03"), "{other}");
+    assert!(SunSchedule::among(&day, &[], 0.01).is_err() && SunSchedule::among(&day, &kept.directions, 0.0).is_err());
+}
+
+#[test]
+fn kept_matrices_come_back_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("seen.npz");
+    let directions: Vec<[f64; 3]> = (0..70)
+        .map(|i| {
+            let a = 0.01 * f64::from(i);
+            [a.sin(), 0.0, a.cos()]
+        })
+        .collect();
+    let matrix = SavedMatrix {
+        origin: [155_000.0, 463_000.25, -3.5],
+        targets: vec![[1.0, 2.0, 3.5], [f32::NAN, 0.0, 0.0], [-7.0, 0.1, 0.0]],
+        directions,
+        words: vec![u64::MAX, 0b11_1111, 0, 0, 7 << 40, 0b10_0001],
+        scene: u64::MAX - 5,
+    };
+    write_matrix(&path, &matrix).unwrap();
+    let found = read_matrix(&path).unwrap();
+    assert!(found.targets[1][0].is_nan());
+    assert_eq!(
+        (&found.words, &found.directions, found.origin, found.scene),
+        (&matrix.words, &matrix.directions, matrix.origin, matrix.scene)
+    );
+    let back = VisibilityMatrix::from_words(3, 70, found.words).unwrap();
+    assert!(
+        back.is_free(0, 69)
+            && back.is_free(2, 42)
+            && !back.is_free(2, 43)
+            && back.is_free(2, 69)
+            && !back.is_free(1, 0)
+    );
+    assert!(
+        VisibilityMatrix::from_words(3, 70, vec![0; 5]).is_err()
+            && VisibilityMatrix::from_words(usize::MAX, 70, vec![0; 6]).is_err()
+    );
+    // bits beyond the last direction, a word too few, a direction that is none
+    let mut wrong = [matrix.clone(), matrix.clone(), matrix.clone()];
+    wrong[0].words[1] = 1 << 6;
+    wrong[1].words.pop();
+    wrong[2].directions[3] = [f64::NAN, 0.0, 1.0];
+    assert!(wrong.iter().all(|wrong| write_matrix(&folder.path().join("wrong.npz"), wrong).is_err()));
+    // any cut, and any damaged byte, is an error or leaves a matrix that fits together
+    let bytes = std::fs::read(&path).unwrap();
+    let damaged = folder.path().join("damaged.npz");
+    for end in (0..bytes.len()).step_by(97) {
+        std::fs::write(&damaged, &bytes[..end]).unwrap();
+        let told = read_matrix(&damaged).unwrap_err().to_string();
+        assert!(told.contains("damaged.npz"), "{told}");
+    }
+    for at in (0..bytes.len()).step_by(11) {
+        let mut bytes = bytes.clone();
+        bytes[at] ^= 0xff;
+        std::fs::write(&damaged, &bytes).unwrap();
+        assert!(
+            read_matrix(&damaged).is_err_and(|e| !e.to_string().is_empty())
+                || read_matrix(&damaged).is_ok_and(|m| m.validate().is_ok())
+        );
+    }
 }

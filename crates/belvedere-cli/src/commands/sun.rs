@@ -4,7 +4,9 @@ use crate::arguments::{ElevationChoice, SunPeriod, SunPlace, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::summary::{Summary, rounded};
 use anyhow::{Context, Result};
-use belvedere::apps::sun::{Date, DayParams, Period, Refraction, Site, Zone, parse_instant, zone_of_instant};
+use belvedere::apps::sun::{
+    Date, DayParams, Period, Refraction, Site, Zone, parse_instant, sun_position_with, zone_of_instant,
+};
 use belvedere::apps::sun_hours::RuleDays;
 
 impl SunPlace {
@@ -64,6 +66,17 @@ impl SunPlace {
 }
 
 impl SunPeriod {
+    /// Refuses what cannot be anywhere on earth, before hours of work go into a scene.
+    pub(crate) fn check(&self, place: &SunPlace) -> Result<()> {
+        flagged("--step or --least-elevation", self.params(place)?.validate())?;
+        let [latitude, longitude] = place.location.map_or([0.0; 2], |given| given.0.map(f64::to_radians));
+        let anywhere = Site { latitude, longitude, height: 0.0, convergence: 0.0 };
+        let anywhere = flagged("--location", anywhere.validate())?;
+        flagged("--air", sun_position_with(&anywhere, 0.0, place.refraction()?))?;
+        let zone = place.zone(&anywhere, &self.times())?;
+        self.period(place, &anywhere, &zone).map(|_| ())
+    }
+
     /// Whether any day was typed.
     pub(crate) fn is_given(&self) -> bool {
         !self.date.is_empty() || self.from.is_some()

@@ -22,6 +22,7 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
     if !arguments.when.is_given() && rules.is_empty() {
         return Err(Usage("say when: --date DAY, --from and --to, or --rule NAME".to_owned()).into());
     }
+    arguments.when.check(&arguments.sun)?;
     let params = arguments.when.params(&arguments.sun)?;
     if let Some(keep) = &arguments.keep {
         check_output("--keep", keep, &["npz"])?;

@@ -146,7 +146,11 @@ pub fn sun_days(site: &Site, zone: &Zone, period: &Period, params: &DayParams) -
 }
 
 impl DayParams {
-    fn validate(&self) -> Result<()> {
+    /// Whether all are in their ranges.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where one is not.
+    pub fn validate(&self) -> Result<()> {
         let invalid =
             |name, value: f64, expected| Err(Error::InvalidParameter { name, value: value.to_string(), expected });
         if !(10.0..=3600.0).contains(&self.step) {
