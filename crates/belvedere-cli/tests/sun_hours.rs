@@ -94,12 +94,12 @@ fn hours_are_those_of_the_exact_house() {
     );
     let possible = when["possible_hours_a_day"].as_f64().unwrap();
     assert!((possible - day.possible_hours()).abs() < 0.01);
-    // almanacs have the upper edge of the sun rise at 06:36 winter time; its middle follows 3 minutes later
-    assert!((expected[3][1] - 6.65).abs() < 0.04, "{}", expected[3][1]);
+    // pvlib 0.16.1 has the middle of the sun appear in Delft at 05:44:46 UTC, 06:44:46 winter time
+    assert!((expected[3][1] - 6.7458).abs() < 2e-3, "{}", expected[3][1]);
     for (hours, share) in found[0].iter().zip(column(&place, "hours.csv", "sun_share")) {
         assert!((hours / possible - share).abs() < 2e-3);
     }
-    assert!((run["site"]["latitude_deg"].as_f64().unwrap() - 52.155).abs() < 0.01, "{}", run["site"]);
+    assert!((run["site"]["latitude_deg"].as_f64().unwrap() - 51.998).abs() < 0.001, "{}", run["site"]);
 }
 
 #[test]

@@ -156,8 +156,9 @@ fn a_year_of_shared_suns_is_a_year_of_suns() {
     // a sun 1° off comes 4 minutes early or late at each edge of a shadow, early and late in turn; among balls a day has half a dozen edges, and
     // a year evens out most of their 24 minutes
     assert!(worst < 0.1, "{worst}");
+    // in spring and autumn the hours of a place change by minutes a day, so that a limit of two hours is passed weeks early or late
     let differ = a.days.iter().zip(&b.days).map(|(&a, &b)| a.abs_diff(b)).max().unwrap();
-    assert!(differ <= 20, "days with two hours differ by {differ}");
+    assert!(differ <= 40, "days with two hours differ by {differ}");
     let least: f32 = a.least.iter().zip(&b.least).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     assert!(least <= 1.01, "{least}");
 }

@@ -173,8 +173,11 @@ impl SunSchedule {
         }
         members.sort_by_key(|(key, member)| (*key, member.day, member.step));
         let [mut squares, mut weights] = [0.0, 0.0];
+        // by row, by how many directions the step has already, by step: so most steps of a day have directions in one run
+        let mut places: Vec<(u32, u32, u32)> = Vec::new();
         for shared in members.chunk_by(|a, b| a.0 == b.0) {
             let mut left: Vec<&Member> = shared.iter().map(|(_, member)| member).collect();
+            let mut turn = 0;
             while let Some(first) = left.first() {
                 let sum = left.iter().fold([0.0; 3], |sum, m| [0, 1, 2].map(|i| sum[i] + m.hours * m.direction[i]));
                 let mut direction = unit(sum).unwrap_or(first.direction);
@@ -183,6 +186,9 @@ impl SunSchedule {
                 }
                 let number = row(self.directions.len());
                 self.directions.push(direction);
+                let (strip, step) = shared[0].0;
+                places.push((strip, turn, step));
+                turn += 1;
                 left.retain(|member| {
                     let error = between(member.direction, direction);
                     if error <= angle {
@@ -197,6 +203,16 @@ impl SunSchedule {
         }
         if weights > 0.0 {
             self.rms_error = f64::sqrt(squares / weights);
+        }
+        let mut order: Vec<usize> = (0..places.len()).collect();
+        order.sort_by_key(|&number| places[number]);
+        self.directions = order.iter().map(|&number| self.directions[number]).collect();
+        let mut renumbered = vec![0; order.len()];
+        for (new, &old) in order.iter().enumerate() {
+            renumbered[old] = row(new);
+        }
+        for step in self.days.iter_mut().flat_map(|day| &mut day.steps) {
+            step.direction = renumbered[step.direction as usize];
         }
         Ok(())
     }

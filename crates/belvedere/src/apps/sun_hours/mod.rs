@@ -1,14 +1,16 @@
 //! How long the sun reaches a place: hours and share of a day or of many days, first and last light, longest stretch, rules.
 
 mod rules;
+mod stretches;
 
 pub use rules::{RuleDays, SunRule};
 
-use crate::apps::sun::{DayOfLight, SunSchedule};
+use crate::apps::sun::SunSchedule;
 use crate::query::VisibilityMatrix;
 use crate::vector::dot;
 use crate::{Error, Result};
 use rayon::prelude::*;
+use stretches::{Lit, Run, runs_of};
 
 /// Targets handed to a thread at once.
 const CHUNK: usize = 64;
@@ -78,18 +80,19 @@ pub fn sun_hours(
     let sufficient = params.sufficient_hours - ROUNDING;
     let day_count = schedule.days.len().max(1) as f64;
     let possible = schedule.possible_hours();
+    let days: Vec<Vec<Run>> = schedule.days.iter().map(runs_of).collect();
     let sums: Vec<Sum> = (0..matrix.target_count())
         .into_par_iter()
         .with_min_len(CHUNK)
         .map_init(
-            || vec![false; schedule.directions.len()],
+            || Lit::new(schedule.directions.len()),
             |lit, target| {
                 let normal = normals.map(|normals| normals[target].map(f64::from));
-                for ((lit, &direction), column) in lit.iter_mut().zip(&schedule.directions).zip(columns.clone()) {
-                    let faces = normal.is_none_or(|normal| dot(normal, direction) > 0.0);
-                    *lit = faces && matrix.is_free(target, column);
-                }
-                Sum::over(&schedule.days, lit, sufficient)
+                lit.set(|number| {
+                    let faces = normal.is_none_or(|normal| dot(normal, schedule.directions[number]) > 0.0);
+                    faces && matrix.is_free(target, columns.start + number)
+                });
+                Sum::over(&days, lit, sufficient)
             },
         )
         .collect();
@@ -118,24 +121,30 @@ struct Sum {
 }
 
 impl Sum {
-    fn over(days: &[DayOfLight], lit: &[bool], sufficient: f64) -> Self {
+    fn over(days: &[Vec<Run>], lit: &Lit, sufficient: f64) -> Self {
         let mut sum =
             Self { total: 0.0, least: 24.0, first: f32::INFINITY, last: f32::NEG_INFINITY, longest: 0.0, days: 0 };
-        for day in days {
+        for runs in days {
             let [mut hours, mut stretch] = [0.0_f32; 2];
-            for step in &day.steps {
-                let is_lit = lit.get(step.direction as usize).copied().unwrap_or(false);
-                stretch = if step.continues { stretch } else { 0.0 };
-                stretch = if is_lit { stretch + step.hours } else { 0.0 };
-                hours += if is_lit { step.hours } else { 0.0 };
-                sum.longest = sum.longest.max(stretch);
-            }
-            if hours > 0.0 {
-                let is_lit = |step: &&crate::apps::sun::LightStep| lit[step.direction as usize];
-                let first = day.steps.iter().find(is_lit).map_or(f32::INFINITY, |step| step.start);
-                let last = day.steps.iter().rfind(is_lit).map_or(f32::NEG_INFINITY, |step| step.start + step.hours);
-                sum.first = sum.first.min(first);
-                sum.last = sum.last.max(last);
+            for run in runs {
+                stretch = if run.continues { stretch } else { 0.0 };
+                // where the run is lit: from one stretch to the next
+                let mut from = run.first;
+                while from < run.end {
+                    let start = lit.next_lit(from).min(run.end);
+                    let end = lit.next_dark(start).min(run.end);
+                    stretch = if start > from { 0.0 } else { stretch };
+                    if end > start {
+                        let lasts = run.hours * (end - start) as f32;
+                        hours += lasts;
+                        stretch += lasts;
+                        sum.longest = sum.longest.max(stretch);
+                        sum.first = sum.first.min(run.start + run.hours * (start - run.first) as f32);
+                        sum.last = sum.last.max(run.start + run.hours * (end - run.first) as f32);
+                    }
+                    stretch = if end < run.end { 0.0 } else { stretch };
+                    from = end;
+                }
             }
             let hours = f64::from(hours);
             sum.total += hours;
