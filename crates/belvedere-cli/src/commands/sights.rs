@@ -21,6 +21,12 @@ pub(crate) enum Proving {
     IfItDecides,
 }
 
+/// How balls block, as the flags say.
+pub(crate) fn scene_params(scene: &Scene, profile: Profile, flags: &GivingWay) -> SceneParams {
+    let usual = if scene.is_carved() { SceneParams::carved() } else { SceneParams::uncarved() };
+    SceneParams { profile, shell: flags.shell.map_or(usual.shell, f64::from), ..usual }
+}
+
 /// Balls that lines of sight are cut with, and what to make of what is not proven.
 pub(crate) fn blockers(
     scene: &Scene,
@@ -38,8 +44,7 @@ pub(crate) fn blockers(
     if flags.shell.is_some() && !scene.is_carved() {
         return Err(Usage("--shell belongs to carved balls, which these are not".to_owned()).into());
     }
-    let usual = if scene.is_carved() { SceneParams::carved() } else { SceneParams::uncarved() };
-    let params = SceneParams { profile, shell: flags.shell.map_or(usual.shell, f64::from), ..usual };
+    let params = scene_params(scene, profile, flags);
     let mut blockers = stages.run("indexing balls", 0, |_| MedialScene::new(&scene.balls, &params))?;
     section
         .add("balls", blockers.ball_count())

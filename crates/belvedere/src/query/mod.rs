@@ -4,6 +4,7 @@ mod beams;
 pub mod certified;
 mod clear_height;
 pub mod earth;
+mod fingerprint;
 mod free_range;
 pub mod medial_scene;
 pub mod mesh;
@@ -19,6 +20,7 @@ pub mod visibility_matrix;
 
 pub use certified::{CertifiedMap, CertifiedReport, Scope, answer_views};
 pub use earth::{Curvature, EarthParams};
+pub use fingerprint::scene_fingerprint;
 pub use medial_scene::{MedialScene, SceneParams};
 pub use mesh::{BackFaces, MeshTargetParams, SeenArea, facing, seen_faces, seen_in_all, seen_objects};
 pub use points::{Answer, AnswerCounts, UnprovenAs, query_points, random_targets};

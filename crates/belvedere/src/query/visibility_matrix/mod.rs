@@ -19,9 +19,9 @@ use sweep::{Descending, Settled, sweep};
 const WORD: usize = 64;
 
 /// One bit for each target and direction: set where no ball blocks the line of sight that leaves the target in the direction.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct VisibilityMatrix {
-    /// Where the row of each target lies, `u32::MAX` for one that is not finite.
+    /// Where the row of each target lies: neighbours together, and one empty row for all that are not finite.
     places: Vec<u32>,
     direction_count: usize,
     /// Words of a row.
@@ -29,7 +29,27 @@ pub struct VisibilityMatrix {
     words: Vec<u64>,
 }
 
+impl PartialEq for VisibilityMatrix {
+    fn eq(&self, other: &Self) -> bool {
+        (self.target_count(), self.direction_count) == (other.target_count(), other.direction_count)
+            && (0..self.target_count()).all(|target| self.row(target) == other.row(target))
+    }
+}
+
 impl VisibilityMatrix {
+    /// The matrix of bits that were kept: `words` hold row after row, as [`VisibilityMatrix::row`] gives them.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] where the words are not those of so many targets and directions.
+    pub fn from_words(target_count: usize, direction_count: usize, words: Vec<u64>) -> Result<Self> {
+        let width = direction_count.div_ceil(WORD);
+        let (expected, found) = (target_count.saturating_mul(width), words.len());
+        if expected != found {
+            return Err(Error::LengthMismatch { what: "words of the matrix", expected, found });
+        }
+        Ok(Self { places: (0..).take(target_count).collect(), direction_count, width, words })
+    }
+
     /// Number of rows.
     #[must_use]
     pub fn target_count(&self) -> usize {
@@ -49,8 +69,7 @@ impl VisibilityMatrix {
         direction < self.direction_count && word >> (direction % WORD) & 1 == 1
     }
 
-    /// The bits of a target, 64 directions a word from the lowest bit on, those beyond the last unset; empty beyond the last target
-    /// and for one that is not finite.
+    /// The bits of a target, 64 directions a word from the lowest bit on, those beyond the last unset; empty beyond the last target.
     #[must_use]
     pub fn row(&self, target: usize) -> &[u64] {
         let place = self.places.get(target).copied().unwrap_or(u32::MAX) as usize;
@@ -105,14 +124,17 @@ pub fn visibility_matrix(
     }
     let width = directions.len().div_ceil(WORD);
     let tree = TargetTree::new(targets);
-    let mut words = vec![0; width * tree.positions().len()];
-    let mut places = vec![u32::MAX; targets.len()];
+    let known_count = tree.positions().len();
+    let mut words = vec![0; width * (known_count + 1)];
+    #[expect(clippy::cast_possible_truncation, reason = "targets are numbered with 32 bits")]
+    let mut places = vec![known_count as u32; targets.len()];
     for (place, &row) in (0..).zip(tree.rows()) {
         places[row as usize] = place;
     }
     if scene.ball_count() == 0 {
-        let row: Vec<u64> = directions.chunks(WORD).map(|part| u64::MAX >> (WORD - part.len())).collect();
-        words = row.repeat(tree.positions().len());
+        let whole = directions.chunks(WORD).map(|part| u64::MAX >> (WORD - part.len()));
+        let row: Vec<u64> = whole.collect();
+        words[..width * known_count].chunks_mut(width.max(1)).for_each(|words| words.copy_from_slice(&row));
         return Ok(VisibilityMatrix { places, direction_count: directions.len(), width, words });
     }
     let headings = headings(directions);
