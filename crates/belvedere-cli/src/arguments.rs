@@ -4,12 +4,14 @@ mod observers;
 mod sky;
 mod surroundings;
 mod towns;
+mod vegetation;
 mod view;
 
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Viewshed};
 pub(crate) use sky::{FacingChoice, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
 pub(crate) use surroundings::{BelowChoice, Eyes, Horizon, Isovist, Landmark, MeshTargets, NorthChoice};
 pub(crate) use towns::{Compare, PatternChoice, ScannerChoice, Simulate};
+pub(crate) use vegetation::{LeavesChoice, ThroughTrees, ThroughTreesChoice};
 pub(crate) use view::{SizeChoice, ViewChoice};
 
 use belvedere::crs::Crs;

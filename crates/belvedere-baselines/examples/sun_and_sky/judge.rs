@@ -10,7 +10,7 @@ use belvedere::progress::Progress;
 use belvedere::query::{MedialScene, SceneParams, visibility_matrix};
 use belvedere::{PointCloud, Result};
 use belvedere_baselines::Survey;
-use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
+use belvedere_baselines::medial::{MedialParams, Outward, interior_balls};
 use belvedere_scenes::{AirborneParams, Material, Preset, QuerySet, QuerySite, Scene, Truth, town};
 use flown::flown;
 use std::f64::consts::{PI, TAU};
@@ -90,7 +90,6 @@ impl Places {
 /// How far answers are from the truth.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Score {
-    pub(crate) count: usize,
     /// Hours of sun: mean true, mean absolute error, and mean hours wrongly lit and wrongly shaded.
     pub(crate) sun: [f64; 4],
     /// The same with the sun above 5 degrees.
@@ -103,6 +102,11 @@ pub(crate) struct Score {
     /// By what is above or beside: share of the targets, and what of the mean absolute error, of the hours wrongly lit and of the hours
     /// wrongly shaded they make; sky view factors likewise.
     pub(crate) by_setting: [[f64; 5]; Setting::ALL.len()],
+}
+
+fn balls_of(cloud: &PointCloud, scanner: &[[f32; 3]], params: &MedialParams) -> Result<MedialBalls> {
+    let survey = Survey { cloud, scanner, models: &[] };
+    interior_balls(&survey, Outward::Survey, params)
 }
 
 /// A town, its survey and the balls made of it.
@@ -122,8 +126,7 @@ impl Town {
     pub(crate) fn new(preset: Preset, extent: f64, cell: f64, seed: u64) -> Result<Self> {
         let scene = town(&preset.params(extent, seed));
         let (cloud, scanner) = flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, 8.0) })?;
-        let survey = Survey { cloud: &cloud, scanner: &scanner, models: &[] };
-        let balls = MedialBaseline::new(&survey, Outward::Survey, &MedialParams::carved())?.balls().clone();
+        let balls = balls_of(&cloud, &scanner, &MedialParams::carved())?;
         let truth = Truth::new(&scene);
         let (low, high) = cloud.bounds().unwrap_or_default();
         let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];
@@ -139,6 +142,11 @@ impl Town {
         });
         town.bare = bare.collect();
         Ok(town)
+    }
+
+    pub(crate) fn remake(&mut self, params: &MedialParams) -> Result<()> {
+        self.balls = balls_of(&self.cloud, &self.scanner, params)?;
+        Ok(())
     }
 
     pub(crate) fn site(&self) -> QuerySite<'_> {
@@ -256,7 +264,7 @@ impl Town {
         let scene = MedialScene::new(&self.balls, params)?;
         let asked: Vec<[f32; 3]> = places.asked.iter().map(|p| [p[0], p[1], p[2] + lift]).collect();
         let found = visibility_matrix(&scene, &asked, &light.directions, Progress::none())?;
-        let mut score = Score { count: places.len(), ..Score::default() };
+        let mut score = Score::default();
         let width = light.directions.len();
         let one = 1.0 / places.len().max(1) as f64;
         let sky_count = (width - light.sun_count) as f64;
@@ -304,6 +312,26 @@ impl Town {
             }
         }
         Ok(score)
+    }
+
+    pub(crate) fn map(&self, places: &Places, light: &Light, params: &SceneParams) -> Result<Vec<[f64; 7]>> {
+        let scene = MedialScene::new(&self.balls, params)?;
+        let found = visibility_matrix(&scene, &places.asked, &light.directions, Progress::none())?;
+        let width = light.directions.len();
+        let mut rows = Vec::new();
+        for (target, free) in places.free.chunks(width).enumerate() {
+            let p = places.asked[target].map(f64::from);
+            let mut row = [p[0], p[1], p[2], 0.0, 0.0, 0.0, 0.0];
+            for column in 0..light.sun_count {
+                let (truly, seen) = (free[column], found.is_free(target, column));
+                row[3] += if truly { light.hours } else { 0.0 };
+                row[4] += if seen { light.hours } else { 0.0 };
+                row[5] += if seen && !truly { light.hours } else { 0.0 };
+                row[6] += if !seen && truly { light.hours } else { 0.0 };
+            }
+            rows.push(row);
+        }
+        Ok(rows)
     }
 
     /// What blocks wrongly: the class of the point that the ball met first belongs to and how far off it is met; and what the balls

@@ -18,6 +18,7 @@ mod sky_targets;
 mod sky_view;
 mod surroundings;
 mod trajectory;
+mod tree_light;
 mod viewshed;
 
 use crate::arguments::{Cli, Command, Usage};

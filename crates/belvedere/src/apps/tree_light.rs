@@ -87,7 +87,9 @@ impl Transmissivity {
             covered += area;
         }
         let share = through / covered;
-        (covered > 0.0 && share.is_finite()).then(|| share.clamp(0.0, 1.0)).map(|share| Self { in_leaf: share, bare: share })
+        (covered > 0.0 && share.is_finite())
+            .then(|| share.clamp(0.0, 1.0))
+            .map(|share| Self { in_leaf: share, bare: share })
     }
 
     /// The share in one state.
@@ -165,7 +167,8 @@ pub fn light_sum(
     transmissivities: &[f64],
 ) -> f64 {
     let (free, through) = (all.row(target), opaque.row(target));
-    let bit = |row: &[u64], direction: usize| row.get(direction / 64).is_some_and(|word| word >> (direction % 64) & 1 == 1);
+    let bit =
+        |row: &[u64], direction: usize| row.get(direction / 64).is_some_and(|word| word >> (direction % 64) & 1 == 1);
     let shares = weights.iter().zip(transmissivities).enumerate().map(|(direction, (weight, transmissivity))| {
         if bit(free, direction) {
             *weight
