@@ -62,8 +62,8 @@ fn basin(radius: f64, rim: f64) -> MedialScene {
     MedialScene::new(&balls, &SceneParams::default()).unwrap()
 }
 
-fn view(scene: &MedialScene, targets: &[[f64; 3]], normals: Option<&[[f32; 3]]>) -> SkyView {
-    let sky = SkyDirections::even(577).unwrap();
+fn view(scene: &MedialScene, targets: &[[f64; 3]], normals: Option<&[[f32; 3]]>, count: usize) -> SkyView {
+    let sky = SkyDirections::even(count).unwrap();
     let targets: Vec<[f32; 3]> = targets.iter().map(|p| p.map(|v| v as f32)).collect();
     let matrix = visibility_matrix(scene, &targets, &sky.directions, Progress::none()).unwrap();
     sky_view(&matrix, &sky, normals).unwrap()
@@ -74,33 +74,47 @@ fn floor_of_canyon(eaves: [f64; 2]) -> [f64; 2] {
     [f64::midpoint(eaves[0].cos(), eaves[1].cos()), 1.0 - (eaves[0] + eaves[1]) / PI]
 }
 
-fn assert_near(found: &SkyView, target: usize, expected: [f64; 2], tolerance: f64, what: &str) {
-    let found = [found.factors[target], found.openness[target]].map(f64::from);
-    println!("{what}: {:+.4} {:+.4}", found[0] - expected[0], found[1] - expected[1]);
-    for (found, expected) in found.into_iter().zip(expected) {
-        assert!((found - expected).abs() < tolerance, "{what}: {found} instead of {expected}");
-    }
+/// Errors of the sky view factor and of openness of a target; neither may exceed `most`.
+fn errors(found: &SkyView, target: usize, expected: [f64; 2], most: f64, what: &str) -> [f64; 2] {
+    let errors = [found.factors[target], found.openness[target]];
+    let errors = [0, 1].map(|i| f64::from(errors[i]) - expected[i]);
+    assert!(errors.iter().all(|error| error.abs() < most), "{what}: {errors:.4?} off {expected:.4?}");
+    errors
 }
 
 #[test]
 fn street_canyons_have_the_sky_of_the_formula() {
-    for (width, heights) in [(20.0, [10.0, 10.0]), (10.0, [10.0, 10.0]), (8.0, [12.0, 16.0]), (30.0, [6.0, 20.0])] {
-        let scene = canyon(width, heights);
-        let places = [0.5, 0.25, 0.8].map(|share| [0.0, share * width, 0.0]);
-        let found = view(&scene, &places, None);
-        for (target, [_, y, _]) in places.into_iter().enumerate() {
-            let eaves = [(heights[0] / y).atan(), (heights[1] / (width - y)).atan()];
-            let what = format!("canyon of {width} m by {heights:?} m at {y} m");
-            assert_near(&found, target, floor_of_canyon(eaves), 0.005, &what);
+    // an edge of a roof cuts the sky between directions: root mean square errors of 0.004 at 577 directions, thrice that at most, and a
+    // tenth of it at 20 000, where what is left is that of the balls and of the sky at the open ends
+    for (count, most, most_rms) in [(577, 0.0126, 0.005), (20_000, 0.0025, 0.001)] {
+        let mut all = Vec::new();
+        for (width, heights) in [(20.0, [10.0, 10.0]), (10.0, [10.0, 10.0]), (8.0, [12.0, 16.0]), (30.0, [6.0, 20.0])] {
+            let scene = canyon(width, heights);
+            let places = [0.5, 0.25, 0.8].map(|share| [0.0, share * width, 0.0]);
+            let found = view(&scene, &places, None, count);
+            for (target, [_, y, _]) in places.into_iter().enumerate() {
+                let eaves = [(heights[0] / y).atan(), (heights[1] / (width - y)).atan()];
+                let what = format!("canyon of {width} m by {heights:?} m at {y} m");
+                all.extend(errors(&found, target, floor_of_canyon(eaves), most, &what));
+            }
+            // upright on the wall at y = 0, at a third of its height and 0.1 m below its top
+            let places = [heights[0] / 3.0, heights[0] - 0.1].map(|z| [0.0, 0.001, z]);
+            let found = view(&scene, &places, Some(&[[0.0, 1.0, 0.0]; 2]), count);
+            for (target, [_, _, z]) in places.into_iter().enumerate() {
+                let eaves = ((heights[1] - z) / width).atan().max(0.0);
+                let expected = [(1.0 - eaves.sin()) / 2.0, 0.5 - eaves / PI];
+                all.extend(errors(
+                    &found,
+                    target,
+                    expected,
+                    most,
+                    &format!("wall of {width} m by {heights:?} m at {z} m"),
+                ));
+            }
         }
-        // upright on the wall at y = 0, at a third of its height and 0.1 m below its top
-        let places = [heights[0] / 3.0, heights[0] - 0.1].map(|z| [0.0, 0.001, z]);
-        let found = view(&scene, &places, Some(&[[0.0, 1.0, 0.0]; 2]));
-        for (target, [_, _, z]) in places.into_iter().enumerate() {
-            let eaves = ((heights[1] - z) / width).atan().max(0.0);
-            let expected = [(1.0 - eaves.sin()) / 2.0, 0.5 - eaves / PI];
-            assert_near(&found, target, expected, 0.005, &format!("wall of {width} m by {heights:?} m at {z} m"));
-        }
+        let rms = (all.iter().map(|error| error * error).sum::<f64>() / all.len() as f64).sqrt();
+        println!("{count} directions: {rms:.4}");
+        assert!(rms < most_rms, "{count} directions: {rms}");
     }
 }
 
@@ -109,9 +123,9 @@ fn basins_have_the_sky_of_the_formula() {
     for rim_deg in [10.0, 30.0, 50.0, 70.0] {
         let elevation = f64::to_radians(rim_deg);
         let scene = basin(10.0, 10.0 * elevation.tan());
-        let found = view(&scene, &[[0.0; 3]], None);
+        let found = view(&scene, &[[0.0; 3]], None, 577);
         let expected = [elevation.cos().powi(2), 1.0 - elevation.sin()];
-        assert_near(&found, 0, expected, 0.005, &format!("basin up to {rim_deg} degrees"));
+        errors(&found, 0, expected, 0.005, &format!("basin up to {rim_deg} degrees"));
     }
 }
 
@@ -127,10 +141,10 @@ fn tilted_free_planes_see_what_their_tilt_leaves() {
                 [sin * f64::sin(azimuth), sin * f64::cos(azimuth), cos].map(|v| v as f32)
             })
             .collect();
-        let found = view(&scene, &vec![[1.0, 2.0, 3.0]; normals.len()], Some(&normals));
+        let found = view(&scene, &vec![[1.0, 2.0, 3.0]; normals.len()], Some(&normals), 577);
         for (target, tilt) in tilts_deg.iter().map(|tilt| tilt.to_radians()).enumerate() {
             let expected = [f64::midpoint(1.0, tilt.cos()), 1.0 - tilt / PI];
-            assert_near(&found, target, expected, 0.005, &format!("tilt {tilt}"));
+            errors(&found, target, expected, 0.005, &format!("tilt {tilt}"));
         }
     }
 }
@@ -172,9 +186,9 @@ fn errors_of_directions(count: usize) -> [f64; 3] {
 
 #[test]
 fn even_directions_err_as_documented() {
-    // SkyDirections::even, and a count that is not documented
+    // those of SkyDirections::even, and fewer
     for (count, documented) in [
-        (64, [0.0223, 0.0197, 0.0117]),
+        (64, [0.021, 0.018, 0.0125]),
         (145, [0.0118, 0.0106, 0.0062]),
         (577, [0.0041, 0.0036, 0.0020]),
         (2305, [0.0015, 0.0013, 0.0008]),
@@ -182,9 +196,8 @@ fn even_directions_err_as_documented() {
         let found = errors_of_directions(count);
         println!("{count} directions: {found:.4?}");
         for (found, documented) in found.into_iter().zip(documented) {
-            // other canyons than those of the documentation: a sample of 400 errors tells their root mean square to 4 %, and what is drawn
-            // differs
-            assert!(found < 1.25 * documented && found > 0.7 * documented, "{count}: {found} and {documented}");
+            // other canyons than those of the documentation
+            assert!(found < 1.15 * documented && found > 0.85 * documented, "{count}: {found} and {documented}");
         }
     }
 }
