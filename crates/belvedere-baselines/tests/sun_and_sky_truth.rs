@@ -7,7 +7,8 @@ mod judge;
 
 use belvedere::query::SceneParams;
 use belvedere_scenes::Preset;
-use judge::{Light, Town};
+use judge::Town;
+use judge::score::Light;
 
 #[test]
 fn sun_hours_and_sky_views_are_those_of_the_mesh() {
@@ -17,10 +18,11 @@ fn sun_hours_and_sky_views_are_those_of_the_mesh() {
     let ground = town.ground_cells(0.1, 1000, &light);
     let roofs = town.roofs(1000, &light);
     assert!(ground.len() > 900 && roofs.len() > 900, "{} {}", ground.len(), roofs.len());
-    for (what, places, hours, sky) in [("ground", &ground, 0.40, 0.02), ("roofs", &roofs, 0.30, 0.02)] {
+    // measured 0.24 and 0.25 h, 0.012 and 0.014; the room is for changes of the last bits and of a rule or two, not of the method
+    for (what, places, hours, sky) in [("ground", &ground, 0.28, 0.016), ("roofs", &roofs, 0.28, 0.016)] {
         let score = town.judge(places, &light, 0.0, &SceneParams::carved()).unwrap();
         println!("{what}: {score:.4?}");
-        // the shortest day here has more sun than none and less than all: the truth tells something
+        // some places have sun all day and others little: the truth tells something
         assert!(score.sun[0] > 5.0 && score.sun[0] < 16.0, "{what}: {score:?}");
         assert!(score.sun[1] < hours, "{what}: {score:?}");
         assert!(score.factor[1] < sky && score.openness[1] < sky, "{what}: {score:?}");

@@ -3,7 +3,7 @@
 #[path = "../../tests/common/flown.rs"]
 mod flown;
 #[path = "score.rs"]
-mod score;
+pub(crate) mod score;
 
 use belvedere::ground::{Ground, GroundParams, MapGrid, highest_points};
 use belvedere::medial::MedialBalls;
@@ -14,7 +14,7 @@ use belvedere_baselines::Survey;
 use belvedere_baselines::medial::{MedialParams, Outward, interior_balls};
 use belvedere_scenes::{AirborneParams, Material, Preset, QuerySet, QuerySite, Scene, Truth, town};
 use flown::flown;
-pub(crate) use score::{ELEVATIONS_DEG, Light, Score, Setting};
+use score::{Light, Score, Setting};
 use std::f64::consts::TAU;
 
 /// How near a wall or a fence stands that a cell is said to lie at, metres.

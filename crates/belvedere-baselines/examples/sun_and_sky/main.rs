@@ -13,7 +13,8 @@ mod judge;
 use belvedere::query::SceneParams;
 use belvedere_baselines::dsm::{Dsm, DsmParams};
 use belvedere_scenes::Preset;
-use judge::{ELEVATIONS_DEG, Light, Places, Score, Setting, Town};
+use judge::score::{ELEVATIONS_DEG, Light, Score, Setting};
+use judge::{Places, Town};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
