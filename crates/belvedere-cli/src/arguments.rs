@@ -5,6 +5,7 @@ mod sky;
 mod sun;
 mod surroundings;
 mod towns;
+mod vegetation;
 mod view;
 
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Viewshed};
@@ -12,6 +13,7 @@ pub(crate) use sky::{FacingChoice, PatchesChoice, SkyOutputs, SkyPlaces, SkyView
 pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};
 pub(crate) use surroundings::{BelowChoice, Eyes, Horizon, Isovist, Landmark, MeshTargets, NorthChoice};
 pub(crate) use towns::{Compare, PatternChoice, ScannerChoice, Simulate};
+pub(crate) use vegetation::{LeavesChoice, ThroughTrees, ThroughTreesChoice};
 pub(crate) use view::{SizeChoice, ViewChoice};
 
 use belvedere::crs::Crs;

@@ -12,6 +12,7 @@ use crate::arguments::{
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
+use belvedere::apps::tree_light::{vegetation_of_classes, vegetation_of_transmission};
 use belvedere::clean::{CleanParams, CleanReport, Treatment, clean};
 use belvedere::crs::Crs;
 use belvedere::depth::Profile;
@@ -292,6 +293,11 @@ pub(crate) struct Scene {
     pub(crate) normals: Option<Vec<[f32; 3]>>,
     /// What pulses proved empty, where balls were carved and the file kept it.
     pub(crate) pulses: Option<NeedleColumns>,
+    /// Share of the pulses that got through the piece of crown that a ball is part of, (B), NaN for one that is no vegetation; empty
+    /// where that was not measured.
+    pub(crate) transmission: Vec<f32>,
+    /// Which balls are vegetation, (B), empty where that is not known.
+    pub(crate) vegetation: Vec<bool>,
     /// Rows of the files that reading left out.
     pub(crate) left_out: ReadReport,
 }
@@ -343,10 +349,17 @@ pub(crate) fn scene(
     };
     let prepared = prepare(given, &arguments.cleaning, &arguments.orienting, params.carving(), stages, summary)?;
     // as in a ball file, so that rows of balls mean the same
-    let balls = shrink_side(&prepared, Side::Interior, params, stages, summary)?.balls.shrunk();
+    let Made { balls, transmission } = shrink_side(&prepared, Side::Interior, params, stages, summary)?;
+    let balls = balls.shrunk();
+    let classes = prepared.carving.as_ref().and_then(|input| input.classification());
+    let vegetation = match classes {
+        _ if !transmission.is_empty() => vegetation_of_transmission(&transmission),
+        Some(classes) => vegetation_of_classes(&balls, classes),
+        None => Vec::new(),
+    };
     let pulses = prepared.pulses();
     let normals = (points == Points::Keep).then(|| prepared.normals_of_rows(cloud.len()));
-    Ok(Scene { balls, cloud, bounds: prepared.bounds, normals, pulses, left_out })
+    Ok(Scene { balls, cloud, bounds: prepared.bounds, normals, pulses, transmission, vegetation, left_out })
 }
 
 /// Flags that say how to make balls are of no use where they are made already.
@@ -394,7 +407,10 @@ fn scene_of_saved(saved: SavedBalls, path: &Path) -> Result<Scene> {
     };
     let pulses =
         saved.pulses.map(|SavedPulses { starts, slopes, lengths, top }| NeedleColumns { starts, slopes, lengths, top });
-    Ok(Scene { balls, cloud, bounds, normals: None, pulses, left_out: ReadReport::default() })
+    let transmission = saved.transmission.unwrap_or_default();
+    let vegetation = vegetation_of_transmission(&transmission);
+    let left_out = ReadReport::default();
+    Ok(Scene { balls, cloud, bounds, normals: None, pulses, transmission, vegetation, left_out })
 }
 
 /// Lowest and highest corner of a cloud that has points.

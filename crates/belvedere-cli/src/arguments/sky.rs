@@ -1,6 +1,6 @@
 //! Flags of what is asked about the sun and the sky.
 
-use super::{GivingWay, GroundChoice, SceneInput, above_zero, at_least_one, finite};
+use super::{GivingWay, GroundChoice, SceneInput, ThroughTrees, above_zero, at_least_one, finite};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -77,6 +77,8 @@ pub(crate) struct SkyView {
     /// The middles of sky patches instead: tregenza (145) or reinhart (577)
     #[arg(long, value_enum, value_name = "NAME", help_heading = "Sky")]
     pub(crate) patches: Option<PatchesChoice>,
+    #[command(flatten)]
+    pub(crate) trees: ThroughTrees,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
 }

@@ -20,6 +20,7 @@ mod sun;
 mod sun_hours;
 mod surroundings;
 mod trajectory;
+mod tree_light;
 mod viewshed;
 
 use crate::arguments::{Cli, Command, Usage};

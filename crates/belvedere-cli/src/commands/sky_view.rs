@@ -8,6 +8,7 @@ use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::sky_view::{SKY_DIRECTIONS, SkyDirections, sky_view};
+use belvedere::apps::tree_light::through_crowns;
 use belvedere::query::visibility_matrix;
 
 pub(crate) fn run(arguments: &SkyView, global: &Global) -> Result<Summary> {
@@ -31,6 +32,15 @@ pub(crate) fn run(arguments: &SkyView, global: &Global) -> Result<Summary> {
         visibility_matrix(&blockers, &targets.positions, &sky.directions, progress)
     })?;
     let mut seen = stages.run("summing up", 0, |_| sky_view(&matrix, &sky, targets.normals.as_deref()))?;
+    if let Some(trees) = arguments.trees.of(&scene, blockers.params(), &mut summary)? {
+        let matrix = stages.run("looking through trees", targets.positions.len(), |progress| {
+            visibility_matrix(&trees.opaque, &targets.positions, &sky.directions, progress)
+        })?;
+        let without = sky_view(&matrix, &sky, targets.normals.as_deref())?;
+        let share = trees.share(None);
+        seen.factors = through_crowns(&seen.factors, &without.factors, share)?;
+        seen.openness = through_crowns(&seen.openness, &without.openness, share)?;
+    }
     for (row, position) in targets.positions.iter().enumerate() {
         if !position.iter().all(|v| v.is_finite()) {
             seen.factors[row] = f32::NAN;

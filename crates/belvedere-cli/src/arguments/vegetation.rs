@@ -1,0 +1,53 @@
+//! Flags of what gets through trees.
+
+use clap::{Args, ValueEnum};
+use std::str::FromStr;
+
+/// What share of the light gets through trees.
+#[derive(Args)]
+#[command(next_help_heading = "Trees")]
+pub(crate) struct ThroughTrees {
+    /// Share of the light that gets through crowns: none, seasons (0.03 in leaf and 0.5 bare, after Konarska et al. 2014), pulses (what
+    /// share of the laser's pulses got through, which is rather more), or a number from 0 to 1. Crowns that --trees leaves gaps in let
+    /// light through these besides; --trees opaque closes them
+    #[arg(long, value_name = "SHARE", default_value = "none", allow_negative_numbers = true)]
+    pub(crate) through_trees: ThroughTreesChoice,
+    /// Whether trees carry leaves, with --through-trees seasons: on, off, or auto: from 7 April to 27 October, half a year later in the
+    /// south, always in the tropics [default: auto where there is a date, otherwise on]
+    #[arg(long, value_enum, value_name = "LEAVES")]
+    pub(crate) leaves: Option<LeavesChoice>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum ThroughTreesChoice {
+    None,
+    Seasons,
+    Pulses,
+    Share(f64),
+}
+
+impl FromStr for ThroughTreesChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "none" => Ok(Self::None),
+            "seasons" => Ok(Self::Seasons),
+            "pulses" => Ok(Self::Pulses),
+            _ => match text.parse() {
+                Ok(share) if (0.0..=1.0).contains(&share) => Ok(Self::Share(share)),
+                _ => Err("use none, seasons, pulses, or a number from 0 (opaque) to 1".to_owned()),
+            },
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LeavesChoice {
+    /// By the date
+    Auto,
+    /// In leaf
+    On,
+    /// Bare
+    Off,
+}

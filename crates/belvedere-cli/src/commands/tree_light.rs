@@ -1,0 +1,68 @@
+//! What gets through trees, as typed.
+
+use crate::arguments::{LeavesChoice, ThroughTrees, ThroughTreesChoice, Usage};
+use crate::pipeline::Scene;
+use crate::summary::{Summary, rounded};
+use anyhow::Result;
+use belvedere::apps::tree_light::{Foliage, Transmissivity, without_vegetation};
+use belvedere::query::{MedialScene, SceneParams};
+
+/// A scene without its vegetation, and what share of the light vegetation lets through.
+pub(crate) struct TreeLight {
+    /// The balls that are not vegetation.
+    pub(crate) opaque: MedialScene,
+    transmissivity: Transmissivity,
+    leaves: LeavesChoice,
+}
+
+impl ThroughTrees {
+    /// What was typed, for balls that block as `params`; `None` where trees are opaque.
+    pub(crate) fn of(&self, scene: &Scene, params: &SceneParams, summary: &mut Summary) -> Result<Option<TreeLight>> {
+        if self.leaves.is_some() && self.through_trees != ThroughTreesChoice::Seasons {
+            return Err(Usage("--leaves belongs to --through-trees seasons".to_owned()).into());
+        }
+        let transmissivity = match self.through_trees {
+            ThroughTreesChoice::None => return Ok(None),
+            ThroughTreesChoice::Seasons => Transmissivity::default(),
+            ThroughTreesChoice::Share(share) => Transmissivity::constant(share)?,
+            ThroughTreesChoice::Pulses => {
+                Transmissivity::measured(&scene.balls, &scene.transmission).ok_or_else(|| {
+                    let what = "--through-trees pulses: nothing is known of pulses that met vegetation; that takes a cloud with return \
+                                numbers, GPS times and, best, classes, or a ball file made of one";
+                    Usage(what.to_owned())
+                })?
+            }
+        };
+        if !scene.vegetation.contains(&true) {
+            let what = "--through-trees: no ball is known to be vegetation; that takes a cloud with its classes (3 to 5), or with return \
+                        numbers and GPS times, or a ball file made of one";
+            return Err(Usage(what.to_owned()).into());
+        }
+        let opaque = MedialScene::new(&without_vegetation(&scene.balls, &scene.vegetation)?, params)?;
+        let mut section = Summary::default();
+        section.add("balls_of_vegetation", scene.vegetation.iter().filter(|&&is| is).count());
+        if transmissivity.in_leaf == transmissivity.bare {
+            section.add("transmissivity", rounded(transmissivity.in_leaf, 4));
+        } else {
+            section
+                .add("transmissivity_in_leaf", rounded(transmissivity.in_leaf, 4))
+                .add("transmissivity_bare", rounded(transmissivity.bare, 4));
+        }
+        summary.add("trees", section);
+        let leaves = self.leaves.unwrap_or(LeavesChoice::Auto);
+        Ok(Some(TreeLight { opaque, transmissivity, leaves }))
+    }
+}
+
+impl TreeLight {
+    /// Share of the light on a day of the year at a latitude (radians), both `None` where a question has no date: trees are in leaf
+    /// then.
+    pub(crate) fn share(&self, date: Option<(u32, f64)>) -> f64 {
+        let foliage = match (self.leaves, date) {
+            (LeavesChoice::Off, _) => Foliage::Bare,
+            (LeavesChoice::Auto, Some((day, latitude))) => Foliage::on_day(day, latitude),
+            (LeavesChoice::On, _) | (LeavesChoice::Auto, None) => Foliage::InLeaf,
+        };
+        self.transmissivity.of(foliage)
+    }
+}
