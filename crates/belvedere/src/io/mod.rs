@@ -1,5 +1,6 @@
 //! Files in and out; the extension tells the format. Every output appears only when it is complete.
 
+mod animation;
 mod assemble;
 pub mod atomic;
 mod ball_formats;
@@ -50,6 +51,7 @@ mod write_table;
 mod write_trajectory;
 mod xyz;
 
+pub use animation::write_apng;
 pub use balls::{SavedBalls, SavedPulses, is_ball_file, read_balls, write_balls};
 pub use canvas::{Canvas, Colors};
 pub use cityjson::{LevelOfDetail, read_cityjson};
