@@ -5,5 +5,6 @@ pub mod isovist;
 pub mod landmark;
 pub mod profile;
 pub mod sky_view;
+pub mod solar_envelope;
 pub mod sun;
 pub mod viewshed;
