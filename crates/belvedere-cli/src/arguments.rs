@@ -2,12 +2,14 @@
 
 mod observers;
 mod sky;
+mod sun;
 mod surroundings;
 mod towns;
 mod view;
 
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Viewshed};
 pub(crate) use sky::{FacingChoice, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
+pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};
 pub(crate) use surroundings::{BelowChoice, Eyes, Horizon, Isovist, Landmark, MeshTargets, NorthChoice};
 pub(crate) use towns::{Compare, PatternChoice, ScannerChoice, Simulate};
 pub(crate) use view::{SizeChoice, ViewChoice};
@@ -136,6 +138,12 @@ pub(crate) enum Command {
         after_help = "Two measures that are often mixed up, both 0 to 1. sky_view_factor is weighted by the cosine to the surface, (1/π) ∫ cos θ dΩ: the share of the light of an even sky that arrives, as energy models want it. sky_openness is the plain share of the hemisphere above the horizon, (1/2π) ∫ dΩ. Before a free wall both are ½.\n\nBalls alone are asked. Beyond the rim of the cloud nothing stands in the way.\n\nExamples:\n  belvedere sky-view demo/town.laz --cell 1 -o demo/sky.tif -o demo/sky.png\n  belvedere sky-view demo/town.laz --self --directions 145 -o demo/sky.laz\n  belvedere sky-view demo/balls.npz --targets demo/town.obj --spacing 2 --directions 145 -o demo/sky-of-faces.csv"
     )]
     SkyView(SkyView),
+    /// Measure how long the sun reaches each place, on a day, over a period, or by a rule
+    #[command(
+        name = "sun-hours",
+        after_help = "Measures: sun_hours (a day; over several days their mean), sun_share of what a flat horizon would leave, first_light and last_light (hours on the clocks of --zone; over several days the earliest and the latest), longest (hours on end); over several days also least_day (hours on the darkest) and total_hours; for each rule 1 where it is met on all its days.\n\nA day runs from midnight to midnight of the sun, so that it holds the whole light of the place whatever the zone. The middle of the sun counts, above a flat horizon. Surfaces that are turned by their normals are not lit from behind. Clouds of the sky are not known: these are possible hours.\n\nRules: nl-light, 2 h a day from 19 February to 21 October, and nl-strict, 3 h from 21 January to 22 November (TNO, the Netherlands); the-hague, as nl-light with the sun above 10 degrees; bre-equinox, 2 h on 21 March (BRE 209, United Kingdom).\n\nExamples:\n  belvedere sun-hours demo/town.laz --date 2026-06-21 --cell 1 -o demo/sun.tif -o demo/sun.png\n  belvedere sun-hours demo/town.laz --rule bre-equinox --zone Europe/Amsterdam --cell 2 -o demo/rule.csv\n  belvedere sun-hours demo/balls.npz --from 2026-03-01 --to 2026-03-07 --step 30 --targets demo/town.obj --spacing 2 -o demo/sun-of-faces.csv"
+    )]
+    SunHours(SunHours),
     /// Hold every method against exact answers on the same places: how right each is, and what it costs
     #[command(
         after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, over two observers, or over 40 people in streets (4 for methods that build a hull or draw shadow maps for each eye), with 95 % intervals from resampled tiles of 25 m.\n\nMethods: paper-cone, paper-sphere, union, hidden-points, hidden-points-robust, surfels, depth-splats, elliptical-splats, implicit-surface, voxels-05, voxels-10, dsm, tin, tau, carved (and, only when named, carved-without-RULE); for each model also mesh-NAME, shadow-map-NAME and dsm-NAME, and for the first paper-cone-NAME. Simulated places have the models blocks (LoD1), no-trees and exact. The project's docs/methods has a page on each.\n\nA thorough comparison takes several places and seeds, such as --presets village,old-town,towers --seeds 1,2,3.\n\nExample:\n  belvedere compare --extent 100 --targets 2000 --methods paper-cone,carved -o compared"

@@ -7,4 +7,5 @@ pub mod profile;
 pub mod sky_view;
 pub mod solar_envelope;
 pub mod sun;
+pub mod sun_hours;
 pub mod viewshed;

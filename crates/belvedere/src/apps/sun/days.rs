@@ -3,10 +3,13 @@
 use super::position::transit;
 use super::{Date, Refraction, Site, Zone, sun_position_with};
 use crate::{Error, Result};
+use rayon::prelude::*;
 
 const DAY: f64 = 86_400.0;
 /// Longest time between two looks at the elevation, seconds: a sun that shows between two of them and is gone again rises 0.02° at most.
 const SAMPLING: f64 = 300.0;
+/// Most days of a period: ten years.
+const MOST_DAYS: usize = 3700;
 /// How exactly the moment is found at which the sun passes the least elevation, seconds.
 const MOMENT: f64 = 0.01;
 
@@ -50,6 +53,10 @@ pub struct SunDay {
     pub date: Date,
     /// Instant at which clocks of the zone begin this date (as they run at its noon): what times of day count from.
     pub clock_start: f64,
+    /// Midnight of the sun with which it begins.
+    pub start: f64,
+    /// Midnight of the sun with which it ends.
+    pub end: f64,
     /// Instant at which the sun is highest, to within a minute: it crosses the meridian.
     pub noon: f64,
     /// The light of the day in the order of time; none in polar night.
@@ -99,7 +106,43 @@ pub fn sun_day(site: &Site, zone: &Zone, date: Date, within: Option<[f64; 2]>, p
         }
     }
     let clock_start = date.noon_utc() - 0.5 * DAY - zone.offset_at(noon);
-    Ok(SunDay { date, clock_start, noon, steps })
+    Ok(SunDay { date, clock_start, start, end, noon, steps })
+}
+
+/// What days are asked about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Period {
+    /// Whole days.
+    Days(Vec<Date>),
+    /// What lies between two instants, seconds of UTC since 1970.
+    Between([f64; 2]),
+}
+
+/// The days of the sun of a period, 3700 at most (ten years), in the order given; of days at both ends of a span between instants only the
+/// part within it has steps.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a period without days or that ends before it begins, and those of [`sun_day`].
+pub fn sun_days(site: &Site, zone: &Zone, period: &Period, params: &DayParams) -> Result<Vec<SunDay>> {
+    let invalid = |value: String, expected| Err(Error::InvalidParameter { name: "period", value, expected });
+    let (dates, within) = match period {
+        Period::Days(dates) => (dates.clone(), None),
+        Period::Between([from, to]) if to > from && to - from <= DAY * MOST_DAYS as f64 => {
+            // a day of the sun may begin a clock's day early or late
+            let [first, last] = [zone.date_at(from - DAY)?, zone.date_at(to + DAY)?];
+            (first.to(last).collect(), Some([*from, *to]))
+        }
+        Period::Between([from, to]) => {
+            return invalid(format!("{} to {}", zone.display(*from), zone.display(*to)), "forward, ten years at most");
+        }
+    };
+    if !(1..=MOST_DAYS).contains(&dates.len()) {
+        return invalid(format!("{} days", dates.len()), "1 to 3700 days, the last not before the first");
+    }
+    let days: Result<Vec<SunDay>> =
+        dates.into_par_iter().map(|date| sun_day(site, zone, date, within, params)).collect();
+    let touches = |day: &SunDay| within.is_none_or(|[from, to]| day.start < to && day.end > from);
+    Ok(days?.into_iter().filter(touches).collect())
 }
 
 impl DayParams {

@@ -10,10 +10,10 @@ mod schedule;
 mod site;
 mod time;
 
-pub use days::{DayParams, SunDay, SunStep, sun_day};
+pub use days::{DayParams, Period, SunDay, SunStep, sun_day, sun_days};
 pub use position::{
     Refraction, SunPosition, SunTimes, declination, sun_distance, sun_position, sun_position_with, sun_times,
 };
 pub use schedule::{Binning, DayOfLight, LightStep, SunSchedule};
 pub use site::Site;
-pub use time::{Date, Zone, parse_instant};
+pub use time::{Date, Zone, parse_instant, zone_of_instant};
