@@ -1,5 +1,6 @@
 //! What users ask of a scene: each application puts questions to [`crate::query`] and sums up the answers.
 
+pub mod exposure;
 pub mod horizon;
 pub mod isovist;
 pub mod landmark;

@@ -42,6 +42,7 @@ mod rows;
 mod table;
 mod trajectory;
 mod write_cloud;
+mod write_faces;
 mod write_las;
 mod write_masbcpp;
 mod write_mesh;
@@ -76,6 +77,7 @@ pub use read_cloud::{CLOUD_EXTENSIONS, FileReport, LeftOut, ReadOptions, ReadRep
 pub use table::{Cells, Table, read_table, write_table};
 pub use trajectory::{TrajectoryReport, read_trajectory};
 pub use write_cloud::{ExtraColumn, ExtraValues, WriteReport, write_cloud};
+pub use write_faces::write_mesh;
 pub use write_masbcpp::{MasbcppFolder, write_masbcpp};
 pub use write_mesh::write_mesh_values;
 pub use write_npy::{write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_npy_u32_bands};

@@ -6,11 +6,13 @@
 
 mod blocks;
 mod convex;
+mod instants;
 mod parcel;
 mod protected;
 mod strip;
 
 pub use convex::ConvexPolygon;
+pub use instants::{EnvelopeSun, envelope_suns};
 pub use parcel::{Footprint, Parcel};
 pub use protected::{ProtectedPiece, protected_faces, protected_line};
 
