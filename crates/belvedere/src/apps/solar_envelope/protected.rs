@@ -1,5 +1,6 @@
 //! What shadows must stay off: lines with a fence, faces of facades, points.
 
+use crate::apps::sky_view::SKY_TARGET_HEIGHT;
 use crate::ground::Ground;
 use crate::query::SurfacePieces;
 use crate::{Error, Result};
@@ -24,7 +25,8 @@ impl ProtectedPiece {
     /// A point.
     #[must_use]
     pub fn point(place: [f64; 3], source: u32) -> Self {
-        Self { corners: vec![place], normal: None, sample: single(place), source }
+        let sample = single([place[0], place[1], place[2] + SKY_TARGET_HEIGHT]);
+        Self { corners: vec![place], normal: None, sample, source }
     }
 }
 
@@ -74,7 +76,9 @@ pub fn protected_line(
             let [from, to] = [i, i + 1].map(|i| at(f64::from(i) / count));
             match (top(from), top(to)) {
                 (Some(from), Some(to)) => {
-                    let middle = [0, 1, 2].map(|i| f64::midpoint(from[i], to[i]));
+                    let mut middle = [0, 1, 2].map(|i| f64::midpoint(from[i], to[i]));
+                    // off the ground, as other places that the sun is asked about
+                    middle[2] += SKY_TARGET_HEIGHT;
                     let corners = vec![from, to];
                     pieces.push(ProtectedPiece { corners, normal: None, sample: single(middle), source });
                 }
