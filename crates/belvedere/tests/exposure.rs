@@ -50,22 +50,30 @@ fn free_planes_have_the_sky_components_of_the_overcast_sky() {
 
 #[test]
 fn a_wall_that_faces_a_long_obstruction_keeps_what_the_formula_leaves() {
-    // a sky from which all below 25° is hidden: VSC = (1/3)(F + 2 G) / (7π/9), F = 2 ∫ cos² = (π/2 − θ − sin θ cos θ) over the half circle of
-    // azimuths, G = 2 ∫ sin cos² = (2/3) cos³ θ: about 27 %, the figure that BRE 209 gives for 25°
+    // an endless building parallel to the wall, 25° high straight ahead and lower to the sides: at the azimuth φ from straight ahead the sky
+    // begins at θ = atan(tan 25° cos φ), and what is above gives (1/3)(½(π/2 − θ − sin θ cos θ) + ⅔ cos³ θ) cos φ dφ
     let sky = SkyDirections::patches(6).unwrap();
-    let horizon = 25f64.to_radians();
-    let open: Vec<usize> = (0..sky.directions.len()).filter(|&i| sky.directions[i][2] > horizon.sin()).collect();
+    let slope = 25f64.to_radians().tan();
+    let open: Vec<usize> =
+        (0..sky.directions.len()).filter(|&i| sky.directions[i][2] > -slope * sky.directions[i][1]).collect();
     let part = SkyDirections {
         directions: open.iter().map(|&i| sky.directions[i]).collect(),
         solid_angles: open.iter().map(|&i| sky.solid_angles[i]).collect(),
     };
     let seen = matrix(&nothing(), &[[0.0; 3]], &part.directions);
     let found = f64::from(sky_component(&seen, &part, &[normal(180.0, 90.0)]).unwrap()[0]);
-    let level = FRAC_PI_2 - horizon - horizon.sin() * horizon.cos();
-    let expected = (level + 4.0 / 3.0 * horizon.cos().powi(3)) / 3.0 / (7.0 * PI / 9.0);
-    assert!((expected - 0.27).abs() < 0.01, "{expected}");
-    // rows of patches are 2° high: the horizon lies within half of one, 0.6 % a degree
-    assert!((found - expected).abs() < 0.008, "{found} {expected}");
+    let steps = 10_000;
+    let at = |i: i32| {
+        let azimuth = PI * (f64::from(i) + 0.5) / f64::from(steps) - FRAC_PI_2;
+        let horizon = (slope * azimuth.cos()).atan();
+        let level = 0.5 * (FRAC_PI_2 - horizon - horizon.sin() * horizon.cos());
+        (level + 2.0 / 3.0 * horizon.cos().powi(3)) / 3.0 * azimuth.cos() * PI / f64::from(steps)
+    };
+    let expected = (0..steps).map(at).sum::<f64>() / (7.0 * PI / 9.0);
+    // the figure that BRE 209 gives for 25°
+    assert!((expected - 0.27).abs() < 0.005, "{expected}");
+    // patches are 2° high and wide and counted by their middles
+    assert!((found - expected).abs() < 0.004, "{found} {expected}");
 }
 
 #[test]
