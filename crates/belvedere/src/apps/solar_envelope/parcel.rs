@@ -124,12 +124,12 @@ impl Parcel {
                 let [west, east] = trapezoid.span(0).map(|x| (x - grid.corner[0]) / grid.cell);
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates at the grid")]
                 let [first, last] = [west.floor().max(0.0) as usize, east.ceil().max(0.0) as usize];
-                for column in first..last.min(grid.width) {
+                for (column, cell) in cells.iter_mut().enumerate().take(last).skip(first) {
                     let [west, _] = grid.corner_at([column, row]);
                     let [east, _] = grid.corner_at([column + 1, row]);
                     let part = trapezoid.clipped(|p| p[0] - west).clipped(|p| east - p[0]);
                     if part.area() > THIN * grid.cell {
-                        cells[column].push(part);
+                        cell.push(part);
                     }
                 }
             }
