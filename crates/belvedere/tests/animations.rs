@@ -1,5 +1,6 @@
 //! Animated pictures, read back by the decoder of another crate's author and put together as the specification says.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::cast_possible_truncation, reason = "the numbers of these tests are small")]
 
 use belvedere::io::{Picture, write_apng};
 use std::fs::File;

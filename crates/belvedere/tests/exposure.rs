@@ -1,5 +1,6 @@
 //! Routes and windows against closed forms.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::cast_possible_truncation, reason = "the numbers of these tests are small")]
 
 use belvedere::apps::exposure::{plane_normal, route_lengths, shaded_shares, sky_component, window_places};
 use belvedere::apps::sky_view::SkyDirections;
@@ -28,7 +29,6 @@ fn nothing() -> MedialScene {
     scene([0.0, 0.0, -1e4], 1.0)
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "unit vectors")]
 fn normal(azimuth_deg: f64, tilt_deg: f64) -> [f32; 3] {
     plane_normal(azimuth_deg.to_radians(), tilt_deg.to_radians()).map(|v| v as f32)
 }

@@ -1,5 +1,6 @@
 //! Solar envelopes against closed forms and against shadows traced box by box.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::cast_possible_truncation, reason = "the numbers of these tests are small")]
 
 use belvedere::apps::solar_envelope::{
     EnvelopeParams, Parcel, ProtectedPiece, SolarEnvelope, protected_faces, protected_line, solar_envelope,
@@ -294,9 +295,9 @@ fn where_something_else_shades_already_the_credit_lifts_the_bound() {
     for (with, without) in credited.columns.iter().zip(&plain.columns) {
         let [x, _] = credited.grid.center(with.footprint.cell % 40, with.footprint.cell / 40);
         if x > 0.0 {
-            assert!(with.top.is_infinite())
+            assert!(with.top.is_infinite());
         } else {
-            assert_eq!(with.top, without.top)
+            assert_eq!(with.top, without.top);
         }
         assert!(without.top.is_finite());
     }
