@@ -139,7 +139,7 @@ fn windows_before_nothing_have_the_vertical_sky_component_of_a_free_wall() {
     // in December the sun never comes round to the north; the south has it all day, 7.7 h at 52°
     assert!(hours[2] == 0.0 && (7.4..8.0).contains(&hours[0]), "{hours:?}");
     assert!(column(&place, "found.csv", "first_light")[2].is_nan());
-    place.write("bad.csv", "x,y,z\n1,2,3\n".to_owned());
+    place.write("bad.csv", "x,y,z\n1,2,3\n");
     place.refusal(
         1,
         &format!("comfort {HOUSE} --windows bad.csv --date 2026-12-21 --location 52,5 -o b.csv"),
