@@ -1,5 +1,6 @@
 //! What can be typed: flags as entered. What they build is made in `pipeline` and in each command.
 
+mod envelope;
 mod observers;
 mod sky;
 mod sun;
@@ -8,6 +9,7 @@ mod towns;
 mod vegetation;
 mod view;
 
+pub(crate) use envelope::{Comfort, Corners, Envelope};
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Viewshed};
 pub(crate) use sky::{FacingChoice, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
 pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};
@@ -146,6 +148,16 @@ pub(crate) enum Command {
         after_help = "Measures: sun_hours (a day; over several days their mean), sun_share of what a flat horizon would leave, first_light and last_light (hours on the clocks of --zone; over several days the earliest and the latest), longest (hours on end); over several days also least_day (hours on the darkest) and total_hours; for each rule 1 where it is met on all its days.\n\nA day runs from midnight to midnight of the sun, so that it holds the whole light of the place whatever the zone. The middle of the sun counts, above a flat horizon. Surfaces that are turned by their normals are not lit from behind. Clouds of the sky are not known: these are possible hours.\n\nRules: nl-light, 2 h a day from 19 February to 21 October, and nl-strict, 3 h from 21 January to 22 November (TNO, the Netherlands); the-hague, as nl-light with the sun above 10 degrees; bre-equinox, 2 h on 21 March (BRE 209, United Kingdom).\n\nExamples:\n  belvedere sun-hours demo/town.laz --date 2026-06-21 --cell 1 -o demo/sun.tif -o demo/sun.png\n  belvedere sun-hours demo/town.laz --rule bre-equinox --zone Europe/Amsterdam --cell 2 -o demo/rule.csv\n  belvedere sun-hours demo/balls.npz --from 2026-03-01 --to 2026-03-07 --step 30 --targets demo/town.obj --spacing 2 -o demo/sun-of-faces.csv"
     )]
     SunHours(SunHours),
+    /// Find the largest volume over a parcel that takes no sun from its neighbours
+    #[command(
+        after_help = "The solar envelope of Knowles: nothing built within it casts a shadow on what is protected, at any of the suns. Heights are those of columns, each bounded over its whole square, in closed form: lines are not sampled against the sun. Between two instants the shadow's edge may pass a little further; take shorter steps where that matters.\n\nShadows may lie on a --fence and below its top. Rims of polygons are protected as lines, so that a neighbour's parcel stays free; facades count for the suns they face. With --credit-shade what the cloud shades already bounds nothing, the parcel's own buildings included: leave their points out where they will go.\n\nWhere no sun bounds a column the envelope is infinitely high: give --ceiling for volumes and solids.\n\nExamples:\n  belvedere envelope demo/town.laz --parcel \"154970,462985 154990,462985 154990,463000 154970,463000\" --protect \"154960,463004 155000,463004\" --fence 1.8 --date shortest-day --between 10:00,14:00 --ceiling 30 -o demo/envelope.tif -o demo/envelope.png -o demo/envelope.obj\n  belvedere envelope demo/town.laz --parcel \"154970,462985 154990,462985 154990,463000\" --protect \"154960,463004 155000,463004\" --sun 180,30 --sun 210,20 --ceiling 20 --tops demo/tops.tif -o demo/envelope.ply"
+    )]
+    Envelope(Envelope),
+    /// Measure sun and sky along walking routes and at windows, for studies of comfort, daylight and value
+    #[command(
+        after_help = "Of a route each place stands for the way around it, 1.1 m above the ground, level: sky_view_factor (cosine-weighted), sky_openness (solid angle), sun_hours a day and sun_share of what a flat horizon leaves, first_light and last_light (hours on the clocks of --zone), longest (hours on end). --routes sums them up, weighted by length; --times tells the share of each route in shade at each sun.\n\nOf a window the same, tilted, and sky_component: the light straight from an overcast sky (CIE) as a share of that on a free level plane; upright it is the vertical sky component of BRE 209, 0.396 before a free wall. Windows that have a width and a height are asked at nine places, the mean of which counts; faces of a mesh at one of each piece.\n\nClouds of the sky are not known: hours are possible hours. Temperature, wind and humidity are not either: PET and UTCI need them besides.\n\nExamples:\n  belvedere comfort demo/town.laz --route \"154965,462985 155000,462985 155000,463020\" --date 2026-06-21 --step 30 -o demo/route.csv --routes demo/routes.csv --times demo/times.csv\n  belvedere comfort demo/balls.npz --windows demo/town.obj --spacing 2 --directions 145 --date equinox --step 30 -o demo/windows.csv"
+    )]
+    Comfort(Comfort),
     /// Hold every method against exact answers on the same places: how right each is, and what it costs
     #[command(
         after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, over two observers, or over 40 people in streets (4 for methods that build a hull or draw shadow maps for each eye), with 95 % intervals from resampled tiles of 25 m.\n\nMethods: paper-cone, paper-sphere, union, hidden-points, hidden-points-robust, surfels, depth-splats, elliptical-splats, implicit-surface, voxels-05, voxels-10, dsm, tin, tau, carved (and, only when named, carved-without-RULE); for each model also mesh-NAME, shadow-map-NAME and dsm-NAME, and for the first paper-cone-NAME. Simulated places have the models blocks (LoD1), no-trees and exact. The project's docs/methods has a page on each.\n\nA thorough comparison takes several places and seeds, such as --presets village,old-town,towers --seeds 1,2,3.\n\nExample:\n  belvedere compare --extent 100 --targets 2000 --methods paper-cone,carved -o compared"

@@ -1,9 +1,11 @@
 //! One file per command.
 
 mod balls;
+mod comfort;
 mod compare;
 mod demo;
 mod depth_map;
+mod envelope;
 mod horizon;
 mod info;
 mod isovist;
@@ -12,6 +14,7 @@ mod line_of_sight;
 mod mesh_targets;
 mod normals;
 mod query;
+mod shapes;
 mod sights;
 mod simulate;
 mod sky_targets;
@@ -53,6 +56,8 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::Horizon(arguments) => horizon::run(arguments, global),
         Command::SkyView(arguments) => sky_view::run(arguments, global),
         Command::SunHours(arguments) => sun_hours::run(arguments, global),
+        Command::Envelope(arguments) => envelope::run(arguments, global),
+        Command::Comfort(arguments) => comfort::run(arguments, global),
         Command::Compare(arguments) => compare::run(arguments, global),
         Command::Completions { shell } => {
             let mut script = Vec::new();

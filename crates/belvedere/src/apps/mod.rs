@@ -1,10 +1,12 @@
 //! What users ask of a scene: each application puts questions to [`crate::query`] and sums up the answers.
 
+pub mod exposure;
 pub mod horizon;
 pub mod isovist;
 pub mod landmark;
 pub mod profile;
 pub mod sky_view;
+pub mod solar_envelope;
 pub mod sun;
 pub mod sun_hours;
 pub mod tree_light;

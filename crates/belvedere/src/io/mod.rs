@@ -1,5 +1,6 @@
 //! Files in and out; the extension tells the format. Every output appears only when it is complete.
 
+mod animation;
 mod assemble;
 pub mod atomic;
 mod ball_formats;
@@ -43,6 +44,7 @@ mod saved_matrix;
 mod table;
 mod trajectory;
 mod write_cloud;
+mod write_faces;
 mod write_las;
 mod write_masbcpp;
 mod write_mesh;
@@ -52,6 +54,7 @@ mod write_table;
 mod write_trajectory;
 mod xyz;
 
+pub use animation::write_apng;
 pub use balls::{SavedBalls, SavedPulses, is_ball_file, read_balls, write_balls};
 pub use canvas::{Canvas, Colors};
 pub use cityjson::{LevelOfDetail, read_cityjson};
@@ -77,6 +80,7 @@ pub use saved_matrix::{SavedMatrix, read_matrix, write_matrix};
 pub use table::{Cells, Table, read_table, write_table};
 pub use trajectory::{TrajectoryReport, read_trajectory};
 pub use write_cloud::{ExtraColumn, ExtraValues, WriteReport, write_cloud};
+pub use write_faces::write_mesh;
 pub use write_masbcpp::{MasbcppFolder, write_masbcpp};
 pub use write_mesh::write_mesh_values;
 pub use write_npy::{write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_npy_u32_bands};
