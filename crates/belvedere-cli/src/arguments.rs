@@ -2,6 +2,7 @@
 
 mod envelope;
 mod observers;
+mod shadow;
 mod sky;
 mod sun;
 mod surroundings;
@@ -11,6 +12,7 @@ mod view;
 
 pub(crate) use envelope::{Comfort, Corners, Envelope};
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Viewshed};
+pub(crate) use shadow::Shadow;
 pub(crate) use sky::{FacingChoice, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
 pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};
 pub(crate) use surroundings::{BelowChoice, Eyes, Horizon, Isovist, Landmark, MeshTargets, NorthChoice};
@@ -136,6 +138,11 @@ pub(crate) enum Command {
         after_help = "Exact for the balls: what floats above a gap counts. The elevation is that above which nothing stands up to the zenith. The eye may lie on a surface: balls give way to it by 0.2 m. Beyond the rim of the cloud nothing is known.\n\nPVGIS reads .txt (one height a line, from north clockwise, equal steps); pvlib's users read .csv. Both count from true north: --north true.\n\nExamples:\n  belvedere horizon demo/town.laz --eye 154980,462970 -o demo/horizon.csv -o demo/horizon.png\n  belvedere horizon demo/balls.npz --eye 154980,462970,12 --step 7.5 --north true -o demo/horizon.txt"
     )]
     Horizon(Horizon),
+    /// Find what lies in the shadow at an instant, for a sun, or through a day
+    #[command(
+        after_help = "Column lit: the share of the sun that a place sees, 1 lit, 0 in shadow, between with --soft or through trees; of several suns a column each, named by date and time. A sun below the horizon lights nothing. Where carved balls know their pulses, and for one sun with hard edges, column unproven marks what nothing shades but whose line of sight runs for more than half a metre through space that no pulse came near to.\n\nTimes need an offset or a zone. Azimuths of the sun count from true north and are turned into the grid of the reference system, which stands up to some degrees askew; --sun counts from grid north.\n\nExamples:\n  belvedere shadow demo/town.laz --time 2026-06-21T15:00+02:00 -o demo/shadow.png -o demo/shadow.tif\n  belvedere shadow demo/town.laz --sun 235,30 --soft --cell 1 -o demo/soft-shadow.tif\n  belvedere shadow demo/town.laz --date 2026-03-21 --zone Europe/Amsterdam --step 60 --cell 1 -o demo/shadows.csv --film demo/day.png"
+    )]
+    Shadow(Shadow),
     /// Measure how much of the sky places see: the sky view factor and sky openness
     #[command(
         name = "sky-view",

@@ -121,7 +121,16 @@ fn scene(arguments: &Envelope, stages: &mut Stages, summary: &mut Summary) -> Re
     let cloud = pipeline::read(&arguments.scene.input, stages, summary)?;
     let bounds = pipeline::bounds_of(&cloud)?;
     let (balls, left_out) = (MedialBalls::default(), ReadReport::default());
-    Ok(Scene { balls, cloud, bounds, normals: None, pulses: None, left_out })
+    Ok(Scene {
+        balls,
+        cloud,
+        bounds,
+        normals: None,
+        pulses: None,
+        left_out,
+        transmission: Vec::new(),
+        vegetation: Vec::new(),
+    })
 }
 
 /// Directions, and what to call each.

@@ -14,6 +14,7 @@ mod line_of_sight;
 mod mesh_targets;
 mod normals;
 mod query;
+mod shadow;
 mod shapes;
 mod sights;
 mod simulate;
@@ -54,6 +55,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::Landmark(arguments) => landmark::run(arguments, global),
         Command::Isovist(arguments) => isovist::run(arguments, global),
         Command::Horizon(arguments) => horizon::run(arguments, global),
+        Command::Shadow(arguments) => shadow::run(arguments, global),
         Command::SkyView(arguments) => sky_view::run(arguments, global),
         Command::SunHours(arguments) => sun_hours::run(arguments, global),
         Command::Envelope(arguments) => envelope::run(arguments, global),

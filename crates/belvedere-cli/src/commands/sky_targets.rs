@@ -13,7 +13,7 @@ use belvedere::apps::sky_view::SKY_TARGET_HEIGHT;
 use belvedere::apps::viewshed::{cell_for, cell_targets};
 use belvedere::ground::{Ground, MapGrid, highest_points};
 use belvedere::io::{
-    Cells, ExtraColumn, ExtraValues, Georeference, MapLegend, MapPicture, atomic, map_picture, ramp_colors,
+    Cells, ExtraColumn, ExtraValues, Georeference, MapLegend, MapPicture, Picture, atomic, map_picture, ramp_colors,
     write_cloud, write_mesh_values, write_png, write_table, write_tif_f32,
 };
 use belvedere::query::{MeshTargetParams, SurfacePieces};
@@ -49,7 +49,7 @@ enum Kind {
 /// One figure for each place.
 pub(crate) struct Measure<'a> {
     /// Name of its column, of 15 letters at most, and of its raster.
-    pub(crate) name: &'static str,
+    pub(crate) name: &'a str,
     /// What it is and its unit, of 31 letters at most.
     pub(crate) description: &'static str,
     /// Digits behind the point in tables.
@@ -91,6 +91,11 @@ impl SkyPlaces {
             return Err(Usage("--facing normals belongs to points and meshes; cells are level".to_owned()).into());
         }
         Ok(())
+    }
+
+    /// Whether places are cells of a grid.
+    pub(crate) fn is_grid(&self) -> bool {
+        !self.places.own && self.places.targets.is_none()
     }
 
     /// Whether the points of the scene are needed.
@@ -198,7 +203,7 @@ impl SkyTargets {
         }
     }
 
-    /// Writes all measures to each of the outputs; the files written.
+    /// Writes all measures to each of the outputs; maps show the first.
     pub(crate) fn write(
         &self,
         outputs: &SkyOutputs,
@@ -207,9 +212,22 @@ impl SkyTargets {
         stages: &mut Stages,
         summary: &mut Summary,
     ) -> Result<()> {
+        let map = |relief: &Raster<f32>, cell: f64| map_of(&measures[0], relief, cell, title);
+        self.write_with(outputs, measures, &map, stages, summary)
+    }
+
+    /// The same with maps of one's own, made of a relief and the side of its cells.
+    pub(crate) fn write_with(
+        &self,
+        outputs: &SkyOutputs,
+        measures: &[Measure<'_>],
+        map: &dyn Fn(&Raster<f32>, f64) -> belvedere::Result<Picture>,
+        stages: &mut Stages,
+        summary: &mut Summary,
+    ) -> Result<()> {
         let mut written: Vec<String> = Vec::new();
         for output in &outputs.output {
-            stages.run("writing", 0, |_| self.write_one(output, measures, title, summary))?;
+            stages.run("writing", 0, |_| self.write_one(output, measures, map, summary))?;
             written.push(output.display().to_string());
         }
         if let (Some(folder), Kind::Cells { ground, cloud }) = (&outputs.measures, &self.kind) {
@@ -224,13 +242,19 @@ impl SkyTargets {
         Ok(())
     }
 
-    fn write_one(&self, output: &Path, measures: &[Measure<'_>], title: &str, summary: &mut Summary) -> Result<()> {
+    fn write_one(
+        &self,
+        output: &Path,
+        measures: &[Measure<'_>],
+        map: &dyn Fn(&Raster<f32>, f64) -> belvedere::Result<Picture>,
+        summary: &mut Summary,
+    ) -> Result<()> {
         let first = &measures[0];
         match (&self.kind, extension(output).as_str()) {
             (Kind::Cells { ground, cloud }, "tif" | "tiff") => write_raster(output, first, ground, cloud),
             (Kind::Cells { ground, cloud }, "png") => {
                 let relief = highest_points(&cloud.positions, ground);
-                Ok(write_png(output, &map_of(first, &relief, ground.grid.cell, title)?)?)
+                Ok(write_png(output, &map(&relief, ground.grid.cell)?)?)
             }
             (Kind::Cells { cloud, .. }, _) => {
                 let rows: Vec<usize> =
@@ -286,12 +310,7 @@ fn span(measure: &Measure<'_>, values: &[f64]) -> [f64; 2] {
 }
 
 /// A measure as a map over shaded relief.
-pub(crate) fn map_of(
-    measure: &Measure<'_>,
-    relief: &Raster<f32>,
-    cell: f64,
-    title: &str,
-) -> belvedere::Result<belvedere::io::Picture> {
+pub(crate) fn map_of(measure: &Measure<'_>, relief: &Raster<f32>, cell: f64, title: &str) -> belvedere::Result<Picture> {
     let values: Vec<f64> = measure.values.iter().map(|&v| f64::from(v)).collect();
     let [low, high] = span(measure, &values);
     let ramp = ramp_colors(&(0..COLORS).map(|i| i as f32).collect::<Vec<f32>>());
@@ -355,7 +374,7 @@ fn write_faces(output: &Path, mesh: &Mesh, surface: &SurfacePieces, measures: &[
         sums
     };
     let object_areas = add_up(&areas);
-    let mut columns: Vec<(&'static str, Vec<f64>, usize)> = Vec::new();
+    let mut columns: Vec<(&str, Vec<f64>, usize)> = Vec::new();
     columns.push(("area_m2", object_areas.iter().chain(&areas).copied().collect(), 4));
     for measure in measures {
         let means = surface.face_means(measure.values);

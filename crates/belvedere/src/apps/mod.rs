@@ -5,6 +5,7 @@ pub mod horizon;
 pub mod isovist;
 pub mod landmark;
 pub mod profile;
+pub mod shadow;
 pub mod sky_view;
 pub mod solar_envelope;
 pub mod sun;

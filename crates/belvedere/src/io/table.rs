@@ -148,10 +148,10 @@ impl Cells<'_> {
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] unless all columns are equally long, [`Error::Io`].
-pub fn write_table(path: &Path, columns: &[(&'static str, Cells<'_>)]) -> Result<()> {
+pub fn write_table(path: &Path, columns: &[(&str, Cells<'_>)]) -> Result<()> {
     let expected = columns.first().map_or(0, |(_, cells)| cells.len());
-    if let Some((what, cells)) = columns.iter().find(|(_, cells)| cells.len() != expected) {
-        return Err(Error::LengthMismatch { what, expected, found: cells.len() });
+    if let Some((_, cells)) = columns.iter().find(|(_, cells)| cells.len() != expected) {
+        return Err(Error::LengthMismatch { what: "cells of a column", expected, found: cells.len() });
     }
     let print = |start: usize| {
         let mut text = Vec::new();

@@ -134,6 +134,13 @@ impl MedialScene {
         }
     }
 
+    /// Visible or unproven, for a line of sight from `target` along the unit vector `towards` without end of which it is known that no ball
+    /// blocks it.
+    #[must_use]
+    pub fn answer_unblocked_towards(&self, target: [f64; 3], towards: [f64; 3]) -> Answer {
+        self.answer_unblocked(target, towards, f64::INFINITY)
+    }
+
     /// Centre and radius of the balls that can block, in no particular order.
     pub(super) fn balls(&self) -> &[([f32; 3], f32)] {
         &self.balls

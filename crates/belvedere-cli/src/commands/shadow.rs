@@ -1,0 +1,298 @@
+//! `belvedere shadow`.
+
+use super::sights::{Proving, blockers};
+use super::sky_targets::{Measure, SkyTargets};
+use super::{check_output, is_same};
+use crate::arguments::{Global, Shadow, Usage};
+use crate::pipeline::{self, Points, Scene, flagged};
+use crate::progress::Stages;
+use crate::summary::{Summary, rounded};
+use anyhow::Result;
+use belvedere::apps::shadow::{Edges, lit_shares, sun_directions};
+use belvedere::apps::sun::{Site, SunPosition, Zone, sun_days, sun_position_with};
+use belvedere::apps::tree_light::through_crowns;
+use belvedere::io::{MapLegend, MapPicture, Picture, atomic, map_picture, write_apng, write_png};
+use belvedere::query::{Answer, MedialScene, UnprovenAs, visibility_matrix};
+use belvedere::raster::Raster;
+use belvedere::view::to_sun;
+use rayon::prelude::*;
+
+const SHADE_COLOR: [u8; 3] = [38, 52, 96];
+const HALF_COLOR: [u8; 3] = [140, 140, 160];
+const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
+const LIT_COLOR: [u8; 3] = [235, 235, 235];
+/// Most suns told one by one.
+const MOST_TOLD: usize = 5;
+/// Targets handed to a thread at once.
+const CHUNK: usize = 512;
+
+pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
+    check(arguments)?;
+    let mut stages = Stages::new(global);
+    let mut summary = Summary::default();
+    let points = if arguments.places.needs_points() { Points::Keep } else { Points::LetGo };
+    let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
+    let suns = suns(arguments, &scene, &mut summary)?;
+    let targets = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
+    let edges = if arguments.suns.soft { Edges::Soft } else { Edges::Hard };
+    // pulses are asked about one sun that is a point: of many it would take long
+    let proving = if suns.len() == 1 && edges == Edges::Hard { Proving::IfItDecides } else { Proving::Never };
+    if proving == Proving::Never && arguments.giving_way.unproven.is_some() {
+        return Err(Usage("--unproven belongs to one sun with hard edges".to_owned()).into());
+    }
+    let mut section = Summary::default();
+    let profile = arguments.scene.profile.into();
+    let (blockers, unproven) = blockers(&scene, profile, &arguments.giving_way, proving, &mut stages, &mut section)?;
+    let directions: Vec<Vec<[f64; 3]>> = suns.iter().map(|sun| sun_directions(sun.to_sun, edges)).collect();
+    let all = directions.concat();
+    section.add("directions", all.len());
+    summary.add("lines_of_sight", section);
+    let look = |scene: &MedialScene, name, stages: &mut Stages| -> Result<Vec<Vec<f32>>> {
+        let matrix = stages.run(name, targets.positions.len(), |progress| {
+            visibility_matrix(scene, &targets.positions, &all, progress)
+        })?;
+        let mut first = 0;
+        let mut shares = Vec::with_capacity(directions.len());
+        for of_sun in &directions {
+            shares.push(lit_shares(&matrix, first, of_sun, targets.normals.as_deref())?);
+            first += of_sun.len();
+        }
+        Ok(shares)
+    };
+    let mut lit = look(&blockers, "looking at the sun", &mut stages)?;
+    let doubts = doubts(&blockers, unproven, &suns, &lit, &targets, &mut stages);
+    if let Some(trees) = arguments.trees.of(&scene, blockers.params(), &mut summary)? {
+        let without = look(&trees.opaque, "looking through trees", &mut stages)?;
+        for ((lit, without), sun) in lit.iter_mut().zip(&without).zip(&suns) {
+            *lit = through_crowns(lit, without, trees.share(sun.date))?;
+        }
+    }
+    for shares in &mut lit {
+        for (share, position) in shares.iter_mut().zip(&targets.positions) {
+            if !position.iter().all(|v| v.is_finite()) {
+                *share = f32::NAN;
+            }
+        }
+    }
+    let measure = |name, values| Measure {
+        name,
+        description: "share of the sun, 0 shaded",
+        decimals: if edges == Edges::Soft { 4 } else { 2 },
+        range: Some([0.0, 1.0]),
+        values,
+    };
+    let mut measures: Vec<Measure<'_>> =
+        suns.iter().zip(&lit).map(|(sun, values)| measure(sun.column.as_str(), values.as_slice())).collect();
+    if let Some(doubts) = &doubts {
+        let description = "1: lit, but not proven";
+        measures.push(Measure { name: "unproven", description, decimals: 0, range: Some([0.0, 1.0]), values: doubts });
+    }
+    summary.add("shadow", targets.told(&measures[..measures.len().min(MOST_TOLD)]));
+    let picture = |number: usize, relief: &Raster<f32>, cell: f64| {
+        frame(&suns[number], &lit[number], doubts.as_deref().filter(|_| number == 0), relief, cell)
+    };
+    let pictured = |relief: &Raster<f32>, cell: f64| picture(0, relief, cell);
+    targets.write_with(&arguments.outputs, &measures, &pictured, &mut stages, &mut summary)?;
+    films(arguments, &targets, &suns, &picture, &mut stages)?;
+    summary.add_seconds(stages.into_seconds());
+    Ok(summary)
+}
+
+fn check(arguments: &Shadow) -> Result<()> {
+    arguments.places.check(&arguments.outputs)?;
+    let is_given = !arguments.suns.time.is_empty() || !arguments.suns.direction.is_empty() || arguments.when.is_given();
+    if !is_given {
+        return Err(Usage("say when: --time TIME, --date DAY, --from and --to, or --sun AZ,EL".to_owned()).into());
+    }
+    arguments.when.check(&arguments.sun)?;
+    for time in &arguments.suns.time {
+        arguments.sun.instant("--time", time)?;
+    }
+    for direction in &arguments.suns.direction {
+        if !(-90.0..=90.0).contains(&direction.0[1]) {
+            return Err(Usage(format!("--sun: the elevation {} must be -90 to 90 degrees", direction.0[1])).into());
+        }
+    }
+    if let Some(film) = &arguments.film {
+        check_output("--film", film, &["png", "apng"])?;
+        if arguments.outputs.output.iter().any(|output| is_same(output, film)) {
+            return Err(Usage(format!("{}: two results would be written there", film.display())).into());
+        }
+    }
+    if (arguments.film.is_some() || arguments.frames.is_some()) && !arguments.places.is_grid() {
+        return Err(Usage("--film and --frames belong to places on a grid".to_owned()).into());
+    }
+    Ok(())
+}
+
+/// A sun that is asked about.
+struct Sun {
+    to_sun: [f64; 3],
+    /// Name of its column.
+    column: String,
+    title: String,
+    /// Day of the year and latitude, where known.
+    date: Option<(u32, f64)>,
+}
+
+/// The suns that were typed, in their order.
+fn suns(arguments: &Shadow, scene: &Scene, summary: &mut Summary) -> Result<Vec<Sun>> {
+    let mut section = Summary::default();
+    let mut suns = Vec::new();
+    let mut below = 0;
+    let typed = &arguments.suns.direction;
+    for (number, direction) in (1..).zip(typed) {
+        let [azimuth, elevation] = direction.0;
+        let column = if typed.len() == 1 { "lit".to_owned() } else { format!("lit_{number}") };
+        let title = format!("Shadow, sun at azimuth {azimuth}, elevation {elevation} degrees");
+        below += usize::from(elevation <= 0.0);
+        suns.push(Sun { to_sun: to_sun(azimuth.to_radians(), elevation.to_radians()), column, title, date: None });
+    }
+    if typed.is_empty() {
+        let site = arguments.sun.site(scene, summary)?;
+        let mut times: Vec<&str> = arguments.suns.time.iter().map(String::as_str).collect();
+        times.extend(arguments.when.times());
+        let zone = arguments.sun.zone(&site, &times)?;
+        let refraction = arguments.sun.refraction()?;
+        let instants = instants(arguments, &site, &zone)?;
+        for &instant in &instants {
+            let position = flagged("--time", sun_position_with(&site, instant, refraction))?;
+            let column = if instants.len() == 1 { "lit".to_owned() } else { column_of(&zone, instant) };
+            below += usize::from(position.elevation <= 0.0);
+            if instants.len() <= MOST_TOLD {
+                section.add(&zone.display(instant), told(&position));
+            }
+            let date = zone.date_at(instant).ok().map(|date| (day_of_year(date), site.latitude));
+            let title = format!("Shadow, {}", zone.display(instant));
+            suns.push(Sun { to_sun: position.to_sun(&site), column, title, date });
+        }
+        section.add("clocks", zone.name());
+    }
+    section.add("suns", suns.len());
+    if below > 0 {
+        section.add("suns_below_the_horizon", below);
+    }
+    summary.add("sun", section);
+    Ok(suns)
+}
+
+/// The instants typed, or the middles of the steps of the days typed during which the sun is up.
+fn instants(arguments: &Shadow, site: &Site, zone: &Zone) -> Result<Vec<f64>> {
+    if !arguments.suns.time.is_empty() {
+        return arguments.suns.time.iter().map(|time| arguments.sun.instant("--time", time)).collect();
+    }
+    let Some(period) = arguments.when.period(&arguments.sun, site, zone)? else {
+        return Err(Usage("say when: --time, --date, --from and --to, or --sun".to_owned()).into());
+    };
+    let params = arguments.when.params(&arguments.sun)?;
+    let days = flagged("--step, --least-elevation or --from", sun_days(site, zone, &period, &params))?;
+    let steps: Vec<f64> =
+        days.iter().flat_map(|day| &day.steps).map(|step| f64::midpoint(step.start, step.end)).collect();
+    if steps.is_empty() {
+        return Err(Usage("the sun does not rise there in that time: nothing is lit".to_owned()).into());
+    }
+    Ok(steps)
+}
+
+/// Azimuth and elevation for people.
+fn told(position: &SunPosition) -> Summary {
+    let mut section = Summary::default();
+    section
+        .add("azimuth_deg", rounded(position.azimuth.to_degrees(), 4))
+        .add("elevation_deg", rounded(position.elevation.to_degrees(), 4));
+    section
+}
+
+/// The name of a column for an instant: its date and time by the clocks of the zone.
+fn column_of(zone: &Zone, instant: f64) -> String {
+    let text: String = zone.display(instant).chars().filter(|c| c.is_ascii_digit() || matches!(c, 'T' | ' ')).collect();
+    let digits: String = text.replace(['T', ' '], "_").chars().take(15).collect();
+    format!("lit_{digits}")
+}
+
+fn day_of_year(date: belvedere::apps::sun::Date) -> u32 {
+    let january = belvedere::apps::sun::Date::new(date.year(), 1, 1).map_or(0.0, |first| first.noon_utc());
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 365 days")]
+    let days = ((date.noon_utc() - january) / 86_400.0).round().max(0.0) as u32;
+    days + 1
+}
+
+/// 1 for each place that is lit but whose line of sight is not proven, where pulses are known and wanted.
+fn doubts(
+    blockers: &MedialScene,
+    unproven: UnprovenAs,
+    suns: &[Sun],
+    lit: &[Vec<f32>],
+    targets: &SkyTargets,
+    stages: &mut Stages,
+) -> Option<Vec<f32>> {
+    let ([sun], [lit]) = (suns, lit) else { return None };
+    if blockers.proof().is_none() || unproven == UnprovenAs::Visible {
+        return None;
+    }
+    let doubt = |(position, &lit): (&[f32; 3], &f32)| {
+        let is_doubtful =
+            lit > 0.0 && blockers.answer_unblocked_towards(position.map(f64::from), sun.to_sun) == Answer::Unproven;
+        f32::from(u8::from(is_doubtful))
+    };
+    Some(
+        stages.run("asking pulses", 0, |_| {
+            targets.positions.par_iter().zip(lit).with_min_len(CHUNK).map(doubt).collect()
+        }),
+    )
+}
+
+/// A map of the shadow of one sun.
+fn frame(
+    sun: &Sun,
+    lit: &[f32],
+    doubts: Option<&[f32]>,
+    relief: &Raster<f32>,
+    cell: f64,
+) -> belvedere::Result<Picture> {
+    let color = |(row, &share): (usize, &f32)| match share {
+        _ if doubts.and_then(|doubts| doubts.get(row)).is_some_and(|&doubt| doubt > 0.0) => Some(UNPROVEN_COLOR),
+        0.0 => Some(SHADE_COLOR),
+        share if share > 0.0 && share < 1.0 => {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two colours")]
+            let mixed =
+                |i: usize| (f32::from(SHADE_COLOR[i]) * (1.0 - share) + f32::from(LIT_COLOR[i]) * share).round() as u8;
+            Some(std::array::from_fn(mixed))
+        }
+        _ => None,
+    };
+    let colors: Vec<Option<[u8; 3]>> = lit.iter().enumerate().map(color).collect();
+    let mut meanings = vec![(LIT_COLOR, "lit"), (SHADE_COLOR, "in shadow")];
+    if lit.iter().any(|&share| share > 0.0 && share < 1.0) {
+        meanings.insert(1, (HALF_COLOR, "in part"));
+    }
+    if doubts.is_some() {
+        meanings.push((UNPROVEN_COLOR, "lit, not proven"));
+    }
+    let legend = MapLegend::Colors(&meanings);
+    map_picture(&MapPicture { relief, cell, colors: &colors, marks: &[], title: &sun.title, legend })
+}
+
+/// Writes a picture of each sun, after each other or apart.
+fn films(
+    arguments: &Shadow,
+    targets: &SkyTargets,
+    suns: &[Sun],
+    picture: &(dyn Fn(usize, &Raster<f32>, f64) -> belvedere::Result<Picture> + Sync),
+    stages: &mut Stages,
+) -> Result<()> {
+    let (Some(ground), Some(relief)) = (targets.ground(), targets.relief()) else { return Ok(()) };
+    if let Some(folder) = &arguments.frames {
+        atomic::make_folder(folder)?;
+        for (number, sun) in suns.iter().enumerate() {
+            let picture = picture(number, &relief, ground.grid.cell)?;
+            stages.run("writing", 0, |_| write_png(&folder.join(format!("{}.png", sun.column)), &picture))?;
+        }
+    }
+    if let Some(film) = &arguments.film {
+        let frames: belvedere::Result<Vec<Picture>> =
+            (0..suns.len()).map(|number| picture(number, &relief, ground.grid.cell)).collect();
+        stages.run("writing film", 0, |_| write_apng(film, &frames?, arguments.seconds))?;
+    }
+    Ok(())
+}
