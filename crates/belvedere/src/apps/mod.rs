@@ -1,6 +1,7 @@
 //! What users ask of a scene: each application puts questions to [`crate::query`] and sums up the answers.
 
 pub mod horizon;
+pub mod irradiance;
 pub mod isovist;
 pub mod landmark;
 pub mod profile;
