@@ -1,11 +1,13 @@
 //! What can be typed: flags as entered. What they build is made in `pipeline` and in each command.
 
 mod observers;
+mod sky;
 mod surroundings;
 mod towns;
 mod view;
 
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Viewshed};
+pub(crate) use sky::{FacingChoice, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
 pub(crate) use surroundings::{BelowChoice, Eyes, Horizon, Isovist, Landmark, MeshTargets, NorthChoice};
 pub(crate) use towns::{Compare, PatternChoice, ScannerChoice, Simulate};
 pub(crate) use view::{SizeChoice, ViewChoice};
@@ -128,6 +130,12 @@ pub(crate) enum Command {
         after_help = "Exact for the balls: what floats above a gap counts. The elevation is that above which nothing stands up to the zenith. The eye may lie on a surface: balls give way to it by 0.2 m. Beyond the rim of the cloud nothing is known.\n\nPVGIS reads .txt (one height a line, from north clockwise, equal steps); pvlib's users read .csv. Both count from true north: --north true.\n\nExamples:\n  belvedere horizon demo/town.laz --eye 154980,462970 -o demo/horizon.csv -o demo/horizon.png\n  belvedere horizon demo/balls.npz --eye 154980,462970,12 --step 7.5 --north true -o demo/horizon.txt"
     )]
     Horizon(Horizon),
+    /// Measure how much of the sky places see: the sky view factor and sky openness
+    #[command(
+        name = "sky-view",
+        after_help = "Two measures that are often mixed up, both 0 to 1. sky_view_factor is weighted by the cosine to the surface, (1/π) ∫ cos θ dΩ: the share of the light of an even sky that arrives, as energy models want it. sky_openness is the plain share of the hemisphere above the horizon, (1/2π) ∫ dΩ. Before a free wall both are ½.\n\nBalls alone are asked. Beyond the rim of the cloud nothing stands in the way.\n\nExamples:\n  belvedere sky-view demo/town.laz --cell 1 -o demo/sky.tif -o demo/sky.png\n  belvedere sky-view demo/town.laz --self --directions 145 -o demo/sky.laz\n  belvedere sky-view demo/balls.npz --targets demo/town.obj --spacing 2 --directions 145 -o demo/sky-of-faces.csv"
+    )]
+    SkyView(SkyView),
     /// Hold every method against exact answers on the same places: how right each is, and what it costs
     #[command(
         after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, over two observers, or over 40 people in streets (4 for methods that build a hull or draw shadow maps for each eye), with 95 % intervals from resampled tiles of 25 m.\n\nMethods: paper-cone, paper-sphere, union, hidden-points, hidden-points-robust, surfels, depth-splats, elliptical-splats, implicit-surface, voxels-05, voxels-10, dsm, tin, tau, carved (and, only when named, carved-without-RULE); for each model also mesh-NAME, shadow-map-NAME and dsm-NAME, and for the first paper-cone-NAME. Simulated places have the models blocks (LoD1), no-trees and exact. The project's docs/methods has a page on each.\n\nA thorough comparison takes several places and seeds, such as --presets village,old-town,towers --seeds 1,2,3.\n\nExample:\n  belvedere compare --extent 100 --targets 2000 --methods paper-cone,carved -o compared"

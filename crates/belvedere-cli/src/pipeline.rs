@@ -149,6 +149,15 @@ pub(crate) struct Prepared {
 }
 
 impl Prepared {
+    /// Normals for the `count` points of the cloud as read, zero for those that were cleaned away.
+    fn normals_of_rows(&self, count: usize) -> Vec<[f32; 3]> {
+        let mut normals = vec![[0.0; 3]; count];
+        for (&row, &normal) in self.kept.iter().zip(self.oriented.normals()) {
+            normals[row as usize] = normal;
+        }
+        normals
+    }
+
     /// What pulses proved empty, as ball files keep it, where carving was asked for and pulses are known rather than assumed.
     pub(crate) fn pulses(&self) -> Option<NeedleColumns> {
         self.carving.as_ref().filter(|input| !input.is_assumed).map(|input| input.needles.to_columns())
@@ -279,6 +288,8 @@ pub(crate) struct Scene {
     pub(crate) cloud: PointCloud,
     /// Lowest and highest local corner of the points that balls were made from.
     pub(crate) bounds: ([f32; 3], [f32; 3]),
+    /// Outward unit normals of the points that are kept, (N, 3): zero where a point has none.
+    pub(crate) normals: Option<Vec<[f32; 3]>>,
     /// What pulses proved empty, where balls were carved and the file kept it.
     pub(crate) pulses: Option<NeedleColumns>,
     /// Rows of the files that reading left out.
@@ -334,7 +345,8 @@ pub(crate) fn scene(
     // as in a ball file, so that rows of balls mean the same
     let balls = shrink_side(&prepared, Side::Interior, params, stages, summary)?.balls.shrunk();
     let pulses = prepared.pulses();
-    Ok(Scene { balls, cloud, bounds: prepared.bounds, pulses, left_out })
+    let normals = (points == Points::Keep).then(|| prepared.normals_of_rows(cloud.len()));
+    Ok(Scene { balls, cloud, bounds: prepared.bounds, normals, pulses, left_out })
 }
 
 /// Flags that say how to make balls are of no use where they are made already.
@@ -382,7 +394,7 @@ fn scene_of_saved(saved: SavedBalls, path: &Path) -> Result<Scene> {
     };
     let pulses =
         saved.pulses.map(|SavedPulses { starts, slopes, lengths, top }| NeedleColumns { starts, slopes, lengths, top });
-    Ok(Scene { balls, cloud, bounds, pulses, left_out: ReadReport::default() })
+    Ok(Scene { balls, cloud, bounds, normals: None, pulses, left_out: ReadReport::default() })
 }
 
 /// Lowest and highest corner of a cloud that has points.

@@ -118,7 +118,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
         "ply" => {
             let shares: Vec<f64> = faces.iter().map(SeenArea::visible_share).collect();
             let unit = scene.cloud.crs.metres_per_unit_xyz();
-            write_mesh_values(output, &mesh, unit, "visible_share", &shares)
+            write_mesh_values(output, &mesh, unit, "visible_share", &shares, [0.0, 1.0])
         }
         _ => write_rows(output, &mesh, &faces),
     })?;
@@ -178,6 +178,6 @@ fn write_rows(output: &Path, mesh: &Mesh, faces: &[SeenArea]) -> belvedere::Resu
 }
 
 /// A name as a cell of a table.
-fn quoted(name: &str) -> String {
+pub(super) fn quoted(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }

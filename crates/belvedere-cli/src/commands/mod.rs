@@ -14,6 +14,8 @@ mod normals;
 mod query;
 mod sights;
 mod simulate;
+mod sky_targets;
+mod sky_view;
 mod surroundings;
 mod trajectory;
 mod viewshed;
@@ -46,6 +48,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::Landmark(arguments) => landmark::run(arguments, global),
         Command::Isovist(arguments) => isovist::run(arguments, global),
         Command::Horizon(arguments) => horizon::run(arguments, global),
+        Command::SkyView(arguments) => sky_view::run(arguments, global),
         Command::Compare(arguments) => compare::run(arguments, global),
         Command::Completions { shell } => {
             let mut script = Vec::new();

@@ -17,6 +17,7 @@ use belvedere::query::{
     answer_views, query_points, random_targets,
 };
 use belvedere::view::View;
+use std::path::Path;
 
 pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     if let Some(path) = arguments.targets.targets.as_deref().filter(|path| mesh_targets::is_mesh(path)) {
@@ -178,43 +179,53 @@ fn targets(
         return Ok(frame(stages.run("spreading targets", 0, |_| random_targets(low, high, count, seed))));
     }
     if let Some(path) = &arguments.targets.targets {
-        let options = ReadOptions { crs: arguments.scene.input.crs.clone() };
-        let (mut cloud, report) =
-            stages.run("reading targets", 0, |_| read_cloud(std::slice::from_ref(path), &options))?;
-        pipeline::check_every_row(&report)?;
-        summary.add("reading_targets", pipeline::reading_section(&report));
-        // a table of targets says nothing of its unit: it is in the coordinates of the scene's file
-        let scale = scene.crs.metres_per_unit_xyz();
-        let given = cloud.crs.metres_per_unit_xyz();
-        // some files tell their unit without naming a system
-        let known = cloud.crs != Crs::default();
-        if is_known(&cloud) && is_known(&scene) && !cloud.crs.same_system(&scene.crs) {
-            bail!(
-                "{}: the targets are in {}, but the scene is in {}; convert one of them",
-                path.display(),
-                cloud.crs.describe(),
-                scene.crs.describe()
-            );
-        }
-        let positions = cloud
-            .positions
-            .iter()
-            .map(|p| {
-                let metres: [f64; 3] = std::array::from_fn(|i| {
-                    let value = f64::from(p[i]) + cloud.origin[i];
-                    if known { value } else { value / given[i] * scale[i] }
-                });
-                belvedere::cloud::to_local(metres, scene.origin)
-            })
-            .collect();
-        cloud.positions = positions;
-        cloud.origin = scene.origin;
-        cloud.crs = scene.crs.clone();
-        cloud.scanner_positions = Vec::new();
-        return Ok(cloud);
+        return points_of_file(path, arguments.scene.input.crs.clone(), &scene, stages, summary);
     }
     if scene.is_empty() {
         return Err(Usage("--self needs the cloud itself; a ball file holds no points".to_owned()).into());
     }
     Ok(scene)
+}
+
+/// The points of a file as a cloud in the frame of the scene, which is in `crs` where the file says nothing.
+pub(super) fn points_of_file(
+    path: &Path,
+    crs: Option<String>,
+    scene: &PointCloud,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<PointCloud> {
+    let options = ReadOptions { crs };
+    let (mut cloud, report) = stages.run("reading targets", 0, |_| read_cloud(&[path.to_owned()], &options))?;
+    pipeline::check_every_row(&report)?;
+    summary.add("reading_targets", pipeline::reading_section(&report));
+    // a table of targets says nothing of its unit: it is in the coordinates of the scene's file
+    let scale = scene.crs.metres_per_unit_xyz();
+    let given = cloud.crs.metres_per_unit_xyz();
+    // some files tell their unit without naming a system
+    let known = cloud.crs != Crs::default();
+    if is_known(&cloud) && is_known(scene) && !cloud.crs.same_system(&scene.crs) {
+        bail!(
+            "{}: the targets are in {}, but the scene is in {}; convert one of them",
+            path.display(),
+            cloud.crs.describe(),
+            scene.crs.describe()
+        );
+    }
+    let positions = cloud
+        .positions
+        .iter()
+        .map(|p| {
+            let metres: [f64; 3] = std::array::from_fn(|i| {
+                let value = f64::from(p[i]) + cloud.origin[i];
+                if known { value } else { value / given[i] * scale[i] }
+            });
+            belvedere::cloud::to_local(metres, scene.origin)
+        })
+        .collect();
+    cloud.positions = positions;
+    cloud.origin = scene.origin;
+    cloud.crs = scene.crs.clone();
+    cloud.scanner_positions = Vec::new();
+    Ok(cloud)
 }

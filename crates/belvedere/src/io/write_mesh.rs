@@ -11,8 +11,9 @@ use crate::{Error, Mesh, Result};
 /// Colour of faces without a value.
 const NO_VALUE: [u8; 3] = [128; 3];
 
-/// Writes `mesh` as binary PLY in the unit of its file, which `metres_per_unit` (x, y, z) tells, with a colour for each of `values`, (T) 0 to 1,
-/// dark violet over green to yellow, and the value itself as the property `name`; grey and NaN where a value is not finite.
+/// Writes `mesh` as binary PLY in the unit of its file, which `metres_per_unit` (x, y, z) tells, with a colour for each of `values`, (T),
+/// dark violet at the first of `range` over green to yellow at its second, and the value itself as the property `name`; grey and NaN
+/// where a value is not finite.
 ///
 /// Every triangle has three vertices of its own, which bear its colour and value: many programs know neither of faces.
 ///
@@ -25,6 +26,7 @@ pub fn write_mesh_values(
     metres_per_unit: [f64; 3],
     name: &str,
     values: &[f64],
+    range: [f64; 2],
 ) -> Result<()> {
     if values.len() != mesh.triangles.len() {
         return Err(Error::LengthMismatch {
@@ -59,7 +61,7 @@ pub fn write_mesh_values(
         let mut write = |bytes: &[u8]| output.write_all(bytes).map_err(Error::io(path));
         write(header.as_bytes())?;
         for &(corners, value) in &faces {
-            let color = if value.is_finite() { ramp(value) } else { NO_VALUE };
+            let color = if value.is_finite() { ramp((value - range[0]) / (range[1] - range[0])) } else { NO_VALUE };
             for corner in corners {
                 for axis in 0..3 {
                     write(&(corner[axis] / metres_per_unit[axis]).to_le_bytes())?;

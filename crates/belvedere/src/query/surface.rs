@@ -158,6 +158,20 @@ impl SurfacePieces {
         }
         areas
     }
+
+    /// Mean of `values`, one for each piece, over the area of each face, (faces). Pieces whose value is NaN do not count; NaN for a face
+    /// without any.
+    #[must_use]
+    pub fn face_means(&self, values: &[f32]) -> Vec<f64> {
+        let mut sums = vec![[0.0, 0.0]; self.face_count];
+        for (piece, &value) in self.pieces.iter().zip(values).filter(|(_, value)| !value.is_nan()) {
+            if let Some(sum) = sums.get_mut(piece.face as usize) {
+                sum[0] += f64::from(piece.area) * f64::from(value);
+                sum[1] += f64::from(piece.area);
+            }
+        }
+        sums.into_iter().map(|[sum, area]| sum / area).collect()
+    }
 }
 
 fn invalid<T>(name: &'static str, value: String, expected: &'static str) -> Result<T> {

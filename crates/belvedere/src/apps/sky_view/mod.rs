@@ -10,6 +10,11 @@ use crate::{Error, Result};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
+/// Height above the ground of places asked about the sun and the sky unless said otherwise, metres.
+pub const SKY_TARGET_HEIGHT: f64 = 0.1;
+/// Number of directions of [`SkyDirections::even`] unless said otherwise: errors of half a percent at most streets.
+pub const SKY_DIRECTIONS: usize = 577;
+
 /// Targets handed to a thread at once.
 const CHUNK: usize = 256;
 
