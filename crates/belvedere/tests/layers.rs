@@ -32,7 +32,7 @@ const LEVELS: [(&str, u8); 24] = [
 ];
 
 /// Crates that only one file or folder may name, below `src`.
-const ONE_HOME: [(&str, &str); 16] = [
+const ONE_HOME: [(&str, &str); 18] = [
     ("las::", "io/"),
     ("laz::", "io/laz.rs"),
     ("npyz::", "io/"),
@@ -49,6 +49,8 @@ const ONE_HOME: [(&str, &str); 16] = [
     ("rstar::", "normals/"),
     ("nalgebra::", "pulses/"),
     ("obvhs::", "ray_index.rs"),
+    ("solar_positioning::", "apps/sun/position.rs"),
+    ("jiff::", "apps/sun/time.rs"),
 ];
 
 fn level(module: &str) -> Option<u8> {

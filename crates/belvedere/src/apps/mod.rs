@@ -6,4 +6,5 @@ pub mod isovist;
 pub mod landmark;
 pub mod profile;
 pub mod sky_view;
+pub mod sun;
 pub mod viewshed;
