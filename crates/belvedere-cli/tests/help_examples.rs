@@ -4,7 +4,7 @@ mod common;
 
 use common::{Workplace, house};
 
-const COMMANDS: [&str; 16] = [
+const COMMANDS: [&str; 17] = [
     "demo",
     "simulate",
     "info",
@@ -18,6 +18,7 @@ const COMMANDS: [&str; 16] = [
     "landmark",
     "isovist",
     "horizon",
+    "irradiance",
     "compare",
     "completions",
     "man",

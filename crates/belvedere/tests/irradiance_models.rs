@@ -117,12 +117,13 @@ fn patches_are_brightest_around_the_sun_of_a_clear_sky_and_above_under_clouds() 
     // across from the sun a clear sky is several times darker than beside it
     let across = nearest([-sun[0], -sun[1], sun[2]]);
     assert!(radiance(&patches, brightest) > 5.0 * radiance(&patches, across));
-    // overcast: the zenith is about three times as bright as the horizon (Moon & Spencer 1942), whatever the azimuth
+    // overcast: at this brightness, 0.17, the table has a = 0.87 and b = -0.57, so that the gradation is 1 + a exp b = 1.49 at the zenith
+    // and 1 at the horizon; what is added around the sun weighs little
     let overcast = Irradiance { ghi: 150.0, dni: 0.0, dhi: 150.0 };
     patch_radiation(&sky, &overcast, sun, zenith, 1366.0, &mut patches);
     let up = radiance(&patches, nearest([0.0, 0.0, 1.0]));
     let low = radiance(&patches, nearest([1.0, 0.0, 0.06]));
-    assert!((1.5..6.0).contains(&(up / low)), "{}", up / low);
+    assert!((1.3..1.7).contains(&(up / low)), "{}", up / low);
 }
 
 #[test]

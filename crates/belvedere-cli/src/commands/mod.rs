@@ -6,6 +6,7 @@ mod demo;
 mod depth_map;
 mod horizon;
 mod info;
+mod irradiance;
 mod isovist;
 mod landmark;
 mod line_of_sight;
@@ -49,6 +50,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::Isovist(arguments) => isovist::run(arguments, global),
         Command::Horizon(arguments) => horizon::run(arguments, global),
         Command::SkyView(arguments) => sky_view::run(arguments, global),
+        Command::Irradiance(arguments) => irradiance::run(arguments, global),
         Command::Compare(arguments) => compare::run(arguments, global),
         Command::Completions { shell } => {
             let mut script = Vec::new();

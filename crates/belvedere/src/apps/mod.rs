@@ -5,6 +5,7 @@ pub mod irradiance;
 pub mod isovist;
 pub mod landmark;
 pub mod profile;
+pub mod roof_planes;
 pub mod sky_view;
 pub mod sun;
 pub mod viewshed;

@@ -5,7 +5,7 @@ pub(super) const DAY: f64 = 86_400.0;
 
 /// A day of the calendar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Date {
+pub struct CalendarDay {
     /// Year.
     pub year: i32,
     /// Month, 1 to 12.
@@ -14,7 +14,7 @@ pub struct Date {
     pub day: u8,
 }
 
-impl Date {
+impl CalendarDay {
     /// The date, or `None` where the calendar has no such day or the year is not 1 to 9999.
     #[must_use]
     pub fn new(year: i32, month: u8, day: u8) -> Option<Self> {
@@ -37,7 +37,7 @@ impl Date {
 /// # Source
 /// The year is taken to begin in March, so that its months before the last have 153 days in five: Richards 1998, Mapping Time.
 #[must_use]
-pub fn unix_day(date: Date) -> i64 {
+pub fn unix_day(date: CalendarDay) -> i64 {
     let (month, day) = (i64::from(date.month), i64::from(date.day));
     let march_year = i64::from(date.year) - i64::from(month < 3);
     let from_march = (month + 9) % 12;
@@ -55,7 +55,7 @@ pub fn day_of_year(unix_s: f64) -> Option<u16> {
     }
     #[expect(clippy::cast_possible_truncation, reason = "days of ten thousand years")]
     let (day, guess) = (day as i64, (1970.0 + day / 365.2425).floor() as i32);
-    let first = |year: i32| Date::new(year, 1, 1).map(unix_day);
+    let first = |year: i32| CalendarDay::new(year, 1, 1).map(unix_day);
     // the guess is off by one at most, since leap days are at most two days off their mean
     let start = [guess + 1, guess, guess - 1].into_iter().filter_map(first).find(|&start| start <= day)?;
     u16::try_from(day - start + 1).ok()
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn days_count_as_the_calendar_does() {
-        let date = |year, month, day| Date::new(year, month, day).unwrap();
+        let date = |year, month, day| CalendarDay::new(year, month, day).unwrap();
         // known days: the epoch, a leap day of a year divisible by 400, the start of GPS time (315 964 800 s)
         assert_eq!(unix_day(date(1970, 1, 1)), 0);
         assert_eq!(unix_day(date(2000, 2, 29)), 11_016);
@@ -79,7 +79,7 @@ mod tests {
             let mut of_year = 0;
             for month in 1..=12 {
                 for number in 1..=31 {
-                    let Some(date) = Date::new(year, month, number) else { continue };
+                    let Some(date) = CalendarDay::new(year, month, number) else { continue };
                     of_year += 1;
                     assert_eq!(unix_day(date), day, "{date:?}");
                     assert_eq!(day_of_year(day as f64 * DAY + 1.0), Some(of_year), "{date:?}");
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn days_that_are_not_are_none() {
         for (year, month, day) in [(2023, 2, 29), (1900, 2, 29), (2024, 13, 1), (2024, 0, 1), (2024, 4, 31), (0, 1, 1)] {
-            assert_eq!(Date::new(year, month, day), None, "{year} {month} {day}");
+            assert_eq!(CalendarDay::new(year, month, day), None, "{year} {month} {day}");
         }
         assert_eq!(day_of_year(f64::NAN), None);
         assert_eq!(day_of_year(1e18), None);

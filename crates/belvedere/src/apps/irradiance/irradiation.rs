@@ -1,7 +1,8 @@
 //! The energy that planes get over a period.
 
 use super::period::{PeriodRadiation, Surroundings};
-use crate::query::VisibilityMatrix;
+use crate::progress::Progress;
+use crate::query::{MedialScene, VisibilityMatrix, visibility_matrix};
 use crate::vector::dot;
 use crate::{Error, Result};
 use rayon::prelude::*;
@@ -10,6 +11,8 @@ use rayon::prelude::*;
 const CHUNK: usize = 64;
 /// Height, as a sine, below which patches of the sky stand for its horizon: Perez et al. 1990 take a band of 6.5 degrees.
 const HORIZON_BAND: f64 = 0.1132;
+/// Bits of visibility held at a time: half a gigabyte, so that a year of suns for millions of targets needs no more.
+const MOST_BITS: usize = 1 << 32;
 
 /// Energy that a plane gets over a period, kWh/m².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -37,6 +40,10 @@ impl Irradiation {
         if self.unshaded > 0.0 { (1.0 - self.total() / self.unshaded).clamp(0.0, 1.0) } else { 0.0 }
     }
 
+    fn unknown() -> Self {
+        Self { beam: f64::NAN, diffuse: f64::NAN, reflected: f64::NAN, unshaded: f64::NAN }
+    }
+
     fn add(&mut self, other: &Self) {
         self.beam += other.beam;
         self.diffuse += other.diffuse;
@@ -44,7 +51,7 @@ impl Irradiation {
         self.unshaded += other.unshaded;
     }
 
-    fn scaled(mut self, factor: f64) -> Self {
+    pub(super) fn scaled(mut self, factor: f64) -> Self {
         for value in [&mut self.beam, &mut self.diffuse, &mut self.reflected, &mut self.unshaded] {
             *value *= factor;
         }
@@ -59,6 +66,38 @@ impl Irradiation {
             sum
         })
     }
+}
+
+/// The energy of each of `targets`, (M, 3) local metres, among the balls of `scene`: rows as those of [`irradiation`], NaN for a target that is
+/// not finite. Asks for as many targets at a time as fit into half a gigabyte of bits. Progress counts targets.
+///
+/// # Errors
+/// Those of [`visibility_matrix`] and [`irradiation`].
+pub fn scene_irradiation(
+    scene: &MedialScene,
+    targets: &[[f32; 3]],
+    normals: Option<&[[f32; 3]]>,
+    radiation: &PeriodRadiation,
+    progress: Progress<'_>,
+) -> Result<Vec<Irradiation>> {
+    if let Some(found) = normals.map(<[_]>::len).filter(|&found| found != targets.len()) {
+        return Err(Error::LengthMismatch { what: "normals of targets", expected: targets.len(), found });
+    }
+    let directions = radiation.directions();
+    let at_once = (MOST_BITS / directions.len().max(1)).max(1);
+    let mut sums = Vec::with_capacity(targets.len() * radiation.group_count());
+    for (chunk, places) in targets.chunks(at_once).enumerate() {
+        let matrix = visibility_matrix(scene, places, &directions, progress)?;
+        let first = chunk * at_once;
+        let own = normals.map(|normals| &normals[first..first + places.len()]);
+        sums.extend(irradiation(&matrix, own, radiation)?);
+    }
+    for (sums, target) in sums.chunks_mut(radiation.group_count()).zip(targets) {
+        if !target.iter().all(|v| v.is_finite()) {
+            sums.fill(Irradiation::unknown());
+        }
+    }
+    Ok(sums)
 }
 
 /// The energy of each target of `matrix`, whose directions must be those of [`PeriodRadiation::directions`]: (M) rows of
@@ -98,8 +137,7 @@ pub(super) fn on_plane(
     groups: &mut [Irradiation],
 ) {
     if !(dot(normal, normal) > 0.5) {
-        let nothing = f64::NAN;
-        groups.fill(Irradiation { beam: nothing, diffuse: nothing, reflected: nothing, unshaded: nothing });
+        groups.fill(Irradiation::unknown());
         return;
     }
     groups.fill(Irradiation::default());

@@ -1,0 +1,117 @@
+//! The cells of a plane: where panels would lie.
+
+use super::fit::{PlaneFit, axes};
+use crate::raster::Raster;
+use crate::vector::{dot, sub};
+
+/// Cells along one side beyond which a plane is none of a building.
+const MOST_CELLS: f64 = 20_000.0;
+
+/// Square cells in a plane, rows along its contour lines from its lower rim up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlaneCells {
+    /// Side of a cell, metres.
+    pub cell: f64,
+    /// Lower corner of the first cell, local metres.
+    pub corner: [f64; 3],
+    /// Unit vector along the rows.
+    pub along: [f64; 3],
+    /// Unit vector from row to row, up the slope.
+    pub up: [f64; 3],
+    /// Which cells hold points of the plane, or lie between some that do; row 0 lowest.
+    pub filled: Raster<bool>,
+}
+
+impl PlaneCells {
+    /// The cells of a plane that hold some of `rows` among `points`.
+    pub(super) fn of(points: &[[f32; 3]], rows: &[u32], plane: &PlaneFit, cell: f64) -> Self {
+        let [along, up] = axes(plane.normal);
+        let flat: Vec<[f64; 2]> = rows
+            .iter()
+            .map(|&row| {
+                let offset = sub(points[row as usize].map(f64::from), plane.middle);
+                [dot(offset, along), dot(offset, up)]
+            })
+            .collect();
+        let least = |axis: usize| flat.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min);
+        let most = |axis: usize| flat.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max);
+        // a cell is left free around, so that the outline closes
+        let low = [0, 1].map(least);
+        let span = [0, 1].map(|axis| most(axis) - low[axis]);
+        let cell = cell.max(span[0].max(span[1]) / MOST_CELLS);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "20 000 cells at most")]
+        let [width, height] = span.map(|span| (span / cell).floor() as usize + 1);
+        let mut filled = Raster::filled(width, height, false);
+        for [u, v] in &flat {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not below zero, 20 000 at most")]
+            let (column, row) = (((u - low[0]) / cell) as usize, ((v - low[1]) / cell) as usize);
+            if let Some(value) = filled.values_mut().get_mut(row.min(height - 1) * width + column.min(width - 1)) {
+                *value = true;
+            }
+        }
+        let filled = without_gaps(&filled);
+        let corner = [0, 1, 2].map(|i| plane.middle[i] + low[0] * along[i] + low[1] * up[i]);
+        Self { cell, corner, along, up, filled }
+    }
+
+    /// Middles of the filled cells, local metres, row by row, and the row of each.
+    #[must_use]
+    pub fn middles(&self) -> Vec<([f64; 3], usize)> {
+        let width = self.filled.width();
+        let filled = self.filled.values().iter().enumerate().filter(|(_, filled)| **filled);
+        filled
+            .map(|(i, _)| (self.place([(i % width) as f64 + 0.5, (i / width) as f64 + 0.5]), i / width))
+            .collect()
+    }
+
+    /// Local metres of a place given in cells from the corner, along the rows and up.
+    #[must_use]
+    pub fn place(&self, [columns, rows]: [f64; 2]) -> [f64; 3] {
+        let (u, v) = (columns * self.cell, rows * self.cell);
+        [0, 1, 2].map(|i| self.corner[i] + u * self.along[i] + v * self.up[i])
+    }
+
+    /// Area of what the cells cover, m²: a cell that a rim crosses reaches over it by half on average, whichever way the rim runs, so that half
+    /// the length of their outline times their side is taken off.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        let is_filled = |column: usize, row: usize| self.filled.get(column, row).unwrap_or(false);
+        let (mut count, mut sides, mut corners) = (0.0, 0.0, 0.0);
+        for row in 0..=self.filled.height() {
+            for column in 0..=self.filled.width() {
+                let here = is_filled(column, row);
+                let left = column > 0 && is_filled(column - 1, row);
+                let below = row > 0 && is_filled(column, row - 1);
+                let across = column > 0 && row > 0 && is_filled(column - 1, row - 1);
+                count += f64::from(u8::from(here));
+                sides += f64::from(u8::from(here != left)) + f64::from(u8::from(here != below));
+                // turns of the outline: four make a rim, and four the other way a hole
+                corners += match u8::from(here) + u8::from(left) + u8::from(below) + u8::from(across) {
+                    1 => 0.25,
+                    3 => -0.25,
+                    _ => 0.0,
+                };
+            }
+        }
+        let area: f64 = count - 0.5 * sides + corners;
+        area.max(0.25 * count) * self.cell * self.cell
+    }
+}
+
+/// Cells with the gaps filled that chance leaves between sparse points: empty ones with at least three of four neighbours filled.
+fn without_gaps(cells: &Raster<bool>) -> Raster<bool> {
+    let mut filled = cells.clone();
+    let width = cells.width();
+    for (i, value) in filled.values_mut().iter_mut().enumerate() {
+        let (column, row) = (i % width, i / width);
+        let at = |column: Option<usize>, row: Option<usize>| {
+            u8::from(column.zip(row).and_then(|(column, row)| cells.get(column, row)).unwrap_or(false))
+        };
+        let beside = at(column.checked_sub(1), Some(row))
+            + at(Some(column + 1), Some(row))
+            + at(Some(column), row.checked_sub(1))
+            + at(Some(column), Some(row + 1));
+        *value |= beside >= 3;
+    }
+    filled
+}
