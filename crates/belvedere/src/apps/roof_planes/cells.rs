@@ -71,10 +71,13 @@ impl PlaneCells {
         [0, 1, 2].map(|i| self.corner[i] + u * self.along[i] + v * self.up[i])
     }
 
-    /// Area of what the cells cover, m²: a cell that a rim crosses reaches over it by half on average, whichever way the rim runs, so that half
-    /// the length of their outline times their side is taken off.
+    /// Area that `point_count` points drawn evenly from it would make these cells of, m².
+    ///
+    /// Of a cell that a rim crosses, a share f lies within, which is anything from 0 to 1 whichever way the rim runs; it holds a point with a
+    /// chance of 1 - exp(-n f), n being the points of a whole cell. On average such cells reach k = 1/2 - (1 - exp(-n))/n of their side over
+    /// the rim, which Steiner's formula takes off again.
     #[must_use]
-    pub fn area(&self) -> f64 {
+    pub fn area(&self, point_count: usize) -> f64 {
         let is_filled = |column: usize, row: usize| self.filled.get(column, row).unwrap_or(false);
         let (mut count, mut sides, mut corners) = (0.0, 0.0, 0.0);
         for row in 0..=self.filled.height() {
@@ -93,7 +96,9 @@ impl PlaneCells {
                 };
             }
         }
-        let area: f64 = count - 0.5 * sides + corners;
+        let of_cell = point_count as f64 / f64::max(count, 1.0);
+        let over = if of_cell > 0.0 { 0.5 - (1.0 - (-of_cell).exp()) / of_cell } else { 0.0 };
+        let area: f64 = count - over * sides + 4.0 * over * over * corners;
         area.max(0.25 * count) * self.cell * self.cell
     }
 }

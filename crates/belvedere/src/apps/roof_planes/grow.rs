@@ -17,13 +17,16 @@ const ROUNDS: usize = 2;
 const LEAST_SHARE: f64 = 0.5;
 
 const FREE: u32 = u32::MAX;
+/// Of a plane that is no roof: no seed, but may join one that is.
+const DROPPED: u32 = u32::MAX - 1;
 
-/// Rows of the points of each plane, rising, and its fit.
+/// Rows of the points of each plane that `is_roof`, rising, and its fit.
 pub(super) fn regions(
     points: &[[f32; 3]],
     index: &NeighborIndex,
     normals: &Normals,
     params: &RoofPlaneParams,
+    is_roof: impl Fn(&[u32], &PlaneFit) -> bool,
 ) -> Vec<(Vec<u32>, PlaneFit)> {
     let mut owner = vec![FREE; points.len()];
     let mut regions = Vec::new();
@@ -38,7 +41,11 @@ pub(super) fn regions(
         let mut region = Region { points, index, normals, params, owner: &mut owner, number };
         let Some((mut rows, fit)) = region.grow_again(seed, start) else { continue };
         rows.sort_unstable();
-        regions.push((rows, fit));
+        if is_roof(&rows, &fit) {
+            regions.push((rows, fit));
+        } else {
+            rows.iter().for_each(|&row| owner[row as usize] = DROPPED);
+        }
     }
     absorb(points, index, params, &mut owner, &mut regions);
     regions
@@ -58,13 +65,13 @@ fn absorb(
     let mut is_member = vec![false; regions.len()];
     let mut joined: Vec<(u32, u32)> = Vec::new();
     for (row, point) in (0_u32..).zip(points) {
-        if owner.get(row as usize) != Some(&FREE) {
+        if !owner.get(row as usize).is_some_and(|&owner| owner >= DROPPED) {
             continue;
         }
         let mut near: Vec<u32> = Vec::new();
         index.within_radius(*point, reach, |neighbor| {
             let number = owner[neighbor.index as usize];
-            if number != FREE && !std::mem::replace(&mut is_member[number as usize], true) {
+            if number < DROPPED && !std::mem::replace(&mut is_member[number as usize], true) {
                 near.push(number);
             }
         });

@@ -101,7 +101,7 @@ impl RoofPlane {
 /// The plane parts of `points`, (N, 3) local metres, those of roofs being given; largest first. Points of no plane are left out.
 ///
 /// From points whose surroundings are flattest on, a plane takes in neighbours that lie near it and look the same way, and is fitted anew
-/// as it grows. Its area is that of the cells that hold points, less what cells at its rim reach over it.
+/// as it grows. Its area is that of the cells that hold points, less what cells at its rim reach over it ([`PlaneCells::area`]).
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters outside their range and points that are not finite.
@@ -113,20 +113,17 @@ pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams) -> Result<Vec<
     params.validate()?;
     let index = NeighborIndex::new(points)?;
     let normals = estimate(points, &index, Neighborhood::default())?;
-    let mut planes: Vec<RoofPlane> = grow::regions(points, &index, &normals, params)
+    let cells_of = |rows: &[u32], fit: &fit::PlaneFit| PlaneCells::of(points, rows, fit, params.cell);
+    let is_roof = |rows: &[u32], fit: &fit::PlaneFit| {
+        let is_flat_enough = fit.normal[2].clamp(-1.0, 1.0).acos() <= params.most_tilt;
+        is_flat_enough && cells_of(rows, fit).area(rows.len()) >= params.least_area
+    };
+    let mut planes: Vec<RoofPlane> = grow::regions(points, &index, &normals, params, is_roof)
         .into_iter()
-        .filter_map(|(rows, fit)| {
-            let cells = PlaneCells::of(points, &rows, &fit, params.cell);
-            let area = cells.area();
-            let is_roof = fit.normal[2].clamp(-1.0, 1.0).acos() <= params.most_tilt && area >= params.least_area;
-            is_roof.then_some(RoofPlane {
-                points: rows,
-                middle: fit.middle,
-                normal: fit.normal,
-                roughness: fit.roughness,
-                cells,
-                area,
-            })
+        .map(|(rows, fit)| {
+            let cells = cells_of(&rows, &fit);
+            let area = cells.area(rows.len());
+            RoofPlane { points: rows, middle: fit.middle, normal: fit.normal, roughness: fit.roughness, cells, area }
         })
         .collect();
     // of equal areas the one with the lower first point, so that the order is settled
