@@ -3,6 +3,7 @@
 mod irradiance;
 mod observers;
 mod sky;
+mod sun;
 mod surroundings;
 mod towns;
 mod view;
@@ -10,6 +11,7 @@ mod view;
 pub(crate) use irradiance::{ClearSkyChoice, Irradiance};
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Viewshed};
 pub(crate) use sky::{FacingChoice, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
+pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};
 pub(crate) use surroundings::{BelowChoice, Eyes, Horizon, Isovist, Landmark, MeshTargets, NorthChoice};
 pub(crate) use towns::{Compare, PatternChoice, ScannerChoice, Simulate};
 pub(crate) use view::{SizeChoice, ViewChoice};
@@ -143,6 +145,12 @@ pub(crate) enum Command {
         after_help = "Of the ground or a surface the energy is that of a level plane; points and meshes may be --facing normals. The sun's part is lost where balls hide the sun; the sky's part patch by patch. kwh_m2 is the total of the period, loss the share that shading takes of what would arrive without obstacles.\n\nOf a plane of a roof least_loss is the loss of radiation, the mean of its cells: what a plant loses whose panels each work for themselves. most_loss is that of a plant whose rows are strings in which the worst panel counts. Real plants lie between.\n\nRows of weather get the sun of the middle of their interval (EPW, TMY3: local standard time, the hour ends) or of their instant (PVGIS: UTC; NSRDB), and are cut into --parts.\n\nExamples:\n  belvedere irradiance demo/town.laz --clear-sky ineichen --surface --cell 2 -o demo/energy.tif -o demo/energy.png\n  belvedere irradiance demo/town.laz --clear-sky ineichen --linke 4 --sun-cell 3 --planes demo/roofs.csv --planes demo/roofs.geojson --horizons demo/horizons"
     )]
     Irradiance(Irradiance),
+    /// Measure how long the sun reaches each place, on a day, over a period, or by a rule
+    #[command(
+        name = "sun-hours",
+        after_help = "Measures: sun_hours (a day; over several days their mean), sun_share of what a flat horizon would leave, first_light and last_light (hours on the clocks of --zone; over several days the earliest and the latest), longest (hours on end); over several days also least_day (hours on the darkest) and total_hours; for each rule 1 where it is met on all its days.\n\nA day runs from midnight to midnight of the sun, so that it holds the whole light of the place whatever the zone. The middle of the sun counts, above a flat horizon. Surfaces that are turned by their normals are not lit from behind. Clouds of the sky are not known: these are possible hours.\n\nRules: nl-light, 2 h a day from 19 February to 21 October, and nl-strict, 3 h from 21 January to 22 November (TNO, the Netherlands); the-hague, as nl-light with the sun above 10 degrees; bre-equinox, 2 h on 21 March (BRE 209, United Kingdom).\n\nExamples:\n  belvedere sun-hours demo/town.laz --date 2026-06-21 --cell 1 -o demo/sun.tif -o demo/sun.png\n  belvedere sun-hours demo/town.laz --rule bre-equinox --zone Europe/Amsterdam --cell 2 -o demo/rule.csv\n  belvedere sun-hours demo/balls.npz --from 2026-03-01 --to 2026-03-07 --step 30 --targets demo/town.obj --spacing 2 -o demo/sun-of-faces.csv"
+    )]
+    SunHours(SunHours),
     /// Hold every method against exact answers on the same places: how right each is, and what it costs
     #[command(
         after_help = "Places are simulated towns, or a cloud of your own with an exact mesh of the same place (--scene with --mesh). Each result is kept in a file below OUT/results; a run that was interrupted goes on where it stopped.\n\nRates: of the targets that are visible in truth the share called blocked (false-blocked), of the blocked the share called visible (false-visible), and the mean of the two shares that are right (balanced), averaged over three suns, over two observers, or over 40 people in streets (4 for methods that build a hull or draw shadow maps for each eye), with 95 % intervals from resampled tiles of 25 m.\n\nMethods: paper-cone, paper-sphere, union, hidden-points, hidden-points-robust, surfels, depth-splats, elliptical-splats, implicit-surface, voxels-05, voxels-10, dsm, tin, tau, carved (and, only when named, carved-without-RULE); for each model also mesh-NAME, shadow-map-NAME and dsm-NAME, and for the first paper-cone-NAME. Simulated places have the models blocks (LoD1), no-trees and exact. The project's docs/methods has a page on each.\n\nA thorough comparison takes several places and seeds, such as --presets village,old-town,towers --seeds 1,2,3.\n\nExample:\n  belvedere compare --extent 100 --targets 2000 --methods paper-cone,carved -o compared"

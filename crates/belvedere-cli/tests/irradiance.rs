@@ -88,7 +88,10 @@ fn weather_comes_from_files() {
     place.write("weather.csv", weather(52.0, 0.0));
     let summary = place.summary(&format!("irradiance {HOUSE} --weather weather.csv --cell 4 --sky perez -o out.csv"));
     assert_eq!(summary["radiation"]["from"], "PVGIS, typical year");
-    assert_eq!((&summary["radiation"]["rows"], summary["radiation"]["global_kwh_m2"].as_f64()), (&12.into(), Some(3.6)));
+    assert_eq!(
+        (&summary["radiation"]["rows"], summary["radiation"]["global_kwh_m2"].as_f64()),
+        (&12.into(), Some(3.6))
+    );
     assert!(summary["site"]["note"].is_null());
     place.write("elsewhere.csv", weather(40.0, 0.0));
     let summary = place.summary(&format!("irradiance {HOUSE} --weather elsewhere.csv --cell 4 -o out.csv"));
@@ -109,7 +112,10 @@ fn what_cannot_be_is_refused_with_advice() {
     place.refusal(2, &house("--clear-sky bird --planes roofs.txt"), &["--planes", ".csv"]);
     place.refusal(2, &house("--clear-sky bird --planes a.csv -o a.csv"), &["two results"]);
     place.refusal(1, &house("--weather nowhere.epw -o out.csv"), &["nowhere.epw"]);
-    place.write("broken.epw", "LOCATION,a,b,c,d,e,52.0,4.0,1.0,0.0\n\n\n\n\n\n\nDATA PERIODS,1,1\n1999,6,21,13,60,?,10\n");
+    place.write(
+        "broken.epw",
+        "LOCATION,a,b,c,d,e,52.0,4.0,1.0,0.0\n\n\n\n\n\n\nDATA PERIODS,1,1\n1999,6,21,13,60,?,10\n",
+    );
     place.refusal(1, &house("--weather broken.epw -o out.csv"), &["broken.epw", "line 9", "cell 14"]);
     // a cloud that does not say where it lies
     let mut adrift = common::house();

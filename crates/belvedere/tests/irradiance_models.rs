@@ -74,7 +74,8 @@ fn planes_that_nothing_shades_are_those_of_pvlib() {
         let cosine = dot(direction(zenith, sky["azimuth_deg"].to_radians()), direction(tilt, facing));
         let measured = measured(sky);
         near(measured.dni * cosine.max(0.0), plane["beam"], "beam");
-        let models = [(SkyModel::Isotropic, "isotropic"), (SkyModel::HayDavies, "hay_davies"), (SkyModel::Perez, "perez")];
+        let models =
+            [(SkyModel::Isotropic, "isotropic"), (SkyModel::HayDavies, "hay_davies"), (SkyModel::Perez, "perez")];
         for (model, name) in models {
             let parts = diffuse_parts(model, &measured, zenith, outside);
             near(parts.unshaded(tilt, cosine), plane[name], &format!("{name} at tilt {}", plane["tilt_deg"]));
@@ -111,7 +112,8 @@ fn patches_are_brightest_around_the_sun_of_a_clear_sky_and_above_under_clouds() 
     };
     let clear = Irradiance { ghi: 600.0, dni: 850.0, dhi: 600.0 - 850.0 * zenith.cos() };
     patch_radiation(&sky, &clear, sun, zenith, 1366.0, &mut patches);
-    let brightest = (0..patches.len()).max_by(|&a, &b| radiance(&patches, a).total_cmp(&radiance(&patches, b))).unwrap();
+    let brightest =
+        (0..patches.len()).max_by(|&a, &b| radiance(&patches, a).total_cmp(&radiance(&patches, b))).unwrap();
     // a patch of 577 is six degrees wide
     assert!(dot(sky.directions[brightest], sun) > 6f64.to_radians().cos(), "{:?}", sky.directions[brightest]);
     // across from the sun a clear sky is several times darker than beside it

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use belvedere::apps::irradiance::{
-    ClearSky, Grouping, Instant, Irradiation, IrradianceParams, PeriodRadiation, SkyModel, Surroundings, clear_instants,
-    irradiation, plane_irradiation, scene_irradiation, weather_instants,
+    ClearSky, Grouping, Instant, IrradianceParams, Irradiation, PeriodRadiation, SkyModel, Surroundings,
+    clear_instants, irradiation, plane_irradiation, scene_irradiation, weather_instants,
 };
 use belvedere::apps::sky_view::{SkyDirections, sky_view};
 use belvedere::apps::sun::{Site, Zone, sun_position};
@@ -32,8 +32,13 @@ fn clear_year() -> Vec<Instant> {
 
 fn scene(centers: Vec<[f32; 3]>, radii: Vec<f32>) -> MedialScene {
     let count = radii.len();
-    let balls =
-        MedialBalls { centers, radii, source: vec![0; count], touch: vec![0; count], separation_angles: vec![1.0; count] };
+    let balls = MedialBalls {
+        centers,
+        radii,
+        source: vec![0; count],
+        touch: vec![0; count],
+        separation_angles: vec![1.0; count],
+    };
     MedialScene::new(&balls, &SceneParams::default()).unwrap()
 }
 
@@ -218,7 +223,9 @@ fn parts_of_a_row_keep_its_energy_and_follow_the_sun() {
     // through a midsummer day, sunrise among its hours
     let first = 171.0 * 24.0 + 0.5;
     let file = weather((0..24).map(|hour| step(first + f64::from(hour), 400.0)).collect());
-    let up = |instants: &[Instant]| instants.iter().filter(|i| i.sun[2] > 0.0).map(|i| i.irradiance.dni * i.hours).sum::<f64>();
+    let up = |instants: &[Instant]| {
+        instants.iter().filter(|i| i.sun[2] > 0.0).map(|i| i.irradiance.dni * i.hours).sum::<f64>()
+    };
     let one = weather_instants(&file, &site(), 1).unwrap();
     let six = weather_instants(&file, &site(), 6).unwrap();
     assert_eq!((one.len(), six.len()), (24, 144));

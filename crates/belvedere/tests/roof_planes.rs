@@ -10,7 +10,13 @@ use belvedere::{Attributes, PointCloud};
 const NOISE: f64 = 0.04;
 
 /// Points drawn evenly at `density` a square metre of the map over `[x0, x1] x [y0, y1]`, at a height.
-fn sheet(seed: u64, density: f64, [x0, x1]: [f64; 2], [y0, y1]: [f64; 2], height: impl Fn(f64, f64) -> f64) -> Vec<[f32; 3]> {
+fn sheet(
+    seed: u64,
+    density: f64,
+    [x0, x1]: [f64; 2],
+    [y0, y1]: [f64; 2],
+    height: impl Fn(f64, f64) -> f64,
+) -> Vec<[f32; 3]> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some thousand points near the origin")]
     let count = ((x1 - x0) * (y1 - y0) * density) as u64;
     let point = |i: u64| {
@@ -48,7 +54,11 @@ fn tilt_azimuth_and_area_of_a_house_are_found() {
         }
         assert!(planes[..2].iter().any(|plane| faces(plane, 0.0) || faces(plane, 360.0)));
         assert!(planes[..2].iter().any(|plane| faces(plane, 180.0)));
-        assert!(planes[2].tilt().to_degrees() < 1.0 && (planes[2].area - 30.0).abs() < tolerance(30.0), "{}", planes[2].area);
+        assert!(
+            planes[2].tilt().to_degrees() < 1.0 && (planes[2].area - 30.0).abs() < tolerance(30.0),
+            "{}",
+            planes[2].area
+        );
     }
 }
 
@@ -90,14 +100,14 @@ fn area_is_that_of_a_turned_rectangle() {
 #[test]
 fn crowns_and_walls_are_no_roofs() {
     #[expect(clippy::cast_possible_truncation, reason = "local metres")]
-    let crown: Vec<[f32; 3]> = (0..3000)
-        .map(|i| [0, 1, 2].map(|axis| (6.0 * uniform(9, 3 * i + axis)) as f32))
-        .collect();
+    let crown: Vec<[f32; 3]> =
+        (0..3000).map(|i| [0, 1, 2].map(|axis| (6.0 * uniform(9, 3 * i + axis)) as f32)).collect();
     let planes = roof_planes(&crown, &RoofPlaneParams::default()).unwrap();
     let area: f64 = planes.iter().map(|plane| plane.area).sum();
     // chance makes no plane of 6 m by 6 m
     assert!(area < 10.0, "{area} m² in {} planes", planes.len());
-    let wall: Vec<[f32; 3]> = sheet(4, 12.0, [0.0, 10.0], [0.0, 6.0], |_, _| 0.0).iter().map(|p| [p[0], p[2], p[1]]).collect();
+    let wall: Vec<[f32; 3]> =
+        sheet(4, 12.0, [0.0, 10.0], [0.0, 6.0], |_, _| 0.0).iter().map(|p| [p[0], p[2], p[1]]).collect();
     assert!(roof_planes(&wall, &RoofPlaneParams::default()).unwrap().is_empty());
     assert!(roof_planes(&[], &RoofPlaneParams::default()).unwrap().is_empty());
     assert!(roof_planes(&[[1.0, 2.0, 3.0]; 50], &RoofPlaneParams::default()).unwrap().is_empty());

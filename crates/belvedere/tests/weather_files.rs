@@ -60,7 +60,10 @@ const PVGIS_TYPICAL: &str = "Latitude (decimal degrees): 45.000\r\nLongitude (de
 #[test]
 fn rows_of_pvgis_are_instants_of_utc_with_an_offset() {
     let weather = read(PVGIS_TYPICAL).unwrap();
-    assert_eq!((weather.format, weather.rows_hold, weather.steps.len()), ("PVGIS, typical year", RowsHold::Instants, 2));
+    assert_eq!(
+        (weather.format, weather.rows_hold, weather.steps.len()),
+        ("PVGIS, typical year", RowsHold::Instants, 2)
+    );
     let step = weather.steps[0];
     assert!((step.instant - (instant(2016, 1, 1, 11.0) + 0.1761 * 3600.0)).abs() < 1e-6);
     assert_eq!((step.ghi, step.dni, step.dhi, step.temperature), (310.0, Some(520.5), Some(95.0), Some(3.1)));
@@ -97,7 +100,10 @@ fn hours_of_tmy3_end_in_local_standard_time() {
     // 24:00 of a day whose zone is nine hours behind: the middle of its last hour is 8:30 UTC of the next
     assert_eq!((weather.steps[0].instant, weather.steps[0].month), (instant(1997, 2, 1, 8.5), 1));
     let step = weather.steps[1];
-    assert_eq!((step.instant, step.ghi, step.dni, step.dhi), (instant(2001, 6, 21, 21.5), 480.0, Some(350.0), Some(200.0)));
+    assert_eq!(
+        (step.instant, step.ghi, step.dni, step.dhi),
+        (instant(2001, 6, 21, 21.5), 480.0, Some(350.0), Some(200.0))
+    );
 }
 
 const NSRDB: &str = "Source,Location ID,City,State,Country,Latitude,Longitude,Time Zone,Elevation,Local Time Zone\n\

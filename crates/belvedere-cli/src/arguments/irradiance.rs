@@ -14,7 +14,7 @@ pub(crate) struct Irradiance {
     /// Linke turbidity of a clear sky by ineichen, 1 to 20: 2 clean, 3 usual, 5 hazy [default: 3]
     #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Radiation")]
     pub(crate) linke: Option<f64>,
-    /// Year of a clear sky [default: 2025]
+    /// Year of a clear sky [default: 2026]
     #[arg(long, value_name = "YEAR", requires = "clear_sky", help_heading = "Radiation")]
     pub(crate) year: Option<i16>,
     /// Latitude and longitude in degrees, north and east positive [default: those of the cloud's reference system, else those of the weather

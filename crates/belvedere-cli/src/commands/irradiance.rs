@@ -14,8 +14,18 @@ use belvedere::apps::irradiance::{Irradiation, PeriodRadiation, scene_irradiatio
 
 /// Columns of the months.
 const MONTHS: [&str; 12] = [
-    "kwh_m2_01", "kwh_m2_02", "kwh_m2_03", "kwh_m2_04", "kwh_m2_05", "kwh_m2_06", "kwh_m2_07", "kwh_m2_08", "kwh_m2_09",
-    "kwh_m2_10", "kwh_m2_11", "kwh_m2_12",
+    "kwh_m2_01",
+    "kwh_m2_02",
+    "kwh_m2_03",
+    "kwh_m2_04",
+    "kwh_m2_05",
+    "kwh_m2_06",
+    "kwh_m2_07",
+    "kwh_m2_08",
+    "kwh_m2_09",
+    "kwh_m2_10",
+    "kwh_m2_11",
+    "kwh_m2_12",
 ];
 /// Digits of energies, kWh/m², and of shares.
 const ENERGY_DECIMALS: usize = 2;
@@ -74,12 +84,14 @@ fn write_places(
     let group_count = radiation.group_count();
     let whole: Vec<Irradiation> = sums.chunks(group_count).map(Irradiation::sum).collect();
     #[expect(clippy::cast_possible_truncation, reason = "energies for people")]
-    let column = |value: &dyn Fn(&Irradiation) -> f64| -> Vec<f32> { whole.iter().map(|sum| value(sum) as f32).collect() };
+    let column =
+        |value: &dyn Fn(&Irradiation) -> f64| -> Vec<f32> { whole.iter().map(|sum| value(sum) as f32).collect() };
     let totals = column(&Irradiation::total);
     let losses = column(&Irradiation::loss);
     let (beams, diffuse) = (column(&|sum| sum.beam), column(&|sum| sum.diffuse));
     let (reflected, unshaded) = (column(&|sum| sum.reflected), column(&|sum| sum.unshaded));
-    let energy = |name, description, values| Measure { name, description, decimals: ENERGY_DECIMALS, range: None, values };
+    let energy =
+        |name, description, values| Measure { name, description, decimals: ENERGY_DECIMALS, range: None, values };
     let mut measures = vec![
         energy("kwh_m2", "energy of the period, kWh/m2", &totals[..]),
         Measure {
@@ -98,7 +110,8 @@ fn write_places(
     let of_month = |month: usize| -> Vec<f32> {
         sums.iter().skip(month).step_by(group_count).map(|sum| sum.total() as f32).collect()
     };
-    let months: Vec<Vec<f32>> = if group_count == MONTHS.len() { (0..group_count).map(of_month).collect() } else { Vec::new() };
+    let months: Vec<Vec<f32>> =
+        if group_count == MONTHS.len() { (0..group_count).map(of_month).collect() } else { Vec::new() };
     for (values, name) in months.iter().zip(MONTHS) {
         measures.push(energy(name, "energy of a month, kWh/m2", values));
     }

@@ -17,6 +17,8 @@ mod sights;
 mod simulate;
 mod sky_targets;
 mod sky_view;
+mod sun;
+mod sun_hours;
 mod surroundings;
 mod trajectory;
 mod viewshed;
@@ -51,6 +53,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::Horizon(arguments) => horizon::run(arguments, global),
         Command::SkyView(arguments) => sky_view::run(arguments, global),
         Command::Irradiance(arguments) => irradiance::run(arguments, global),
+        Command::SunHours(arguments) => sun_hours::run(arguments, global),
         Command::Compare(arguments) => compare::run(arguments, global),
         Command::Completions { shell } => {
             let mut script = Vec::new();

@@ -8,4 +8,5 @@ pub mod profile;
 pub mod roof_planes;
 pub mod sky_view;
 pub mod sun;
+pub mod sun_hours;
 pub mod viewshed;

@@ -19,7 +19,8 @@ impl CalendarDay {
     #[must_use]
     pub fn new(year: i32, month: u8, day: u8) -> Option<Self> {
         let date = Self { year, month, day };
-        ((1..=9999).contains(&year) && (1..=12).contains(&month) && (1..=date.days_of_month()).contains(&day)).then_some(date)
+        ((1..=9999).contains(&year) && (1..=12).contains(&month) && (1..=date.days_of_month()).contains(&day))
+            .then_some(date)
     }
 
     fn days_of_month(self) -> u8 {
@@ -92,7 +93,8 @@ mod tests {
 
     #[test]
     fn days_that_are_not_are_none() {
-        for (year, month, day) in [(2023, 2, 29), (1900, 2, 29), (2024, 13, 1), (2024, 0, 1), (2024, 4, 31), (0, 1, 1)] {
+        for (year, month, day) in [(2023, 2, 29), (1900, 2, 29), (2024, 13, 1), (2024, 0, 1), (2024, 4, 31), (0, 1, 1)]
+        {
             assert_eq!(CalendarDay::new(year, month, day), None, "{year} {month} {day}");
         }
         assert_eq!(day_of_year(f64::NAN), None);

@@ -92,7 +92,10 @@ impl Weather {
         }
         for step in &self.steps {
             let values = [Some(step.ghi), step.dni, step.dhi];
-            if !values.iter().flatten().all(|v| v.is_finite() && *v >= 0.0) || !(step.hours > 0.0) || step.hours > 8784.0 {
+            if !values.iter().flatten().all(|v| v.is_finite() && *v >= 0.0)
+                || !(step.hours > 0.0)
+                || step.hours > 8784.0
+            {
                 return Err(Error::InvalidParameter {
                     name: "radiation",
                     value: format!("{step:?}"),

@@ -224,7 +224,8 @@ fn write_outlines(output: &std::path::Path, roofs: &Roofs, rows: &[Row], site: &
         area.properties.insert("plane".to_owned(), (number + 1).into());
         for (name, values, decimals) in columns.iter().skip(3) {
             let digits = i32::try_from(*decimals).unwrap_or(2);
-            area.properties.insert((*name).to_owned(), rounded(values.get(number).copied().unwrap_or(f64::NAN), digits));
+            area.properties
+                .insert((*name).to_owned(), rounded(values.get(number).copied().unwrap_or(f64::NAN), digits));
         }
         let corner = |corner: &[usize; 2]| {
             let place = plane.cells.place(corner.map(|v| v as f64));
@@ -249,7 +250,8 @@ fn write_horizons(
     stages: &mut Stages,
 ) -> Result<()> {
     atomic::make_folder(folder)?;
-    let eyes: Vec<[f64; 3]> = roofs.planes.iter().map(|plane| lifted(plane.middle, plane.normal).map(f64::from)).collect();
+    let eyes: Vec<[f64; 3]> =
+        roofs.planes.iter().map(|plane| lifted(plane.middle, plane.normal).map(f64::from)).collect();
     let params = HorizonParams { azimuth_count: AZIMUTHS, turn: site.convergence, ..HorizonParams::default() };
     let found = stages.run("looking around", 0, |_| horizons(blockers, &eyes, &params))?;
     for (number, skyline) in found.iter().enumerate() {

@@ -14,7 +14,7 @@ use belvedere::query::earth::EARTH_RADIUS;
 use belvedere::weather::Weather;
 
 /// Year of a clear sky that nobody chose; the sun's way differs by less than half a degree from year to year.
-const USUAL_YEAR: i16 = 2025;
+const USUAL_YEAR: i16 = 2026;
 /// Steps of a clear sky, seconds.
 const CLEAR_STEP: f64 = 600.0;
 /// Distance from which on a weather file is told to be that of another place, metres.
@@ -72,14 +72,15 @@ pub(super) fn site(
             (site.validate()?, "weather file")
         }
         (None, Err(error), None) => {
-            return Err(anyhow::Error::from(error)).context("say where on earth the scene lies: --crs EPSG:CODE or --location LAT,LON");
+            return Err(anyhow::Error::from(error))
+                .context("say where on earth the scene lies: --crs EPSG:CODE or --location LAT,LON");
         }
     };
     let mut section = Summary::default();
     section
         .add("latitude_deg", rounded(site.latitude.to_degrees(), 5))
         .add("longitude_deg", rounded(site.longitude.to_degrees(), 5))
-        .add("meridian_convergence_deg", rounded(site.convergence.to_degrees(), 4))
+        .add("grid_north_from_true_north_deg", rounded(site.convergence.to_degrees(), 4))
         .add("from", from);
     if let Some(distance) = weather.map(|weather| distance(&site, weather)).filter(|distance| *distance > FAR) {
         section.add("note", format!("the weather is that of a place {:.0} km off", distance / 1000.0));
@@ -121,7 +122,9 @@ pub(super) fn gather(
             let period = [flagged("--year", start(year))?, flagged("--year", start(year.saturating_add(1)))?];
             let sky = match arguments.radiation.clear_sky {
                 Some(ClearSkyChoice::Haurwitz) => ClearSky::Haurwitz,
-                Some(ClearSkyChoice::Bird) => ClearSky::Bird(BirdParams { albedo: params.albedo, ..BirdParams::default() }),
+                Some(ClearSkyChoice::Bird) => {
+                    ClearSky::Bird(BirdParams { albedo: params.albedo, ..BirdParams::default() })
+                }
                 _ => arguments.linke.map_or_else(ClearSky::default, |linke| ClearSky::Ineichen { linke }),
             };
             section.add("from", format!("{sky:?}")).add("year", year);

@@ -103,13 +103,7 @@ pub fn clear_instants(
     Ok(instants.into_iter().filter(|instant| instant.irradiance.ghi > 0.0).collect())
 }
 
-fn instant(
-    site: &Site,
-    at: f64,
-    hours: f64,
-    month: u8,
-    irradiance: impl Fn(f64) -> Irradiance,
-) -> Result<Instant> {
+fn instant(site: &Site, at: f64, hours: f64, month: u8, irradiance: impl Fn(f64) -> Irradiance) -> Result<Instant> {
     let position = sun_position(site, at)?;
     let zenith = zenith(&position);
     Ok(Instant {

@@ -153,7 +153,9 @@ pub(super) fn on_plane(
     let first = radiation.sun_directions.len();
     let (mut sky, mut horizon) = (Seen::default(), Seen::default());
     let group_count = groups.len();
-    for (patch, (&direction, &solid_angle)) in radiation.sky.directions.iter().zip(&radiation.sky.solid_angles).enumerate() {
+    for (patch, (&direction, &solid_angle)) in
+        radiation.sky.directions.iter().zip(&radiation.sky.solid_angles).enumerate()
+    {
         let cosine = dot(direction, normal);
         let ahead = direction[0] * normal[0] + direction[1] * normal[1];
         let in_band = direction[2] < HORIZON_BAND && ahead > 0.0;

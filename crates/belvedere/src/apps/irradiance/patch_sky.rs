@@ -87,7 +87,8 @@ pub fn patch_radiation(
     patches: &mut Vec<f64>,
 ) {
     patches.clear();
-    let shape = sky_state(irradiance, zenith, extraterrestrial).map(|state| Shape::new(state.class, state.brightness, zenith));
+    let shape =
+        sky_state(irradiance, zenith, extraterrestrial).map(|state| Shape::new(state.class, state.brightness, zenith));
     let mut level = 0.0;
     for (&direction, &solid_angle) in sky.directions.iter().zip(&sky.solid_angles) {
         let radiance = shape.as_ref().map_or(1.0, |shape| shape.radiance(direction[2], dot(direction, sun)));

@@ -55,7 +55,8 @@ pub fn plane_irradiation(
             add(&mut sums.mean, &groups, share);
             all.iter_mut().zip(matrix.row(target)).for_each(|(all, own)| *all &= own);
         }
-        let is_free = |direction: usize| all.get(direction / WORD).is_some_and(|word| word >> (direction % WORD) & 1 == 1);
+        let is_free =
+            |direction: usize| all.get(direction / WORD).is_some_and(|word| word >> (direction % WORD) & 1 == 1);
         on_plane(radiation, normal, is_free, &mut groups);
         add(&mut sums.string_limited, &groups, share * string.len() as f64);
         cell += string.len();

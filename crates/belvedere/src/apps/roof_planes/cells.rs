@@ -43,7 +43,11 @@ impl PlaneCells {
         let [width, height] = span.map(|span| (span / cell).floor() as usize + 1);
         let mut filled = Raster::filled(width, height, false);
         for [u, v] in &flat {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not below zero, 20 000 at most")]
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "not below zero, 20 000 at most"
+            )]
             let (column, row) = (((u - low[0]) / cell) as usize, ((v - low[1]) / cell) as usize);
             if let Some(value) = filled.values_mut().get_mut(row.min(height - 1) * width + column.min(width - 1)) {
                 *value = true;
@@ -59,9 +63,7 @@ impl PlaneCells {
     pub fn middles(&self) -> Vec<([f64; 3], usize)> {
         let width = self.filled.width();
         let filled = self.filled.values().iter().enumerate().filter(|(_, filled)| **filled);
-        filled
-            .map(|(i, _)| (self.place([(i % width) as f64 + 0.5, (i / width) as f64 + 0.5]), i / width))
-            .collect()
+        filled.map(|(i, _)| (self.place([(i % width) as f64 + 0.5, (i / width) as f64 + 0.5]), i / width)).collect()
     }
 
     /// Local metres of a place given in cells from the corner, along the rows and up.

@@ -53,7 +53,11 @@ impl RoofPlaneParams {
         let is_usable = |v: &f64| *v > 0.0 && *v < 1000.0;
         if let Some(bad) = lengths.iter().find(|v| !is_usable(v)) {
             let value = bad.to_string();
-            return Err(Error::InvalidParameter { name: "length for roof planes", value, expected: "above 0 to 1000 m" });
+            return Err(Error::InvalidParameter {
+                name: "length for roof planes",
+                value,
+                expected: "above 0 to 1000 m",
+            });
         }
         let is_angle = |v: f64| v > 0.0 && v <= FRAC_PI_2;
         if !is_angle(self.angle) || !is_angle(self.most_tilt) || !(self.least_area >= 0.0) {

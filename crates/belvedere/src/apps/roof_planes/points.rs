@@ -27,7 +27,8 @@ pub enum RoofsFrom {
 /// [`Error::NoPoints`] where there is none.
 pub fn roof_points(cloud: &PointCloud, ground: &Ground) -> Result<(Vec<u32>, RoofsFrom)> {
     let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
-    let classed: Vec<u32> = (0_u32..).zip(classes).filter(|(_, class)| **class == BUILDING).map(|(row, _)| row).collect();
+    let classed: Vec<u32> =
+        (0_u32..).zip(classes).filter(|(_, class)| **class == BUILDING).map(|(row, _)| row).collect();
     if !classed.is_empty() && classed.len() * FEW >= cloud.len() {
         return Ok((classed, RoofsFrom::Class));
     }

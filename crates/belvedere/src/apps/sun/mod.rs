@@ -4,10 +4,16 @@
 //! second, in which the sky turns by 0.004°). Azimuths count clockwise from true north; unit vectors are in the axes of the grid, x east,
 //! y grid north, z up, so that the convergence of meridians is taken off on the way.
 
+mod days;
 mod position;
+mod schedule;
 mod site;
 mod time;
 
-pub use position::{Refraction, SunPosition, declination, sun_distance, sun_position, sun_position_with};
+pub use days::{DayParams, Period, SunDay, SunStep, sun_day, sun_days};
+pub use position::{
+    Refraction, SunPosition, SunTimes, declination, sun_distance, sun_position, sun_position_with, sun_times,
+};
+pub use schedule::{Binning, DayOfLight, LightStep, SunSchedule};
 pub use site::Site;
-pub use time::{Date, Zone, parse_instant};
+pub use time::{Date, Zone, parse_instant, zone_of_instant};

@@ -4,7 +4,7 @@ use super::Site;
 use crate::view::to_sun;
 use crate::{Error, Result};
 use solar_positioning::time::JulianDate;
-use solar_positioning::{Location, RefractionCorrection, SolarPositions, delta_t};
+use solar_positioning::{Horizon, Location, RefractionCorrection, SolarEvents, SolarPositions, delta_t};
 
 /// 1970-01-01T00:00:00Z in days of the Julian count.
 const UNIX_EPOCH: f64 = 2_440_587.5;
@@ -103,6 +103,56 @@ pub fn declination(unix_s: f64) -> Result<f64> {
 pub fn sun_distance(unix_s: f64) -> Result<f64> {
     let prepared = SolarPositions::new().for_time_from_julian(julian(unix_s)?).map_err(|e| invalid_time(unix_s, &e))?;
     Ok(prepared.earth_radius_vector().unwrap_or(1.0))
+}
+
+/// When the sun rises, culminates and sets, seconds of UTC since 1970, each in ascending order; empty where it does not.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SunTimes {
+    /// Its upper edge appears: the middle of the disc is 50′ below the horizon, 34′ of refraction and 16′ of radius, as almanacs have it.
+    pub rises: Vec<f64>,
+    /// It crosses the meridian.
+    pub transits: Vec<f64>,
+    /// Its upper edge disappears.
+    pub sets: Vec<f64>,
+}
+
+/// When the sun rises, culminates and sets from the instant `from` up to `to`, seen from the level of the sea.
+///
+/// # Errors
+/// As [`sun_position`], and [`Error::InvalidParameter`] for spans of time that end before they begin or last more than 400 days.
+pub fn sun_times(site: &Site, from: f64, to: f64) -> Result<SunTimes> {
+    let site = site.validate()?;
+    if !(to >= from && to - from <= 400.0 * DAY) {
+        return Err(Error::InvalidParameter {
+            name: "span of time",
+            value: format!("{from} to {to} s"),
+            expected: "forward, 400 days at most",
+        });
+    }
+    let [start, end] = [julian(from)?, julian(to)?];
+    let location = Location { latitude: site.latitude.to_degrees(), longitude: site.longitude.to_degrees() };
+    let events = SolarEvents::new()
+        .for_interval_from_julian(
+            start.julian_date(),
+            end.julian_date(),
+            location,
+            start.delta_t(),
+            Horizon::SunriseSunset,
+        )
+        .map_err(|e| invalid_time(from, &e))?;
+    let instants = |days: Vec<f64>| days.into_iter().map(|day| (day - UNIX_EPOCH) * DAY).collect();
+    Ok(SunTimes { rises: instants(events.rises), transits: instants(events.transits), sets: instants(events.sets) })
+}
+
+/// When the sun crosses the meridian of a site next to its mean noon at `mean_noon`: within 17 minutes, the equation of time.
+pub(super) fn transit(site: &Site, mean_noon: f64) -> Result<f64> {
+    let julian = julian(mean_noon)?;
+    let [start, end] = [-1.0, 1.0].map(|hours| julian.julian_date() + hours / 24.0);
+    let found = SolarEvents::new()
+        .next_transit_from_julian(start, end, site.longitude.to_degrees(), julian.delta_t())
+        .map_err(|e| invalid_time(mean_noon, &e))?;
+    // the crate finds one within the hour around; mean noon is what is left should it not
+    Ok(found.map_or(mean_noon, |day| (day - UNIX_EPOCH) * DAY))
 }
 
 fn correction(site: &Site, refraction: Refraction) -> Result<Option<RefractionCorrection>> {

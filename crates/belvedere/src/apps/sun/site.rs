@@ -5,6 +5,10 @@ use crate::crs::Crs;
 use crate::{Error, Result};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+/// Heights above the sea that a site may have, metres.
+const LOWEST: f64 = -500.0;
+const HIGHEST: f64 = 10_000.0;
+
 /// A place on earth, and how the grid of a scene lies there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Site {
@@ -19,7 +23,8 @@ pub struct Site {
 }
 
 impl Site {
-    /// The site at `position`, (x, y) metres in the system `crs`, at a height in metres, with the convergence there.
+    /// The site at `position`, (x, y) metres in the system `crs`, with the convergence there, at a height in metres, of which no more than
+    /// the range is taken: heights of a cloud may be wild, and matter little.
     ///
     /// # Errors
     /// [`Error::MissingAttribute`] for a cloud that does not say where on earth it lies, and those of
@@ -36,6 +41,7 @@ impl Site {
             other => other?,
         };
         let [latitude, longitude] = projection.unproject(position)?;
+        let height = height.clamp(LOWEST, HIGHEST);
         Self { latitude, longitude, height, convergence: convergence(crs, position)? }.validate()
     }
 
@@ -52,7 +58,7 @@ impl Site {
         if !(self.longitude.abs() <= TAU) {
             return invalid("longitude", self.longitude.to_degrees(), "-180 to 180 degrees");
         }
-        if !(-500.0..=10_000.0).contains(&self.height) {
+        if !(LOWEST..=HIGHEST).contains(&self.height) {
             return invalid("height of the site", self.height, "-500 to 10000 m above the sea");
         }
         if !(self.convergence.abs() <= TAU) {

@@ -236,6 +236,24 @@ pub fn parse_instant(text: &str, zone: Option<&Zone>) -> Result<f64> {
     offset.to_timestamp(shown).map(seconds).map_err(|_| invalid(WRITING))
 }
 
+/// The zone, or else the offset, that an instant is written with; `None` where it has neither or is no instant.
+#[must_use]
+pub fn zone_of_instant(text: &str) -> Option<Zone> {
+    let pieces = Pieces::parse(text.trim()).ok()?;
+    let zone = pieces.to_time_zone_with(&TimeZoneDatabase::bundled()).ok().flatten();
+    match (zone, pieces.offset()?) {
+        (Some(zone), _) if zone.iana_name().is_some_and(|name| name != "UTC") => {
+            let name = zone.iana_name().unwrap_or_default().to_owned();
+            Some(Zone { zone, name })
+        }
+        (_, PiecesOffset::Zulu) => Some(Zone::utc()),
+        (_, other) => {
+            let offset = other.to_numeric_offset();
+            Some(Zone { zone: TimeZone::fixed(offset), name: offset.to_string() })
+        }
+    }
+}
+
 /// An offset written as +02, +0200, +02:00 or +02:00:30.
 fn offset(text: &str) -> Option<Offset> {
     let sign = if text.starts_with('-') { -1 } else { 1 };

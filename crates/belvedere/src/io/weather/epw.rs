@@ -65,7 +65,8 @@ fn step(line: &Line<'_>, zone: f64, per_hour: i32) -> Result<Option<WeatherStep>
         radiation(DIFFUSE, "diffuse horizontal radiation")?,
     );
     let Some(ghi) = ghi else { return Ok(None) };
-    let temperature = Some(line.number_in(&cells, TEMPERATURE, "the temperature")?).filter(|v| *v < MISSING_TEMPERATURE);
+    let temperature =
+        Some(line.number_in(&cells, TEMPERATURE, "the temperature")?).filter(|v| *v < MISSING_TEMPERATURE);
     let hours = 1.0 / f64::from(per_hour);
     // with one record an hour programs write 0 or 60 for the minute, and mean the same
     let end = if per_hour == 1 { f64::from(hour) } else { f64::from(hour - 1) + f64::from(minute) / 60.0 };

@@ -33,7 +33,9 @@ enum Columns {
 pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
     let mut head = Head::default();
     let Some(names) = lines.all().take(MOST_HEAD_LINES).find(|line| line.text.starts_with("time")) else {
-        return Err(lines.line(1)?.wrong("no line below begins with \"time\", as the head of the table does; take the CSV of PVGIS"));
+        return Err(lines
+            .line(1)?
+            .wrong("no line below begins with \"time\", as the head of the table does; take the CSV of PVGIS"));
     };
     for line in lines.all().take(names.number - 1) {
         read_head(&line, &mut head)?;

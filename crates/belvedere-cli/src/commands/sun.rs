@@ -1,0 +1,116 @@
+//! Where on earth a scene lies, how clocks run there, and which days were typed.
+
+use crate::arguments::{ElevationChoice, SunPeriod, SunPlace, Usage};
+use crate::pipeline::{Scene, flagged};
+use crate::summary::{Summary, rounded};
+use anyhow::{Context, Result};
+use belvedere::apps::sun::{Date, DayParams, Period, Refraction, Site, Zone, parse_instant, zone_of_instant};
+use belvedere::apps::sun_hours::RuleDays;
+
+impl SunPlace {
+    /// Where the middle of the scene lies on earth.
+    pub(crate) fn site(&self, scene: &Scene, summary: &mut Summary) -> Result<Site> {
+        let (low, high) = scene.bounds;
+        let middle: [f64; 3] =
+            std::array::from_fn(|i| scene.cloud.origin[i] + f64::midpoint(f64::from(low[i]), f64::from(high[i])));
+        let by_crs = Site::of(&scene.cloud.crs, [middle[0], middle[1]], middle[2]);
+        let site = match (&self.location, by_crs) {
+            (None, by_crs) => by_crs.context(
+                "the sun needs to know where on earth the scene lies: give --location LAT,LON, or its system with --crs EPSG:CODE",
+            )?,
+            (Some(given), by_crs) => {
+                let [latitude, longitude] = given.0.map(f64::to_radians);
+                let grid = by_crs.unwrap_or(Site { latitude, longitude, height: 0.0, convergence: 0.0 });
+                flagged("--location", Site { latitude, longitude, ..grid }.validate())?
+            }
+        };
+        let mut section = Summary::default();
+        section
+            .add("latitude_deg", rounded(site.latitude.to_degrees(), 5))
+            .add("longitude_deg", rounded(site.longitude.to_degrees(), 5))
+            .add("grid_north_from_true_north_deg", rounded(site.convergence.to_degrees(), 4));
+        summary.add("site", section);
+        Ok(site)
+    }
+
+    /// How clocks run: as told, else as in the first of the `times` that says so, else by the sun.
+    pub(crate) fn zone(&self, site: &Site, times: &[&str]) -> Result<Zone> {
+        match &self.zone {
+            Some(zone) => flagged("--zone", Zone::parse(zone)),
+            None => Ok(times.iter().find_map(|time| zone_of_instant(time)).unwrap_or_else(|| Zone::mean_solar(site))),
+        }
+    }
+
+    /// An instant that the flag `name` gave.
+    pub(crate) fn instant(&self, flag: &str, text: &str) -> Result<f64> {
+        let zone = self.zone.as_deref().map(|zone| flagged("--zone", Zone::parse(zone))).transpose()?;
+        flagged(flag, parse_instant(text, zone.as_ref()))
+    }
+
+    /// By how much air lifts the sun.
+    pub(crate) fn refraction(&self) -> Result<Refraction> {
+        match (self.elevation, &self.air) {
+            (ElevationChoice::Geometric, Some(_)) => {
+                Err(Usage("--air belongs to --elevation apparent".to_owned()).into())
+            }
+            (ElevationChoice::Geometric, None) => Ok(Refraction::Without),
+            (ElevationChoice::Apparent, None) => Ok(Refraction::Standard),
+            (ElevationChoice::Apparent, Some(air)) => {
+                let [pressure, temperature] = air.0;
+                Ok(Refraction::Air { pressure, temperature })
+            }
+        }
+    }
+}
+
+impl SunPeriod {
+    /// Whether any day was typed.
+    pub(crate) fn is_given(&self) -> bool {
+        !self.date.is_empty() || self.from.is_some()
+    }
+
+    /// The times typed.
+    pub(crate) fn times(&self) -> Vec<&str> {
+        self.from.iter().chain(&self.to).map(String::as_str).collect()
+    }
+
+    /// How days are parted.
+    pub(crate) fn params(&self, place: &SunPlace) -> Result<DayParams> {
+        let usual = DayParams::default();
+        Ok(DayParams {
+            step: self.step.map_or(usual.step, |minutes| minutes * 60.0),
+            least_elevation: self.least_elevation.map_or(usual.least_elevation, f64::to_radians),
+            refraction: place.refraction()?,
+        })
+    }
+
+    /// The days typed; `None` where there are none.
+    pub(crate) fn period(&self, place: &SunPlace, site: &Site, zone: &Zone) -> Result<Option<Period>> {
+        if let (Some(from), Some(to)) = (&self.from, &self.to) {
+            return Ok(Some(match (Date::parse(from), Date::parse(to)) {
+                (Ok(first), Ok(last)) => Period::Days(flagged("--to", days(first, last))?),
+                (Err(_), Err(_)) => Period::Between([place.instant("--from", from)?, place.instant("--to", to)?]),
+                _ => return Err(Usage("--from and --to: give two days, or two times".to_owned()).into()),
+            }));
+        }
+        let mut dates = Vec::new();
+        for text in &self.date {
+            match RuleDays::parse(text) {
+                Some(days) => dates.extend(flagged("--year", days.dates(self.year, site, zone))?),
+                None => dates.push(flagged("--date", Date::parse(text))?),
+            }
+        }
+        Ok((!dates.is_empty()).then_some(Period::Days(dates)))
+    }
+}
+
+fn days(first: Date, last: Date) -> belvedere::Result<Vec<Date>> {
+    if last < first {
+        return Err(belvedere::Error::InvalidParameter {
+            name: "last day",
+            value: last.to_string(),
+            expected: "the first day or a later one",
+        });
+    }
+    Ok(first.to(last).collect())
+}
