@@ -76,7 +76,7 @@ pub fn clear_instants(
 ) -> Result<Vec<Instant>> {
     clear_sky.validate()?;
     let count = ((to - from) / step).ceil();
-    if !(step > 0.0 && count >= 1.0 && count <= MOST_INSTANTS) {
+    if !(step > 0.0 && (1.0..=MOST_INSTANTS).contains(&count)) {
         return Err(Error::InvalidParameter {
             name: "period",
             value: format!("{from} to {to} in steps of {step} s"),

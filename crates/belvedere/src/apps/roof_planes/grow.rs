@@ -65,7 +65,7 @@ fn absorb(
     let mut is_member = vec![false; regions.len()];
     let mut joined: Vec<(u32, u32)> = Vec::new();
     for (row, point) in (0_u32..).zip(points) {
-        if !owner.get(row as usize).is_some_and(|&owner| owner >= DROPPED) {
+        if owner.get(row as usize).is_none_or(|&owner| owner < DROPPED) {
             continue;
         }
         let mut near: Vec<u32> = Vec::new();
