@@ -106,7 +106,7 @@ fn ineichen(cosine: f64, absolute: f64, linke: f64, height: f64, extraterrestria
     // of a low sun the first form gives more than all that arrives
     let most = ghi * ((1.0 - (0.1 - 0.2 * (-linke).exp()) / (0.1 + 0.882 / low)) / cosine).max(0.0);
     let dni = beam.max(0.0).min(most);
-    Irradiance { ghi, dni, dhi: ghi - dni * cosine }
+    Irradiance { ghi, dni, dhi: (ghi - dni * cosine).max(0.0) }
 }
 
 /// # Source
@@ -136,5 +136,6 @@ fn bird(params: &BirdParams, cosine: f64, relative: f64, pressure: f64, extrater
         * (0.5 * (1.0 - rayleigh) + params.forward_scattering * (1.0 - aerosol / absorbed))
         / (1.0 - relative + relative.powf(1.02));
     let ghi = (dni * cosine + scattered) / (1.0 - params.albedo * sky_albedo);
-    Irradiance { ghi, dni, dhi: ghi - dni * cosine }
+    // of a sun at the horizon the model scatters less than nothing, by milliwatts
+    Irradiance { ghi, dni, dhi: (ghi - dni * cosine).max(0.0) }
 }

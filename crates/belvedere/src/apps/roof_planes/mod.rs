@@ -105,7 +105,7 @@ impl RoofPlane {
 /// The plane parts of `points`, (N, 3) local metres, those of roofs being given; largest first. Points of no plane are left out.
 ///
 /// From points whose surroundings are flattest on, a plane takes in neighbours that lie near it and look the same way, and is fitted anew
-/// as it grows. Its area is that of the cells that hold points, less what cells at its rim reach over it ([`PlaneCells::area`]).
+/// as it grows. Its area is that of the cells that hold points, less what cells at its rim reach over it.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters outside their range and points that are not finite.
@@ -116,17 +116,17 @@ impl RoofPlane {
 pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams) -> Result<Vec<RoofPlane>> {
     params.validate()?;
     let index = NeighborIndex::new(points)?;
-    let normals = estimate(points, &index, Neighborhood::default())?;
-    let cells_of = |rows: &[u32], fit: &fit::PlaneFit| PlaneCells::of(points, rows, fit, params.cell);
+    // near ridges and eaves few neighbours are on one plane
+    let normals = estimate(points, &index, Neighborhood::adaptive())?;
     let is_roof = |rows: &[u32], fit: &fit::PlaneFit| {
         let is_flat_enough = fit.normal[2].clamp(-1.0, 1.0).acos() <= params.most_tilt;
-        is_flat_enough && cells_of(rows, fit).area(rows.len()) >= params.least_area
+        is_flat_enough && cells::area(points, rows, fit, params.cell) >= params.least_area
     };
     let mut planes: Vec<RoofPlane> = grow::regions(points, &index, &normals, params, is_roof)
         .into_iter()
         .map(|(rows, fit)| {
-            let cells = cells_of(&rows, &fit);
-            let area = cells.area(rows.len());
+            let cells = PlaneCells::of(points, &rows, &fit, params.cell);
+            let area = cells::area(points, &rows, &fit, params.cell);
             RoofPlane { points: rows, middle: fit.middle, normal: fit.normal, roughness: fit.roughness, cells, area }
         })
         .collect();
