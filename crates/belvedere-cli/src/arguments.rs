@@ -1,6 +1,7 @@
 //! What can be typed: flags as entered. What they build is made in `pipeline` and in each command.
 
 mod envelope;
+mod irradiance;
 mod observers;
 mod shadow;
 mod sky;
@@ -11,6 +12,7 @@ mod vegetation;
 mod view;
 
 pub(crate) use envelope::{Comfort, Corners, Envelope};
+pub(crate) use irradiance::{ClearSkyChoice, Irradiance};
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Viewshed};
 pub(crate) use shadow::Shadow;
 pub(crate) use sky::{FacingChoice, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
@@ -149,6 +151,11 @@ pub(crate) enum Command {
         after_help = "Two measures that are often mixed up, both 0 to 1. sky_view_factor is weighted by the cosine to the surface, (1/π) ∫ cos θ dΩ: the share of the light of an even sky that arrives, as energy models want it. sky_openness is the plain share of the hemisphere above the horizon, (1/2π) ∫ dΩ. Before a free wall both are ½.\n\nBalls alone are asked. Beyond the rim of the cloud nothing stands in the way.\n\nExamples:\n  belvedere sky-view demo/town.laz --cell 1 -o demo/sky.tif -o demo/sky.png\n  belvedere sky-view demo/town.laz --self --directions 145 -o demo/sky.laz\n  belvedere sky-view demo/balls.npz --targets demo/town.obj --spacing 2 --directions 145 -o demo/sky-of-faces.csv"
     )]
     SkyView(SkyView),
+    /// Sum up the energy of sun and sky over a year, and what shading takes of it: for cells, points, meshes, and the planes of roofs
+    #[command(
+        after_help = "Of the ground or a surface the energy is that of a level plane; points and meshes may be --facing normals. The sun's part is lost where balls hide the sun; the sky's part patch by patch. kwh_m2 is the total of the period, loss the share that shading takes of what would arrive without obstacles.\n\nOf a plane of a roof least_loss is the loss of radiation, the mean of its cells: what a plant loses whose panels each work for themselves. most_loss is that of a plant whose rows are strings in which the worst panel counts. Real plants lie between.\n\nRows of weather get the sun of the middle of their interval (EPW, TMY3: local standard time, the hour ends) or of their instant (PVGIS: UTC; NSRDB), and are cut into --parts.\n\nExamples:\n  belvedere irradiance demo/town.laz --clear-sky ineichen --surface --cell 3 --sun-cell 3 -o demo/energy.tif -o demo/energy.png\n  belvedere irradiance demo/town.laz --clear-sky ineichen --linke 4 --sun-cell 3 --planes demo/roofs.csv --planes demo/roofs.geojson --horizons demo/horizons"
+    )]
+    Irradiance(Irradiance),
     /// Measure how long the sun reaches each place, on a day, over a period, or by a rule
     #[command(
         name = "sun-hours",

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Workplace, house};
 
-const COMMANDS: [&str; 18] = [
+const COMMANDS: [&str; 22] = [
     "demo",
     "simulate",
     "info",
@@ -20,6 +20,10 @@ const COMMANDS: [&str; 18] = [
     "horizon",
     "envelope",
     "comfort",
+    "irradiance",
+    "shadow",
+    "sky-view",
+    "sun-hours",
     "compare",
     "completions",
     "man",

@@ -67,6 +67,7 @@ pub mod summary;
 pub mod trajectory;
 pub mod vector;
 pub mod view;
+pub mod weather;
 
 pub use cloud::{Attributes, GpsTimeKind, PointCloud};
 pub use error::{Error, Result};

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 /// Level of each module of the core; a module imports from lower levels, or from its own folder.
-const LEVELS: [(&str, u8); 23] = [
+const LEVELS: [(&str, u8); 24] = [
     ("error", 0),
     ("crs", 0),
     ("cloud", 0),
@@ -12,6 +12,7 @@ const LEVELS: [(&str, u8); 23] = [
     ("raster", 0),
     ("view", 0),
     ("trajectory", 0),
+    ("weather", 0),
     ("random", 0),
     ("progress", 0),
     ("vector", 0),

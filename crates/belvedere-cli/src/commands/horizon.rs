@@ -98,7 +98,7 @@ fn write_columns(output: &Path, elevations: &[Vec<f64>], count: usize) -> belved
     write_lines(output, std::iter::once(header).chain((0..count).map(row)))
 }
 
-fn write_lines(output: &Path, lines: impl Iterator<Item = String>) -> belvedere::Result<()> {
+pub(super) fn write_lines(output: &Path, lines: impl Iterator<Item = String>) -> belvedere::Result<()> {
     let text: String = lines.map(|line| line + "\n").collect();
     atomic::write(output, |file| file.write_all(text.as_bytes()).map_err(belvedere::Error::io(output)))
 }

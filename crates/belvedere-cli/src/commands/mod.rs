@@ -8,6 +8,7 @@ mod depth_map;
 mod envelope;
 mod horizon;
 mod info;
+mod irradiance;
 mod isovist;
 mod landmark;
 mod line_of_sight;
@@ -57,6 +58,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::Horizon(arguments) => horizon::run(arguments, global),
         Command::Shadow(arguments) => shadow::run(arguments, global),
         Command::SkyView(arguments) => sky_view::run(arguments, global),
+        Command::Irradiance(arguments) => irradiance::run(arguments, global),
         Command::SunHours(arguments) => sun_hours::run(arguments, global),
         Command::Envelope(arguments) => envelope::run(arguments, global),
         Command::Comfort(arguments) => comfort::run(arguments, global),

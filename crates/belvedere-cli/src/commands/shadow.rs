@@ -273,12 +273,15 @@ fn frame(
     map_picture(&MapPicture { relief, cell, colors: &colors, marks: &[], title: &sun.title, legend })
 }
 
+/// Draws the shadow of the sun of that number over a relief with cells of a side in metres.
+type Drawing<'a> = dyn Fn(usize, &Raster<f32>, f64) -> belvedere::Result<Picture> + 'a;
+
 /// Writes a picture of each sun, after each other or apart.
 fn films(
     arguments: &Shadow,
     targets: &SkyTargets,
     suns: &[Sun],
-    picture: &(dyn Fn(usize, &Raster<f32>, f64) -> belvedere::Result<Picture> + Sync),
+    picture: &Drawing<'_>,
     stages: &mut Stages,
 ) -> Result<()> {
     let (Some(ground), Some(relief)) = (targets.ground(), targets.relief()) else { return Ok(()) };

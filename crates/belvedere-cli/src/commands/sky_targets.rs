@@ -310,7 +310,12 @@ fn span(measure: &Measure<'_>, values: &[f64]) -> [f64; 2] {
 }
 
 /// A measure as a map over shaded relief.
-pub(crate) fn map_of(measure: &Measure<'_>, relief: &Raster<f32>, cell: f64, title: &str) -> belvedere::Result<Picture> {
+pub(crate) fn map_of(
+    measure: &Measure<'_>,
+    relief: &Raster<f32>,
+    cell: f64,
+    title: &str,
+) -> belvedere::Result<Picture> {
     let values: Vec<f64> = measure.values.iter().map(|&v| f64::from(v)).collect();
     let [low, high] = span(measure, &values);
     let ramp = ramp_colors(&(0..COLORS).map(|i| i as f32).collect::<Vec<f32>>());

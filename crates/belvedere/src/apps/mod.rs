@@ -2,9 +2,11 @@
 
 pub mod exposure;
 pub mod horizon;
+pub mod irradiance;
 pub mod isovist;
 pub mod landmark;
 pub mod profile;
+pub mod roof_planes;
 pub mod shadow;
 pub mod sky_view;
 pub mod solar_envelope;

@@ -43,6 +43,7 @@ mod rows;
 mod saved_matrix;
 mod table;
 mod trajectory;
+mod weather;
 mod write_cloud;
 mod write_faces;
 mod write_las;
@@ -79,6 +80,7 @@ pub use read_cloud::{CLOUD_EXTENSIONS, FileReport, LeftOut, ReadOptions, ReadRep
 pub use saved_matrix::{SavedMatrix, read_matrix, write_matrix};
 pub use table::{Cells, Table, read_table, write_table};
 pub use trajectory::{TrajectoryReport, read_trajectory};
+pub use weather::read_weather;
 pub use write_cloud::{ExtraColumn, ExtraValues, WriteReport, write_cloud};
 pub use write_faces::write_mesh;
 pub use write_masbcpp::{MasbcppFolder, write_masbcpp};

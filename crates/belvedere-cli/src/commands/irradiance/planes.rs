@@ -1,0 +1,262 @@
+//! Planes of roofs: found, asked, and written.
+
+use super::super::sights::{ground, ground_cloud, on_map};
+use super::super::{check_output, check_parent, extension, is_same};
+use crate::arguments::{GroundChoice, Irradiance, Usage};
+use crate::commands::horizon::write_lines;
+use crate::pipeline::{Scene, flagged};
+use crate::progress::Stages;
+use crate::summary::{Summary, rounded};
+use anyhow::Result;
+use belvedere::PointCloud;
+use belvedere::apps::horizon::{HorizonParams, horizons};
+use belvedere::apps::irradiance::{Irradiation, PeriodRadiation, plane_irradiation};
+use belvedere::apps::roof_planes::{RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
+use belvedere::apps::sun::Site;
+use belvedere::ground::MapGrid;
+use belvedere::io::{Area, Cells, atomic, outlines, write_geojson_areas, write_table};
+use belvedere::query::{MedialScene, visibility_matrix};
+
+/// Cells of the ground that roofs are told from, metres.
+const GROUND_CELL: f64 = 1.0;
+/// Height of panels above their roof, metres: that of usual rails, which balls of a rough roof do not reach.
+const PANEL_HEIGHT: f64 = 0.1;
+/// Azimuths of a horizon: steps of 7.5 degrees, as PVGIS has them.
+const AZIMUTHS: usize = 48;
+
+/// Roofs of the scene.
+pub(super) struct Roofs {
+    planes: Vec<RoofPlane>,
+    /// Local frame and reference system.
+    frame: PointCloud,
+}
+
+pub(super) fn check(arguments: &Irradiance) -> Result<()> {
+    for output in &arguments.planes {
+        check_output("--planes", output, &["csv", "geojson"])?;
+    }
+    if let Some(folder) = &arguments.horizons {
+        check_parent(folder)?;
+    }
+    let all: Vec<_> = arguments.planes.iter().chain(&arguments.outputs.output).collect();
+    for (i, a) in all.iter().enumerate() {
+        if let Some(b) = all.iter().skip(i + 1).find(|b| is_same(a, b)) {
+            return Err(Usage(format!("{}: two results would be written there", b.display())).into());
+        }
+    }
+    Ok(())
+}
+
+/// The planes of the scene's roofs, where they are wanted.
+pub(super) fn find(
+    arguments: &Irradiance,
+    scene: &mut Scene,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<Option<Roofs>> {
+    if arguments.planes.is_empty() {
+        return Ok(None);
+    }
+    let usual = RoofPlaneParams::default();
+    let params = RoofPlaneParams {
+        least_area: arguments.least_area.unwrap_or(usual.least_area),
+        cell: arguments.panel.unwrap_or(usual.cell),
+        ..usual
+    };
+    let [low, high] = on_map(scene.bounds);
+    let origin = [scene.cloud.origin[0], scene.cloud.origin[1]];
+    let grid = MapGrid::covering(low, high, GROUND_CELL, origin)?;
+    let (cloud, points) = ground_cloud(&arguments.places.ground, scene, stages)?;
+    let mut section = Summary::default();
+    let ground = ground(&cloud, points, grid, stages, &mut section)?;
+    let frame = cloud.without_points();
+    let (rows, from) = roof_points(&cloud, &ground)?;
+    let places: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
+    let planes = stages.run("finding planes of roofs", 0, |_| roof_planes(&places, &params));
+    let planes = flagged("--panel, --least-area", planes)?;
+    let mut section = Summary::default();
+    let from = match from {
+        RoofsFrom::Class => "class 6",
+        RoofsFrom::Height => "height above the ground (no class 6)",
+    };
+    section
+        .add("from", from)
+        .add("points", places.len())
+        .add("points_on_planes", planes.iter().map(|plane| plane.points.len()).sum::<usize>())
+        .add("planes", planes.len())
+        .add("area_m2", rounded(planes.iter().map(|plane| plane.area).sum(), 1));
+    summary.add("roofs", section);
+    // the cloud goes back to where it came from: cells and points may be asked about, too
+    if matches!(arguments.places.ground, GroundChoice::OfScene(_)) {
+        scene.cloud = cloud;
+    }
+    Ok(Some(Roofs { planes, frame }))
+}
+
+/// What is known of a plane.
+struct Row {
+    mean: Irradiation,
+    string_limited: Irradiation,
+    months: Vec<f64>,
+}
+
+/// Asks for the energy of all planes and writes it.
+pub(super) fn measure(
+    arguments: &Irradiance,
+    roofs: &Roofs,
+    blockers: &MedialScene,
+    radiation: &PeriodRadiation,
+    site: &Site,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<()> {
+    let rows = stages.run("looking from roofs", roofs.planes.len(), |progress| -> Result<Vec<Row>> {
+        let directions = radiation.directions();
+        let mut rows = Vec::with_capacity(roofs.planes.len());
+        // a few at a time: their bits need little memory, and the threads are busy
+        for planes in roofs.planes.chunks(64) {
+            let mut places = Vec::new();
+            let mut strings: Vec<Vec<usize>> = Vec::new();
+            for plane in planes {
+                let cells = plane.cells.middles();
+                places.extend(cells.iter().map(|(place, _)| lifted(*place, plane.normal)));
+                strings.push(cells.iter().map(|(_, string)| *string).collect());
+            }
+            let matrix = visibility_matrix(blockers, &places, &directions, belvedere::progress::Progress::none())?;
+            let mut first = 0;
+            for (plane, strings) in planes.iter().zip(&strings) {
+                let found = plane_irradiation(&matrix, first, strings, plane.normal, radiation)?;
+                first += strings.len();
+                rows.push(Row {
+                    mean: Irradiation::sum(&found.mean),
+                    string_limited: Irradiation::sum(&found.string_limited),
+                    months: found.mean.iter().map(Irradiation::total).collect(),
+                });
+            }
+            progress.advance(planes.len());
+        }
+        Ok(rows)
+    })?;
+    let mut section = Summary::default();
+    let weighted = |value: &dyn Fn(&Row) -> f64| -> f64 {
+        roofs.planes.iter().zip(&rows).map(|(plane, row)| plane.area * value(row)).sum()
+    };
+    let (energy, unshaded) = (weighted(&|row| row.mean.total()), weighted(&|row| row.mean.unshaded));
+    let limited = weighted(&|row| row.string_limited.total());
+    section
+        .add("mwh", rounded(energy / 1000.0, 2))
+        .add("least_loss_percent", rounded(100.0 * (1.0 - energy / unshaded.max(f64::MIN_POSITIVE)), 2))
+        .add("most_loss_percent", rounded(100.0 * (1.0 - limited / unshaded.max(f64::MIN_POSITIVE)), 2));
+    summary.add("planes", section);
+    for output in &arguments.planes {
+        stages.run("writing", 0, |_| match extension(output).as_str() {
+            "csv" => write_rows(output, roofs, &rows, site),
+            _ => write_outlines(output, roofs, &rows, site),
+        })?;
+    }
+    summary.add("planes_written", arguments.planes.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    if let Some(folder) = &arguments.horizons {
+        write_horizons(folder, roofs, blockers, site, stages)?;
+        summary.add("horizons_written", folder.display().to_string());
+    }
+    Ok(())
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "local positions")]
+fn lifted(place: [f64; 3], normal: [f64; 3]) -> [f32; 3] {
+    [0, 1, 2].map(|i| (place[i] + PANEL_HEIGHT * normal[i]) as f32)
+}
+
+/// Degrees from true north.
+fn azimuth_deg(plane: &RoofPlane, site: &Site) -> f64 {
+    (plane.azimuth() + site.convergence).to_degrees().rem_euclid(360.0)
+}
+
+/// Columns of figures of all planes: name, values, digits.
+fn figures(roofs: &Roofs, rows: &[Row], site: &Site) -> Vec<(&'static str, Vec<f64>, usize)> {
+    let of_planes = |value: &dyn Fn(&RoofPlane) -> f64| -> Vec<f64> { roofs.planes.iter().map(value).collect() };
+    let of_rows = |value: &dyn Fn(&Row) -> f64| -> Vec<f64> { rows.iter().map(value).collect() };
+    let middle = |axis: usize| {
+        let scale = roofs.frame.crs.metres_per_unit_xyz();
+        of_planes(&|plane| (plane.middle[axis] + roofs.frame.origin[axis]) / scale[axis])
+    };
+    let lost = |row: &Row| 1.0 - row.string_limited.total() / row.mean.unshaded.max(f64::MIN_POSITIVE);
+    let energy = roofs.planes.iter().zip(rows).map(|(plane, row)| plane.area * row.mean.total()).collect();
+    let mut columns = vec![
+        ("x", middle(0), 3),
+        ("y", middle(1), 3),
+        ("z", middle(2), 3),
+        ("area_m2", of_planes(&|plane| plane.area), 2),
+        ("tilt_deg", of_planes(&|plane| plane.tilt().to_degrees()), 2),
+        ("azimuth_deg", of_planes(&|plane| azimuth_deg(plane, site)), 2),
+        ("roughness_m", of_planes(&|plane| plane.roughness), 3),
+        ("kwh_m2", of_rows(&|row| row.mean.total()), 1),
+        ("beam_kwh_m2", of_rows(&|row| row.mean.beam), 1),
+        ("sky_kwh_m2", of_rows(&|row| row.mean.diffuse), 1),
+        ("ground_kwh_m2", of_rows(&|row| row.mean.reflected), 1),
+        ("free_kwh_m2", of_rows(&|row| row.mean.unshaded), 1),
+        ("least_loss", of_rows(&|row| row.mean.loss()), 4),
+        ("most_loss", of_rows(&|row| lost(row).clamp(0.0, 1.0)), 4),
+        ("kwh", energy, 0),
+    ];
+    for (month, name) in super::MONTHS.into_iter().enumerate() {
+        if rows.iter().all(|row| row.months.len() > 1) {
+            columns.push((name, of_rows(&|row| row.months.get(month).copied().unwrap_or(f64::NAN)), 2));
+        }
+    }
+    columns
+}
+
+fn write_rows(output: &std::path::Path, roofs: &Roofs, rows: &[Row], site: &Site) -> Result<()> {
+    let numbers: Vec<Option<u64>> = (1..).take(rows.len()).map(Some).collect();
+    let cells: Vec<Option<u64>> = roofs.planes.iter().map(|plane| Some(plane.cells.middles().len() as u64)).collect();
+    let columns = figures(roofs, rows, site);
+    let mut table = vec![("plane", Cells::Whole(&numbers)), ("cells", Cells::Whole(&cells))];
+    table.extend(columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))));
+    Ok(write_table(output, &table)?)
+}
+
+fn write_outlines(output: &std::path::Path, roofs: &Roofs, rows: &[Row], site: &Site) -> Result<()> {
+    let columns = figures(roofs, rows, site);
+    let mut areas = Vec::with_capacity(rows.len());
+    for (number, plane) in roofs.planes.iter().enumerate() {
+        let mut area = Area::default();
+        area.properties.insert("plane".to_owned(), (number + 1).into());
+        for (name, values, decimals) in columns.iter().skip(3) {
+            let digits = i32::try_from(*decimals).unwrap_or(2);
+            area.properties
+                .insert((*name).to_owned(), rounded(values.get(number).copied().unwrap_or(f64::NAN), digits));
+        }
+        let corner = |corner: &[usize; 2]| {
+            let place = plane.cells.place(corner.map(|v| v as f64));
+            [place[0] + roofs.frame.origin[0], place[1] + roofs.frame.origin[1]]
+        };
+        for polygon in outlines(&plane.cells.filled) {
+            let rings = std::iter::once(&polygon.rim).chain(&polygon.holes);
+            // rows run up the slope here, not down a picture, so that rings come out the other way round
+            area.polygons.push(rings.map(|ring| ring.iter().rev().map(corner).collect()).collect());
+        }
+        areas.push(area);
+    }
+    write_geojson_areas(output, &areas, &roofs.frame.crs)?;
+    Ok(())
+}
+
+fn write_horizons(
+    folder: &std::path::Path,
+    roofs: &Roofs,
+    blockers: &MedialScene,
+    site: &Site,
+    stages: &mut Stages,
+) -> Result<()> {
+    atomic::make_folder(folder)?;
+    let eyes: Vec<[f64; 3]> =
+        roofs.planes.iter().map(|plane| lifted(plane.middle, plane.normal).map(f64::from)).collect();
+    let params = HorizonParams { azimuth_count: AZIMUTHS, turn: site.convergence, ..HorizonParams::default() };
+    let found = stages.run("looking around", 0, |_| horizons(blockers, &eyes, &params))?;
+    for (number, skyline) in found.iter().enumerate() {
+        let path = folder.join(format!("plane_{}.txt", number + 1));
+        write_lines(&path, skyline.iter().map(|point| format!("{:.2}", point.elevation.to_degrees().max(0.0))))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,32 @@
+//! Radiation of sun and sky on planes that obstacles shade, and the energy it makes over a period.
+//!
+//! | question | function |
+//! |---|---|
+//! | what arrives above the atmosphere, how much air it passes | [`extraterrestrial`], [`air_mass`] |
+//! | what a clear sky gives | [`ClearSky::irradiance`] |
+//! | what the sun and the sky are where only global radiation is known | [`split_global`], [`complete`] |
+//! | how diffuse radiation falls on a tilted plane | [`diffuse_parts`], [`patch_radiation`] |
+//! | which instants a period has | [`weather_instants`], [`clear_instants`] |
+//! | what a period sends from each direction | [`PeriodRadiation::gather`] |
+//! | what each target gets of it, and what it loses | [`scene_irradiation`], [`irradiation`] |
+//! | what planes of panels in strings get | [`plane_irradiation`] |
+
+mod atmosphere;
+mod clear_sky;
+mod diffuse;
+mod erbs;
+mod instants;
+mod irradiation;
+mod patch_sky;
+mod period;
+mod strings;
+
+pub use atmosphere::{SOLAR_CONSTANT, absolute_air_mass, air_mass, extraterrestrial, pressure};
+pub use clear_sky::{BirdParams, ClearSky};
+pub use diffuse::{DiffuseParts, SkyModel, diffuse_parts};
+pub use erbs::{complete, split_global};
+pub use instants::{PARTS, clear_instants, weather_instants};
+pub use irradiation::{Irradiation, irradiation, scene_irradiation};
+pub use patch_sky::patch_radiation;
+pub use period::{Grouping, Instant, IrradianceParams, PeriodRadiation, PeriodReport, Surroundings};
+pub use strings::{PlaneIrradiation, plane_irradiation};

@@ -1,0 +1,108 @@
+//! Measured or typical radiation of a place: what weather files hold.
+
+mod calendar;
+
+pub use calendar::{CalendarDay, day_of_year, unix_day};
+
+use crate::{Error, Result};
+
+/// Radiation on a level plane and towards the sun, W/m², the mean of an interval or the value of an instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Irradiance {
+    /// Global, on a level plane.
+    pub ghi: f64,
+    /// Direct, on a plane that faces the sun.
+    pub dni: f64,
+    /// Diffuse, on a level plane.
+    pub dhi: f64,
+}
+
+/// One row of a weather file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WeatherStep {
+    /// The instant whose sun goes with the row: the middle of an interval, or the instant of a value, seconds since 1970-01-01 UTC.
+    pub instant: f64,
+    /// How long the row counts, hours.
+    pub hours: f64,
+    /// Month in the time of the file, 1 to 12.
+    pub month: u8,
+    /// Global radiation on a level plane, W/m².
+    pub ghi: f64,
+    /// Direct radiation towards the sun, W/m², where the file has it.
+    pub dni: Option<f64>,
+    /// Diffuse radiation on a level plane, W/m², where the file has it.
+    pub dhi: Option<f64>,
+    /// Temperature of the air, °C, where the file has it.
+    pub temperature: Option<f64>,
+}
+
+/// What a weather file says the value of a row is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowsHold {
+    /// The mean of the interval around [`WeatherStep::instant`].
+    Means,
+    /// The value at [`WeatherStep::instant`].
+    Instants,
+}
+
+/// The radiation of a place over a year or another period.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Weather {
+    /// Kind of file, such as "EPW".
+    pub format: &'static str,
+    /// Latitude, radians, north positive.
+    pub latitude: f64,
+    /// Longitude, radians, east positive.
+    pub longitude: f64,
+    /// Height above the sea, metres; 0 where the file does not say.
+    pub height: f64,
+    /// What rows hold.
+    pub rows_hold: RowsHold,
+    /// The rows in the order of the file.
+    pub steps: Vec<WeatherStep>,
+    /// Rows of the file that hold no radiation, and are left out.
+    pub left_out_count: usize,
+    /// What else people should know.
+    pub notes: Vec<String>,
+}
+
+impl Weather {
+    /// Hours of all rows together.
+    #[must_use]
+    pub fn hours(&self) -> f64 {
+        self.steps.iter().map(|step| step.hours).sum()
+    }
+
+    /// Checks what the reader of any format must have made sure of.
+    ///
+    /// # Errors
+    /// [`Error::NoPoints`] without rows, [`Error::InvalidParameter`] for a place that is not on earth, and for values that are not finite
+    /// or below zero.
+    pub fn validate(&self) -> Result<()> {
+        if self.steps.is_empty() {
+            return Err(Error::NoPoints { what: "the weather has no row with radiation".to_owned() });
+        }
+        let on_earth = self.latitude.abs() <= 90f64.to_radians() && self.longitude.abs() <= 360f64.to_radians();
+        if !on_earth || !self.height.is_finite() {
+            return Err(Error::InvalidParameter {
+                name: "place of the weather",
+                value: format!("{}, {}", self.latitude.to_degrees(), self.longitude.to_degrees()),
+                expected: "latitude -90 to 90 and longitude -360 to 360 degrees",
+            });
+        }
+        for step in &self.steps {
+            let values = [Some(step.ghi), step.dni, step.dhi];
+            if !values.iter().flatten().all(|v| v.is_finite() && *v >= 0.0)
+                || !(step.hours > 0.0)
+                || step.hours > 8784.0
+            {
+                return Err(Error::InvalidParameter {
+                    name: "radiation",
+                    value: format!("{step:?}"),
+                    expected: "finite, not below zero",
+                });
+            }
+        }
+        Ok(())
+    }
+}
