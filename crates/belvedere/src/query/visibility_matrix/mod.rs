@@ -1,5 +1,6 @@
 //! Which of many directions each of many targets sees free: what sun hours, sky views and irradiance are sums over.
 
+mod looking;
 mod nearby;
 mod space_layers;
 mod sweep;
@@ -7,13 +8,13 @@ mod sweep;
 use super::{MedialScene, TargetTree};
 use crate::depth::Profile;
 use crate::progress::Progress;
-use crate::ray_index::Ray;
 use crate::vector::length;
 use crate::{Error, Result};
-use nearby::{NEAR, Nearby};
+use looking::{CHUNK, Sky, headings};
 use rayon::prelude::*;
 use space_layers::SpaceLayers;
-use sweep::{Descending, Settled, sweep};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use sweep::{Descending, sweep};
 
 /// Bits in a word.
 const WORD: usize = 64;
@@ -91,8 +92,6 @@ impl VisibilityMatrix {
     }
 }
 
-/// Targets handed to a thread at once: neighbours, which tell each other what blocks.
-const CHUNK: usize = 256;
 /// Directions from which on it pays to gather what is near a target, and to sweep them.
 const WORTH_GATHERING: usize = 16;
 /// Lines of sight for each ball from which on it pays to sweep.
@@ -147,6 +146,12 @@ pub fn visibility_matrix(
         let descending = Descending::new(&space, tree.positions());
         (space, descending)
     });
+    // a target counts as done when as many lines of sight are
+    let asked = AtomicUsize::new(0);
+    let advance = |lines: usize| {
+        let before = asked.fetch_add(lines, Ordering::Relaxed);
+        progress.advance((before + lines) / directions.len() - before / directions.len());
+    };
     for batch in headings.chunks(BATCH) {
         let settled = match &space {
             None => Vec::new(),
@@ -155,108 +160,12 @@ pub fn visibility_matrix(
                 .map(|heading| sweep(space, descending, heading.direction, heading.near.max(scene.params().depth_bias)))
                 .collect(),
         };
-        let sky = Sky { scene, headings: batch, settled };
+        let sky = Sky::new(scene, batch, settled, directions.len());
         let chunks = words.par_chunks_mut(width * CHUNK).zip(tree.positions().par_chunks(CHUNK));
         chunks.enumerate().for_each(|(chunk, (rows, targets))| {
-            sky.look(targets, chunk * CHUNK, rows, width);
+            sky.look(targets, chunk, rows, width);
+            advance(targets.len() * batch.len());
         });
     }
-    progress.advance(targets.len());
     Ok(VisibilityMatrix { places, direction_count: directions.len(), width, words })
-}
-
-/// A direction and what of it is needed again and again.
-struct Heading {
-    direction: [f64; 3],
-    /// Range at which it has left the near space of a target.
-    near: f64,
-    column: usize,
-}
-
-/// Directions in bands of elevation, to and fro, so that each is close to the one before.
-fn headings(directions: &[[f64; 3]]) -> Vec<Heading> {
-    /// Height of a band as a share of the sine of elevation: about as far apart as 600 directions are.
-    const BANDS: f64 = 16.0;
-    let key = |direction: [f64; 3]| {
-        let band = (direction[2] * BANDS).floor();
-        let azimuth = direction[0].atan2(direction[1]);
-        (band, if band % 2.0 == 0.0 { azimuth } else { -azimuth })
-    };
-    let mut order: Vec<usize> = (0..directions.len()).collect();
-    order.sort_by(|&a, &b| {
-        let (a, b) = (key(directions[a]), key(directions[b]));
-        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
-    });
-    let heading = |column: usize| {
-        let direction = directions[column];
-        let across = direction[0].abs().max(direction[1].abs());
-        Heading { direction, near: (NEAR[1] / direction[2]).min(NEAR[0] / across), column }
-    };
-    order.into_iter().map(heading).collect()
-}
-
-/// What all targets look at.
-struct Sky<'a> {
-    scene: &'a MedialScene,
-    headings: &'a [Heading],
-    /// What a sweep of each direction found; empty without sweeps.
-    settled: Vec<Option<Settled>>,
-}
-
-impl Sky<'_> {
-    /// Fills the rows of neighbouring targets, the first of which is at `first` in the order of the tree.
-    fn look(&self, targets: &[[f32; 3]], first: usize, rows: &mut [u64], width: usize) {
-        // what blocked the target before, in each direction
-        let mut blocks: Vec<Option<u32>> = vec![None; self.headings.len()];
-        let mut nearby = Nearby::default();
-        let is_swept = !self.settled.is_empty();
-        for (i, (target, row)) in targets.iter().zip(rows.chunks_mut(width)).enumerate() {
-            let target = target.map(f64::from);
-            if is_swept {
-                nearby.gather(self.scene, target);
-            }
-            let (word, bit) = ((first + i) / WORD, (first + i) % WORD);
-            let is_set = |bits: &[u64]| bits.get(word).is_some_and(|word| word >> bit & 1 == 1);
-            let mut before = None;
-            for (number, (heading, block)) in self.headings.iter().zip(&mut blocks).enumerate() {
-                let settled = self.settled.get(number).and_then(Option::as_ref);
-                if settled.is_some_and(|settled| is_set(&settled.blocked)) {
-                    continue;
-                }
-                let ray = self.scene.ray(target, heading.direction, f64::INFINITY);
-                let is_by = |&ball: &u32| self.scene.front(ball as usize, &ray).is_some();
-                let found = match settled {
-                    Some(settled) if is_set(&settled.free) => nearby.block(self.scene, &ray),
-                    Some(_) => block
-                        .filter(is_by)
-                        .or_else(|| before.filter(is_by))
-                        .or_else(|| nearby.block(self.scene, &ray))
-                        .or_else(|| self.block_from(heading.near, &ray)),
-                    None => block
-                        .filter(is_by)
-                        .or_else(|| before.filter(is_by))
-                        .or_else(|| self.block_from(ray.ranges[0], &ray)),
-                };
-                match found {
-                    None => row[heading.column / WORD] |= 1 << (heading.column % WORD),
-                    Some(_) => (*block, before) = (found, found),
-                }
-            }
-        }
-    }
-
-    /// A ball that blocks `ray`, where none does before the range `start`.
-    fn block_from(&self, start: f64, ray: &Ray) -> Option<u32> {
-        let mut block = None;
-        let far = Ray { ranges: [start.max(ray.ranges[0]), ray.ranges[1]], ..*ray };
-        self.scene.index.any(&far, |number| {
-            let blocks = self.scene.front(number, ray).is_some();
-            #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
-            if blocks {
-                block = Some(number as u32);
-            }
-            blocks
-        });
-        block
-    }
 }

@@ -14,19 +14,27 @@ const LANES: usize = 8;
 /// Balls that may block a ray on its way out of the near space of a target.
 #[derive(Default)]
 pub(super) struct Nearby {
-    /// Unit vectors to their centres, and the least cosine to those of rays that may meet them, in rows of 8.
-    covers: Vec<[[f32; LANES]; 4]>,
+    /// Unit vectors to their centres and the least cosine to those of rays that may meet them, 8 side by side, and the greatest rise (sine of
+    /// elevation) that any of these reaches, in falling order.
+    covers: Vec<([[f32; LANES]; 4], f32)>,
     rows: Vec<u32>,
+    /// Balls that may block, not yet in order: as in covers, their greatest rise, and their row.
+    taken: Vec<([f32; 4], f32, u32)>,
+    /// Balls near any target of a group.
+    around: Vec<u32>,
     nodes: Vec<u32>,
 }
 
 impl Nearby {
-    /// Finds the balls near `target` that may block a ray which does not sink below the horizon.
-    pub(super) fn gather(&mut self, scene: &MedialScene, target: [f64; 3]) {
-        self.rows.clear();
-        self.covers.clear();
-        let low = [target[0] - NEAR[0], target[1] - NEAR[0], target[2]];
-        let high = [target[0] + NEAR[0], target[1] + NEAR[0], target[2] + NEAR[1]];
+    /// Looks up the balls near any of `targets`.
+    pub(super) fn gather(&mut self, scene: &MedialScene, targets: &[[f32; 3]]) {
+        self.around.clear();
+        let bound = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| {
+            targets.iter().map(|target| f64::from(target[axis])).fold(start, pick)
+        };
+        let low: [f64; 3] = std::array::from_fn(|i| bound(i, f64::min, f64::INFINITY) - [NEAR[0], NEAR[0], 0.0][i]);
+        let high: [f64; 3] =
+            std::array::from_fn(|i| bound(i, f64::max, f64::NEG_INFINITY) + [NEAR[0], NEAR[0], NEAR[1]][i]);
         let index = &scene.index;
         self.nodes.clear();
         self.nodes.extend(index.root());
@@ -46,74 +54,94 @@ impl Nearby {
                     Part::Nothing => {}
                     Part::Node(node) => self.nodes.push(node),
                     Part::Rows { first, count } => {
-                        for row in first..first + count {
-                            self.take(scene, target, [low, high], row);
-                        }
+                        let meets = |row: &u32| {
+                            let (center, radius) = scene.ball(*row as usize);
+                            beside(center.map(f64::from), [low, high]) <= f64::from(radius) * f64::from(radius)
+                        };
+                        self.around.extend((first..first + count).filter(meets));
                     }
                 }
             }
         }
     }
 
-    fn take(&mut self, scene: &MedialScene, target: [f64; 3], [low, high]: [[f64; 3]; 2], row: u32) {
+    /// Of the balls looked up, takes those that may block a ray from `target` which does not sink below the horizon before it leaves
+    /// the near space.
+    pub(super) fn select(&mut self, scene: &MedialScene, target: [f64; 3]) {
+        self.rows.clear();
+        self.covers.clear();
+        self.taken.clear();
+        let low = [target[0] - NEAR[0], target[1] - NEAR[0], target[2]];
+        let high = [target[0] + NEAR[0], target[1] + NEAR[0], target[2] + NEAR[1]];
+        for at in 0..self.around.len() {
+            self.take(scene, target, [low, high], self.around[at]);
+        }
+        self.line_up();
+    }
+
+    fn take(&mut self, scene: &MedialScene, target: [f64; 3], corners: [[f64; 3]; 2], row: u32) {
         let (center, radius) = scene.ball(row as usize);
         let (center, radius) = (center.map(f64::from), f64::from(radius));
-        let mut beside = 0.0;
-        for axis in 0..3 {
-            let outside = (low[axis] - center[axis]).max(center[axis] - high[axis]).max(0.0);
-            beside += outside * outside;
-        }
-        if beside > radius * radius {
+        if beside(center, corners) > radius * radius {
             return;
         }
         let offset: [f64; 3] = std::array::from_fn(|i| center[i] - target[i]);
         let distance = offset.iter().map(|v| v * v).sum::<f64>().sqrt();
         let radius = scene.radius_for(radius, distance);
-        let (cosine, towards) = if distance <= radius {
-            (-2.0, [0.0, 0.0, 1.0])
+        let (cosine, towards, highest) = if distance <= radius {
+            (-2.0, [0.0, 0.0, 1.0], 1.0)
         } else {
-            let sine = radius / distance;
+            let (sine, up) = (radius / distance, offset[2] / distance);
             let cosine = (1.0 - sine * sine).sqrt();
-            // the highest part of its rim: sin(a + b) of its own elevation and its radius
-            let up = offset[2] / distance;
-            let highest = up * cosine + (1.0 - up * up).max(0.0).sqrt() * sine;
-            if highest < -1e-6 && up < cosine {
-                return;
-            }
-            (cosine, offset.map(|v| v / distance))
+            // the sine of the elevation of its highest part, unless it covers the zenith
+            let highest = if up >= cosine { 1.0 } else { up * cosine + (1.0 - up * up).max(0.0).sqrt() * sine };
+            (cosine, offset.map(|v| v / distance), highest)
         };
-        let lane = self.rows.len() % LANES;
-        if lane == 0 {
-            self.covers.push([[0.0; LANES], [0.0; LANES], [0.0; LANES], [2.0; LANES]]);
+        if highest > -f64::from(ROUNDING) {
+            #[expect(clippy::cast_possible_truncation, reason = "tests allow for it")]
+            let [x, y, z, cosine, highest] =
+                [towards[0], towards[1], towards[2], cosine - f64::from(ROUNDING), highest + f64::from(ROUNDING)]
+                    .map(|v| v as f32);
+            self.taken.push(([x, y, z, cosine], highest, row));
         }
-        #[expect(clippy::cast_possible_truncation, reason = "the cosine allows for it")]
-        if let Some(covers) = self.covers.last_mut() {
-            for axis in 0..3 {
-                covers[axis][lane] = towards[axis] as f32;
-            }
-            covers[3][lane] = cosine as f32 - ROUNDING;
-        }
-        self.rows.push(row);
     }
 
-    /// The row of a ball near the target that blocks `ray`, if any does.
-    #[inline]
-    pub(super) fn block(&self, scene: &MedialScene, ray: &Ray) -> Option<u32> {
-        #[expect(clippy::cast_possible_truncation, reason = "the cosine allows for it")]
-        let [x, y, z] = ray.direction.map(|v| v as f32);
-        for (group, [cx, cy, cz, cosine]) in self.covers.iter().enumerate() {
-            let meets: [bool; LANES] =
-                std::array::from_fn(|lane| cx[lane] * x + cy[lane] * y + cz[lane] * z >= cosine[lane]);
-            if !meets.contains(&true) {
-                continue;
-            }
-            for lane in (0..LANES).filter(|&lane| meets[lane]) {
-                let row = self.rows.get(group * LANES + lane).copied();
-                if let Some(row) = row.filter(|&row| scene.front(row as usize, ray).is_some()) {
-                    return Some(row);
+    /// Puts those taken in order, the ones that reach highest first, 8 side by side.
+    fn line_up(&mut self) {
+        self.taken.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.2.cmp(&b.2)));
+        for taken in self.taken.chunks(LANES) {
+            let mut cover = [[0.0; LANES], [0.0; LANES], [0.0; LANES], [2.0; LANES]];
+            for (lane, (of_ball, ..)) in taken.iter().enumerate() {
+                for (part, value) in cover.iter_mut().zip(of_ball) {
+                    part[lane] = *value;
                 }
             }
+            self.covers.push((cover, taken[0].1));
         }
-        None
+        self.rows.extend(self.taken.iter().map(|(.., row)| row));
     }
+
+    /// Whether none of those selected can block anything.
+    pub(super) fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Whether a ball near the target blocks `ray`.
+    #[inline]
+    pub(super) fn blocks(&self, scene: &MedialScene, ray: &Ray) -> bool {
+        #[expect(clippy::cast_possible_truncation, reason = "the cosine allows for it")]
+        let [x, y, z] = ray.direction.map(|v| v as f32);
+        let reaching = self.covers.iter().take_while(|(_, highest)| *highest >= z);
+        reaching.zip(self.rows.chunks(LANES)).any(|(([cx, cy, cz, cosine], _), rows)| {
+            let meets: [bool; LANES] =
+                std::array::from_fn(|lane| cx[lane] * x + cy[lane] * y + cz[lane] * z >= cosine[lane]);
+            meets.contains(&true)
+                && rows.iter().zip(meets).any(|(&row, meets)| meets && scene.front(row as usize, ray).is_some())
+        })
+    }
+}
+
+/// Square of the distance of `place` to a box.
+fn beside(place: [f64; 3], [low, high]: [[f64; 3]; 2]) -> f64 {
+    (0..3).map(|i| (low[i] - place[i]).max(place[i] - high[i]).max(0.0).powi(2)).sum()
 }

@@ -121,6 +121,9 @@ pub(super) fn sweep(space: &SpaceLayers, targets: &Descending, direction: [f64; 
     };
     let mut moves = Vec::new();
     for layer in (0..depth).rev() {
+        if left.peek().is_none() {
+            break;
+        }
         moves_in(slope, layer as f64, &mut moves);
         for &by in &moves {
             reached.add(space, &space.reached, layer, by);
