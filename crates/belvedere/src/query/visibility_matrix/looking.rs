@@ -82,10 +82,10 @@ impl<'a> Sky<'a> {
             *seen = std::array::from_fn(|word| seen[word] | open[word]);
         }
         for (group, columns) in self.numbers.chunks(WORD).enumerate() {
-            for word in 0..targets.len().div_ceil(WORD) {
+            for (word, rows) in rows.chunks_mut(width * WORD).enumerate() {
                 let of_column = |column: usize| columns.get(column).copied().flatten().map_or(0, |n| free[n][word]);
                 let of_targets = transposed(std::array::from_fn(of_column));
-                for (row, seen) in rows.chunks_mut(width).skip(word * WORD).zip(of_targets) {
+                for (row, seen) in rows.chunks_mut(width).zip(of_targets) {
                     row[group] |= seen;
                 }
             }
