@@ -1,4 +1,5 @@
 //! Radiation models against pvlib 0.16.1: the same inputs, unshaded, over a year at three sites (`data/pvlib_reference.py`).
+#![allow(clippy::cast_possible_truncation, reason = "row numbers of a table, and ranks")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use belvedere::apps::irradiance::{

@@ -18,7 +18,7 @@ fn instant(year: i32, month: u8, day: u8, hour: f64) -> f64 {
 fn epw_row(date: &str, ghi: &str, dni: &str, dhi: &str) -> String {
     // temperature is cell 7, radiation cells 14 to 16
     let cells = ["?9?9", "10.5", "3.0", "60", "101000", "0", "0", "300"];
-    format!("{date},{},{ghi},{dni},{dhi},0,0,0,0,180,2.0\n", cells.join(",").replace("300", "300"))
+    format!("{date},{},{ghi},{dni},{dhi},0,0,0,0,180,2.0\n", cells.join(","))
 }
 
 fn epw(rows: &str) -> String {
