@@ -1,12 +1,16 @@
-//! How long do a million lines of sight between pairs, and what an observer in a street sees of 360 000 cells, take in a town of a million points?
+//! How long do a million lines of sight between pairs, what an observer in a street sees of 360 000 cells, and what these see of the sky, take
+//! in a town of a million points?
 #![allow(missing_docs, reason = "the macros of criterion write functions without")]
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 
 mod common;
 
+use belvedere::apps::sky_view::SkyDirections;
 use belvedere::medial::{ShrinkParams, Side, shrink};
 use belvedere::progress::Progress;
-use belvedere::query::{EarthParams, MedialScene, SceneParams, TargetTree, Viewer, Visibility, random_pairs};
+use belvedere::query::{
+    EarthParams, MedialScene, SceneParams, TargetTree, Viewer, Visibility, random_pairs, visibility_matrix,
+};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 const CELLS: usize = 600;
@@ -50,6 +54,12 @@ fn sights(c: &mut Criterion) {
             let tree = TargetTree::new(&cells);
             eyes.iter().map(|&eye| scene.answer_among(Viewer::Eye(eye), &tree).unwrap().len()).sum::<usize>()
         });
+    });
+    let sky = SkyDirections::patches(1).unwrap();
+    let lifted: Vec<[f32; 3]> = cells.iter().map(|&[x, y, z]| [x, y, z + 0.1]).collect();
+    group.throughput(Throughput::Elements((sky.directions.len() * lifted.len()) as u64));
+    group.bench_function("145 directions of the sky, all cells", |b| {
+        b.iter(|| visibility_matrix(&scene, &lifted, &sky.directions, Progress::none()).unwrap().row(0).len());
     });
 }
 
