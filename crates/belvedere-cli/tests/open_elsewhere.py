@@ -117,6 +117,15 @@ with rasterio.open(hours) as raster, rasterio.open(measures / "sun_share.tif") a
     assert 0 <= values.min() and 10 < values.max() < 16.8, values
     assert abs(values / share - (values / share).mean()).max() < 0.01
 
+# a ground cloud that names no system has that of the balls
+bare = folder / "bare.csv"
+points = laspy.read(town)
+columns = numpy.column_stack([points.x, points.y, points.z, points.classification])
+numpy.savetxt(bare, columns, fmt="%.3f,%.3f,%.3f,%d", header="x,y,z,classification", comments="")
+run("shadow", balls, "--ground", f"cloud={bare}", "--sun", "235,30", "--cell", 2, "-o", lit)
+with rasterio.open(lit) as raster:
+    assert raster.crs.to_epsg() in (7415, 28992), raster.crs
+
 sky = folder / "sky.laz"
 run("sky-view", town, "--self", "--directions", 64, "-o", sky)
 cloud = laspy.read(sky)
