@@ -1,4 +1,4 @@
-"""Results open in the programs they are made for: rasterio (GDAL), geopandas and laspy.
+"""Results open in the programs they are made for: rasterio (GDAL), geopandas, laspy and Pillow.
 
 Usage: open_elsewhere.py BELVEDERE FOLDER
 """
@@ -11,7 +11,9 @@ from pathlib import Path
 import geopandas
 import laspy
 import numpy
+import PIL
 import rasterio
+from PIL import Image
 
 belvedere, folder = sys.argv[1], Path(sys.argv[2])
 
@@ -83,4 +85,55 @@ run("horizon", *scene, "--eye", f"{x},{y}", "--north", "true", "-o", horizon)
 table = numpy.genfromtxt(horizon, delimiter=",", names=True)
 assert len(table) == 360 and (table[table.dtype.names[0]] == numpy.arange(360)).all(), table.dtype.names
 assert 0 <= table[table.dtype.names[1]].min() and 10 < table[table.dtype.names[1]].max() < 90
-print("rasterio", rasterio.__version__, "geopandas", geopandas.__version__, "laspy", laspy.__version__, "open all results")
+
+# shadow at three hours of a morning: as rasters, a raster of one sun, and a film
+day = ["--from", "2026-06-21T08:00+02:00", "--to", "2026-06-21T11:00+02:00", "--step", 60, "--cell", 2]
+lit, film, rasters = folder / "lit.tif", folder / "film.png", folder / "lit"
+told = run("shadow", *scene, *day, "-o", lit, "--film", film, "--measures", rasters)
+suns = told["sun"]["suns"]
+assert suns in (3, 4), told["sun"]
+with rasterio.open(lit) as raster:
+    values = raster.read(1, masked=True)
+    assert raster.dtypes == ("float32",) and raster.nodata == -9999 and raster.res == (2, 2), raster.meta
+    assert raster.crs.to_epsg() in (7415, 28992), raster.crs
+    assert set(numpy.unique(values.compressed())) == {0, 1}
+assert len(list(rasters.glob("lit_20260621_*.tif"))) == suns
+with Image.open(film) as frames:
+    assert frames.format == "PNG" and frames.n_frames == suns and frames.info["loop"] == 0, frames.info
+    shaded = []
+    for number in range(suns):
+        frames.seek(number)
+        shaded.append(numpy.asarray(frames.convert("RGB")))
+    # each frame is that of its sun: what differs from the first is not only its title
+    assert all((shaded[0][100:] != other[100:]).any() for other in shaded[1:])
+
+hours = folder / "hours.tif"
+measures = folder / "sun"
+told = run("sun-hours", *scene, "--date", "2026-06-21", "--step", 60, "--cell", 2, "-o", hours, "--measures", measures)
+with rasterio.open(hours) as raster, rasterio.open(measures / "sun_share.tif") as shares:
+    values, share = raster.read(1, masked=True), shares.read(1, masked=True)
+    assert raster.transform == shares.transform and raster.nodata == -9999
+    # 16 h 45 min between sunrise and sunset at 52.2 degrees north
+    assert 0 <= values.min() and 10 < values.max() < 16.8, values
+    assert abs(values / share - (values / share).mean()).max() < 0.01
+
+# a ground cloud that names no system has that of the balls
+bare = folder / "bare.csv"
+points = laspy.read(town)
+columns = numpy.column_stack([points.x, points.y, points.z, points.classification])
+numpy.savetxt(bare, columns, fmt="%.3f,%.3f,%.3f,%d", header="x,y,z,classification", comments="")
+run("shadow", balls, "--ground", f"cloud={bare}", "--sun", "235,30", "--cell", 2, "-o", lit)
+with rasterio.open(lit) as raster:
+    assert raster.crs.to_epsg() in (7415, 28992), raster.crs
+
+sky = folder / "sky.laz"
+run("sky-view", town, "--self", "--directions", 64, "-o", sky)
+cloud = laspy.read(sky)
+assert cloud.header.parse_crs() is not None and len(cloud) == laspy.read(town).header.point_count
+for name in ("sky_view_factor", "sky_openness"):
+    assert 0 <= cloud[name].min() and 0.9 < cloud[name].max() <= 1.01, name
+    # roofs see more of the sky than the ground
+    assert cloud[name][cloud.classification == 6].mean() > cloud[name][cloud.classification == 2].mean(), name
+
+print("rasterio", rasterio.__version__, "geopandas", geopandas.__version__, "laspy", laspy.__version__)
+print("and Pillow", PIL.__version__, "open all results")

@@ -140,6 +140,8 @@ fn parameters_out_of_range_are_refused() {
         RoofPlaneParams { distance: 0.0, ..usual },
         RoofPlaneParams { reach: f64::NAN, ..usual },
         RoofPlaneParams { cell: -1.0, ..usual },
+        // would be 10^18 cells a square metre
+        RoofPlaneParams { cell: 1e-9, ..usual },
         RoofPlaneParams { angle: 2.0, ..usual },
         RoofPlaneParams { least_area: f64::NAN, ..usual },
     ] {

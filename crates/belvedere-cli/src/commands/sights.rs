@@ -103,8 +103,14 @@ pub(crate) fn ground_cloud(
                 );
             }
             let origin = scene.cloud.origin;
+            // a cloud that says nothing of its coordinates has those of the scene
+            let is_silent = cloud.crs == belvedere::crs::Crs::default();
+            let scale = if is_silent { scene.cloud.crs.metres_per_unit_xyz() } else { [1.0; 3] };
+            if !known(&cloud.crs) {
+                cloud.crs = scene.cloud.crs.clone();
+            }
             for position in &mut cloud.positions {
-                let absolute = std::array::from_fn(|i| f64::from(position[i]) + cloud.origin[i]);
+                let absolute = std::array::from_fn(|i| (f64::from(position[i]) + cloud.origin[i]) * scale[i]);
                 *position = belvedere::cloud::to_local(absolute, origin);
             }
             cloud.origin = origin;

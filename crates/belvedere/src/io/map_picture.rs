@@ -19,6 +19,9 @@ const TO_LIGHT: [f64; 3] = [-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2];
 /// Colours of a mark: its disc and the ring around it.
 const MARK: [[u8; 3]; 2] = [[225, 30, 45], [255, 255, 255]];
 
+/// Most round values beside a ramp.
+const MOST_TICKS: f64 = 9.0;
+
 /// What a map shows.
 pub struct MapPicture<'a> {
     /// Heights whose relief lies below the colours, metres, NaN where not known; row 0 in the north.
@@ -130,21 +133,7 @@ fn framed(map: &Picture, what: &MapPicture<'_>, pixel: f64) -> Picture {
     let swatch = 12 * scale;
     let lines: Vec<([u8; 3], String)> = match &what.legend {
         MapLegend::Colors(colors) => colors.iter().map(|(color, text)| (*color, (*text).to_owned())).collect(),
-        MapLegend::Ramp(_, [low, high]) => {
-            let (span, whole) = (high - low, high - low >= 5.0);
-            let mut lines: Vec<([u8; 3], String)> = (0..6)
-                .rev()
-                .map(|i| {
-                    let value = low + f64::from(i) / 5.0 * span;
-                    // a whole number beside the colour of that number
-                    let value = if whole { value.round() } else { value };
-                    let share = if span > 0.0 { (value - low) / span } else { 0.5 };
-                    (ramp(share), if whole || span == 0.0 { format!("{value:.0}") } else { format!("{value:.1}") })
-                })
-                .collect();
-            lines.dedup();
-            lines
-        }
+        MapLegend::Ramp(_, range) => ticks(*range).into_iter().rev().map(|(share, text)| (ramp(share), text)).collect(),
     };
     let heading = if let MapLegend::Ramp(name, _) = &what.legend { *name } else { "" };
     let (bar, bar_text) = scale_bar(map.width as f64 * pixel / 4.0);
@@ -178,10 +167,65 @@ fn framed(map: &Picture, what: &MapPicture<'_>, pixel: f64) -> Picture {
     sheet
 }
 
+/// Round values between `low` and `high`, and either end that is half a step or more from the next of them (counts begin at 1): the
+/// share of the way that each lies at, and how it is written.
+fn ticks([low, high]: [f64; 2]) -> Vec<(f64, String)> {
+    /// What rounding may take from a whole number of steps.
+    const ROUNDING: f64 = 1e-6;
+    let span = high - low;
+    if !(span > 0.0 && span.is_finite()) {
+        return vec![(0.5, format!("{low:.0}"))];
+    }
+    let power = 10.0_f64.powf(span.log10().floor());
+    // 0 is added so that 0 has no sign
+    let whole = |step: f64| [(low / step - ROUNDING).ceil() + 0.0, (high / step + ROUNDING).floor()];
+    let is_few = |step: &f64| whole(*step)[1] - whole(*step)[0] < MOST_TICKS;
+    // between whole numbers from two on lie whole numbers: half an observer sees nothing
+    let is_count = low.fract() == 0.0 && high.fract() == 0.0 && span >= 2.0;
+    let steps = [0.1, 0.2, 0.5].map(|m| m * power).into_iter();
+    let step = steps.filter(|&step| step >= 1.0 || !is_count).find(is_few).unwrap_or(power);
+    let [first, last] = whole(step);
+    let mut values = Vec::new();
+    if first * step - low >= 0.5 * step {
+        values.push(low);
+    }
+    let mut number = first;
+    while number <= last {
+        values.push(number * step);
+        number += 1.0;
+    }
+    if high - last * step >= 0.5 * step {
+        values.push(high);
+    }
+    let decimals = (0..9).find(|&n| step * 10.0_f64.powi(n) > 1.0 - ROUNDING).unwrap_or(9);
+    let written = |value: f64| format!("{:.*}", usize::try_from(decimals).unwrap_or(0), value);
+    values.into_iter().map(|value| (((value - low) / span).clamp(0.0, 1.0), written(value))).collect()
+}
+
 /// The longest round length up to `most` metres, and how it is written.
 fn scale_bar(most: f64) -> (f64, String) {
     let power = 10.0_f64.powf(most.max(1e-3).log10().floor());
     let length = [5.0, 2.0, 1.0].map(|m| m * power).into_iter().find(|&l| l <= most).unwrap_or(power);
     let text = if length >= 1000.0 { format!("{} km", length / 1000.0) } else { format!("{length} m") };
     (length, text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_beside_a_ramp_are_round() {
+        let texts = |range| ticks(range).into_iter().map(|(_, text)| text).collect::<Vec<_>>().join(" ");
+        assert_eq!(texts([0.0, 1.0]), "0.0 0.2 0.4 0.6 0.8 1.0");
+        assert_eq!(texts([0.0, 16.66]), "0 2 4 6 8 10 12 14 16");
+        assert_eq!(texts([0.0, 1627.7]), "0 200 400 600 800 1000 1200 1400 1600");
+        assert_eq!(texts([1.0, 60.0]), "1 10 20 30 40 50 60");
+        assert_eq!(texts([1.0, 3.0]), "1 2 3");
+        assert_eq!(texts([0.0, 0.03]), "0.000 0.005 0.010 0.015 0.020 0.025 0.030");
+        assert_eq!(texts([-4.0, 13.0]), "-4 -2 0 2 4 6 8 10 12 13");
+        assert_eq!(texts([5.0, 5.0]), "5");
+        // a colour lies where its value does
+        assert_eq!(ticks([0.0, 16.66])[8].0, 16.0 / 16.66);
+    }
 }

@@ -16,6 +16,9 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// ASPRS class of buildings.
 pub const BUILDING: u8 = 6;
 
+/// Least side of a cell, metres: points do not tell more, and the cells of a whole town would fill the memory.
+const LEAST_CELL: f64 = 0.1;
+
 /// How planes are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoofPlaneParams {
@@ -30,7 +33,7 @@ pub struct RoofPlaneParams {
     pub most_tilt: f64,
     /// Least area of a plane, m². Default 4: two panels.
     pub least_area: f64,
-    /// Side of the cells that a plane is cut into, metres, above 0. Default 1: the width of a panel.
+    /// Side of the cells that a plane is cut into, metres, 0.1 to 1000. Default 1: the width of a panel.
     pub cell: f64,
 }
 
@@ -57,6 +60,13 @@ impl RoofPlaneParams {
                 name: "length for roof planes",
                 value,
                 expected: "above 0 to 1000 m",
+            });
+        }
+        if self.cell < LEAST_CELL {
+            return Err(Error::InvalidParameter {
+                name: "side of cells on roofs",
+                value: format!("{} m", self.cell),
+                expected: "0.1 m or more",
             });
         }
         let is_angle = |v: f64| v > 0.0 && v <= FRAC_PI_2;
