@@ -76,8 +76,8 @@ fn cells_and_points_see_as_much_sky_as_beside_the_exact_house() {
                 );
             }
         }
-        // from high above nothing is in the way
-        assert_eq!((found[0][3], found[1][3]), (1.0, 1.0));
+        // from high above nothing is in the way; what patches sum up to is a little off
+        assert!(found.iter().all(|found| (found[3] - 1.0).abs() < 1e-3), "{found:?}");
     }
 }
 
