@@ -42,7 +42,7 @@ fn errors(found: &Raster<f32>, ground: &Ground, away: f64) -> Vec<f64> {
             let at = grid.center(column, row);
             let is_far = |v: f64| (v.abs() - HALF).abs() >= away && v.abs() < 19.0;
             if at.iter().all(|&v| is_far(v)) {
-                errors.push(f64::from(*found.get(column, row).unwrap()) - gable(at));
+                errors.push(f64::from(found.get(column, row).unwrap()) - gable(at));
             }
         }
     }
@@ -65,8 +65,8 @@ fn on_roofs_and_streets_the_surface_is_that_at_the_middle() {
         assert!(mean(&absolute) < 0.02 && mean(&errors).abs() < 0.01, "{cell}: {} {}", mean(&absolute), mean(&errors));
         assert!(absolute.iter().all(|&error| error < 0.35), "{cell}");
         let highest = highest_points(&points, &ground);
-        let highest = mean(&self::errors(&highest, &ground, 0.75));
-        assert!(highest > mean(&absolute), "{cell}: the highest point stands {highest} m too high");
+        let highest: Vec<f64> = self::errors(&highest, &ground, 0.75).iter().map(|v| v.abs()).collect();
+        assert!(mean(&highest) > 2.0 * mean(&absolute), "{cell}: highest points are {} m off", mean(&highest));
     }
 }
 
@@ -103,7 +103,7 @@ fn far_from_points_and_without_them_the_ground_is_kept_and_nonsense_refused() {
     let lone = top_surface(&[[0.0, 0.0, 7.0]], &ground, &SurfaceParams::default()).unwrap();
     let at = |[x, y]: [f64; 2]| {
         let [column, row] = ground.grid.cell_of([x, y]).unwrap();
-        *lone.get(column, row).unwrap()
+        lone.get(column, row).unwrap()
     };
     assert_eq!((at([0.1, 0.1]), at([10.0, 10.0])), (7.0, 0.0));
     assert_eq!(top_surface(&[], &ground, &SurfaceParams::default()).unwrap().values(), ground.heights.values());

@@ -8,6 +8,10 @@ use rayon::prelude::*;
 
 /// Greatest distance from the middle of a cell at which a point tells what covers the middle, metres: half of a cell that is larger.
 const NEAR: f64 = 0.5;
+/// Distance to the next point up to which it tells of the middle of a cell, metres: that of sparse surveys, or the side of a larger cell.
+const REACH: f64 = 1.0;
+/// Fewest points of a layer that make a plane: two more than any three points have.
+const FEWEST: usize = 5;
 /// Determinant of the normal equations, in units of their diagonal, below which points lie on a line.
 const ON_A_LINE: f64 = 1e-3;
 
@@ -52,7 +56,7 @@ impl SurfaceParams {
 
 /// Height of the top surface of `positions`, (N, 3) local metres, at the middle of each cell of `ground`.
 ///
-/// The layer on top at the middle is that of the highest point near it. Where its points lie on a plane, as on roofs and streets, the
+/// The layer on top at the middle is that of the highest point near it. Where its points, five at least, lie on a plane, as on roofs and streets, the
 /// plane's height at the middle is given, never beyond the heights of the points themselves; where they do not, as in crowns, the highest
 /// point of the cell, so that a place above it is outside. Cells far from any point are as in [`highest_points`].
 ///
@@ -64,7 +68,7 @@ pub fn top_surface(positions: &[[f32; 3]], ground: &Ground, params: &SurfacePara
     let grid = ground.grid;
     let flat: Vec<[f32; 3]> = positions.iter().map(|p| [p[0], p[1], 0.0]).collect();
     let index = NeighborIndex::new(&flat)?;
-    let near = NEAR.min(0.5 * grid.cell);
+    let (near, reach) = (NEAR.min(0.5 * grid.cell), REACH.max(grid.cell));
     heights.values_mut().par_chunks_mut(grid.width.max(1)).enumerate().for_each_init(
         || (Vec::new(), Vec::new()),
         |(found, around), (row, heights)| {
@@ -73,8 +77,7 @@ pub fn top_surface(positions: &[[f32; 3]], ground: &Ground, params: &SurfacePara
                 #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
                 let query = [middle[0] as f32, middle[1] as f32, 0.0];
                 index.k_nearest(query, params.neighbors, found);
-                // beyond the next cell nothing is known of this one
-                if found.first().is_none_or(|nearest| f64::from(nearest.distance_squared).sqrt() > grid.cell) {
+                if found.first().is_none_or(|nearest| f64::from(nearest.distance_squared).sqrt() > reach) {
                     continue;
                 }
                 gather(positions, found, middle, around);
@@ -119,6 +122,9 @@ fn at_middle(around: &[Around], near: f64, params: &SurfaceParams) -> Option<f32
     let above = around[..=top].windows(2).rev().take_while(|pair| follows(pair)).count();
     let below = around[top..].windows(2).take_while(|pair| follows(pair)).count();
     let layer = &around[top - above..=top + below];
+    if layer.len() < FEWEST.min(params.neighbors) {
+        return None;
+    }
     let (height, roughness) = plane(layer)?;
     let (highest, lowest) = (layer.first()?.height, layer.last()?.height);
     #[expect(clippy::cast_possible_truncation, reason = "local heights are f32")]
@@ -148,6 +154,8 @@ fn plane(layer: &[Around]) -> Option<(f64, f64)> {
         [0.0; 2]
     };
     let off = |p: &Around| p.height - height - a * (p.east - east) - b * (p.north - north);
-    let roughness = (sum(&|p| off(p).powi(2)) / whole).sqrt();
+    // three numbers were fitted
+    let freedom = layer.len() as f64 / (layer.len() as f64 - 3.0).max(1.0);
+    let roughness = (sum(&|p| off(p).powi(2)) / whole * freedom).sqrt();
     Some((height - a * east - b * north, roughness))
 }
