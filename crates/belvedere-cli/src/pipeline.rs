@@ -147,6 +147,8 @@ pub(crate) struct Prepared {
     pub(crate) bounds: ([f32; 3], [f32; 3]),
     /// Where carving was asked for.
     pub(crate) carving: Option<scanner::CarvingInput>,
+    /// Classes of these points, where they have any.
+    classification: Option<Vec<u8>>,
 }
 
 impl Prepared {
@@ -188,6 +190,7 @@ pub(crate) fn prepare(
         Carving::Unwanted => None,
         _ => scanner::carving_input(&cloud, (&scanner, is_assumed), carving, stages, summary)?,
     };
+    let classification = cloud.attributes.classification.clone();
     if let Cow::Owned(owned) = &mut cloud {
         // nothing but orientation asks for attributes from here on, and they weigh more than the positions
         let attributes = std::mem::take(&mut owned.attributes);
@@ -246,7 +249,7 @@ pub(crate) fn prepare(
     let (oriented, report) = stages.run("orienting normals", 0, |_| orient(&cloud, normals, &by))?;
     summary.add("normals", orientation_section(&by, &report));
     let bounds = bounds_of(&cloud)?;
-    Ok(Prepared { oriented, index, kept, bounds, carving })
+    Ok(Prepared { oriented, index, kept, bounds, carving, classification })
 }
 
 fn orientation_section(by: &Orientation<'_>, report: &OrientReport) -> Summary {
@@ -351,8 +354,7 @@ pub(crate) fn scene(
     // as in a ball file, so that rows of balls mean the same
     let Made { balls, transmission } = shrink_side(&prepared, Side::Interior, params, stages, summary)?;
     let balls = balls.shrunk();
-    let classes = prepared.carving.as_ref().and_then(|input| input.classification());
-    let vegetation = match classes {
+    let vegetation = match &prepared.classification {
         _ if !transmission.is_empty() => vegetation_of_transmission(&transmission),
         Some(classes) => vegetation_of_classes(&balls, classes),
         None => Vec::new(),

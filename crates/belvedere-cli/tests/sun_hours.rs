@@ -5,7 +5,7 @@ mod common;
 
 use belvedere::apps::sun::{Date, DayParams, Site, Zone, sun_day};
 use belvedere::crs::Crs;
-use common::{Workplace, at, house};
+use common::{Workplace, at, column, house, is_hidden};
 
 const HOUSE: &str = "house.laz --orient given --method tau";
 /// Places around the house: north of it, south, east, and beneath nothing far off.
@@ -17,39 +17,6 @@ fn place() -> Workplace {
     let rows: String = PLACES.map(|[x, y, z]| at(x, y, z)).iter().map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
     place.write("places.csv", format!("x,y,z\n{rows}"));
     place
-}
-
-fn column(place: &Workplace, name: &str, column: &str) -> Vec<f64> {
-    let text = place.text(name);
-    let mut lines = text.lines();
-    let at =
-        lines.next().unwrap().split(',').position(|own| own == column).unwrap_or_else(|| panic!("{column} in {text}"));
-    lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap_or(f64::NAN)).collect()
-}
-
-/// Whether the line from a place in a direction meets the house, the part of space below all of its walls and roofs.
-fn is_hidden(place: [f64; 3], direction: [f64; 3]) -> bool {
-    let sides: [([f64; 3], f64); 6] = [
-        ([1.0, 0.0, 0.0], 5.0),
-        ([-1.0, 0.0, 0.0], 5.0),
-        ([0.0, 1.0, 0.0], 4.0),
-        ([0.0, -1.0, 0.0], 4.0),
-        ([0.0, 0.75, 1.0], 9.0),
-        ([0.0, -0.75, 1.0], 9.0),
-    ];
-    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
-    for (normal, limit) in sides {
-        let (toward, room) = (dot(normal, direction), limit - dot(normal, place));
-        if toward > 0.0 {
-            leaves = leaves.min(room / toward);
-        } else if toward < 0.0 {
-            enters = enters.max(room / toward);
-        } else if room < 0.0 {
-            return false;
-        }
-    }
-    enters < leaves
 }
 
 #[test]

@@ -4,7 +4,8 @@
 use belvedere::apps::sun::{
     Binning, Date, DayParams, Period, Refraction, Site, SunSchedule, Zone, sun_days, sun_position_with,
 };
-use belvedere::apps::sun_hours::{RuleDays, SunHours, SunHoursParams, SunRule, sun_hours};
+use belvedere::apps::sun_hours::{RuleDays, SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
+use belvedere::apps::tree_light::light_share;
 use belvedere::io::{SavedMatrix, read_matrix, write_matrix};
 use belvedere::medial::MedialBalls;
 use belvedere::progress::Progress;
@@ -161,6 +162,49 @@ fn a_year_of_shared_suns_is_a_year_of_suns() {
     assert!(differ <= 40, "days with two hours differ by {differ}");
     let least: f32 = a.least.iter().zip(&b.least).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     assert!(least <= 1.01, "{least}");
+}
+
+#[test]
+fn light_through_crowns_counts_by_the_share_of_its_day() {
+    let site = site(52.0);
+    let dates = ["2026-03-20", "2026-04-06", "2026-04-07", "2026-06-21"].map(date).to_vec();
+    let schedule = schedule(&site, dates, &plain(600.0), Binning::Exact);
+    // a crown to the south, and a wall behind it that is not as high
+    let crowns = scene(&[[0.0, -20.0, 10.0], [0.0, -40.0, 2.0]], &[8.0, 12.0]);
+    let opaque = scene(&[[0.0, -40.0, 2.0]], &[12.0]);
+    let targets = [[0.0; 3], [3.0, 1.0, 2.0], [0.0, 30.0, 0.0], [-25.0, -20.0, 0.0]];
+    let [all, opaque] = [crowns, opaque]
+        .map(|scene| visibility_matrix(&scene, &targets, &schedule.directions, Progress::none()).unwrap());
+    let params = SunHoursParams { sufficient_hours: 8.0, ..SunHoursParams::default() };
+    let of = |shares: &[f64]| sun_hours_through_crowns(&all, &opaque, &schedule, None, &params, shares);
+    let shares = [0.5, 0.5, 0.03, 0.03];
+    let found = of(&shares).unwrap();
+    let mut took = 0.0;
+    for target in 0..targets.len() {
+        let of_day = |(day, share): (&belvedere::apps::sun::DayOfLight, &f64)| -> f64 {
+            let light = |step: &belvedere::apps::sun::LightStep| {
+                f64::from(step.hours) * light_share(&all, &opaque, target, step.direction as usize, *share)
+            };
+            day.steps.iter().map(light).sum()
+        };
+        let days: Vec<f64> = schedule.days.iter().zip(&shares).map(of_day).collect();
+        let near =
+            |found: f32, expected: f64| assert!((f64::from(found) - expected).abs() < 1e-4, "{found} {expected}");
+        near(found.hours[target], days.iter().sum::<f64>() / 4.0);
+        near(found.least[target], days.iter().copied().fold(f64::INFINITY, f64::min));
+        near(found.share[target], days.iter().sum::<f64>() / schedule.possible_hours());
+        assert_eq!(found.days[target] as usize, days.iter().filter(|&&hours| hours >= 8.0 - 1e-4).count());
+        took += 12.0 - days[0];
+    }
+    assert!(took > 1.0, "something must stand before the sun: {took}");
+    // nothing through is all, everything through is the rest; first and last light are those of the open sun
+    let plain = |matrix| sun_hours(matrix, &schedule, None, &params).unwrap();
+    let (none, whole) = (of(&[0.0; 4]).unwrap(), of(&[1.0; 4]).unwrap());
+    for (a, b) in none.hours.iter().zip(&plain(&all).hours).chain(whole.hours.iter().zip(&plain(&opaque).hours)) {
+        assert!((a - b).abs() < 1e-4, "{a} {b}");
+    }
+    assert_eq!((&found.first, &found.last, &found.longest), (&none.first, &none.last, &none.longest));
+    assert!(of(&[0.5; 3]).is_err() && of(&[0.5, 0.5, f64::NAN, 0.0]).is_err() && of(&[0.5, 0.5, 1.1, 0.0]).is_err());
 }
 
 #[test]

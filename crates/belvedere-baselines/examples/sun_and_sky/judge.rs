@@ -5,7 +5,7 @@ mod flown;
 #[path = "score.rs"]
 pub(crate) mod score;
 
-use belvedere::ground::{Ground, GroundParams, MapGrid, highest_points};
+use belvedere::ground::{Ground, GroundParams, MapGrid, SurfaceParams, highest_points, top_surface};
 use belvedere::medial::MedialBalls;
 use belvedere::progress::Progress;
 use belvedere::query::{Answer, MedialScene, SceneParams, Viewer, Visibility, visibility_matrix};
@@ -19,6 +19,16 @@ use std::f64::consts::TAU;
 
 /// How near a wall or a fence stands that a cell is said to lie at, metres.
 const AT_WALL: f64 = 2.0;
+
+/// What a question above a cell of a surface grid stands on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Tops {
+    /// The highest point in the cell.
+    Highest,
+    /// The surface at its middle.
+    Surface,
+}
+
 /// Targets, and what the mesh lets them see.
 pub(crate) struct Places {
     /// Where they truly are, absolute.
@@ -102,10 +112,13 @@ impl Town {
     }
 
     /// About `count` cells whose top is a roof, `height` metres above it: the truth above the exact roof at the middle of the cell, the
-    /// question above the highest point in the cell.
-    pub(crate) fn roof_cells(&self, height: f64, count: usize, light: &Light) -> Places {
+    /// question above what the points tell of it.
+    pub(crate) fn roof_cells(&self, tops: Tops, height: f64, count: usize, light: &Light) -> Result<Places> {
         let grid = self.ground.grid;
-        let tops = highest_points(&self.cloud.positions, &self.ground);
+        let tops = match tops {
+            Tops::Highest => highest_points(&self.cloud.positions, &self.ground),
+            Tops::Surface => top_surface(&self.cloud.positions, &self.ground, &SurfaceParams::default())?,
+        };
         let above = self.site().bounds[1][2] + 100.0;
         let (mut exact, mut asked) = (Vec::new(), Vec::new());
         for (cell, &top) in tops.values().iter().enumerate() {
@@ -120,7 +133,15 @@ impl Town {
             }
         }
         let step = (asked.len() / count.max(1)).max(1);
-        self.places(exact.into_iter().step_by(step).collect(), asked.into_iter().step_by(step).collect(), light)
+        Ok(self.places(exact.into_iter().step_by(step).collect(), asked.into_iter().step_by(step).collect(), light))
+    }
+
+    /// How high the questions of places stand above where these truly are, metres: mean, and mean of the absolute values.
+    pub(crate) fn heights_off(places: &Places, origin: f64) -> [f64; 2] {
+        let off = |(exact, asked): (&[f64; 3], &[f32; 3])| f64::from(asked[2]) + origin - exact[2];
+        let off: Vec<f64> = places.exact.iter().zip(&places.asked).map(off).collect();
+        let mean = |value: fn(f64) -> f64| off.iter().map(|&v| value(v)).sum::<f64>() / off.len().max(1) as f64;
+        [mean(|v| v), mean(f64::abs)]
     }
 
     /// About `count` places 0.1 m outside roofs, whose position is known.

@@ -14,7 +14,7 @@ use belvedere::query::SceneParams;
 use belvedere_baselines::dsm::{Dsm, DsmParams};
 use belvedere_scenes::Preset;
 use judge::score::{ELEVATIONS_DEG, Light, Score, Setting};
-use judge::{Places, Town};
+use judge::{Places, Tops, Town};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -36,12 +36,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             ("0.1 m above ground", &town.ground_cells(0.1, count, &light)),
             ("1.5 m above ground", &town.ground_cells(1.5, count, &light)),
             ("0.1 m off roofs", &roofs),
-            ("0.1 m above cells of roofs", &town.roof_cells(0.1, count, &light)),
+            ("0.1 m above the highest points of cells of roofs", &town.roof_cells(Tops::Highest, 0.1, count, &light)?),
+            ("0.1 m above the surface at cells of roofs", &town.roof_cells(Tops::Surface, 0.1, count, &light)?),
             ("returns of roofs, asked 0.1 m higher", &returns),
         ] {
             let lift = if what.ends_with("higher") { 0.1 } else { 0.0 };
             let score = town.judge(places, &light, lift, &carved)?;
             println!("  {what} ({})", places.len());
+            let [mean, absolute] = Town::heights_off(places, town.cloud.origin[2]);
+            println!("    asked {mean:+.3} m too high, {absolute:.3} m off");
             print_score(&score);
             let raster = town.judge_other(&raster, places, &light)?;
             println!(

@@ -1,7 +1,7 @@
 //! Flags of solar envelopes, routes and windows.
 
 use super::{
-    GivingWay, GroundChoice, Numbers, PatchesChoice, SceneInput, SunPeriod, SunPlace, above_zero, at_least_one, finite,
+    GroundChoice, Numbers, PatchesChoice, SceneInput, Shell, SunPeriod, SunPlace, above_zero, at_least_one, finite,
 };
 use clap::Args;
 use std::path::PathBuf;
@@ -101,7 +101,7 @@ pub(crate) struct Envelope {
     #[command(flatten)]
     pub(crate) place: SunPlace,
     #[command(flatten)]
-    pub(crate) giving_way: GivingWay,
+    pub(crate) shell: Shell,
     /// Heights above the ground (.tif, nodata -9999 beside the parcel and where nothing bounds; .npy, NaN and infinity), a map of them
     /// (.png), or the envelope as closed solids (.ply .obj). May be given several times
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
@@ -137,7 +137,7 @@ pub(crate) struct Comfort {
     #[command(flatten)]
     pub(crate) place: SunPlace,
     #[command(flatten)]
-    pub(crate) giving_way: GivingWay,
+    pub(crate) shell: Shell,
     /// Directions spread evenly over the sky, 1 to 100000 [default: 577]
     #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with = "patches", help_heading = "Sky")]
     pub(crate) directions: Option<usize>,

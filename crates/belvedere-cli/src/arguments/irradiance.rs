@@ -1,6 +1,6 @@
 //! Flags of irradiance and of photovoltaic loss.
 
-use super::{GivingWay, Numbers, SceneInput, SkyOutputs, SkyPlaces, above_zero, at_least_one};
+use super::{Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTrees, above_zero, at_least_one};
 use belvedere::apps::irradiance::{SkyModel, Surroundings};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -42,7 +42,9 @@ pub(crate) struct Irradiance {
     #[command(flatten)]
     pub(crate) places: SkyPlaces,
     #[command(flatten)]
-    pub(crate) giving_way: GivingWay,
+    pub(crate) shell: Shell,
+    #[command(flatten)]
+    pub(crate) trees: ThroughTrees,
     /// Planes of roofs: a table (.csv) or their outlines (.geojson), with tilt, azimuth from true north, area, energy, and the least and most
     /// that a plant there loses by shading. May be given several times
     #[arg(long, value_name = "OUT", help_heading = "Roofs")]

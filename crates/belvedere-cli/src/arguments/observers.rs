@@ -76,6 +76,23 @@ pub(crate) struct GivingWay {
     pub(crate) unproven: Option<UnprovenChoice>,
 }
 
+/// How balls give way where nothing is asked of pulses.
+#[derive(Args)]
+#[command(next_help_heading = "Lines of sight")]
+pub(crate) struct Shell {
+    /// Metres that carved balls give way to targets near their surface, since balls bulge between the points of walls and roofs
+    /// [default: 0.2]
+    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = length)]
+    pub(crate) shell: Option<f32>,
+}
+
+impl Shell {
+    /// The same as flags that know of pulses, none of which is asked.
+    pub(crate) fn giving_way(&self) -> GivingWay {
+        GivingWay { shell: self.shell, unproven: None }
+    }
+}
+
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum CurvatureChoice {
     /// On lines of more than 2 km

@@ -1,6 +1,6 @@
 //! Flags of what is asked about the sun and the sky.
 
-use super::{GivingWay, GroundChoice, SceneInput, ThroughTrees, above_zero, at_least_one, finite};
+use super::{GroundChoice, SceneInput, Shell, ThroughTrees, above_zero, at_least_one, finite};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -31,7 +31,7 @@ pub(crate) struct SkyPlaces {
 #[command(next_help_heading = "Places (one of) [default: cells on the ground]")]
 #[group(multiple = false)]
 pub(crate) struct SkyPlacesChoice {
-    /// Cells on top of what stands on the ground: roofs, crowns, and the ground between
+    /// Cells on top of what stands on the ground: roofs and the ground between at the middle of each cell, crowns at their highest point
     #[arg(long)]
     pub(crate) surface: bool,
     /// The points of the cloud themselves, all of them and in their order
@@ -69,7 +69,7 @@ pub(crate) struct SkyView {
     #[command(flatten)]
     pub(crate) places: SkyPlaces,
     #[command(flatten)]
-    pub(crate) giving_way: GivingWay,
+    pub(crate) shell: Shell,
     /// Directions spread evenly over the sky, 1 to 100000. Root mean square error of either measure in street canyons: 0.012 with
     /// 145, 0.004 with 577, 0.0015 with 2305 [default: 577]
     #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with = "patches", help_heading = "Sky")]

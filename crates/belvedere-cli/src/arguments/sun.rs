@@ -1,6 +1,6 @@
 //! Flags of where on earth the sun is asked about, how clocks run there, and which days.
 
-use super::{GivingWay, Numbers, SceneInput, SkyOutputs, SkyPlaces, above_zero};
+use super::{Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTrees, above_zero};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -76,7 +76,9 @@ pub(crate) struct SunHours {
     #[command(flatten)]
     pub(crate) places: SkyPlaces,
     #[command(flatten)]
-    pub(crate) giving_way: GivingWay,
+    pub(crate) shell: Shell,
+    #[command(flatten)]
+    pub(crate) trees: ThroughTrees,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
     /// Also keep what each place sees of each direction, to ask about other days and rules without looking again (.npz): NumPy arrays bits

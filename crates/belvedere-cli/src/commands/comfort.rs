@@ -65,7 +65,8 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     };
     let mut section = Summary::default();
     let profile = arguments.scene.profile.into();
-    let (blockers, _) = blockers(&scene, profile, &arguments.giving_way, Proving::Never, &mut stages, &mut section)?;
+    let (blockers, _) =
+        blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut stages, &mut section)?;
     section.add("directions_of_the_sky", sky.directions.len());
     summary.add("lines_of_sight", section);
     let targets = &places.positions;

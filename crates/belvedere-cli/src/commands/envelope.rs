@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
             let mut section = Summary::default();
             let profile = arguments.scene.profile.into();
             let (blockers, _) =
-                blockers(&scene, profile, &arguments.giving_way, Proving::Never, &mut stages, &mut section)?;
+                blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut stages, &mut section)?;
             summary.add("lines_of_sight", section);
             let samples: Vec<[f32; 3]> = land.pieces.iter().map(|piece| piece.sample).collect();
             Some(stages.run("looking for shade", samples.len(), |progress| {
@@ -106,8 +106,8 @@ fn check_outputs(arguments: &Envelope) -> Result<()> {
             Usage("say when the sun is to be kept: --date DAY, --from and --to, or --sun AZ,EL".to_owned()).into()
         );
     }
-    if !arguments.credit_shade && (arguments.giving_way.shell.is_some() || arguments.giving_way.unproven.is_some()) {
-        return Err(Usage("--shell and --unproven belong to --credit-shade".to_owned()).into());
+    if !arguments.credit_shade && arguments.shell.shell.is_some() {
+        return Err(Usage("--shell belongs to --credit-shade".to_owned()).into());
     }
     Ok(())
 }

@@ -2,15 +2,17 @@
 
 mod planes;
 mod radiation;
+mod seasons;
 
-use super::sights::{Proving, blockers};
+use super::sights::{Proving, blockers, scene_params};
 use super::sky_targets::{Measure, SkyTargets};
 use crate::arguments::{Global, Irradiance, Usage};
 use crate::pipeline::{self, Points};
 use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::irradiance::{Irradiation, PeriodRadiation, scene_irradiation};
+use belvedere::apps::irradiance::Irradiation;
+use seasons::Light;
 
 /// Columns of the months.
 const MONTHS: [&str; 12] = [
@@ -48,26 +50,31 @@ pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
     let points = if needs_points { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
     let site = radiation::site(arguments, &scene, weather.as_ref(), &mut summary)?;
-    let radiation = radiation::gather(arguments, &params, &site, weather.as_ref(), &mut stages, &mut summary)?;
+    let profile = arguments.scene.profile.into();
+    let blocking = scene_params(&scene, profile, &arguments.shell.giving_way());
+    let trees = arguments.trees.of(&scene, &blocking, &mut summary)?;
+    let sky = radiation::Sky { site: &site, weather: weather.as_ref(), trees: trees.as_ref() };
+    let seasons = radiation::gather(arguments, &params, &sky, &mut stages, &mut summary)?;
     let roofs = planes::find(arguments, &mut scene, &mut stages, &mut summary)?;
     let targets = match wants_places {
         true => Some(arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?),
         false => None,
     };
     let mut section = Summary::default();
-    let profile = arguments.scene.profile.into();
-    let (blockers, _) = blockers(&scene, profile, &arguments.giving_way, Proving::Never, &mut stages, &mut section)?;
-    section.add("directions", radiation.directions().len());
+    let (blockers, _) =
+        blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut stages, &mut section)?;
+    let light = Light { blockers: &blockers, trees: trees.as_ref(), seasons: &seasons };
+    section.add("directions", light.direction_count());
     summary.add("lines_of_sight", section);
     if let Some(targets) = &targets {
         let normals = targets.normals.as_deref();
-        let sums = stages.run("looking at sun and sky", targets.positions.len(), |progress| {
-            scene_irradiation(&blockers, &targets.positions, normals, &radiation, progress)
-        })?;
-        write_places(targets, &sums, &radiation, &outputs, &mut stages, &mut summary)?;
+        let looks = targets.positions.len() * light.look_count();
+        let sums = stages
+            .run("looking at sun and sky", looks, |progress| light.of_places(&targets.positions, normals, progress))?;
+        write_places(targets, &sums, light.group_count(), &outputs, &mut stages, &mut summary)?;
     }
     if let Some(roofs) = &roofs {
-        planes::measure(arguments, roofs, &blockers, &radiation, &site, &mut stages, &mut summary)?;
+        planes::measure(arguments, roofs, &light, &site, &mut stages, &mut summary)?;
     }
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
@@ -76,12 +83,11 @@ pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
 fn write_places(
     targets: &SkyTargets,
     sums: &[Irradiation],
-    radiation: &PeriodRadiation,
+    group_count: usize,
     outputs: &crate::arguments::SkyOutputs,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<()> {
-    let group_count = radiation.group_count();
     let whole: Vec<Irradiation> = sums.chunks(group_count).map(Irradiation::sum).collect();
     #[expect(clippy::cast_possible_truncation, reason = "energies for people")]
     let column =

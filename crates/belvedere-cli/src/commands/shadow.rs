@@ -2,6 +2,7 @@
 
 use super::sights::{Proving, blockers};
 use super::sky_targets::{Measure, SkyTargets};
+use super::tree_light::day_of_year;
 use super::{check_output, is_same};
 use crate::arguments::{Global, Shadow, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
@@ -208,13 +209,6 @@ fn column_of(zone: &Zone, instant: f64) -> String {
     let text: String = zone.display(instant).chars().filter(|c| c.is_ascii_digit() || matches!(c, 'T' | ' ')).collect();
     let digits: String = text.replace(['T', ' '], "_").chars().take(15).collect();
     format!("lit_{digits}")
-}
-
-fn day_of_year(date: belvedere::apps::sun::Date) -> u32 {
-    let january = belvedere::apps::sun::Date::new(date.year(), 1, 1).map_or(0.0, |first| first.noon_utc());
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 365 days")]
-    let days = ((date.noon_utc() - january) / 86_400.0).round().max(0.0) as u32;
-    days + 1
 }
 
 /// 1 for each place that is lit but whose line of sight is not proven, where pulses are known and wanted.

@@ -11,7 +11,7 @@ use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::apps::sky_view::SKY_TARGET_HEIGHT;
 use belvedere::apps::viewshed::{cell_for, cell_targets};
-use belvedere::ground::{Ground, MapGrid, highest_points};
+use belvedere::ground::{Ground, MapGrid, SurfaceParams, highest_points, top_surface};
 use belvedere::io::{
     Cells, ExtraColumn, ExtraValues, Georeference, MapLegend, MapPicture, Picture, atomic, map_picture, ramp_colors,
     write_cloud, write_mesh_values, write_png, write_table, write_tif_f32,
@@ -134,7 +134,8 @@ impl SkyPlaces {
         let (cloud, points) = ground_cloud(&self.ground, scene, stages)?;
         let mut ground = ground(&cloud, points, grid, stages, summary)?;
         if self.places.surface {
-            ground.heights = highest_points(&cloud.positions, &ground);
+            ground.heights = stages
+                .run("finding the surface", 0, |_| top_surface(&cloud.positions, &ground, &SurfaceParams::default()))?;
         }
         let height = self.height.map_or(SKY_TARGET_HEIGHT, f64::from);
         let positions = cell_targets(&ground, height);

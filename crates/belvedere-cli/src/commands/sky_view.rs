@@ -25,7 +25,8 @@ pub(crate) fn run(arguments: &SkyView, global: &Global) -> Result<Summary> {
     let targets = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
     let mut section = Summary::default();
     let profile = arguments.scene.profile.into();
-    let (blockers, _) = blockers(&scene, profile, &arguments.giving_way, Proving::Never, &mut stages, &mut section)?;
+    let (blockers, _) =
+        blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut stages, &mut section)?;
     section.add("directions", sky.directions.len());
     summary.add("lines_of_sight", section);
     let matrix = stages.run("looking at the sky", targets.positions.len(), |progress| {

@@ -2,16 +2,17 @@
 
 use super::sights::{Proving, blockers, scene_params};
 use super::sky_targets::{Measure, SkyTargets};
+use super::tree_light::{TreeLight, day_of_year};
 use super::{check_output, is_same};
 use crate::arguments::{Global, SunHours, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
-use belvedere::apps::sun::{Binning, DayParams, Period, Site, SunSchedule, Zone, sun_days};
-use belvedere::apps::sun_hours::{SunHours as Found, SunHoursParams, SunRule, sun_hours};
+use belvedere::apps::sun::{Binning, DayOfLight, DayParams, Period, Site, SunSchedule, Zone, sun_days};
+use belvedere::apps::sun_hours::{SunHours as Found, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
 use belvedere::io::{SavedMatrix, read_matrix, write_matrix};
-use belvedere::query::{VisibilityMatrix, scene_fingerprint, visibility_matrix};
+use belvedere::query::{SceneParams, VisibilityMatrix, scene_fingerprint, visibility_matrix};
 
 /// Names of the columns of rules of one's own, in the order given.
 const OWN_RULES: [&str; 8] = ["rule_1", "rule_2", "rule_3", "rule_4", "rule_5", "rule_6", "rule_7", "rule_8"];
@@ -30,6 +31,10 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
             return Err(Usage(format!("{}: two results would be written there", keep.display())).into());
         }
     }
+    if arguments.trees.is_given() && (arguments.keep.is_some() || arguments.from_matrix.is_some()) {
+        let what = "--through-trees: a matrix keeps what all balls hide, trees with the rest; leave out --keep and --from-matrix";
+        return Err(Usage(what.to_owned()).into());
+    }
     let kept = arguments.from_matrix.as_deref().map(read_matrix).transpose()?;
     let suns = match (&kept, arguments.within) {
         (Some(kept), degrees) => Suns::Among(&kept.directions, degrees.unwrap_or(1.0).to_radians()),
@@ -44,6 +49,7 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
     let site = arguments.sun.site(&scene, &mut summary)?;
     let plan = Plan::new(arguments, &site, rules, &params, &suns, &mut summary)?;
     let targets = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
+    let trees = arguments.trees.of(&scene, &matrix_params(&scene, arguments), &mut summary)?;
     let matrix = match kept {
         Some(kept) => {
             let scene_number = matrix_scene(&scene, arguments);
@@ -51,7 +57,15 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
         }
         None => look(arguments, &scene, &plan, &targets, &mut stages, &mut summary)?,
     };
-    let found = stages.run("summing up", 0, |_| plan.sum_up(&matrix, &targets))?;
+    let found = match &trees {
+        None => stages.run("summing up", 0, |_| plan.sum_up(&matrix, &targets))?,
+        Some(trees) => {
+            let opaque = stages.run("looking through trees", targets.positions.len(), |progress| {
+                visibility_matrix(&trees.opaque, &targets.positions, &plan.directions, progress)
+            })?;
+            stages.run("summing up", 0, |_| plan.sum_up_through(&matrix, &opaque, trees, &site, &targets))?
+        }
+    };
     let columns = found.columns(&plan, &targets);
     let measures: Vec<Measure<'_>> = columns.iter().map(Column::measure).collect();
     summary.add("sun", targets.told(&measures));
@@ -72,7 +86,7 @@ fn look(
 ) -> Result<VisibilityMatrix> {
     let mut section = Summary::default();
     let profile = arguments.scene.profile.into();
-    let (blockers, _) = blockers(scene, profile, &arguments.giving_way, Proving::Never, stages, &mut section)?;
+    let (blockers, _) = blockers(scene, profile, &arguments.shell.giving_way(), Proving::Never, stages, &mut section)?;
     section.add("directions", plan.directions.len());
     summary.add("lines_of_sight", section);
     let matrix = stages.run("looking at the sun", targets.positions.len(), |progress| {
@@ -92,9 +106,14 @@ fn look(
     Ok(matrix)
 }
 
+/// How balls block.
+fn matrix_params(scene: &Scene, arguments: &SunHours) -> SceneParams {
+    scene_params(scene, arguments.scene.profile.into(), &arguments.shell.giving_way())
+}
+
 /// The number by which a matrix knows the balls that it was made of.
 fn matrix_scene(scene: &Scene, arguments: &SunHours) -> u64 {
-    scene_fingerprint(&scene.balls, &scene_params(scene, arguments.scene.profile.into(), &arguments.giving_way))
+    scene_fingerprint(&scene.balls, &matrix_params(scene, arguments))
 }
 
 /// The bits that were kept, if they belong to these places and balls.
@@ -205,10 +224,30 @@ impl Plan {
 
     fn sum_up(&self, matrix: &VisibilityMatrix, targets: &SkyTargets) -> belvedere::Result<Sums> {
         let normals = targets.normals.as_deref();
-        let main = sun_hours(matrix, &self.main, normals, &SunHoursParams::default())?;
+        self.sums(&|schedule, params| sun_hours(matrix, schedule, normals, params))
+    }
+
+    /// The same with trees that let a share of the sun through, each day its own: `opaque` is what the rest leaves free.
+    fn sum_up_through(
+        &self,
+        matrix: &VisibilityMatrix,
+        opaque: &VisibilityMatrix,
+        trees: &TreeLight,
+        site: &Site,
+        targets: &SkyTargets,
+    ) -> belvedere::Result<Sums> {
+        let normals = targets.normals.as_deref();
+        self.sums(&|schedule, params| {
+            let share = |day: &DayOfLight| trees.share(Some((day_of_year(day.date), site.latitude)));
+            let shares: Vec<f64> = schedule.days.iter().map(share).collect();
+            sun_hours_through_crowns(matrix, opaque, schedule, normals, params, &shares)
+        })
+    }
+
+    fn sums(&self, of: &dyn Fn(&SunSchedule, &SunHoursParams) -> belvedere::Result<Found>) -> belvedere::Result<Sums> {
+        let main = of(&self.main, &SunHoursParams::default())?;
         let of_rule = |(_, rule, schedule, first): &(_, SunRule, SunSchedule, usize)| {
-            let params = SunHoursParams { first_direction: *first, sufficient_hours: rule.hours };
-            sun_hours(matrix, schedule, normals, &params)
+            of(schedule, &SunHoursParams { first_direction: *first, sufficient_hours: rule.hours })
         };
         Ok(Sums { main, rules: self.rules.iter().map(of_rule).collect::<belvedere::Result<_>>()? })
     }

@@ -4,6 +4,7 @@ use crate::arguments::{LeavesChoice, ThroughTrees, ThroughTreesChoice, Usage};
 use crate::pipeline::Scene;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
+use belvedere::apps::sun::Date;
 use belvedere::apps::tree_light::{Foliage, Transmissivity, without_vegetation};
 use belvedere::query::{MedialScene, SceneParams};
 
@@ -52,6 +53,21 @@ impl ThroughTrees {
         let leaves = self.leaves.unwrap_or(LeavesChoice::Auto);
         Ok(Some(TreeLight { opaque, transmissivity, leaves }))
     }
+}
+
+impl ThroughTrees {
+    /// Whether trees are more than opaque.
+    pub(crate) fn is_given(&self) -> bool {
+        self.through_trees != ThroughTreesChoice::None
+    }
+}
+
+/// Day of the year, from 1.
+pub(crate) fn day_of_year(date: Date) -> u32 {
+    let january = Date::new(date.year(), 1, 1).map_or(0.0, |first| first.noon_utc());
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 365 days")]
+    let days = ((date.noon_utc() - january) / 86_400.0).round().max(0.0) as u32;
+    days + 1
 }
 
 impl TreeLight {

@@ -24,13 +24,6 @@ pub(crate) struct CarvingInput {
     pub(super) pulses: Option<Pulses>,
 }
 
-impl CarvingInput {
-    /// Classes of the points that balls are made from, where they have any.
-    pub(super) fn classification(&self) -> Option<&[u8]> {
-        self.kinds.classification.as_deref()
-    }
-}
-
 /// The needles of a cloud's pulses, reported, and the columns that carving asks for; `None` where pulses are too flat to carve
 /// and need not.
 pub(super) fn carving_input(

@@ -204,6 +204,40 @@ pub(crate) fn at(x: f64, y: f64, z: f64) -> [f64; 3] {
     [EAST + x, NORTH + y, z]
 }
 
+/// Whether the line from a place in a direction meets the house, the part of space below all of its walls and roofs.
+pub(crate) fn is_hidden(place: [f64; 3], direction: [f64; 3]) -> bool {
+    let sides: [([f64; 3], f64); 6] = [
+        ([1.0, 0.0, 0.0], 5.0),
+        ([-1.0, 0.0, 0.0], 5.0),
+        ([0.0, 1.0, 0.0], 4.0),
+        ([0.0, -1.0, 0.0], 4.0),
+        ([0.0, 0.75, 1.0], 9.0),
+        ([0.0, -0.75, 1.0], 9.0),
+    ];
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
+    for (normal, limit) in sides {
+        let (toward, room) = (dot(normal, direction), limit - dot(normal, place));
+        if toward > 0.0 {
+            leaves = leaves.min(room / toward);
+        } else if toward < 0.0 {
+            enters = enters.max(room / toward);
+        } else if room < 0.0 {
+            return false;
+        }
+    }
+    enters < leaves
+}
+
+/// Numbers of a column of a table; NaN for what is none.
+pub(crate) fn column(place: &Workplace, name: &str, column: &str) -> Vec<f64> {
+    let text = place.text(name);
+    let mut lines = text.lines();
+    let at =
+        lines.next().unwrap().split(',').position(|own| own == column).unwrap_or_else(|| panic!("{column} in {text}"));
+    lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap_or(f64::NAN)).collect()
+}
+
 /// The reference data, or `None` with a line that says so.
 pub(crate) fn shared_data(test: &str) -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");

@@ -4,11 +4,13 @@ pub mod find;
 pub mod map_grid;
 mod morphology;
 mod relief;
+mod surface;
 mod triangulate;
 
 pub use find::{FinderParams, find_ground};
 pub use map_grid::MapGrid;
 pub use relief::highest_points;
+pub use surface::{SurfaceParams, top_surface};
 
 use crate::neighbors::NeighborIndex;
 use crate::raster::Raster;

@@ -2,6 +2,7 @@
 
 use super::super::sights::{ground, ground_cloud, on_map};
 use super::super::{check_output, check_parent, extension, is_same};
+use super::seasons::{Light, PlaneCells};
 use crate::arguments::{GroundChoice, Irradiance, Usage};
 use crate::commands::horizon::write_lines;
 use crate::pipeline::{Scene, flagged};
@@ -10,12 +11,12 @@ use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::horizon::{HorizonParams, horizons};
-use belvedere::apps::irradiance::{Irradiation, PeriodRadiation, plane_irradiation};
+use belvedere::apps::irradiance::Irradiation;
 use belvedere::apps::roof_planes::{RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use belvedere::apps::sun::Site;
 use belvedere::ground::MapGrid;
 use belvedere::io::{Area, Cells, atomic, outlines, write_geojson_areas, write_table};
-use belvedere::query::{MedialScene, visibility_matrix};
+use belvedere::query::MedialScene;
 
 /// Cells of the ground that roofs are told from, metres.
 const GROUND_CELL: f64 = 1.0;
@@ -104,14 +105,12 @@ struct Row {
 pub(super) fn measure(
     arguments: &Irradiance,
     roofs: &Roofs,
-    blockers: &MedialScene,
-    radiation: &PeriodRadiation,
+    light: &Light<'_>,
     site: &Site,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<()> {
     let rows = stages.run("looking from roofs", roofs.planes.len(), |progress| -> Result<Vec<Row>> {
-        let directions = radiation.directions();
         let mut rows = Vec::with_capacity(roofs.planes.len());
         // a few at a time: their bits need little memory, and the threads are busy
         for planes in roofs.planes.chunks(64) {
@@ -122,17 +121,14 @@ pub(super) fn measure(
                 places.extend(cells.iter().map(|(place, _)| lifted(*place, plane.normal)));
                 strings.push(cells.iter().map(|(_, string)| *string).collect());
             }
-            let matrix = visibility_matrix(blockers, &places, &directions, belvedere::progress::Progress::none())?;
-            let mut first = 0;
-            for (plane, strings) in planes.iter().zip(&strings) {
-                let found = plane_irradiation(&matrix, first, strings, plane.normal, radiation)?;
-                first += strings.len();
-                rows.push(Row {
-                    mean: Irradiation::sum(&found.mean),
-                    string_limited: Irradiation::sum(&found.string_limited),
-                    months: found.mean.iter().map(Irradiation::total).collect(),
-                });
-            }
+            let cells = planes.iter().zip(&strings);
+            let cells: Vec<PlaneCells<'_>> =
+                cells.map(|(plane, strings)| PlaneCells { normal: plane.normal, strings }).collect();
+            rows.extend(light.of_planes(&places, &cells)?.iter().map(|found| Row {
+                mean: Irradiation::sum(&found.mean),
+                string_limited: Irradiation::sum(&found.string_limited),
+                months: found.mean.iter().map(Irradiation::total).collect(),
+            }));
             progress.advance(planes.len());
         }
         Ok(rows)
@@ -156,7 +152,7 @@ pub(super) fn measure(
     }
     summary.add("planes_written", arguments.planes.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     if let Some(folder) = &arguments.horizons {
-        write_horizons(folder, roofs, blockers, site, stages)?;
+        write_horizons(folder, roofs, light.blockers, site, stages)?;
         summary.add("horizons_written", folder.display().to_string());
     }
     Ok(())

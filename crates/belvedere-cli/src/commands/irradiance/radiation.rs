@@ -1,12 +1,15 @@
 //! From flags and weather files to what a period sends.
 
+use super::super::tree_light::{TreeLight, day_of_year};
+use super::seasons::Season;
 use crate::arguments::{ClearSkyChoice, Irradiance, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Context, Result};
 use belvedere::apps::irradiance::{
-    BirdParams, ClearSky, Grouping, IrradianceParams, PARTS, PeriodRadiation, clear_instants, weather_instants,
+    BirdParams, ClearSky, Grouping, Instant, IrradianceParams, PARTS, PeriodRadiation, PeriodReport, clear_instants,
+    weather_instants,
 };
 use belvedere::apps::sun::{Date, Site, Zone};
 use belvedere::io::read_weather;
@@ -95,47 +98,109 @@ fn distance(site: &Site, weather: &Weather) -> f64 {
     EARTH_RADIUS * north.hypot(east)
 }
 
+/// Where the sky stands, what it is known from, and the trees below it where these let light through.
+pub(super) struct Sky<'a> {
+    pub(super) site: &'a Site,
+    pub(super) weather: Option<&'a Weather>,
+    pub(super) trees: Option<&'a TreeLight>,
+}
+
+impl Sky<'_> {
+    /// Share of the light that gets through crowns on a day.
+    fn share(&self, date: Date) -> f64 {
+        self.trees.map_or(0.0, |trees| trees.share(Some((day_of_year(date), self.site.latitude))))
+    }
+
+    /// The rows of the weather, those together whose days let the same share through crowns.
+    fn parted(&self, weather: &Weather, zone: &Zone) -> Result<Vec<(f64, Weather)>> {
+        let mut parts: Vec<(f64, Weather)> = Vec::new();
+        for step in &weather.steps {
+            let share = if self.trees.is_some() { self.share(zone.date_at(step.instant)?) } else { 0.0 };
+            match parts.iter_mut().find(|(own, _)| *own == share) {
+                Some((_, part)) => part.steps.push(*step),
+                None => parts.push((share, Weather { steps: vec![*step], ..weather.clone() })),
+            }
+        }
+        Ok(parts)
+    }
+
+    /// The days of a year from one change of what crowns let through to the next: share, begin and end.
+    fn spans(&self, year: i16, zone: &Zone) -> belvedere::Result<Vec<(f64, [f64; 2])>> {
+        let (first, last) = (Date::new(year, 1, 1)?, Date::new(year, 12, 31)?);
+        let end = zone.instant_of(Date::new(year.saturating_add(1), 1, 1)?, 0.0)?;
+        let mut spans: Vec<(f64, [f64; 2])> = Vec::new();
+        for date in first.to(last) {
+            let share = self.share(date);
+            if spans.last().is_none_or(|(own, _)| *own != share) {
+                let start = zone.instant_of(date, 0.0)?;
+                if let Some((_, span)) = spans.last_mut() {
+                    span[1] = start;
+                }
+                spans.push((share, [start, end]));
+            }
+        }
+        Ok(spans)
+    }
+}
+
+/// What a period sends, in parts by what crowns let through; one part where they let nothing.
 pub(super) fn gather(
     arguments: &Irradiance,
     params: &IrradianceParams,
-    site: &Site,
-    weather: Option<&Weather>,
+    sky: &Sky<'_>,
     stages: &mut Stages,
     summary: &mut Summary,
-) -> Result<PeriodRadiation> {
+) -> Result<Vec<Season>> {
     let mut section = Summary::default();
-    let instants = match weather {
+    let (site, zone) = (sky.site, Zone::mean_solar(sky.site));
+    let mut parts: Vec<(f64, Vec<Instant>)> = Vec::new();
+    let mut put = |share: f64, instants: Vec<Instant>| match parts.iter_mut().find(|(own, _)| *own == share) {
+        Some((_, part)) => part.extend(instants),
+        None => parts.push((share, instants)),
+    };
+    match sky.weather {
         Some(weather) => {
             section.add("from", weather.format).add("rows", weather.steps.len());
             if weather.left_out_count > 0 {
                 section.add("rows_without_radiation", weather.left_out_count);
             }
             section.add("hours", rounded(weather.hours(), 2)).add("notes", weather.notes.clone());
-            let parts = arguments.parts.unwrap_or(PARTS);
-            let instants = stages.run("following the sun", 0, |_| weather_instants(weather, site, parts));
-            flagged("--parts", instants)?
+            let parts_of_row = arguments.parts.unwrap_or(PARTS);
+            for (share, weather) in sky.parted(weather, &zone)? {
+                let instants = stages.run("following the sun", 0, |_| weather_instants(&weather, site, parts_of_row));
+                put(share, flagged("--parts", instants)?);
+            }
         }
         None => {
             let year = arguments.year.unwrap_or(USUAL_YEAR);
-            let zone = Zone::mean_solar(site);
-            let start = |year: i16| zone.instant_of(Date::new(year, 1, 1)?, 0.0);
-            let period = [flagged("--year", start(year))?, flagged("--year", start(year.saturating_add(1)))?];
-            let sky = match arguments.radiation.clear_sky {
+            let spans = flagged("--year", sky.spans(year, &zone))?;
+            let clear_sky = match arguments.radiation.clear_sky {
                 Some(ClearSkyChoice::Haurwitz) => ClearSky::Haurwitz,
                 Some(ClearSkyChoice::Bird) => {
                     ClearSky::Bird(BirdParams { albedo: params.albedo, ..BirdParams::default() })
                 }
                 _ => arguments.linke.map_or_else(ClearSky::default, |linke| ClearSky::Ineichen { linke }),
             };
-            section.add("from", format!("{sky:?}")).add("year", year);
-            let instants =
-                stages.run("following the sun", 0, |_| clear_instants(&sky, site, period, CLEAR_STEP, &zone));
-            flagged("--linke, --year", instants)?
+            section.add("from", format!("{clear_sky:?}")).add("year", year);
+            for (share, span) in spans {
+                let instants =
+                    stages.run("following the sun", 0, |_| clear_instants(&clear_sky, site, span, CLEAR_STEP, &zone));
+                put(share, flagged("--linke, --year", instants)?);
+            }
         }
-    };
-    let radiation = stages.run("gathering radiation", 0, |_| PeriodRadiation::gather(&instants, params));
-    let radiation = flagged("--patch-division", radiation)?;
-    let report = radiation.report;
+    }
+    let mut seasons = Vec::new();
+    let mut report = PeriodReport::default();
+    for (share, instants) in &parts {
+        let radiation = stages.run("gathering radiation", 0, |_| PeriodRadiation::gather(instants, params));
+        let radiation = flagged("--patch-division", radiation)?;
+        report.ghi += radiation.report.ghi;
+        report.dni += radiation.report.dni;
+        report.dhi += radiation.report.dhi;
+        report.dni_without_sun += radiation.report.dni_without_sun;
+        report.sun_direction_count += radiation.report.sun_direction_count;
+        seasons.push(Season { radiation, share: *share });
+    }
     section
         .add("global_kwh_m2", rounded(report.ghi, 1))
         .add("direct_normal_kwh_m2", rounded(report.dni, 1))
@@ -152,5 +217,5 @@ pub(super) fn gather(
         section.add("note", what);
     }
     summary.add("radiation", section);
-    Ok(radiation)
+    Ok(seasons)
 }

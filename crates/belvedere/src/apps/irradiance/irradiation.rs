@@ -58,6 +58,20 @@ impl Irradiation {
         self
     }
 
+    /// What arrives where crowns of trees let `transmissivity`, 0 to 1, of the light through: `self` is what does where they let nothing
+    /// through, `opaque` what does without them. Both are sums over directions, and so is all between. Strings limited by their worst cell
+    /// are as well: what gets to all cells of one is the same share, or nothing, or all.
+    #[must_use]
+    pub fn through_crowns(&self, opaque: &Self, transmissivity: f64) -> Self {
+        let between = |all: f64, opaque: f64| all + transmissivity * (opaque - all);
+        Self {
+            beam: between(self.beam, opaque.beam),
+            diffuse: between(self.diffuse, opaque.diffuse),
+            reflected: between(self.reflected, opaque.reflected),
+            unshaded: self.unshaded,
+        }
+    }
+
     /// The sum over groups.
     #[must_use]
     pub fn sum(groups: &[Self]) -> Self {

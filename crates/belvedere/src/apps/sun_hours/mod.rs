@@ -1,8 +1,10 @@
 //! How long the sun reaches a place: hours and share of a day or of many days, first and last light, longest stretch, rules.
 
+mod crowns;
 mod rules;
 mod stretches;
 
+pub use crowns::sun_hours_through_crowns;
 pub use rules::{RuleDays, SunRule};
 
 use crate::apps::sun::SunSchedule;
