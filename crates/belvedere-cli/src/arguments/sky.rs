@@ -31,7 +31,8 @@ pub(crate) struct SkyPlaces {
 #[command(next_help_heading = "Places (one of) [default: cells on the ground]")]
 #[group(multiple = false)]
 pub(crate) struct SkyPlacesChoice {
-    /// Cells on top of what stands on the ground: roofs and the ground between at the middle of each cell, crowns at their highest point
+    /// Cells on top of what stands on the ground: roofs and the ground between at the middle of each cell, crowns at their highest point. Without it cells are on the ground, but for those
+    /// that nothing was measured on within a metre and that something of more than 2 m stands on: not under buildings
     #[arg(long)]
     pub(crate) surface: bool,
     /// The points of the cloud themselves, all of them and in their order
@@ -72,7 +73,8 @@ pub(crate) struct SkyView {
     pub(crate) shell: Shell,
     /// Directions spread evenly over the sky, 1 to 100000. Root mean square error of either measure in street canyons: 0.012 with
     /// 145, 0.004 with 577, 0.0015 with 2305 [default: 577]
-    #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with = "patches", help_heading = "Sky")]
+    #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with = "patches", help_heading = "Sky",
+        allow_negative_numbers = true)]
     pub(crate) directions: Option<usize>,
     /// The middles of sky patches instead: tregenza (145) or reinhart (577)
     #[arg(long, value_enum, value_name = "NAME", help_heading = "Sky")]

@@ -11,7 +11,7 @@ use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::apps::sky_view::SKY_TARGET_HEIGHT;
 use belvedere::apps::viewshed::{cell_for, cell_targets};
-use belvedere::ground::{Ground, MapGrid, SurfaceParams, highest_points, top_surface};
+use belvedere::ground::{Ground, MapGrid, SurfaceParams, hidden_ground, highest_points, top_surface};
 use belvedere::io::{
     Cells, ExtraColumn, ExtraValues, Georeference, MapLegend, MapPicture, Picture, atomic, map_picture, ramp_colors,
     write_cloud, write_mesh_values, write_png, write_table, write_tif_f32,
@@ -138,7 +138,14 @@ impl SkyPlaces {
                 .run("finding the surface", 0, |_| top_surface(&cloud.positions, &ground, &SurfaceParams::default()))?;
         }
         let height = self.height.map_or(SKY_TARGET_HEIGHT, f64::from);
-        let positions = cell_targets(&ground, height);
+        let mut positions = cell_targets(&ground, height);
+        if !self.places.surface {
+            let hidden = hidden_ground(&cloud.positions, &ground);
+            summary.add("cells_under_cover_left_out", hidden.iter().filter(|&&is| is).count());
+            for (position, _) in positions.iter_mut().zip(hidden).filter(|(_, is_hidden)| *is_hidden) {
+                *position = [f32::NAN; 3];
+            }
+        }
         Ok(SkyTargets {
             positions,
             normals: None,

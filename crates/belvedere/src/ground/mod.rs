@@ -9,7 +9,7 @@ mod triangulate;
 
 pub use find::{FinderParams, find_ground};
 pub use map_grid::MapGrid;
-pub use relief::highest_points;
+pub use relief::{hidden_ground, highest_points};
 pub use surface::{SurfaceParams, top_surface};
 
 use crate::neighbors::NeighborIndex;

@@ -8,8 +8,8 @@ use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Context, Result};
 use belvedere::apps::irradiance::{
-    BirdParams, ClearSky, Grouping, Instant, IrradianceParams, PARTS, PeriodRadiation, PeriodReport, clear_instants,
-    weather_instants,
+    BirdParams, ClearSky, Grouping, Instant, IrradianceParams, PARTS, PeriodRadiation, PeriodReport, Surroundings,
+    clear_instants, weather_instants,
 };
 use belvedere::apps::sun::{Date, Site, Zone};
 use belvedere::io::read_weather;
@@ -181,7 +181,7 @@ pub(super) fn gather(
                 }
                 _ => arguments.linke.map_or_else(ClearSky::default, |linke| ClearSky::Ineichen { linke }),
             };
-            section.add("from", format!("{clear_sky:?}")).add("year", year);
+            section.add("from", clear_sky.to_string()).add("year", year);
             for (share, span) in spans {
                 let instants =
                     stages.run("following the sun", 0, |_| clear_instants(&clear_sky, site, span, CLEAR_STEP, &zone));
@@ -206,8 +206,11 @@ pub(super) fn gather(
         .add("direct_normal_kwh_m2", rounded(report.dni, 1))
         .add("diffuse_kwh_m2", rounded(report.dhi, 1))
         .add("sun_directions", report.sun_direction_count)
-        .add("diffuse_model", format!("{:?}", params.sky))
-        .add("obstacles_reflect", format!("{:?}", params.surroundings));
+        .add("diffuse_model", params.sky.to_string())
+        .add(
+            "obstacles_reflect",
+            if params.surroundings == Surroundings::Dark { "nothing" } else { "like the ground" },
+        );
     if report.dni_without_sun > DOUBTFUL * report.dni {
         let what = format!(
             "{:.0} kWh/m² of direct radiation come with the sun below the horizon and are not counted: do place and time zone of the \

@@ -19,6 +19,16 @@ pub enum ClearSky {
     Bird(BirdParams),
 }
 
+impl std::fmt::Display for ClearSky {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Ineichen { linke } => write!(f, "clear sky of Ineichen & Perez, Linke turbidity {linke}"),
+            Self::Haurwitz => f.write_str("clear sky of Haurwitz"),
+            Self::Bird(_) => f.write_str("clear sky of Bird & Hulstrom"),
+        }
+    }
+}
+
 impl Default for ClearSky {
     /// Ineichen & Perez with a turbidity of 3, the usual one of temperate lands (Remund et al. 2003).
     fn default() -> Self {

@@ -19,6 +19,17 @@ pub enum SkyModel {
     Patches,
 }
 
+impl std::fmt::Display for SkyModel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Isotropic => "isotropic",
+            Self::HayDavies => "Hay & Davies",
+            Self::Perez => "Perez 1990",
+            Self::Patches => "patches of the sky, Perez 1993",
+        })
+    }
+}
+
 /// Parts of diffuse radiation, W/m², that add up on a plane as
 /// `even · s + sun · max(cos a, 0) + horizon · sin t`: `s` is the share of the sky that the plane faces, (1 + cos t)/2 where nothing stands
 /// before it, `a` the angle between sun and normal, `t` the tilt. `sun` is given for a plane that faces the sun.
