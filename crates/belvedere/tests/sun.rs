@@ -3,7 +3,7 @@
 
 use belvedere::apps::sun::{
     Binning, Date, DayParams, Refraction, Site, SunDay, SunSchedule, Zone, parse_instant, sun_day, sun_position,
-    sun_position_with, sun_times,
+    sun_position_with, sun_times, zone_of_instant,
 };
 use belvedere::crs::Crs;
 
@@ -240,6 +240,11 @@ fn polar_days_and_nights_are_whole_or_empty() {
 
 #[test]
 fn zones_name_instants_and_summer_time_leaves_none_in_doubt() {
+    let named = |text: &str| zone_of_instant(text).map(|zone| zone.name().to_owned());
+    assert_eq!(named("2026-06-21T15:00[Europe/Amsterdam]").as_deref(), Some("Europe/Amsterdam"));
+    assert_eq!(named("2026-06-21T15:00+02:00[Europe/Amsterdam]").as_deref(), Some("Europe/Amsterdam"));
+    assert_eq!(named("2026-06-21T15:00+02:00").as_deref(), Some("+02"));
+    assert_eq!((named("2026-06-21T15:00"), named("yesterday")), (None, None));
     let zone = Zone::parse("Europe/Amsterdam").unwrap();
     let noon = at("2026-06-21T10:00Z");
     for text in [

@@ -89,8 +89,10 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
         measures.push(Measure { name: "unproven", description, decimals: 0, range: Some([0.0, 1.0]), values: doubts });
     }
     summary.add("shadow", targets.told(&measures[..measures.len().min(MOST_TOLD)]));
+    let has_parts = lit.iter().flatten().any(|&share| share > 0.0 && share < 1.0);
+    let legend = if has_parts { Legend::WithParts } else { Legend::WithoutParts };
     let picture = |number: usize, relief: &Raster<f32>, cell: f64| {
-        frame(&suns[number], &lit[number], doubts.as_deref().filter(|_| number == 0), relief, cell)
+        frame(&suns[number], &lit[number], doubts.as_deref().filter(|_| number == 0), legend, relief, cell)
     };
     let pictured = |relief: &Raster<f32>, cell: f64| picture(0, relief, cell);
     targets.write_with(&arguments.outputs, &measures, &pictured, &mut stages, &mut summary)?;
@@ -236,11 +238,19 @@ fn doubts(
     )
 }
 
+/// Whether places see parts of the sun: said of all frames alike, so that they are of one size.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Legend {
+    WithParts,
+    WithoutParts,
+}
+
 /// A map of the shadow of one sun.
 fn frame(
     sun: &Sun,
     lit: &[f32],
     doubts: Option<&[f32]>,
+    legend: Legend,
     relief: &Raster<f32>,
     cell: f64,
 ) -> belvedere::Result<Picture> {
@@ -257,14 +267,14 @@ fn frame(
     };
     let colors: Vec<Option<[u8; 3]>> = lit.iter().enumerate().map(color).collect();
     let mut meanings = vec![(LIT_COLOR, "lit"), (SHADE_COLOR, "in shadow")];
-    if lit.iter().any(|&share| share > 0.0 && share < 1.0) {
+    if legend == Legend::WithParts {
         meanings.insert(1, (HALF_COLOR, "in part"));
     }
     if doubts.is_some() {
         meanings.push((UNPROVEN_COLOR, "lit, not proven"));
     }
-    let legend = MapLegend::Colors(&meanings);
-    map_picture(&MapPicture { relief, cell, colors: &colors, marks: &[], title: &sun.title, legend })
+    let (title, legend) = (sun.title.as_str(), MapLegend::Colors(&meanings));
+    map_picture(&MapPicture { relief, cell, colors: &colors, marks: &[], title, legend })
 }
 
 /// Draws the shadow of the sun of that number over a relief with cells of a side in metres.

@@ -86,7 +86,7 @@ impl Irradiation {
 /// not finite. Asks for as many targets at a time as fit into half a gigabyte of bits. Progress counts targets.
 ///
 /// # Errors
-/// Those of [`visibility_matrix`] and [`irradiation`].
+/// Those of [`visibility_matrix()`] and [`irradiation`].
 pub fn scene_irradiation(
     scene: &MedialScene,
     targets: &[[f32; 3]],

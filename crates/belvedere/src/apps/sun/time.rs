@@ -241,13 +241,14 @@ pub fn parse_instant(text: &str, zone: Option<&Zone>) -> Result<f64> {
 pub fn zone_of_instant(text: &str) -> Option<Zone> {
     let pieces = Pieces::parse(text.trim()).ok()?;
     let zone = pieces.to_time_zone_with(&TimeZoneDatabase::bundled()).ok().flatten();
-    match (zone, pieces.offset()?) {
+    match (zone, pieces.offset()) {
         (Some(zone), _) if zone.iana_name().is_some_and(|name| name != "UTC") => {
             let name = zone.iana_name().unwrap_or_default().to_owned();
             Some(Zone { zone, name })
         }
-        (_, PiecesOffset::Zulu) => Some(Zone::utc()),
-        (_, other) => {
+        (_, None) => None,
+        (_, Some(PiecesOffset::Zulu)) => Some(Zone::utc()),
+        (_, Some(other)) => {
             let offset = other.to_numeric_offset();
             Some(Zone { zone: TimeZone::fixed(offset), name: offset.to_string() })
         }
