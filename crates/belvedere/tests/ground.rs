@@ -5,7 +5,9 @@ mod common;
 #[path = "common/simulated.rs"]
 mod simulated;
 
-use belvedere::ground::{FinderParams, Ground, GroundParams, GroundPoints, MapGrid, find_ground, ground_points};
+use belvedere::ground::{
+    FinderParams, Ground, GroundParams, GroundPoints, MapGrid, find_ground, ground_points, hidden_ground,
+};
 use belvedere::io::{ReadOptions, read_cloud};
 use belvedere::{Attributes, PointCloud};
 use belvedere_scenes::{AirborneParams, Preset, QuerySite, Truth, scan_airborne, town};
@@ -117,5 +119,25 @@ fn a_cloud_without_ground_is_refused_with_advice() {
         FinderParams { tolerance: -1.0, ..FinderParams::default() },
     ] {
         assert!(find_ground(&cloud, &params).is_err());
+    }
+}
+
+#[test]
+fn ground_is_hidden_under_buildings_and_not_under_cars() {
+    // a roof over the square from 10 to 20 m, a car from 30 to 32 m, both without ground points below
+    let under = |x: f32, y: f32, from: f32, to: f32| (from..to).contains(&x) && (from..to).contains(&y);
+    let places = || (0..80).flat_map(|i| (0..80).map(move |j| [0.5 * i as f32 + 0.25, 0.5 * j as f32 + 0.25]));
+    let covered = |[x, y]: [f32; 2]| under(x, y, 10.0, 20.0) || under(x, y, 30.0, 32.0);
+    let ground: Vec<[f32; 3]> = places().filter(|p| !covered(*p)).map(|[x, y]| [x, y, 0.0]).collect();
+    let top = |[x, y]: [f32; 2]| [x, y, if under(x, y, 10.0, 20.0) { 5.0 } else { 1.5 }];
+    let all: Vec<[f32; 3]> = ground.iter().copied().chain(places().filter(|p| covered(*p)).map(top)).collect();
+    let grid = MapGrid::covering([0.0, 0.0], [39.9, 39.9], 1.0, [0.0, 0.0]).unwrap();
+    let hidden = hidden_ground(&all, &Ground::of_points(&ground, grid, 60.0).unwrap());
+    for (cell, is_hidden) in hidden.into_iter().enumerate() {
+        let [x, y] = grid.center(cell % grid.width, cell / grid.width);
+        let inside = |margin: f64| [x, y].iter().all(|v| (10.0 + margin..20.0 - margin).contains(v));
+        // the next ground point lies a quarter of a metre beyond the wall
+        let expected = inside(0.75);
+        assert_eq!(is_hidden, expected, "{x} {y}");
     }
 }
