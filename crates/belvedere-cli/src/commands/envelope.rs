@@ -2,8 +2,9 @@
 
 use super::mesh_targets::{is_mesh, mesh_of};
 use super::shapes::{TypedAre, shapes, wrong_shape};
+use super::sights::georeference;
 use super::sights::{Proving, blockers, ground, ground_cloud};
-use super::sky_targets::{Measure, georeference, map_of};
+use super::sky_targets::{Measure, map_of};
 use super::{check_output, is_same};
 use crate::arguments::{Corners, Envelope, Global, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};

@@ -18,7 +18,7 @@ use std::io::Read;
 use std::path::Path;
 
 /// Longest side of a piece, metres: what points of usual airborne surveys tell of a wall.
-const SPACING: f64 = 0.5;
+pub(super) const SPACING: f64 = 0.5;
 
 /// Whether a file of targets is a mesh: by its extension, or, for PLY, by its faces.
 pub(crate) fn is_mesh(path: &Path) -> bool {

@@ -8,7 +8,7 @@ use anyhow::{Result, bail};
 use belvedere::PointCloud;
 use belvedere::depth::Profile;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
-use belvedere::io::{ReadOptions, read_cloud};
+use belvedere::io::{Georeference, ReadOptions, read_cloud};
 use belvedere::pulses::Needles;
 use belvedere::query::{EarthParams, MedialScene, Proof, ProofParams, SceneParams, UnprovenAs};
 
@@ -155,6 +155,14 @@ pub(crate) fn local(cloud: &PointCloud, file: [f64; 3]) -> [f64; 3] {
 pub(crate) fn file(cloud: &PointCloud, local: [f64; 3]) -> [f64; 3] {
     let scale = cloud.crs.metres_per_unit_xyz();
     std::array::from_fn(|i| (local[i] + cloud.origin[i]) / scale[i])
+}
+
+/// Where a grid lies in the system of a cloud.
+pub(crate) fn georeference(grid: &MapGrid, cloud: &PointCloud) -> Georeference {
+    let unit = cloud.crs.metres_per_unit;
+    let upper_left = [0, 1].map(|i| (grid.corner[i] + cloud.origin[i]) / unit);
+    let step = grid.cell / unit;
+    Georeference { upper_left, column_step: [step, 0.0], row_step: [0.0, -step], crs: cloud.crs.clone() }
 }
 
 /// Lowest and highest corner of a scene on the map, local metres.

@@ -1,8 +1,8 @@
 //! Places that the sun and the sky are asked about, and what is found there as files.
 
-use super::mesh_targets::{self, mesh_of};
+use super::mesh_targets::{self, SPACING, mesh_of};
 use super::query::points_of_file;
-use super::sights::{ground, ground_cloud, on_map};
+use super::sights::{georeference, ground, ground_cloud, on_map};
 use super::{check_output, extension, is_same};
 use crate::arguments::{FacingChoice, SkyOutputs, SkyPlaces, Usage};
 use crate::pipeline::{Scene, flagged};
@@ -13,8 +13,8 @@ use belvedere::apps::sky_view::SKY_TARGET_HEIGHT;
 use belvedere::apps::viewshed::{cell_for, cell_targets};
 use belvedere::ground::{Ground, MapGrid, SurfaceParams, hidden_ground, highest_points, top_surface};
 use belvedere::io::{
-    Cells, ExtraColumn, ExtraValues, Georeference, MapLegend, MapPicture, Picture, atomic, map_picture, ramp_colors,
-    write_cloud, write_mesh_values, write_png, write_table, write_tif_f32,
+    Cells, ExtraColumn, ExtraValues, MapLegend, MapPicture, Picture, atomic, map_picture, ramp_colors, write_cloud,
+    write_mesh_values, write_png, write_table, write_tif_f32,
 };
 use belvedere::query::{MeshTargetParams, SurfacePieces};
 use belvedere::raster::Raster;
@@ -25,8 +25,6 @@ use std::path::Path;
 const NO_VALUE: f32 = -9999.0;
 /// Colours of measures on a map.
 const COLORS: usize = 101;
-/// Longest side of a piece of a mesh, metres: what points of usual airborne surveys tell of a wall.
-const SPACING: f64 = 0.5;
 
 /// Places that are asked about.
 pub(crate) struct SkyTargets {
@@ -359,14 +357,6 @@ fn write_raster(output: &Path, measure: &Measure<'_>, ground: &Ground, cloud: &P
     let raster = Raster::from_values(grid.width, grid.height, measure.values.to_vec())?;
     let place = georeference(&grid, cloud);
     Ok(write_tif_f32(output, &raster, Some(&place), Some(NO_VALUE), Some(measure.description))?)
-}
-
-/// Where a grid lies in the system of a cloud.
-pub(crate) fn georeference(grid: &MapGrid, cloud: &PointCloud) -> Georeference {
-    let unit = cloud.crs.metres_per_unit;
-    let upper_left = [0, 1].map(|i| (grid.corner[i] + cloud.origin[i]) / unit);
-    let step = grid.cell / unit;
-    Georeference { upper_left, column_step: [step, 0.0], row_step: [0.0, -step], crs: cloud.crs.clone() }
 }
 
 /// A row for each object, without a face, then one for each face.

@@ -1,12 +1,12 @@
 //! Views of a landmark as files.
 
-use crate::commands::sights::file;
+use crate::commands::sights::{file, georeference};
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::landmark::LandmarkView;
 use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{
-    Cells, Georeference, MapLegend, MapPicture, atomic, map_picture, ramp_colors, write_png, write_table, write_tif_f32,
+    Cells, MapLegend, MapPicture, atomic, map_picture, ramp_colors, write_png, write_table, write_tif_f32,
 };
 use belvedere::raster::Raster;
 use std::path::Path;
@@ -86,10 +86,7 @@ fn write_measure(
     #[expect(clippy::cast_possible_truncation, reason = "rasters of measures are f32")]
     let values = views.iter().map(|view| standing(view) as f32).collect();
     let raster = Raster::from_values(grid.width, grid.height, values)?;
-    let unit = cloud.crs.metres_per_unit;
-    let upper_left = [0, 1].map(|i| (grid.corner[i] + cloud.origin[i]) / unit);
-    let step = grid.cell / unit;
-    let place = Georeference { upper_left, column_step: [step, 0.0], row_step: [0.0, -step], crs: cloud.crs.clone() };
+    let place = georeference(&grid, cloud);
     Ok(write_tif_f32(output, &raster, Some(&place), Some(NO_VALUE), Some(what))?)
 }
 

@@ -2,14 +2,15 @@
 
 use crate::arguments::Usage;
 use crate::commands::extension;
+use crate::commands::sights::georeference;
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::viewshed::Viewshed;
 use belvedere::ground::{Ground, MapGrid, highest_points};
 use belvedere::io::{
-    Area, ExtraColumn, ExtraValues, Georeference, GridPolygon, MapLegend, MapPicture, WriteReport, map_picture,
-    outlines, ramp_colors, write_cloud, write_geojson_areas, write_npy_f32_2d, write_npy_u32_bands, write_png,
-    write_tif_f32, write_tif_u8, write_tif_u16, write_tif_u32,
+    Area, ExtraColumn, ExtraValues, GridPolygon, MapLegend, MapPicture, WriteReport, map_picture, outlines,
+    ramp_colors, write_cloud, write_geojson_areas, write_npy_f32_2d, write_npy_u32_bands, write_png, write_tif_f32,
+    write_tif_u8, write_tif_u16, write_tif_u32,
 };
 use belvedere::query::Answer;
 use belvedere::raster::Raster;
@@ -175,11 +176,4 @@ fn write_map(
     let cell = ground.grid.cell;
     let map = MapPicture { relief: &relief, cell, colors: &colors, marks: &marks, title, legend };
     Ok(write_png(output, &map_picture(&map)?)?)
-}
-
-fn georeference(grid: &MapGrid, cloud: &PointCloud) -> Georeference {
-    let unit = cloud.crs.metres_per_unit;
-    let upper_left = [0, 1].map(|i| (grid.corner[i] + cloud.origin[i]) / unit);
-    let step = grid.cell / unit;
-    Georeference { upper_left, column_step: [step, 0.0], row_step: [0.0, -step], crs: cloud.crs.clone() }
 }
