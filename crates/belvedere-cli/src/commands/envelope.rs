@@ -5,7 +5,7 @@ use super::shapes::{TypedAre, shapes, wrong_shape};
 use super::sights::georeference;
 use super::sights::{Proving, blockers, ground, ground_cloud};
 use super::sky_targets::{Measure, map_of};
-use super::{check_output, is_same};
+use super::{check_distinct, check_output};
 use crate::arguments::{Corners, Envelope, Global, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
@@ -97,11 +97,7 @@ fn check_outputs(arguments: &Envelope) -> Result<()> {
     if let Some(output) = &arguments.tops {
         check_output("--tops", output, &["tif", "tiff", "npy"])?;
     }
-    for (i, a) in all.iter().enumerate() {
-        if all.iter().skip(i + 1).any(|b| is_same(a, b)) {
-            return Err(Usage(format!("{}: two results would be written there", a.display())).into());
-        }
-    }
+    check_distinct(all)?;
     if arguments.sun.is_empty() && !arguments.when.is_given() {
         return Err(
             Usage("say when the sun is to be kept: --date DAY, --from and --to, or --sun AZ,EL".to_owned()).into()

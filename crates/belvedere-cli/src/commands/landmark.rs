@@ -4,7 +4,7 @@ mod results;
 mod what;
 
 use super::sights::{self, Proving, blockers, ground_cloud, local, on_map};
-use super::{check_output, extension, is_same};
+use super::{check_distinct, check_output, extension};
 use crate::arguments::{Global, Landmark, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
@@ -75,7 +75,7 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
 }
 
 fn check_outputs(arguments: &Landmark) -> Result<()> {
-    for (i, output) in arguments.output.iter().enumerate() {
+    for output in &arguments.output {
         check_output("-o", output, &["csv", "tif", "tiff", "png"])?;
         if arguments.observers.is_some() && extension(output) != "csv" {
             let output = output.display();
@@ -84,11 +84,8 @@ fn check_outputs(arguments: &Landmark) -> Result<()> {
             ))
             .into());
         }
-        if arguments.output.iter().skip(i + 1).any(|other| is_same(output, other)) {
-            return Err(Usage(format!("{}: two results would be written there", output.display())).into());
-        }
     }
-    Ok(())
+    check_distinct(&arguments.output)
 }
 
 /// The cells that observers stand in, or that the ground below those of a file is asked on.

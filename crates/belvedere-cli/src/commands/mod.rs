@@ -34,7 +34,7 @@ use anyhow::{Context, Result, bail};
 use belvedere::io::{ExtraColumn, ExtraValues};
 use clap::CommandFactory;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Runs the command that was typed.
 pub(crate) fn run(cli: &Cli) -> Result<Summary> {
@@ -133,6 +133,17 @@ fn check_parent(path: &Path) -> Result<()> {
         }
         _ => Ok(()),
     }
+}
+
+/// Refuses outputs that would be written over each other.
+fn check_distinct<'a>(outputs: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
+    let outputs: Vec<&PathBuf> = outputs.into_iter().collect();
+    for (i, a) in outputs.iter().enumerate() {
+        if let Some(b) = outputs.iter().skip(i + 1).find(|b| is_same(a, b)) {
+            return Err(Usage(format!("{}: two results would be written there", b.display())).into());
+        }
+    }
+    Ok(())
 }
 
 /// Whether two paths name the same file or folder, as far as that can be told.

@@ -3,7 +3,7 @@
 use super::sights::{Proving, blockers};
 use super::sky_targets::{Measure, SkyTargets};
 use super::tree_light::day_of_year;
-use super::{check_output, is_same};
+use super::{check_distinct, check_output};
 use crate::arguments::{Global, Shadow, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
@@ -118,9 +118,7 @@ fn check(arguments: &Shadow) -> Result<()> {
     }
     if let Some(film) = &arguments.film {
         check_output("--film", film, &["png", "apng"])?;
-        if arguments.outputs.output.iter().any(|output| is_same(output, film)) {
-            return Err(Usage(format!("{}: two results would be written there", film.display())).into());
-        }
+        check_distinct(arguments.outputs.output.iter().chain([film]))?;
     }
     if (arguments.film.is_some() || arguments.frames.is_some()) && !arguments.places.is_grid() {
         return Err(Usage("--film and --frames belong to places on a grid".to_owned()).into());

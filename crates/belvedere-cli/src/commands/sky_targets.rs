@@ -3,7 +3,7 @@
 use super::mesh_targets::{self, SPACING, mesh_of};
 use super::query::points_of_file;
 use super::sights::{georeference, ground, ground_cloud, on_map};
-use super::{check_output, extension, is_same};
+use super::{check_distinct, check_output, extension};
 use crate::arguments::{FacingChoice, SkyOutputs, SkyPlaces, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
@@ -71,11 +71,7 @@ impl SkyPlaces {
         for output in &outputs.output {
             check_output("-o", output, known)?;
         }
-        for (i, a) in outputs.output.iter().enumerate() {
-            if outputs.output.iter().skip(i + 1).any(|b| is_same(a, b)) {
-                return Err(Usage(format!("{}: two results would be written there", a.display())).into());
-            }
-        }
+        check_distinct(&outputs.output)?;
         let refused = [
             ("--measures", outputs.measures.is_some(), mesh || points, "a grid"),
             ("--cell", self.cell.is_some(), mesh || points, "a grid"),

@@ -3,7 +3,7 @@
 use super::sights::{Proving, blockers, scene_params};
 use super::sky_targets::{Measure, SkyTargets};
 use super::tree_light::{TreeLight, day_of_year};
-use super::{check_output, is_same};
+use super::{check_distinct, check_output};
 use crate::arguments::{Global, SunHours, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
@@ -27,9 +27,7 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
     let params = arguments.when.params(&arguments.sun)?;
     if let Some(keep) = &arguments.keep {
         check_output("--keep", keep, &["npz"])?;
-        if arguments.outputs.output.iter().any(|output| is_same(output, keep)) {
-            return Err(Usage(format!("{}: two results would be written there", keep.display())).into());
-        }
+        check_distinct(arguments.outputs.output.iter().chain([keep]))?;
     }
     if arguments.trees.is_given() && (arguments.keep.is_some() || arguments.from_matrix.is_some()) {
         let what = "--through-trees: a matrix keeps what all balls hide, trees with the rest; leave out --keep and --from-matrix";
@@ -124,10 +122,10 @@ fn taken(kept: SavedMatrix, targets: &SkyTargets, scene: u64) -> Result<Visibili
         );
     }
     let same = |a: &[f32; 3], b: &[f32; 3]| a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
-    let is_same = kept.origin == targets.frame().origin
+    let check_distinct = kept.origin == targets.frame().origin
         && kept.targets.len() == targets.positions.len()
         && kept.targets.iter().zip(&targets.positions).all(|(a, b)| same(a, b));
-    if !is_same {
+    if !check_distinct {
         bail!(
             "--from-matrix: it was made for {} other places; ask with the flags of places it was kept with, or make it again with --keep",
             kept.targets.len()

@@ -4,8 +4,8 @@ mod results;
 mod who;
 
 use super::sights::{Proving, blockers, enclosure_note, file, ground, ground_cloud, on_map};
-use super::{check_output, is_same};
-use crate::arguments::{Global, Usage, Viewshed};
+use super::{check_distinct, check_output};
+use crate::arguments::{Global, Viewshed};
 use crate::pipeline::{self, Points, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
@@ -104,13 +104,7 @@ fn check_outputs(arguments: &Viewshed) -> Result<()> {
     if let Some(output) = &arguments.masks {
         check_output("--masks", output, &["tif", "tiff", "npy"])?;
     }
-    let all: Vec<_> = arguments.output.iter().chain(&arguments.heights).chain(&arguments.masks).collect();
-    for (i, a) in all.iter().enumerate() {
-        if let Some(b) = all.iter().skip(i + 1).find(|b| is_same(a, b)) {
-            return Err(Usage(format!("{}: two results would be written there", b.display())).into());
-        }
-    }
-    Ok(())
+    check_distinct(arguments.output.iter().chain(&arguments.heights).chain(&arguments.masks))
 }
 
 /// The cells looked at: those of the cloud that are near enough to any observer.

@@ -1,9 +1,9 @@
 //! Planes of roofs: found, asked, and written.
 
 use super::super::sights::{ground, ground_cloud, on_map};
-use super::super::{check_output, check_parent, extension, is_same};
+use super::super::{check_distinct, check_output, check_parent, extension};
 use super::seasons::{Light, PlaneCells};
-use crate::arguments::{GroundChoice, Irradiance, Usage};
+use crate::arguments::{GroundChoice, Irradiance};
 use crate::commands::horizon::write_lines;
 use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
@@ -39,13 +39,7 @@ pub(super) fn check(arguments: &Irradiance) -> Result<()> {
     if let Some(folder) = &arguments.horizons {
         check_parent(folder)?;
     }
-    let all: Vec<_> = arguments.planes.iter().chain(&arguments.outputs.output).collect();
-    for (i, a) in all.iter().enumerate() {
-        if let Some(b) = all.iter().skip(i + 1).find(|b| is_same(a, b)) {
-            return Err(Usage(format!("{}: two results would be written there", b.display())).into());
-        }
-    }
-    Ok(())
+    check_distinct(arguments.planes.iter().chain(&arguments.outputs.output))
 }
 
 /// The planes of the scene's roofs, where they are wanted.
