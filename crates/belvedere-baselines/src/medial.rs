@@ -1,6 +1,7 @@
 //! The paper's method as published and its relatives: unions of medial balls that nothing but the points has shrunk.
 
 use crate::Survey;
+use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::medial::{
     CarvedInput, CarvedParams, MedialBalls, ShrinkMethod, ShrinkParams, Side, carved_balls, shrink,
@@ -8,7 +9,6 @@ use belvedere::medial::{
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, orient};
-use belvedere::progress::Progress;
 use belvedere::pulses::{NeedleParams, Needles, group};
 use belvedere::query::{MedialScene, SceneParams, Sight, Viewer, Visibility, query_points};
 use belvedere::view::View;
@@ -137,7 +137,7 @@ pub fn interior_balls(survey: &Survey<'_>, outward: Outward<'_>, params: &Medial
     let (oriented, _) = orient(survey.cloud, normals, &by)?;
     match &params.making {
         Making::Shrinking(shrinking) => {
-            Ok(shrink(&oriented, &index, Side::Interior, shrinking, Progress::none())?.0.shrunk())
+            Ok(shrink(&oriented, &index, Side::Interior, shrinking, &Control::none())?.0.shrunk())
         }
         Making::Carving(carving) => {
             let (needles, _) = Needles::of_cloud(survey.cloud, survey.scanner, &NeedleParams::default())?;
@@ -146,7 +146,7 @@ pub fn interior_balls(survey: &Survey<'_>, outward: Outward<'_>, params: &Medial
             let pulses = group(survey.cloud).ok().map(|(pulses, _)| pulses);
             let pulses = pulses.as_ref();
             let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses };
-            Ok(carved_balls(&input, carving, Progress::none())?.balls)
+            Ok(carved_balls(&input, carving, &Control::none())?.balls)
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A progress bar on a terminal, nothing in a pipe.
 
 use crate::arguments::Global;
-use belvedere::progress::Progress;
+use belvedere::control::{Control, Watcher};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 
@@ -12,13 +12,22 @@ pub(crate) struct Stages {
     seconds: Vec<(&'static str, f64)>,
 }
 
+/// A progress bar as the watcher of a stage.
+struct Bar<'a>(&'a ProgressBar);
+
+impl Watcher for Bar<'_> {
+    fn advance(&self, count: usize) {
+        self.0.inc(count as u64);
+    }
+}
+
 impl Stages {
     pub(crate) fn new(global: &Global) -> Self {
         Self { shown: !global.quiet, verbose: global.verbose, seconds: Vec::new() }
     }
 
     /// Runs one stage over `count` items (0: unknown).
-    pub(crate) fn run<T>(&mut self, name: &'static str, count: usize, work: impl FnOnce(Progress<'_>) -> T) -> T {
+    pub(crate) fn run<T>(&mut self, name: &'static str, count: usize, work: impl FnOnce(&Control<'_>) -> T) -> T {
         // standard error: the bar hides itself where that is no terminal
         let target = if self.shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(if count > 0 { Some(count as u64) } else { None }, target);
@@ -30,7 +39,7 @@ impl Stages {
         bar.set_message(name);
         bar.enable_steady_tick(Duration::from_millis(200));
         let start = Instant::now();
-        let result = work(Progress::to(&|done| bar.inc(done as u64)));
+        let result = work(&Control::new(&Bar(&bar)));
         bar.finish_and_clear();
         let seconds = start.elapsed().as_secs_f64();
         if self.verbose {

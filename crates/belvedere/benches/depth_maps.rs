@@ -4,9 +4,9 @@
 
 mod common;
 
+use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::medial::{MedialBalls, ShrinkParams, Side, shrink};
-use belvedere::progress::Progress;
 use belvedere::query::{query_points, random_targets};
 use belvedere::view::{View, to_sun};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -20,7 +20,7 @@ fn scene() -> (&'static str, MedialBalls, [f32; 3], [f32; 3]) {
         (std::array::from_fn(|i| low[i].min(p[i])), std::array::from_fn(|i| high[i].max(p[i])))
     });
     let (cloud, index) = common::indexed(cloud);
-    let (balls, _) = shrink(&cloud, &index, Side::Interior, &ShrinkParams::angles(), Progress::none()).unwrap();
+    let (balls, _) = shrink(&cloud, &index, Side::Interior, &ShrinkParams::angles(), &Control::none()).unwrap();
     (name, balls, low, high)
 }
 

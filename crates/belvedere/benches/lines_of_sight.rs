@@ -6,8 +6,8 @@
 mod common;
 
 use belvedere::apps::sky_view::SkyDirections;
+use belvedere::control::Control;
 use belvedere::medial::{ShrinkParams, Side, shrink};
-use belvedere::progress::Progress;
 use belvedere::query::{
     EarthParams, MedialScene, SceneParams, TargetTree, Viewer, Visibility, random_pairs, visibility_matrix,
 };
@@ -20,7 +20,7 @@ fn sights(c: &mut Criterion) {
     let (low, high) = cloud.positions().iter().fold(([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]), |(low, high), p| {
         (std::array::from_fn(|i| f32::min(low[i], p[i])), std::array::from_fn(|i| f32::max(high[i], p[i])))
     });
-    let (balls, _) = shrink(&cloud, &index, Side::Interior, &ShrinkParams::tau(), Progress::none()).unwrap();
+    let (balls, _) = shrink(&cloud, &index, Side::Interior, &ShrinkParams::tau(), &Control::none()).unwrap();
     let scene = MedialScene::new(&balls, &SceneParams::carved()).unwrap();
     // the ground of the city of these benches
     let ground = |x: f32, y: f32| 2.0 * (x / 90.0).sin() + 2.0 * (y / 70.0).cos();
@@ -59,7 +59,7 @@ fn sights(c: &mut Criterion) {
     let lifted: Vec<[f32; 3]> = cells.iter().map(|&[x, y, z]| [x, y, z + 0.1]).collect();
     group.throughput(Throughput::Elements((sky.directions.len() * lifted.len()) as u64));
     group.bench_function("145 directions of the sky, all cells", |b| {
-        b.iter(|| visibility_matrix(&scene, &lifted, &sky.directions, Progress::none()).unwrap().row(0).len());
+        b.iter(|| visibility_matrix(&scene, &lifted, &sky.directions, &Control::none()).unwrap().row(0).len());
     });
 }
 

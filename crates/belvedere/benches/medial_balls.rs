@@ -6,17 +6,17 @@
 
 mod common;
 
+use belvedere::control::Control;
 use belvedere::medial::{ShrinkParams, Side, shrink};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::OrientedCloud;
 use belvedere::normals::estimate::{Neighborhood, estimate};
-use belvedere::progress::Progress;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
 fn both_sides(cloud: &OrientedCloud, index: &NeighborIndex, params: &ShrinkParams) -> usize {
     [Side::Interior, Side::Exterior]
         .into_iter()
-        .map(|side| shrink(cloud, index, side, params, Progress::none()).unwrap().1.shrunk)
+        .map(|side| shrink(cloud, index, side, params, &Control::none()).unwrap().1.shrunk)
         .sum()
 }
 

@@ -7,11 +7,11 @@
 #![allow(clippy::print_stdout, reason = "the table is what this example is for")]
 
 use belvedere::PointCloud;
+use belvedere::control::Control;
 use belvedere::depth::{BoundsParams, ItemBuffer, Profile, depth_bounds, depth_map};
 use belvedere::medial::{ShrinkMethod, ShrinkParams, Side, shrink};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::OrientedCloud;
-use belvedere::progress::Progress;
 use belvedere::random::uniform;
 use belvedere::vector::{cross, length, sub, unit};
 use belvedere::view::{View, to_sun};
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
         let method = ShrinkMethod::Tau { penetration: (0.05 * spacing) as f32 };
         let params = ShrinkParams { method, initial_radius: 5.0, max_radius: 5.0 };
-        let (balls, _) = shrink(&oriented, &index, Side::Interior, &params, Progress::none())?;
+        let (balls, _) = shrink(&oriented, &index, Side::Interior, &params, &Control::none())?;
         let balls = balls.shrunk();
         let list: Vec<_> = balls.centers.iter().copied().zip(balls.radii.iter().copied()).collect();
         let (low, high) = cloud.bounds().ok_or("no points")?;

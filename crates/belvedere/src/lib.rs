@@ -10,7 +10,7 @@
 //! use belvedere::neighbors::NeighborIndex;
 //! use belvedere::normals::estimate::{Neighborhood, estimate};
 //! use belvedere::normals::{Orientation, orient};
-//! use belvedere::progress::Progress;
+//! use belvedere::control::Control;
 //! use belvedere::query::{Answer, query_points};
 //! use belvedere::view::{View, to_sun};
 //! use belvedere::PointCloud;
@@ -27,7 +27,7 @@
 //! let index = NeighborIndex::new(&cloud.positions)?;
 //! let normals = estimate(&cloud.positions, &index, Neighborhood::default())?;
 //! let (oriented, _report) = orient(&cloud, normals, &Orientation::Up)?;
-//! let (balls, _report) = shrink(&oriented, &index, Side::Interior, &ShrinkParams::tau(), Progress::none())?;
+//! let (balls, _report) = shrink(&oriented, &index, Side::Interior, &ShrinkParams::tau(), &Control::none())?;
 //!
 //! let sun = to_sun(180f64.to_radians(), 60f64.to_radians());
 //! let (low, high) = cloud.bounds().unwrap();
@@ -45,30 +45,12 @@
 //! Units are metres and radians; positions are local f32 on an f64 origin ([`PointCloud`]). Every parallel result is the same,
 //! bit by bit, for any number of threads. The crate prints nothing and reads no clock or environment.
 
-pub mod apps;
-pub mod clean;
-pub mod cloud;
-pub mod crs;
-pub mod depth;
-pub mod error;
-pub mod ground;
-pub mod io;
-pub mod medial;
-pub mod mesh;
-pub mod neighbors;
-pub mod normals;
-pub mod progress;
-pub mod pulses;
-pub mod query;
-pub mod random;
-pub mod raster;
-pub mod ray_index;
-pub mod summary;
-pub mod trajectory;
-pub mod vector;
-pub mod view;
-pub mod weather;
-
-pub use cloud::{Attributes, GpsTimeKind, PointCloud};
-pub use error::{Error, Result};
-pub use mesh::Mesh;
+#[cfg(feature = "apps")]
+pub use belvedere_apps as apps;
+pub use belvedere_core::{clean, depth, ground, medial, neighbors, normals, pulses, query, ray_index, summary};
+pub use belvedere_data::{Attributes, Error, GpsTimeKind, Mesh, PointCloud, Result, cloud};
+pub use belvedere_data::{control, crs, error, mesh, random, raster, trajectory, vector, view, weather};
+#[cfg(feature = "figures")]
+pub use belvedere_figures as figures;
+#[cfg(feature = "io")]
+pub use belvedere_io as io;

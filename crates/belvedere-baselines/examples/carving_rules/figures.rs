@@ -1,7 +1,7 @@
 //! The pictures of docs/methods/carving.md: a section through a street, and its shade, with balls made in three ways.
 
 use crate::place::Place;
-use belvedere::io::{Picture, side_by_side, write_png};
+use belvedere::figures::{Picture, side_by_side, write_png};
 use belvedere::medial::{MedialBalls, ShrinkParams};
 use belvedere::query::{Answer, Viewer, Visibility};
 use belvedere::view::to_sun;

@@ -1,6 +1,6 @@
 //! A simulated town with its survey, and questions with exact answers.
 
-#[path = "../../tests/common/flown.rs"]
+#[path = "../../tests/all/common/flown.rs"]
 mod flown;
 
 use belvedere::cloud::to_local;

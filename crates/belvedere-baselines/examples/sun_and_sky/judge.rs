@@ -1,13 +1,13 @@
 //! Sun hours and sky views of carved balls on a simulated town, against the rays of its exact mesh.
 
-#[path = "../../tests/common/flown.rs"]
+#[path = "../../tests/all/common/flown.rs"]
 mod flown;
 #[path = "score.rs"]
 pub(crate) mod score;
 
+use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid, SurfaceParams, highest_points, top_surface};
 use belvedere::medial::MedialBalls;
-use belvedere::progress::Progress;
 use belvedere::query::{Answer, MedialScene, SceneParams, Viewer, Visibility, visibility_matrix};
 use belvedere::{PointCloud, Result};
 use belvedere_baselines::Survey;
@@ -207,7 +207,7 @@ impl Town {
     pub(crate) fn judge(&self, places: &Places, light: &Light, lift: f32, params: &SceneParams) -> Result<Score> {
         let scene = MedialScene::new(&self.balls, params)?;
         let asked: Vec<[f32; 3]> = places.asked.iter().map(|p| [p[0], p[1], p[2] + lift]).collect();
-        let found = visibility_matrix(&scene, &asked, &light.directions, Progress::none())?;
+        let found = visibility_matrix(&scene, &asked, &light.directions, &Control::none())?;
         Ok(Score::new(places, light, &|target, column| found.is_free(target, column)))
     }
 

@@ -1,12 +1,12 @@
 //! Viewsheds of carved balls on a simulated town, against the rays of its exact mesh.
 
-#[path = "../../tests/common/flown.rs"]
+#[path = "../../tests/all/common/flown.rs"]
 mod flown;
 
 use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, cell_targets, viewshed};
+use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
 use belvedere::medial::MedialBalls;
-use belvedere::progress::Progress;
 use belvedere::pulses::{NeedleParams, Needles};
 use belvedere::query::{Answer, MedialScene, Proof, ProofParams, SceneParams};
 use belvedere::{PointCloud, Result};
@@ -100,7 +100,7 @@ impl Town {
         for &eye in &self.eyes {
             let limits = SightLimits { distance: [0.0, REACH], ..SightLimits::default() };
             let observer = Observer { eye, limits };
-            let seen = viewshed(&scene, &[observer], &targets, &ViewshedParams::default(), Progress::none())?;
+            let seen = viewshed(&scene, &[observer], &targets, &ViewshedParams::default(), &Control::none())?;
             let absolute = |p: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| p[i] + origin[i]) };
             let (mut both, mut either) = ([0, 0], [0, 0]);
             let asked = targets.iter().zip(&self.exact_ground).zip(&seen.answers);

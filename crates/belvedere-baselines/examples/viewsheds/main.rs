@@ -10,7 +10,7 @@
 mod judge;
 
 use belvedere::apps::viewshed::{Observer, ViewshedParams, cell_targets, viewshed};
-use belvedere::progress::Progress;
+use belvedere::control::Control;
 use belvedere::query::{EarthParams, MedialScene, SceneParams, random_pairs};
 use belvedere_scenes::Preset;
 use judge::Town;
@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for &eye in &town.eyes {
             let start = Instant::now();
             let observer = Observer { eye, ..Observer::default() };
-            viewshed(&scene, &[observer], &targets, &ViewshedParams::default(), Progress::none())?;
+            viewshed(&scene, &[observer], &targets, &ViewshedParams::default(), &Control::none())?;
             seconds.push(start.elapsed().as_secs_f64());
         }
         seconds.sort_by(f64::total_cmp);

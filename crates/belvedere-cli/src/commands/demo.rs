@@ -8,10 +8,8 @@ use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
 use belvedere::cloud::{PointCloud, to_local};
 use belvedere::depth::{DepthMap, ItemBuffer, Profile, depth_map};
-use belvedere::io::{
-    Canvas, Colors, ExtraColumn, ExtraValues, atomic, class_color, depth_picture, in_shadow, ramp_colors, side_by_side,
-    write_balls, write_cloud, write_png, write_tif_f32,
-};
+use belvedere::figures::{Canvas, Colors, class_color, depth_picture, in_shadow, ramp_colors, side_by_side, write_png};
+use belvedere::io::{ExtraColumn, ExtraValues, atomic, write_balls, write_cloud, write_tif_f32};
 use belvedere::medial::{CarvedParams, MedialBalls, Side};
 use belvedere::query::{Answer, MedialScene, SceneParams, Viewer, Visibility};
 use belvedere::view::{View, default_pixel_size, to_sun};

@@ -8,10 +8,8 @@ use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::depth::{ItemBuffer, NO_BALL, Profile, depth_map, panorama};
-use belvedere::io::{
-    Georeference, Picture, camera_picture, depth_picture, panorama_picture, write_npy_f32_2d, write_npy_u32_2d,
-    write_png, write_tif_f32, write_tif_u32,
-};
+use belvedere::figures::{Picture, camera_picture, depth_picture, panorama_picture, write_png};
+use belvedere::io::{Georeference, write_npy_f32_2d, write_npy_u32_2d, write_tif_f32, write_tif_u32};
 use belvedere::raster::Raster;
 use belvedere::view::View;
 

@@ -18,8 +18,9 @@ use belvedere::apps::solar_envelope::{
 };
 use belvedere::apps::sun::{Period, Zone};
 use belvedere::apps::viewshed::CELL;
+use belvedere::figures::write_png;
 use belvedere::ground::{Ground, MapGrid, highest_points};
-use belvedere::io::{ReadReport, Shape, is_ball_file, write_mesh, write_npy_f32_2d, write_png, write_tif_f32};
+use belvedere::io::{ReadReport, Shape, is_ball_file, write_mesh, write_npy_f32_2d, write_tif_f32};
 use belvedere::medial::MedialBalls;
 use belvedere::query::{MeshTargetParams, SurfacePieces, visibility_matrix};
 use belvedere::view::to_sun;

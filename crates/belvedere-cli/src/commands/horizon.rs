@@ -9,7 +9,8 @@ use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Context, Result};
 use belvedere::apps::horizon::{HorizonParams, azimuth_count, convergence, horizons};
-use belvedere::io::{atomic, horizon_picture, write_png};
+use belvedere::figures::{horizon_picture, write_png};
+use belvedere::io::atomic;
 use std::io::Write;
 use std::path::Path;
 

@@ -8,8 +8,9 @@ use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
 use belvedere::apps::profile::{SightProfile, sight_profile};
+use belvedere::figures::{profile_picture, write_png};
 use belvedere::ground::{Ground, MapGrid};
-use belvedere::io::{self, Cells, profile_picture, read_table, write_png, write_table};
+use belvedere::io::{Cells, read_table, write_table};
 use belvedere::query::{Answer, AnswerCounts, EarthParams, MedialScene, UnprovenAs, random_pairs};
 use std::path::Path;
 
@@ -165,7 +166,7 @@ fn write_profile(
             Some(at) => format!("Line of sight, {:.1} m: blocked after {at:.1} m", span(&profile)),
             None => format!("Line of sight, {:.1} m: nothing blocks", span(&profile)),
         };
-        let picture = profile_picture(&io::Profile {
+        let picture = profile_picture(&belvedere::figures::Profile {
             distances: &profile.distances,
             ground: &ground,
             line: &line,

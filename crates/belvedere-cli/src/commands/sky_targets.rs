@@ -11,10 +11,10 @@ use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::apps::sky_view::SKY_TARGET_HEIGHT;
 use belvedere::apps::viewshed::{cell_for, cell_targets};
+use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, ramp_colors, write_png};
 use belvedere::ground::{Ground, MapGrid, SurfaceParams, hidden_ground, highest_points, top_surface};
 use belvedere::io::{
-    Cells, ExtraColumn, ExtraValues, MapLegend, MapPicture, Picture, atomic, map_picture, ramp_colors, write_cloud,
-    write_mesh_values, write_png, write_table, write_tif_f32,
+    Cells, ExtraColumn, ExtraValues, atomic, write_cloud, write_mesh_values, write_table, write_tif_f32,
 };
 use belvedere::query::{MeshTargetParams, SurfacePieces};
 use belvedere::raster::Raster;

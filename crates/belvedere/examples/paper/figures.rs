@@ -3,7 +3,7 @@
 use crate::experiment::Look;
 use crate::model::{Model, Way, unlimited_tau, within_window};
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
-use belvedere::io::{Canvas, Colors, Picture, depth_picture, ramp_colors, side_by_side, write_png};
+use belvedere::figures::{Canvas, Colors, Picture, depth_picture, ramp_colors, side_by_side, write_png};
 use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkParams};
 use belvedere::query::Answer;
 use belvedere::raster::Raster;

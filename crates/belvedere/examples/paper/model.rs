@@ -2,11 +2,11 @@
 
 use crate::Tables;
 use belvedere::clean::{CleanParams, clean};
+use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, ShrinkParams, ShrinkReport, Side, shrink};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
-use belvedere::progress::Progress;
 use belvedere::{Error, Mesh, PointCloud, Result};
 use std::time::Instant;
 
@@ -99,7 +99,7 @@ impl Model {
     ) -> Result<Self> {
         let (low, high) = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "the data set is empty".to_owned() })?;
         let (balls, shrink_report) =
-            timed(&mut times, "balls", || shrink(&oriented, &index, Side::Interior, &params, Progress::none()))?;
+            timed(&mut times, "balls", || shrink(&oriented, &index, Side::Interior, &params, &Control::none()))?;
         Ok(Self {
             cloud,
             oriented,

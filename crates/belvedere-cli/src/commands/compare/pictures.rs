@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::judge::{SHOWN_SET, SHOWN_VIEW};
 use anyhow::Result;
-use belvedere::io::{Canvas, Colors, side_by_side, write_png};
+use belvedere::figures::{Canvas, Colors, side_by_side, write_png};
 use belvedere::query::Answer;
 use belvedere::view::View;
 use std::path::Path;

@@ -5,7 +5,7 @@ use belvedere::Result;
 use belvedere::apps::irradiance::{
     Irradiation, PeriodRadiation, PlaneIrradiation, plane_irradiation, scene_irradiation,
 };
-use belvedere::progress::Progress;
+use belvedere::control::Control;
 use belvedere::query::{MedialScene, visibility_matrix};
 
 /// What the days send on which trees let the same share through.
@@ -51,11 +51,11 @@ impl Light<'_> {
         &self,
         places: &[[f32; 3]],
         normals: Option<&[[f32; 3]]>,
-        progress: Progress<'_>,
+        control: &Control<'_>,
     ) -> Result<Vec<Irradiation>> {
         let mut sums = vec![Irradiation::default(); places.len() * self.group_count()];
         for season in self.seasons {
-            let of = |scene| scene_irradiation(scene, places, normals, &season.radiation, progress);
+            let of = |scene| scene_irradiation(scene, places, normals, &season.radiation, control);
             let mut own = of(self.blockers)?;
             if let Some(trees) = self.trees {
                 mix(&mut own, &of(&trees.opaque)?, season.share);
@@ -96,7 +96,7 @@ fn planes_among(
     planes: &[PlaneCells<'_>],
     radiation: &PeriodRadiation,
 ) -> Result<Vec<PlaneIrradiation>> {
-    let matrix = visibility_matrix(scene, places, &radiation.directions(), Progress::none())?;
+    let matrix = visibility_matrix(scene, places, &radiation.directions(), &Control::none())?;
     let mut first = 0;
     let of_plane = |plane: &PlaneCells<'_>| {
         let found = plane_irradiation(&matrix, first, plane.strings, plane.normal, radiation);

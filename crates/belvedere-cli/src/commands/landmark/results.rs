@@ -4,10 +4,9 @@ use crate::commands::sights::{file, georeference};
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::landmark::LandmarkView;
+use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp_colors, write_png};
 use belvedere::ground::{Ground, highest_points};
-use belvedere::io::{
-    Cells, MapLegend, MapPicture, atomic, map_picture, ramp_colors, write_png, write_table, write_tif_f32,
-};
+use belvedere::io::{Cells, atomic, write_table, write_tif_f32};
 use belvedere::raster::Raster;
 use std::path::Path;
 

@@ -6,11 +6,11 @@ use crate::commands::sights::georeference;
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::viewshed::Viewshed;
+use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp_colors, write_png};
 use belvedere::ground::{Ground, MapGrid, highest_points};
 use belvedere::io::{
-    Area, ExtraColumn, ExtraValues, GridPolygon, MapLegend, MapPicture, WriteReport, map_picture, outlines,
-    ramp_colors, write_cloud, write_geojson_areas, write_npy_f32_2d, write_npy_u32_bands, write_png, write_tif_f32,
-    write_tif_u8, write_tif_u16, write_tif_u32,
+    Area, ExtraColumn, ExtraValues, GridPolygon, WriteReport, outlines, write_cloud, write_geojson_areas,
+    write_npy_f32_2d, write_npy_u32_bands, write_tif_f32, write_tif_u8, write_tif_u16, write_tif_u32,
 };
 use belvedere::query::Answer;
 use belvedere::raster::Raster;

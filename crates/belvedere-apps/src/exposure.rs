@@ -1,0 +1,129 @@
+//! Exposure of routes and windows to sun and sky: what studies of thermal comfort, daylight and property value ask of them.
+
+use crate::sky_view::SkyDirections;
+use belvedere_core::query::VisibilityMatrix;
+use belvedere_data::vector::{cross, dot, unit};
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Height above the ground at which walkers are asked, metres: the middle of a standing body, for which PET and UTCI are defined (VDI 3787
+/// part 2, 1.1 m).
+pub const WALKER_HEIGHT: f64 = 1.1;
+/// Metres between places along a route: a few steps.
+pub const ROUTE_STEP: f64 = 2.0;
+/// By how much windows are asked in front of themselves, metres: twice the noise of usual airborne surveys.
+pub const WINDOW_LIFT: f64 = 0.1;
+/// Places asked along each side of a window that has a size.
+const WINDOW_SIDE: u32 = 3;
+/// Targets handed to a thread at once.
+const CHUNK: usize = 256;
+
+/// The outward unit normal of a plane that looks to `azimuth`, clockwise from grid north, and is tilted by `tilt` from level: 0 looks up,
+/// π/2 is upright, more looks down; radians.
+#[must_use]
+pub fn plane_normal(azimuth: f64, tilt: f64) -> [f64; 3] {
+    [tilt.sin() * azimuth.sin(), tilt.sin() * azimuth.cos(), tilt.cos()]
+}
+
+/// Places that stand for a window around `center`, local metres, with the unit normal `normal`, a little in front of it: nine, in the
+/// middles of even parts of its width and height (`size`, metres), or its middle alone where it has none. Width runs level.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a centre or normal that is not finite, or a size that is below zero or above 1000 m.
+pub fn window_places(center: [f64; 3], normal: [f64; 3], size: Option<[f64; 2]>) -> Result<Vec<[f64; 3]>> {
+    let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+    let Some(normal) = unit(normal).filter(|_| center.iter().all(|v| v.is_finite())) else {
+        return invalid("window", format!("at {center:?} looking to {normal:?}"), "finite, with a direction");
+    };
+    let Some(size) = size else {
+        return Ok(vec![[0, 1, 2].map(|i| center[i] + WINDOW_LIFT * normal[i])]);
+    };
+    if !size.iter().all(|v| (0.0..=1000.0).contains(v)) {
+        return invalid("size of a window", format!("{size:?} m"), "0 to 1000 m");
+    }
+    // a skylight that looks straight up has its width east
+    let right = unit(cross([0.0, 0.0, 1.0], normal)).unwrap_or([1.0, 0.0, 0.0]);
+    let up = cross(normal, right);
+    let offset = |part: u32| (f64::from(part) + 0.5) / f64::from(WINDOW_SIDE) - 0.5;
+    let mut places = Vec::new();
+    for row in 0..WINDOW_SIDE {
+        for column in 0..WINDOW_SIDE {
+            let (across, above) = (offset(column) * size[0], offset(row) * size[1]);
+            places.push([0, 1, 2].map(|i| center[i] + across * right[i] + above * up[i] + WINDOW_LIFT * normal[i]));
+        }
+    }
+    Ok(places)
+}
+
+/// The sky component of each target of `matrix`: the light that its plane (`normals`, (M, 3) unit vectors) gets straight from an overcast
+/// sky, as a share of what a free level plane gets, (M). For upright planes it is the vertical sky component; a free wall has 0.396, a
+/// free level plane 1. Light thrown back by the ground and by facades is not in it.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] where matrix, sky and normals differ.
+///
+/// # Source
+/// Moon & Spencer 1942 (the overcast sky of CIE S 011: luminance 1 + 2 sin of the elevation, a third at the horizon); Littlefair 2011, Site
+/// layout planning for daylight and sunlight, BRE 209, appendix C.
+pub fn sky_component(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: &[[f32; 3]]) -> Result<Vec<f32>> {
+    let sizes = [
+        ("directions of the sky", matrix.direction_count(), sky.directions.len()),
+        ("solid angles of the sky", matrix.direction_count(), sky.solid_angles.len()),
+        ("normals of targets", matrix.target_count(), normals.len()),
+    ];
+    if let Some((what, expected, found)) = sizes.into_iter().find(|(_, expected, found)| expected != found) {
+        return Err(Error::LengthMismatch { what, expected, found });
+    }
+    // of the zenith's luminance; a free level plane gets 7π/9 of it
+    let luminances: Vec<f64> = sky.directions.iter().map(|direction| (1.0 + 2.0 * direction[2]) / 3.0).collect();
+    let component = |(target, normal): (usize, &[f32; 3])| {
+        let normal = normal.map(f64::from);
+        let mut sum = 0.0;
+        for (column, (&direction, &solid_angle)) in sky.directions.iter().zip(&sky.solid_angles).enumerate() {
+            let cosine = dot(normal, direction);
+            if cosine > 0.0 && matrix.is_free(target, column) {
+                sum += cosine * solid_angle * luminances[column];
+            }
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "a share")]
+        let share = (sum / (7.0 * PI / 9.0)) as f32;
+        share
+    };
+    Ok(normals.par_iter().enumerate().with_min_len(CHUNK).map(component).collect())
+}
+
+/// The length of route that each of `places`, (N, 3) along it, stands for, metres on the map: half the way to the place before and half to
+/// the next, (N). A route of a single place has no length: it stands for 1.
+#[must_use]
+pub fn route_lengths(places: &[[f64; 3]]) -> Vec<f64> {
+    if places.len() == 1 {
+        return vec![1.0];
+    }
+    let mut lengths = vec![0.0; places.len()];
+    for (i, pair) in places.windows(2).enumerate() {
+        let [a, b] = pair else { continue };
+        let half = (b[0] - a[0]).hypot(b[1] - a[1]) / 2.0;
+        lengths[i] += half;
+        lengths[i + 1] += half;
+    }
+    lengths
+}
+
+/// For each direction of `matrix`, the share of `weights`, (M), whose targets do not see it free: that of a route in shade at each sun, (D);
+/// NaN where the weights add up to nothing.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] unless there is a weight for each target.
+pub fn shaded_shares(matrix: &VisibilityMatrix, weights: &[f64]) -> Result<Vec<f64>> {
+    let expected = matrix.target_count();
+    if weights.len() != expected {
+        return Err(Error::LengthMismatch { what: "weights of targets", expected, found: weights.len() });
+    }
+    let whole: f64 = weights.iter().sum();
+    let share = |direction: usize| {
+        let shaded = weights.iter().enumerate().filter(|(target, _)| !matrix.is_free(*target, direction));
+        shaded.map(|(_, weight)| weight).sum::<f64>() / whole
+    };
+    Ok((0..matrix.direction_count()).into_par_iter().map(share).collect())
+}

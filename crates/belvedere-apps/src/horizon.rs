@@ -1,0 +1,117 @@
+//! Horizon profiles: above which elevation the sky is free around a place, as photovoltaic tools read it.
+
+use belvedere_core::query::{EarthParams, MedialScene, SkylinePoint};
+use belvedere_data::crs::Crs;
+use belvedere_data::{Error, Result};
+use std::f64::consts::{PI, TAU};
+
+/// How horizons are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HorizonParams {
+    /// Number of azimuths, equally far apart, 1 to 1 000 000. Default 360: one a degree.
+    pub azimuth_count: usize,
+    /// Angle that is added to azimuths from grid north to make those that come out, radians: 0, the default, for grid north,
+    /// [`convergence`] for true north.
+    pub turn: f64,
+    /// How lines of sight run over the earth.
+    pub earth: EarthParams,
+}
+
+impl Default for HorizonParams {
+    fn default() -> Self {
+        Self { azimuth_count: 360, turn: 0.0, earth: EarthParams::default() }
+    }
+}
+
+/// The skyline around each of `eyes`, (N) local metres, at azimuths of equal steps clockwise from north. See
+/// [`MedialScene::skyline`]; elevations are exact for the balls.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range.
+pub fn horizons(scene: &MedialScene, eyes: &[[f64; 3]], params: &HorizonParams) -> Result<Vec<Vec<SkylinePoint>>> {
+    params.earth.validate()?;
+    if !(1..=1_000_000).contains(&params.azimuth_count) {
+        return Err(Error::InvalidParameter {
+            name: "number of azimuths",
+            value: params.azimuth_count.to_string(),
+            expected: "1 to 1000000",
+        });
+    }
+    if !params.turn.is_finite() {
+        return Err(Error::InvalidParameter {
+            name: "turn of north",
+            value: params.turn.to_string(),
+            expected: "finite",
+        });
+    }
+    eyes.iter()
+        .map(|&eye| {
+            if !eye.iter().all(|v| v.is_finite()) {
+                let value = format!("{eye:?}");
+                return Err(Error::InvalidParameter { name: "eye", value, expected: "finite" });
+            }
+            Ok(scene.skyline_from(eye, params.azimuth_count, -params.turn, &params.earth))
+        })
+        .collect()
+}
+
+/// Number of azimuths for a step, radians, above 0: steps of a full circle are made equal.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a step that is not above zero, is more than a full circle, or does not part it evenly (to a
+/// millionth).
+pub fn azimuth_count(step: f64) -> Result<usize> {
+    let count = TAU / step;
+    if !(1.0 - 1e-9..=1e6).contains(&count) || (count - count.round()).abs() > 1e-6 * count {
+        return Err(Error::InvalidParameter {
+            name: "step of azimuths",
+            value: format!("{}", step.to_degrees()),
+            expected: "a part of 360 degrees, such as 1, 2.5 or 7.5",
+        });
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to a million")]
+    let count = count.round() as usize;
+    Ok(count)
+}
+
+/// Meridian convergence at `position`, (x, y) metres in the system `crs`: the azimuth of grid north, clockwise from true north, radians.
+/// An azimuth from true north is that from grid north plus this.
+///
+/// # Errors
+/// Those of [`Crs::geographic_projection`], and where the place has no latitude.
+pub fn convergence(crs: &Crs, position: [f64; 2]) -> Result<f64> {
+    let projection = crs.geographic_projection()?;
+    let [latitude, longitude] = projection.unproject(position)?;
+    // 1 km to the north along the meridian: short against its curvature, long against rounding
+    let [x, y] = projection.project(latitude + 1000.0 / belvedere_core::query::earth::EARTH_RADIUS, longitude)?;
+    let true_north = (x - position[0]).atan2(y - position[1]);
+    Ok((-true_north + PI).rem_euclid(TAU) - PI)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_part_the_circle() {
+        assert_eq!(azimuth_count(1f64.to_radians()).unwrap(), 360);
+        assert_eq!(azimuth_count(7.5f64.to_radians()).unwrap(), 48);
+        for step in [0.0, -1.0, f64::NAN, 7.0f64.to_radians(), 400f64.to_radians(), 1e-9] {
+            assert!(azimuth_count(step).is_err(), "{step}");
+        }
+    }
+
+    #[test]
+    fn convergence_of_utm_is_that_of_the_formula() {
+        // UTM 32 (central meridian 9° E) at 48° N 10° E: atan(tan 1° sin 48°), a sphere being near enough for 0.005°
+        let crs = Crs::from_epsg(25_832).unwrap();
+        let place = crs.geographic_projection().unwrap().project(48f64.to_radians(), 10f64.to_radians()).unwrap();
+        let expected = (1f64.to_radians().tan() * 48f64.to_radians().sin()).atan();
+        let found = convergence(&crs, place).unwrap();
+        assert!((found - expected).to_degrees().abs() < 0.005, "{} {}", found.to_degrees(), expected.to_degrees());
+        // and none on the central meridian
+        let middle = crs.geographic_projection().unwrap().project(48f64.to_radians(), 9f64.to_radians()).unwrap();
+        assert!(convergence(&crs, middle).unwrap().abs() < 1e-6);
+        assert!(convergence(&Crs::default(), place).is_err());
+    }
+}

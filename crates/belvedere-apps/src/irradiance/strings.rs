@@ -1,0 +1,71 @@
+//! Panels in strings: between the loss of radiation and the loss of a plane whose cells are wired in rows.
+
+use super::irradiation::{Irradiation, on_plane};
+use super::period::PeriodRadiation;
+use belvedere_core::query::VisibilityMatrix;
+use belvedere_data::{Error, Result};
+
+/// Bits in a word of a row of the matrix.
+const WORD: usize = 64;
+
+/// Energy of a plane of cells over a period.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PlaneIrradiation {
+    /// Mean of its cells for each group of the period, kWh/m². Its loss is the least that a plant loses: that of panels that each work for
+    /// themselves.
+    pub mean: Vec<Irradiation>,
+    /// The same where a row of cells gets what all of its cells get at once: the most that a plant loses whose rows are strings without
+    /// bypass diodes.
+    pub string_limited: Vec<Irradiation>,
+}
+
+/// The energy of a plane with a unit `normal`, upward, whose cells are rows of `matrix` from `first` on: `strings`, (C), numbers the string
+/// of each, those of a string together. A plane without cells gets nothing.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] where the matrix has fewer rows or other directions.
+pub fn plane_irradiation(
+    matrix: &VisibilityMatrix,
+    first: usize,
+    strings: &[usize],
+    normal: [f64; 3],
+    radiation: &PeriodRadiation,
+) -> Result<PlaneIrradiation> {
+    let expected = radiation.directions().len();
+    if matrix.direction_count() != expected {
+        let found = matrix.direction_count();
+        return Err(Error::LengthMismatch { what: "directions of sun and sky", expected, found });
+    }
+    let found = matrix.target_count();
+    if found < first + strings.len() {
+        return Err(Error::LengthMismatch { what: "cells of a plane", expected: first + strings.len(), found });
+    }
+    let group_count = radiation.group_count();
+    let mut sums = PlaneIrradiation {
+        mean: vec![Irradiation::default(); group_count],
+        string_limited: vec![Irradiation::default(); group_count],
+    };
+    let share = 1.0 / strings.len().max(1) as f64;
+    let mut groups = vec![Irradiation::default(); group_count];
+    let mut cell = first;
+    for string in strings.chunk_by(|a, b| a == b) {
+        let mut all = matrix.row(cell).to_vec();
+        for target in cell..cell + string.len() {
+            on_plane(radiation, normal, |direction| matrix.is_free(target, direction), &mut groups);
+            add(&mut sums.mean, &groups, share);
+            all.iter_mut().zip(matrix.row(target)).for_each(|(all, own)| *all &= own);
+        }
+        let is_free =
+            |direction: usize| all.get(direction / WORD).is_some_and(|word| word >> (direction % WORD) & 1 == 1);
+        on_plane(radiation, normal, is_free, &mut groups);
+        add(&mut sums.string_limited, &groups, share * string.len() as f64);
+        cell += string.len();
+    }
+    Ok(sums)
+}
+
+fn add(sums: &mut [Irradiation], groups: &[Irradiation], weight: f64) {
+    for (sum, group) in sums.iter_mut().zip(groups) {
+        *sum = Irradiation::sum(&[*sum, group.scaled(weight)]);
+    }
+}

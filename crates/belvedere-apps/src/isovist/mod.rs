@@ -1,0 +1,177 @@
+//! Isovists: the space that an eye sees, measured.
+
+mod plan;
+
+pub use plan::PlanIsovist;
+
+use belvedere_core::query::MedialScene;
+use belvedere_data::raster::Raster;
+use belvedere_data::view::to_sun;
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// How isovists are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IsovistParams {
+    /// Angle between rays of the panorama, and between the first rays of the plan, radians, a ten-thousandth to a quarter of a circle.
+    /// Default 1°: 64 800 rays.
+    pub step: f64,
+    /// Range at which sight ends where nothing blocks, metres, above 0. Default 100: beyond it streets are no longer read as a space.
+    pub max_range: f64,
+    /// Least jump in range that makes an edge of the plan, metres, above 0. Default 0.25: balls bulge by centimetres.
+    pub jump: f64,
+}
+
+impl Default for IsovistParams {
+    fn default() -> Self {
+        Self { step: 1f64.to_radians(), max_range: 100.0, jump: 0.25 }
+    }
+}
+
+/// What an eye sees around itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Isovist {
+    /// Ranges in metres, +∞ where nothing blocks within the greatest range. A column is an azimuth, clockwise from south at the left edge
+    /// over west, north in the middle and east to south again; a row is an elevation, from the zenith down to the nadir.
+    pub panorama: Raster<f32>,
+    /// Volume seen, m³.
+    pub volume: f64,
+    /// Ranges in all directions, each counting by its solid angle, open ones as the greatest range.
+    pub ranges: RadialStatistics,
+    /// Share of all directions in which nothing blocks within the greatest range, 0 to 1.
+    pub openness: f64,
+    /// The same share of the directions above the horizon: the sky.
+    pub sky_openness: f64,
+    /// From the eye to the middle of the volume seen, local metres.
+    pub drift: [f64; 3],
+    /// What is seen in the level plane through the eye.
+    pub plan: PlanIsovist,
+}
+
+/// Statistics of ranges, metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RadialStatistics {
+    /// Least.
+    pub least: f64,
+    /// Mean.
+    pub mean: f64,
+    /// Greatest.
+    pub greatest: f64,
+    /// Mean square deviation from the mean, m².
+    pub variance: f64,
+    /// Mean cube of the deviation over that of the standard deviation, without unit; 0 where all are equal.
+    pub skewness: f64,
+}
+
+impl RadialStatistics {
+    /// Statistics of ranges, each with the weight beside it.
+    fn of(weighted: &[(f64, f64)]) -> Self {
+        let total: f64 = weighted.iter().map(|(_, weight)| weight).sum();
+        let moment =
+            |f: &dyn Fn(f64) -> f64| weighted.iter().map(|&(range, weight)| weight * f(range)).sum::<f64>() / total;
+        let mean = moment(&|range| range);
+        let variance = moment(&|range| (range - mean).powi(2));
+        let third = moment(&|range| (range - mean).powi(3));
+        // rounding leaves about 1e-16 of the square of the mean where all ranges are equal
+        let is_even = variance <= 1e-14 * mean * mean;
+        Self {
+            least: weighted.iter().map(|w| w.0).fold(f64::INFINITY, f64::min),
+            mean,
+            greatest: weighted.iter().map(|w| w.0).fold(0.0, f64::max),
+            variance,
+            skewness: if is_even { 0.0 } else { third / variance.powf(1.5) },
+        }
+    }
+}
+
+/// What an eye at `eye`, local metres, sees of `scene`. Balls that hold the eye are left out ([`MedialScene::enclosure`] tells of them).
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range.
+pub fn isovist(scene: &MedialScene, eye: [f64; 3], params: &IsovistParams) -> Result<Isovist> {
+    if !eye.iter().all(|v| v.is_finite()) {
+        return Err(Error::InvalidParameter { name: "eye", value: format!("{eye:?}"), expected: "finite" });
+    }
+    let range = |direction: [f64; 3]| scene.seen_along(eye, direction, params.max_range).map(|(_, range)| range);
+    isovist_of(&range, params)
+}
+
+/// The isovist of whatever `range` tells: the range of what blocks along a unit vector, metres, `None` where nothing does. It is asked
+/// of a regular grid of azimuths and elevations, each ray standing for its cell, and along the horizon.
+///
+/// The volume is the sum of r³ / 3 over solid angles: exact where ranges are equal, otherwise right to the order of the square of the
+/// step.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for parameters outside their range.
+///
+/// # Source
+/// Benedikt 1979 (To take hold of space: isovists and isovist fields); in three dimensions Fisher-Gewirtzman & Wagner 2003 (visible
+/// volume). Drift: Conroy Dalton 2001. Openness and occlusivity: Benedikt 1979; Dalton & Dalton 2001.
+pub fn isovist_of(range: &(impl Fn([f64; 3]) -> Option<f64> + Sync), params: &IsovistParams) -> Result<Isovist> {
+    validate(params)?;
+    let reach = params.max_range;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "validated: 4 to 62 832")]
+    let width = ((TAU / params.step).round() as usize).next_multiple_of(4);
+    let height = width / 2;
+    let step = TAU / width as f64;
+    let within = |direction: [f64; 3]| range(direction).filter(|range| *range < reach);
+    let ranges: Vec<Option<f64>> = (0..width * height)
+        .into_par_iter()
+        .with_min_len(256)
+        .map(|at| within(direction(at % width, at / width, step)))
+        .collect();
+    let weight = |row: usize| {
+        let top = FRAC_PI_2 - row as f64 * step;
+        step * (top.sin() - (top - step).sin())
+    };
+    let weighted: Vec<(f64, f64)> =
+        ranges.iter().enumerate().map(|(at, range)| (range.unwrap_or(reach), weight(at / width))).collect();
+    let total: f64 = weighted.iter().map(|(_, weight)| weight).sum();
+    let open = |from: usize, to: usize| {
+        let rows = || weighted.iter().zip(&ranges).skip(from * width).take((to - from) * width);
+        rows().filter(|(_, range)| range.is_none()).map(|(w, _)| w.1).sum::<f64>()
+            / rows().map(|(w, _)| w.1).sum::<f64>()
+    };
+    let volume: f64 = weighted.iter().map(|(range, weight)| weight * range.powi(3) / 3.0).sum();
+    let mut drift = [0.0; 3];
+    for (at, (range, weight)) in weighted.iter().enumerate() {
+        // the middle of a cone lies at three quarters of its height
+        let share = weight * range.powi(4) / 4.0;
+        let direction = direction(at % width, at / width, step);
+        drift = std::array::from_fn(|i| drift[i] + share * direction[i]);
+    }
+    debug_assert!((total / (2.0 * TAU) - 1.0).abs() < 1e-9);
+    #[expect(clippy::cast_possible_truncation, reason = "pictures and arrays of ranges are f32")]
+    let panorama = ranges.iter().map(|range| range.map_or(f32::INFINITY, |range| range as f32)).collect();
+    Ok(Isovist {
+        panorama: Raster::from_values(width, height, panorama)?,
+        volume,
+        ranges: RadialStatistics::of(&weighted),
+        openness: open(0, height),
+        sky_openness: open(0, height / 2),
+        drift: drift.map(|v| if volume > 0.0 { v / volume } else { 0.0 }),
+        plan: plan::plan(&within, width, params),
+    })
+}
+
+/// Unit vector through the middle of a cell of the panorama.
+fn direction(column: usize, row: usize, step: f64) -> [f64; 3] {
+    to_sun((column as f64 + 0.5) * step - PI, FRAC_PI_2 - (row as f64 + 0.5) * step)
+}
+
+fn validate(params: &IsovistParams) -> Result<()> {
+    let invalid =
+        |name, value: f64, expected| Err(Error::InvalidParameter { name, value: value.to_string(), expected });
+    if !(params.step >= 1e-4 * TAU && params.step <= FRAC_PI_2) {
+        return invalid("step between rays in degrees", params.step.to_degrees(), "0.036 to 90");
+    }
+    if !(params.max_range.is_finite() && params.max_range > 0.0) {
+        return invalid("greatest range", params.max_range, "finite and above zero metres");
+    }
+    if !(params.jump.is_finite() && params.jump > 0.0) {
+        return invalid("least jump", params.jump, "finite and above zero metres");
+    }
+    Ok(())
+}

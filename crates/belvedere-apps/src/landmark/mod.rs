@@ -1,0 +1,275 @@
+//! Landmark visibility: how much of one thing is seen from many places.
+
+mod extent;
+mod points;
+
+pub use points::{LandmarkPoints, landmark_points};
+
+use belvedere_core::query::{
+    Answer, BackFaces, EarthParams, MedialScene, MeshTargetParams, Sides, SurfacePieces, TargetTree, UnprovenAs, Viewer,
+};
+use belvedere_data::control::Control;
+use belvedere_data::vector::{cross, dot, length, sub, unit};
+use belvedere_data::{Error, Result};
+use extent::{Arcs, SkyBox, sky_box};
+use rayon::prelude::*;
+
+/// Pieces that a landmark is cut into where nothing is said: a share of it is then known to 1.6 % at worst, mostly to much less.
+const USUAL_PIECES: f64 = 1000.0;
+/// Least spacing where nothing is said, metres: balls know walls to about a decimetre.
+const LEAST_SPACING: f64 = 0.25;
+/// Least range that measures are made of, metres: a piece that touches the eye would fill half of its view.
+const NEAREST: f64 = 1e-3;
+
+/// How landmarks are looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LandmarkParams {
+    /// How its faces are asked. Default: those turned away are not visible, so that shares are those of the whole landmark.
+    pub faces: MeshTargetParams,
+    /// What to make of pieces that nothing blocks but whose view is not proven. Default: reported apart from the visible.
+    pub unproven: UnprovenAs,
+    /// How lines of sight run over the earth.
+    pub earth: EarthParams,
+    /// Greatest range of what counts, metres, above 0. Default: infinite.
+    pub max_range: f64,
+}
+
+impl Default for LandmarkParams {
+    fn default() -> Self {
+        Self {
+            faces: MeshTargetParams::default(),
+            unproven: UnprovenAs::Reported,
+            earth: EarthParams::default(),
+            max_range: f64::INFINITY,
+        }
+    }
+}
+
+/// What one observer sees of a landmark. Angles are those at the eye; all is 0 where nothing is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LandmarkView {
+    /// Area seen, m².
+    pub visible_area: f64,
+    /// Area that nothing blocks but is not proven, m²; not among the visible.
+    pub unproven_area: f64,
+    /// Area that counts, m²: the whole landmark, or what is turned to the observer ([`BackFaces::LeftOut`]).
+    pub area: f64,
+    /// Solid angle of what is seen, steradians.
+    pub solid_angle: f64,
+    /// Share of the full circle of azimuths in which some of it is seen, 0 to 1.
+    pub horizon_share: f64,
+    /// Angle on the map between the outermost parts seen, what hides between them included, radians, 0 to 2π.
+    pub horizontal_extent: f64,
+    /// Elevation of the highest part seen minus that of the lowest, radians, 0 to π.
+    pub vertical_extent: f64,
+    /// Range of the nearest and of the farthest part seen, metres; `None` where nothing is seen.
+    pub ranges: Option<[f64; 2]>,
+}
+
+impl LandmarkView {
+    /// Share of the area that is seen, 0 to 1; NaN without area.
+    #[must_use]
+    pub fn visible_share(&self) -> f64 {
+        self.visible_area / self.area
+    }
+}
+
+/// Default side of the cells that observers of a grid stand in, metres: a step or two.
+const OBSERVER_CELL: f64 = 2.0;
+/// Most cells of a default grid of observers: a thousand lines of sight each take about a minute.
+const USUAL_OBSERVERS: f64 = 40_000.0;
+
+/// The side of the cells of a default grid of observers over the box on the map from `low` to `high`, metres: 2, doubled until there are
+/// at most 40 000.
+#[must_use]
+pub fn observer_cell_for(low: [f64; 2], high: [f64; 2]) -> f64 {
+    let area = (high[0] - low[0]).max(0.0) * (high[1] - low[1]).max(0.0);
+    let mut cell = OBSERVER_CELL;
+    while area / (cell * cell) > USUAL_OBSERVERS && cell < 1e9 {
+        cell *= 2.0;
+    }
+    cell
+}
+
+/// The spacing at which a surface of `area` m² has about a thousand pieces, metres; 0.25 at least.
+#[must_use]
+pub fn spacing_for(area: f64) -> f64 {
+    // most pieces are half a cell, whose diagonal is the spacing
+    (4.0 * area / USUAL_PIECES).sqrt().max(LEAST_SPACING)
+}
+
+/// What an eye at `eye`, local metres, sees of `landmark`.
+///
+/// Each piece counts as its place does; angles and ranges are those of whole pieces, so that they err outward by up to a piece. The
+/// solid angle of a piece is exact. Lines of sight are those of [`MedialScene::sight_answer`]: the landmark's own balls hide its far
+/// side.
+///
+/// # Source
+/// Measures after Bartie, Reitsma, Kingham & Mills 2010 (Computers, Environment and Urban Systems 34), who took them from rasters of
+/// heights. Solid angle of a triangle: Van Oosterom & Strackee 1983.
+#[must_use]
+pub fn landmark_view(
+    scene: &MedialScene,
+    landmark: &SurfacePieces,
+    eye: [f64; 3],
+    params: &LandmarkParams,
+) -> LandmarkView {
+    measured(landmark, eye, params, |_, place| scene.sight_answer(eye, place, &params.earth))
+}
+
+/// What an eye sees of a landmark if `answer` tells what it sees of the places of pieces, given by their rows.
+fn measured(
+    landmark: &SurfacePieces,
+    eye: [f64; 3],
+    params: &LandmarkParams,
+    answer: impl Fn(usize, [f64; 3]) -> Answer,
+) -> LandmarkView {
+    let mut view = LandmarkView::default();
+    let mut arcs = Arcs::default();
+    let mut seen: Option<SkyBox> = None;
+    for (row, piece) in landmark.pieces.iter().enumerate() {
+        let corners = piece.corners.map(|corner| sub(corner.map(f64::from), eye));
+        let area = f64::from(piece.area);
+        let backs_count = params.faces.back_faces == BackFaces::BothSides || landmark.sides == Sides::Both;
+        if !backs_count && !(dot(piece.normal.map(f64::from), corners[0]) < 0.0) {
+            if params.faces.back_faces == BackFaces::NotVisible {
+                view.area += area;
+            }
+            continue;
+        }
+        view.area += area;
+        let place = piece.lifted(Viewer::Eye(eye), params.faces.lift).map(f64::from);
+        let range = length(sub(place, eye));
+        if !(range <= params.max_range && range > NEAREST) {
+            continue;
+        }
+        match params.unproven.settle(answer(row, place)) {
+            Answer::Visible => {}
+            Answer::Unproven => {
+                view.unproven_area += area;
+                continue;
+            }
+            _ => continue,
+        }
+        view.visible_area += area;
+        view.solid_angle += solid_angle(corners);
+        let sky = sky_box(corners, sub(piece.place.map(f64::from), eye));
+        arcs.add(sky.azimuths);
+        seen = Some(seen.map_or(sky, |seen| seen.around(&sky)));
+    }
+    if let Some(seen) = seen {
+        let (covered, span) = arcs.measure();
+        view.horizon_share = covered / std::f64::consts::TAU;
+        view.horizontal_extent = span;
+        view.vertical_extent = seen.elevations[1] - seen.elevations[0];
+        view.ranges = Some(seen.ranges);
+    }
+    view
+}
+
+/// What each of `eyes`, (N) local metres, sees of `landmark`; control counts eyes. An eye that is not finite sees nothing and has an
+/// area of 0.
+///
+/// # Errors
+/// [`Error::NoPoints`] for a landmark without area, [`Error::InvalidParameter`] for parameters outside their range.
+pub fn landmark_views(
+    scene: &MedialScene,
+    landmark: &SurfacePieces,
+    eyes: &[[f64; 3]],
+    params: &LandmarkParams,
+    control: &Control<'_>,
+) -> Result<Vec<LandmarkView>> {
+    params.earth.validate()?;
+    params.faces.validate()?;
+    if !(params.max_range > 0.0) {
+        return Err(Error::InvalidParameter {
+            name: "greatest range",
+            value: params.max_range.to_string(),
+            expected: "above zero metres",
+        });
+    }
+    if landmark.pieces.is_empty() {
+        return Err(Error::NoPoints { what: "the landmark has no surface".to_owned() });
+    }
+    let places = Places::new(landmark, params);
+    let look = |&eye: &[f64; 3]| {
+        let view = if !eye.iter().all(|v| v.is_finite()) {
+            LandmarkView::default()
+        } else if places.bend(eye, &params.earth) {
+            landmark_view(scene, landmark, eye, params)
+        } else {
+            let unblocked = places.unblocked_from(scene, landmark, eye)?;
+            measured(landmark, eye, params, |row, place| match (unblocked[row], params.unproven) {
+                (false, _) => Answer::Blocked,
+                (true, UnprovenAs::Visible) => Answer::Visible,
+                (true, _) => scene.answer_unblocked_from(eye, place),
+            })
+        };
+        control.advance(1);
+        Ok(view)
+    };
+    eyes.par_iter().map(look).collect()
+}
+
+/// Where the pieces of a landmark are asked about, in trees that serve all eyes.
+struct Places {
+    /// For eyes before the face of a piece.
+    fronts: TargetTree,
+    /// For eyes behind it, where these count.
+    backs: TargetTree,
+}
+
+impl Places {
+    fn new(landmark: &SurfacePieces, params: &LandmarkParams) -> Self {
+        let both = params.faces.back_faces == BackFaces::BothSides || landmark.sides == Sides::Both;
+        let lifted = |side: f64| -> Vec<[f32; 3]> {
+            landmark.pieces.iter().map(|piece| piece.lifted_along_normal(side * params.faces.lift)).collect()
+        };
+        let backs = if both { lifted(-1.0) } else { Vec::new() };
+        Self { fronts: TargetTree::new(&lifted(1.0)), backs: TargetTree::new(&backs) }
+    }
+
+    /// Whether any line of sight from `eye` is curved.
+    fn bend(&self, eye: [f64; 3], earth: &EarthParams) -> bool {
+        [&self.fronts, &self.backs].into_iter().any(|tree| tree.any_corner(|corner| earth.bends(corner, eye)))
+    }
+
+    /// Whether nothing blocks the place of each piece on the side that `eye` is on.
+    fn unblocked_from(&self, scene: &MedialScene, landmark: &SurfacePieces, eye: [f64; 3]) -> Result<Vec<bool>> {
+        let viewer = Viewer::Eye(eye);
+        let mut unblocked = vec![false; landmark.pieces.len()];
+        for (tree, is_front) in [(&self.fronts, true), (&self.backs, false)] {
+            scene.visible_among(viewer, tree, |place| {
+                let row = tree.rows()[place] as usize;
+                unblocked[row] |= landmark.pieces[row].is_before(viewer) == is_front;
+            })?;
+        }
+        Ok(unblocked)
+    }
+}
+
+/// Solid angle of a triangle whose corners are given from the eye, steradians, 0 to 2π.
+fn solid_angle(corners: [[f64; 3]; 3]) -> f64 {
+    let [Some(a), Some(b), Some(c)] = corners.map(unit) else { return 0.0 };
+    let volume = dot(a, cross(b, c)).abs();
+    let angle = 2.0 * volume.atan2(1.0 + dot(a, b) + dot(b, c) + dot(c, a));
+    if angle < 0.0 { angle + std::f64::consts::TAU } else { angle }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn an_octant_is_an_eighth_of_the_sphere_and_far_triangles_are_their_area_over_the_square_of_the_range() {
+        let octant = solid_angle([[2.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 1.0]]);
+        assert!((octant - FRAC_PI_2).abs() < 1e-12, "{octant}");
+        // seen square on from 1 km: what is left is of the order of (1 m / 1 km)²
+        let far = solid_angle([[1000.0, 0.0, 0.0], [1000.0, 1.0, 0.0], [1000.0, 0.0, 1.0]]);
+        assert!((far / 0.5e-6 - 1.0).abs() < 1e-5, "{far}");
+        // wider than a quarter of the sphere: all but flat before the eye
+        let wide = solid_angle([[1e-9, 2.0, 0.0], [1e-9, -1.0, 1.7], [1e-9, -1.0, -1.7]]);
+        assert!((wide - std::f64::consts::TAU).abs() < 1e-6, "{wide}");
+    }
+}

@@ -1,0 +1,103 @@
+//! Landmarks that are points of a cloud.
+
+use belvedere_core::ground::{GroundParams, ground_points};
+use belvedere_core::neighbors::NeighborIndex;
+use belvedere_core::normals::estimate::{Neighborhood, estimate};
+use belvedere_core::query::SurfacePieces;
+use belvedere_data::{Error, PointCloud, Result};
+
+/// Greatest radius of the surface that a point stands for, metres: walls that few pulses reach have points a metre apart.
+const MOST_RADIUS: f64 = 1.0;
+
+/// Which points of a cloud are the landmark.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LandmarkPoints<'a> {
+    /// Those of an ASPRS class.
+    Class(u8),
+    /// Those above one of several polygons that are not ground: each a rim and holes of (x, y), local metres, closed or not.
+    Inside(&'a [Vec<Vec<[f64; 2]>>]),
+}
+
+/// Rows of the points of `cloud` that are the landmark, in rising order, and their surface ([`SurfacePieces::of_points`] with normals
+/// from 16 neighbours, a point standing for a disc of 1 m radius at most).
+///
+/// # Errors
+/// [`Error::MissingAttribute`] for a class where the cloud has none, [`Error::NoPoints`] where no point is meant, and what
+/// estimating normals and finding the ground refuse.
+pub fn landmark_points(cloud: &PointCloud, which: &LandmarkPoints<'_>) -> Result<(Vec<u32>, SurfacePieces)> {
+    let rows: Vec<u32> = match which {
+        LandmarkPoints::Class(class) => {
+            let Some(classes) = &cloud.attributes.classification else {
+                return Err(Error::MissingAttribute {
+                    attribute: "classification",
+                    needed_for: "a landmark of a class",
+                    advice: "give a polygon or a mesh instead",
+                });
+            };
+            (0_u32..).zip(classes).filter(|(_, own)| *own == class).map(|(row, _)| row).collect()
+        }
+        LandmarkPoints::Inside(polygons) => {
+            let (ground, _) = ground_points(cloud, &GroundParams::default())?;
+            let mut is_ground = vec![false; cloud.len()];
+            ground.iter().filter_map(|&row| is_ground.get_mut(row as usize).map(|own| *own = true)).count();
+            let inside = |p: &[f32; 3]| {
+                let place = [f64::from(p[0]), f64::from(p[1])];
+                polygons.iter().any(|polygon| is_inside(polygon, place))
+            };
+            (0_u32..)
+                .zip(&cloud.positions)
+                .zip(&is_ground)
+                .filter(|((_, p), is_ground)| !**is_ground && inside(p))
+                .map(|((row, _), _)| row)
+                .collect()
+        }
+    };
+    if rows.is_empty() {
+        let what = match which {
+            LandmarkPoints::Class(class) => format!("none has class {class}, which was to be the landmark"),
+            LandmarkPoints::Inside(_) => "none but ground lies in the polygon of the landmark; is it in the \
+                                          coordinates of the cloud?"
+                .to_owned(),
+        };
+        return Err(Error::NoPoints { what });
+    }
+    let points: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
+    let index = NeighborIndex::new(&points)?;
+    let normals = estimate(&points, &index, Neighborhood::default())?;
+    let surface = SurfacePieces::of_points(&points, &normals.vectors, MOST_RADIUS)?;
+    Ok((rows, surface))
+}
+
+/// Whether a place lies within a rim and outside its holes: the rule of odd crossings over all rings.
+fn is_inside(rings: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {
+    let mut inside = false;
+    for ring in rings {
+        let Some(mut previous) = ring.last() else { continue };
+        for corner in ring {
+            let ([ax, ay], [bx, by]) = (*previous, *corner);
+            if (ay > y) != (by > y) && x < ax + (y - ay) / (by - ay) * (bx - ax) {
+                inside = !inside;
+            }
+            previous = corner;
+        }
+    }
+    inside
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn holes_and_closed_rings_are_understood() {
+        let rim = vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [0.0, 0.0]];
+        let hole = vec![[4.0, 4.0], [6.0, 4.0], [6.0, 6.0], [4.0, 6.0]];
+        let polygon = [rim, hole];
+        for (place, expected) in
+            [([1.0, 1.0], true), ([5.0, 5.0], false), ([5.0, 3.0], true), ([11.0, 5.0], false), ([-1.0, 4.0], false)]
+        {
+            assert_eq!(is_inside(&polygon, place), expected, "{place:?}");
+        }
+        assert!(!is_inside(&[], [0.0; 2]));
+    }
+}

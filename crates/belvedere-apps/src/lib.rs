@@ -1,0 +1,16 @@
+//! What users ask of a scene: each application puts questions to [`belvedere_core::query`] and sums up the answers.
+
+pub mod exposure;
+pub mod horizon;
+pub mod irradiance;
+pub mod isovist;
+pub mod landmark;
+pub mod profile;
+pub mod roof_planes;
+pub mod shadow;
+pub mod sky_view;
+pub mod solar_envelope;
+pub mod sun;
+pub mod sun_hours;
+pub mod tree_light;
+pub mod viewshed;

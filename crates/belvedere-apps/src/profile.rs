@@ -1,0 +1,81 @@
+//! The profile along one line of sight: the ground, what stands on it, and the line.
+
+use belvedere_core::ground::Ground;
+use belvedere_core::query::{EarthParams, MedialScene, merged_crossings};
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+
+/// How far above and below the line and the ground balls are looked for, metres: higher than any building.
+const REACH: f64 = 500.0;
+/// Most rows of a profile.
+const MOST_ROWS: f64 = 1e6;
+
+/// What a line of sight passes, one value for each of equally spaced places.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SightProfile {
+    /// Distance on the map from the observer, metres.
+    pub distances: Vec<f64>,
+    /// Height of the ground, local metres; NaN where it is not known.
+    pub ground: Vec<f64>,
+    /// Height of the line, local metres: below the straight one where the earth is curved.
+    pub line: Vec<f64>,
+    /// The pieces of the vertical that lie in balls, (from, to), local metres, from below.
+    pub solid: Vec<Vec<[f64; 2]>>,
+    /// Distance on the map at which the line is blocked, metres.
+    pub blocked_at: Option<f64>,
+}
+
+/// The profile from `observer` to `target`, local metres, every `step` metres on the map; `None` for a thousandth of the line, 0.1 m
+/// at least.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for ends that are not finite or stand above each other, and for a step that is not above zero or makes
+/// more than a million rows.
+pub fn sight_profile(
+    scene: &MedialScene,
+    ground: Option<&Ground>,
+    [observer, target]: [[f64; 3]; 2],
+    earth: &EarthParams,
+    step: Option<f64>,
+) -> Result<SightProfile> {
+    let span = (target[0] - observer[0]).hypot(target[1] - observer[1]);
+    if !(span.is_finite() && span > 0.0 && observer[2].is_finite() && target[2].is_finite()) {
+        let value = format!("{observer:?} to {target:?}");
+        let expected = "finite, and apart from each other on the map";
+        return Err(Error::InvalidParameter { name: "line of a profile", value, expected });
+    }
+    let step = step.unwrap_or((span / 1000.0).max(0.1));
+    if !(step > 0.0 && span / step <= MOST_ROWS) {
+        let value = format!("{step} m on {span} m");
+        let expected = "above zero, and large enough for a million rows";
+        return Err(Error::InvalidParameter { name: "step of a profile", value, expected });
+    }
+    let bends = earth.bends(observer, target);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most a million")]
+    let count = (span / step).ceil() as u32;
+    let row = |i: u32| {
+        let share = if i == count { 1.0 } else { (f64::from(i) * step / span).min(1.0) };
+        let place: [f64; 3] = std::array::from_fn(|k| observer[k] + share * (target[k] - observer[k]));
+        let line = place[2] - if bends { earth.sag(span, share) } else { 0.0 };
+        let ground = ground.and_then(|ground| ground.height_at([place[0], place[1]])).unwrap_or(f64::NAN);
+        let low = line.min(ground) - REACH;
+        let high = line.max(ground) + REACH;
+        let up = [[place[0], place[1], low], [place[0], place[1], high]];
+        let pieces = merged_crossings(&scene.crossings(up[0], up[1], &EarthParams::flat()));
+        let solid: Vec<[f64; 2]> = pieces.into_iter().map(|piece| piece.map(|range| low + range)).collect();
+        (share * span, ground, line, solid)
+    };
+    let rows: Vec<_> = (0..=count).into_par_iter().map(row).collect();
+    let block = scene.line_of_sight(observer, target, earth).and_then(|sight| sight.first_block);
+    let mut profile = SightProfile {
+        blocked_at: block.map(|block| (block.place[0] - observer[0]).hypot(block.place[1] - observer[1])),
+        ..SightProfile::default()
+    };
+    for (distance, ground, line, solid) in rows {
+        profile.distances.push(distance);
+        profile.ground.push(ground);
+        profile.line.push(line);
+        profile.solid.push(solid);
+    }
+    Ok(profile)
+}

@@ -1,0 +1,138 @@
+//! The cells of a plane: where panels would lie.
+
+use super::fit::{PlaneFit, axes};
+use belvedere_data::raster::Raster;
+use belvedere_data::vector::{dot, sub};
+
+/// Cells along one side beyond which a plane is none of a building.
+const MOST_CELLS: f64 = 20_000.0;
+/// Shares of a side by which cells are shifted to measure an area.
+const SHIFTS: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
+
+/// Square cells in a plane, rows along its contour lines from its lower rim up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlaneCells {
+    /// Side of a cell, metres.
+    pub cell: f64,
+    /// Lower corner of the first cell, local metres.
+    pub corner: [f64; 3],
+    /// Unit vector along the rows.
+    pub along: [f64; 3],
+    /// Unit vector from row to row, up the slope.
+    pub up: [f64; 3],
+    /// Which cells hold points of the plane, or lie between some that do; row 0 lowest.
+    pub filled: Raster<bool>,
+}
+
+impl PlaneCells {
+    /// The cells of a plane that hold some of `rows` among `points`, from its lowest and outermost points on.
+    pub(super) fn of(points: &[[f32; 3]], rows: &[u32], plane: &PlaneFit, cell: f64) -> Self {
+        let [along, up] = axes(plane.normal);
+        let (filled, [u, v], cell) = filled(&in_plane(points, rows, plane), cell, 0.0);
+        let corner = [0, 1, 2].map(|i| plane.middle[i] + u * along[i] + v * up[i]);
+        Self { cell, corner, along, up, filled }
+    }
+
+    /// Middles of the filled cells, local metres, row by row, and the row of each.
+    #[must_use]
+    pub fn middles(&self) -> Vec<([f64; 3], usize)> {
+        let width = self.filled.width();
+        let filled = self.filled.values().iter().enumerate().filter(|(_, filled)| **filled);
+        filled.map(|(i, _)| (self.place([(i % width) as f64 + 0.5, (i / width) as f64 + 0.5]), i / width)).collect()
+    }
+
+    /// Local metres of a place given in cells from the corner, along the rows and up.
+    #[must_use]
+    pub fn place(&self, [columns, rows]: [f64; 2]) -> [f64; 3] {
+        let (u, v) = (columns * self.cell, rows * self.cell);
+        [0, 1, 2].map(|i| self.corner[i] + u * self.along[i] + v * self.up[i])
+    }
+}
+
+/// Area of the plane that `rows` among `points` were drawn from, m², by cells of about the given side.
+///
+/// Of a cell that a rim crosses, a share f lies within, which is anything from 0 to 1 whichever way the rim runs; it holds a point with a
+/// chance of 1 - exp(-n f), n being the points of a whole cell. On average such cells reach k = 1/2 - (1 - exp(-n))/n of their side over the
+/// rim, which Steiner's formula takes off again. Cells are laid several times, since rims may run along them.
+pub(super) fn area(points: &[[f32; 3]], rows: &[u32], plane: &PlaneFit, cell: f64) -> f64 {
+    let flat = in_plane(points, rows, plane);
+    let of_shift = |shift: &f64| {
+        let (cells, _, cell) = filled(&flat, cell, *shift);
+        cells_covered(&cells, rows.len()) * cell * cell
+    };
+    SHIFTS.iter().map(of_shift).sum::<f64>() / SHIFTS.len() as f64
+}
+
+/// Points in the axes of their plane, from its middle.
+fn in_plane(points: &[[f32; 3]], rows: &[u32], plane: &PlaneFit) -> Vec<[f64; 2]> {
+    let [along, up] = axes(plane.normal);
+    let place = |&row: &u32| {
+        let offset = sub(points[row as usize].map(f64::from), plane.middle);
+        [dot(offset, along), dot(offset, up)]
+    };
+    rows.iter().map(place).collect()
+}
+
+/// Cells that hold points, the first of them `shift` of a side below and left of the outermost; their lower corner, and their side.
+fn filled(flat: &[[f64; 2]], cell: f64, shift: f64) -> (Raster<bool>, [f64; 2], f64) {
+    let least = |axis: usize| flat.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min);
+    let most = |axis: usize| flat.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max);
+    let span = [0, 1].map(|axis| most(axis) - least(axis));
+    let cell = cell.max(span[0].max(span[1]) / MOST_CELLS);
+    let low = [0, 1].map(|axis| least(axis) - shift * cell);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "20 000 cells at most")]
+    let [width, height] = span.map(|span| (span / cell + shift).floor() as usize + 1);
+    let mut filled = Raster::filled(width, height, false);
+    for [u, v] in flat {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not below zero, 20 000 at most")]
+        let (column, row) = (((u - low[0]) / cell) as usize, ((v - low[1]) / cell) as usize);
+        if let Some(value) = filled.values_mut().get_mut(row.min(height - 1) * width + column.min(width - 1)) {
+            *value = true;
+        }
+    }
+    (without_gaps(&filled), low, cell)
+}
+
+/// How many cells `point_count` points that fill these were drawn from.
+fn cells_covered(cells: &Raster<bool>, point_count: usize) -> f64 {
+    let is_filled = |column: usize, row: usize| cells.get(column, row).unwrap_or(false);
+    let (mut count, mut sides, mut corners) = (0.0, 0.0, 0.0);
+    for row in 0..=cells.height() {
+        for column in 0..=cells.width() {
+            let here = is_filled(column, row);
+            let left = column > 0 && is_filled(column - 1, row);
+            let below = row > 0 && is_filled(column, row - 1);
+            let across = column > 0 && row > 0 && is_filled(column - 1, row - 1);
+            count += f64::from(u8::from(here));
+            sides += f64::from(u8::from(here != left)) + f64::from(u8::from(here != below));
+            // turns of the outline: four make a rim, and four the other way a hole
+            corners += match u8::from(here) + u8::from(left) + u8::from(below) + u8::from(across) {
+                1 => 0.25,
+                3 => -0.25,
+                _ => 0.0,
+            };
+        }
+    }
+    let of_cell = point_count as f64 / f64::max(count, 1.0);
+    let over = if of_cell > 0.0 { 0.5 - (1.0 - (-of_cell).exp()) / of_cell } else { 0.0 };
+    let area: f64 = count - over * sides + 4.0 * over * over * corners;
+    area.max(0.25 * count)
+}
+
+/// Cells with the gaps filled that chance leaves between sparse points: empty ones with at least three of four neighbours filled.
+fn without_gaps(cells: &Raster<bool>) -> Raster<bool> {
+    let mut filled = cells.clone();
+    let width = cells.width();
+    for (i, value) in filled.values_mut().iter_mut().enumerate() {
+        let (column, row) = (i % width, i / width);
+        let at = |column: Option<usize>, row: Option<usize>| {
+            u8::from(column.zip(row).and_then(|(column, row)| cells.get(column, row)).unwrap_or(false))
+        };
+        let beside = at(column.checked_sub(1), Some(row))
+            + at(Some(column + 1), Some(row))
+            + at(Some(column), row.checked_sub(1))
+            + at(Some(column), Some(row + 1));
+        *value |= beside >= 3;
+    }
+    filled
+}

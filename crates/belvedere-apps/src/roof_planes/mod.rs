@@ -1,0 +1,146 @@
+//! Roofs as planes: the plane parts of what stands above the ground, with tilt, azimuth, area and the cells that solar panels would lie on.
+
+mod cells;
+mod fit;
+mod grow;
+mod points;
+
+pub use cells::PlaneCells;
+pub use points::{RoofsFrom, roof_points};
+
+use belvedere_core::neighbors::NeighborIndex;
+use belvedere_core::normals::estimate::{Neighborhood, estimate};
+use belvedere_data::{Error, Result};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// ASPRS class of buildings.
+pub const BUILDING: u8 = 6;
+
+/// Least side of a cell, metres: points do not tell more, and the cells of a whole town would fill the memory.
+const LEAST_CELL: f64 = 0.1;
+
+/// How planes are found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoofPlaneParams {
+    /// Farthest that a point of a plane lies from it, metres, above 0. Default 0.12: four times the noise of airborne scans.
+    pub distance: f64,
+    /// Most that the normal of a point differs from that of its plane, radians, above 0 to π/2. Default 25 degrees: wide, since normals
+    /// bend near ridges and eaves; distance decides.
+    pub angle: f64,
+    /// Farthest step from point to point of a plane, metres, above 0. Default 1: what two points a square metre reach over.
+    pub reach: f64,
+    /// Steepest plane that counts, radians from level, below π/2. Default 75 degrees: walls are no roofs.
+    pub most_tilt: f64,
+    /// Least area of a plane, m². Default 4: two panels.
+    pub least_area: f64,
+    /// Side of the cells that a plane is cut into, metres, 0.1 to 1000. Default 1: the width of a panel.
+    pub cell: f64,
+}
+
+impl Default for RoofPlaneParams {
+    fn default() -> Self {
+        Self {
+            distance: 0.12,
+            angle: 25f64.to_radians(),
+            reach: 1.0,
+            most_tilt: 75f64.to_radians(),
+            least_area: 4.0,
+            cell: 1.0,
+        }
+    }
+}
+
+impl RoofPlaneParams {
+    fn validate(&self) -> Result<()> {
+        let lengths = [self.distance, self.reach, self.cell];
+        let is_usable = |v: &f64| *v > 0.0 && *v < 1000.0;
+        if let Some(bad) = lengths.iter().find(|v| !is_usable(v)) {
+            let value = bad.to_string();
+            return Err(Error::InvalidParameter {
+                name: "length for roof planes",
+                value,
+                expected: "above 0 to 1000 m",
+            });
+        }
+        if self.cell < LEAST_CELL {
+            return Err(Error::InvalidParameter {
+                name: "side of cells on roofs",
+                value: format!("{} m", self.cell),
+                expected: "0.1 m or more",
+            });
+        }
+        let is_angle = |v: f64| v > 0.0 && v <= FRAC_PI_2;
+        if !is_angle(self.angle) || !is_angle(self.most_tilt) || !(self.least_area >= 0.0) {
+            return Err(Error::InvalidParameter {
+                name: "angle or area for roof planes",
+                value: format!("{} and {} rad, {} m²", self.angle, self.most_tilt, self.least_area),
+                expected: "angles above 0 to 90 degrees, an area of 0 or more",
+            });
+        }
+        Ok(())
+    }
+}
+
+/// A plane part of a roof.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoofPlane {
+    /// Rows of its points among those given, rising.
+    pub points: Vec<u32>,
+    /// Mean of its points, local metres.
+    pub middle: [f64; 3],
+    /// Unit normal, upward.
+    pub normal: [f64; 3],
+    /// Root mean square distance of its points, metres.
+    pub roughness: f64,
+    /// Its cells.
+    pub cells: PlaneCells,
+    /// Area in the plane, m².
+    pub area: f64,
+}
+
+impl RoofPlane {
+    /// Angle from level, radians.
+    #[must_use]
+    pub fn tilt(&self) -> f64 {
+        self.normal[2].clamp(-1.0, 1.0).acos()
+    }
+
+    /// Azimuth that it faces, clockwise from grid north, radians, 0 to 2π; means little where it is level.
+    #[must_use]
+    pub fn azimuth(&self) -> f64 {
+        self.normal[0].atan2(self.normal[1]).rem_euclid(TAU)
+    }
+}
+
+/// The plane parts of `points`, (N, 3) local metres, those of roofs being given; largest first. Points of no plane are left out.
+///
+/// From points whose surroundings are flattest on, a plane takes in neighbours that lie near it and look the same way, and is fitted anew
+/// as it grows. Its area is that of the cells that hold points, less what cells at its rim reach over it.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for parameters outside their range and points that are not finite.
+///
+/// # Source
+/// Region growing with a smoothness constraint: Rabbani, van den Heuvel & Vosselman 2006. The area of a set from the number of squares it
+/// meets and the length of their outline is Steiner's formula.
+pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams) -> Result<Vec<RoofPlane>> {
+    params.validate()?;
+    let index = NeighborIndex::new(points)?;
+    // near ridges and eaves few neighbours are on one plane
+    let normals = estimate(points, &index, Neighborhood::adaptive())?;
+    let is_roof = |rows: &[u32], fit: &fit::PlaneFit| {
+        let is_flat_enough = fit.normal[2].clamp(-1.0, 1.0).acos() <= params.most_tilt;
+        is_flat_enough && cells::area(points, rows, fit, params.cell) >= params.least_area
+    };
+    let mut planes: Vec<RoofPlane> = grow::regions(points, &index, &normals, params, is_roof)
+        .into_iter()
+        .map(|(rows, fit)| {
+            let cells = PlaneCells::of(points, &rows, &fit, params.cell);
+            let area = cells::area(points, &rows, &fit, params.cell);
+            RoofPlane { points: rows, middle: fit.middle, normal: fit.normal, roughness: fit.roughness, cells, area }
+        })
+        .collect();
+    // of equal areas the one with the lower first point, so that the order is settled
+    planes.sort_by(|a, b| b.area.total_cmp(&a.area).then_with(|| a.points.first().cmp(&b.points.first())));
+    Ok(planes)
+}

@@ -1,0 +1,65 @@
+//! How much of the sky a place sees: the sky view factor and sky openness, two figures that are often mixed up.
+
+mod directions;
+
+pub use directions::SkyDirections;
+
+use belvedere_core::query::VisibilityMatrix;
+use belvedere_data::vector::dot;
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+/// Height above the ground of places asked about the sun and the sky unless said otherwise, metres.
+pub const SKY_TARGET_HEIGHT: f64 = 0.1;
+/// Number of directions of [`SkyDirections::even`] unless said otherwise: errors of half a percent at most streets.
+pub const SKY_DIRECTIONS: usize = 577;
+
+/// Targets handed to a thread at once.
+const CHUNK: usize = 256;
+
+/// How much of the sky each of many targets sees.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SkyView {
+    /// Cosine-weighted share of the sky, 0 to 1, (M): (1/π) ∫ V cos θ dΩ, θ being the angle to the target's normal. The share of the
+    /// radiation of an even sky that arrives, as energy models want it. A free plane has 1, a free wall ½.
+    pub factors: Vec<f32>,
+    /// Share of the hemisphere above the horizon that is seen, 0 to 1, (M): (1/2π) ∫ V dΩ, whatever the normal. A free plane has 1, and a
+    /// free wall ½ too.
+    pub openness: Vec<f32>,
+}
+
+/// Sums up which of the directions of `sky` each target of `matrix` sees. `normals`, (M, 3) unit vectors, tilt the target for the sky view
+/// factor; `None` for level ones. Directions behind a tilted target count as unseen.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] where matrix, sky and normals differ.
+pub fn sky_view(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: Option<&[[f32; 3]]>) -> Result<SkyView> {
+    let expected = matrix.direction_count();
+    if sky.directions.len() != expected {
+        return Err(Error::LengthMismatch { what: "directions of the sky", expected, found: sky.directions.len() });
+    }
+    let expected = matrix.target_count();
+    if let Some(found) = normals.map(<[_]>::len).filter(|&found| found != expected) {
+        return Err(Error::LengthMismatch { what: "normals of targets", expected, found });
+    }
+    let shares: Vec<[f64; 2]> = (0..matrix.target_count())
+        .into_par_iter()
+        .with_min_len(CHUNK)
+        .map(|target| {
+            let normal = normals.map_or([0.0, 0.0, 1.0], |normals| normals[target].map(f64::from));
+            let mut seen = [0.0, 0.0];
+            for (column, (&direction, &solid_angle)) in sky.directions.iter().zip(&sky.solid_angles).enumerate() {
+                let cosine = dot(normal, direction);
+                if cosine > 0.0 && matrix.is_free(target, column) {
+                    seen[0] += cosine * solid_angle;
+                    seen[1] += solid_angle;
+                }
+            }
+            [seen[0] / PI, seen[1] / TAU]
+        })
+        .collect();
+    #[expect(clippy::cast_possible_truncation, reason = "shares of one")]
+    let column = |i: usize| shares.iter().map(|share| share[i] as f32).collect();
+    Ok(SkyView { factors: column(0), openness: column(1) })
+}

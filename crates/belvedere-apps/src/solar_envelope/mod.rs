@@ -1,0 +1,306 @@
+//! The solar envelope: the largest volume over a parcel that casts no shadow on what is protected, at any of the suns.
+//!
+//! A sun at elevation e shades the place g up to the height h − d tan e from a thing of height h that stands d metres toward the sun. So
+//! that it does not, h may be z(g) + d tan e at most. A protected edge swept toward the sun makes a strip of the map, over which
+//! that bound is linear: the least of it over a column of the grid is found in closed form, without sampling the line or marching.
+
+mod blocks;
+mod convex;
+mod instants;
+mod parcel;
+mod protected;
+mod strip;
+
+pub use convex::ConvexPolygon;
+pub use instants::{EnvelopeSun, envelope_suns};
+pub use parcel::{Footprint, Parcel};
+pub use protected::{ProtectedPiece, protected_faces, protected_line};
+
+use belvedere_core::ground::{Ground, MapGrid};
+use belvedere_core::query::VisibilityMatrix;
+use belvedere_data::raster::Raster;
+use belvedere_data::vector::{dot, length};
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+use strip::Strip;
+
+/// A sun that stands this near to the zenith shades nothing beside a thing: cosine of its elevation.
+const OVERHEAD: f64 = 1e-9;
+/// Most pairs of a protected piece and a sun: some minutes of work.
+const MOST_PAIRS: usize = 200_000_000;
+
+/// What bounds an envelope besides the sun.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EnvelopeParams {
+    /// Greatest height above the ground, metres, above 0: what zoning allows anyway. Default `None`: columns that no sun bounds are
+    /// infinitely high.
+    pub ceiling: Option<f64>,
+}
+
+/// A solar envelope over the cells of a grid.
+#[derive(Clone, Debug)]
+pub struct SolarEnvelope {
+    /// Where the cells lie.
+    pub grid: MapGrid,
+    /// The columns, in the order of their cells.
+    pub columns: Vec<EnvelopeColumn>,
+    /// What was left out of account.
+    pub report: EnvelopeReport,
+}
+
+/// What may be built over the part of a cell that lies on the parcel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnvelopeColumn {
+    /// The part of the cell.
+    pub footprint: Footprint,
+    /// Height of the ground in the middle of the cell, local metres.
+    pub ground: f64,
+    /// Height of the envelope, local metres, the ground at least; infinite where nothing bounds it. It holds over the whole footprint, so
+    /// that the columns together shade nothing.
+    pub top: f64,
+    /// What bounds it; `None` for the ceiling, or nothing.
+    pub binding: Option<Binding>,
+}
+
+impl EnvelopeColumn {
+    /// Height above the ground, metres.
+    #[must_use]
+    pub fn height(&self) -> f64 {
+        self.top - self.ground
+    }
+}
+
+/// What bounds a column: the first of those that bound it equally.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Binding {
+    /// Row of the protected piece.
+    pub piece: usize,
+    /// Row of the sun.
+    pub sun: usize,
+}
+
+/// What was left out of account.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EnvelopeReport {
+    /// Suns at or below the horizon, which shade nothing.
+    pub sun_below_horizon_count: usize,
+    /// Pairs of a piece and a sun above the horizon.
+    pub pair_count: usize,
+    /// Pairs whose face is turned away from the sun.
+    pub turned_away_count: usize,
+    /// Pairs that something shades already, which was credited.
+    pub shaded_already_count: usize,
+    /// Cells of the parcel below which no ground is known: they have no column.
+    pub without_ground_count: usize,
+}
+
+/// The solar envelope of `parcel` over the cells of `ground`, that keeps the sun for each piece of `protected` at each of `suns`, (S, 3) unit
+/// vectors from the scene to the sun (x east, y grid north, z up).
+///
+/// Each column is bounded by the least bound over its whole footprint: nothing built within the columns shades what is protected,
+/// and no column can be raised without that. Where a bound lies below the ground nothing may be built, and the height is 0.
+/// Protected edges that only touch a column from beside do not bound it.
+///
+/// `free`, a row for each piece's sample and a column for each sun, credits shade that is there already: where it is not free, the piece
+/// is in shade at that sun, and the pair bounds nothing.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a sun that is not of unit length, a piece that is not finite, a ceiling that is not above zero, and more
+/// than 200 million pairs; [`Error::LengthMismatch`] where `free` has other rows and columns; [`Error::NoPoints`] where no ground is
+/// known below the parcel.
+///
+/// # Source
+/// Knowles 2003, The solar envelope: its meaning for energy and buildings, Energy and Buildings 35.
+pub fn solar_envelope(
+    parcel: &Parcel,
+    ground: &Ground,
+    protected: &[ProtectedPiece],
+    suns: &[[f64; 3]],
+    free: Option<&VisibilityMatrix>,
+    params: &EnvelopeParams,
+) -> Result<SolarEnvelope> {
+    check(protected, suns, free, params)?;
+    let grid = ground.grid;
+    let mut report = EnvelopeReport::default();
+    let mut columns: Vec<EnvelopeColumn> = Vec::new();
+    for footprint in parcel.footprints(&grid) {
+        let height = ground.heights.values().get(footprint.cell).copied().filter(|h| h.is_finite());
+        match height.map(f64::from) {
+            None => report.without_ground_count += 1,
+            Some(ground) => {
+                let top = params.ceiling.map_or(f64::INFINITY, |ceiling| ground + ceiling);
+                columns.push(EnvelopeColumn { footprint, ground, top, binding: None });
+            }
+        }
+    }
+    if columns.is_empty() {
+        let what = "there is no ground known below the parcel; is it in the coordinates of the cloud, and within it?";
+        return Err(Error::NoPoints { what: what.to_owned() });
+    }
+    for (sun, &direction) in suns.iter().enumerate() {
+        if !(direction[2] > 0.0) {
+            report.sun_below_horizon_count += 1;
+            continue;
+        }
+        report.pair_count += protected.len();
+        let strips =
+            strips(protected, direction, |piece| free.is_none_or(|free| free.is_free(piece, sun)), &mut report);
+        let mut rows: Vec<&mut [EnvelopeColumn]> =
+            columns.chunk_by_mut(|a, b| a.footprint.cell / grid.width == b.footprint.cell / grid.width).collect();
+        rows.par_iter_mut().for_each(|row| bound(row, &grid, &strips, sun));
+    }
+    for column in &mut columns {
+        column.top = column.top.max(column.ground);
+    }
+    Ok(SolarEnvelope { grid, columns, report })
+}
+
+/// The strips of the protected edges that a sun above the horizon lights, each with the row of its piece.
+fn strips(
+    protected: &[ProtectedPiece],
+    direction: [f64; 3],
+    is_free: impl Fn(usize) -> bool,
+    report: &mut EnvelopeReport,
+) -> Vec<(Strip, usize)> {
+    let across = direction[0].hypot(direction[1]);
+    let to_sun = [direction[0] / across, direction[1] / across];
+    let slope = direction[2] / across;
+    let mut strips = Vec::new();
+    for (number, piece) in protected.iter().enumerate() {
+        if piece.normal.is_some_and(|normal| dot(normal, direction) <= 0.0) {
+            report.turned_away_count += 1;
+            continue;
+        }
+        if !is_free(number) {
+            report.shaded_already_count += 1;
+            continue;
+        }
+        if across < OVERHEAD {
+            continue;
+        }
+        let mut add = |a, b| strips.push((Strip::new(a, b, to_sun, slope), number));
+        // over a face the bound is linear too, hence least at its rim
+        match piece.corners[..] {
+            [a] => add(a, a),
+            [a, b] => add(a, b),
+            [a, b, c] => [[a, b], [b, c], [c, a]].into_iter().for_each(|[a, b]| add(a, b)),
+            _ => {}
+        }
+    }
+    strips
+}
+
+/// Lowers the columns of one row of cells to what the strips of a sun allow.
+fn bound(columns: &mut [EnvelopeColumn], grid: &MapGrid, strips: &[(Strip, usize)], sun: usize) {
+    let (Some(first), Some(last)) = (columns.first(), columns.last()) else { return };
+    let column_of = |column: &EnvelopeColumn| column.footprint.cell % grid.width;
+    let row = first.footprint.cell / grid.width;
+    let [west, south] = grid.corner_at([column_of(first), row + 1]);
+    let [east, north] = grid.corner_at([column_of(last) + 1, row]);
+    let band = ConvexPolygon::of_box([west, south], [east, north]);
+    let edges: Vec<f64> = columns.iter().map(|column| grid.corner_at([column_of(column), row])[0]).collect();
+    for &(strip, piece) in strips {
+        let Some([least, most]) = strip.span_x(&band) else { continue };
+        let from = edges.partition_point(|west| west + grid.cell < least);
+        let to = edges.partition_point(|west| *west <= most);
+        for column in columns.get_mut(from..to).unwrap_or_default() {
+            let limit = column.footprint.pieces.iter().filter_map(|piece| strip.limit(piece)).reduce(f64::min);
+            if let Some(limit) = limit.filter(|limit| *limit < column.top) {
+                column.top = limit;
+                column.binding = Some(Binding { piece, sun });
+            }
+        }
+    }
+}
+
+fn check(
+    protected: &[ProtectedPiece],
+    suns: &[[f64; 3]],
+    free: Option<&VisibilityMatrix>,
+    params: &EnvelopeParams,
+) -> Result<()> {
+    let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+    if let Some(sun) = suns.iter().find(|sun| !((length(**sun) - 1.0).abs() < 1e-6)) {
+        return invalid("direction to the sun", format!("{sun:?}"), "a vector of length 1");
+    }
+    let finite = |piece: &&ProtectedPiece| !piece.corners.as_flattened().iter().all(|v| v.is_finite());
+    if let Some(piece) = protected.iter().find(finite) {
+        return invalid("protected place", format!("{:?}", piece.corners), "finite");
+    }
+    if let Some(ceiling) = params.ceiling.filter(|ceiling| !(*ceiling > 0.0 && ceiling.is_finite())) {
+        return invalid("ceiling", ceiling.to_string(), "above zero metres");
+    }
+    let pairs = protected.len().saturating_mul(suns.len());
+    if pairs > MOST_PAIRS {
+        return invalid(
+            "number of pairs of a protected piece and a sun",
+            format!("{} x {}", protected.len(), suns.len()),
+            "at most 200 million; take longer steps of time, or a longer spacing",
+        );
+    }
+    let Some(free) = free else { return Ok(()) };
+    let sizes = [
+        ("shade of protected pieces", protected.len(), free.target_count()),
+        ("shade at suns", suns.len(), free.direction_count()),
+    ];
+    match sizes.into_iter().find(|(_, expected, found)| expected != found) {
+        Some((what, expected, found)) => Err(Error::LengthMismatch { what, expected, found }),
+        None => Ok(()),
+    }
+}
+
+impl SolarEnvelope {
+    /// Height above the ground of each cell, metres; NaN beside the parcel, infinite where nothing bounds it.
+    #[must_use]
+    pub fn heights(&self) -> Raster<f32> {
+        self.raster(EnvelopeColumn::height)
+    }
+
+    /// Height of the envelope in each cell above where heights of the system of the cloud count from, metres: `origin_height` is that of the
+    /// local origin. NaN beside the parcel, infinite where nothing bounds it.
+    #[must_use]
+    pub fn tops(&self, origin_height: f64) -> Raster<f32> {
+        self.raster(|column| column.top + origin_height)
+    }
+
+    fn raster(&self, value: impl Fn(&EnvelopeColumn) -> f64) -> Raster<f32> {
+        let mut raster = Raster::filled(self.grid.width, self.grid.height, f32::NAN);
+        for column in &self.columns {
+            #[expect(clippy::cast_possible_truncation, reason = "a height in metres")]
+            if let Some(cell) = raster.values_mut().get_mut(column.footprint.cell) {
+                *cell = value(column) as f32;
+            }
+        }
+        raster
+    }
+
+    /// Volume between the ground and the envelope, m³; infinite where a column is.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        self.columns.iter().map(|column| column.footprint.area * column.height()).sum()
+    }
+
+    /// Area of the columns, m².
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.columns.iter().map(|column| column.footprint.area).sum()
+    }
+
+    /// Greatest height above the ground, metres; 0 without columns.
+    #[must_use]
+    pub fn greatest_height(&self) -> f64 {
+        self.columns.iter().map(EnvelopeColumn::height).fold(0.0, f64::max)
+    }
+
+    /// For each of `count` keys the area of the columns whose binding has it, m².
+    #[must_use]
+    pub fn bound_areas(&self, count: usize, key: impl Fn(Binding) -> usize) -> Vec<f64> {
+        let mut areas = vec![0.0; count];
+        for (binding, area) in self.columns.iter().filter_map(|c| Some((c.binding?, c.footprint.area))) {
+            if let Some(sum) = areas.get_mut(key(binding)) {
+                *sum += area;
+            }
+        }
+        areas
+    }
+}

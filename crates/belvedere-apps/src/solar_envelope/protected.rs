@@ -1,0 +1,107 @@
+//! What shadows must stay off: lines with a fence, faces of facades, points.
+
+use crate::sky_view::SKY_TARGET_HEIGHT;
+use belvedere_core::ground::Ground;
+use belvedere_core::query::SurfacePieces;
+use belvedere_data::{Error, Result};
+
+/// Most pieces of lines: every sun sweeps each over the parcel.
+const MOST_PIECES: usize = 1_000_000;
+
+/// A piece of what is protected: a point, an edge or a triangle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProtectedPiece {
+    /// One, two or three corners, local metres.
+    pub corners: Vec<[f64; 3]>,
+    /// Outward unit normal of a face: suns behind it do not light it anyway. `None` for lines and points, which every sun lights.
+    pub normal: Option<[f64; 3]>,
+    /// Place that is asked whether something else shades the piece already, local metres.
+    pub sample: [f32; 3],
+    /// Number of the line, face or point that it belongs to, as the caller counts them.
+    pub source: u32,
+}
+
+impl ProtectedPiece {
+    /// A point.
+    #[must_use]
+    pub fn point(place: [f64; 3], source: u32) -> Self {
+        let sample = single([place[0], place[1], place[2] + SKY_TARGET_HEIGHT]);
+        Self { corners: vec![place], normal: None, sample, source }
+    }
+}
+
+/// The top of a fence of `fence` metres along a line through `corners`, local metres, in pieces of at most `spacing` metres. Shadows may
+/// fall on the fence and stay below its top. Where a corner has no height (NaN), the ground below each piece's ends counts: the
+/// line follows the terrain; pieces whose ground is not known are left out, and their number returned too.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a corner whose place on the map is not finite, a fence that is below zero or not finite, a spacing that
+/// is not above zero, and lines of more than a million pieces.
+pub fn protected_line(
+    corners: &[[f64; 3]],
+    fence: f64,
+    spacing: f64,
+    ground: &Ground,
+    source: u32,
+) -> Result<(Vec<ProtectedPiece>, usize)> {
+    let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+    if !(fence >= 0.0 && fence.is_finite()) {
+        return invalid("height of the fence", fence.to_string(), "0 or more metres");
+    }
+    if !(spacing > 0.0 && spacing.is_finite()) {
+        return invalid("spacing on protected lines", spacing.to_string(), "above zero metres");
+    }
+    let flat = |p: [f64; 3]| p[0].abs() < 1e7 && p[1].abs() < 1e7 && (p[2].is_nan() || p[2].abs() < 1e7);
+    if let Some(corner) = corners.iter().find(|corner| !flat(**corner)) {
+        return invalid("corner of a protected line", format!("{corner:?}"), "finite, within 10 000 km of the scene");
+    }
+    let top = |mut place: [f64; 3]| {
+        if place[2].is_nan() {
+            place[2] = ground.height_at([place[0], place[1]])?;
+        }
+        place[2] += fence;
+        Some(place)
+    };
+    let mut pieces = Vec::new();
+    let mut unknown_count = 0;
+    for pair in corners.windows(2) {
+        let &[a, b] = pair else { continue };
+        let count = ((b[0] - a[0]).hypot(b[1] - a[1]) / spacing).ceil().max(1.0);
+        if count + pieces.len() as f64 > MOST_PIECES as f64 {
+            return invalid("spacing on protected lines", spacing.to_string(), "enough for at most a million pieces");
+        }
+        let at = |share: f64| [0, 1, 2].map(|i| a[i] + share * (b[i] - a[i]));
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most a million")]
+        for i in 0..count as u32 {
+            let [from, to] = [i, i + 1].map(|i| at(f64::from(i) / count));
+            match (top(from), top(to)) {
+                (Some(from), Some(to)) => {
+                    let mut middle = [0, 1, 2].map(|i| f64::midpoint(from[i], to[i]));
+                    // off the ground, as other places that the sun is asked about
+                    middle[2] += SKY_TARGET_HEIGHT;
+                    let corners = vec![from, to];
+                    pieces.push(ProtectedPiece { corners, normal: None, sample: single(middle), source });
+                }
+                _ => unknown_count += 1,
+            }
+        }
+    }
+    Ok((pieces, unknown_count))
+}
+
+/// The pieces of a surface, such as facades, each asked a little outside of itself (`lift`, metres); the source is the number of the face.
+#[must_use]
+pub fn protected_faces(surface: &SurfacePieces, lift: f64) -> Vec<ProtectedPiece> {
+    let of_piece = |piece: &belvedere_core::query::Piece| ProtectedPiece {
+        corners: piece.corners.map(|corner| corner.map(f64::from)).to_vec(),
+        normal: Some(piece.normal.map(f64::from)),
+        sample: piece.lifted_along_normal(lift),
+        source: piece.face,
+    };
+    surface.pieces.iter().map(of_piece).collect()
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+fn single(place: [f64; 3]) -> [f32; 3] {
+    place.map(|v| v as f32)
+}

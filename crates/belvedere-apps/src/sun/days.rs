@@ -1,0 +1,201 @@
+//! The light of a day: a day from midnight to midnight of the sun, in steps, cut at the horizon.
+
+use super::position::transit;
+use super::{Date, Refraction, Site, Zone, sun_position_with};
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+
+const DAY: f64 = 86_400.0;
+/// Longest time between two looks at the elevation, seconds: a sun that shows between two of them and is gone again rises 0.02° at most.
+const SAMPLING: f64 = 300.0;
+/// Most days of a period: ten years.
+const MOST_DAYS: usize = 3700;
+/// How exactly the moment is found at which the sun passes the least elevation, seconds.
+const MOMENT: f64 = 0.01;
+
+/// How days are parted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DayParams {
+    /// Length of a step, seconds, 10 to 3600; steps are made a little shorter where they do not fill the day. Default 600: shadows of edges
+    /// come and go within half a step of the truth, ±5 minutes each.
+    pub step: f64,
+    /// Elevation above which the middle of the sun counts, radians, 0 to just below π/2, apparent unless `refraction` is left out. Default
+    /// 0: the flat horizon. Some rules leave out low suns.
+    pub least_elevation: f64,
+    /// By how much air lifts the sun. Default [`Refraction::Standard`].
+    pub refraction: Refraction,
+}
+
+impl Default for DayParams {
+    fn default() -> Self {
+        Self { step: 600.0, least_elevation: 0.0, refraction: Refraction::Standard }
+    }
+}
+
+/// A piece of time during which the sun is up, a step of the day or what the horizon leaves of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SunStep {
+    /// Which step of the day, from the midnight before: the same number on another day has the same hour angle.
+    pub number: u32,
+    /// Seconds of UTC since 1970 at its beginning.
+    pub start: f64,
+    /// And at its end.
+    pub end: f64,
+    /// Unit vector to the sun halfway, in the axes of the grid.
+    pub direction: [f64; 3],
+}
+
+/// A day of the sun at a site: from its midnight (half-way between two culminations) to the next, so that it holds the whole light of the
+/// place whatever clocks show, and days follow each other without gap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SunDay {
+    /// What the calendar of the zone calls it at noon.
+    pub date: Date,
+    /// Instant at which clocks of the zone begin this date (as they run at its noon): what times of day count from.
+    pub clock_start: f64,
+    /// Midnight of the sun with which it begins.
+    pub start: f64,
+    /// Midnight of the sun with which it ends.
+    pub end: f64,
+    /// Instant at which the sun is highest, to within a minute: it crosses the meridian.
+    pub noon: f64,
+    /// The light of the day in the order of time; none in polar night.
+    pub steps: Vec<SunStep>,
+}
+
+impl SunDay {
+    /// Hours during which the sun is up.
+    #[must_use]
+    pub fn possible_hours(&self) -> f64 {
+        self.steps.iter().map(|step| step.end - step.start).sum::<f64>() / 3600.0
+    }
+
+    /// Time of day of an instant on the clocks of the zone, hours; below 0 or above 24 where the day of the sun reaches beyond the date.
+    #[must_use]
+    pub fn clock_hours(&self, unix_s: f64) -> f64 {
+        (unix_s - self.clock_start) / 3600.0
+    }
+}
+
+/// The day of the sun that a date names at a site. Of the true noons of the site it is the one whose mean noon comes next to 12 o'clock
+/// in the `zone`. Where `within` is given, only what lies between the two instants counts.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for parameters outside their range, and those of [`sun_position_with`].
+pub fn sun_day(site: &Site, zone: &Zone, date: Date, within: Option<[f64; 2]>, params: &DayParams) -> Result<SunDay> {
+    params.validate()?;
+    let site = site.validate()?;
+    let clock_ahead = zone.offset_at(date.noon_utc());
+    let sun_ahead = site.longitude.to_degrees() * 240.0;
+    let mean_noon = date.noon_utc() - sun_ahead + DAY * ((sun_ahead - clock_ahead) / DAY).round();
+    let [before, noon, after] = [-DAY, 0.0, DAY].map(|offset| transit(&site, mean_noon + offset));
+    let (before, noon, after) = (before?, noon?, after?);
+    let [start, end] = [f64::midpoint(before, noon), f64::midpoint(noon, after)];
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "24 to 8640")]
+    let count = (DAY / params.step - 1e-9).ceil() as u32;
+    let edge = |number: u32| start + (end - start) * f64::from(number) / f64::from(count);
+    let mut steps = Vec::new();
+    for number in 0..count {
+        let [from, to] = within.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let span = [edge(number).max(from), edge(number + 1).min(to)];
+        if span[0] < span[1] {
+            for [start, end] in light(&site, span, params)? {
+                let halfway = sun_position_with(&site, f64::midpoint(start, end), params.refraction)?;
+                steps.push(SunStep { number, start, end, direction: halfway.to_sun(&site) });
+            }
+        }
+    }
+    let clock_start = date.noon_utc() - 0.5 * DAY - zone.offset_at(noon);
+    Ok(SunDay { date, clock_start, start, end, noon, steps })
+}
+
+/// What days are asked about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Period {
+    /// Whole days.
+    Days(Vec<Date>),
+    /// What lies between two instants, seconds of UTC since 1970.
+    Between([f64; 2]),
+}
+
+/// The days of the sun of a period, 3700 at most (ten years), in the order given; of days at both ends of a span between instants only the
+/// part within it has steps.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a period without days or that ends before it begins, and those of [`sun_day`].
+pub fn sun_days(site: &Site, zone: &Zone, period: &Period, params: &DayParams) -> Result<Vec<SunDay>> {
+    let invalid = |value: String, expected| Err(Error::InvalidParameter { name: "period", value, expected });
+    let (dates, within) = match period {
+        Period::Days(dates) => (dates.clone(), None),
+        Period::Between([from, to]) if to > from && to - from <= DAY * MOST_DAYS as f64 => {
+            // a day of the sun may begin a clock's day early or late
+            let [first, last] = [zone.date_at(from - DAY)?, zone.date_at(to + DAY)?];
+            (first.to(last).collect(), Some([*from, *to]))
+        }
+        Period::Between([from, to]) => {
+            return invalid(format!("{} to {}", zone.display(*from), zone.display(*to)), "forward, ten years at most");
+        }
+    };
+    if !(1..=MOST_DAYS).contains(&dates.len()) {
+        return invalid(format!("{} days", dates.len()), "1 to 3700 days, the last not before the first");
+    }
+    let days: Result<Vec<SunDay>> =
+        dates.into_par_iter().map(|date| sun_day(site, zone, date, within, params)).collect();
+    let touches = |day: &SunDay| within.is_none_or(|[from, to]| day.start < to && day.end > from);
+    Ok(days?.into_iter().filter(touches).collect())
+}
+
+impl DayParams {
+    /// Whether all are in their ranges.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where one is not.
+    pub fn validate(&self) -> Result<()> {
+        let invalid =
+            |name, value: f64, expected| Err(Error::InvalidParameter { name, value: value.to_string(), expected });
+        if !(10.0..=3600.0).contains(&self.step) {
+            return invalid("step of time", self.step, "10 to 3600 seconds");
+        }
+        if !(0.0..1.57).contains(&self.least_elevation) {
+            return invalid("least elevation of the sun", self.least_elevation.to_degrees(), "0 to below 90 degrees");
+        }
+        Ok(())
+    }
+}
+
+/// The parts of a span of time during which the sun is up.
+fn light(site: &Site, [start, end]: [f64; 2], params: &DayParams) -> Result<Vec<[f64; 2]>> {
+    let above =
+        |t: f64| sun_position_with(site, t, params.refraction).map(|sun| sun.elevation > params.least_elevation);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an hour of samples at most")]
+    let count = ((end - start) / SAMPLING - 1e-9).ceil().max(1.0) as u32;
+    let mut parts: Vec<[f64; 2]> = Vec::new();
+    let mut from = (start, above(start)?);
+    for sample in 1..=count {
+        let to = start + (end - start) * f64::from(sample) / f64::from(count);
+        let to = (to, above(to)?);
+        let part = match (from.1, to.1) {
+            (false, false) => None,
+            (true, true) => Some([from.0, to.0]),
+            (was_up, _) => {
+                let [mut known, mut other] = [from.0, to.0];
+                while other - known > MOMENT {
+                    let middle = f64::midpoint(known, other);
+                    if above(middle)? == was_up {
+                        known = middle;
+                    } else {
+                        other = middle;
+                    }
+                }
+                Some(if was_up { [from.0, known] } else { [other, to.0] })
+            }
+        };
+        match (part, parts.last_mut()) {
+            (Some(part), Some(last)) if last[1] == part[0] => last[1] = part[1],
+            (Some(part), _) if part[0] < part[1] => parts.push(part),
+            _ => {}
+        }
+        from = to;
+    }
+    Ok(parts)
+}

@@ -1,0 +1,158 @@
+//! How long the sun reaches a place: hours and share of a day or of many days, first and last light, longest stretch, rules.
+
+mod crowns;
+mod rules;
+mod stretches;
+
+pub use crowns::sun_hours_through_crowns;
+pub use rules::{RuleDays, SunRule};
+
+use crate::sun::SunSchedule;
+use belvedere_core::query::VisibilityMatrix;
+use belvedere_data::vector::dot;
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+use stretches::{Lit, Run, runs_of};
+
+/// Targets handed to a thread at once.
+const CHUNK: usize = 64;
+/// By how much the hours of a day may stay below what is asked and yet suffice, hours: what f32 rounds in a sum of steps.
+const ROUNDING: f64 = 1e-4;
+
+/// The sun at each of many targets over the days of a [`SunSchedule`]; each array has a value for each target, (M).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SunHours {
+    /// Hours of sun a day, the mean over the days.
+    pub hours: Vec<f32>,
+    /// Share of the hours of sun above a flat horizon, 0 to 1; NaN where the sun does not rise on any day.
+    pub share: Vec<f32>,
+    /// When the sun first arrives, hours on the clocks of the zone: the earliest of the days; NaN where it never does. True to within a
+    /// step.
+    pub first: Vec<f32>,
+    /// When it last leaves: the latest of the days; NaN where it never came.
+    pub last: Vec<f32>,
+    /// Longest stretch without a break on any day, hours.
+    pub longest: Vec<f32>,
+    /// Hours on the day with the least.
+    pub least: Vec<f32>,
+    /// Number of days on which the hours suffice.
+    pub days: Vec<u32>,
+}
+
+/// What the statistics of a place are taken over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SunHoursParams {
+    /// Column of the matrix that holds the first direction of the schedule. Default 0.
+    pub first_direction: usize,
+    /// Hours of sun that a day must have to count in [`SunHours::days`], 0 to 24. Default 0: each day counts.
+    pub sufficient_hours: f64,
+}
+
+impl Default for SunHoursParams {
+    fn default() -> Self {
+        Self { first_direction: 0, sufficient_hours: 0.0 }
+    }
+}
+
+/// Sums up when the suns of `schedule` reach each target of `matrix`, whose columns from `first_direction` on are the directions of the
+/// schedule. `normals`, (M, 3) unit vectors, are given for surfaces, which a sun behind them does not light; with `None` a target is lit
+/// from all sides.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] where matrix, schedule and normals differ, [`Error::InvalidParameter`] for hours outside their range.
+pub fn sun_hours(
+    matrix: &VisibilityMatrix,
+    schedule: &SunSchedule,
+    normals: Option<&[[f32; 3]]>,
+    params: &SunHoursParams,
+) -> Result<SunHours> {
+    let columns = params.first_direction..params.first_direction.saturating_add(schedule.directions.len());
+    if columns.end > matrix.direction_count() {
+        let (expected, found) = (columns.end, matrix.direction_count());
+        return Err(Error::LengthMismatch { what: "directions of the matrix", expected, found });
+    }
+    let expected = matrix.target_count();
+    if let Some(found) = normals.map(<[_]>::len).filter(|&found| found != expected) {
+        return Err(Error::LengthMismatch { what: "normals of targets", expected, found });
+    }
+    if !(0.0..=24.0).contains(&params.sufficient_hours) {
+        let value = params.sufficient_hours.to_string();
+        return Err(Error::InvalidParameter { name: "hours of sun", value, expected: "0 to 24" });
+    }
+    let sufficient = params.sufficient_hours - ROUNDING;
+    let day_count = schedule.days.len().max(1) as f64;
+    let possible = schedule.possible_hours();
+    let days: Vec<Vec<Run>> = schedule.days.iter().map(runs_of).collect();
+    let sums: Vec<Sum> = (0..matrix.target_count())
+        .into_par_iter()
+        .with_min_len(CHUNK)
+        .map_init(
+            || Lit::new(schedule.directions.len()),
+            |lit, target| {
+                let normal = normals.map(|normals| normals[target].map(f64::from));
+                lit.set(|number| {
+                    let faces = normal.is_none_or(|normal| dot(normal, schedule.directions[number]) > 0.0);
+                    faces && matrix.is_free(target, columns.start + number)
+                });
+                Sum::over(&days, lit, sufficient)
+            },
+        )
+        .collect();
+    #[expect(clippy::cast_possible_truncation, reason = "hours of a day and shares of one")]
+    let column = |of: &dyn Fn(&Sum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
+    let if_lit = |sum: &Sum, value: f64| if sum.total > 0.0 { value } else { f64::NAN };
+    Ok(SunHours {
+        hours: column(&|sum| sum.total / day_count),
+        share: column(&|sum| if possible > 0.0 { (sum.total / possible).min(1.0) } else { f64::NAN }),
+        first: column(&|sum| if_lit(sum, f64::from(sum.first))),
+        last: column(&|sum| if_lit(sum, f64::from(sum.last))),
+        longest: column(&|sum| f64::from(sum.longest)),
+        least: column(&|sum| sum.least),
+        days: sums.iter().map(|sum| sum.days).collect(),
+    })
+}
+
+/// What is summed up at one target.
+struct Sum {
+    total: f64,
+    least: f64,
+    first: f32,
+    last: f32,
+    longest: f32,
+    days: u32,
+}
+
+impl Sum {
+    fn over(days: &[Vec<Run>], lit: &Lit, sufficient: f64) -> Self {
+        let mut sum =
+            Self { total: 0.0, least: 24.0, first: f32::INFINITY, last: f32::NEG_INFINITY, longest: 0.0, days: 0 };
+        for runs in days {
+            let [mut hours, mut stretch] = [0.0_f32; 2];
+            for run in runs {
+                stretch = if run.continues { stretch } else { 0.0 };
+                // where the run is lit: from one stretch to the next
+                let mut from = run.first;
+                while from < run.end {
+                    let start = lit.next_lit(from).min(run.end);
+                    let end = lit.next_dark(start).min(run.end);
+                    stretch = if start > from { 0.0 } else { stretch };
+                    if end > start {
+                        let lasts = run.hours * (end - start) as f32;
+                        hours += lasts;
+                        stretch += lasts;
+                        sum.longest = sum.longest.max(stretch);
+                        sum.first = sum.first.min(run.start + run.hours * (start - run.first) as f32);
+                        sum.last = sum.last.max(run.start + run.hours * (end - run.first) as f32);
+                    }
+                    stretch = if end < run.end { 0.0 } else { stretch };
+                    from = end;
+                }
+            }
+            let hours = f64::from(hours);
+            sum.total += hours;
+            sum.least = sum.least.min(hours);
+            sum.days += u32::from(hours >= sufficient);
+        }
+        sum
+    }
+}

@@ -1,0 +1,201 @@
+//! Light through the crowns of trees: what share of it gets through, by season or as pulses measured it.
+//!
+//! Balls are opaque. Two matrices tell what all of them leave free and what those leave free that are not vegetation; every measure that is a
+//! sum over directions lies between its two values, by the share of the light that crowns let through.
+
+use belvedere_core::medial::MedialBalls;
+use belvedere_core::query::VisibilityMatrix;
+use belvedere_data::{Error, Result};
+
+/// First and last day of the year that deciduous trees of the northern hemisphere are in leaf.
+const IN_LEAF: [u32; 2] = [97, 300];
+/// Days that the seasons of the southern hemisphere are shifted by.
+const HALF_A_YEAR: u32 = 183;
+/// Latitude of the tropics, radians.
+const TROPIC: f64 = 0.409;
+
+/// Whether trees carry leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Foliage {
+    /// In leaf.
+    InLeaf,
+    /// Without leaves.
+    Bare,
+}
+
+impl Foliage {
+    /// That of deciduous trees on a day of the year, 1 to 366, at a latitude in radians: in leaf from day 97 to day 300 north of the
+    /// tropics, half a year later south of them, and always between them, where no winter strips trees.
+    ///
+    /// # Source
+    /// The days are the defaults of SOLWEIG (Lindberg & Grimmond 2011), for Gothenburg.
+    #[must_use]
+    pub fn on_day(day_of_year: u32, latitude: f64) -> Self {
+        if latitude.abs() < TROPIC {
+            return Self::InLeaf;
+        }
+        let northern = if latitude < 0.0 { (day_of_year + HALF_A_YEAR - 1) % 366 + 1 } else { day_of_year };
+        if (IN_LEAF[0]..=IN_LEAF[1]).contains(&northern) { Self::InLeaf } else { Self::Bare }
+    }
+}
+
+/// What share of the light gets through a crown, 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transmissivity {
+    /// In leaf. Default 0.03: that of SOLWEIG, within the 0.01 to 0.05 measured on single trees in full leaf.
+    pub in_leaf: f64,
+    /// Without leaves. Default 0.5: that of SOLWEIG, within the 0.40 to 0.52 measured on single trees.
+    pub bare: f64,
+}
+
+impl Default for Transmissivity {
+    /// # Source
+    /// Konarska, Lindberg, Larsson, Thorsson & Holmer 2014, "Transmissivity of solar radiation through crowns of single urban trees",
+    /// Theoretical and Applied Climatology 117; SOLWEIG (Lindberg & Grimmond 2011).
+    fn default() -> Self {
+        Self { in_leaf: 0.03, bare: 0.5 }
+    }
+}
+
+impl Transmissivity {
+    /// The same whatever the season.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a share outside 0 to 1.
+    pub fn constant(share: f64) -> Result<Self> {
+        if !(0.0..=1.0).contains(&share) {
+            return Err(Error::InvalidParameter {
+                name: "transmissivity",
+                value: share.to_string(),
+                expected: "0 (opaque) to 1",
+            });
+        }
+        Ok(Self { in_leaf: share, bare: share })
+    }
+
+    /// What the pulses measured: the mean of `transmission`, (B), as [`belvedere_core::medial::CarvedBalls`] has it, over the balls of crowns by
+    /// the area they cover; of the season that the survey was flown in, which is taken for both. `None` where no crown was measured.
+    ///
+    /// A beam is as wide as a hand and returns from below a crown where part of it gets through, so that this is more than the share of
+    /// the light that does.
+    #[must_use]
+    pub fn measured(balls: &MedialBalls, transmission: &[f32]) -> Option<Self> {
+        let (mut through, mut covered) = (0.0, 0.0);
+        for (&share, &radius) in transmission.iter().zip(&balls.radii).filter(|(share, _)| !share.is_nan()) {
+            let area = f64::from(radius) * f64::from(radius);
+            through += area * f64::from(share);
+            covered += area;
+        }
+        let share = through / covered;
+        (covered > 0.0 && share.is_finite())
+            .then(|| share.clamp(0.0, 1.0))
+            .map(|share| Self { in_leaf: share, bare: share })
+    }
+
+    /// The share in one state.
+    #[must_use]
+    pub fn of(&self, foliage: Foliage) -> f64 {
+        match foliage {
+            Foliage::InLeaf => self.in_leaf,
+            Foliage::Bare => self.bare,
+        }
+    }
+}
+
+/// Which balls are vegetation, (B), by what carving kept of it: those that `transmission`, (B), is known of.
+#[must_use]
+pub fn vegetation_of_transmission(transmission: &[f32]) -> Vec<bool> {
+    transmission.iter().map(|share| !share.is_nan()).collect()
+}
+
+/// Which balls are vegetation, (B), by the class of the points they are tangent at, `classification` having a row for each point that the
+/// balls were made from: low, medium and high vegetation (3 to 5).
+#[must_use]
+pub fn vegetation_of_classes(balls: &MedialBalls, classification: &[u8]) -> Vec<bool> {
+    let is_vegetation = |source: &u32| matches!(classification.get(*source as usize), Some(3..=5));
+    balls.source.iter().map(is_vegetation).collect()
+}
+
+/// The balls that are not vegetation, which `is_vegetation`, (B), says.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] where there is not a row for each ball.
+pub fn without_vegetation(balls: &MedialBalls, is_vegetation: &[bool]) -> Result<MedialBalls> {
+    let (expected, found) = (balls.len(), is_vegetation.len());
+    if expected != found {
+        return Err(Error::LengthMismatch { what: "balls told to be vegetation", expected, found });
+    }
+    let rows: Vec<usize> = (0..expected).filter(|&row| !is_vegetation[row]).collect();
+    Ok(MedialBalls {
+        centers: rows.iter().map(|&row| balls.centers[row]).collect(),
+        radii: rows.iter().map(|&row| balls.radii[row]).collect(),
+        source: rows.iter().map(|&row| balls.source[row]).collect(),
+        touch: rows.iter().map(|&row| balls.touch[row]).collect(),
+        separation_angles: rows.iter().map(|&row| balls.separation_angles[row]).collect(),
+    })
+}
+
+/// Share of the light that reaches a target from a direction: 1 where nothing blocks, 0 where anything but vegetation does, and
+/// `transmissivity` where only vegetation does. `all` is the matrix of all balls, `opaque` that of those that are not vegetation, of the
+/// same targets and directions. A crown behind a crown takes no more: their balls overlap within one, and nothing tells two apart.
+#[must_use]
+pub fn light_share(
+    all: &VisibilityMatrix,
+    opaque: &VisibilityMatrix,
+    target: usize,
+    direction: usize,
+    transmissivity: f64,
+) -> f64 {
+    if all.is_free(target, direction) {
+        1.0
+    } else if opaque.is_free(target, direction) {
+        transmissivity
+    } else {
+        0.0
+    }
+}
+
+/// Sum of `weights`, one for each direction, times the share of the light that comes from there; `transmissivities` has one for each
+/// direction too, since the sun stands in some of them in summer and in others in winter. Where either list is shorter than the
+/// directions, the rest counts nothing.
+#[must_use]
+pub fn light_sum(
+    all: &VisibilityMatrix,
+    opaque: &VisibilityMatrix,
+    target: usize,
+    weights: &[f64],
+    transmissivities: &[f64],
+) -> f64 {
+    let (free, through) = (all.row(target), opaque.row(target));
+    let bit =
+        |row: &[u64], direction: usize| row.get(direction / 64).is_some_and(|word| word >> (direction % 64) & 1 == 1);
+    let shares = weights.iter().zip(transmissivities).enumerate().map(|(direction, (weight, transmissivity))| {
+        if bit(free, direction) {
+            *weight
+        } else if bit(through, direction) {
+            weight * transmissivity
+        } else {
+            0.0
+        }
+    });
+    shares.sum()
+}
+
+/// Measures that are sums over directions, (M), with trees that let a share of the light through: `all` are their values where
+/// nothing does, `opaque` those without vegetation. Sky view factors, openness, hours of sun and irradiance are such sums.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] where the two differ in length, [`Error::InvalidParameter`] for a share outside 0 to 1.
+pub fn through_crowns(all: &[f32], opaque: &[f32], transmissivity: f64) -> Result<Vec<f32>> {
+    let share = Transmissivity::constant(transmissivity)?.in_leaf;
+    let (expected, found) = (all.len(), opaque.len());
+    if expected != found {
+        return Err(Error::LengthMismatch { what: "values without vegetation", expected, found });
+    }
+    let between = |(&all, &opaque): (&f32, &f32)| {
+        #[expect(clippy::cast_possible_truncation, reason = "between two numbers of f32")]
+        let value = (f64::from(all) + share * (f64::from(opaque) - f64::from(all))) as f32;
+        value
+    };
+    Ok(all.iter().zip(opaque).map(between).collect())
+}

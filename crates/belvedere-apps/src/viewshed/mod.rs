@@ -1,0 +1,304 @@
+//! Viewsheds: what one or many observers see of cells or points, from where a target is seen, and how high a thing must stand.
+
+mod observers;
+
+pub use observers::{Observer, SightLimits, places_along};
+
+use belvedere_core::ground::Ground;
+use belvedere_core::query::{Answer, EarthParams, MedialScene, TargetTree, UnprovenAs, Viewer};
+use belvedere_data::control::Control;
+use belvedere_data::raster::Raster;
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+
+/// Targets handed to a thread at once.
+const CHUNK: usize = 512;
+
+/// How viewsheds are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewshedParams {
+    /// How lines of sight run over the earth.
+    pub earth: EarthParams,
+    /// What to make of targets that nothing blocks but whose view is not proven. Default: reported.
+    pub unproven: UnprovenAs,
+    /// Whether to keep which observer sees which target. Default: counts only.
+    pub masks: Masks,
+}
+
+impl Default for ViewshedParams {
+    fn default() -> Self {
+        Self { earth: EarthParams::default(), unproven: UnprovenAs::Reported, masks: Masks::NotKept }
+    }
+}
+
+/// Whether it is kept which observer sees which target.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Masks {
+    /// One bit for each observer and target.
+    Kept,
+    /// Counts only.
+    #[default]
+    NotKept,
+}
+
+/// What observers see of targets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Viewshed {
+    /// The best of the observers' answers for each target: visible before unproven before blocked; [`Answer::OutsideView`] for what
+    /// none of them is turned to, (M).
+    pub answers: Vec<Answer>,
+    /// How many observers see each target, (M).
+    pub counts: Vec<u32>,
+    /// Bands of 32 observers: bit i of band b tells whether observer 32 · b + i sees each target, (bands, M); empty where masks are not
+    /// kept.
+    pub masks: Vec<Vec<u32>>,
+    /// Number of targets that each observer sees, (N).
+    pub seen_counts: Vec<usize>,
+}
+
+/// Default height of an observer's eye above the ground, metres: a person's.
+pub const OBSERVER_HEIGHT: f64 = 1.7;
+/// Default height of targets above the ground, metres.
+pub const TARGET_HEIGHT: f64 = 0.0;
+/// Default side of a cell, metres: what points of usual airborne surveys (0.3 to 0.5 m apart) can tell.
+pub const CELL: f64 = 0.5;
+
+/// Most cells of a default grid.
+const USUAL_CELLS: f64 = 4e6;
+
+/// The side of the cells of a default grid over the box on the map from `low` to `high`, metres: [`CELL`], doubled until there are at
+/// most 4 million cells.
+#[must_use]
+pub fn cell_for(low: [f64; 2], high: [f64; 2]) -> f64 {
+    let area = (high[0] - low[0]).max(0.0) * (high[1] - low[1]).max(0.0);
+    let mut cell = CELL;
+    while area / (cell * cell) > USUAL_CELLS && cell < 1e9 {
+        cell *= 2.0;
+    }
+    cell
+}
+
+/// A target in the middle of each cell of `ground`, `height` metres above it, (M, 3) local metres, rows from the north; NaN where no
+/// ground is known.
+#[must_use]
+pub fn cell_targets(ground: &Ground, height: f64) -> Vec<[f32; 3]> {
+    let grid = ground.grid;
+    let target = |(cell, &ground): (usize, &f32)| {
+        let [x, y] = grid.center(cell % grid.width.max(1), cell / grid.width.max(1));
+        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+        let target = [x as f32, y as f32, (f64::from(ground) + height) as f32];
+        target
+    };
+    ground.heights.values().par_iter().enumerate().with_min_len(CHUNK).map(target).collect()
+}
+
+/// What `observers` see of `targets`, (M, 3) local metres; control counts observers.
+///
+/// A reverse viewshed, from where a target is seen, is the viewshed of an observer in its place, of the eyes that might see it: a
+/// line of sight is the same both ways. Balls that hold the target are then left out, and those at the eyes give way.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range.
+pub fn viewshed(
+    scene: &MedialScene,
+    observers: &[Observer],
+    targets: &[[f32; 3]],
+    params: &ViewshedParams,
+    control: &Control<'_>,
+) -> Result<Viewshed> {
+    check(observers, &params.earth)?;
+    let asked = Asked { scene, tree: TargetTree::new(targets), targets, params };
+    let mut result = Viewshed {
+        answers: asked.before_anybody_sees(observers),
+        counts: vec![0; targets.len()],
+        masks: Vec::new(),
+        seen_counts: Vec::with_capacity(observers.len()),
+    };
+    // few observers share the threads, each of many has one to itself; as many bands at once as there are threads bound the memory
+    let threads = rayon::current_num_threads();
+    let (threading, at_once) =
+        if observers.len() < 2 * threads { (Threading::Shared, 1) } else { (Threading::OneEach, threads) };
+    let bands: Vec<&[Observer]> = observers.chunks(BAND).collect();
+    for round in bands.chunks(at_once) {
+        let seen: Result<Vec<Band>> = round.par_iter().map(|band| asked.band(band, threading, control)).collect();
+        for band in seen? {
+            add(&mut result, band, params.masks);
+        }
+    }
+    Ok(result)
+}
+
+/// Observers of a band of masks.
+const BAND: usize = 32;
+
+/// Targets in a tree, and how they are asked about.
+struct Asked<'a> {
+    scene: &'a MedialScene,
+    tree: TargetTree,
+    targets: &'a [[f32; 3]],
+    params: &'a ViewshedParams,
+}
+
+/// How threads are shared.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Threading {
+    /// All threads work for one observer.
+    Shared,
+    /// An observer is one thread's.
+    OneEach,
+}
+
+/// What up to 32 observers see.
+struct Band {
+    /// Bit i: observer i sees the target, (M).
+    seen: Vec<u32>,
+    /// Rows of targets that some of them see without proof.
+    unproven: Vec<u32>,
+    seen_counts: Vec<usize>,
+}
+
+impl Asked<'_> {
+    /// Blocked for what somebody looks at, otherwise outside the view.
+    fn before_anybody_sees(&self, observers: &[Observer]) -> Vec<Answer> {
+        let is_looked_at = |&target: &[f32; 3]| {
+            let target = target.map(f64::from);
+            observers.iter().any(|observer| observer.eye != target && observer.limits.allow(observer.eye, target))
+        };
+        let answer = |target| if is_looked_at(target) { Answer::Blocked } else { Answer::OutsideView };
+        self.targets.par_iter().with_min_len(CHUNK).map(answer).collect()
+    }
+
+    fn band(&self, observers: &[Observer], threading: Threading, control: &Control<'_>) -> Result<Band> {
+        let mut band = Band { seen: vec![0; self.targets.len()], unproven: Vec::new(), seen_counts: Vec::new() };
+        for (number, observer) in observers.iter().enumerate() {
+            let mut count = 0;
+            let mut note = |row: usize, answer: Answer| match self.params.unproven.settle(answer) {
+                Answer::Visible => {
+                    band.seen[row] |= 1 << number;
+                    count += 1;
+                }
+                #[expect(clippy::cast_possible_truncation, reason = "targets are numbered with 32 bits")]
+                Answer::Unproven => band.unproven.push(row as u32),
+                _ => {}
+            };
+            if self.bends(observer) || threading == Threading::Shared {
+                let answers = self.seen_by(observer)?;
+                answers.into_iter().enumerate().for_each(|(row, answer)| note(row, answer));
+            } else {
+                self.scene.visible_among(Viewer::Eye(observer.eye), &self.tree, |place| {
+                    let target = self.tree.positions()[place].map(f64::from);
+                    if observer.limits.allow(observer.eye, target) {
+                        let answer = match self.params.unproven {
+                            UnprovenAs::Visible => Answer::Visible,
+                            _ => self.scene.answer_unblocked_from(observer.eye, target),
+                        };
+                        note(self.tree.rows()[place] as usize, answer);
+                    }
+                })?;
+            }
+            band.seen_counts.push(count);
+            control.advance(1);
+        }
+        Ok(band)
+    }
+
+    /// Whether any line of sight of an observer is curved.
+    fn bends(&self, observer: &Observer) -> bool {
+        self.tree.any_corner(|corner| self.params.earth.bends(corner, observer.eye))
+    }
+
+    /// What one observer sees, all threads at work: (M), blocked where the observer does not look.
+    fn seen_by(&self, observer: &Observer) -> Result<Vec<Answer>> {
+        let allowed = |target: [f32; 3]| observer.limits.allow(observer.eye, target.map(f64::from));
+        if !self.bends(observer) {
+            let mut answers = self.scene.answer_among(Viewer::Eye(observer.eye), &self.tree)?;
+            let targets = self.targets.par_iter().with_min_len(CHUNK);
+            answers.par_iter_mut().zip(targets).filter(|(_, target)| !allowed(**target)).for_each(|(answer, _)| {
+                *answer = Answer::Blocked;
+            });
+            return Ok(answers);
+        }
+        let answer = |&target: &[f32; 3]| {
+            if !allowed(target) {
+                return Answer::Blocked;
+            }
+            self.scene.sight_answer(observer.eye, target.map(f64::from), &self.params.earth)
+        };
+        Ok(self.targets.par_iter().with_min_len(CHUNK).map(answer).collect())
+    }
+}
+
+/// Adds what a band sees.
+fn add(result: &mut Viewshed, band: Band, masks: Masks) {
+    for row in band.unproven {
+        let answer = &mut result.answers[row as usize];
+        if *answer != Answer::Visible {
+            *answer = Answer::Unproven;
+        }
+    }
+    let targets = result.answers.par_iter_mut().zip(&mut result.counts).zip(&band.seen).with_min_len(CHUNK);
+    targets.filter(|(_, bits)| **bits != 0).for_each(|((answer, count), bits)| {
+        *answer = Answer::Visible;
+        *count += bits.count_ones();
+    });
+    result.seen_counts.extend(band.seen_counts);
+    if masks == Masks::Kept {
+        result.masks.push(band.seen);
+    }
+}
+
+/// How high above the ground a thing must reach in each cell for its top to be seen by one of the observers, metres: 0 where the
+/// ground is seen, +∞ where nothing up to `ceiling` metres is, NaN where no ground is known or no observer is turned to the
+/// cell. At most 2 mm above the exact figure for the balls; pulses are not asked. Limits of elevation are asked of the ground.
+///
+/// # Errors
+/// As [`viewshed`], and for a ceiling below zero.
+pub fn least_visible_heights(
+    scene: &MedialScene,
+    observers: &[Observer],
+    ground: &Ground,
+    ceiling: f64,
+    earth: &EarthParams,
+    control: &Control<'_>,
+) -> Result<Raster<f32>> {
+    check(observers, earth)?;
+    if !(ceiling >= 0.0) {
+        return Err(Error::InvalidParameter {
+            name: "greatest height to look at",
+            value: ceiling.to_string(),
+            expected: "0 metres or more",
+        });
+    }
+    let feet = cell_targets(ground, 0.0);
+    let mut heights = Raster::filled(ground.grid.width, ground.grid.height, f32::NAN);
+    for observer in observers {
+        heights.values_mut().par_iter_mut().with_min_len(CHUNK).zip(&feet).for_each(|(height, foot)| {
+            let foot = foot.map(f64::from);
+            if !observer.limits.allow(observer.eye, foot) {
+                return;
+            }
+            // another observer sees it lower already, or nobody looked yet
+            let bound = if height.is_finite() { f64::from(*height) } else { ceiling };
+            let seen = scene.least_visible_height(observer.eye, foot, bound, earth);
+            #[expect(clippy::cast_possible_truncation, reason = "metres above the ground")]
+            let seen = seen.map_or(f32::INFINITY, |seen| seen as f32);
+            if !(*height <= seen) {
+                *height = seen;
+            }
+        });
+        control.advance(1);
+    }
+    Ok(heights)
+}
+
+fn check(observers: &[Observer], earth: &EarthParams) -> Result<()> {
+    earth.validate()?;
+    for observer in observers {
+        observer.limits.validate()?;
+        if !observer.eye.iter().all(|v| v.is_finite()) {
+            let value = format!("{:?}", observer.eye);
+            return Err(Error::InvalidParameter { name: "eye of an observer", value, expected: "finite" });
+        }
+    }
+    Ok(())
+}

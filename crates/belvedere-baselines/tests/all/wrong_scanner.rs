@@ -1,0 +1,122 @@
+//! What it costs carved balls that the scanner is known badly, or not at all, and that normals come with the wrong sign: on a
+//! simulated town, against its exact mesh.
+
+use crate::common::flown::flown;
+use belvedere::PointCloud;
+use belvedere::cloud::to_local;
+use belvedere::control::Control;
+use belvedere::medial::{CarvedInput, CarvedParams, OrientByCarvingParams, carved_balls, orient_by_carving};
+use belvedere::neighbors::NeighborIndex;
+use belvedere::normals::estimate::{Neighborhood, estimate};
+use belvedere::normals::{Orientation, OrientedCloud, orient};
+use belvedere::pulses::{NeedleParams, Needles, VerticalParams, vertical_pulses};
+use belvedere::query::{MedialScene, SceneParams, Viewer, Visibility};
+use belvedere::view::to_sun;
+use belvedere_baselines::agreement::{Counts, Rate};
+use belvedere_baselines::medial::DEPTH_BIAS;
+use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Truth, town};
+
+/// A town, its scan, where the scanner was, and places in its streets with what is known of their light.
+struct Place {
+    cloud: PointCloud,
+    scanner: Vec<[f32; 3]>,
+    targets: Vec<[f32; 3]>,
+    /// Directions to suns, and whether each target sees them.
+    suns: Vec<([f64; 3], Vec<bool>)>,
+}
+
+impl Place {
+    fn new() -> Self {
+        let scene = town(&Preset::Town.params(80.0, 5));
+        let (cloud, scanner) = flown(&scene, &AirborneParams::covering(&scene, 8.0)).unwrap();
+        let origin = cloud.origin;
+        let truth = Truth::new(&scene);
+        let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
+        let (low, high) = cloud.bounds().unwrap();
+        let site = QuerySite { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
+        let exact = site.targets(QuerySet::Pedestrians, 10_000, 5).positions;
+        let suns = [[110.0_f64, 20.0_f64], [180.0, 65.0], [240.0, 35.0]].map(|[azimuth, elevation]| {
+            let direction = to_sun(azimuth.to_radians(), elevation.to_radians());
+            let hidden = truth.occluded_towards_each(&exact, direction);
+            (direction, hidden.into_iter().map(|hidden| !hidden).collect())
+        });
+        let targets = exact.into_iter().map(|p| to_local(p, origin)).collect();
+        Self { cloud, scanner, targets, suns: suns.into() }
+    }
+
+    /// Percent of answers that are right, balanced over lit and shaded places, mean over the suns, for a scanner at `scanner` and
+    /// normals that `turn` has had its way with after pulses gave them their signs.
+    fn score(
+        &self,
+        scanner: &[[f32; 3]],
+        before: impl Fn([f32; 3]) -> [f32; 3],
+        turn: impl Fn(OrientedCloud, &NeighborIndex, &Needles) -> OrientedCloud,
+    ) -> f64 {
+        let index = NeighborIndex::new(&self.cloud.positions).unwrap();
+        let mut normals = estimate(&self.cloud.positions, &index, Neighborhood::Fixed { k: 16 }).unwrap();
+        normals.vectors.iter_mut().for_each(|normal| *normal = before(*normal));
+        let (oriented, _) = orient(&self.cloud, normals, &Orientation::Pulses(scanner)).unwrap();
+        let (needles, _) = Needles::of_cloud(&self.cloud, scanner, &NeedleParams::default()).unwrap();
+        let oriented = turn(oriented, &index, &needles);
+        let attributes = &self.cloud.attributes;
+        let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses: None };
+        let balls = carved_balls(&input, &CarvedParams::default(), &Control::none()).unwrap().balls;
+        let blocking = SceneParams { depth_bias: DEPTH_BIAS, ..SceneParams::default() };
+        let scene = MedialScene::new(&balls, &blocking).unwrap();
+        let balanced = |(direction, visible): &([f64; 3], Vec<bool>)| {
+            let answers = scene.visible(Viewer::Direction(*direction), &self.targets).unwrap();
+            let mut counts = Counts::default();
+            visible.iter().zip(answers).for_each(|(&visible, answer)| counts.add(visible, answer));
+            100.0 * Rate::Balanced.of(&counts).unwrap()
+        };
+        self.suns.iter().map(balanced).sum::<f64>() / self.suns.len() as f64
+    }
+}
+
+fn as_it_is(oriented: OrientedCloud, _: &NeighborIndex, _: &Needles) -> OrientedCloud {
+    oriented
+}
+
+fn all_flipped(oriented: &OrientedCloud) -> OrientedCloud {
+    let normals = oriented.normals().iter().map(|n| n.map(|v| -v)).collect();
+    let (quality, confidence) = (oriented.quality().to_vec(), oriented.confidence().to_vec());
+    OrientedCloud::new(oriented.positions().to_vec(), normals, quality, confidence).unwrap()
+}
+
+#[test]
+fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
+    let place = Place::new();
+    let same = |normal: [f32; 3]| normal;
+    let exact = place.score(&place.scanner, same, as_it_is);
+    // lateral error at an angle to the flight, and height
+    for [aside, up] in [[5.0, 10.0], [20.0, 40.0]] {
+        let moved: Vec<[f32; 3]> =
+            place.scanner.iter().map(|s| [s[0] + 0.6 * aside, s[1] + 0.8 * aside, s[2] + up]).collect();
+        let score = place.score(&moved, same, as_it_is);
+        assert!((score - exact).abs() < 1.0, "{aside}/{up} m: {score} of {exact}");
+    }
+    // pulses turn them whatever they were
+    let flipped = place.score(&place.scanner, |normal| normal.map(|v| -v), as_it_is);
+    assert!((flipped - exact).abs() < 1.0, "{flipped} of {exact}");
+    // and what pulses leave of balls on either side turns them without that
+    let params = OrientByCarvingParams { least_confidence: 1.0, ..OrientByCarvingParams::default() };
+    let turn = |oriented: OrientedCloud, index: &NeighborIndex, needles: &Needles| {
+        orient_by_carving(&all_flipped(&oriented), index, needles, &params).unwrap().0
+    };
+    let carved = place.score(&place.scanner, same, turn);
+    let wrong = place.score(&place.scanner, same, |oriented, _, _| all_flipped(&oriented));
+    assert!((carved - exact).abs() < 1.0, "{carved} of {exact}, {wrong} with all of them inward");
+    // by more than what is tolerated above, so that the test would notice
+    assert!(wrong < exact - 1.0, "turning matters: {wrong} of {exact}");
+}
+
+#[test]
+fn pulses_that_are_merely_assumed_to_be_vertical_are_worth_carving_with() {
+    let place = Place::new();
+    let same = |normal: [f32; 3]| normal;
+    let exact = place.score(&place.scanner, same, as_it_is);
+    let assumed = vertical_pulses(&place.cloud.positions, &VerticalParams::default()).unwrap();
+    let vertical = place.score(&assumed, same, as_it_is);
+    // on the towns of the rules' table they cost streets nothing; one town is not their mean
+    assert!(vertical > exact - 2.0, "{vertical} of {exact}");
+}

@@ -1,0 +1,249 @@
+//! Runs the program in a folder of its own, and a house to run it on.
+#![expect(clippy::unwrap_used, clippy::panic, reason = "tests stop at the first surprise")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use belvedere::crs::Crs;
+use belvedere::io::{ExtraColumn, ExtraValues, MasbcppFolder, write_cloud, write_masbcpp};
+use belvedere::{Attributes, PointCloud};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A folder in which the program runs, removed at the end.
+pub(crate) struct Workplace(TempDir);
+
+/// What a run left behind.
+#[derive(Debug)]
+pub(crate) struct Run {
+    pub(crate) status: i32,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+impl Workplace {
+    pub(crate) fn new() -> Self {
+        Self(TempDir::new().unwrap())
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// The program with arguments parted by blanks.
+    pub(crate) fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_belvedere"));
+        command.current_dir(self.0.path()).args(arguments.split_ascii_whitespace()).stdin(Stdio::null());
+        command
+    }
+
+    /// Runs with arguments parted by blanks.
+    pub(crate) fn run(&self, arguments: &str) -> Run {
+        self.run_with(arguments, &[])
+    }
+
+    /// Runs with more arguments, which may hold blanks.
+    pub(crate) fn run_with(&self, arguments: &str, more: &[&str]) -> Run {
+        let output = self.command(arguments).args(more).output().unwrap();
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        let run = Run {
+            status: output.status.code().unwrap_or_else(|| panic!("{arguments}: killed by a signal")),
+            stdout: text(output.stdout),
+            stderr: text(output.stderr),
+        };
+        assert!(!run.stderr.contains("panicked"), "{arguments}: {run:?}");
+        run
+    }
+
+    /// Runs what must succeed, and gives its summary.
+    pub(crate) fn summary(&self, arguments: &str) -> Value {
+        self.summary_with(arguments, &[])
+    }
+
+    pub(crate) fn summary_with(&self, arguments: &str, more: &[&str]) -> Value {
+        let run = self.run_with(&format!("--json {arguments}"), more);
+        assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{arguments}");
+        serde_json::from_str(&run.stdout).unwrap()
+    }
+
+    /// Runs what must fail with `status`; its message must hold each of `words`.
+    pub(crate) fn refusal(&self, status: i32, arguments: &str, words: &[&str]) -> Run {
+        self.refusal_with(status, arguments, &[], words)
+    }
+
+    pub(crate) fn refusal_with(&self, status: i32, arguments: &str, more: &[&str], words: &[&str]) -> Run {
+        let run = self.run_with(arguments, more);
+        assert_eq!(run.status, status, "{arguments}: {run:?}");
+        assert_eq!(run.stdout, "", "{arguments}");
+        for word in words {
+            assert!(run.stderr.contains(word), "{arguments}: {word:?} is not in {}", run.stderr);
+        }
+        run
+    }
+
+    pub(crate) fn bytes(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    pub(crate) fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        fs::write(self.path(name), content).unwrap();
+    }
+
+    /// Names in the folder, hidden ones too, in order.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> =
+            fs::read_dir(self.0.path()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    pub(crate) fn npy<T: npyz::Deserialize>(&self, name: &str) -> (Vec<u64>, Vec<T>) {
+        npy(&self.path(name))
+    }
+
+    /// Values of an array of a ball file.
+    pub(crate) fn npz<T: npyz::Deserialize>(&self, name: &str, array: &str) -> Vec<T> {
+        let mut archive = npyz::npz::NpzArchive::open(self.path(name)).unwrap();
+        archive.by_name(array).unwrap().unwrap_or_else(|| panic!("{name} has no {array}")).into_vec().unwrap()
+    }
+
+    /// Writes (N, 3) f64.
+    pub(crate) fn write_targets(&self, name: &str, targets: &[[f64; 3]]) {
+        use npyz::WriterBuilder;
+        let shape = [targets.len() as u64, 3];
+        let file = fs::File::create(self.path(name)).unwrap();
+        let mut writer = npyz::WriteOptions::new().default_dtype().shape(&shape).writer(file).begin_nd().unwrap();
+        writer.extend(targets.iter().flatten().copied()).unwrap();
+        writer.finish().unwrap();
+    }
+
+    /// Writes a cloud; LAS and LAZ get its normals as columns.
+    pub(crate) fn write_cloud(&self, name: &str, cloud: &PointCloud) {
+        let path = self.path(name);
+        let is_las = path.extension().is_some_and(|e| e == "las" || e == "laz");
+        let axes = [0, 1, 2].map(|axis| {
+            let normals = cloud.attributes.normals.as_deref().unwrap_or_default();
+            normals.iter().map(|n| n[axis]).collect::<Vec<f32>>()
+        });
+        let column =
+            |axis: usize, name| ExtraColumn { name, description: "normal", values: ExtraValues::F32(&axes[axis]) };
+        let columns = [column(0, "NormalX"), column(1, "NormalY"), column(2, "NormalZ")];
+        let has_columns = is_las && !axes[0].is_empty();
+        write_cloud(&path, cloud, if has_columns { &columns } else { &[] }).unwrap();
+    }
+
+    /// Writes a folder with `coords.npy`, f64, and `normals.npy` where the cloud has normals.
+    pub(crate) fn write_folder(&self, name: &str, cloud: &PointCloud) {
+        let folder = self.path(name);
+        let normals = MasbcppFolder { normals: cloud.attributes.normals.as_deref(), ..MasbcppFolder::default() };
+        write_masbcpp(&folder, &normals).unwrap();
+        write_cloud(&folder.join("coords.npy"), cloud, &[]).unwrap();
+    }
+}
+
+/// Shape and values of an array.
+pub(crate) fn npy<T: npyz::Deserialize>(path: &Path) -> (Vec<u64>, Vec<T>) {
+    let file = fs::File::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let array = npyz::NpyFile::new(file).unwrap();
+    (array.shape().to_vec(), array.into_vec().unwrap())
+}
+
+/// Easting and northing of the middle of the house, metres.
+pub(crate) const EAST: f64 = 85_000.0;
+pub(crate) const NORTH: f64 = 446_000.0;
+
+/// How far the ground around the house lies above and below height 0, metres: an exact plane has no inside.
+pub(crate) const ROUGHNESS: f32 = 0.08;
+
+/// A gabled house on level ground at height 0, in the Dutch grid, with its outward normals, points half a metre apart.
+///
+/// The house spans 10 m from west to east and 8 m from south to north around (EAST, NORTH). Its eaves are 6 m high and
+/// run along the south and north sides, its ridge is 9 m high. There is ground 15 m around its middle, and none below it.
+pub(crate) fn house() -> PointCloud {
+    let mut points: Vec<([f32; 3], [f32; 3])> = Vec::new();
+    let steps = |from: f32, to: f32| (0..).map(move |i| from + 0.5 * i as f32).take_while(move |v| *v <= to);
+    for x in steps(-15.0, 15.0) {
+        for y in steps(-15.0, 15.0).filter(|y| x.abs() > 5.0 || y.abs() > 4.0) {
+            // like the black and white squares of a board: balls need something to touch below the ground
+            let is_high = ((x + y) * 2.0).rem_euclid(2.0) < 0.5;
+            points.push(([x, y, if is_high { ROUGHNESS } else { -ROUGHNESS }], [0.0, 0.0, 1.0]));
+        }
+    }
+    for x in steps(-4.75, 4.75) {
+        for z in steps(0.25, 5.75) {
+            points.push(([x, -4.0, z], [0.0, -1.0, 0.0]));
+            points.push(([x, 4.0, z], [0.0, 1.0, 0.0]));
+        }
+        for y in steps(-3.75, 3.75) {
+            points.push(([x, y, 9.0 - 0.75 * y.abs()], [0.0, 0.6 * y.signum(), 0.8]));
+        }
+    }
+    for y in steps(-3.75, 3.75) {
+        for z in steps(0.25, 8.9 - 0.75 * y.abs()) {
+            points.push(([-5.0, y, z], [-1.0, 0.0, 0.0]));
+            points.push(([5.0, y, z], [1.0, 0.0, 0.0]));
+        }
+    }
+    PointCloud {
+        origin: [EAST, NORTH, 0.0],
+        positions: points.iter().map(|p| p.0).collect(),
+        attributes: Attributes { normals: Some(points.iter().map(|p| p.1).collect()), ..Attributes::default() },
+        crs: Crs::from_epsg(28992).unwrap(),
+        ..PointCloud::default()
+    }
+}
+
+/// A position relative to the middle of the house in the coordinates of its file.
+pub(crate) fn at(x: f64, y: f64, z: f64) -> [f64; 3] {
+    [EAST + x, NORTH + y, z]
+}
+
+/// Whether the line from a place in a direction meets the house, the part of space below all of its walls and roofs.
+pub(crate) fn is_hidden(place: [f64; 3], direction: [f64; 3]) -> bool {
+    let sides: [([f64; 3], f64); 6] = [
+        ([1.0, 0.0, 0.0], 5.0),
+        ([-1.0, 0.0, 0.0], 5.0),
+        ([0.0, 1.0, 0.0], 4.0),
+        ([0.0, -1.0, 0.0], 4.0),
+        ([0.0, 0.75, 1.0], 9.0),
+        ([0.0, -0.75, 1.0], 9.0),
+    ];
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
+    for (normal, limit) in sides {
+        let (toward, room) = (dot(normal, direction), limit - dot(normal, place));
+        if toward > 0.0 {
+            leaves = leaves.min(room / toward);
+        } else if toward < 0.0 {
+            enters = enters.max(room / toward);
+        } else if room < 0.0 {
+            return false;
+        }
+    }
+    enters < leaves
+}
+
+/// Numbers of a column of a table; NaN for what is none.
+pub(crate) fn column(place: &Workplace, name: &str, column: &str) -> Vec<f64> {
+    let text = place.text(name);
+    let mut lines = text.lines();
+    let at =
+        lines.next().unwrap().split(',').position(|own| own == column).unwrap_or_else(|| panic!("{column} in {text}"));
+    lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap_or(f64::NAN)).collect()
+}
+
+/// The reference data, or `None` with a line that says so.
+pub(crate) fn shared_data(test: &str) -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
+    let folder = std::env::var_os("BELVEDERE_TEST_DATA").map_or(beside, PathBuf::from);
+    if folder.join("reference").is_dir() {
+        return Some(folder);
+    }
+    eprintln!("SKIPPED {test}: there is no reference data; name its folder in BELVEDERE_TEST_DATA");
+    None
+}

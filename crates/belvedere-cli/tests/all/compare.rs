@@ -1,0 +1,191 @@
+//! `belvedere compare` scores honestly, goes on where it stopped, and takes places of one's own.
+
+use crate::common::Workplace;
+use serde_json::Value;
+use std::fs;
+
+const SMALL: &str = "--extent 100 --density 2 --targets 1500 --methods paper-sphere,tau";
+
+/// What is kept of `method` on one set and group of views, at the first place.
+fn score<'a>(results: &'a Value, method: &str, set: &str, views: &str) -> &'a Value {
+    let of_method = results["methods"].as_array().unwrap().iter().find(|r| r["method"] == method).unwrap();
+    let scores = of_method["scores"].as_array().unwrap();
+    scores.iter().find(|s| s["set"] == set && s["views"] == views).unwrap()
+}
+
+/// The share, 0 to 1, of a rate of `method` on one set and group of views, at the first place.
+fn rate(results: &Value, method: &str, set: &str, views: &str, rate: &str) -> f64 {
+    let score = score(results, method, set, views);
+    let [value, low, high] = [0, 1, 2].map(|i| score[rate][i].as_f64().unwrap());
+    assert!(low <= value + 1e-9 && value <= high + 1e-9 && (0.0..=1.0).contains(&value), "{score}");
+    value
+}
+
+#[test]
+fn every_method_gets_scores_costs_and_pictures() {
+    let place = Workplace::new();
+    let results = &place.summary(&format!("compare {SMALL} -o out"))["results"];
+    for method in ["paper-sphere", "tau"] {
+        for set in ["AIR", "PED", "GRD", "ROOF", "FACADE", "VOL", "OWN"] {
+            for views in ["suns", "observers"] {
+                let [blocked, visible, balanced] =
+                    ["false_blocked", "false_visible", "balanced"].map(|r| rate(results, method, set, views, r));
+                // each view's balanced accuracy is one minus the mean of its two errors, and so is the mean over views
+                assert!((balanced - (1.0 - (blocked + visible) / 2.0)).abs() < 1e-9, "{method} {set} {views}");
+            }
+        }
+        rate(results, method, "LOS", "pairs", "balanced");
+        let mean = rate(results, method, "STREET", "street", "balanced");
+        let street = score(results, method, "STREET", "street");
+        assert!(street["tenth_balanced"].as_f64().unwrap() <= mean && street["observers"] == 40, "{street}");
+        assert_eq!(street["targets"], 300);
+        let picture = fs::read(place.path(&format!("out/pictures/town-100m-1--{method}.png"))).unwrap();
+        assert!(picture.starts_with(b"\x89PNG"));
+    }
+    // the finding of the paper's comparison: union as published blocks the street, the default does not
+    let street = |method| rate(results, method, "PED", "suns", "false_blocked");
+    assert!(street("paper-sphere") > 0.5 && street("tau") < 0.3);
+    let html = fs::read_to_string(place.path("out/report.html")).unwrap();
+    assert!(html.contains("town-100m-1--tau.png") && html.contains("Which balls of the published method"));
+    // of the four groups of views one holds the suns; each target of each sun gets one answer of three
+    let answers = results["places"][0]["answers"].as_array().unwrap();
+    let row = |set: &str, views: &str| {
+        let row = answers.iter().find(|row| row["set"] == set && row["views"] == views).unwrap();
+        ["visible", "unproven", "blocked"].map(|name| [0, 1].map(|i| row[name][i].as_u64().unwrap()))
+    };
+    for (set, views, asked) in [
+        ("PED", "sun at 20°", 1500),
+        ("AIR", "sun at 65°", 1500),
+        ("PED", "observers", 3000),
+        ("STREET", "street", 12_000),
+    ] {
+        let found = row(set, views);
+        assert_eq!(found.iter().map(|[given, _]| given).sum::<u64>(), asked, "{set} {views}");
+        assert!(found.iter().all(|[given, right]| right <= given && *given > 0), "{set} {views}: {found:?}");
+    }
+    let [visible, unproven, _] = row("PED", "sun at 65°").map(|[given, right]| right as f64 / given as f64);
+    assert!(visible > unproven, "what pulses bear out is right more often: {visible} {unproven}");
+    assert!(html.contains("What each answer of carved balls is worth") && html.contains("People in streets"));
+    let audit = results["places"][0]["audit"].as_array().unwrap();
+    assert!(audit.iter().any(|row| row["surface"] == "facade" && row["balls"].as_u64() > row["wrong"].as_u64()));
+}
+
+#[test]
+fn a_run_goes_on_where_it_stopped_and_redoes_what_is_stale() {
+    let place = Workplace::new();
+    let first = place.summary(&format!("compare {SMALL} -o out"));
+    let [kept, lost] = ["tau", "paper-sphere"].map(|m| place.path(&format!("out/results/town-100m-1--{m}.json")));
+    let untouched = fs::metadata(&kept).unwrap().modified().unwrap();
+    let old = fs::read_to_string(&lost).unwrap();
+    // an interruption leaves results out, or, at worst, a file of something else
+    fs::write(&lost, "{\"half\": ").unwrap();
+    let second = place.summary(&format!("compare {SMALL} -o out"));
+    assert_eq!(fs::metadata(&kept).unwrap().modified().unwrap(), untouched, "was made anew");
+    let scores = |text: &str| serde_json::from_str::<Value>(text).unwrap()["scores"].clone();
+    assert_eq!(scores(&fs::read_to_string(&lost).unwrap()), scores(&old), "the same scores again");
+    let methods = |run: &Value| run["results"]["methods"].as_array().unwrap().len();
+    assert_eq!((methods(&first), methods(&second)), (2, 2));
+    // other questions: what was kept does not answer them
+    place.summary(&format!("compare {SMALL} --targets 1000 -o out").replacen("--targets 1500 ", "", 1));
+    assert!(fs::metadata(&kept).unwrap().modified().unwrap() > untouched);
+}
+
+#[test]
+fn tables_go_between_the_marks_of_a_page() {
+    let place = Workplace::new();
+    fs::write(place.path("page.md"), "# Ours\n<!-- tables -->\nold\n<!-- end of tables -->\nclosing words\n").unwrap();
+    fs::write(place.path("bare.md"), "# Nothing\n").unwrap();
+    place.summary(&format!("compare {SMALL} -o out --page page.md"));
+    let page = fs::read_to_string(place.path("page.md")).unwrap();
+    assert!(page.starts_with("# Ours\n<!-- tables -->\n") && page.ends_with("<!-- end of tables -->\nclosing words\n"));
+    assert!(page.contains("| balls cut to half a metre |") && !page.contains("old"));
+    place.refusal(1, &format!("compare {SMALL} -o out --page bare.md"), &["bare.md", "<!-- tables -->"]);
+    assert_eq!(fs::read_to_string(place.path("bare.md")).unwrap(), "# Nothing\n");
+}
+
+#[test]
+fn a_place_of_ones_own_takes_part() {
+    let place = Workplace::new();
+    assert_eq!(place.run("demo -o demo --extent 100").status, 0);
+    let files =
+        "--scene demo/town.laz --mesh demo/town.obj --trajectory demo/trajectory.csv --model city=demo/town.obj";
+    let run = place.summary(&format!("compare {files} --targets 1500 --methods tau,mesh-city -o out"));
+    let results = &run["results"];
+    let street = rate(results, "tau", "PED", "suns", "false_blocked");
+    assert!((0.01..0.3).contains(&street), "{street}");
+    assert!(rate(results, "tau", "OWN", "suns", "balanced") > 0.8);
+    // the exact mesh as a method: what is left is the millimetre of the file
+    let exact = rate(results, "mesh-city", "PED", "suns", "balanced");
+    assert!(exact > 0.999, "{exact}");
+    let upward = place.summary("compare --scene demo/town.laz --mesh demo/town.obj --targets 800 --methods tau -o up");
+    let sets = upward["results"]["methods"][0]["scores"].as_array().unwrap().clone();
+    assert!(sets.iter().all(|score| score["set"] != "OWN"), "without a scanner own points have no truth");
+}
+
+#[test]
+fn clouds_are_judged_by_the_pulses_kept_from_the_methods() {
+    let place = Workplace::new();
+    place.summary("simulate village -o town --extent 100 --density 6");
+    let run =
+        place.summary("compare --held-out town/cloud.laz --methods paper-sphere,carved,surfels,hidden-points -o out");
+    let results = run["results"]["held_out"].as_array().unwrap().clone();
+    assert!(run["results"]["methods"].as_array().unwrap().is_empty(), "no town was asked for");
+    let share = |method: &str, name: &str| {
+        let result = results.iter().find(|r| r["method"] == method).unwrap();
+        assert!(
+            result["pulses"].as_u64().unwrap() > 4000 && result["scanner_known"].as_f64().unwrap() > 0.9,
+            "{result}"
+        );
+        let shares = result["shares"].as_array().unwrap();
+        shares.iter().find(|s| s[0] == name).and_then(|s| s[1].as_f64()).unwrap()
+    };
+    // pulses cut the balls that would block them, and their neighbours held out fly the same way
+    assert!(share("carved", "ground") < 0.5 * share("paper-sphere", "ground"));
+    assert!(share("carved", "false-visible 1 m behind building") < 0.1);
+    let refused = results.iter().find(|r| r["method"] == "hidden-points").unwrap();
+    assert!(refused["failed"].as_str().unwrap().contains("eye"), "{refused}");
+    let markdown = fs::read_to_string(place.path("out/report.md")).unwrap();
+    assert!(markdown.contains("### Held-out pulses of cloud") && markdown.contains("### What has no answer"));
+    let by_path = "compare --held-out town/cloud.laz --trajectory town/trajectory.csv --methods carved -o by_path";
+    let known = place.summary(by_path)["results"]["held_out"][0]["scanner_known"].as_f64().unwrap();
+    // the trajectory covers every pulse
+    assert!((known - 1.0).abs() < 1e-9, "{known}");
+    fs::write(place.path("bare.csv"), "x,y,z\n1,2,3\n2,3,4\n").unwrap();
+    place.refusal(1, "compare --held-out bare.csv -o out", &["bare.csv", "GPS time"]);
+}
+
+#[test]
+fn variants_run_only_when_named_in_full_and_costly_eyes_are_few() {
+    let place = Workplace::new();
+    let methods = |list: &str| -> Vec<Value> {
+        let run = place.summary(&format!("compare --extent 60 --density 2 --targets 200 --methods {list} -o out"));
+        run["results"]["methods"].as_array().unwrap().clone()
+    };
+    let keys = |results: &[Value]| -> Vec<String> {
+        results.iter().map(|result| result["method"].as_str().unwrap().to_owned()).collect()
+    };
+    // twice, the second time from what was kept
+    for _ in 0..2 {
+        assert_eq!(keys(&methods("carved")), ["carved"]);
+        assert_eq!(keys(&methods("carved-without-crowns")), ["carved-without-crowns"]);
+    }
+    let results = methods("mesh-exact,shadow-map-exact");
+    let eyes = |method: &str| {
+        let result = results.iter().find(|result| result["method"] == method).unwrap();
+        let scores = result["scores"].as_array().unwrap();
+        scores.iter().find(|score| score["set"] == "STREET").unwrap()["observers"].as_u64().unwrap()
+    };
+    assert!(eyes("mesh-exact") > 20 && eyes("shadow-map-exact") == 4);
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let place = Workplace::new();
+    place.refusal(2, "compare --scene a.laz -o out", &["--mesh"]);
+    place.refusal(2, "compare --presets metropolis -o out", &["metropolis", "old-town"]);
+    place.refusal(2, "compare --scene a.laz --mesh b.obj --model City=c.obj -o out", &["lower-case"]);
+    place.refusal(1, "compare --scene a.laz --mesh b.obj -o out", &["a.laz"]);
+    place.refusal(2, "compare --trajectory t.csv -o out", &["--trajectory", "--held-out"]);
+    place.refusal(1, "compare -o missing/out", &["missing"]);
+    place.refusal(2, "compare --extent 60 --targets 10 --methods magic -o out", &["magic", "paper-cone"]);
+}

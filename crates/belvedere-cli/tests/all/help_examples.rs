@@ -1,0 +1,104 @@
+//! Help texts show examples, and the examples work as printed.
+
+use crate::common::{Workplace, house};
+
+const COMMANDS: [&str; 22] = [
+    "demo",
+    "simulate",
+    "info",
+    "trajectory",
+    "normals",
+    "balls",
+    "depth-map",
+    "query",
+    "line-of-sight",
+    "viewshed",
+    "landmark",
+    "isovist",
+    "horizon",
+    "envelope",
+    "comfort",
+    "irradiance",
+    "shadow",
+    "sky-view",
+    "sun-hours",
+    "compare",
+    "completions",
+    "man",
+];
+
+/// The command lines in a help text: what follows a heading "Example:" or "Examples:", without remarks behind it.
+fn examples(help: &str) -> Vec<String> {
+    let from = help.lines().skip_while(|line| !line.starts_with("Example"));
+    let lines = from.filter_map(|line| line.strip_prefix("  belvedere "));
+    // remarks stand two blanks or more behind the command
+    lines.map(|line| line.split("  ").next().unwrap_or(line).trim().to_owned()).collect()
+}
+
+/// The words of a command line as a shell would part them, where double quotes are all it has.
+fn words(line: &str) -> Vec<String> {
+    let mut words = vec![];
+    for (i, part) in line.split('"').enumerate() {
+        if i % 2 == 1 {
+            words.push(part.to_owned());
+        } else {
+            words.extend(part.split_ascii_whitespace().map(str::to_owned));
+        }
+    }
+    words
+}
+
+#[test]
+fn every_command_shows_an_example_of_itself() {
+    let place = Workplace::new();
+    for command in COMMANDS {
+        for arguments in [format!("help {command}"), format!("{command} --help"), format!("{command} -h")] {
+            let run = place.run(&arguments);
+            assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{arguments}");
+            let examples = examples(&run.stdout);
+            assert!(examples.iter().any(|line| line.starts_with(command)), "{arguments}: {examples:?}");
+        }
+    }
+    let overview = place.run("--help");
+    assert_eq!(overview.status, 0);
+    for command in COMMANDS {
+        assert!(overview.stdout.lines().any(|line| line.trim_start().starts_with(command)), "{command}");
+    }
+    assert!(overview.stdout.contains("belvedere demo"));
+    assert_eq!(place.run("--version").stdout.trim(), concat!("belvedere ", env!("CARGO_PKG_VERSION")));
+    assert_eq!(place.run("").status, 2, "without a command the help is no result");
+}
+
+#[test]
+fn completions_and_manual_name_every_command() {
+    let place = Workplace::new();
+    for arguments in ["completions bash", "completions zsh", "completions fish", "completions powershell", "man"] {
+        let run = place.run(arguments);
+        assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{arguments}");
+        for command in COMMANDS {
+            let in_roff = command.replace('-', "\\-");
+            assert!(run.stdout.contains(command) || run.stdout.contains(&in_roff), "{arguments}: {command}");
+        }
+        assert_eq!(place.run(&format!("{arguments} --json")).stdout, run.stdout, "a script is no summary");
+    }
+    place.refusal(2, "completions tcl", &["tcl", "bash"]);
+}
+
+#[test]
+fn every_example_works_as_printed() {
+    let place = Workplace::new();
+    let demo = place.run("demo -o demo");
+    assert_eq!(demo.status, 0, "{demo:?}");
+    place.write_folder("FOLDER", &house());
+    for command in COMMANDS {
+        let help = place.run(&format!("help {command}")).stdout;
+        for example in examples(&help) {
+            // what stands behind > is the shell's
+            let line = example.split(" > ").next().unwrap().to_owned();
+            let words = words(&line);
+            let words: Vec<&str> = words.iter().map(String::as_str).collect();
+            let run = place.run_with("", &words);
+            assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{example}");
+        }
+    }
+}

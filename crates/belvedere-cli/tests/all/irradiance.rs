@@ -1,0 +1,126 @@
+//! `belvedere irradiance` on a house, whose sunny and shaded sides are known.
+#![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
+
+use crate::common::{EAST, NORTH, Workplace, house};
+
+/// The house's flags: its normals are given and no pulses are known.
+const HOUSE: &str = "house.laz --method tau --orient given --ground found --sun-cell 4 --patch-division 1";
+
+fn place() -> Workplace {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    place
+}
+
+fn numbers(text: &str, name: &str) -> Vec<f64> {
+    let at = text.lines().next().unwrap().split(',').position(|own| own == name).unwrap();
+    text.lines().skip(1).map(|line| line.split(',').nth(at).unwrap().parse().unwrap_or(f64::NAN)).collect()
+}
+
+#[test]
+fn the_ground_north_of_a_house_gets_less() {
+    let place = place();
+    let outputs = "-o energy.tif -o energy.png -o energy.csv --measures measures";
+    let summary = place.summary(&format!("irradiance {HOUSE} --clear-sky ineichen --cell 1 --months {outputs}"));
+    assert_eq!(summary["site"]["from"], "reference system");
+    // a clear year at 52° N has about 1630 kWh/m² on a level plane (pvlib: 1631 at a turbidity of 3)
+    let global = summary["radiation"]["global_kwh_m2"].as_f64().unwrap();
+    assert!((1600.0..1660.0).contains(&global), "{global}");
+    let text = place.text("energy.csv");
+    let (x, y, energy) = (numbers(&text, "x"), numbers(&text, "y"), numbers(&text, "kwh_m2"));
+    let at = |east: f64, north: f64| {
+        let square = |i: usize| (x[i] - EAST - east).powi(2) + (y[i] - NORTH - north).powi(2);
+        energy[(0..x.len()).min_by(|&a, &b| square(a).total_cmp(&square(b))).unwrap()]
+    };
+    let (north, south, far) = (at(0.5, 6.5), at(0.5, -6.5), at(0.5, -13.5));
+    assert!(north < 0.6 * south && south < far && far < global + 1.0, "{north} {south} {far} {global}");
+    let loss = numbers(&text, "loss");
+    assert!(loss.iter().all(|loss| (0.0..=1.0).contains(loss)));
+    let months: f64 = (1..=12).map(|month| numbers(&text, &format!("kwh_m2_{month:02}"))[0]).sum();
+    assert!((months - energy[0]).abs() < 0.1, "{months} {}", energy[0]);
+    assert!(place.bytes("energy.png").starts_with(b"\x89PNG"));
+    assert!(place.path("measures/beam_kwh_m2.tif").is_file() && place.path("energy.tif").is_file());
+}
+
+#[test]
+fn roofs_are_planes_with_bounds_of_their_loss() {
+    let place = place();
+    let flags = "--planes roofs.csv --planes roofs.geojson --horizons horizons";
+    let summary = place.summary(&format!("irradiance {HOUSE} --clear-sky haurwitz {flags}"));
+    assert_eq!(summary["roofs"]["planes"], 2, "{summary}");
+    let text = place.text("roofs.csv");
+    let (tilt, azimuth) = (numbers(&text, "tilt_deg"), numbers(&text, "azimuth_deg"));
+    // eaves 4 m out and 6 m up, ridge 9 m up: 3 in 4
+    assert!(tilt.iter().all(|tilt| (tilt - 0.75f64.atan().to_degrees()).abs() < 1.0), "{tilt:?}");
+    let south = azimuth.iter().position(|azimuth| (azimuth - 180.0).abs() < 5.0).unwrap();
+    let energy = numbers(&text, "kwh_m2");
+    assert!(energy[south] > 1.3 * energy[1 - south], "{energy:?}");
+    for (least, most) in numbers(&text, "least_loss").iter().zip(numbers(&text, "most_loss")) {
+        // nothing stands before these roofs but their own roughness
+        assert!((0.0..=most).contains(least) && *least < 0.1, "{least} {most}");
+    }
+    let area = numbers(&text, "area_m2");
+    assert!(area.iter().all(|area| (area - 50.0).abs() < 8.0), "10 m by 5 m each: {area:?}");
+    assert!(place.text("roofs.geojson").contains("most_loss"));
+    for plane in ["plane_1.txt", "plane_2.txt"] {
+        let horizon = place.text(&format!("horizons/{plane}"));
+        assert_eq!(horizon.lines().filter(|line| line.parse::<f64>().is_ok()).count(), 48);
+    }
+}
+
+/// A year of noons in the format of PVGIS, and where they are.
+fn weather(latitude: f64, offset: f64) -> String {
+    let mut text = format!(
+        "Latitude (decimal degrees): {latitude}\nLongitude (decimal degrees): 4.4\nElevation (m): 0.0\n\
+         Irradiance Time Offset (h): {offset}\nmonth,year\n1,2015\ntime(UTC),T2m,RH,G(h),Gb(n),Gd(h)\n"
+    );
+    for month in 1..=12 {
+        text += &format!("2015{month:02}15:1200,10.0,80.0,300.0,200.0,150.0\n");
+    }
+    text
+}
+
+#[test]
+fn weather_comes_from_files() {
+    let place = place();
+    place.write("weather.csv", weather(52.0, 0.0));
+    let summary = place.summary(&format!("irradiance {HOUSE} --weather weather.csv --cell 4 --sky perez -o out.csv"));
+    assert_eq!(summary["radiation"]["from"], "PVGIS, typical year");
+    assert_eq!(
+        (&summary["radiation"]["rows"], summary["radiation"]["global_kwh_m2"].as_f64()),
+        (&12.into(), Some(3.6))
+    );
+    assert!(summary["site"]["note"].is_null());
+    place.write("elsewhere.csv", weather(40.0, 0.0));
+    let summary = place.summary(&format!("irradiance {HOUSE} --weather elsewhere.csv --cell 4 -o out.csv"));
+    assert!(summary["site"]["note"].as_str().unwrap().contains("km off"), "{summary}");
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_advice() {
+    let place = place();
+    let house = |flags: &str| format!("irradiance {HOUSE} {flags}");
+    place.refusal(2, &house("-o out.csv"), &["--weather", "--clear-sky"]);
+    place.refusal(2, &house("--clear-sky bird"), &["--output"]);
+    place.refusal(2, &house("--clear-sky ineichen --linke 99 -o out.csv"), &["--linke", "turbidity"]);
+    place.refusal(2, &house("--clear-sky bird --linke 3 -o out.csv"), &["--linke", "ineichen"]);
+    place.refusal(2, &house("--clear-sky bird --albedo 2 -o out.csv"), &["--albedo"]);
+    place.refusal(2, &house("--clear-sky bird --year 9999 -o out.csv"), &["--year"]);
+    place.refusal(2, &house("--clear-sky bird --location 99,0 -o out.csv"), &["--location", "latitude"]);
+    place.refusal(2, &house("--clear-sky bird --planes roofs.txt"), &["--planes", ".csv"]);
+    place.refusal(2, &house("--clear-sky bird --planes a.csv -o a.csv"), &["two results"]);
+    place.refusal(1, &house("--weather nowhere.epw -o out.csv"), &["nowhere.epw"]);
+    place.write(
+        "broken.epw",
+        "LOCATION,a,b,c,d,e,52.0,4.0,1.0,0.0\n\n\n\n\n\n\nDATA PERIODS,1,1\n1999,6,21,13,60,?,10\n",
+    );
+    place.refusal(1, &house("--weather broken.epw -o out.csv"), &["broken.epw", "line 9", "cell 14"]);
+    // a cloud that does not say where it lies
+    let mut adrift = crate::common::house();
+    adrift.crs = belvedere::crs::Crs::default();
+    place.write_cloud("adrift.ply", &adrift);
+    let flags = "--method tau --orient given --ground found --sun-cell 4 --clear-sky bird --cell 4 -o out.csv";
+    place.refusal(1, &format!("irradiance adrift.ply {flags}"), &["--location", "--crs"]);
+    let summary = place.summary(&format!("irradiance adrift.ply {flags} --location 52,4.4"));
+    assert_eq!(summary["site"]["from"], "--location");
+}

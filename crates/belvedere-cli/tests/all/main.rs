@@ -1,0 +1,25 @@
+//! The tests of the command line, in one program: linking many small ones took longer than running them.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::cast_possible_truncation, reason = "the numbers of tests are small, or made to be f32")]
+
+mod carved;
+mod common;
+mod compare;
+mod depth_maps;
+mod determinism;
+mod envelopes;
+mod help_examples;
+mod info;
+mod irradiance;
+mod masbcpp_folder;
+mod odd_clouds;
+mod queries;
+mod shadow;
+mod sights;
+mod simulate;
+mod sky_view;
+mod sun_hours;
+mod surroundings;
+mod trajectory;
+mod tree_light;
+mod usage;

@@ -1,0 +1,88 @@
+//! Clouds of hardly any points, or of no shape, give a result or a clear message.
+
+use crate::common::Workplace;
+
+/// What can be run on a cloud.
+const COMMANDS: [&str; 8] = [
+    "info",
+    "normals -o out.laz",
+    "normals -o out-folder",
+    "balls -o out.npz",
+    "balls -o out-balls --simplify 0.4",
+    "depth-map --sun 180,30 -o out.tif",
+    "depth-map --direction 0,0,-1 -o out.png",
+    "query --sun 180,30 --random 10 -o out.csv",
+];
+
+/// Runs everything; what fails must say so in one line that begins with `error: `.
+fn run_everything(place: &Workplace, name: &str) -> usize {
+    let mut done = 0;
+    for command in COMMANDS {
+        for flags in ["", "--keep-isolated --keep-duplicates", "--method angles"] {
+            let takes_flags = match command.split(' ').next() {
+                Some("info") => false,
+                Some("normals") => !flags.contains("--method"),
+                _ => true,
+            };
+            let arguments = format!("{command} {name} {}", if takes_flags { flags } else { "" });
+            let run = place.run(&arguments);
+            if run.status == 0 {
+                assert_eq!(run.stderr, "", "{arguments}");
+                done += 1;
+            } else {
+                assert_eq!(run.status, 1, "{arguments}: {run:?}");
+                assert!(run.stderr.starts_with("error: ") && run.stderr.lines().count() == 1, "{arguments}: {run:?}");
+                assert_eq!(run.stdout, "", "{arguments}");
+            }
+        }
+    }
+    assert!(place.names().iter().all(|name| !name.starts_with('.')), "{:?}", place.names());
+    done
+}
+
+#[test]
+fn a_handful_of_points_is_no_reason_to_crash() {
+    let points = ["85000 446000 1", "85001 446000 1", "85000 446001 1.5", "85001 446001 2"];
+    for count in 1..=4 {
+        let place = Workplace::new();
+        place.write("points.xyz", points[..count].join("\n"));
+        // `info` at least, three times
+        assert!(run_everything(&place, "points.xyz") >= 3, "{count} points");
+    }
+}
+
+#[test]
+fn points_in_one_place_or_on_a_line_are_no_reason_to_crash() {
+    let rows = |row: fn(usize) -> String| (0..200).map(row).collect::<Vec<String>>().join("\n");
+    for (name, text) in [
+        ("equal.xyz", rows(|_| "85000.5 446000.5 3.25".to_owned())),
+        ("line.xyz", rows(|i| format!("{} {} {}", 85_000.0 + i as f64 * 0.5, 446_000.0 + i as f64 * 0.25, 2.0))),
+        ("upright.xyz", rows(|i| format!("85000 446000 {}", i as f64 * 0.25))),
+        ("plane.xyz", rows(|i| format!("{} {} 0", i % 20, i / 20))),
+    ] {
+        let place = Workplace::new();
+        place.write(name, text);
+        assert!(run_everything(&place, name) >= 3, "{name}");
+    }
+}
+
+#[test]
+fn a_cloud_that_cleaning_empties_names_the_flags_that_keep_it() {
+    let place = Workplace::new();
+    place.write("noise.csv", "x,y,z,classification\n1,1,1,7\n2,2,2,7\n3,3,3,18\n4,4,4,7\n");
+    place.refusal(1, "balls noise.csv -o out.npz", &["no points are left", "4 were read", "--keep-noise"]);
+    assert_eq!(place.names(), ["noise.csv"]);
+}
+
+#[test]
+fn a_ball_file_without_balls_shows_nothing() {
+    let place = Workplace::new();
+    // a plane has no inside: no ball meets a second point
+    let rows: Vec<String> = (0..400).map(|i| format!("{},{},0,0,0,1\n", i % 20, i / 20)).collect();
+    place.write("plane.csv", format!("x,y,z,nx,ny,nz\n{}", rows.concat()));
+    let summary = place.summary("balls plane.csv -o balls.npz");
+    assert_eq!(summary["interior_balls"]["shrunk"], 0);
+    // the file knows where its scene is
+    let summary = place.summary("depth-map balls.npz --direction 0,0,-1 -o out.npy");
+    assert_eq!(summary["pixels_hit_percent"], 0.0);
+}

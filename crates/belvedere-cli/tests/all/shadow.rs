@@ -1,0 +1,197 @@
+//! Shadows on the command line, around a house whose shadow is known.
+
+use crate::common::{EAST, NORTH, Workplace, at, column, house, is_hidden};
+
+const HOUSE: &str = "house.laz --orient given --method tau --ground found";
+
+fn place() -> Workplace {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    place
+}
+
+fn write_places(place: &Workplace, name: &str, places: &[[f64; 3]]) {
+    let rows: String = places.iter().map(|&[x, y, z]| at(x, y, z)).map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
+    place.write(name, format!("x,y,z\n{rows}"));
+}
+
+fn to_sun(azimuth_deg: f64, elevation_deg: f64) -> [f64; 3] {
+    let ((sin, cos), (up, along)) = (azimuth_deg.to_radians().sin_cos(), elevation_deg.to_radians().sin_cos());
+    [along * sin, along * cos, up]
+}
+
+#[test]
+fn the_shadow_of_a_house_is_the_exact_one() {
+    let place = place();
+    for (azimuth, elevation) in [(180.0, 45.0), (110.0, 30.0), (300.0, 55.0)] {
+        let run = place.summary(&format!(
+            "shadow {HOUSE} --sun {azimuth},{elevation} --cell 0.5 -o lit.csv -o lit.tif -o lit.png"
+        ));
+        assert_eq!(run["sun"]["suns"], 1);
+        let [x, y, z, lit] = ["x", "y", "z", "lit"].map(|name| column(&place, "lit.csv", name));
+        let sun = to_sun(azimuth, elevation);
+        let (mut shaded, mut asked) = (0, 0);
+        for i in 0..lit.len() {
+            let spot = [x[i] - EAST, y[i] - NORTH, z[i]];
+            if spot[0].abs() < 5.8 && spot[1].abs() < 4.8 {
+                continue;
+            }
+            // balls end up to half a metre beside edges where points stand half a metre apart: the outline itself is not asked
+            let hidden = |east: f64, north: f64| is_hidden([spot[0] + east, spot[1] + north, spot[2]], sun);
+            let expected = hidden(0.0, 0.0);
+            if [(-0.7, 0.0), (0.7, 0.0), (0.0, -0.7), (0.0, 0.7)].iter().any(|&(e, n)| hidden(e, n) != expected) {
+                continue;
+            }
+            assert_eq!(lit[i], if expected { 0.0 } else { 1.0 }, "sun {azimuth},{elevation} at {spot:?}");
+            shaded += usize::from(expected);
+            asked += 1;
+        }
+        assert!(shaded > 30 && asked > 2000, "{shaded} of {asked}");
+        assert!(place.bytes("lit.png").starts_with(b"\x89PNG") && place.path("lit.tif").is_file());
+    }
+}
+
+#[test]
+fn a_time_is_the_same_however_it_is_written_and_nothing_is_lit_at_night() {
+    let place = place();
+    write_places(&place, "places.csv", &[[0.0, 8.0, 0.5], [0.0, -9.0, 0.5], [9.0, 0.0, 0.5], [-9.0, 0.0, 0.5]]);
+    let lit = |flags: &str| {
+        let run = place.summary(&format!("shadow {HOUSE} {flags} --targets places.csv -o lit.csv"));
+        (column(&place, "lit.csv", "lit"), run)
+    };
+    let (first, run) = lit("--time 2026-12-21T12:00+01:00");
+    // the noon sun of the shortest day stands 15 degrees high: north of the house is shade
+    assert_eq!(first, [0.0, 1.0, 1.0, 1.0]);
+    let sun = run["sun"].as_object().unwrap().values().find(|value| value.is_object()).unwrap();
+    // pvlib 0.16.1 at 51.998 N, 4.366 E, 4.5 m up; 0.001 degrees of place
+    assert!((sun["elevation_deg"].as_f64().unwrap() - 14.1057).abs() < 0.003, "{sun}");
+    assert!((sun["azimuth_deg"].as_f64().unwrap() - 170.4106).abs() < 0.004, "{sun}");
+    for flags in [
+        "--time 2026-12-21T11:00Z",
+        "--time 2026-12-21T12:00 --zone Europe/Amsterdam",
+        "--time 2026-12-21T12:00[Europe/Amsterdam]",
+        "--time 2026-12-21T12:00 --zone +01:00",
+    ] {
+        let (same, other) = lit(flags);
+        let other = other["sun"].as_object().unwrap().values().find(|value| value.is_object()).unwrap().clone();
+        assert_eq!((&same, &other), (&first, sun), "{flags}");
+    }
+    // in the morning the east is lit and the west is shade
+    let (morning, _) = lit("--time 2026-06-21T07:30+02:00");
+    assert_eq!(morning[2..], [1.0, 0.0]);
+    let (night, run) = lit("--time 2026-06-21T01:00+02:00");
+    assert_eq!(night, [0.0; 4]);
+    assert_eq!(run["sun"]["suns_below_the_horizon"], 1);
+    let (below, _) = lit("--sun 180,-5");
+    assert_eq!(below, [0.0; 4]);
+    // several times have a column each, in their order
+    place.summary(&format!(
+        "shadow {HOUSE} --time 2026-12-21T12:00+01:00 --time 2026-06-21T01:00+02:00 --targets places.csv -o two.csv"
+    ));
+    let header = place.text("two.csv").lines().next().unwrap().to_owned();
+    let names: Vec<&str> = header.split(',').filter(|name| name.starts_with("lit_")).collect();
+    assert_eq!(names.len(), 2, "{header}");
+    assert_eq!((column(&place, "two.csv", names[0]), column(&place, "two.csv", names[1])), (first, night));
+}
+
+#[test]
+fn soft_edges_are_as_wide_as_the_sun_and_hard_ones_cut_them_in_half() {
+    let place = place();
+    // across the edge of the shadow of the eaves, 6 m high: it lies 10 m north of the middle under a sun of 45 degrees
+    let places: Vec<[f64; 3]> = (0..200).map(|i| [0.25, 9.0 + 0.01 * f64::from(i), 0.1]).collect();
+    write_places(&place, "line.csv", &places);
+    let lit = |flags: &str| {
+        place.summary(&format!("shadow {HOUSE} --sun 180,45 {flags} --targets line.csv -o lit.csv"));
+        column(&place, "lit.csv", "lit")
+    };
+    let (soft, hard) = (lit("--soft"), lit(""));
+    assert!(soft.iter().all(|lit| (0.0..=1.0).contains(lit)) && hard.iter().all(|lit| [0.0, 1.0].contains(lit)));
+    assert_eq!((soft[0], soft[199], hard[0], hard[199]), (0.0, 1.0, 0.0, 1.0));
+    assert!(soft.windows(2).all(|pair| pair[0] <= pair[1]), "{soft:?}");
+    let partly = soft.iter().filter(|lit| **lit > 0.0 && **lit < 1.0).count();
+    // half a degree over the 8.4 m from the eaves, laid on level ground at 45 degrees, is 0.11 m; the edge of a ball is as sharp as a wall's
+    assert!((7..=15).contains(&partly), "{partly} of a centimetre");
+    let (edge, half) = (hard.iter().position(|&lit| lit == 1.0), soft.iter().position(|&lit| lit > 0.5));
+    assert!(edge.unwrap().abs_diff(half.unwrap()) <= 2, "{edge:?} {half:?}");
+}
+
+#[test]
+fn faces_that_are_turned_away_are_not_lit() {
+    let place = place();
+    // a cube of 1 m, far above everything, outward faces: top, bottom, south, north
+    let mut obj = String::new();
+    for [x, y, z] in (0..8).map(|i| [f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2 & 1)]) {
+        let [x, y, z] = at(10.0 + x, 10.0 + y, 20.0 + z);
+        obj += &format!("v {x} {y} {z}\n");
+    }
+    obj += "o cube\nf 5 6 8\nf 5 8 7\nf 1 4 2\nf 1 3 4\nf 1 2 6\nf 1 6 5\nf 3 8 4\nf 3 7 8\n";
+    place.write("cube.obj", obj);
+    place.summary(&format!("shadow {HOUSE} --sun 180,45 --targets cube.obj -o faces.csv -o faces.ply"));
+    let (faces, lit) = (column(&place, "faces.csv", "face"), column(&place, "faces.csv", "lit"));
+    let of = |face: f64| lit[faces.iter().position(|&own| own == face).unwrap()];
+    assert_eq!([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0].map(of), [1.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]);
+    // four of the faces as large as each other are lit
+    assert!((lit[0] - 0.5).abs() < 1e-6, "{}", lit[0]);
+    assert!(place.path("faces.ply").is_file());
+    // as level ones all are lit: nothing stands above them
+    place.summary(&format!("shadow {HOUSE} --sun 180,45 --targets cube.obj --facing level -o level.csv"));
+    assert!(column(&place, "level.csv", "lit").iter().all(|&lit| lit == 1.0));
+}
+
+#[test]
+fn a_film_has_a_frame_for_each_sun() {
+    let place = place();
+    let run = place.summary(&format!(
+        "shadow {HOUSE} --date 2026-12-21 --zone Europe/Amsterdam --step 60 --cell 1 -o day.csv --film day.png --frames frames --seconds 0.5"
+    ));
+    let suns = run["sun"]["suns"].as_u64().unwrap();
+    // the sun is up for 7 h 40
+    assert!((8..=9).contains(&suns), "{suns}");
+    let film = place.bytes("day.png");
+    let at = film.windows(4).position(|word| word == b"acTL").unwrap() + 4;
+    assert_eq!(u64::from(u32::from_be_bytes(film[at..at + 4].try_into().unwrap())), suns);
+    let frames = std::fs::read_dir(place.path("frames")).unwrap().count();
+    assert_eq!(frames as u64, suns);
+    let header = place.text("day.csv").lines().next().unwrap().to_owned();
+    assert_eq!(header.split(',').filter(|name| name.starts_with("lit_202612")).count() as u64, suns, "{header}");
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_advice() {
+    let place = place();
+    write_places(&place, "places.csv", &[[0.0, 8.0, 0.5]]);
+    for (flags, words) in [
+        ("-o no.csv", "--time"),
+        ("--time noon -o no.csv", "--time"),
+        ("--time 2026-06-21T15:00 -o no.csv", "--zone"),
+        ("--time 2026-03-29T02:30 --zone Europe/Amsterdam -o no.csv", "skip"),
+        ("--time 2026-06-21T15:00Z --date 2026-06-21 -o no.csv", "--date"),
+        ("--sun 180,91 -o no.csv", "elevation"),
+        ("--sun 180 -o no.csv", "2 numbers"),
+        ("--sun nan,30 -o no.csv", "finite"),
+        ("--sun 180,30 --time 2026-06-21T15:00Z -o no.csv", "--time"),
+        ("--date shortest-day --location 80,15 -o no.csv", "does not rise"),
+        ("--date 2026-06-21 --step 0 -o no.csv", "--step"),
+        ("--sun 180,30 --unproven report -o no.csv", "pulses"),
+        ("--sun 180,30 --soft --unproven report -o no.csv", "hard edges"),
+        ("--sun 180,30 --sun 180,40 --unproven report -o no.csv", "one sun"),
+        ("--sun 180,30 --film film.gif -o no.csv", "png"),
+        ("--sun 180,30 --film no.png -o no.png", "two results"),
+        ("--sun 180,30 --film film.png --targets places.csv -o no.csv", "grid"),
+        ("--sun 180,30 --frames frames --targets places.csv -o no.csv", "grid"),
+        ("--sun 180,30 --seconds 0.1 -o no.csv", "--film"),
+        ("--sun 180,30 --film film.png --seconds 0 -o no.csv", "--seconds"),
+        ("--sun 180,30 --targets places.csv --cell 2 -o no.csv", "--cell"),
+        ("--sun 180,30 --targets places.csv -o no.tif", "csv"),
+        ("--sun 180,30 --facing normals -o no.csv", "level"),
+        ("--sun 180,30 --spacing 1 -o no.csv", "--spacing"),
+    ] {
+        let run = place.run(&format!("shadow {HOUSE} {flags}"));
+        assert!(run.status == 2 && run.stderr.contains(words), "{flags}: {run:?}");
+    }
+    assert!(
+        place.names().iter().all(|name| !name.starts_with("no.") && !name.starts_with("film")),
+        "{:?}",
+        place.names()
+    );
+}

@@ -1,0 +1,175 @@
+//! Lines of sight and viewsheds around a house, worked out by hand, in every kind of file.
+#![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
+#![expect(clippy::cast_possible_truncation, reason = "cells of a small grid")]
+
+use crate::common::{EAST, NORTH, ROUGHNESS, Workplace, at, house};
+
+/// The house's flags: its normals are given and no pulses are known.
+const HOUSE: &str = "house.laz --method tau --orient given --ground found";
+
+fn column(text: &str, name: &str) -> Vec<String> {
+    let at = text.lines().next().unwrap().split(',').position(|own| own == name).unwrap();
+    text.lines().skip(1).map(|line| line.split(',').nth(at).unwrap().to_owned()).collect()
+}
+
+fn numbers(text: &str, name: &str) -> Vec<f64> {
+    column(text, name).iter().map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()
+}
+
+fn place() -> Workplace {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    place
+}
+
+#[test]
+fn pairs_around_a_house_are_blocked_where_its_walls_stand() {
+    let place = place();
+    let pairs = [
+        (at(-12.0, 0.0, 2.0), at(12.0, 0.0, 2.0)),   // through both gables
+        (at(12.0, 0.0, 2.0), at(-12.0, 0.0, 2.0)),   // and back
+        (at(-12.0, 7.0, 2.0), at(12.0, 7.0, 2.0)),   // past its north side
+        (at(-12.0, 0.0, 12.0), at(12.0, 0.0, 12.0)), // over its ridge
+        (at(0.0, 10.0, 2.0), at(0.0, 10.0, 2.0)),    // no line
+    ];
+    let rows: Vec<String> =
+        pairs.iter().map(|(a, b)| a.iter().chain(b).map(f64::to_string).collect::<Vec<_>>().join(",")).collect();
+    place.write("pairs.csv", format!("ax,ay,az,bx,by,bz\n{}\n", rows.join("\n")));
+    let summary = place.summary("line-of-sight house.laz --method tau --orient given --pairs pairs.csv -o out.csv");
+    assert_eq!(summary["lines_of_sight"]["blocked"], 2);
+    let text = place.text("out.csv");
+    assert_eq!(column(&text, "answer"), ["0", "0", "1", "1", "3"]);
+    // the wall is 7 m off, seen from either side; balls may bulge by what points half a metre apart allow
+    let ranges = numbers(&text, "first_block_range_m");
+    assert!((ranges[0] - 7.0).abs() < 0.3 && (ranges[1] - 7.0).abs() < 0.3, "{ranges:?}");
+    assert!((numbers(&text, "block_x")[0] - (EAST - 5.0)).abs() < 0.3);
+    assert!(ranges[2].is_nan() && column(&text, "block_ball")[2].is_empty());
+}
+
+#[test]
+fn a_profile_shows_the_house_between() {
+    let place = place();
+    let line = format!("--from {},{},2 --to {},{},2", EAST - 12.0, NORTH, EAST + 12.0, NORTH);
+    place.summary(&format!("line-of-sight {HOUSE} {line} --profile-out profile.csv --profile-step 0.5"));
+    let text = place.text("profile.csv");
+    let (distances, blocked, ground) =
+        (numbers(&text, "distance_m"), numbers(&text, "blocked"), numbers(&text, "ground"));
+    assert_eq!(distances.len(), 49);
+    for ((distance, blocked), ground) in distances.iter().zip(blocked).zip(ground) {
+        // in the walls, which stand at 7 m and 17 m and get balls of half a metre, and well outside
+        if (7.4..7.6).contains(distance) || (16.4..16.6).contains(distance) {
+            assert_eq!(blocked, 1.0, "{distance}");
+        }
+        if !(6.5..17.5).contains(distance) {
+            assert_eq!(blocked, 0.0, "{distance}");
+        }
+        // the finder takes what lies within 0.3 m of the ground for ground, such as the feet of walls
+        assert!(ground.abs() <= f64::from(ROUGHNESS) + 0.3, "{ground}");
+    }
+    place.summary(&format!("line-of-sight {HOUSE} {line} --profile-out profile.png"));
+    assert!(place.bytes("profile.png").starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn a_viewshed_hides_what_lies_behind_the_house() {
+    let place = place();
+    let observer = format!("--observer {},{}", EAST - 12.0, NORTH);
+    let outputs = "-o seen.tif -o seen.png -o seen.geojson -o seen.csv --heights heights.npy --masks masks.npy";
+    let summary = place.summary(&format!("viewshed {HOUSE} {observer} --cell 1 {outputs}"));
+    assert_eq!(summary["observers"]["count"], 1);
+    let file = std::fs::File::open(place.path("seen.tif")).unwrap();
+    let mut tiff = tiff::decoder::Decoder::new(file).unwrap();
+    let (width, height) = tiff.dimensions().unwrap();
+    let tiff::decoder::DecodingResult::U8(cells) = tiff.read_image().unwrap() else { panic!("no bytes") };
+    let scale = tiff.get_tag_f64_vec(tiff::tags::Tag::ModelPixelScaleTag).unwrap();
+    let tie = tiff.get_tag_f64_vec(tiff::tags::Tag::ModelTiepointTag).unwrap();
+    assert_eq!(&scale[..2], [1.0, 1.0]);
+    let index = |[x, y, _]: [f64; 3]| {
+        let (column, row) = ((x - tie[3]).floor(), (tie[4] - y).floor());
+        row as usize * width as usize + column as usize
+    };
+    assert_eq!(cells.len(), (width * height) as usize);
+    let cell = |x: f64, y: f64| cells[index(at(x, y, 0.0))];
+    // before the house, behind it, in it, and beside it
+    assert_eq!((cell(-8.5, 0.5), cell(8.5, 0.5), cell(0.5, 0.5), cell(-6.5, 10.5)), (255, 0, 0, 255));
+    let (shape, heights) = place.npy::<f32>("heights.npy");
+    assert_eq!(shape, [u64::from(height), u64::from(width)]);
+    // the eye at 1.7 m looks over the west end of the ridge, 7 m off and 8.9 m high where the line passes: 20.5 m off a thing must reach
+    // 1.7 + 20.5 · 7.2/7 = 22.8 m; balls lie inside the roof by what points half a metre apart leave
+    let behind = heights[index(at(8.5, 0.5, 0.0))];
+    assert!((21.8..23.1).contains(&behind), "{behind}");
+    assert_eq!(heights[index(at(-8.5, 0.5, 0.0))], 0.0);
+    let (shape, masks) = place.npy::<u32>("masks.npy");
+    assert_eq!(shape, [1, u64::from(height), u64::from(width)]);
+    assert!(masks.iter().zip(&cells).all(|(bits, cell)| (*bits == 1) == (*cell == 255)));
+    assert!(place.text("seen.geojson").contains("MultiPolygon"));
+    assert!(column(&place.text("seen.csv"), "answer").contains(&"0".to_owned()));
+}
+
+#[test]
+fn a_target_is_seen_from_where_an_observer_there_would_see_the_eyes() {
+    let place = place();
+    let target = format!("--target {},{} --target-height 2 --observer-height 1.7", EAST + 12.0, NORTH);
+    place.summary(&format!("viewshed {HOUSE} {target} --cell 1 -o reverse.csv -o reverse.tif"));
+    let observer = format!("--observer {},{} --observer-height 2 --target-height 1.7", EAST + 12.0, NORTH);
+    place.summary(&format!("viewshed {HOUSE} {observer} --cell 1 -o forward.tif"));
+    assert_eq!(place.bytes("reverse.tif"), place.bytes("forward.tif"));
+}
+
+#[test]
+fn observers_come_from_tables_and_geojson_and_paths_have_a_step() {
+    let place = place();
+    place.write(
+        "observers.csv",
+        format!("x,y,z,height,max_distance,name\n{0},{1},,1.7,5,a\n{0},{2},3,,,b\n", EAST - 12.0, NORTH, NORTH + 10.0),
+    );
+    let summary = place.summary(&format!("viewshed {HOUSE} --observers observers.csv --cell 1 -o count.tif"));
+    assert_eq!(summary["observers"]["count"], 2);
+    let walk = format!("viewshed {HOUSE} --observers observers.csv --step 2 --cell 2 -o count.tif");
+    assert_eq!(place.summary(&walk)["observers"]["count"], 6, "10 m in steps of 2 m, and the end is one of them");
+    // the older member `crs` and its plane coordinates
+    let line = format!(
+        r#"{{"type":"FeatureCollection","crs":{{"type":"name","properties":{{"name":"urn:ogc:def:crs:EPSG::28992"}}}},
+        "features":[{{"type":"Feature","properties":{{"height":2}},"geometry":{{"type":"LineString","coordinates":[[{0},{1}],[{0},{2}]]}}}}]}}"#,
+        EAST - 12.0,
+        NORTH - 10.0,
+        NORTH + 10.0
+    );
+    place.write("walk.geojson", line);
+    let summary = place.summary(&format!("viewshed {HOUSE} --observers walk.geojson --cell 2 -o count.tif"));
+    assert_eq!(summary["observers"]["count"], 5);
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_advice() {
+    let place = place();
+    let observer = format!("--observer {EAST},{NORTH}");
+    place.refusal(
+        1,
+        &format!("viewshed {HOUSE} --observer 0,0 -o seen.tif"),
+        &["observer 1", "coordinates of the cloud"],
+    );
+    place.refusal(2, &format!("viewshed {HOUSE} {observer} -o seen.doc"), &["extension"]);
+    place.refusal(2, &format!("viewshed {HOUSE} {observer} -o seen.tif -o seen.tif"), &["two results"]);
+    place.refusal(2, &format!("viewshed {HOUSE} {observer} --cell 1e-9 -o seen.tif"), &["--cell", "400 million"]);
+    place.refusal(2, &format!("viewshed {HOUSE} {observer} --refraction 2 -o seen.tif"), &["refraction"]);
+    place.refusal(2, &format!("viewshed {HOUSE} {observer} --unproven report -o seen.tif"), &["--unproven", "pulses"]);
+    place.refusal(
+        2,
+        &format!("viewshed {HOUSE} {observer} --min-distance 9 --max-distance 5 -o seen.tif"),
+        &["distance"],
+    );
+    place.refusal(2, &format!("viewshed {HOUSE} --target {EAST},{NORTH} --azimuth 0,90 -o seen.tif"), &["--azimuth"]);
+    place.refusal(1, "viewshed house.laz --method tau --ground classed --observer 85000,446000 -o a.tif", &["class 2"]);
+    place.write("pairs.csv", "ax,ay,az,bx,by\n1,2,3,4,5\n");
+    place.refusal(1, "line-of-sight house.laz --method tau --pairs pairs.csv -o out.csv", &["bz", "ax, ay"]);
+    place.write("pairs.csv", "ax,ay,az,bx,by,bz\n1,2,3,4,5,six\n");
+    place.refusal(1, "line-of-sight house.laz --method tau --pairs pairs.csv -o out.csv", &["row 1", "six", "bz"]);
+    place.write("pairs.csv", "ax,ay,az,bx,by,bz\n1,2,3,4,5\n");
+    place.refusal(1, "line-of-sight house.laz --method tau --pairs pairs.csv -o out.csv", &["5 cells"]);
+    place.write("walk.geojson", "{\"type\":\"Feature\",\"geometry\":{\"type\":\"Blob\"}}");
+    place.refusal(1, &format!("viewshed {HOUSE} --observers walk.geojson -o seen.tif"), &["Blob"]);
+    // an eye below the ground and inside the house is no error, but said
+    let summary = place.summary(&format!("viewshed {HOUSE} {observer},-1 --cell 2 -o seen.tif"));
+    assert!(summary["observers"]["notes"][0].as_str().unwrap().contains("below the ground"), "{summary}");
+}

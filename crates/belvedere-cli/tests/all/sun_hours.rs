@@ -1,0 +1,164 @@
+//! Hours of sun on the command line, around a house whose shadow is known.
+
+use crate::common::{Workplace, at, column, house, is_hidden};
+use belvedere::apps::sun::{Date, DayParams, Site, Zone, sun_day};
+use belvedere::crs::Crs;
+
+const HOUSE: &str = "house.laz --orient given --method tau";
+/// Places around the house: north of it, south, east, and beneath nothing far off.
+const PLACES: [[f64; 3]; 4] = [[0.0, 8.0, 0.5], [0.0, -9.0, 0.5], [9.0, 0.0, 0.5], [13.0, 13.0, 0.5]];
+
+fn place() -> Workplace {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let rows: String = PLACES.map(|[x, y, z]| at(x, y, z)).iter().map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
+    place.write("places.csv", format!("x,y,z\n{rows}"));
+    place
+}
+
+#[test]
+fn hours_are_those_of_the_exact_house() {
+    let place = place();
+    let run = place.summary(&format!(
+        "sun-hours {HOUSE} --date 2026-03-21 --zone Europe/Amsterdam --targets places.csv -o hours.csv"
+    ));
+    let mut expected = vec![[0.0, f64::NAN, f64::NAN]; PLACES.len()];
+    let [x, y, _] = at(0.0, 0.0, 0.0);
+    let site = Site::of(&Crs::from_epsg(28_992).unwrap(), [x, y], 4.5).unwrap();
+    let zone = Zone::parse("Europe/Amsterdam").unwrap();
+    let day = sun_day(&site, &zone, Date::parse("2026-03-21").unwrap(), None, &DayParams::default()).unwrap();
+    for step in &day.steps {
+        for (place, sums) in PLACES.iter().zip(&mut expected) {
+            if !is_hidden(*place, step.direction) {
+                sums[0] += (step.end - step.start) / 3600.0;
+                sums[1] = sums[1].min(day.clock_hours(step.start));
+                sums[2] = sums[2].max(day.clock_hours(step.end));
+            }
+        }
+    }
+    let found = ["sun_hours", "first_light", "last_light"].map(|name| column(&place, "hours.csv", name));
+    for (i, expected) in expected.iter().enumerate() {
+        for k in 0..3 {
+            // balls end a quarter of a metre beside edges here (points half a metre apart): 2° of the sun's way from 8 m, two steps at each end
+            let tolerance = if k == 0 { 0.7 } else { 0.4 };
+            assert!(
+                (found[k][i] - expected[k]).abs() < tolerance,
+                "{:?} {k}: {} {}",
+                PLACES[i],
+                found[k][i],
+                expected[k]
+            );
+        }
+    }
+    assert!(expected[0][0] < expected[1][0] - 2.0, "the house must shade something: {expected:?}");
+    let when = &run["when"];
+    assert_eq!(
+        (&when["first_day"], &when["days"], &when["clocks"]),
+        (&"2026-03-21".into(), &1.into(), &"Europe/Amsterdam".into())
+    );
+    let possible = when["possible_hours_a_day"].as_f64().unwrap();
+    assert!((possible - day.possible_hours()).abs() < 0.01);
+    // pvlib 0.16.1 has the middle of the sun appear in Delft at 05:44:46 UTC, 06:44:46 winter time
+    assert!((expected[3][1] - 6.7458).abs() < 2e-3, "{}", expected[3][1]);
+    for (hours, share) in found[0].iter().zip(column(&place, "hours.csv", "sun_share")) {
+        assert!((hours / possible - share).abs() < 2e-3);
+    }
+    assert!((run["site"]["latitude_deg"].as_f64().unwrap() - 51.998).abs() < 0.001, "{}", run["site"]);
+}
+
+#[test]
+fn rules_and_periods_have_columns_and_a_kept_matrix_answers_the_same() {
+    let place = place();
+    let rules = "--rule bre-equinox --rule 11@03-21 --rule 1@shortest-day>5";
+    let first = place.summary(&format!("sun-hours {HOUSE} {rules} --targets places.csv -o rules.csv --keep seen.npz"));
+    let met = |name: &str| ["bre_equinox", "rule_1", "rule_2"].map(|rule| column(&place, name, rule));
+    // two hours everywhere; eleven only where the house does not stand before the sun
+    assert_eq!(met("rules.csv")[0], [1.0; 4]);
+    assert_eq!(met("rules.csv")[1], [0.0, 1.0, 0.0, 1.0]);
+    assert_eq!(met("rules.csv")[2][3], 1.0);
+    assert!(first["when"]["rule_1"].as_str().unwrap().contains("11 h on 03-21"), "{}", first["when"]);
+    let bits: Vec<u64> = place.npz("seen.npz", "bits");
+    let directions: Vec<f64> = place.npz("seen.npz", "directions");
+    assert_eq!(bits.len(), 4 * (directions.len() / 3).div_ceil(64));
+    let again =
+        place.summary(&format!("sun-hours {HOUSE} {rules} --targets places.csv -o again.csv --from-matrix seen.npz"));
+    assert_eq!(place.text("again.csv"), place.text("rules.csv"));
+    assert!(again.get("lines_of_sight").is_none(), "nothing is looked at again");
+    // another day than those kept, other places, other balls, a file that is none
+    for (status, flags, words) in [
+        (2, "--date 2026-06-21 --targets places.csv --from-matrix seen.npz", "degrees"),
+        (1, "--rule bre-equinox --cell 5 --from-matrix seen.npz", "places"),
+        (1, "--rule bre-equinox --targets places.csv --shell 0.3 --from-matrix seen.npz", ""),
+        (1, "--rule bre-equinox --targets places.csv --from-matrix places.csv", "places.csv"),
+        (1, "--rule bre-equinox --targets places.csv --from-matrix missing.npz", "missing.npz"),
+        (2, "--rule bre-equinox --targets places.csv --from-matrix seen.npz --keep other.npz", "--keep"),
+    ] {
+        let run = place.run(&format!("sun-hours {HOUSE} {flags} -o no.csv"));
+        assert!(run.status != 0 && run.stderr.contains(words), "{flags}: {run:?}");
+        assert!(status == run.status || flags.contains("--shell"), "{flags}: {run:?}");
+    }
+    let whole = place.bytes("seen.npz");
+    place.write("cut.npz", &whole[..whole.len() / 2]);
+    place.refusal(
+        1,
+        &format!("sun-hours {HOUSE} {rules} --targets places.csv -o no.csv --from-matrix cut.npz"),
+        &["cut.npz"],
+    );
+    // a span between two times, on a grid
+    place.summary(&format!(
+        "sun-hours {HOUSE} --from 2026-03-20T12:00+01:00 --to 2026-03-22T12:00+01:00 --step 30 --cell 4 -o grid.csv -o grid.tif -o grid.png"
+    ));
+    let [hours, total, least] = ["sun_hours", "total_hours", "least_day"].map(|name| column(&place, "grid.csv", name));
+    assert!(hours.iter().zip(&total).all(|(hours, total)| (3.0 * hours - total).abs() < 5e-3));
+    assert!(hours.iter().zip(&least).all(|(hours, least)| *least <= hours + 1e-3));
+    assert!(!place.names().iter().any(|name| name == "no.csv"));
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_advice() {
+    let place = place();
+    for (flags, words) in [
+        ("", "--date"),
+        ("--date 2026-02-30", "--date"),
+        ("--date soon", "2026-06-21"),
+        ("--date 2026-06-21 --step 0", "--step"),
+        ("--date 2026-06-21 --step 61", "3600"),
+        ("--date 2026-06-21 --step nan", "--step"),
+        ("--date 2026-06-21 --within 6", "--within"),
+        ("--date 2026-06-21 --within -1", "--within"),
+        ("--date 2026-06-21 --least-elevation 90", "elevation"),
+        ("--date 2026-06-21 --zone Mars/Olympus", "--zone"),
+        ("--date 2026-06-21 --location 91,5", "--location"),
+        ("--date 2026-06-21 --location 52", "--location"),
+        ("--date 2026-06-21 --air 0,10", "hPa"),
+        ("--date 2026-06-21 --air 1000,10 --elevation geometric", "--air"),
+        ("--date 2026-06-21 --from 2026-06-21 --to 2026-06-22", "--from"),
+        ("--from 2026-06-21", "--to"),
+        ("--from 2026-06-22 --to 2026-06-21", "--to"),
+        ("--from 2026-06-21 --to 2026-06-21T12:00Z", "two days"),
+        ("--from 2026-06-21T12:00 --to 2026-06-21T13:00", "--zone"),
+        ("--from 2026-03-29T02:30 --to 2026-03-29T13:00 --zone Europe/Amsterdam", "skip"),
+        ("--from 1000-01-01 --to 2900-01-01", "3700"),
+        ("--rule sunny", "nl-light"),
+        ("--rule bre-equinox --rule bre-equinox", "twice"),
+        ("--rule bre-equinox --year 999", "1000"),
+        ("--rule bre-equinox --keep seen.txt", "--keep"),
+    ] {
+        let run = place.run(&format!("sun-hours {HOUSE} {flags} --targets places.csv -o no.csv"));
+        assert!(run.status == 2 && run.stderr.contains(words), "{flags}: {run:?}");
+    }
+    // a cloud that does not say where on earth it lies
+    let mut lost = house();
+    lost.crs = Crs::default();
+    place.write_cloud("lost.laz", &lost);
+    let lost = "lost.laz --orient given --method tau --targets places.csv";
+    place.refusal(1, &format!("sun-hours {lost} --date 2026-06-21 -o no.csv"), &["--location LAT,LON", "--crs"]);
+    let run = place.summary(&format!("sun-hours {lost} --date 2026-06-21 --location -33.9,151.2 -o south.csv"));
+    // the shortest day of Sydney, by the sun's own clock
+    assert!((run["when"]["possible_hours_a_day"].as_f64().unwrap() - 9.85).abs() < 0.1, "{run}");
+    assert_eq!(run["when"]["clocks"], "mean solar time");
+    // polar night: no hours, and no share
+    let run = place.summary(&format!("sun-hours {lost} --date shortest-day --location 80,15 -o night.csv"));
+    assert_eq!(run["when"]["suns"], 0);
+    assert!(column(&place, "night.csv", "sun_hours").iter().all(|&hours| hours == 0.0));
+}

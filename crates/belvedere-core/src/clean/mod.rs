@@ -1,0 +1,144 @@
+//! Points that stand for nothing: flagged, repeated, or alone in the air.
+
+mod duplicates;
+mod grid;
+mod outliers;
+
+use rayon::prelude::*;
+
+pub use outliers::{IsolatedPoints, IsolationRadius};
+
+use belvedere_data::{Error, PointCloud, Result};
+
+/// LAS flag of a point that its producer withdrew.
+const WITHHELD_FLAG: u8 = 4;
+
+/// What to do with points of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Treatment {
+    /// Leave them out.
+    Drop,
+    /// Keep them.
+    Keep,
+}
+
+/// Which points to leave out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CleanParams {
+    /// Points flagged as withheld. Default: dropped, as the LAS specification asks readers to.
+    pub withheld: Treatment,
+    /// ASPRS classes left out; empty for none. Default: 7 and 18, low and high noise (LAS 1.4 R15, table 17).
+    pub dropped_classes: Vec<u8>,
+    /// Points at exactly the same local position as an earlier one. Default: dropped; a medial ball cannot be shrunk
+    /// between two points in one place.
+    pub exact_duplicates: Treatment,
+    /// Distance in metres, above 0 and at most 1000, within which a point repeats an earlier one that was kept; `None`
+    /// keeps them. Default: 0.001, below the resolution of LAS files in centimetres or millimetres.
+    pub near_duplicate_distance: Option<f64>,
+    /// Points with hardly another around them; `None` keeps them.
+    pub isolated: Option<IsolatedPoints>,
+}
+
+impl Default for CleanParams {
+    fn default() -> Self {
+        Self {
+            withheld: Treatment::Drop,
+            dropped_classes: vec![7, 18],
+            exact_duplicates: Treatment::Drop,
+            near_duplicate_distance: Some(0.001),
+            isolated: Some(IsolatedPoints::default()),
+        }
+    }
+}
+
+/// How many points each step left out, in the order of the steps. All counts together are the points of the cloud.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CleanReport {
+    /// Points before.
+    pub point_count: usize,
+    /// Points after.
+    pub kept_count: usize,
+    /// Positions that are not finite; always left out.
+    pub not_finite_count: usize,
+    /// Withheld points.
+    pub withheld_count: usize,
+    /// Points of the classes left out, unless withheld too.
+    pub class_count: usize,
+    /// Points at the position of an earlier one.
+    pub exact_duplicate_count: usize,
+    /// Points close to an earlier one.
+    pub near_duplicate_count: usize,
+    /// Points alone.
+    pub isolated_count: usize,
+    /// Radius in metres within which neighbours were counted, where they were.
+    pub isolation_radius: Option<f64>,
+}
+
+/// Indices of the points worth keeping, ascending, and how many each step left out.
+///
+/// Steps run in the order of the fields of [`CleanParams`], each on what the ones before kept. Of points in one place the
+/// first in the file stays. Flags and classes are looked at where the cloud has them. An empty cloud gives no index. The
+/// result is the same for any number of threads.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] where an attribute has another length than the cloud, [`Error::InvalidParameter`] for a
+/// distance, radius or multiple that is not positive and finite or that is too large, and for more points than u32 counts.
+pub fn clean(cloud: &PointCloud, params: &CleanParams) -> Result<(Vec<u32>, CleanReport)> {
+    let expected = cloud.len();
+    if let Some((what, found)) = cloud.attributes.columns().into_iter().find(|&(_, length)| length != expected) {
+        return Err(Error::LengthMismatch { what, expected, found });
+    }
+    let count = u32::try_from(expected).map_err(|_| Error::InvalidParameter {
+        name: "number of points",
+        value: expected.to_string(),
+        expected: "at most 4294967295; split the cloud into tiles",
+    })?;
+    if let Some(distance) = params.near_duplicate_distance {
+        check_length("near duplicate distance", distance)?;
+    }
+    if let Some(isolated) = &params.isolated {
+        isolated.check()?;
+    }
+    let positions = cloud.positions.as_slice();
+    let mut report = CleanReport { point_count: expected, ..CleanReport::default() };
+    let mut kept: Vec<u32> = (0..count).collect();
+    report.not_finite_count = keep(&mut kept, |i| positions[i].iter().all(|v| v.is_finite()));
+    if let (Treatment::Drop, Some(flags)) = (params.withheld, &cloud.attributes.flags) {
+        report.withheld_count = keep(&mut kept, |i| flags[i] & WITHHELD_FLAG == 0);
+    }
+    if let Some(classes) = &cloud.attributes.classification {
+        report.class_count = keep(&mut kept, |i| !params.dropped_classes.contains(&classes[i]));
+    }
+    if params.exact_duplicates == Treatment::Drop {
+        report.exact_duplicate_count = duplicates::drop_exact(positions, &mut kept);
+    }
+    if let Some(distance) = params.near_duplicate_distance {
+        report.near_duplicate_count = duplicates::drop_near(positions, &mut kept, distance);
+    }
+    if let Some(isolated) = &params.isolated {
+        let radius = isolated.radius_for(positions, &kept);
+        report.isolation_radius = radius;
+        if let Some(radius) = radius {
+            report.isolated_count = outliers::drop_isolated(positions, &mut kept, radius, isolated.min_neighbors);
+        }
+    }
+    report.kept_count = kept.len();
+    Ok((kept, report))
+}
+
+/// Keeps the indices that `wanted` wants, in order; returns how many went.
+fn keep(kept: &mut Vec<u32>, wanted: impl Fn(usize) -> bool + Sync) -> usize {
+    let before = kept.len();
+    *kept = kept.par_iter().copied().filter(|&i| wanted(i as usize)).collect();
+    before - kept.len()
+}
+
+fn check_length(name: &'static str, metres: f64) -> Result<()> {
+    if metres > 0.0 && metres <= 1000.0 {
+        return Ok(());
+    }
+    Err(Error::InvalidParameter { name, value: metres.to_string(), expected: "above 0 and at most 1000 metres" })
+}
+
+#[cfg(test)]
+mod tests;

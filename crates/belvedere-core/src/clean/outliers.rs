@@ -1,0 +1,151 @@
+//! Points that are alone: birds, and echoes that took a detour.
+
+use std::ops::ControlFlow;
+
+use rayon::prelude::*;
+
+use super::check_length;
+use super::duplicates::remove_sorted;
+use super::grid::{SortedGrid, squared_distance};
+use belvedere_data::{Error, Result};
+
+/// Points whose nearest neighbour is looked for to learn the spacing: their median is known to a few per cent.
+const SPACING_SAMPLE_COUNT: usize = 2000;
+
+/// The nearest neighbour is looked for at up to 2 to this power times the first guess.
+const SPACING_DOUBLINGS: i32 = 5;
+
+/// When a point is alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IsolatedPoints {
+    /// How far to look for other points.
+    pub radius: IsolationRadius,
+    /// A point stays with this many others within the radius, at least 1. Default 2: two birds, or the two returns of one
+    /// stray pulse, still go, whereas points on a wire or a sparse facade have more.
+    pub min_neighbors: usize,
+}
+
+/// How far to look for the neighbours of a point that may be alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum IsolationRadius {
+    /// This many metres, above 0 and at most 1000.
+    Metres(f64),
+    /// A multiple of the median distance of a point to its nearest neighbour, but no less than a metre.
+    ///
+    /// Default: 10. A facade seen from the air has a tenth of the density of a roof, so three times its spacing; ten
+    /// leaves room for wires. The metre protects terrestrial scans, whose spacing at the median range is millimetres but
+    /// at the far end decimetres.
+    SpacingMultiple(f64),
+}
+
+/// Least radius from a multiple of the spacing.
+const MIN_RADIUS_M: f64 = 1.0;
+
+impl Default for IsolatedPoints {
+    fn default() -> Self {
+        Self { radius: IsolationRadius::SpacingMultiple(10.0), min_neighbors: 2 }
+    }
+}
+
+impl IsolatedPoints {
+    pub(super) fn check(&self) -> Result<()> {
+        if self.min_neighbors == 0 {
+            let value = self.min_neighbors.to_string();
+            return Err(Error::InvalidParameter { name: "least number of neighbours", value, expected: "at least 1" });
+        }
+        match self.radius {
+            IsolationRadius::Metres(metres) => check_length("isolation radius", metres),
+            IsolationRadius::SpacingMultiple(multiple) if multiple > 0.0 && multiple <= 1e4 => Ok(()),
+            IsolationRadius::SpacingMultiple(multiple) => Err(Error::InvalidParameter {
+                name: "isolation radius",
+                value: format!("{multiple} times the spacing"),
+                expected: "above 0 and at most 10000 times",
+            }),
+        }
+    }
+
+    /// The radius in metres, or `None` where the cloud has no spacing to derive it from.
+    pub(super) fn radius_for(&self, positions: &[[f32; 3]], kept: &[u32]) -> Option<f64> {
+        match self.radius {
+            IsolationRadius::Metres(metres) => Some(metres),
+            IsolationRadius::SpacingMultiple(multiple) => {
+                median_spacing(positions, kept).map(|spacing| (multiple * spacing).max(MIN_RADIUS_M))
+            }
+        }
+    }
+}
+
+/// Leaves out of `kept` (ascending) the points with fewer than `min_neighbors` others within `radius` metres; returns
+/// how many. Neighbours are counted among all that were kept before, so that the order does not matter.
+pub(super) fn drop_isolated(positions: &[[f32; 3]], kept: &mut Vec<u32>, radius: f64, min_neighbors: usize) -> usize {
+    let grid = SortedGrid::new(positions, kept, radius);
+    let alone: Vec<u32> = kept
+        .par_iter()
+        .copied()
+        .filter(|&i| {
+            let mut found = 0;
+            let p = positions[i as usize];
+            grid.visit_near(p, radius, |other| {
+                if other != i && squared_distance(p, positions[other as usize]) <= radius * radius {
+                    found += 1;
+                }
+                if found >= min_neighbors { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            })
+            .is_continue()
+        })
+        .collect();
+    remove_sorted(kept, &alone)
+}
+
+/// Median distance in metres from a sample of points to their nearest neighbours, or `None` for fewer than two points or
+/// where half of them are farther apart than any guess.
+fn median_spacing(positions: &[[f32; 3]], kept: &[u32]) -> Option<f64> {
+    if kept.len() < 2 {
+        return None;
+    }
+    let sample: Vec<u32> = kept.iter().copied().step_by(kept.len().div_ceil(SPACING_SAMPLE_COUNT)).collect();
+    let mut guess = spacing_guess(positions, kept, &sample);
+    for _ in 0..6 {
+        let grid = SortedGrid::new(positions, kept, guess);
+        let mut nearest: Vec<f64> = sample.par_iter().map(|&i| nearest_distance(&grid, positions, i, guess)).collect();
+        nearest.par_sort_unstable_by(f64::total_cmp);
+        let median = nearest.get(nearest.len() / 2).copied().filter(|median| median.is_finite());
+        if median.is_some() {
+            return median;
+        }
+        guess *= 2.0_f64.powi(SPACING_DOUBLINGS);
+    }
+    None
+}
+
+/// Spacing if the points lay evenly on the map, judged by the middle nine tenths so that a stray point does not count.
+fn spacing_guess(positions: &[[f32; 3]], kept: &[u32], sample: &[u32]) -> f64 {
+    let extent = |axis: usize| {
+        let mut values: Vec<f32> = sample.iter().map(|&i| positions[i as usize][axis]).collect();
+        values.sort_unstable_by(f32::total_cmp);
+        let at = |twentieths: usize| values.get((values.len() - 1) * twentieths / 20).copied().unwrap_or(0.0);
+        f64::from(at(19)) - f64::from(at(1))
+    };
+    let mut sides = [extent(0), extent(1), extent(2)];
+    sides.sort_unstable_by(f64::total_cmp);
+    let guess = 0.5 * (sides[1] * sides[2] / kept.len() as f64).sqrt();
+    if guess.is_finite() { guess.clamp(1e-4, 1e4) } else { 1.0 }
+}
+
+fn nearest_distance(grid: &SortedGrid, positions: &[[f32; 3]], index: u32, guess: f64) -> f64 {
+    let p = positions[index as usize];
+    for doubling in 0..=SPACING_DOUBLINGS {
+        let radius = guess * 2.0_f64.powi(doubling);
+        let mut least = f64::INFINITY;
+        let _ = grid.visit_near(p, radius, |other| {
+            if other != index {
+                least = least.min(squared_distance(p, positions[other as usize]));
+            }
+            ControlFlow::Continue(())
+        });
+        if least <= radius * radius {
+            return least.sqrt();
+        }
+    }
+    f64::INFINITY
+}

@@ -1,0 +1,188 @@
+//! The ground below a cloud: heights on a grid, from points classed as ground or from points found to be.
+
+pub mod find;
+pub mod map_grid;
+mod morphology;
+mod relief;
+mod surface;
+mod triangulate;
+
+pub use find::{FinderParams, find_ground};
+pub use map_grid::MapGrid;
+pub use relief::{hidden_ground, highest_points};
+pub use surface::{SurfaceParams, top_surface};
+
+use crate::neighbors::NeighborIndex;
+use belvedere_data::raster::Raster;
+use belvedere_data::{Error, PointCloud, Result};
+use rayon::prelude::*;
+
+/// ASPRS class of ground.
+const GROUND: u8 = 2;
+/// Ground points beyond the outermost of which the nearest one's height is still taken, metres: a few spacings of sparse surveys.
+const RIM: f32 = 5.0;
+
+/// How the ground of a cloud is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundParams {
+    /// Which points are ground. Default: class 2 where there is one, else those found.
+    pub points: GroundPoints,
+    /// How ground is found.
+    pub finder: FinderParams,
+    /// How far from the next ground point a height is still given, metres, above 0. Default 60: the middle of large halls has a ground
+    /// below it, the sea beside a survey has none.
+    pub reach: f64,
+}
+
+/// Which points are ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GroundPoints {
+    /// Class 2 where at least one point in a thousand has it, else [`GroundPoints::Found`].
+    #[default]
+    Auto,
+    /// Those of class 2.
+    Classed,
+    /// Those that [`find_ground`] finds, whatever their class.
+    Found,
+}
+
+impl Default for GroundParams {
+    fn default() -> Self {
+        Self { points: GroundPoints::Auto, finder: FinderParams::default(), reach: 60.0 }
+    }
+}
+
+/// Where the ground of a [`Ground`] came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GroundReport {
+    /// [`GroundPoints::Classed`] or [`GroundPoints::Found`].
+    pub from: GroundPoints,
+    /// Number of ground points.
+    pub point_count: usize,
+    /// Cells of the grid that have a height.
+    pub cell_count: usize,
+}
+
+/// Heights of the ground on a grid.
+#[derive(Clone, Debug)]
+pub struct Ground {
+    /// Where the cells lie.
+    pub grid: MapGrid,
+    /// Height of the ground at the middle of each cell, local metres; NaN where nothing is known.
+    pub heights: Raster<f32>,
+    /// Horizontal distance of the middle of each cell to the next ground point, metres: how far the height is interpolated.
+    pub gaps: Raster<f32>,
+}
+
+/// Rows of the points of `cloud` that are ground, in rising order, and which way they were told.
+///
+/// # Errors
+/// [`Error::NoPoints`] for an empty cloud, and for [`GroundPoints::Classed`] without class 2; otherwise those of [`find_ground`].
+pub fn ground_points(cloud: &PointCloud, params: &GroundParams) -> Result<(Vec<u32>, GroundPoints)> {
+    if cloud.is_empty() {
+        return Err(Error::NoPoints { what: "the ground needs a cloud".to_owned() });
+    }
+    let classed = || -> Vec<u32> {
+        let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
+        (0_u32..).zip(classes).filter(|(_, class)| **class == GROUND).map(|(row, _)| row).collect()
+    };
+    match params.points {
+        GroundPoints::Found => Ok((find_ground(cloud, &params.finder)?, GroundPoints::Found)),
+        GroundPoints::Classed => {
+            let rows = classed();
+            if rows.is_empty() {
+                let what = "no point has class 2 (ground); let the ground be found from all points".to_owned();
+                return Err(Error::NoPoints { what });
+            }
+            Ok((rows, GroundPoints::Classed))
+        }
+        GroundPoints::Auto => {
+            let rows = classed();
+            if rows.len() * 1000 >= cloud.len() {
+                return Ok((rows, GroundPoints::Classed));
+            }
+            Ok((find_ground(cloud, &params.finder)?, GroundPoints::Found))
+        }
+    }
+}
+
+impl Ground {
+    /// The ground of `cloud` on `grid`: heights of the triangulated ground points at the middles of the cells, and the nearest
+    /// ground point's within 5 m beyond the outermost.
+    ///
+    /// # Errors
+    /// Those of [`ground_points`], and [`Error::InvalidParameter`] for a parameter outside its range.
+    pub fn of_cloud(cloud: &PointCloud, grid: MapGrid, params: &GroundParams) -> Result<(Self, GroundReport)> {
+        if !(params.reach > 0.0) {
+            return Err(Error::InvalidParameter {
+                name: "reach of the ground",
+                value: params.reach.to_string(),
+                expected: "above zero metres",
+            });
+        }
+        let (rows, from) = ground_points(cloud, params)?;
+        let points: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
+        let ground = Self::of_points(&points, grid, params.reach)?;
+        let cell_count = ground.heights.values().iter().filter(|h| h.is_finite()).count();
+        Ok((ground, GroundReport { from, point_count: points.len(), cell_count }))
+    }
+
+    /// The ground through `points`, (N, 3) local metres, on `grid`, given as far as `reach` metres from the next of them.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a point that is not finite.
+    pub fn of_points(points: &[[f32; 3]], grid: MapGrid, reach: f64) -> Result<Self> {
+        let mut heights = triangulate::heights(points, &grid)?;
+        // the plane: distances and neighbours on the map
+        let flat: Vec<[f32; 3]> = points.iter().map(|p| [p[0], p[1], 0.0]).collect();
+        let index = NeighborIndex::new(&flat)?;
+        let mut gaps = Raster::filled(grid.width, grid.height, f32::INFINITY);
+        #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
+        let reach = reach.min(1e6) as f32;
+        let width = grid.width.max(1);
+        heights.values_mut().par_chunks_mut(width).zip(gaps.values_mut().par_chunks_mut(width)).enumerate().for_each(
+            |(row, (heights, gaps))| {
+                for (column, (height, gap)) in heights.iter_mut().zip(gaps).enumerate() {
+                    let [x, y] = grid.center(column, row);
+                    #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+                    let near = index.nearest_within([x as f32, y as f32, 0.0], f32::INFINITY);
+                    let Some(near) = near else { continue };
+                    *gap = near.distance_squared.sqrt();
+                    if *gap > reach {
+                        *height = f32::NAN;
+                    } else if height.is_nan() && *gap <= RIM {
+                        *height = points.get(near.index as usize).map_or(f32::NAN, |p| p[2]);
+                    }
+                }
+            },
+        );
+        Ok(Self { grid, heights, gaps })
+    }
+
+    /// Height of the ground at a local position on the map, between the middles of cells linearly, local metres; `None` outside and
+    /// where nothing is known.
+    #[must_use]
+    pub fn height_at(&self, [x, y]: [f64; 2]) -> Option<f64> {
+        let [column, row] = self.grid.cell_position([x, y])?;
+        let (u, v) = (column - 0.5, row - 0.5);
+        let floor = |value: f64, count: usize| {
+            let last = count.saturating_sub(2);
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
+            let cell = value.max(0.0) as usize;
+            cell.min(last)
+        };
+        let (c, r) = (floor(u, self.grid.width), floor(v, self.grid.height));
+        let (s, t) = ((u - c as f64).clamp(0.0, 1.0), (v - r as f64).clamp(0.0, 1.0));
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (dc, dr, weight) in
+            [(0, 0, (1.0 - s) * (1.0 - t)), (1, 0, s * (1.0 - t)), (0, 1, (1.0 - s) * t), (1, 1, s * t)]
+        {
+            let height = self.heights.get(c + dc, r + dr).map_or(f64::NAN, f64::from);
+            if height.is_finite() && weight > 0.0 {
+                sum += weight * height;
+                weights += weight;
+            }
+        }
+        (weights > 0.0).then(|| sum / weights)
+    }
+}

@@ -1,0 +1,161 @@
+//! The surface of what stands on the ground at the middle of each cell, to ask questions above.
+
+use super::{Ground, highest_points};
+use crate::neighbors::{Neighbor, NeighborIndex};
+use belvedere_data::raster::Raster;
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+
+/// Greatest distance from the middle of a cell at which a point tells what covers the middle, metres: half of a cell that is larger.
+const NEAR: f64 = 0.5;
+/// Distance to the next point up to which it tells of the middle of a cell, metres: that of sparse surveys, or the side of a larger cell.
+const REACH: f64 = 1.0;
+/// Fewest points of a layer that make a plane: two more than any three points have.
+const FEWEST: usize = 5;
+/// Determinant of the normal equations, in units of their diagonal, below which points lie on a line.
+const ON_A_LINE: f64 = 1e-3;
+
+/// How the surface at the middle of a cell is told from the points around it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceParams {
+    /// Points around the middle that are looked at, 3 to 256. Default 12: a square metre of usual airborne surveys.
+    pub neighbors: usize,
+    /// Greatest step between the heights of points of one layer, metres, above 0. Default 0.4: twelve points on a roof of 60 degrees lie
+    /// closer than that, eaves and chimneys stand higher.
+    pub step: f64,
+    /// Root mean squared distance in height of the points of a layer from their plane beyond which it is no plane, metres, 0 or more.
+    /// Default 0.12: ranging noise and a ridge stay below it, crowns and shrubs do not.
+    pub roughness: f64,
+}
+
+impl Default for SurfaceParams {
+    fn default() -> Self {
+        Self { neighbors: 12, step: 0.4, roughness: 0.12 }
+    }
+}
+
+impl SurfaceParams {
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for one outside its range.
+    pub fn validate(&self) -> Result<()> {
+        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        if !(3..=256).contains(&self.neighbors) {
+            return invalid("neighbours of a surface", self.neighbors.to_string(), "3 to 256");
+        }
+        if !(self.step > 0.0 && self.step.is_finite()) {
+            return invalid("step of a surface", self.step.to_string(), "above zero metres");
+        }
+        if !(self.roughness >= 0.0 && self.roughness.is_finite()) {
+            return invalid("roughness of a surface", self.roughness.to_string(), "0 metres or more");
+        }
+        Ok(())
+    }
+}
+
+/// Height of the top surface of `positions`, (N, 3) local metres, at the middle of each cell of `ground`.
+///
+/// The layer on top at the middle is that of the highest point near it. Where its points, five at least, lie on a plane, as on roofs and streets, the
+/// plane's height at the middle is given, never beyond the heights of the points themselves; where they do not, as in crowns, the highest
+/// point of the cell, so that a place above it is outside. Cells far from any point are as in [`highest_points`].
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a parameter outside its range or a point that is not finite.
+pub fn top_surface(positions: &[[f32; 3]], ground: &Ground, params: &SurfaceParams) -> Result<Raster<f32>> {
+    params.validate()?;
+    let mut heights = highest_points(positions, ground);
+    let grid = ground.grid;
+    let flat: Vec<[f32; 3]> = positions.iter().map(|p| [p[0], p[1], 0.0]).collect();
+    let index = NeighborIndex::new(&flat)?;
+    let (near, reach) = (NEAR.min(0.5 * grid.cell), REACH.max(grid.cell));
+    heights.values_mut().par_chunks_mut(grid.width.max(1)).enumerate().for_each_init(
+        || (Vec::new(), Vec::new()),
+        |(found, around), (row, heights)| {
+            for (column, height) in heights.iter_mut().enumerate() {
+                let middle = grid.center(column, row);
+                #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+                let query = [middle[0] as f32, middle[1] as f32, 0.0];
+                index.k_nearest(query, params.neighbors, found);
+                if found.first().is_none_or(|nearest| f64::from(nearest.distance_squared).sqrt() > reach) {
+                    continue;
+                }
+                gather(positions, found, middle, around);
+                if let Some(surface) = at_middle(around, near, params) {
+                    *height = surface;
+                }
+            }
+        },
+    );
+    Ok(heights)
+}
+
+/// A point relative to the middle of a cell.
+#[derive(Clone, Copy)]
+struct Around {
+    east: f64,
+    north: f64,
+    height: f64,
+    /// Squared distance on the map.
+    distance_squared: f64,
+}
+
+/// The points found around a middle, the highest first.
+fn gather(positions: &[[f32; 3]], found: &[Neighbor], [x, y]: [f64; 2], around: &mut Vec<Around>) {
+    around.clear();
+    around.extend(found.iter().filter_map(|neighbor| {
+        let [east, north, height] = positions.get(neighbor.index as usize)?.map(f64::from);
+        let distance_squared = f64::from(neighbor.distance_squared);
+        Some(Around { east: east - x, north: north - y, height, distance_squared })
+    }));
+    // of equal heights the nearer, which the index gives first, stays first
+    around.sort_by(|a, b| b.height.total_cmp(&a.height));
+}
+
+/// The height of the plane of the top layer; `None` where there is no plane.
+fn at_middle(around: &[Around], near: f64, params: &SurfaceParams) -> Option<f32> {
+    let is_near = |point: &Around| point.distance_squared <= near * near;
+    let top = around.iter().position(is_near).or_else(|| {
+        (0..around.len()).min_by(|&a, &b| around[a].distance_squared.total_cmp(&around[b].distance_squared))
+    })?;
+    let follows = |pair: &[Around]| pair[0].height - pair[1].height <= params.step;
+    let above = around[..=top].windows(2).rev().take_while(|pair| follows(pair)).count();
+    let below = around[top..].windows(2).take_while(|pair| follows(pair)).count();
+    let layer = &around[top - above..=top + below];
+    if layer.len() < FEWEST.min(params.neighbors) {
+        return None;
+    }
+    let (height, roughness) = plane(layer)?;
+    let (highest, lowest) = (layer.first()?.height, layer.last()?.height);
+    #[expect(clippy::cast_possible_truncation, reason = "local heights are f32")]
+    (roughness <= params.roughness).then(|| height.clamp(lowest, highest) as f32)
+}
+
+/// Height at the middle of the plane through a layer by weighted least squares, nearer points counting more, and the root mean squared
+/// distance of the points from it; the mean height where there is no plane; `None` for a layer without points.
+fn plane(layer: &[Around]) -> Option<(f64, f64)> {
+    let reach = layer.iter().map(|point| point.distance_squared).fold(0.0, f64::max) * 1.1 + 1e-6;
+    let weight = |point: &Around| 1.0 - point.distance_squared / reach;
+    let sum = |value: &dyn Fn(&Around) -> f64| layer.iter().map(|point| weight(point) * value(point)).sum::<f64>();
+    let whole = sum(&|_| 1.0);
+    if !(whole > 0.0) {
+        return None;
+    }
+    let [east, north, height] = [sum(&|p| p.east), sum(&|p| p.north), sum(&|p| p.height)].map(|s| s / whole);
+    let xx = sum(&|p| (p.east - east).powi(2));
+    let yy = sum(&|p| (p.north - north).powi(2));
+    let xy = sum(&|p| (p.east - east) * (p.north - north));
+    let xz = sum(&|p| (p.east - east) * (p.height - height));
+    let yz = sum(&|p| (p.north - north) * (p.height - height));
+    let determinant = xx * yy - xy * xy;
+    let [a, b] = if determinant > ON_A_LINE * (xx + yy) * (xx + yy) {
+        [(xz * yy - yz * xy) / determinant, (yz * xx - xz * xy) / determinant]
+    } else {
+        [0.0; 2]
+    };
+    let off = |p: &Around| p.height - height - a * (p.east - east) - b * (p.north - north);
+    // three numbers were fitted
+    let freedom = layer.len() as f64 / (layer.len() as f64 - 3.0).max(1.0);
+    let roughness = (sum(&|p| off(p).powi(2)) / whole * freedom).sqrt();
+    Some((height - a * east - b * north, roughness))
+}

@@ -1,0 +1,106 @@
+//! Heights between scattered points: linear in each triangle of their Delaunay triangulation.
+
+use super::MapGrid;
+use belvedere_data::raster::Raster;
+use belvedere_data::{Error, Result};
+use delaunator::{Point, triangulate};
+
+/// Height at the middle of each cell of `grid` on the triangulated `points`, (N, 3) local metres; NaN outside their hull, and
+/// everywhere with fewer than three points or all in one line.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a point that is not finite.
+pub(super) fn heights(points: &[[f32; 3]], grid: &MapGrid) -> Result<Raster<f32>> {
+    if let Some(p) = points.iter().find(|p| !p.iter().all(|v| v.is_finite())) {
+        return Err(Error::InvalidParameter { name: "ground point", value: format!("{p:?}"), expected: "finite" });
+    }
+    let mut heights = Raster::filled(grid.width, grid.height, f32::NAN);
+    let on_map: Vec<Point> = points.iter().map(|p| Point { x: f64::from(p[0]), y: f64::from(p[1]) }).collect();
+    let triangles = triangulate(&on_map).triangles;
+    let width = grid.width;
+    for &[a, b, c] in triangles.as_chunks::<3>().0 {
+        let (Some(&a), Some(&b), Some(&c)) = (points.get(a), points.get(b), points.get(c)) else { continue };
+        fill(heights.values_mut(), width, grid, [a, b, c].map(|p| p.map(f64::from)));
+    }
+    Ok(heights)
+}
+
+/// Sets the cells whose middles lie in a triangle, its rim counted.
+fn fill(heights: &mut [f32], width: usize, grid: &MapGrid, [a, b, c]: [[f64; 3]; 3]) {
+    let doubled_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+    if doubled_area == 0.0 {
+        return;
+    }
+    let least = |axis: usize| a[axis].min(b[axis]).min(c[axis]);
+    let most = |axis: usize| a[axis].max(b[axis]).max(c[axis]);
+    let columns = cells((least(0) - grid.corner[0]) / grid.cell, (most(0) - grid.corner[0]) / grid.cell, grid.width);
+    let rows = cells((grid.corner[1] - most(1)) / grid.cell, (grid.corner[1] - least(1)) / grid.cell, grid.height);
+    for row in rows {
+        for column in columns.clone() {
+            let [x, y] = grid.center(column, row);
+            let v = ((x - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (y - a[1])) / doubled_area;
+            let w = ((b[0] - a[0]) * (y - a[1]) - (x - a[0]) * (b[1] - a[1])) / doubled_area;
+            let u = 1.0 - v - w;
+            // a middle on an edge belongs to both triangles, also where rounding moves it off both
+            if u >= -1e-9 && v >= -1e-9 && w >= -1e-9 {
+                #[expect(clippy::cast_possible_truncation, reason = "local heights are f32")]
+                let height = (u * a[2] + v * b[2] + w * c[2]) as f32;
+                if let Some(value) = heights.get_mut(row * width + column) {
+                    *value = height;
+                }
+            }
+        }
+    }
+}
+
+/// Cells whose middles lie between two positions, in cells.
+fn cells(from: f64, to: f64, count: usize) -> std::ops::Range<usize> {
+    let last = count as f64;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
+    let cell = |v: f64| v.clamp(0.0, last) as usize;
+    cell((from - 0.5).ceil())..cell((to - 0.5).floor() + 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_data::random::uniform;
+
+    #[test]
+    #[expect(clippy::cast_possible_truncation, reason = "test places in f32")]
+    fn a_plane_comes_back_and_beyond_the_hull_there_is_nothing() {
+        let points: Vec<[f32; 3]> = (0..500)
+            .map(|i| {
+                let (x, y) = (40.0 * uniform(1, 2 * i), 40.0 * uniform(1, 2 * i + 1));
+                [x as f32, y as f32, (0.1 * x - 0.3 * y) as f32]
+            })
+            .collect();
+        let grid = MapGrid::covering([-5.0; 2], [45.0; 2], 0.5, [0.0; 2]).unwrap();
+        let heights = heights(&points, &grid).unwrap();
+        let mut known = 0;
+        for row in 0..grid.height {
+            for column in 0..grid.width {
+                let ([x, y], height) = (grid.center(column, row), heights.get(column, row).unwrap());
+                let inside = (3.0..37.0).contains(&x) && (3.0..37.0).contains(&y);
+                let outside = !(0.0..=40.0).contains(&x) || !(0.0..=40.0).contains(&y);
+                assert!(!inside || height.is_finite(), "{x} {y}");
+                assert!(!outside || height.is_nan(), "{x} {y}");
+                if height.is_finite() {
+                    known += 1;
+                    // f32 places of 40 m carry 2e-6 m
+                    assert!((f64::from(height) - (0.1 * x - 0.3 * y)).abs() < 1e-4);
+                }
+            }
+        }
+        assert!(known > 5000);
+    }
+
+    #[test]
+    fn points_in_one_line_have_no_triangles() {
+        let grid = MapGrid::covering([0.0; 2], [4.0; 2], 1.0, [0.0; 2]).unwrap();
+        for points in [vec![], vec![[1.0, 1.0, 0.0]], vec![[0.0; 3], [1.0, 1.0, 0.0], [2.0, 2.0, 0.0]]] {
+            assert!(heights(&points, &grid).unwrap().values().iter().all(|h| h.is_nan()));
+        }
+        assert!(heights(&[[f32::NAN; 3]], &grid).is_err());
+    }
+}

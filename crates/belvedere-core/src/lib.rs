@@ -1,0 +1,14 @@
+//! The algorithms of Belvedere, from points to answers.
+//!
+//! Users add the crate `belvedere`, which holds everything here under the same names.
+
+pub mod clean;
+pub mod depth;
+pub mod ground;
+pub mod medial;
+pub mod neighbors;
+pub mod normals;
+pub mod pulses;
+pub mod query;
+pub mod ray_index;
+pub mod summary;

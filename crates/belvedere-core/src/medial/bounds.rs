@@ -1,0 +1,85 @@
+//! Least and most radius that balls may have, by what is known of their points.
+
+use belvedere_data::Attributes;
+
+/// Bounds of radii by the kind of point, metres, above 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KindBounds {
+    /// Most radius at a point of vegetation (class 3 to 5). Default 1.
+    pub vegetation_radius: f32,
+    /// Most radius at a point that is not the first return of its pulse. Something before it let the pulse through, so that it
+    /// mostly lies in or under a crown, where neither its normal nor the side it was seen from says much. Default 0.3.
+    pub later_return_radius: f32,
+    /// Most radius at a point of the ground (class 2). Default 2.
+    pub ground_radius: f32,
+    /// Least radius at any other point, to which carved balls are grown again: a wall is at least this thick. Default
+    /// 0.15.
+    pub least_radius: f32,
+}
+
+impl Default for KindBounds {
+    fn default() -> Self {
+        Self { vegetation_radius: 1.0, later_return_radius: 0.3, ground_radius: 2.0, least_radius: 0.15 }
+    }
+}
+
+/// What a point lies on, as far as its class and return number tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Class 2.
+    Ground,
+    /// Classes 3 to 5.
+    Vegetation,
+    /// Not the first return of its pulse, and neither ground nor vegetation.
+    Later,
+    /// Anything else.
+    Other,
+}
+
+/// The kind of each of `count` points with these attributes, of which class and return number are used where present.
+#[must_use]
+pub fn kinds(attributes: &Attributes, count: usize) -> Vec<Kind> {
+    let of = |column: &Option<Vec<u8>>, row: usize| column.as_ref().and_then(|values| values.get(row)).copied();
+    let kind = |row| match of(&attributes.classification, row) {
+        Some(2) => Kind::Ground,
+        Some(3..=5) => Kind::Vegetation,
+        _ if of(&attributes.return_number, row).is_some_and(|number| number > 1) => Kind::Later,
+        _ => Kind::Other,
+    };
+    (0..count).map(kind).collect()
+}
+
+/// Least and most radius of each ball, metres. Rules only ever tighten them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RadiusBounds {
+    /// To which a carved ball is grown again, (N).
+    pub least: Vec<f32>,
+    /// To which a ball is cut, (N); +∞ for no limit. It wins over the least.
+    pub most: Vec<f32>,
+}
+
+impl RadiusBounds {
+    /// Bounds by kind of point.
+    #[must_use]
+    pub fn by_kind(kinds: &[Kind], attributes: &Attributes, params: &KindBounds) -> Self {
+        let is_later = |row: usize| {
+            attributes.return_number.as_ref().and_then(|numbers| numbers.get(row)).is_some_and(|&number| number > 1)
+        };
+        let bounds = |(row, kind): (usize, &Kind)| match kind {
+            Kind::Ground => (0.0, params.ground_radius),
+            Kind::Vegetation if is_later(row) => (0.0, params.vegetation_radius.min(params.later_return_radius)),
+            Kind::Vegetation => (0.0, params.vegetation_radius),
+            Kind::Later => (0.0, params.later_return_radius),
+            Kind::Other => (params.least_radius, f32::INFINITY),
+        };
+        let (least, most) = kinds.iter().enumerate().map(bounds).unzip();
+        Self { least, most }
+    }
+
+    /// Cuts the most radius of point `row` down to `most`.
+    pub fn limit(&mut self, row: usize, most: f32) {
+        if let Some(value) = self.most.get_mut(row) {
+            *value = value.min(most);
+        }
+    }
+}

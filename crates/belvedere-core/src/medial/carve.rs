@@ -1,0 +1,94 @@
+//! Cutting balls down to what the pulses leave of them.
+
+use super::balls::{MedialBalls, NO_TOUCH};
+use super::bounds::RadiusBounds;
+use crate::neighbors::Tangent;
+use crate::normals::OrientedCloud;
+use crate::pulses::Needles;
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+
+/// Value of [`MedialBalls::touch`] for a ball whose second contact is a pulse instead of a point.
+pub const PULSE_TOUCH: u32 = NO_TOUCH - 1;
+
+/// Balls handed to a thread at once; their searches share the cache.
+const CHUNK: usize = 512;
+
+/// What became of the balls in [`carve`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CarveReport {
+    /// Balls that a pulse made smaller.
+    pub carved: usize,
+    /// Balls that were cut to the most radius for their kind of point.
+    pub limited: usize,
+    /// Balls grown again to the least radius.
+    pub grown: usize,
+}
+
+/// Cuts each of `balls` until no needle enters it by more than `penetration` metres, 0 or more, then brings its radius within
+/// `bounds`. Row i of `balls` must be the interior ball of point i of `oriented`, as [`super::shrink`] makes it; so must
+/// row i of the bounds.
+///
+/// A ball that had met no point but meets a pulse counts as shrunk from here on, with [`PULSE_TOUCH`]; so does one that is
+/// limited. The result depends on neither order nor number of threads.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] where they differ in length.
+///
+/// # Source
+/// This project's own; cutting free space by lines of sight has relatives in space carving (Kutulakos & Seitz 2000) and
+/// cone carving (Shalom et al. 2010).
+pub fn carve(
+    balls: &mut MedialBalls,
+    oriented: &OrientedCloud,
+    needles: &Needles,
+    penetration: f32,
+    bounds: &RadiusBounds,
+) -> Result<CarveReport> {
+    let expected = oriented.positions().len();
+    for (what, found) in
+        [("balls", balls.len()), ("least radii", bounds.least.len()), ("most radii", bounds.most.len())]
+    {
+        if found != expected {
+            return Err(Error::LengthMismatch { what, expected, found });
+        }
+    }
+    let (positions, normals) = (oriented.positions(), oriented.normals());
+    let ball = |row: usize, radius: f32| {
+        let tangent = Tangent { point: positions[row], inward: normals[row].map(|v| -v), margin: penetration };
+        let empty = needles.smallest_tangent_ball(&tangent, radius - penetration);
+        empty.map(|empty| empty + penetration)
+    };
+    // what is larger than its limit is cut to that first: the search is shorter
+    let carved: Vec<Option<f32>> = balls
+        .radii
+        .par_iter()
+        .enumerate()
+        .with_min_len(CHUNK)
+        .map(|(row, &radius)| ball(row, radius.min(bounds.most[row])))
+        .collect();
+    let mut report = CarveReport::default();
+    for (row, carved) in carved.into_iter().enumerate() {
+        if !(balls.radii[row] > 0.0) {
+            continue;
+        }
+        let mut radius = balls.radii[row];
+        if let Some(carved) = carved {
+            report.carved += 1;
+            radius = carved;
+        }
+        let (least, most) = (bounds.least[row], bounds.most[row]);
+        report.limited += usize::from(radius > most);
+        report.grown += usize::from(radius < least);
+        radius = radius.max(least).min(most);
+        if radius < balls.radii[row] || carved.is_some() {
+            balls.radii[row] = radius;
+            balls.centers[row] = std::array::from_fn(|i| positions[row][i] - normals[row][i] * radius);
+            if carved.is_some() || balls.touch[row] == NO_TOUCH {
+                balls.touch[row] = PULSE_TOUCH;
+                balls.separation_angles[row] = f32::NAN;
+            }
+        }
+    }
+    Ok(report)
+}

@@ -1,0 +1,273 @@
+//! The model that Belvedere answers from: balls cut by pulses, and the rules for what balls alone represent badly.
+
+use super::balls::{MedialBalls, Side};
+use super::bounds::{KindBounds, RadiusBounds, kinds};
+use super::carve::{CarveReport, carve};
+use super::cells::lowest_near;
+use super::crowns::{self, CrownParams, Crowns};
+use super::prune::{PruneParams, prune};
+use super::relief::{Relief, ReliefParams};
+use super::roof_edges::{RoofEdgeParams, RoofEdges};
+use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
+use super::slender::{Slender, SlenderParams};
+use super::thin_surfaces::{ThinSurfaceParams, on_thin_surfaces};
+use super::vegetation::{VegetationParams, tell_vegetation};
+use crate::neighbors::NeighborIndex;
+use crate::normals::OrientedCloud;
+use crate::pulses::{Needles, Pulses};
+use belvedere_data::control::Control;
+use belvedere_data::{Attributes, Result};
+
+/// Upward part of a normal below which a point lies on the face of a wall rather than on its edge: within 17° of upright.
+const FACE_NORMAL_Z: f32 = 0.3;
+
+/// How carved balls are made. Every rule that is `Some` is applied; [`CarvedParams::default`] applies those that the comparison
+/// of docs/methods/carving.md shows to earn their place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CarvedParams {
+    /// Depth to which a point or a pulse may enter a ball, metres, above 0. Default 0.02: a penetration of 0.05 m costs 1.3
+    /// points on facades.
+    pub penetration: f32,
+    /// Radius every ball starts with, metres. Default 5: 15 m answer the same, cost 40 % more a query and bulge farther where
+    /// no pulse passes; 3 m let 1.2 points more of the shade of streets through.
+    pub initial_radius: f32,
+    /// Most radius of any ball, metres, above 0; +∞, the default, for no limit but those that pulses and rules set.
+    pub max_radius: f32,
+    /// Bounds by kind of point.
+    pub kind_bounds: KindBounds,
+    /// How vegetation is told in clouds without its classes.
+    pub vegetation: Option<VegetationParams>,
+    /// How crowns of trees are measured, limited and filled.
+    pub crowns: Option<CrownParams>,
+    /// How fences, wires and the like are limited and filled.
+    pub slender: Option<SlenderParams>,
+    /// Leaves out balls that others make superfluous.
+    pub pruning: Option<PruneParams>,
+    /// Small balls at surfaces that pulses run below.
+    pub thin_surfaces: Option<ThinSurfaceParams>,
+    /// Fills edges, ridges, chimneys and low walls down to the next lower level.
+    pub relief: Option<ReliefParams>,
+    /// Cuts balls below the edges of roofs, where walls stand that no pulse reached.
+    pub roof_edges: Option<RoofEdgeParams>,
+}
+
+impl Default for CarvedParams {
+    fn default() -> Self {
+        Self {
+            penetration: 0.02,
+            initial_radius: 5.0,
+            max_radius: f32::INFINITY,
+            kind_bounds: KindBounds::default(),
+            vegetation: Some(VegetationParams::default()),
+            crowns: Some(CrownParams::default()),
+            slender: Some(SlenderParams::default()),
+            pruning: Some(PruneParams::default()),
+            thin_surfaces: Some(ThinSurfaceParams::default()),
+            relief: Some(ReliefParams::default()),
+            roof_edges: Some(RoofEdgeParams::default()),
+        }
+    }
+}
+
+/// A rule that can be left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// [`CarvedParams::vegetation`].
+    Vegetation,
+    /// [`CarvedParams::crowns`].
+    Crowns,
+    /// [`CarvedParams::slender`].
+    Slender,
+    /// [`CarvedParams::thin_surfaces`].
+    ThinSurfaces,
+    /// [`CarvedParams::relief`].
+    Relief,
+    /// [`CarvedParams::roof_edges`].
+    RoofEdges,
+    /// [`CarvedParams::pruning`].
+    Pruning,
+}
+
+impl Rule {
+    /// Every rule.
+    pub const ALL: [Self; 7] = [
+        Self::Vegetation,
+        Self::Crowns,
+        Self::Slender,
+        Self::ThinSurfaces,
+        Self::Relief,
+        Self::RoofEdges,
+        Self::Pruning,
+    ];
+
+    /// Name on the command line and in tables: lower case and hyphens.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Vegetation => "vegetation",
+            Self::Crowns => "crowns",
+            Self::Slender => "slender",
+            Self::ThinSurfaces => "thin-surfaces",
+            Self::Relief => "relief",
+            Self::RoofEdges => "roof-edges",
+            Self::Pruning => "pruning",
+        }
+    }
+}
+
+impl CarvedParams {
+    /// The same without one rule.
+    #[must_use]
+    pub fn without(mut self, rule: Rule) -> Self {
+        match rule {
+            Rule::Vegetation => self.vegetation = None,
+            Rule::Crowns => self.crowns = None,
+            Rule::Slender => self.slender = None,
+            Rule::ThinSurfaces => self.thin_surfaces = None,
+            Rule::Relief => self.relief = None,
+            Rule::RoofEdges => self.roof_edges = None,
+            Rule::Pruning => self.pruning = None,
+        }
+        self
+    }
+
+    /// How balls shrink before they are carved.
+    #[must_use]
+    pub fn shrinking(&self) -> ShrinkParams {
+        ShrinkParams {
+            method: ShrinkMethod::Tau { penetration: self.penetration },
+            initial_radius: self.initial_radius,
+            max_radius: self.max_radius,
+        }
+    }
+}
+
+/// What carved balls are made from. All columns have a row for each point.
+#[derive(Clone, Copy)]
+pub struct CarvedInput<'a> {
+    /// Points and outward normals.
+    pub oriented: &'a OrientedCloud,
+    /// Index of the same points.
+    pub index: &'a NeighborIndex,
+    /// Class, return number and return count are used where present.
+    pub attributes: &'a Attributes,
+    /// What the pulses prove empty.
+    pub needles: &'a Needles,
+    /// Which returns share a pulse, rows as in the cloud; without it no crown is measured.
+    pub pulses: Option<&'a Pulses>,
+}
+
+/// What became of the balls in [`carved_balls`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CarvedReport {
+    /// By the points.
+    pub shrinking: ShrinkReport,
+    /// By the pulses.
+    pub carving: CarveReport,
+    /// Points told to be vegetation in a cloud without its classes.
+    pub told_vegetation: usize,
+    /// Points in crowns with gaps.
+    pub in_crowns_with_gaps: usize,
+    /// Balls that fill solid crowns.
+    pub crown_fills: usize,
+    /// Points of fences, wires and the like.
+    pub slender: usize,
+    /// Balls that fill fences and the like.
+    pub slender_fills: usize,
+    /// Balls left out because others make them superfluous.
+    pub pruned: usize,
+    /// Points found on thin surfaces.
+    pub thin: usize,
+    /// Points of thin relief.
+    pub relief: usize,
+    /// Balls that fill it.
+    pub relief_fills: usize,
+    /// Balls cut below the edges of roofs.
+    pub cut_at_edges: usize,
+}
+
+/// Balls of a survey.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CarvedBalls {
+    /// Those that are of use. [`MedialBalls::source`] and [`MedialBalls::touch`] are rows of the cloud; several balls may have
+    /// the same source.
+    pub balls: MedialBalls,
+    /// Share of the pulses that got through the piece of crown that a ball is part of, (B), 0 to 1; NaN for balls that are not
+    /// vegetation. Empty where nothing was measured.
+    pub transmission: Vec<f32>,
+    /// What became of them.
+    pub report: CarvedReport,
+}
+
+/// The interior balls of a survey as far as its pulses leave them, and those that rules add.
+///
+/// # Errors
+/// Those of [`shrink`] and [`carve`].
+pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Control<'_>) -> Result<CarvedBalls> {
+    let CarvedInput { oriented, index, attributes, needles, pulses } = *input;
+    let positions = oriented.positions();
+    let mut report = CarvedReport::default();
+    let mut kinds = kinds(attributes, oriented.len());
+    if let Some(vegetation) = &params.vegetation {
+        report.told_vegetation = tell_vegetation(&mut kinds, oriented, index, attributes, vegetation)?;
+    }
+    let mut bounds = RadiusBounds::by_kind(&kinds, attributes, &params.kind_bounds);
+    let lowest = lowest_near(positions);
+    let through = match (&params.crowns, pulses) {
+        (Some(crowns), Some(pulses)) => crowns::transmission(positions, &kinds, &lowest, pulses, crowns),
+        _ => Vec::new(),
+    };
+    let crowns = params.crowns.as_ref().map(|params| Crowns {
+        positions,
+        kinds: &kinds,
+        attributes,
+        transmission: &through,
+        params,
+    });
+    let slender =
+        params.slender.as_ref().map(|params| Slender::find(positions, &kinds, attributes, &lowest, needles, params));
+    report.in_crowns_with_gaps = crowns.as_ref().map_or(0, |crowns| crowns.limit(&mut bounds));
+    report.slender = slender.as_ref().map_or(0, |slender| slender.limit(&mut bounds));
+    let mut thin = Vec::new();
+    if let Some(params) = &params.thin_surfaces {
+        thin = on_thin_surfaces(positions, &kinds, index, needles, params);
+        for row in (0..thin.len()).filter(|&row| thin[row]) {
+            bounds.limit(row, params.radius);
+            report.thin += 1;
+        }
+    }
+
+    let mut balls;
+    (balls, report.shrinking) = shrink(oriented, index, Side::Interior, &params.shrinking(), control)?;
+    report.carving = carve(&mut balls, oriented, needles, params.penetration, &bounds)?;
+    if let Some(params) = &params.roof_edges {
+        let edges = RoofEdges::find(oriented, &kinds, index, &lowest, params)?;
+        report.cut_at_edges = edges.cut(&mut balls, oriented, params);
+    }
+    if let Some(pruning) = &params.pruning {
+        report.pruned = prune(&mut balls, oriented, index, pruning)?;
+    }
+    // before anything is added: the ball of a point is still in its row
+    let relief = params.relief.as_ref().map(|params| {
+        // below thin surfaces is air, what is slender is filled by its own rule, and balls hung on the face of a wall would stand
+        // out of it where no pulse says how far
+        let is_left_out = |row: usize| {
+            thin.get(row) == Some(&true)
+                || slender.as_ref().is_some_and(|slender| slender.stands(row))
+                || oriented.normals()[row][2].abs() < FACE_NORMAL_Z
+        };
+        Relief::find(positions, &kinds, is_left_out, &balls, index, params)
+    });
+    report.relief = relief.as_ref().map_or(0, Relief::len);
+    // what is only told to be vegetation may be anything that is not flat, and is better not filled
+    if report.told_vegetation == 0 {
+        report.crown_fills = crowns.as_ref().map_or(0, |crowns| crowns.fill(&mut balls, needles));
+    }
+    report.relief_fills = relief.as_ref().map_or(0, |relief| relief.fill(&mut balls, needles));
+    report.slender_fills = slender.as_ref().map_or(0, |slender| slender.fill(&mut balls, index, needles));
+
+    let balls = balls.shrunk();
+    let of = |&source: &u32| through.get(source as usize).copied();
+    let transmission = balls.source.iter().filter_map(of).collect();
+    Ok(CarvedBalls { balls, transmission, report })
+}

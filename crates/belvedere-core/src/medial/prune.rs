@@ -1,0 +1,114 @@
+//! Fewer balls for the same surface.
+
+use super::balls::{MedialBalls, NO_TOUCH};
+use crate::neighbors::NeighborIndex;
+use crate::normals::OrientedCloud;
+use belvedere_data::vector::{dot, sub};
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+use std::cmp::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering as Memory};
+
+/// Side of the blocks that are pruned independently, metres: many times the largest ball, so that little is kept twice.
+const BLOCK: f64 = 64.0;
+/// Least cosine between the direction to a ball's centre and the inward normal for it to lie on the inner side.
+const SAME_SIDE: f32 = 0.5;
+
+/// How [`prune`] works.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PruneParams {
+    /// How far a point may lie from the surface of the ball that stands in for its own, metres, 0 or more. Default 0.03: the noise of
+    /// a range.
+    pub deviation: f32,
+}
+
+impl Default for PruneParams {
+    fn default() -> Self {
+        Self { deviation: 0.03 }
+    }
+}
+
+/// Leaves out balls that larger ones make superfluous, and returns how many. Row i of `balls` must be the interior ball of point i
+/// of `oriented`, whose positions `index` holds; balls left out get [`NO_TOUCH`].
+///
+/// Larger balls come first, and of equal ones that whose point is less in x, then y, then z. A ball is kept unless its point lies
+/// within [`PruneParams::deviation`] of the surface of a ball kept before, on its inner side. What is left therefore reaches every
+/// point that had a ball up to the deviation; between points spaced by h, balls of radius r fall short of
+/// their common tangent plane by h²/8r more. Blocks of 64 m, counted from the origin of the reference system, are pruned
+/// on their own: the result depends on neither order nor number of threads, and not on the tile but for its rim.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] where they differ in length.
+///
+/// # Source
+/// This project's own greedy rule; medial balls chosen as a set cover of the surface are in Dou et al. 2022 (Coverage Axis).
+pub fn prune(
+    balls: &mut MedialBalls,
+    oriented: &OrientedCloud,
+    index: &NeighborIndex,
+    params: &PruneParams,
+) -> Result<usize> {
+    let expected = oriented.len();
+    for (what, found) in [("balls", balls.len()), ("neighbour index", index.len())] {
+        if found != expected {
+            return Err(Error::LengthMismatch { what, expected, found });
+        }
+    }
+    let (positions, normals) = (oriented.positions(), oriented.normals());
+    let origin = oriented.origin();
+    let block = |row: u32| -> [i64; 2] {
+        let p = positions[row as usize];
+        #[expect(clippy::cast_possible_truncation, reason = "positions of a cloud are far below 2^63 blocks")]
+        [0, 1].map(|axis| ((f64::from(p[axis]) + origin[axis]) / BLOCK).floor() as i64)
+    };
+    let is_usable = |row: &u32| balls.touch[*row as usize] != NO_TOUCH && balls.radii[*row as usize] > 0.0;
+    let mut rows: Vec<([i64; 2], u32)> =
+        index.tree_order().iter().copied().filter(is_usable).map(|row| (block(row), row)).collect();
+    let larger_first = |a: u32, b: u32| {
+        let (a, b) = (a as usize, b as usize);
+        let place = |axis: usize| positions[a][axis].total_cmp(&positions[b][axis]);
+        let by_radius = balls.radii[b].total_cmp(&balls.radii[a]);
+        (0..3).fold(by_radius, |order, axis| order.then(place(axis))).then(a.cmp(&b))
+    };
+    rows.par_sort_unstable_by(|a, b| match a.0.cmp(&b.0) {
+        Ordering::Equal => larger_first(a.1, b.1),
+        other => other,
+    });
+    // each block writes and reads its own points only
+    let covered: Vec<AtomicBool> = (0..expected).map(|_| AtomicBool::new(false)).collect();
+    let kept: Vec<u32> = rows
+        .par_chunk_by(|a, b| a.0 == b.0)
+        .flat_map_iter(|rows| {
+            let mut kept = Vec::new();
+            for &(of_block, row) in rows {
+                if covered[row as usize].load(Memory::Relaxed) {
+                    continue;
+                }
+                kept.push(row);
+                let (center, radius) = (balls.centers[row as usize], balls.radii[row as usize]);
+                index.within_radius(center, radius + params.deviation, |found| {
+                    let distance = found.distance_squared.sqrt();
+                    let other = found.index as usize;
+                    let inward = -dot(sub(center, positions[other]), normals[other]);
+                    if distance >= radius - params.deviation
+                        && inward >= SAME_SIDE * distance
+                        && block(found.index) == of_block
+                    {
+                        covered[other].store(true, Memory::Relaxed);
+                    }
+                });
+            }
+            kept
+        })
+        .collect();
+    let mut is_kept = vec![false; expected];
+    for &row in &kept {
+        is_kept[row as usize] = true;
+    }
+    for (touch, is_kept) in balls.touch.iter_mut().zip(&is_kept) {
+        if !is_kept {
+            *touch = NO_TOUCH;
+        }
+    }
+    Ok(rows.len() - kept.len())
+}

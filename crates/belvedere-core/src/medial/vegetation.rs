@@ -1,0 +1,81 @@
+//! Vegetation told from everything else where no class says so.
+
+use super::bounds::Kind;
+use crate::neighbors::NeighborIndex;
+use crate::normals::OrientedCloud;
+use belvedere_data::{Attributes, Error, Result};
+use rayon::prelude::*;
+
+/// How vegetation is told in clouds without its classes (3 to 5), as those of AHN are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VegetationParams {
+    /// Neighbours that are asked, 1 to 256. Default 16.
+    pub neighbors: usize,
+    /// Share of them whose pulse had several returns from which a point is vegetation, 0 to 1. Default 0.4.
+    pub several_returns: f32,
+    /// Mean quality of their normals up to which a point is vegetation, 0 to 1. Default 0.6: where the two smallest
+    /// eigenvalues of neighbourhoods are within a factor of 2.5, there is no surface.
+    pub least_quality: f32,
+}
+
+impl Default for VegetationParams {
+    fn default() -> Self {
+        Self { neighbors: 16, several_returns: 0.4, least_quality: 0.6 }
+    }
+}
+
+/// Points handed to a thread at once; their searches share the cache.
+const CHUNK: usize = 512;
+
+/// Turns points of no particular class (0, 1 or none) whose neighbourhood is not flat or lets pulses through into
+/// [`Kind::Vegetation`], and says how many: trees, hedges, and with them cars and other small things. Does nothing where
+/// `kinds` has vegetation already, since then the cloud has its classes. `index` holds the points of `cloud`.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a number of neighbours out of range.
+pub(super) fn tell_vegetation(
+    kinds: &mut [Kind],
+    cloud: &OrientedCloud,
+    index: &NeighborIndex,
+    attributes: &Attributes,
+    params: &VegetationParams,
+) -> Result<usize> {
+    if !(1..=256).contains(&params.neighbors) {
+        let value = params.neighbors.to_string();
+        return Err(Error::InvalidParameter { name: "neighbours that tell vegetation", value, expected: "1 to 256" });
+    }
+    if kinds.contains(&Kind::Vegetation) {
+        return Ok(0);
+    }
+    let class = |row: usize| attributes.classification.as_ref().and_then(|classes| classes.get(row)).copied();
+    let count = |row: usize| attributes.return_count.as_ref().and_then(|counts| counts.get(row)).copied();
+    let number = |row: usize| attributes.return_number.as_ref().and_then(|numbers| numbers.get(row)).copied();
+    let several = |row: usize| count(row).max(number(row)).is_some_and(|count| count > 1);
+    let open = |row: usize| matches!(kinds[row], Kind::Other | Kind::Later) && matches!(class(row), None | Some(0 | 1));
+    let (positions, quality) = (cloud.positions(), cloud.quality());
+    let told: Vec<u32> = index
+        .tree_order()
+        .par_chunks(CHUNK)
+        .flat_map_iter(|rows| {
+            let mut found = Vec::with_capacity(params.neighbors + 1);
+            let mut told = Vec::new();
+            for &row in rows.iter().filter(|row| open(**row as usize)) {
+                index.k_nearest(positions[row as usize], params.neighbors, &mut found);
+                let (mut split, mut flat) = (0.0, 0.0);
+                for neighbor in &found {
+                    split += f32::from(u8::from(several(neighbor.index as usize)));
+                    flat += quality[neighbor.index as usize];
+                }
+                let asked = found.len().max(1) as f32;
+                if split >= params.several_returns * asked || flat <= params.least_quality * asked {
+                    told.push(row);
+                }
+            }
+            told
+        })
+        .collect();
+    for &row in &told {
+        kinds[row as usize] = Kind::Vegetation;
+    }
+    Ok(told.len())
+}

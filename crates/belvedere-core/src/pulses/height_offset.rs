@@ -1,0 +1,82 @@
+//! How far the heights of a trajectory lie off those of its cloud.
+
+use nalgebra::Vector3;
+
+use super::Pulses;
+use super::sensor_fit::{Pair, median, trust};
+use belvedere_data::PointCloud;
+
+/// Rounds of improvement and reweighting; offsets of a tenth of the height settle in four.
+const ROUNDS: usize = 8;
+/// Least distance between first and last return for a pulse to tell its direction, metres.
+const LEAST_LENGTH: f64 = 3.0;
+/// Fewest such pulses.
+const LEAST_PAIRS: usize = 100;
+/// Offsets up to this are left alone, metres.
+const LEAST_OFFSET: f64 = 1.0;
+/// Offsets below so many deviations may be chance.
+const LEAST_DEVIATIONS: f64 = 4.0;
+/// Share of the misses of single pulses that may be systematic: beams that graze edges miss to one side more than to the other.
+const SYSTEMATIC_SHARE: f64 = 0.5;
+
+/// A constant by which the heights of a trajectory differ from those of the cloud, such as that between ellipsoid and sea.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeightOffset {
+    /// Metres to add to the heights of the trajectory.
+    pub offset: f64,
+    /// Its standard deviation, metres.
+    pub sd: f64,
+    /// Pulses with several returns that tell it.
+    pub pair_count: usize,
+    /// Whether it stands out from chance and from what beams feign, exceeds a metre, and was therefore added.
+    pub is_applied: bool,
+}
+
+/// The offset that brings `positions`, (P, 3) local metres for each of `pulses`, NaN where unknown, nearest to the lines of the
+/// pulses with several returns; `None` where too few have returns far enough apart.
+///
+/// # Source
+/// The miss at the last return as in [`super::SensorPositions::from_returns`], with Huber's weights and one unknown for all
+/// lines; ours.
+pub(super) fn height_offset(cloud: &PointCloud, pulses: &Pulses, positions: &[[f32; 3]]) -> Option<HeightOffset> {
+    let place = |row: &u32| cloud.positions.get(*row as usize).map(|p| Vector3::from(p.map(f64::from)));
+    let pair = |(pulse, scanner): (usize, &[f32; 3])| {
+        let returns = pulses.returns_of(pulse);
+        let (first, last) = (place(returns.first()?)?, place(returns.last()?)?);
+        let is_known = scanner.iter().all(|v| v.is_finite()) && (last - first).norm() >= LEAST_LENGTH;
+        is_known.then(|| (Pair::new(first, last, 0.0), Vector3::from(scanner.map(f64::from))))
+    };
+    let pairs: Vec<(Pair, Vector3<f64>)> = positions.iter().enumerate().filter_map(pair).collect();
+    if pairs.len() < LEAST_PAIRS {
+        return None;
+    }
+    let misses = |offset: f64| -> Vec<_> {
+        pairs.iter().map(|(pair, scanner)| pair.miss_from(&(scanner + Vector3::z() * offset))).collect()
+    };
+    let (mut offset, mut sd) = (0.0, f64::INFINITY);
+    for _ in 0..ROUNDS {
+        let misses = misses(offset);
+        let trust = trust(&misses);
+        let (mut normal, mut right, mut squares) = (0.0, 0.0, 0.0);
+        for (miss, trust) in misses.iter().zip(&trust) {
+            let slope = miss.across.column(2) * miss.slope;
+            normal += trust * slope.norm_squared();
+            right -= trust * slope.dot(&miss.offset);
+            squares += trust * miss.offset.norm_squared();
+        }
+        if !(normal > 0.0) {
+            return None;
+        }
+        offset += right / normal;
+        sd = (squares / (2.0 * pairs.len() as f64) / normal).sqrt();
+    }
+    let found = misses(offset);
+    let angle = |(miss, (pair, _)): (&super::sensor_fit::Miss, &(Pair, _))| miss.offset.norm() / pair.along.norm();
+    let angle = median(found.iter().zip(&pairs).map(angle).collect());
+    let height = median(pairs.iter().map(|(pair, scanner)| scanner.z + offset - pair.first.z).collect());
+    // sine of the angle from the vertical, which is what a change of height shows in
+    let tilt = median(found.iter().map(|miss| miss.across.column(2).norm()).collect());
+    let feigned = SYSTEMATIC_SHARE * height.abs() * angle / tilt;
+    let is_applied = offset.is_finite() && offset.abs() > LEAST_OFFSET.max(LEAST_DEVIATIONS * sd).max(feigned);
+    offset.is_finite().then_some(HeightOffset { offset, sd, pair_count: pairs.len(), is_applied })
+}

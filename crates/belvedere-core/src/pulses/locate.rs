@@ -1,0 +1,294 @@
+//! Where the scanner was for each point, by the best means at hand.
+
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+use super::group::{PulseReport, Pulses, group};
+use super::height_offset::{HeightOffset, height_offset};
+use super::line_path::{LinePath, position_on};
+use super::scan_angle::{AngleVerdict, ScanAngleParams, ScanAnglePart, paths_from_angles};
+use super::sensor_estimate::{SensorEstimateParams, SensorPart, SensorPositions, Verdict, paths_from_returns};
+use super::vertical::{VerticalParams, vertical_pulses};
+use belvedere_data::cloud::to_local;
+use belvedere_data::trajectory::{ClockOffset, Trajectory};
+use belvedere_data::{Error, PointCloud, Result};
+
+/// What the scanner is to be found by.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum Means<'a> {
+    /// Poses in the file; without them pulses with several returns, then scan angles where they can be trusted; where none of these
+    /// serves a single point, the assumption that pulses fall straight down.
+    #[default]
+    Automatic,
+    /// Pulses with several returns, then scan angles, and no assumption.
+    Pulses,
+    /// Poses in the file: [`PointCloud::scanner_positions`].
+    Poses,
+    /// One scanner here, local metres.
+    Position([f32; 3]),
+    /// A path known from elsewhere. Its heights are corrected by a constant where pulses with several returns say so.
+    Trajectory(&'a Trajectory),
+}
+
+/// How [`locate`] works.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LocateParams {
+    /// Pulses with several returns.
+    pub returns: SensorEstimateParams,
+    /// Scan angles.
+    pub angles: ScanAngleParams,
+    /// Assumed pulses.
+    pub vertical: VerticalParams,
+}
+
+/// What the scanner of a point was found by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ServedBy {
+    /// A pose in the file.
+    Pose,
+    /// A position that was given.
+    Position,
+    /// A trajectory that was given.
+    Trajectory,
+    /// Pulses with several returns.
+    Returns,
+    /// Scan angles.
+    ScanAngle,
+    /// Nothing: pulses are assumed to fall straight down.
+    Assumed,
+}
+
+/// How the scanner was found.
+#[derive(Clone, Debug, Default)]
+pub struct ScannerReport {
+    /// Points in all.
+    pub point_count: usize,
+    /// Points served by each means; those not counted are unknown.
+    pub served: BTreeMap<ServedBy, usize>,
+    /// How returns were grouped into pulses, where that was tried and possible.
+    pub grouping: Option<PulseReport>,
+    /// Parts of flight lines by their pulses with several returns.
+    pub parts: Vec<SensorPart>,
+    /// Parts of flight lines by their scan angles.
+    pub angle_parts: Vec<ScanAnglePart>,
+    /// Where the scanner was found to be: by line, and by returns before scan angles.
+    pub paths: Vec<LinePath>,
+    /// How GPS times became those of the trajectory, where one was given.
+    pub clock: Option<ClockOffset>,
+    /// What the heights of that trajectory are off by; `None` where pulses do not tell.
+    pub height_offset: Option<HeightOffset>,
+    /// What did not serve, and why.
+    pub remarks: Vec<String>,
+}
+
+impl ScannerReport {
+    /// Points whose scanner is known, or assumed.
+    #[must_use]
+    pub fn served_count(&self) -> usize {
+        self.served.values().sum()
+    }
+
+    /// Whether all that is returned is an assumption.
+    #[must_use]
+    pub fn is_assumed(&self) -> bool {
+        self.served.contains_key(&ServedBy::Assumed)
+    }
+
+    fn serve(&mut self, means: ServedBy, count: usize) {
+        if count > 0 {
+            *self.served.entry(means).or_default() += count;
+        }
+    }
+}
+
+/// Local position of the scanner for each point of `cloud`, (N, 3) metres, NaN where it is not known; and how it was found.
+///
+/// Every point with a time on a known path is served, whether or not it could be told to which pulse it belongs. Which points
+/// and parts of lines are left out and why is in the report. The result is the same for any number of threads and, but for
+/// points of the same pulse and number, any order of the points.
+///
+/// # Errors
+/// [`Error::MissingAttribute`] where the means asked for serve no point; [`Means::Automatic`] serves at least one of every cloud
+/// but those with poses that no point refers to: a scanner on the ground does not look straight down. [`Error::LengthMismatch`] for a column of another length than the positions, [`Error::InvalidParameter`] for
+/// parameters out of range and a trajectory that covers no time of the cloud.
+pub fn locate(cloud: &PointCloud, means: &Means<'_>, params: &LocateParams) -> Result<(Vec<[f32; 3]>, ScannerReport)> {
+    cloud.validate()?;
+    let mut report = ScannerReport { point_count: cloud.len(), ..ScannerReport::default() };
+    let positions = match means {
+        Means::Position(position) => {
+            report.serve(ServedBy::Position, cloud.len());
+            vec![*position; cloud.len()]
+        }
+        Means::Poses => by_poses(cloud, &mut report),
+        Means::Trajectory(trajectory) => by_trajectory(cloud, trajectory, &mut report)?,
+        Means::Automatic if !cloud.scanner_positions.is_empty() => by_poses(cloud, &mut report),
+        Means::Automatic | Means::Pulses => by_pulses(cloud, params, &mut report)?,
+    };
+    if report.served_count() > 0 || cloud.is_empty() {
+        return Ok((positions, report));
+    }
+    match means {
+        Means::Automatic if cloud.scanner_positions.is_empty() => {
+            let positions = vertical_pulses(&cloud.positions, &params.vertical)?;
+            report.serve(ServedBy::Assumed, positions.iter().filter(|p| is_known(p)).count());
+            report.remarks.push("pulses are assumed to fall straight down onto what nothing stands above".to_owned());
+            Ok((positions, report))
+        }
+        Means::Pulses => {
+            // what grouping found missing says it best
+            group(cloud)?;
+            Err(Error::MissingAttribute {
+                attribute: "pulses with several returns far enough apart, nor scan angles that can be trusted",
+                needed_for: "finding the scanner",
+                advice: "give a trajectory",
+            })
+        }
+        _ => Err(Error::MissingAttribute {
+            attribute: "scanner position",
+            needed_for: "knowing where pulses came from",
+            advice: "give the position of the scanner or a trajectory",
+        }),
+    }
+}
+
+fn is_known(position: &[f32; 3]) -> bool {
+    position.iter().all(|v| v.is_finite())
+}
+
+fn by_poses(cloud: &PointCloud, report: &mut ScannerReport) -> Vec<[f32; 3]> {
+    let unknown = [f32::NAN; 3];
+    let position = |index: &u16| cloud.scanner_positions.get(usize::from(*index)).copied().unwrap_or(unknown);
+    let positions = match (&cloud.attributes.scanner_index, &cloud.scanner_positions[..]) {
+        (Some(indices), _) => indices.iter().map(position).collect(),
+        (None, [only]) => vec![*only; cloud.len()],
+        (None, _) => {
+            report
+                .remarks
+                .push("the file has several scanner positions and does not say whose points are whose".into());
+            vec![unknown; cloud.len()]
+        }
+    };
+    report.serve(ServedBy::Pose, positions.iter().filter(|p| is_known(p)).count());
+    positions
+}
+
+fn by_trajectory(cloud: &PointCloud, trajectory: &Trajectory, report: &mut ScannerReport) -> Result<Vec<[f32; 3]>> {
+    let (mut positions, clock) = trajectory.scanner_positions(cloud)?;
+    report.clock = Some(clock);
+    report.serve(ServedBy::Trajectory, positions.iter().filter(|p| is_known(p)).count());
+    match pulses_of(cloud, report) {
+        Some(pulses) => {
+            let per_pulse = SensorPositions::from_trajectory(cloud, &pulses, trajectory)?.0.per_pulse;
+            report.height_offset = height_offset(cloud, &pulses, &per_pulse);
+            if report.height_offset.is_none() {
+                report.remarks.push(
+                    "too few pulses have several returns far enough apart to check the heights of the trajectory"
+                        .into(),
+                );
+            }
+        }
+        None => report.remarks.push("the heights of the trajectory could not be checked".into()),
+    }
+    if let Some(HeightOffset { offset, is_applied: true, .. }) = report.height_offset {
+        positions
+            .par_iter_mut()
+            .for_each(|p| *p = to_local([p[0].into(), p[1].into(), f64::from(p[2]) + offset], [0.0; 3]));
+    }
+    Ok(positions)
+}
+
+/// The pulses of the cloud, or `None` after a remark.
+fn pulses_of(cloud: &PointCloud, report: &mut ScannerReport) -> Option<Pulses> {
+    match group(cloud) {
+        Ok((pulses, grouping)) => {
+            report.grouping = Some(grouping);
+            let mut remark = |count: usize, what: &str| {
+                if count > 0 {
+                    report.remarks.push(format!("{count} points {what}"));
+                }
+            };
+            remark(grouping.without_time_count, "have no time: a program wrote them, not a scanner");
+            remark(grouping.ambiguous_count, "share their time with others and belong to no pulse that can be told");
+            remark(grouping.duplicate_count, "are there twice");
+            Some(pulses)
+        }
+        Err(error) => {
+            report.remarks.push(error.to_string());
+            None
+        }
+    }
+}
+
+fn by_pulses(cloud: &PointCloud, params: &LocateParams, report: &mut ScannerReport) -> Result<Vec<[f32; 3]>> {
+    let unknown = [f32::NAN; 3];
+    let pulses = pulses_of(cloud, report);
+    if let Some(pulses) = &pulses {
+        (report.paths, report.parts) = paths_from_returns(cloud, pulses, &params.returns)?;
+    }
+    let Some(times) = &cloud.attributes.gps_time else { return Ok(vec![unknown; cloud.len()]) };
+    let line = |row: usize| {
+        let lines = cloud.attributes.point_source_id.as_ref();
+        lines.and_then(|lines| lines.get(row)).copied().unwrap_or(0)
+    };
+    let is_served = |report: &ScannerReport| {
+        let served = |(row, time): (usize, &f64)| position_on(&report.paths, line(row), *time).is_some();
+        times.par_iter().enumerate().all(served)
+    };
+    if !is_served(report) {
+        let (by_angle, parts) = paths_from_angles(cloud, pulses.as_ref(), &params.angles)?;
+        report.paths.extend(by_angle);
+        // by line; the sort keeps those by returns first
+        report.paths.sort_by_key(|path| path.source_id);
+        report.angle_parts = parts;
+    }
+    let found: Vec<Option<(ServedBy, [f32; 3])>> = times
+        .par_iter()
+        .enumerate()
+        .map(|(row, &time)| {
+            let (path, place) = position_on(&report.paths, line(row), time)?;
+            Some((path.means, to_local(place, [0.0; 3])))
+        })
+        .collect();
+    for means in [ServedBy::Returns, ServedBy::ScanAngle] {
+        report.serve(means, found.iter().flatten().filter(|(by, _)| *by == means).count());
+    }
+    remark_parts(report);
+    Ok(found.into_iter().map(|found| found.map_or(unknown, |(_, place)| place)).collect())
+}
+
+/// Says which parts of flight lines did not serve, and why.
+fn remark_parts(report: &mut ScannerReport) {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for part in &report.parts {
+        let why = match part.verdict {
+            Verdict::Accepted => continue,
+            Verdict::Bridged => "parts of flight lines are known by their neighbours",
+            Verdict::TooFewPairs => "parts of flight lines have too few pulses with several returns far enough apart",
+            Verdict::Uncertain => "parts of flight lines have pulses that do not fix the scanner well enough",
+            Verdict::Implausible => "parts of flight lines have pulses that put the scanner where no aircraft flies",
+        };
+        *counts.entry(why).or_default() += 1;
+    }
+    let is_needed = |part: &&ScanAnglePart| {
+        let middle = f64::midpoint(part.times[0], part.times[1]);
+        position_on(&report.paths, part.source_id, middle).is_none_or(|(path, _)| path.means != ServedBy::Returns)
+    };
+    for part in report.angle_parts.iter().filter(is_needed) {
+        let why = match part.verdict {
+            AngleVerdict::Accepted if part.pitch.total_cmp(&0.0).is_ne() => continue,
+            AngleVerdict::Accepted => {
+                "parts are known by scan angles alone, which do not tell pitch: directions may be off by a few degrees"
+            }
+            AngleVerdict::TooFewPoints => "parts have too few points for their scan angles to tell anything",
+            AngleVerdict::TooNarrow => "parts have scan angles that span too little",
+            AngleVerdict::NotAcross => {
+                "parts have scan angles that do not tell the place across the flight: a cone, a tilted scanner or rounded times"
+            }
+            AngleVerdict::Bent => "parts have scan lines that are bent as those of a cone, or too short to tell",
+            AngleVerdict::Contradicted => "parts have scan angles that the pulses contradict",
+            AngleVerdict::Implausible => "parts have scan angles that put the scanner where no aircraft flies",
+        };
+        *counts.entry(why).or_default() += 1;
+    }
+    report.remarks.extend(counts.into_iter().map(|(why, count)| format!("{count} {why}")));
+}

@@ -1,0 +1,94 @@
+//! Needles as columns of numbers, as short as what is asked of them allows.
+
+use super::{Item, Needle, Needles};
+use belvedere_data::{Error, Result};
+
+/// Steps of a slope, metres of shift per metre of height: a needle 60 m long is off by 3 mm at its far end.
+const SLOPE_STEP: f64 = 1e-4;
+/// A needle that ends within this of the top of all, metres, reaches it.
+const REACHES_TOP: f64 = 1e-3;
+
+/// Needles as columns, 16 bytes each where all reach the same height, 20 otherwise.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NeedleColumns {
+    /// Lower ends, (P, 3), local metres.
+    pub starts: Vec<[f32; 3]>,
+    /// Shift to the east and to the north for each metre of height, in steps of 0.0001, (P, 2).
+    pub slopes: Vec<[i16; 2]>,
+    /// Lengths, (P), metres, infinite for a needle that reaches `top`; empty where all do.
+    pub lengths: Vec<f32>,
+    /// Height that no needle rises above, local metres.
+    pub top: f32,
+}
+
+impl NeedleColumns {
+    /// Checks that columns are equally long and all numbers finite, lengths (which may be infinite) above zero.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] or [`Error::InvalidParameter`] for the first fault.
+    pub fn validate(&self) -> Result<()> {
+        let expected = self.starts.len();
+        for (what, found) in [("slopes of pulses", self.slopes.len()), ("lengths of pulses", self.lengths.len())] {
+            if found != expected && !(found == 0 && what.starts_with("lengths")) {
+                return Err(Error::LengthMismatch { what, expected, found });
+            }
+        }
+        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        if let Some(start) = self.starts.iter().find(|start| !start.iter().all(|v| v.is_finite())) {
+            return invalid("lower end of a pulse", format!("{start:?}"), "finite");
+        }
+        if let Some(length) = self.lengths.iter().find(|length| !(**length > 0.0)) {
+            return invalid("length of a pulse", length.to_string(), "above zero");
+        }
+        if !self.top.is_finite() {
+            return invalid("top of all pulses", self.top.to_string(), "finite");
+        }
+        Ok(())
+    }
+}
+
+impl Needles {
+    /// The needles as columns, in the order of the index. Directions are rounded, so that what [`Needles::from_columns`] makes of
+    /// them lies up to 5 mm in 100 m off these; it gives the same columns again, in another order.
+    #[must_use]
+    pub fn to_columns(&self) -> NeedleColumns {
+        let top = self.planes[1];
+        #[expect(clippy::cast_possible_truncation, reason = "`as` saturates; the flattest needle has a slope of 3.2")]
+        let slope = |needle: &Needle| {
+            [0, 1].map(|i| (f64::from(needle.up[i]) / f64::from(needle.up[2]) / SLOPE_STEP).round() as i16)
+        };
+        let reaches_top = |needle: &Needle| {
+            let end = f64::from(needle.start[2]) + f64::from(needle.length) * f64::from(needle.up[2]);
+            (f64::from(top) - end).abs() < REACHES_TOP
+        };
+        let length = |needle: &Needle| if reaches_top(needle) { f32::INFINITY } else { needle.length };
+        let all_reach = self.needles.iter().all(reaches_top);
+        NeedleColumns {
+            starts: self.lower_ends().collect(),
+            slopes: self.needles.iter().map(slope).collect(),
+            lengths: if all_reach { Vec::new() } else { self.needles.iter().map(length).collect() },
+            top: if top.is_finite() { top } else { 0.0 },
+        }
+    }
+
+    /// The needles of `columns`, indexed. What begins above the top, or has no length, is left out.
+    ///
+    /// # Errors
+    /// Those of [`NeedleColumns::validate`].
+    pub fn from_columns(columns: &NeedleColumns) -> Result<Self> {
+        columns.validate()?;
+        let low = columns.starts.iter().map(|start| start[2]).fold(columns.top, f32::min);
+        let planes = [low, columns.top];
+        let rows = columns.starts.iter().zip(&columns.slopes).enumerate();
+        let items = rows.filter_map(|(row, (start, slope))| {
+            let [east, north] = slope.map(|steps| f64::from(steps) * SLOPE_STEP);
+            let stretch = (east * east + north * north + 1.0).sqrt();
+            let up = [east / stretch, north / stretch, 1.0 / stretch];
+            let start = start.map(f64::from);
+            let to_top = (f64::from(columns.top) - start[2]) / up[2];
+            let length = columns.lengths.get(row).map_or(to_top, |&length| f64::from(length).min(to_top));
+            (length > 0.0).then(|| Item::new(start, up, length, planes))
+        });
+        Ok(Self::index(items.collect(), planes))
+    }
+}

@@ -1,0 +1,181 @@
+//! How near pulses come to places and to lines.
+
+use super::{Needle, Needles, Node};
+use belvedere_data::vector::{dot, sub};
+use rayon::prelude::*;
+use std::ops::ControlFlow;
+
+/// Pieces of a line shorter than this are not worth a step, metres.
+const LEAST_PIECE: f64 = 1e-3;
+
+impl Needles {
+    /// Number of needles.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.needles.len()
+    }
+
+    /// Whether there is no needle.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.needles.is_empty()
+    }
+
+    /// Height that no needle rises above, local metres.
+    #[must_use]
+    pub fn top(&self) -> f32 {
+        self.planes[1]
+    }
+
+    /// Lower ends of the needles, local metres, in no particular order: just above the first returns.
+    pub fn lower_ends(&self) -> impl ExactSizeIterator<Item = [f32; 3]> + '_ {
+        self.needles.iter().map(|needle| needle.start)
+    }
+
+    /// Lower and upper end of each needle, local metres, in no particular order.
+    pub(crate) fn par_ends(&self) -> impl ParallelIterator<Item = [[f64; 3]; 2]> + '_ {
+        self.needles.par_iter().map(|needle| {
+            let (start, up) = (needle.start.map(f64::from), needle.up.map(f64::from));
+            [start, std::array::from_fn(|i| start[i] + f64::from(needle.length) * up[i])]
+        })
+    }
+
+    /// Whether a needle passes nearer than `distance` metres to `point`, local metres. The distance to the piece of a line is
+    /// taken in f64; a point or distance that is not a number is near nothing.
+    #[must_use]
+    pub fn passes_within(&self, point: [f64; 3], distance: f64) -> bool {
+        let found = self.visit_near(point, distance, |needles| {
+            let near = |needle: &Needle| needle.square_distance(point) < distance * distance;
+            if needles.iter().any(near) { ControlFlow::Break(()) } else { ControlFlow::Continue(distance) }
+        });
+        found.is_some()
+    }
+
+    /// Distance of the nearest needle to `point`, local metres, if it is less than `within` metres.
+    #[must_use]
+    pub fn nearest_distance(&self, point: [f64; 3], within: f64) -> Option<f64> {
+        let mut least = within * within;
+        let mut found = false;
+        let _: Option<()> = self.visit_near(point, within, |needles| {
+            for needle in needles {
+                let square = needle.square_distance(point);
+                if square < least {
+                    (least, found) = (square, true);
+                }
+            }
+            ControlFlow::Continue(least.sqrt())
+        });
+        found.then(|| least.sqrt())
+    }
+
+    /// Distance of `center`, local metres, to the nearest needle, or `most` metres where none is nearer.
+    #[must_use]
+    pub fn clearance(&self, center: [f32; 3], most: f32) -> f32 {
+        #[expect(clippy::cast_possible_truncation, reason = "below `most`")]
+        self.nearest_distance(center.map(f64::from), most.into()).map_or(most, |distance| distance as f32)
+    }
+
+    /// A piece of the line through `origin` along the unit vector `direction` on which one needle is nearer than `distance`
+    /// metres everywhere: where it begins and ends, metres from the origin, `at` being well within. `None` where no needle is
+    /// that near at `at`, or stays so for less than a millimetre.
+    ///
+    /// Of several needles it takes one that stays near for long, not always the one that does so longest.
+    #[must_use]
+    pub fn near_piece(&self, origin: [f64; 3], direction: [f64; 3], at: f64, distance: f64) -> Option<[f64; 2]> {
+        let point = std::array::from_fn(|i| origin[i] + at * direction[i]);
+        self.visit_near(point, distance, |needles| {
+            let pieces = needles.iter().filter_map(|needle| needle.near_piece(origin, direction, distance));
+            let holding = pieces.filter(|[from, to]| *from <= at && *to > at + LEAST_PIECE);
+            match holding.max_by(|a, b| a[1].total_cmp(&b[1])) {
+                Some(piece) => ControlFlow::Break(piece),
+                None => ControlFlow::Continue(distance),
+            }
+        })
+    }
+
+    /// Shows `visit` the needles of every leaf that may come nearer than `reach` metres to `point`, until it breaks off; what it
+    /// continues with is the reach from there on.
+    fn visit_near<T>(
+        &self,
+        point: [f64; 3],
+        reach: f64,
+        mut visit: impl FnMut(&[Needle]) -> ControlFlow<T, f64>,
+    ) -> Option<T> {
+        // rounded up, and `may_enter` adds the rounding of coordinates
+        #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
+        let up = |reach: f64| (reach as f32).next_up();
+        #[expect(clippy::cast_possible_truncation, reason = "local coordinates")]
+        let center = point.map(|v| v as f32);
+        if self.needles.is_empty() || !(reach > 0.0) || !center.iter().all(|v| v.is_finite()) {
+            return None;
+        }
+        let mut reach = up(reach);
+        let mut stack = [0_u32; 64];
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let index = stack[depth] as usize;
+            let node: &Node = &self.nodes[index];
+            if !self.may_enter(node, center, reach) {
+                continue;
+            }
+            if node.count == 0 {
+                #[expect(clippy::cast_possible_truncation, reason = "nodes are numbered with 32 bits")]
+                let first = index as u32 + 1;
+                (stack[depth], stack[depth + 1]) = (node.next, first);
+                depth += 2;
+                continue;
+            }
+            let first = node.next as usize;
+            match visit(&self.needles[first..first + node.count as usize]) {
+                ControlFlow::Break(found) => return Some(found),
+                ControlFlow::Continue(shorter) => reach = up(shorter),
+            }
+        }
+        None
+    }
+}
+
+impl Needle {
+    /// Squared distance of a point to the needle, m².
+    fn square_distance(&self, point: [f64; 3]) -> f64 {
+        let (from, up) = (sub(point, self.start.map(f64::from)), self.up.map(f64::from));
+        let along = dot(from, up).clamp(0.0, f64::from(self.length));
+        let off: [f64; 3] = std::array::from_fn(|i| from[i] - along * up[i]);
+        dot(off, off)
+    }
+
+    /// The piece of a line nearer than `distance` to the needle: what it cuts from the union of a cylinder and two spheres, which
+    /// is convex.
+    fn near_piece(&self, origin: [f64; 3], direction: [f64; 3], distance: f64) -> Option<[f64; 2]> {
+        let up = self.up.map(f64::from);
+        let length = f64::from(self.length);
+        let from = sub(origin, self.start.map(f64::from));
+        let square = distance * distance;
+        // where |w + t d|² < distance²
+        let roots = |a: f64, b: f64, c: f64| {
+            let discriminant = b * b - a * c;
+            (a > 1e-12 && discriminant > 0.0).then(|| [(-b - discriminant.sqrt()) / a, (-b + discriminant.sqrt()) / a])
+        };
+        let of_sphere = |from: [f64; 3]| roots(1.0, dot(from, direction), dot(from, from) - square);
+        let low = of_sphere(from);
+        let high = of_sphere(std::array::from_fn(|i| from[i] - length * up[i]));
+        let (rise, base) = (dot(direction, up), dot(from, up));
+        let across: [f64; 3] = std::array::from_fn(|i| direction[i] - rise * up[i]);
+        let beside: [f64; 3] = std::array::from_fn(|i| from[i] - base * up[i]);
+        let (a, c) = (dot(across, across), dot(beside, beside) - square);
+        let endless = (a <= 1e-12 && c < 0.0).then_some([f64::NEG_INFINITY, f64::INFINITY]);
+        let cylinder = roots(a, dot(across, beside), c).or(endless).and_then(|[mut from, mut to]| {
+            // between the ends of the needle
+            if rise.abs() > 1e-12 {
+                let ends = [-base / rise, (length - base) / rise];
+                from = from.max(ends[0].min(ends[1]));
+                to = to.min(ends[0].max(ends[1]));
+            } else if !(0.0..=length).contains(&base) {
+                return None;
+            }
+            (from < to).then_some([from, to])
+        });
+        [low, high, cylinder].into_iter().flatten().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+    }
+}

@@ -1,0 +1,228 @@
+//! Exact answers at the speed of a depth map: targets that bounds of depth settle, and lines of sight for the rest.
+
+use super::{Answer, MedialScene, Viewer};
+use crate::depth::{BoundsParams, DepthBounds, Profile, depth_bounds};
+use belvedere_data::view::{Projection, View};
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+
+/// Targets handed to a thread at once.
+const CHUNK: usize = 1024;
+/// Depth beyond which bounds settle nothing, metres: there f64 itself errs by as much as bounds allow for.
+const FARTHEST_SETTLED: f64 = 1e7;
+
+/// Which answers a [`CertifiedMap`] gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scope {
+    /// Those of [`MedialScene::query_view`]: the picture and its limits of depth count, and lines of sight end there.
+    View,
+    /// Those of [`MedialScene::answer`] for every target, as `visible` gives them for the viewer of the view, whose picture
+    /// only saves lines of sight: an eye, or a viewer infinitely far away.
+    Viewer,
+}
+
+/// Bounds of depth for each pixel of one view, or of several from one eye, over the balls of a [`MedialScene`]: a target nearer
+/// than the lower bound of its pixel is visible, one farther than the upper bound is blocked, and only what lies between
+/// needs a line of sight. Answers are those of the scene, every one; the resolution decides no more than the cost.
+///
+/// # Source
+/// Bounds of the depth within a pixel serve as in Williams 1978, but from both sides; the proof is on the project's page on
+/// depth maps.
+pub struct CertifiedMap<'a> {
+    scene: &'a MedialScene,
+    bounds: Vec<DepthBounds>,
+    scope: Scope,
+}
+
+/// How the answers of a [`CertifiedMap`] came about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CertifiedReport {
+    /// Targets asked about.
+    pub target_count: usize,
+    /// Of these, settled by a bound or outside the view.
+    pub settled_count: usize,
+}
+
+/// Targets for each pixel from which on drawing bounds costs less than the lines of sight they save: a pixel costs 0.4 to 1.2 µs, and
+/// a target saves 0.2 to 0.6 (a town of 700 000 balls on two cores).
+const TARGETS_PER_PIXEL: usize = 5;
+
+/// The answer for each of `targets`, (M, 3) local metres, in `views` of one eye or of one parallel viewer: by a [`CertifiedMap`] where
+/// there are more than a few targets a pixel, which then reports, by a line of sight each where not. The answers are the same.
+///
+/// # Errors
+/// As [`CertifiedMap::new`], the paper's cone excepted, which lines of sight answer.
+pub fn answer_views(
+    scene: &MedialScene,
+    views: &[View],
+    scope: Scope,
+    targets: &[[f32; 3]],
+) -> Result<(Vec<Answer>, Option<CertifiedReport>)> {
+    check_views(views)?;
+    let pixel_count: usize = views.iter().map(|view| view.size_px[0] * view.size_px[1]).sum();
+    if scene.params().profile == Profile::Sphere && targets.len() / TARGETS_PER_PIXEL > pixel_count {
+        let (answers, report) = CertifiedMap::new(scene, views, scope)?.answers(targets);
+        return Ok((answers, Some(report)));
+    }
+    let answer = |&target: &[f32; 3]| match line_of_sight(views.iter(), scope, target) {
+        None => Answer::OutsideView,
+        Some((towards, range)) => scene.answer(target.map(f64::from), towards, range),
+    };
+    Ok((targets.par_iter().with_min_len(CHUNK).map(answer).collect(), None))
+}
+
+/// Refuses views of no or of several viewers.
+fn check_views(views: &[View]) -> Result<()> {
+    let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+    let Some((first, others)) = views.split_first() else {
+        return invalid("number of views", "0".to_owned(), "at least 1");
+    };
+    match others.iter().find(|view| !(view.is_central() && first.is_central() && view.frame.eye == first.frame.eye)) {
+        None => Ok(()),
+        Some(other) => {
+            let eyes = format!("{:?} and {:?}", first.frame.eye, other.frame.eye);
+            invalid("views", eyes, "from one eye, where there are several")
+        }
+    }
+}
+
+/// The line of sight of a target in the first of `views` that has one: unit vector towards the viewer, and its range.
+fn line_of_sight<'v>(
+    mut views: impl Iterator<Item = &'v View>,
+    scope: Scope,
+    target: [f32; 3],
+) -> Option<([f64; 3], f64)> {
+    match scope {
+        Scope::View => views.find_map(|view| line_in_view(view, target)),
+        Scope::Viewer => views.next().and_then(|view| viewer(view).line_of_sight(0, target)),
+    }
+}
+
+impl<'a> CertifiedMap<'a> {
+    /// Draws the bounds of `scene` for `views`: one, or several from the same eye of which a target is looked up in the first that
+    /// shows it, such as [`View::panorama`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for no view, for several that do not look from one eye, for balls with
+    /// [`Profile::PaperCone`], and as [`depth_bounds`].
+    pub fn new(scene: &'a MedialScene, views: &[View], scope: Scope) -> Result<Self> {
+        check_views(views)?;
+        let params = scene.params();
+        if params.profile != Profile::Sphere {
+            return Err(Error::InvalidParameter {
+                name: "profile",
+                value: "the paper's cone".to_owned(),
+                expected: "the sphere, for certified answers",
+            });
+        }
+        let bounds_of = |view: &View| {
+            let start = match scope {
+                Scope::View => view.limits()[0],
+                Scope::Viewer if view.is_central() => 0.0,
+                Scope::Viewer => f64::NEG_INFINITY,
+            };
+            depth_bounds(scene.balls(), view, &BoundsParams { shell: params.shell, start })
+        };
+        Ok(Self { scene, bounds: views.iter().map(bounds_of).collect::<Result<_>>()?, scope })
+    }
+
+    /// The bounds of each view.
+    #[must_use]
+    pub fn bounds(&self) -> &[DepthBounds] {
+        &self.bounds
+    }
+
+    /// The answer for each of `targets`, (M, 3) local metres, in their order, and how many were settled without a line of sight.
+    #[must_use]
+    pub fn answers(&self, targets: &[[f32; 3]]) -> (Vec<Answer>, CertifiedReport) {
+        let mut answers = vec![Answer::OutsideView; targets.len()];
+        let settled_count = answers
+            .par_chunks_mut(CHUNK)
+            .zip(targets.par_chunks(CHUNK))
+            .map(|(answers, targets)| {
+                let mut settled = 0;
+                for (answer, &target) in answers.iter_mut().zip(targets) {
+                    let way;
+                    (*answer, way) = self.answer(target);
+                    settled += usize::from(way == Way::Settled);
+                }
+                settled
+            })
+            .sum();
+        (answers, CertifiedReport { target_count: targets.len(), settled_count })
+    }
+
+    fn answer(&self, target: [f32; 3]) -> (Answer, Way) {
+        let line = line_of_sight(self.bounds.iter().map(|bounds| &bounds.view), self.scope, target);
+        let Some((towards, range)) = line else { return (Answer::OutsideView, Way::Settled) };
+        let position = target.map(f64::from);
+        match self.bounds.iter().find_map(|bounds| self.bracket(bounds, target)) {
+            Some((depth, [lower, _])) if depth < lower => {
+                (self.scene.answer_unblocked(position, towards, range), Way::Settled)
+            }
+            // before its surface a target may lie in the shell of a ball that reaches past it
+            Some((depth, [_, upper])) if depth > upper && self.scene.params().depth_bias >= 0.0 => {
+                (Answer::Blocked, Way::Settled)
+            }
+            _ => (self.scene.answer(position, towards, range), Way::ByLineOfSight),
+        }
+    }
+
+    /// The depth of a target less the bias, and the bounds of its pixel, where the picture shows it.
+    fn bracket(&self, bounds: &DepthBounds, target: [f32; 3]) -> Option<(f64, [f64; 2])> {
+        let view = &bounds.view;
+        let [x, y, depth] = view.project(target)?;
+        if !(x >= 0.0 && y >= 0.0) {
+            return None;
+        }
+        // bounds are ranges in views from an eye
+        let depth = match view.projection {
+            Projection::Perspective { .. } => {
+                view.frame.view_from_local(target).map(|v| v * v).iter().sum::<f64>().sqrt()
+            }
+            _ => depth,
+        };
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "not negative: rounds down, saturates"
+        )]
+        let (column, row) = (x as usize, y as usize);
+        let bracket = bounds.bounds.get(column, row)?.map(f64::from);
+        (depth.abs() < FARTHEST_SETTLED).then_some((depth - self.scene.params().depth_bias, bracket))
+    }
+}
+
+/// Whether a bound was enough.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    Settled,
+    ByLineOfSight,
+}
+
+/// Who looks through a view.
+fn viewer(view: &View) -> Viewer<'static> {
+    if view.is_central() { Viewer::Eye(view.frame.eye) } else { Viewer::Direction(view.frame.forward.map(|v| -v)) }
+}
+
+/// The line of sight of a target within the picture and limits of `view`: unit vector from the target to the viewer, and the range
+/// at which it meets the picture plane or the near limit; `None` for any other target.
+pub(super) fn line_in_view(view: &View, target: [f32; 3]) -> Option<([f64; 3], f64)> {
+    let place = view.project(target)?;
+    view.pixel(place)?;
+    let depth = place[2];
+    if !depth.is_finite() {
+        return None;
+    }
+    match view.projection {
+        Projection::Orthographic { .. } => Some((view.frame.forward.map(|v| -v), depth)),
+        Projection::Perspective { near, .. } => {
+            let (towards, range) = viewer(view).line_of_sight(0, target)?;
+            Some((towards, range - near * (range / depth)))
+        }
+        Projection::Hemispherical { near, .. } => {
+            let (towards, range) = viewer(view).line_of_sight(0, target)?;
+            Some((towards, range - near))
+        }
+    }
+}

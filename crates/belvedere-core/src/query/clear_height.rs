@@ -1,0 +1,113 @@
+//! How high a target must stand to be seen over what blocks it.
+
+use super::{EarthParams, MedialScene};
+use crate::ray_index::Ray;
+use belvedere_data::vector::{length, sub};
+
+/// Least step upward, metres: where rounding leaves a line of sight in a ball whose top it just reached.
+const LEAST_STEP: f64 = 1e-3;
+/// To what the top of a ball that gives way to the target is known, metres.
+const TOP_TOLERANCE: f64 = 1e-3;
+
+impl MedialScene {
+    /// The least height above `foot`, local metres, at which `observer` sees a target straight above it, metres: 0 where the foot
+    /// itself is seen; `None` where nothing up to `ceiling` metres is. What is meant is the lowest such height, also where
+    /// higher ones are blocked again, as below a bridge. At most 2 mm above the true one for the balls of the scene; pulses
+    /// are not asked.
+    ///
+    /// Every ball blocks one interval of heights, so each step goes to the top of the highest of all balls that block at once, in
+    /// closed form: the upper tangent from the observer, or the ball's own top. Tops of balls near the target, which give way
+    /// to it, are bisected.
+    #[must_use]
+    pub fn least_visible_height(
+        &self,
+        observer: [f64; 3],
+        foot: [f64; 3],
+        ceiling: f64,
+        earth: &EarthParams,
+    ) -> Option<f64> {
+        if !observer.iter().chain(&foot).all(|v| v.is_finite()) {
+            return None;
+        }
+        let mut height = 0.0;
+        loop {
+            let target = [foot[0], foot[1], foot[2] + height];
+            if target == observer {
+                return Some(height);
+            }
+            let mut clear: Option<f64> = None;
+            self.each_blocker(observer, target, earth, |number| {
+                let top = self.top(number, observer, target, earth) - foot[2];
+                clear = Some(clear.map_or(top, |clear| clear.max(top)));
+            });
+            let Some(clear) = clear else { return Some(height) };
+            height = clear.max(height + LEAST_STEP);
+            if !(height <= ceiling) {
+                return None;
+            }
+        }
+    }
+
+    /// Where a blocking ball ends upward on the vertical through `target`, local metres: infinite where it never does.
+    fn top(&self, number: usize, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
+        let Some(&(center, radius)) = self.balls.get(number) else { return target[2] };
+        let (center, radius) = (center.map(f64::from), f64::from(radius));
+        let whole = shadow_top(center, radius, observer, target, earth);
+        let beside = (center[0] - target[0]).hypot(center[1] - target[1]);
+        let margin = self.params.shell + self.params.depth_bias;
+        if beside > radius + margin || earth.bends(target, observer) {
+            return whole;
+        }
+        let blocks = |z: f64| {
+            let place = [target[0], target[1], z];
+            let towards = sub(observer, place);
+            Ray::new(place, towards, [self.params.depth_bias, length(towards)])
+                .is_some_and(|ray| self.front(number, &ray).is_some())
+        };
+        // above the ball itself it no longer gives way: only the tangent counts there
+        let (mut low, mut high) = (target[2], whole.min(center[2] + radius + margin));
+        if !(high > low) || blocks(high) {
+            return whole;
+        }
+        while high - low > TOP_TOLERANCE {
+            let middle = f64::midpoint(low, high);
+            if blocks(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        high
+    }
+}
+
+/// Where the shadow that a whole ball casts from `observer` ends upward on the vertical through `target`.
+fn shadow_top(center: [f64; 3], radius: f64, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
+    let across = [target[0] - observer[0], target[1] - observer[1]];
+    let span = across[0].hypot(across[1]);
+    let offset = sub(center, observer);
+    if span == 0.0 {
+        return if offset[2] > 0.0 { f64::INFINITY } else { center[2] + radius };
+    }
+    // seen from the observer a curved earth falls away below straight lines of sight
+    let bends = earth.bends(target, observer);
+    let fall = |along: f64| if bends { (1.0 - earth.refraction) * along * along / (2.0 * earth.radius) } else { 0.0 };
+    let along = (offset[0] * across[0] + offset[1] * across[1]) / span;
+    let beside = (offset[0] * across[1] - offset[1] * across[0]) / span;
+    let disc = (radius * radius - beside * beside).max(0.0).sqrt();
+    let up = offset[2] - fall(along);
+    let distance = along.hypot(up);
+    if distance <= disc {
+        return f64::INFINITY;
+    }
+    let tangent = up.atan2(along) + (disc / distance).asin();
+    let touches = (distance * distance - disc * disc).max(0.0).sqrt() * tangent.cos();
+    let past = span - along;
+    if touches > span && past.abs() < disc {
+        return center[2] + (disc * disc - past * past).sqrt();
+    }
+    if tangent >= std::f64::consts::FRAC_PI_2 {
+        return f64::INFINITY;
+    }
+    observer[2] + span * tangent.tan() + fall(span)
+}

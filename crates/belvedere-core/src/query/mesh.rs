@@ -1,0 +1,230 @@
+//! Mesh targets: how much of each face and of each object a viewer sees.
+
+use super::surface::{Piece, Sides, SurfacePieces};
+use super::{Answer, Viewer};
+use belvedere_data::vector::{dot, sub};
+use belvedere_data::{Error, Result};
+
+/// What to make of faces that are turned away from the viewer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BackFaces {
+    /// They count as not visible: shares are those of the whole surface.
+    #[default]
+    NotVisible,
+    /// They are not counted: shares are those of what is turned to the viewer.
+    LeftOut,
+    /// They are asked as any other: for open surfaces and meshes whose triangles do not know their outside.
+    BothSides,
+}
+
+/// How faces are asked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshTargetParams {
+    /// What to make of faces turned away from the viewer. Default: not visible.
+    pub back_faces: BackFaces,
+    /// How far before its face a place is asked, on the side of the viewer, metres, 0 or more. Default 0.1: balls stand out by about as
+    /// much where no pulse reached. On a simulated town this takes the false-blocked share of facades in the sun from 15.7 to 9.6 % and
+    /// the error of a building's share from 0.10 to 0.05, for a point more of false-visible on facades and three on roofs.
+    pub lift: f64,
+}
+
+impl Default for MeshTargetParams {
+    fn default() -> Self {
+        Self { back_faces: BackFaces::default(), lift: 0.1 }
+    }
+}
+
+impl MeshTargetParams {
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a lift that is not finite or below zero.
+    pub fn validate(&self) -> Result<()> {
+        if !(self.lift >= 0.0 && self.lift.is_finite()) {
+            return Err(Error::InvalidParameter {
+                name: "lift of places before their faces",
+                value: self.lift.to_string(),
+                expected: "0 metres or more",
+            });
+        }
+        Ok(())
+    }
+}
+
+/// What is seen of a face, of an object, or of anything put together of them, m².
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SeenArea {
+    /// Area that counts; 0 where [`BackFaces::LeftOut`] leaves all of it out.
+    pub area: f64,
+    /// Of this, what is seen.
+    pub visible: f64,
+    /// Of this, what nothing blocks but is not proven; not among the visible.
+    pub unproven: f64,
+    /// Square of the standard error of `visible`, m⁴.
+    pub variance: f64,
+}
+
+impl SeenArea {
+    /// Share of the area that is seen, 0 to 1; NaN without area.
+    #[must_use]
+    pub fn visible_share(&self) -> f64 {
+        self.visible / self.area
+    }
+
+    /// Standard error of the visible area, m²: what sampling leaves open. What balls get wrong is not in it.
+    #[must_use]
+    pub fn standard_error(&self) -> f64 {
+        self.variance.sqrt()
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.area += other.area;
+        self.visible += other.visible;
+        self.unproven += other.unproven;
+        self.variance += other.variance;
+    }
+}
+
+impl Piece {
+    /// Any vector from the plane of the piece to a common viewer.
+    fn towards(&self, viewer: Viewer<'_>) -> [f64; 3] {
+        match viewer {
+            Viewer::Direction(direction) => direction,
+            Viewer::Eye(eye) => sub(eye, self.corners[0].map(f64::from)),
+            Viewer::Each(_) => [0.0; 3],
+        }
+    }
+
+    /// The place moved `lift` metres off the plane of the piece to the side of a common viewer, local metres.
+    #[must_use]
+    pub fn lifted(&self, viewer: Viewer<'_>, lift: f64) -> [f32; 3] {
+        self.lifted_along_normal(if self.is_before(viewer) { lift } else { -lift })
+    }
+
+    /// Whether the viewer is on the side that the normal points to, or edge-on.
+    #[must_use]
+    pub fn is_before(&self, viewer: Viewer<'_>) -> bool {
+        !(dot(self.normal.map(f64::from), self.towards(viewer)) < 0.0)
+    }
+
+    /// The place moved by `lift` metres along the normal, local metres.
+    #[must_use]
+    pub fn lifted_along_normal(&self, lift: f64) -> [f32; 3] {
+        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+        std::array::from_fn(|i| (f64::from(self.place[i]) + lift * f64::from(self.normal[i])) as f32)
+    }
+}
+
+/// Whether each piece of `surface` is turned to `viewer`. Pieces seen exactly edge-on are not; those of a surface without a known outside
+/// all are.
+///
+/// # Errors
+/// [`Error::UnsupportedViewer`] for [`Viewer::Each`], and those of [`Viewer::validate`].
+pub fn facing(surface: &SurfacePieces, viewer: Viewer<'_>) -> Result<Vec<bool>> {
+    viewer.validate()?;
+    let turned = |piece: &Piece| dot(piece.normal.map(f64::from), piece.towards(viewer)) > 0.0;
+    match (surface.sides, viewer) {
+        (_, Viewer::Each(_)) => {
+            Err(Error::UnsupportedViewer { method: "a surface", what: "from one eye or along one direction" })
+        }
+        (Sides::Both, _) => Ok(vec![true; surface.pieces.len()]),
+        (Sides::Known, _) => Ok(surface.pieces.iter().map(turned).collect()),
+    }
+}
+
+/// What `viewer` sees of each face of `surface`, (faces). `ask` answers for places, (M, 3) local metres, such as
+/// [`super::Visibility::visible`] for the same viewer; whatever is not [`Answer::Visible`] or [`Answer::Unproven`] counts as not seen.
+///
+/// Each piece counts as its place does. The standard error of a face follows from pairs of neighbouring pieces that differ (collapsed
+/// strata), and errs to the large side; a face of one piece has the greatest there can be, half its area. Areas and
+/// squares of errors of faces add up to those of objects.
+///
+/// # Errors
+/// Those of [`facing`], of [`MeshTargetParams::validate`] and of `ask`, and [`Error::LengthMismatch`] where it answers for another number of places.
+///
+/// # Source
+/// Cochran 1977, Sampling Techniques, section 5A.12 (one unit per stratum).
+pub fn seen_faces(
+    surface: &SurfacePieces,
+    viewer: Viewer<'_>,
+    params: &MeshTargetParams,
+    ask: impl FnOnce(&[[f32; 3]]) -> Result<Vec<Answer>>,
+) -> Result<Vec<SeenArea>> {
+    params.validate()?;
+    let back_faces = params.back_faces;
+    let turned = facing(surface, viewer)?;
+    let facing = if back_faces == BackFaces::BothSides { vec![true; turned.len()] } else { turned };
+    let asked: Vec<usize> = (0..surface.pieces.len()).filter(|&row| facing[row]).collect();
+    let places: Vec<[f32; 3]> = asked.iter().map(|&row| surface.pieces[row].lifted(viewer, params.lift)).collect();
+    let given = ask(&places)?;
+    if given.len() != places.len() {
+        return Err(Error::LengthMismatch { what: "answers", expected: places.len(), found: given.len() });
+    }
+    let mut answers = vec![Answer::Blocked; surface.pieces.len()];
+    for (&row, answer) in asked.iter().zip(given) {
+        answers[row] = answer;
+    }
+    let mut faces = vec![SeenArea::default(); surface.face_count];
+    let mut row = 0;
+    for group in surface.pieces.chunk_by(|a, b| a.face == b.face) {
+        let answers = &answers[row..row + group.len()];
+        let is_facing = facing[row];
+        row += group.len();
+        let Some(face) = group.first().and_then(|piece| faces.get_mut(piece.face as usize)) else { continue };
+        if is_facing || back_faces != BackFaces::LeftOut {
+            *face = seen_of(group, answers, is_facing);
+        }
+    }
+    Ok(faces)
+}
+
+/// What is seen of the pieces of one face.
+fn seen_of(pieces: &[Piece], answers: &[Answer], is_asked: bool) -> SeenArea {
+    let mut seen = SeenArea::default();
+    for (piece, answer) in pieces.iter().zip(answers) {
+        let area = f64::from(piece.area);
+        seen.area += area;
+        match answer {
+            Answer::Visible => seen.visible += area,
+            Answer::Unproven => seen.unproven += area,
+            _ => {}
+        }
+    }
+    let differ = |a: usize, b: usize| {
+        if (answers[a] == Answer::Visible) == (answers[b] == Answer::Visible) {
+            return 0.0;
+        }
+        (f64::from(pieces[a].area).powi(2) + f64::from(pieces[b].area).powi(2)) / 2.0
+    };
+    let last = pieces.len() - 1;
+    seen.variance = match last {
+        _ if !is_asked => 0.0,
+        0 => seen.area * seen.area / 4.0,
+        _ => {
+            let pairs: f64 = (0..pieces.len() / 2).map(|pair| differ(2 * pair, 2 * pair + 1)).sum();
+            // an odd one is compared with its neighbour, which then counts twice
+            pairs + if last.is_multiple_of(2) { differ(last - 1, last) } else { 0.0 }
+        }
+    };
+    seen
+}
+
+/// What is seen of each of `count` objects, given the object of each face, (faces); faces of others are left out.
+#[must_use]
+pub fn seen_objects(faces: &[SeenArea], objects: &[u32], count: usize) -> Vec<SeenArea> {
+    let mut seen = vec![SeenArea::default(); count];
+    for (face, &object) in faces.iter().zip(objects) {
+        if let Some(sum) = seen.get_mut(object as usize) {
+            sum.add(face);
+        }
+    }
+    seen
+}
+
+/// What is seen of all faces together.
+#[must_use]
+pub fn seen_in_all(faces: &[SeenArea]) -> SeenArea {
+    let mut sum = SeenArea::default();
+    faces.iter().for_each(|face| sum.add(face));
+    sum
+}

@@ -1,0 +1,133 @@
+//! Point targets against a depth map: constant time each.
+
+use crate::depth::{DepthMap, Profile};
+use belvedere_data::random;
+use rayon::prelude::*;
+
+/// Whether a target can be seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+#[repr(u8)]
+pub enum Answer {
+    /// A ball lies before it.
+    Blocked = 0,
+    /// Nothing lies before it.
+    Visible = 1,
+    /// Nothing lies before it, but too much of the line of sight runs through space that no pulse came near to.
+    Unproven = 2,
+    /// It lies beside the picture or behind its plane, or its position is not finite: the view says nothing of it.
+    OutsideView = 3,
+}
+
+/// What to make of [`Answer::Unproven`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnprovenAs {
+    /// An answer of its own.
+    Reported,
+    /// [`Answer::Visible`].
+    Visible,
+    /// [`Answer::Blocked`].
+    Blocked,
+}
+
+impl UnprovenAs {
+    /// `answer`, or what to take in place of [`Answer::Unproven`].
+    #[must_use]
+    pub fn settle(self, answer: Answer) -> Answer {
+        match (answer, self) {
+            (Answer::Unproven, Self::Visible) => Answer::Visible,
+            (Answer::Unproven, Self::Blocked) => Answer::Blocked,
+            _ => answer,
+        }
+    }
+}
+
+/// How many targets got which answer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AnswerCounts {
+    /// [`Answer::Visible`].
+    pub visible: usize,
+    /// [`Answer::Blocked`].
+    pub blocked: usize,
+    /// [`Answer::Unproven`].
+    pub unproven: usize,
+    /// [`Answer::OutsideView`].
+    pub outside_view: usize,
+}
+
+impl AnswerCounts {
+    /// Counts `answers`.
+    #[must_use]
+    pub fn of(answers: &[Answer]) -> Self {
+        let count = |answer| answers.iter().filter(|&&a| a == answer).count();
+        Self {
+            visible: count(Answer::Visible),
+            blocked: count(Answer::Blocked),
+            unproven: count(Answer::Unproven),
+            outside_view: count(Answer::OutsideView),
+        }
+    }
+}
+
+/// Targets handed to a thread at once.
+const CHUNK: usize = 16_384;
+
+/// The answer for each of `targets`, (M, 3) local metres, in the same order.
+///
+/// A target is visible if it lies nearer than the depth of its pixel plus `depth_bias` metres; see
+/// [`DepthMap::default_depth_bias`].
+///
+/// # Source
+/// Peters, Ledoux & Biljecki 2015, section 3.3 and Algorithm 2 (`QUERYPOINT`); Williams 1978. The bias is not in the paper.
+#[must_use]
+pub fn query_points(map: &DepthMap, targets: &[[f32; 3]], depth_bias: f32) -> Vec<Answer> {
+    #[expect(clippy::cast_possible_truncation, reason = "the depth map holds f32")]
+    let [near, far] = map.view.limits().map(|v| v as f32);
+    // the paper's picture plane has no behind
+    let least_depth = match map.profile {
+        Profile::Sphere => near,
+        Profile::PaperCone => f32::NEG_INFINITY,
+    };
+    targets
+        .par_iter()
+        .with_min_len(CHUNK)
+        .map(|&target| {
+            let Some([x, y, z]) = map.view.project(target) else { return Answer::OutsideView };
+            #[expect(clippy::cast_possible_truncation, reason = "the depth map holds f32")]
+            let z = z as f32;
+            // beside the picture or beyond its limits, or not a number
+            if !(x >= 0.0 && y >= 0.0 && z + depth_bias >= least_depth && z <= far) {
+                return Answer::OutsideView;
+            }
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "not negative: rounds down, saturates"
+            )]
+            match map.depth.get(x as usize, y as usize) {
+                None => Answer::OutsideView,
+                Some(depth) if z < depth + depth_bias => Answer::Visible,
+                Some(_) => Answer::Blocked,
+            }
+        })
+        .collect()
+}
+
+/// `count` positions spread evenly at random over the local box from `low` to `high`: the paper's experiment. The same
+/// seed gives the same positions for any number of threads.
+#[must_use]
+pub fn random_targets(low: [f32; 3], high: [f32; 3], count: usize, seed: u64) -> Vec<[f32; 3]> {
+    (0..count)
+        .into_par_iter()
+        .with_min_len(CHUNK)
+        .map(|i| {
+            std::array::from_fn(|axis| {
+                let share = random::uniform(seed, 3 * i as u64 + axis as u64);
+                let (low, high) = (f64::from(low[axis]), f64::from(high[axis]));
+                #[expect(clippy::cast_possible_truncation, reason = "lies between two f32")]
+                let value = (low + share * (high - low)) as f32;
+                value
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,204 @@
+//! Whether pulses saw the space that a line of sight runs through.
+
+use super::seen_space::SeenSpace;
+use crate::pulses::Needles;
+use belvedere_data::{Error, Result};
+use std::collections::BTreeMap;
+
+/// How far ahead the next pulse is looked for where none is near, metres: half a street.
+const LOOK_AHEAD: f64 = 4.0;
+/// Nearness where pulses are dense enough, metres: what carves balls of half a metre leaves no room for things that block.
+const LEAST_NEARNESS: f64 = 0.7;
+/// Side of the cells that pulses are counted in, metres.
+const COUNTING_CELL: f32 = 4.0;
+
+/// When visible counts as proven.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProofParams {
+    /// How near a pulse must pass for a place to count as seen, metres, above 0; `None`, the default, for
+    /// [`nearness`] of the pulses.
+    pub nearness: Option<f64>,
+    /// How much of a line of sight, in total, may run through space not seen, metres, 0 or more. Default 0.5: less than what a
+    /// person or a trunk takes.
+    pub tolerance: f64,
+    /// Step where no pulse is near, metres, above 0. Default 0.1. A seen piece shorter than this between two that are not may be
+    /// counted with them; all other lengths are exact.
+    pub step: f64,
+    /// What is thought of space beside the survey.
+    pub beside: Beside,
+}
+
+/// What is thought of space beside the box around the lower ends of all pulses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beside {
+    /// Nothing is asked of it: a line of sight is followed to the rim of the survey.
+    NotAsked,
+    /// No pulse saw it.
+    Unseen,
+}
+
+impl Default for ProofParams {
+    fn default() -> Self {
+        Self { nearness: None, tolerance: 0.5, step: 0.1, beside: Beside::NotAsked }
+    }
+}
+
+/// Pulses, asked how much of a line of sight none of them came near to.
+pub struct Proof {
+    needles: Needles,
+    nearness: f64,
+    params: ProofParams,
+    seen_space: SeenSpace,
+    /// West, south and east, north of the lower ends.
+    rim: [[f64; 2]; 2],
+}
+
+/// How near a pulse must pass for a place to count as seen, metres: 0.7, or the usual distance between pulses, 1/√density,
+/// where that is more. The density is the median over cells of 4 m that have any.
+///
+/// # Source
+/// This project's own.
+#[must_use]
+pub fn nearness(needles: &Needles) -> f64 {
+    let mut counts: BTreeMap<[i32; 2], u32> = BTreeMap::new();
+    for start in needles.lower_ends() {
+        #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
+        let cell = [0, 1].map(|i| (start[i] / COUNTING_CELL).floor() as i32);
+        *counts.entry(cell).or_default() += 1;
+    }
+    let mut counts: Vec<u32> = counts.into_values().collect();
+    counts.sort_unstable();
+    let median = counts.get(counts.len() / 2).copied().unwrap_or(1);
+    let density = f64::from(median) / f64::from(COUNTING_CELL * COUNTING_CELL);
+    LEAST_NEARNESS.max(1.0 / density.sqrt())
+}
+
+impl Proof {
+    /// Takes the pulses of a survey.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a parameter outside its range.
+    pub fn new(needles: Needles, params: &ProofParams) -> Result<Self> {
+        let invalid =
+            |name, value: f64, expected| Err(Error::InvalidParameter { name, value: value.to_string(), expected });
+        let nearness = params.nearness.unwrap_or_else(|| nearness(&needles));
+        if !(nearness.is_finite() && nearness > 0.0) {
+            return invalid("nearness of pulses", nearness, "finite and above zero metres");
+        }
+        if !(params.tolerance >= 0.0) {
+            return invalid("length that may be unseen", params.tolerance, "zero metres or more");
+        }
+        if !(params.step.is_finite() && params.step > 0.0) {
+            return invalid("step along unseen space", params.step, "finite and above zero metres");
+        }
+        let mut rim = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        for start in needles.lower_ends() {
+            for axis in 0..2 {
+                rim[0][axis] = rim[0][axis].min(f64::from(start[axis]));
+                rim[1][axis] = rim[1][axis].max(f64::from(start[axis]));
+            }
+        }
+        let seen_space = SeenSpace::new(&needles, rim, nearness);
+        Ok(Self { needles, nearness, params: *params, seen_space, rim })
+    }
+
+    /// How near a pulse must pass, metres.
+    #[must_use]
+    pub fn nearness(&self) -> f64 {
+        self.nearness
+    }
+
+    /// Length that may be unseen, metres.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.params.tolerance
+    }
+
+    /// How much of the way from `target`, local metres, along the unit vector `towards` to `range` metres (infinite for a
+    /// direction) runs through space that no pulse came near to, metres. Above the highest return everything is free.
+    /// Without any pulse all of it is unseen; so is a line that runs down without end.
+    #[must_use]
+    pub fn unproven_length(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> f64 {
+        self.length(target, towards, range, f64::INFINITY)
+    }
+
+    /// Whether more than the tolerated length runs through unseen space; quicker than measuring it.
+    #[must_use]
+    pub fn is_unproven(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
+        self.length(target, towards, range, self.params.tolerance) > self.params.tolerance
+    }
+
+    /// The unseen length, or something above `enough` as soon as it is known to exceed that.
+    fn length(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64) -> f64 {
+        if self.needles.is_empty() {
+            return range;
+        }
+        let top = f64::from(self.needles.top());
+        let mut below = [0.0, range];
+        clip(&mut below, target[2], towards[2], [f64::NEG_INFINITY, top]);
+        let mut inside = below;
+        for axis in 0..2 {
+            clip(&mut inside, target[axis], towards[axis], [self.rim[0][axis], self.rim[1][axis]]);
+        }
+        let span = |[from, to]: [f64; 2]| (to - from).max(0.0);
+        let beside = match self.params.beside {
+            Beside::NotAsked => 0.0,
+            Beside::Unseen => span(below) - span(inside),
+        };
+        if span(inside) == f64::INFINITY {
+            return f64::INFINITY;
+        }
+        if beside > enough || !(span(inside) > 0.0) {
+            return beside;
+        }
+        beside + self.length_inside(target, towards, inside, enough - beside)
+    }
+
+    fn length_inside(&self, origin: [f64; 3], direction: [f64; 3], [from, to]: [f64; 2], enough: f64) -> f64 {
+        let point = |at: f64| -> [f64; 3] { std::array::from_fn(|i| origin[i] + at * direction[i]) };
+        let backward = direction.map(|v| -v);
+        let mut unseen = 0.0;
+        let mut gap_from: Option<f64> = None;
+        let mut at = from;
+        while at < to {
+            let seen_to = self.seen_space.near_until(origin, direction, at).or_else(|| {
+                self.needles.near_piece(origin, direction, at, self.nearness).map(|[_, piece_to]| piece_to)
+            });
+            if let Some(seen_to) = seen_to {
+                if let Some(start) = gap_from.take() {
+                    // the last step may have gone past where pulses come near again
+                    let mut end = at;
+                    while let Some([_, before]) = self.needles.near_piece(origin, backward, -end, self.nearness)
+                        && end > start
+                    {
+                        end = -before;
+                    }
+                    unseen += (end - start).max(0.0);
+                }
+                at = seen_to;
+                continue;
+            }
+            let start = *gap_from.get_or_insert(at);
+            let reach = self.nearness + LOOK_AHEAD;
+            let clear = self.needles.nearest_distance(point(at), reach).unwrap_or(reach) - self.nearness;
+            if unseen + (at + clear.max(0.0)).min(to) - start > enough {
+                return f64::max(unseen + (at + clear.max(0.0)).min(to) - start, enough);
+            }
+            at += clear.max(self.params.step);
+        }
+        unseen + gap_from.map_or(0.0, |start| to - start)
+    }
+}
+
+/// Cuts the piece of a line down to where one of its coordinates lies between two bounds.
+fn clip(piece: &mut [f64; 2], origin: f64, slope: f64, [low, high]: [f64; 2]) {
+    if slope == 0.0 {
+        if !(low..=high).contains(&origin) {
+            piece[1] = piece[0];
+        }
+        return;
+    }
+    let (a, b) = ((low - origin) / slope, (high - origin) / slope);
+    piece[0] = piece[0].max(a.min(b));
+    piece[1] = piece[1].min(a.max(b)).max(piece[0]);
+}

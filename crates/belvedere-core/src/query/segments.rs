@@ -1,0 +1,287 @@
+//! Lines of sight between pairs of points: what blocks them first, and all that lies on them.
+
+use super::{Answer, EarthParams, MedialScene};
+use crate::depth::Profile;
+use crate::ray_index::Ray;
+use belvedere_data::vector::{dot, length, sub};
+use rayon::prelude::*;
+
+/// Pairs handed to a thread at once.
+const CHUNK: usize = 256;
+/// Length of the ray that finds what holds a point, metres: any will do.
+const PROBE: f64 = 1e-3;
+
+/// What is known of a line of sight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineOfSight {
+    /// Visible, blocked, or unproven where pulses are known.
+    pub answer: Answer,
+    /// What the observer sees in place of the target, if the line is blocked.
+    pub first_block: Option<Block>,
+    /// How much of it no pulse came near to, metres; 0 where pulses are not known, and where it is blocked.
+    pub unproven_length: f64,
+}
+
+/// A ball before a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// Where the line of sight meets it, metres from the observer along the line.
+    pub range: f64,
+    /// Its row among the balls that the scene was made of.
+    pub ball: usize,
+    /// Where the line meets it, local metres.
+    pub place: [f64; 3],
+}
+
+/// The piece of a line of sight that lies in one ball, however it blocks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Row of the ball among those that the scene was made of.
+    pub ball: usize,
+    /// Where the line enters and leaves the ball, metres from the observer, cut to the line.
+    pub ranges: [f64; 2],
+}
+
+/// The balls that hold a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Enclosure {
+    /// How many.
+    pub ball_count: usize,
+    /// How deep below the surface of the deepest of them, metres; 0 outside.
+    pub depth: f64,
+}
+
+/// The ends of a line of sight, and whether a piece of it reaches them.
+struct Piece {
+    /// From the end nearer to the target towards the observer.
+    ray: Ray,
+    target: [f64; 3],
+    observer: [f64; 3],
+}
+
+impl MedialScene {
+    /// What is known of the line of sight from `observer` to `target`, local metres, over the earth of `earth`; `None` where a
+    /// coordinate is not finite or both are the same point.
+    ///
+    /// The answer is that of [`MedialScene::answer`] for the same pair on a plane earth. A curved line is cut into chords; the rules for
+    /// the ends (balls that hold the observer are left out, balls near the target give way) are asked of the ends of
+    /// the whole line.
+    #[must_use]
+    pub fn line_of_sight(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Option<LineOfSight> {
+        let straight = Ray::new(target, sub(observer, target), [0.0, length(sub(observer, target))])?;
+        let pieces = if earth.bends(target, observer) {
+            self.pieces(observer, target, earth)
+        } else {
+            vec![(Piece { ray: self.biased(straight), target, observer }, 0.0)]
+        };
+        let whole = pieces.len() == 1;
+        for (piece, passed) in &pieces {
+            if let Some((number, from_observer)) = self.first_on(piece, whole) {
+                let place = piece.ray.at(piece.ray.ranges[1] - from_observer);
+                let ball = self.rows.get(number).map_or(usize::MAX, |&row| row as usize);
+                let block = Block { range: passed + from_observer, ball, place };
+                return Some(LineOfSight { answer: Answer::Blocked, first_block: Some(block), unproven_length: 0.0 });
+            }
+        }
+        let Some(proof) = &self.proof else {
+            return Some(LineOfSight { answer: Answer::Visible, first_block: None, unproven_length: 0.0 });
+        };
+        let unseen = |(piece, _): &(Piece, f64)| {
+            proof.unproven_length(piece.ray.origin, piece.ray.direction, piece.ray.ranges[1])
+        };
+        let unproven_length = pieces.iter().map(unseen).sum();
+        let answer = if unproven_length > proof.tolerance() { Answer::Unproven } else { Answer::Visible };
+        Some(LineOfSight { answer, first_block: None, unproven_length })
+    }
+
+    /// [`MedialScene::line_of_sight`] for each of `pairs`, (N, observer and target), local metres, in their order.
+    #[must_use]
+    pub fn lines_of_sight(&self, pairs: &[[[f64; 3]; 2]], earth: &EarthParams) -> Vec<Option<LineOfSight>> {
+        let ask = |&[observer, target]: &[[f64; 3]; 2]| self.line_of_sight(observer, target, earth);
+        pairs.par_iter().with_min_len(CHUNK).map(ask).collect()
+    }
+
+    /// The answer of [`MedialScene::line_of_sight`] alone, which is quicker; [`Answer::OutsideView`] for a point that is not finite
+    /// or is the observer's own.
+    #[must_use]
+    pub fn sight_answer(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Answer {
+        let range = length(sub(observer, target));
+        let Some(ray) = Ray::new(target, sub(observer, target), [0.0, range]) else { return Answer::OutsideView };
+        if !earth.bends(target, observer) {
+            return self.answer(target, ray.direction, range);
+        }
+        let pieces = self.pieces(observer, target, earth);
+        if pieces.iter().any(|(piece, _)| self.index.any(&piece.ray, |number| self.front_on(number, piece).is_some())) {
+            return Answer::Blocked;
+        }
+        let Some(proof) = &self.proof else { return Answer::Visible };
+        let mut unseen = 0.0;
+        for (piece, _) in &pieces {
+            unseen += proof.unproven_length(piece.ray.origin, piece.ray.direction, piece.ray.ranges[1]);
+            if unseen > proof.tolerance() {
+                return Answer::Unproven;
+            }
+        }
+        Answer::Visible
+    }
+
+    /// Every ball on the line of sight from `observer` to `target`, local metres, by its whole radius, in the order in which the
+    /// line enters them. Balls around the ends are among them, and those that give way to the target. Empty for a line
+    /// without length or with coordinates that are not finite.
+    #[must_use]
+    pub fn crossings(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<Crossing> {
+        let corners = earth.corners(observer, target);
+        let mut crossings: Vec<Crossing> = Vec::new();
+        let mut passed = 0.0;
+        for pair in corners.windows(2) {
+            let &[from, to] = pair else { continue };
+            let piece = length(sub(to, from));
+            let Some(ray) = Ray::new(from, sub(to, from), [0.0, piece]) else { continue };
+            self.index.each(&ray, |number| {
+                let Some(&(center, radius)) = self.balls.get(number) else { return };
+                let offset = sub(center.map(f64::from), ray.origin);
+                let along = dot(offset, ray.direction);
+                let half_square = f64::from(radius).powi(2) - (dot(offset, offset) - along * along).max(0.0);
+                let half = half_square.max(0.0).sqrt();
+                let ranges = [(along - half).max(0.0), (along + half).min(piece)];
+                if half_square > 0.0 && ranges[0] < ranges[1] {
+                    let ball = self.rows.get(number).map_or(usize::MAX, |&row| row as usize);
+                    crossings.push(Crossing { ball, ranges: ranges.map(|range| passed + range) });
+                }
+            });
+            passed += piece;
+        }
+        crossings.sort_by(|a, b| a.ranges[0].total_cmp(&b.ranges[0]).then(a.ball.cmp(&b.ball)));
+        crossings
+    }
+
+    /// The balls that hold `point`, local metres. An observer there would be blind, were these not left out.
+    #[must_use]
+    pub fn enclosure(&self, point: [f64; 3]) -> Enclosure {
+        let mut enclosure = Enclosure::default();
+        let Some(ray) = Ray::new(point, [0.0, 0.0, 1.0], [0.0, PROBE]) else { return enclosure };
+        self.index.each(&ray, |number| {
+            let Some(&(center, radius)) = self.balls.get(number) else { return };
+            let depth = f64::from(radius) - length(sub(center.map(f64::from), point));
+            if depth > 0.0 {
+                enclosure.ball_count += 1;
+                enclosure.depth = enclosure.depth.max(depth);
+            }
+        });
+        enclosure
+    }
+
+    /// Calls `visit` with the number in the index of every ball that blocks the line of sight from `observer` to `target`.
+    pub(super) fn each_blocker(
+        &self,
+        observer: [f64; 3],
+        target: [f64; 3],
+        earth: &EarthParams,
+        mut visit: impl FnMut(usize),
+    ) {
+        if earth.bends(target, observer) {
+            for (piece, _) in self.pieces(observer, target, earth) {
+                self.index.each(&piece.ray, |number| {
+                    if self.front_on(number, &piece).is_some() {
+                        visit(number);
+                    }
+                });
+            }
+        } else if let Some(ray) = Ray::new(target, sub(observer, target), [0.0, length(sub(observer, target))]) {
+            let ray = self.biased(ray);
+            self.index.each(&ray, |number| {
+                if self.front(number, &ray).is_some() {
+                    visit(number);
+                }
+            });
+        }
+    }
+
+    /// The chords of a curved line from the observer on, each with what the line passed before it, metres.
+    fn pieces(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<(Piece, f64)> {
+        let corners = earth.corners(observer, target);
+        let mut passed = 0.0;
+        let mut pieces = Vec::with_capacity(corners.len());
+        for pair in corners.windows(2) {
+            let &[near, far] = pair else { continue };
+            let size = length(sub(near, far));
+            let Some(ray) = Ray::new(far, sub(near, far), [0.0, size]) else { continue };
+            let ray = if far == target { self.biased(ray) } else { ray };
+            pieces.push((Piece { ray, target, observer }, passed));
+            passed += size;
+        }
+        pieces
+    }
+
+    fn biased(&self, mut ray: Ray) -> Ray {
+        ray.ranges[0] = self.params.depth_bias;
+        ray
+    }
+
+    /// The ball that the observer meets first on a piece, by its number in the index, and where, metres from the end of the piece
+    /// on the observer's side.
+    fn first_on(&self, piece: &Piece, whole: bool) -> Option<(usize, f64)> {
+        let ray = &piece.ray;
+        let reach = ray.ranges[1];
+        let back = Ray {
+            origin: ray.at(reach),
+            direction: ray.direction.map(|v| -v),
+            ranges: [0.0, (reach - ray.ranges[0]).max(0.0)],
+        };
+        self.index.nearest(&back, |number| {
+            let front = if whole { self.front(number, ray) } else { self.front_on(number, piece) };
+            front.map(|front| reach - front)
+        })
+    }
+
+    /// As [`MedialScene::front`], for a chord of a longer line: balls may reach over its ends, and only the ends of the whole line
+    /// have rights.
+    fn front_on(&self, number: usize, piece: &Piece) -> Option<f64> {
+        let &(center, radius) = self.balls.get(number)?;
+        let (center, mut radius) = (center.map(f64::from), f64::from(radius));
+        let from_observer = sub(center, piece.observer);
+        if dot(from_observer, from_observer) <= radius * radius {
+            return None;
+        }
+        let shell = self.params.shell_of(radius);
+        let outside = length(sub(center, piece.target)) - radius;
+        if outside.abs() < shell {
+            radius -= shell - outside.max(0.0);
+        }
+        let offset = sub(center, piece.ray.origin);
+        let along = dot(offset, piece.ray.direction);
+        let beside = (dot(offset, offset) - along * along).max(0.0);
+        if radius <= 0.0 || beside >= radius * radius {
+            return None;
+        }
+        let half = match self.params.profile {
+            Profile::Sphere => (radius * radius - beside).sqrt(),
+            Profile::PaperCone => radius - beside.sqrt(),
+        };
+        let [from, to] = piece.ray.ranges;
+        (along - half < to && along + half > from).then(|| (along + half).min(to))
+    }
+}
+
+/// `count` pairs of points spread evenly at random over the local box from `low` to `high`, observer and target. The same seed gives
+/// the same pairs for any number of threads.
+#[must_use]
+pub fn random_pairs(low: [f32; 3], high: [f32; 3], count: usize, seed: u64) -> Vec<[[f64; 3]; 2]> {
+    let ends = super::random_targets(low, high, 2 * count, seed);
+    ends.as_chunks::<2>().0.iter().map(|pair| pair.map(|end| end.map(f64::from))).collect()
+}
+
+/// The ranges that `crossings` cover together: apart from each other, in order, (from, to) metres from the observer.
+#[must_use]
+pub fn merged_crossings(crossings: &[Crossing]) -> Vec<[f64; 2]> {
+    let mut sorted: Vec<[f64; 2]> = crossings.iter().map(|crossing| crossing.ranges).collect();
+    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut merged: Vec<[f64; 2]> = Vec::new();
+    for ranges in sorted {
+        match merged.last_mut() {
+            Some(last) if ranges[0] <= last[1] => last[1] = last[1].max(ranges[1]),
+            _ => merged.push(ranges),
+        }
+    }
+    merged
+}

@@ -1,0 +1,128 @@
+//! The skyline around a place: how high the sky begins in each direction.
+
+use super::{EarthParams, MedialScene};
+use crate::depth::SHELL_SHARE;
+use belvedere_data::vector::{dot, sub};
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Balls handed to a thread at once.
+const CHUNK: usize = 1 << 15;
+
+/// Where the sky begins in one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SkylinePoint {
+    /// The least elevation above which nothing blocks up to the zenith, radians, −π/2 (nothing blocks at all) to π/2 (the zenith is
+    /// hidden).
+    pub elevation: f64,
+    /// Range of what stands there, metres; infinite where nothing does.
+    pub range: f64,
+    /// Row of its ball among the balls given.
+    pub ball: Option<usize>,
+}
+
+const EMPTY: SkylinePoint = SkylinePoint { elevation: -FRAC_PI_2, range: f64::INFINITY, ball: None };
+
+impl SkylinePoint {
+    /// The higher of two; of equally high ones that of the lower row, so that their order does not matter.
+    fn or(self, other: Self) -> Self {
+        let rank = |point: &Self| point.ball.unwrap_or(usize::MAX);
+        match self.elevation.total_cmp(&other.elevation) {
+            std::cmp::Ordering::Less => other,
+            std::cmp::Ordering::Equal if rank(&other) < rank(&self) => other,
+            _ => self,
+        }
+    }
+}
+
+impl MedialScene {
+    /// The skyline around `eye`, local metres: at `count` azimuths, the first north, clockwise in equal steps. Empty for an eye that is
+    /// not finite.
+    ///
+    /// Exact for the union of balls, by the tangents of every ball in the vertical plane of each azimuth: nothing that floats above a
+    /// gap is missed, and there is no step to choose. The eye may be a place on a surface: balls give way to it by
+    /// [`super::SceneParams::shell`] as to any target. Those that hold it even so are left out; [`MedialScene::enclosure`] tells of them.
+    /// Over the earth of `earth` far balls sink.
+    #[must_use]
+    pub fn skyline(&self, eye: [f64; 3], count: usize, earth: &EarthParams) -> Vec<SkylinePoint> {
+        self.skyline_from(eye, count, 0.0, earth)
+    }
+
+    /// [`MedialScene::skyline`] whose first azimuth is `first`, radians clockwise from grid north.
+    #[must_use]
+    pub fn skyline_from(&self, eye: [f64; 3], count: usize, first: f64, earth: &EarthParams) -> Vec<SkylinePoint> {
+        if count == 0 || !eye.iter().all(|v| v.is_finite()) || !first.is_finite() {
+            return Vec::new();
+        }
+        let step = TAU / count as f64;
+        // sines and cosines of the azimuths
+        let directions: Vec<[f64; 2]> = (0..count).map(|i| (first + i as f64 * step).sin_cos().into()).collect();
+        self.balls
+            .par_chunks(CHUNK)
+            .enumerate()
+            .map(|(chunk, balls)| {
+                let mut skyline = vec![EMPTY; count];
+                for (i, &(center, radius)) in balls.iter().enumerate() {
+                    let Some((offset, radius)) = self.before(eye, center, radius, earth) else { continue };
+                    let ball = self.rows.get(chunk * CHUNK + i).map(|&row| row as usize);
+                    each_azimuth(offset, radius, [first, step], count, |azimuth| {
+                        if let Some((elevation, range)) = top(offset, radius, directions[azimuth]) {
+                            skyline[azimuth] = skyline[azimuth].or(SkylinePoint { elevation, range, ball });
+                        }
+                    });
+                }
+                skyline
+            })
+            .reduce(|| vec![EMPTY; count], |a, b| a.into_iter().zip(b).map(|(a, b)| a.or(b)).collect())
+    }
+
+    /// Where a ball stands before the eye, and its radius after giving way; `None` if it holds the eye.
+    fn before(&self, eye: [f64; 3], center: [f32; 3], radius: f32, earth: &EarthParams) -> Option<([f64; 3], f64)> {
+        let (center, mut radius) = (center.map(f64::from), f64::from(radius));
+        let mut offset = sub(center, eye);
+        let distance = dot(offset, offset).sqrt();
+        let shell = self.params.shell.min(SHELL_SHARE * radius);
+        let outside = distance - radius;
+        if outside.abs() < shell {
+            radius -= shell - outside.max(0.0);
+        }
+        if radius <= 0.0 || distance <= radius {
+            return None;
+        }
+        if earth.bends(eye, center) {
+            let span = offset[0].hypot(offset[1]);
+            offset[2] -= (1.0 - earth.refraction) * span * span / (2.0 * earth.radius);
+        }
+        Some((offset, radius))
+    }
+}
+
+/// Calls `visit` for each azimuth at which the vertical half plane from the eye meets a ball.
+fn each_azimuth([x, y, _]: [f64; 3], radius: f64, [first, step]: [f64; 2], count: usize, mut visit: impl FnMut(usize)) {
+    let across = x.hypot(y);
+    if across <= radius {
+        (0..count).for_each(visit);
+        return;
+    }
+    let (middle, half) = ((x.atan2(y) - first).rem_euclid(TAU), (radius / across).asin());
+    // a step of rounding outward costs nothing: the exact test follows
+    let (from, to) = (((middle - half) / step - 1e-9).ceil(), ((middle + half) / step + 1e-9).floor());
+    #[expect(clippy::cast_possible_truncation, reason = "at most a turn and a quarter in steps")]
+    let (from, to) = (from as i64, to as i64);
+    #[expect(clippy::cast_possible_wrap, clippy::cast_possible_truncation, reason = "below count")]
+    (from..=to).for_each(|i| visit(i.rem_euclid(count as i64) as usize));
+}
+
+/// The highest elevation at which a half plane meets a ball, and the range of the tangent there.
+fn top([x, y, z]: [f64; 3], radius: f64, [sin, cos]: [f64; 2]) -> Option<(f64, f64)> {
+    let (ahead, aside) = (x * sin + y * cos, x * cos - y * sin);
+    let disc = radius * radius - aside * aside;
+    let square = ahead * ahead + z * z;
+    if disc <= 0.0 || square <= disc {
+        return None;
+    }
+    let (middle, half) = (z.atan2(ahead), (disc / square).sqrt().asin());
+    // the disc may reach over the vertical through the eye, into the half plane behind it or from there
+    let in_front = middle - half < FRAC_PI_2 && middle + half > -FRAC_PI_2;
+    in_front.then(|| ((middle + half).min(FRAC_PI_2), (square - disc).sqrt()))
+}

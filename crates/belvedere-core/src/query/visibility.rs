@@ -1,0 +1,92 @@
+//! What any way of answering visibility has in common.
+
+use super::Answer;
+use belvedere_data::{Error, Result};
+
+/// Who looks at the targets: the other end of each line of sight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Viewer<'a> {
+    /// Infinitely far away, in this direction from the scene (local, unit length): the sun.
+    Direction([f64; 3]),
+    /// At one point, local metres: an observer.
+    Eye([f64; 3]),
+    /// At a point of its own for each target, (M, 3), local metres: pairs of points.
+    Each(&'a [[f32; 3]]),
+}
+
+/// Answers for targets, (M, 3) local metres, in their order; what [`Visibility::seen_from`] returns.
+pub type Sight<'a> = Box<dyn Fn(&[[f32; 3]]) -> Result<Vec<Answer>> + Sync + 'a>;
+
+/// A model of a scene that can tell what is visible: medial balls, and every other method that is compared with them.
+pub trait Visibility: Sync {
+    /// Prepares whatever does not depend on the targets, such as a depth map or a convex hull, and returns what answers them.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedViewer`] where the method knows no such viewer, [`Error::InvalidParameter`] for a viewer that is
+    /// not finite. The returned function fails with [`Error::UnsupportedTargets`] where the method cannot answer targets
+    /// of this kind, and with [`Error::LengthMismatch`] where [`Viewer::Each`] has another number of eyes than targets.
+    fn seen_from<'a>(&'a self, viewer: Viewer<'a>) -> Result<Sight<'a>>;
+
+    /// The answer for each of `targets`, (M, 3) local metres, seen by `viewer`.
+    ///
+    /// # Errors
+    /// As [`Visibility::seen_from`] and what it returns.
+    fn visible(&self, viewer: Viewer<'_>, targets: &[[f32; 3]]) -> Result<Vec<Answer>> {
+        self.seen_from(viewer)?(targets)
+    }
+}
+
+impl Viewer<'_> {
+    /// Checks that a common viewer is finite and a direction is not zero. The eyes of [`Viewer::Each`] are not looked at: a
+    /// target with an eye that is not finite gets [`Answer::OutsideView`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`].
+    pub fn validate(&self) -> Result<()> {
+        let (name, vector) = match self {
+            Self::Direction(direction) => ("direction to the viewer", direction),
+            Self::Eye(eye) => ("eye", eye),
+            Self::Each(_) => return Ok(()),
+        };
+        let zero = matches!(self, Self::Direction(d) if d.iter().all(|&v| v == 0.0));
+        if zero || !vector.iter().all(|v| v.is_finite()) {
+            return Err(Error::InvalidParameter {
+                name,
+                value: format!("{vector:?}"),
+                expected: "finite, and longer than zero where it is a direction",
+            });
+        }
+        Ok(())
+    }
+
+    /// Checks that `targets` are as many as the eyes of [`Viewer::Each`].
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`].
+    pub fn validate_count(&self, targets: &[[f32; 3]]) -> Result<()> {
+        match self {
+            Self::Each(eyes) if eyes.len() != targets.len() => {
+                Err(Error::LengthMismatch { what: "eyes", expected: targets.len(), found: eyes.len() })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The line of sight of target number `index`: unit vector from the target to its viewer and the range of the viewer
+    /// (infinite for a direction), or `None` where a coordinate is not finite or the two points are the same.
+    #[must_use]
+    pub fn line_of_sight(&self, index: usize, target: [f32; 3]) -> Option<([f64; 3], f64)> {
+        let target = target.map(f64::from);
+        let eye = match self {
+            Self::Direction(direction) => {
+                let unit = belvedere_data::vector::unit(*direction)?;
+                return target.iter().all(|v| v.is_finite()).then_some((unit, f64::INFINITY));
+            }
+            Self::Eye(eye) => *eye,
+            Self::Each(eyes) => eyes.get(index)?.map(f64::from),
+        };
+        let towards: [f64; 3] = std::array::from_fn(|i| eye[i] - target[i]);
+        let range = belvedere_data::vector::dot(towards, towards).sqrt();
+        belvedere_data::vector::unit(towards).map(|unit| (unit, range))
+    }
+}

@@ -1,0 +1,115 @@
+//! How long work reports its control, and how it is cancelled.
+
+use crate::{Error, Result};
+
+/// What the owner of long work provides: a control bar, a notebook, a page, a signal handler. Every method may be called from any
+/// thread and should return at once.
+pub trait Watcher: Sync {
+    /// A stage begins that has `total` items; 0 where the number is not known. Stages do not nest.
+    fn begin(&self, _stage: &'static str, _total: usize) {}
+    /// `count` more items of the current stage are finished.
+    fn advance(&self, _count: usize) {}
+    /// The stage is over, finished or not.
+    fn end(&self, _stage: &'static str) {}
+    /// Whether the work should stop.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// Progress and cancellation of one piece of work. Every function that can run longer than a second takes one.
+#[derive(Clone, Copy, Default)]
+pub struct Control<'a>(Option<&'a dyn Watcher>);
+
+impl<'a> Control<'a> {
+    /// Reports to `watcher` and stops when it says so.
+    #[must_use]
+    pub fn new(watcher: &'a dyn Watcher) -> Self {
+        Self(Some(watcher))
+    }
+
+    /// Reports to nobody and is never cancelled.
+    #[must_use]
+    pub fn none() -> Self {
+        Self(None)
+    }
+
+    /// Runs `work` as a stage of `total` items, 0 where their number is not known.
+    ///
+    /// # Errors
+    /// Those of `work`, and [`Error::Cancelled`] where the work was cancelled before the stage began.
+    pub fn stage<T>(&self, name: &'static str, total: usize, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        self.check()?;
+        let Some(watcher) = self.0 else { return work() };
+        watcher.begin(name, total);
+        let result = work();
+        watcher.end(name);
+        result
+    }
+
+    /// Reports that `count` more items of the current stage are finished.
+    pub fn advance(&self, count: usize) {
+        if let Some(watcher) = self.0 {
+            watcher.advance(count);
+        }
+    }
+
+    /// Whether the work should stop.
+    #[must_use]
+    pub fn is_cancelled(&self) -> bool {
+        self.0.is_some_and(Watcher::is_cancelled)
+    }
+
+    /// Fails once the work is cancelled: called between pieces of work that take a tenth of a second at most.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn check(&self) -> Result<()> {
+        if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+    #[derive(Default)]
+    struct Counting {
+        begun: AtomicUsize,
+        done: AtomicUsize,
+        ended: AtomicUsize,
+        cancelled: AtomicBool,
+    }
+
+    impl Watcher for Counting {
+        fn begin(&self, _stage: &'static str, total: usize) {
+            self.begun.fetch_add(total, Ordering::Relaxed);
+        }
+        fn advance(&self, count: usize) {
+            self.done.fetch_add(count, Ordering::Relaxed);
+        }
+        fn end(&self, _stage: &'static str) {
+            self.ended.fetch_add(1, Ordering::Relaxed);
+        }
+        fn is_cancelled(&self) -> bool {
+            self.cancelled.load(Ordering::Relaxed)
+        }
+    }
+
+    #[test]
+    fn stages_report_items_and_stop_once_cancelled() {
+        let watcher = Counting::default();
+        let control = Control::new(&watcher);
+        let work = || {
+            control.advance(3);
+            watcher.cancelled.store(true, Ordering::Relaxed);
+            control.check()
+        };
+        assert!(matches!(control.stage("counting", 5, work), Err(Error::Cancelled)));
+        assert!(matches!(control.stage("never run", 7, || Ok(())), Err(Error::Cancelled)));
+        let counts = [&watcher.begun, &watcher.done, &watcher.ended].map(|count| count.load(Ordering::Relaxed));
+        assert_eq!(counts, [5, 3, 1]);
+        assert!(Control::none().check().is_ok());
+    }
+}

@@ -1,0 +1,113 @@
+//! The one error type of the library.
+
+use std::path::{Path, PathBuf};
+
+/// Result of every fallible function of this crate.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// What went wrong, with the offending value and what to do about it.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The operating system refused to read or write a file.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The refusal.
+        source: std::io::Error,
+    },
+    /// The content of a file cannot be understood.
+    #[error("{}: {what}", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, and what to do.
+        what: String,
+    },
+    /// The extension of a file names no format that fits its use.
+    #[error("{}: not a known {kind} format; use one of {supported}", path.display())]
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+        /// What the file should hold, such as "point cloud".
+        kind: &'static str,
+        /// The extensions that would do.
+        supported: &'static str,
+    },
+    /// Coordinates in degrees, earth-centred coordinates, or two files whose reference systems differ.
+    #[error("{}: {what}", path.display())]
+    UnusableCrs {
+        /// The file.
+        path: PathBuf,
+        /// Which system was found and which conversion to run first.
+        what: String,
+    },
+    /// The caller asked the work to stop ([`crate::control::Control`]). Nothing was written.
+    #[error("cancelled; nothing was written")]
+    Cancelled,
+    /// There is no point to work on.
+    #[error("no points are left: {what}")]
+    NoPoints {
+        /// Where they were lost.
+        what: String,
+    },
+    /// A parameter lies outside its range.
+    #[error("{name} is {value}, but must be {expected}")]
+    InvalidParameter {
+        /// The parameter.
+        name: &'static str,
+        /// The value given.
+        value: String,
+        /// The range.
+        expected: &'static str,
+    },
+    /// Two arrays that belong together differ in length.
+    #[error("{what}: {found} values for {expected} points")]
+    LengthMismatch {
+        /// The array.
+        what: &'static str,
+        /// Length it should have.
+        expected: usize,
+        /// Length it has.
+        found: usize,
+    },
+    /// The cloud lacks an attribute that the chosen way of working needs.
+    #[error("the cloud has no {attribute}, which {needed_for} needs; {advice}")]
+    MissingAttribute {
+        /// The attribute.
+        attribute: &'static str,
+        /// What needs it.
+        needed_for: &'static str,
+        /// What else could be done.
+        advice: &'static str,
+    },
+    /// A method cannot answer for targets of this kind.
+    #[error("{method} cannot answer for these targets: {what}")]
+    UnsupportedTargets {
+        /// The method.
+        method: &'static str,
+        /// Which targets it can answer for.
+        what: &'static str,
+    },
+    /// A method knows no viewer of this kind.
+    #[error("{method} cannot look from there: {what}")]
+    UnsupportedViewer {
+        /// The method.
+        method: &'static str,
+        /// From where it can look.
+        what: &'static str,
+    },
+}
+
+impl Error {
+    /// Turns an error of the operating system into an [`Error::Io`] about `path`, for use in `map_err`.
+    pub fn io(path: &Path) -> impl FnOnce(std::io::Error) -> Self + '_ {
+        move |source| Self::Io { path: path.to_owned(), source }
+    }
+
+    /// An [`Error::Malformed`] about `path`.
+    pub fn malformed(path: &Path, what: impl Into<String>) -> Self {
+        Self::Malformed { path: path.to_owned(), what: what.into() }
+    }
+}

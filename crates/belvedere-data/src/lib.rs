@@ -1,0 +1,19 @@
+//! Plain data that all of Belvedere shares: point clouds, reference systems, meshes, rasters, views, errors, progress.
+//!
+//! Users add the crate `belvedere`, which holds everything here under the same names.
+
+pub mod cloud;
+pub mod control;
+pub mod crs;
+pub mod error;
+pub mod mesh;
+pub mod random;
+pub mod raster;
+pub mod trajectory;
+pub mod vector;
+pub mod view;
+pub mod weather;
+
+pub use cloud::{Attributes, GpsTimeKind, PointCloud};
+pub use error::{Error, Result};
+pub use mesh::Mesh;

@@ -1,0 +1,23 @@
+//! Pictures of results: maps, legends, charts, films.
+//!
+//! Users add the crate `belvedere`, which holds everything here as `belvedere::figures`.
+
+mod animation;
+mod canvas;
+mod depth_picture;
+mod font;
+mod horizon_picture;
+mod map_picture;
+mod picture;
+mod png;
+mod profile_picture;
+
+pub use animation::write_apng;
+pub use belvedere_io::{class_color, in_shadow, ramp_colors};
+pub use canvas::{Canvas, Colors};
+pub use depth_picture::{camera_picture, depth_picture, panorama_picture};
+pub use horizon_picture::horizon_picture;
+pub use map_picture::{MapLegend, MapPicture, map_picture};
+pub use picture::{Picture, side_by_side};
+pub use png::write_png;
+pub use profile_picture::{Profile, profile_picture};

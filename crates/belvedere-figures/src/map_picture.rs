@@ -1,0 +1,231 @@
+//! Maps over a shaded relief, with a legend and a scale bar.
+
+use rayon::prelude::*;
+
+use crate::font::{HEIGHT, draw_text, fitted, text_width};
+use crate::picture::{INK, PAPER, Picture, text_scale};
+use belvedere_data::raster::Raster;
+use belvedere_data::{Error, Result};
+use belvedere_io::colors::ramp;
+
+/// Maps smaller than this are enlarged.
+const LEAST_SIDE: usize = 600;
+/// Where nothing is known of the relief.
+const UNKNOWN: [f64; 3] = [236.0, 237.0, 240.0];
+/// Share of a pixel that the colour of the map takes, the rest is relief.
+const TINT: f64 = 0.5;
+/// Towards the light, from the north-west, 45° high (east, north, up).
+const TO_LIGHT: [f64; 3] = [-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2];
+/// Colours of a mark: its disc and the ring around it.
+const MARK: [[u8; 3]; 2] = [[225, 30, 45], [255, 255, 255]];
+
+/// Most round values beside a ramp.
+const MOST_TICKS: f64 = 9.0;
+
+/// What a map shows.
+pub struct MapPicture<'a> {
+    /// Heights whose relief lies below the colours, metres, NaN where not known; row 0 in the north.
+    pub relief: &'a Raster<f32>,
+    /// Side of a pixel, metres.
+    pub cell: f64,
+    /// Colour of each pixel, as many as heights; `None` shows the bare relief.
+    pub colors: &'a [Option<[u8; 3]>],
+    /// Places to mark, in columns from the west and rows from the north.
+    pub marks: &'a [[f64; 2]],
+    /// What stands above the map.
+    pub title: &'a str,
+    /// What stands beside it.
+    pub legend: MapLegend<'a>,
+}
+
+/// What colours mean.
+pub enum MapLegend<'a> {
+    /// Each colour and its meaning.
+    Colors(&'a [([u8; 3], &'a str)]),
+    /// Colours from dark violet to yellow, as [`belvedere_io::ramp_colors`] has them, between two values, with the name of what is
+    /// measured.
+    Ramp(&'a str, [f64; 2]),
+}
+
+/// The map as a picture, small ones enlarged by repeating pixels.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] unless there is a colour, or none, for each height.
+pub fn map_picture(map: &MapPicture<'_>) -> Result<Picture> {
+    let (width, height) = (map.relief.width(), map.relief.height());
+    if map.colors.len() != width * height {
+        return Err(Error::LengthMismatch {
+            what: "colours of a map",
+            expected: width * height,
+            found: map.colors.len(),
+        });
+    }
+    let mut picture = Picture::filled(width, height, PAPER);
+    picture.rgb.par_chunks_exact_mut(3).enumerate().for_each(|(at, pixel)| {
+        let light = shade(map.relief, at % width, at / width, map.cell);
+        let base = light.map_or(UNKNOWN, |light| [70.0 + 180.0 * light; 3]);
+        for (channel, out) in pixel.iter_mut().enumerate() {
+            let value = match map.colors.get(at).copied().flatten() {
+                // the relief darkens the colour, so that both are seen
+                Some(color) => {
+                    let lit = light.unwrap_or(0.7) * 0.75 + 0.45;
+                    TINT * f64::from(color[channel]) * lit.min(1.0)
+                        + (1.0 - TINT) * (0.5 * base[channel] + 0.5 * f64::from(color[channel]))
+                }
+                None => base[channel],
+            };
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
+            let byte = value.clamp(0.0, 255.0) as u8;
+            *out = byte;
+        }
+    });
+    let longest = width.max(height).max(1);
+    let factor = LEAST_SIDE.div_ceil(longest).clamp(1, LEAST_SIDE);
+    let mut picture = picture.enlarged(factor);
+    let radius = picture.width.max(picture.height) as f64 / 130.0 + 2.0;
+    // many observers are dots, not a cover over the map
+    let radius = if map.marks.len() > 30 { radius * 0.5 } else { radius };
+    for mark in map.marks {
+        draw_mark(&mut picture, mark.map(|v| v * factor as f64), radius);
+    }
+    Ok(framed(&picture, map, map.cell / factor as f64))
+}
+
+/// Light on the relief, 0 to 1, from differences to the neighbours.
+fn shade(heights: &Raster<f32>, column: usize, row: usize, cell: f64) -> Option<f64> {
+    let own = heights.get(column, row).map(f64::from).filter(|h| h.is_finite())?;
+    let at = |column: Option<usize>, row: Option<usize>| {
+        let height = heights.get(column?, row?)?;
+        height.is_finite().then_some(f64::from(height))
+    };
+    let (c, r) = (Some(column), Some(row));
+    let east = at(Some(column + 1), r).unwrap_or(own) - at(column.checked_sub(1), r).unwrap_or(own);
+    let north = at(c, row.checked_sub(1)).unwrap_or(own) - at(c, Some(row + 1)).unwrap_or(own);
+    // walls of whole metres from pixel to pixel must not swallow the grey of everything else
+    let gentle = |rise: f64| (rise / (2.0 * cell)).clamp(-2.0, 2.0);
+    let normal = [-gentle(east), -gentle(north), 1.0];
+    let length = normal.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let facing = normal.iter().zip(TO_LIGHT).map(|(n, l)| n * l).sum::<f64>() / length;
+    Some(facing.clamp(0.0, 1.0))
+}
+
+fn draw_mark(picture: &mut Picture, [x, y]: [f64; 2], radius: f64) {
+    for (radius, color) in [(radius * 1.45, MARK[1]), (radius, MARK[0])] {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "`as` saturates, pixels are cut at the rim"
+        )]
+        let pixels = |v: f64| (v - radius).max(0.0) as usize..(v + radius + 1.0).max(0.0) as usize;
+        for row in pixels(y) {
+            for column in pixels(x) {
+                if (column as f64 + 0.5 - x).hypot(row as f64 + 0.5 - y) <= radius {
+                    picture.fill_rectangle([column, row], [1, 1], color);
+                }
+            }
+        }
+    }
+}
+
+fn framed(map: &Picture, what: &MapPicture<'_>, pixel: f64) -> Picture {
+    let scale = text_scale(map.width.max(map.height));
+    let (margin, line) = (8 * scale, (HEIGHT + 4) * scale);
+    let swatch = 12 * scale;
+    let lines: Vec<([u8; 3], String)> = match &what.legend {
+        MapLegend::Colors(colors) => colors.iter().map(|(color, text)| (*color, (*text).to_owned())).collect(),
+        MapLegend::Ramp(_, range) => ticks(*range).into_iter().rev().map(|(share, text)| (ramp(share), text)).collect(),
+    };
+    let heading = if let MapLegend::Ramp(name, _) = &what.legend { *name } else { "" };
+    let (bar, bar_text) = scale_bar(map.width as f64 * pixel / 4.0);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a quarter of the map")]
+    let bar_px = (bar / pixel).round() as usize;
+    let texts = lines.iter().map(|(_, text)| text.as_str()).chain([heading]);
+    let legend = texts.map(|text| text_width(text, scale)).max().unwrap_or(0) + swatch + 5 * scale;
+    let top = margin + line + 4 * scale;
+    let rows = lines.len() + usize::from(!heading.is_empty());
+    let height = top + map.height.max(rows * (line + 3 * scale)) + margin + line + 2 * scale;
+    let mut sheet = Picture::filled(margin * 3 + map.width + legend, height + margin, PAPER);
+    let title = fitted(what.title, sheet.width - 2 * margin, scale);
+    draw_text(&mut sheet, margin, margin, &title, scale, INK);
+    sheet.paste(map, [margin, top]);
+    let left = margin * 2 + map.width;
+    let mut at = top;
+    if !heading.is_empty() {
+        draw_text(&mut sheet, left, at, heading, scale, INK);
+        at += line + 3 * scale;
+    }
+    let rim = scale.div_ceil(2);
+    for (color, text) in &lines {
+        sheet.fill_rectangle([left - rim, at - rim], [swatch + 2 * rim, 9 * scale + 2 * rim], INK);
+        sheet.fill_rectangle([left, at], [swatch, 9 * scale], *color);
+        draw_text(&mut sheet, left + swatch + 5 * scale, at + scale, text, scale, INK);
+        at += line + 3 * scale;
+    }
+    let below = top + map.height + margin;
+    sheet.fill_rectangle([margin, below + 2 * scale], [bar_px, 3 * scale], INK);
+    draw_text(&mut sheet, margin + bar_px + 4 * scale, below, &bar_text, scale, INK);
+    sheet
+}
+
+/// Round values between `low` and `high`, and either end that is half a step or more from the next of them (counts begin at 1): the
+/// share of the way that each lies at, and how it is written.
+fn ticks([low, high]: [f64; 2]) -> Vec<(f64, String)> {
+    /// What rounding may take from a whole number of steps.
+    const ROUNDING: f64 = 1e-6;
+    let span = high - low;
+    if !(span > 0.0 && span.is_finite()) {
+        return vec![(0.5, format!("{low:.0}"))];
+    }
+    let power = 10.0_f64.powf(span.log10().floor());
+    // 0 is added so that 0 has no sign
+    let whole = |step: f64| [(low / step - ROUNDING).ceil() + 0.0, (high / step + ROUNDING).floor()];
+    let is_few = |step: &f64| whole(*step)[1] - whole(*step)[0] < MOST_TICKS;
+    // between whole numbers from two on lie whole numbers: half an observer sees nothing
+    let is_count = low.fract() == 0.0 && high.fract() == 0.0 && span >= 2.0;
+    let steps = [0.1, 0.2, 0.5].map(|m| m * power).into_iter();
+    let step = steps.filter(|&step| step >= 1.0 || !is_count).find(is_few).unwrap_or(power);
+    let [first, last] = whole(step);
+    let mut values = Vec::new();
+    if first * step - low >= 0.5 * step {
+        values.push(low);
+    }
+    let mut number = first;
+    while number <= last {
+        values.push(number * step);
+        number += 1.0;
+    }
+    if high - last * step >= 0.5 * step {
+        values.push(high);
+    }
+    let decimals = (0..9).find(|&n| step * 10.0_f64.powi(n) > 1.0 - ROUNDING).unwrap_or(9);
+    let written = |value: f64| format!("{:.*}", usize::try_from(decimals).unwrap_or(0), value);
+    values.into_iter().map(|value| (((value - low) / span).clamp(0.0, 1.0), written(value))).collect()
+}
+
+/// The longest round length up to `most` metres, and how it is written.
+fn scale_bar(most: f64) -> (f64, String) {
+    let power = 10.0_f64.powf(most.max(1e-3).log10().floor());
+    let length = [5.0, 2.0, 1.0].map(|m| m * power).into_iter().find(|&l| l <= most).unwrap_or(power);
+    let text = if length >= 1000.0 { format!("{} km", length / 1000.0) } else { format!("{length} m") };
+    (length, text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_beside_a_ramp_are_round() {
+        let texts = |range| ticks(range).into_iter().map(|(_, text)| text).collect::<Vec<_>>().join(" ");
+        assert_eq!(texts([0.0, 1.0]), "0.0 0.2 0.4 0.6 0.8 1.0");
+        assert_eq!(texts([0.0, 16.66]), "0 2 4 6 8 10 12 14 16");
+        assert_eq!(texts([0.0, 1627.7]), "0 200 400 600 800 1000 1200 1400 1600");
+        assert_eq!(texts([1.0, 60.0]), "1 10 20 30 40 50 60");
+        assert_eq!(texts([1.0, 3.0]), "1 2 3");
+        assert_eq!(texts([0.0, 0.03]), "0.000 0.005 0.010 0.015 0.020 0.025 0.030");
+        assert_eq!(texts([-4.0, 13.0]), "-4 -2 0 2 4 6 8 10 12 13");
+        assert_eq!(texts([5.0, 5.0]), "5");
+        // a colour lies where its value does
+        assert_eq!(ticks([0.0, 16.66])[8].0, 16.0 / 16.66);
+    }
+}

@@ -1,0 +1,300 @@
+//! One cloud from the parts: a common origin, far points left out, attributes joined.
+
+use rayon::prelude::*;
+
+use super::part::{Coordinates, Part};
+use super::read_cloud::ReadReport;
+use belvedere_data::cloud::{PointCloud, centre_rounded, to_local};
+use belvedere_data::crs::{Crs, CrsKind};
+use belvedere_data::{Error, Result};
+
+/// Points further than this from the median along an axis are no part of any scene, in metres.
+const FARTHEST: f64 = 1e6;
+
+/// Only points this near to the median move the origin, in metres: f32 keeps a millimetre up to 16 km, and one stray
+/// point must not coarsen all others.
+const NEAR: f64 = 1e4;
+
+/// The median is taken of about this many points, evenly spread: it only has to land among the points.
+const SAMPLE: usize = 200_000;
+
+/// Any position of the part, in the unit of its file; zero without points.
+pub(super) fn any_position(part: &Part) -> [f64; 3] {
+    middle(std::slice::from_ref(part), |_| [1.0; 3])
+}
+
+/// Joins `parts`, in order.
+pub(super) fn assemble(mut parts: Vec<Part>) -> Result<(PointCloud, ReadReport)> {
+    let mut report = ReadReport::default();
+    adopt_common_crs(&mut parts, &mut report);
+    let median = middle(&parts, |part| part.crs.metres_per_unit_xyz());
+
+    let mut bounds = Bounds::default();
+    let found: Vec<Found> = parts.iter().map(|part| look(part, median)).collect();
+    for one in &found {
+        bounds = bounds.join(one.bounds);
+    }
+    // Adding zero turns −0 into 0, which prints better.
+    let origin = centre_rounded([bounds.low, bounds.high].into_iter()).map(|middle| middle + 0.0);
+
+    let mut cloud = PointCloud { origin, ..PointCloud::default() };
+    if let Some(part) = parts.iter().find(|part| part.crs.kind != CrsKind::Unknown) {
+        cloud.crs = part.crs.clone();
+        report.crs_source = part.report.crs_source.clone();
+    } else if let Some(part) = parts.first() {
+        // a file can tell its unit without naming a system
+        cloud.crs = part.crs.clone();
+    }
+    report.crs = cloud.crs.describe();
+    if cloud.crs.kind == CrsKind::Unknown && bounds.looks_like_degrees() {
+        report.notes.push(
+            "no reference system is known and the coordinates look like degrees, but are taken as metres; convert \
+             them to a projected system if they are degrees"
+                .to_owned(),
+        );
+    }
+
+    let any_scanners = parts.iter().any(|part| part.attributes.scanner_index.is_some());
+    for (mut part, found) in parts.into_iter().zip(found) {
+        part.leave_out(found.not_finite, "coordinates are not finite");
+        part.leave_out(found.far, "more than 1000 km from the middle of the cloud");
+        if found.coarse > 0 {
+            part.note(format!("{} points lie more than 10 km from the middle and lose precision", found.coarse));
+        }
+        if any_scanners {
+            join_scanners(&mut cloud, &mut part);
+        }
+        let scale = part.crs.metres_per_unit_xyz();
+        let (positions, attributes) = if found.not_finite + found.far == 0 {
+            (localise(part.coordinates, scale, origin), part.attributes)
+        } else {
+            let kept = kept_indices(&part, median);
+            let all = localise(part.coordinates, scale, origin);
+            let positions = kept.iter().filter_map(|&i| all.get(i as usize).copied()).collect();
+            (positions, part.attributes.select(&kept))
+        };
+        part.report.points = positions.len();
+        let dropped = cloud.attributes.append(cloud.positions.len(), attributes, positions.len());
+        report.dropped_attributes.extend(dropped);
+        if cloud.positions.is_empty() {
+            cloud.positions = positions;
+        } else {
+            cloud.positions.extend(positions);
+        }
+        report.files.push(part.report);
+    }
+    if cloud.scanner_positions.is_empty() {
+        cloud.attributes.scanner_index = None;
+    }
+    report.dropped_attributes.sort_unstable();
+    report.dropped_attributes.dedup();
+    if cloud.is_empty() {
+        return Err(Error::NoPoints { what: nothing_left(&report) });
+    }
+    if u32::try_from(cloud.len()).is_err() {
+        return Err(Error::InvalidParameter {
+            name: "number of points",
+            value: cloud.len().to_string(),
+            expected: "at most 4294967295; read fewer files at once",
+        });
+    }
+    cloud.validate()?;
+    Ok((cloud, report))
+}
+
+/// Gives the files without a system that of the others.
+fn adopt_common_crs(parts: &mut [Part], report: &mut ReadReport) {
+    let Some(known) = parts.iter().find(|part| part.crs.kind != CrsKind::Unknown).map(|part| part.crs.clone()) else {
+        return;
+    };
+    for part in parts.iter_mut().filter(|part| part.crs == Crs::default() && part.coordinates.len() > 0) {
+        report.notes.push(format!(
+            "{} names no reference system and is taken to be in {}",
+            part.report.path.display(),
+            known.describe()
+        ));
+        part.crs = known.clone();
+    }
+}
+
+fn nothing_left(report: &ReadReport) -> String {
+    let files = report.files.iter().map(|file| {
+        let lost: Vec<String> = file.left_out.iter().map(|l| format!("{} left out: {}", l.count, l.reason)).collect();
+        let why = if lost.is_empty() { "holds none".to_owned() } else { lost.join(", ") };
+        format!("{} ({}): {why}", file.path.display(), file.format)
+    });
+    files.collect::<Vec<_>>().join("; ")
+}
+
+/// Component-wise median of a sample of the finite points, scaled by `scale`.
+fn middle(parts: &[Part], scale: impl Fn(&Part) -> [f64; 3]) -> [f64; 3] {
+    let total: usize = parts.iter().map(|part| part.coordinates.len()).sum();
+    let step = total.div_ceil(SAMPLE).max(1);
+    let mut sample: [Vec<f64>; 3] = Default::default();
+    for part in parts {
+        let scale = scale(part);
+        let metres = |p: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| p[i] * scale[i]) };
+        let mut push = |p: [f64; 3]| {
+            if p.iter().all(|v| v.is_finite()) {
+                for (column, v) in sample.iter_mut().zip(p) {
+                    column.push(v);
+                }
+            }
+        };
+        match &part.coordinates {
+            Coordinates::Real(values) => values.iter().step_by(step).for_each(|&p| push(metres(p))),
+            Coordinates::Quantised { values, scale, offset } => {
+                values.iter().step_by(step).for_each(|&q| push(metres(unquantise(q, *scale, *offset))));
+            }
+        }
+    }
+    sample.map(|mut column| {
+        let middle = column.len() / 2;
+        if column.is_empty() { 0.0 } else { *column.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    })
+}
+
+/// What a pass over a part found.
+#[derive(Clone, Copy, Default)]
+struct Found {
+    bounds: Bounds,
+    not_finite: usize,
+    far: usize,
+    coarse: usize,
+}
+
+#[derive(Clone, Copy)]
+struct Bounds {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] }
+    }
+}
+
+impl Bounds {
+    fn join(self, other: Self) -> Self {
+        Self {
+            low: std::array::from_fn(|i| self.low[i].min(other.low[i])),
+            high: std::array::from_fn(|i| self.high[i].max(other.high[i])),
+        }
+    }
+
+    /// Within the range of longitude and latitude, and many times higher than wide, which no scene in metres is.
+    fn looks_like_degrees(&self) -> bool {
+        let extent: [f64; 3] = std::array::from_fn(|i| self.high[i] - self.low[i]);
+        let width = extent[0].max(extent[1]);
+        let in_range = |axis: usize, limit: f64| self.low[axis] >= -limit && self.high[axis] <= limit;
+        in_range(0, 180.0) && in_range(1, 90.0) && width > 0.0 && width < 2.0 && extent[2] > 20.0 * width
+    }
+}
+
+#[derive(PartialEq)]
+enum Fate {
+    Near,
+    Coarse,
+    Far,
+    NotFinite,
+}
+
+fn fate(p: [f64; 3], median: [f64; 3]) -> Fate {
+    if !p.iter().all(|v| v.is_finite()) {
+        return Fate::NotFinite;
+    }
+    let distance = (0..3).map(|i| (p[i] - median[i]).abs()).fold(0.0, f64::max);
+    if distance > FARTHEST {
+        Fate::Far
+    } else if distance > NEAR {
+        Fate::Coarse
+    } else {
+        Fate::Near
+    }
+}
+
+fn look(part: &Part, median: [f64; 3]) -> Found {
+    let units = part.crs.metres_per_unit_xyz();
+    let add = |mut found: Found, p: [f64; 3]| {
+        let p: [f64; 3] = std::array::from_fn(|i| p[i] * units[i]);
+        match fate(p, median) {
+            Fate::NotFinite => found.not_finite += 1,
+            Fate::Far => found.far += 1,
+            Fate::Coarse => found.coarse += 1,
+            Fate::Near => found.bounds = found.bounds.join(Bounds { low: p, high: p }),
+        }
+        found
+    };
+    // Counts, minima and maxima do not depend on how the points are split among threads.
+    let join = |a: Found, b: Found| Found {
+        bounds: a.bounds.join(b.bounds),
+        not_finite: a.not_finite + b.not_finite,
+        far: a.far + b.far,
+        coarse: a.coarse + b.coarse,
+    };
+    match &part.coordinates {
+        Coordinates::Real(values) => {
+            values.par_iter().with_min_len(1 << 14).fold(Found::default, |f, &p| add(f, p)).reduce(Found::default, join)
+        }
+        Coordinates::Quantised { values, scale, offset } => values
+            .par_iter()
+            .with_min_len(1 << 14)
+            .fold(Found::default, |f, &q| add(f, unquantise(q, *scale, *offset)))
+            .reduce(Found::default, join),
+    }
+}
+
+fn kept_indices(part: &Part, median: [f64; 3]) -> Vec<u32> {
+    let units = part.crs.metres_per_unit_xyz();
+    let kept = |p: [f64; 3]| {
+        let p: [f64; 3] = std::array::from_fn(|i| p[i] * units[i]);
+        matches!(fate(p, median), Fate::Near | Fate::Coarse)
+    };
+    match &part.coordinates {
+        Coordinates::Real(values) => (0..).zip(values).filter(|&(_, &p)| kept(p)).map(|(i, _)| i).collect(),
+        Coordinates::Quantised { values, scale, offset } => {
+            (0..).zip(values).filter(|&(_, &q)| kept(unquantise(q, *scale, *offset))).map(|(i, _)| i).collect()
+        }
+    }
+}
+
+fn localise(coordinates: Coordinates, units: [f64; 3], origin: [f64; 3]) -> Vec<[f32; 3]> {
+    let local = |p: [f64; 3]| to_local(std::array::from_fn(|i| p[i] * units[i]), origin);
+    match coordinates {
+        // A sequential collect reuses the memory of the integers.
+        Coordinates::Quantised { values, scale, offset } => {
+            values.into_iter().map(|q| local(unquantise(q, scale, offset))).collect()
+        }
+        Coordinates::Real(values) => values.par_iter().with_min_len(1 << 14).map(|&p| local(p)).collect(),
+    }
+}
+
+fn unquantise(q: [i32; 3], scale: [f64; 3], offset: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| f64::from(q[i]) * scale[i] + offset[i])
+}
+
+/// Moves the scanner positions of `part` into `cloud` and lets its indices point there.
+///
+/// A scanner more than 10 km from the middle of the cloud is a header left at zero, and taken as unknown.
+fn join_scanners(cloud: &mut PointCloud, part: &mut Part) {
+    let units = part.crs.metres_per_unit_xyz();
+    let mut new_indices: Vec<u16> = Vec::new();
+    for scanner in std::mem::take(&mut part.scanners) {
+        let metres: [f64; 3] = std::array::from_fn(|i| scanner[i] * units[i]);
+        let far = (0..3).any(|i| !metres[i].is_finite() || (metres[i] - cloud.origin[i]).abs() > NEAR);
+        let index = u16::try_from(cloud.scanner_positions.len()).ok().filter(|&index| !far && index != u16::MAX);
+        if far {
+            part.note(format!("the scanner position {scanner:?} is far from the cloud and taken as unknown"));
+        }
+        if index.is_some() {
+            cloud.scanner_positions.push(to_local(metres, cloud.origin));
+        }
+        new_indices.push(index.unwrap_or(u16::MAX));
+    }
+    let count = part.coordinates.len();
+    let indices = part.attributes.scanner_index.get_or_insert_with(|| vec![u16::MAX; count]);
+    for index in indices {
+        *index = new_indices.get(usize::from(*index)).copied().unwrap_or(u16::MAX);
+    }
+}

@@ -1,0 +1,103 @@
+//! Outputs that appear under their name only when they are complete.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use belvedere_data::{Error, Result};
+
+/// How many names are tried for the temporary file; leftovers of killed runs may occupy some.
+const MAX_NAME_ATTEMPTS: u32 = 1000;
+
+/// A file that is removed again unless it was renamed to its final place.
+struct Temporary {
+    path: PathBuf,
+    kept: bool,
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if !self.kept {
+            // nothing can be done about a failure here, and the error that led here is the one to report
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// What `body` returns, after everything that it wrote is under `path`.
+///
+/// The body writes to a temporary file in the same folder, which replaces `path` when the body succeeded. When it
+/// returns an error or panics, the temporary file is removed and what was under `path` stays as it was. A link is
+/// followed, so that its target is replaced; something that is not a plain file (a pipe, a device) is written directly.
+///
+/// # Errors
+/// [`Error::Io`] when the folder does not exist or writing fails, and whatever `body` returns.
+pub fn write<T>(path: &Path, body: impl FnOnce(&mut BufWriter<File>) -> Result<T>) -> Result<T> {
+    let existing = fs::metadata(path).ok();
+    if existing.as_ref().is_some_and(fs::Metadata::is_dir) {
+        return Err(Error::io(path)(std::io::Error::new(ErrorKind::IsADirectory, "is a folder, not a file")));
+    }
+    if existing.as_ref().is_some_and(|m| !m.is_file()) {
+        let file = OpenOptions::new().write(true).open(path).map_err(Error::io(path))?;
+        let mut writer = BufWriter::new(file);
+        let value = body(&mut writer)?;
+        writer.flush().map_err(Error::io(path))?;
+        return Ok(value);
+    }
+    let target = if existing.is_some() { fs::canonicalize(path).map_err(Error::io(path))? } else { path.to_owned() };
+    let (file, mut temporary) = create_beside(&target)?;
+    let mut writer = BufWriter::with_capacity(1 << 18, file);
+    let value = body(&mut writer)?;
+    writer.flush().map_err(Error::io(path))?;
+    let file = writer.into_inner().map_err(|e| Error::io(path)(e.into_error()))?;
+    if let Some(metadata) = existing {
+        // a refusal leaves the permissions of a new file, which is no reason to lose the result
+        let _ = file.set_permissions(metadata.permissions());
+    }
+    drop(file);
+    fs::rename(&temporary.path, &target).map_err(Error::io(path))?;
+    temporary.kept = true;
+    Ok(value)
+}
+
+/// The folder at `path`, made if it is missing but its parent is there.
+///
+/// # Errors
+/// [`Error::Io`] when the parent folder does not exist or something else is in the way.
+pub fn make_folder(path: &Path) -> Result<()> {
+    if path.is_dir() {
+        return Ok(());
+    }
+    check_parent(path)?;
+    fs::create_dir(path).map_err(Error::io(path))
+}
+
+fn check_parent(path: &Path) -> Result<()> {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() && !parent.is_dir() => {
+            let reason = format!("the folder {} does not exist; create it first", parent.display());
+            Err(Error::io(path)(std::io::Error::new(ErrorKind::NotFound, reason)))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn create_beside(target: &Path) -> Result<(File, Temporary)> {
+    check_parent(target)?;
+    let Some(name) = target.file_name() else {
+        return Err(Error::io(target)(std::io::Error::new(ErrorKind::InvalidInput, "names no file")));
+    };
+    for attempt in 0..MAX_NAME_ATTEMPTS {
+        let mut hidden = std::ffi::OsString::from(".");
+        hidden.push(name);
+        hidden.push(format!(".{attempt}.part"));
+        let path = target.with_file_name(hidden);
+        match OpenOptions::new().read(true).write(true).create_new(true).open(&path) {
+            Ok(file) => return Ok((file, Temporary { path, kept: false })),
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
+            Err(e) => return Err(Error::io(target)(e)),
+        }
+    }
+    let reason = "too many unfinished outputs (.part files) beside it; remove them";
+    Err(Error::io(target)(std::io::Error::new(ErrorKind::AlreadyExists, reason)))
+}

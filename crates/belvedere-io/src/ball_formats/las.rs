@@ -1,0 +1,85 @@
+//! Balls as LAS and LAZ point clouds with extra bytes.
+
+use std::path::Path;
+
+use ::las::Vlr;
+
+use super::{FileBall, as_cloud, index, metadata};
+use crate::balls::SavedBalls;
+use crate::las::LasFile;
+use crate::las_extra::ExtraField;
+use crate::laz::ExtraBytes;
+use crate::part::narrow;
+use crate::write_cloud::extension;
+use crate::write_las;
+use belvedere_data::{Error, Result};
+
+/// Identity of the record that holds the metadata.
+const RECORD_USER: &str = "belvedere";
+const RECORD_ID: u16 = 1;
+
+pub(crate) fn write_las(path: &Path, balls: &SavedBalls) -> Result<()> {
+    let (cloud, columns) = as_cloud(balls);
+    let record = Vlr {
+        user_id: RECORD_USER.to_owned(),
+        record_id: RECORD_ID,
+        description: "medial balls".to_owned(),
+        data: metadata::to_json(balls, metadata::FILE_UNITS).into_bytes(),
+    };
+    let compression = if extension(path) == "laz" { write_las::Compression::Laz } else { write_las::Compression::None };
+    write_las::write(path, &cloud, &columns, compression, &[record]).map(|_| ())
+}
+
+pub(crate) fn read_las(path: &Path) -> Result<SavedBalls> {
+    let file = LasFile::open(path)?;
+    let Some(fields) = Fields::of(&file) else {
+        return Err(Error::malformed(path, "holds no balls; it needs the extra bytes radius and touch"));
+    };
+    let text = file.header.record(RECORD_USER, RECORD_ID).unwrap_or_default();
+    let metadata = metadata::from_json(String::from_utf8_lossy(text).trim_end_matches('\0'));
+    let (announced, present) = (file.header.points, file.points_in_file());
+    if present < announced {
+        return Err(Error::malformed(path, format!("ends after {present} of {announced} balls")));
+    }
+    let mut rows = Vec::new();
+    file.for_each_batch(ExtraBytes::Decompress, |batch| {
+        let records = batch.raw_bytes().chunks_exact(batch.record_len().max(1));
+        let centers = batch.x().zip(batch.y()).zip(batch.z());
+        rows.extend(centers.zip(records).map(|(((x, y), z), record)| fields.ball([x, y, z], record)));
+    })?;
+    Ok(metadata.fill(&rows))
+}
+
+pub(crate) fn las_has_balls(path: &Path) -> bool {
+    LasFile::open(path).is_ok_and(|file| Fields::of(&file).is_some())
+}
+
+/// The extra columns of a ball file.
+struct Fields {
+    radius: ExtraField,
+    touch: ExtraField,
+    separation_angle: Option<ExtraField>,
+    source: Option<ExtraField>,
+    transmission: Option<ExtraField>,
+}
+
+impl Fields {
+    /// `None` where radius or touch is missing.
+    fn of(file: &LasFile<'_>) -> Option<Self> {
+        let [radius, touch, separation_angle, source, transmission] =
+            file.columns(["radius", "touch", "separation_angle", "source", "transmission"]);
+        Some(Self { radius: radius?, touch: touch?, separation_angle, source, transmission })
+    }
+
+    fn ball(&self, center: [f64; 3], record: &[u8]) -> FileBall {
+        let number = |field: ExtraField| field.value(record).unwrap_or(f64::NAN);
+        FileBall {
+            center,
+            radius: number(self.radius),
+            separation_angle: self.separation_angle.map_or(f32::NAN, |field| narrow(number(field))),
+            source: self.source.map_or(u32::MAX, |field| index(number(field))),
+            touch: index(number(self.touch)),
+            transmission: self.transmission.map_or(f32::NAN, |field| narrow(number(field))),
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! What ball files say about themselves, as JSON.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Map, Value, json};
+
+use super::FileBall;
+use crate::balls::SavedBalls;
+use crate::part::narrow;
+use belvedere_data::cloud::{bounds, centre_rounded, to_local};
+use belvedere_data::crs::{Crs, CrsKind};
+
+/// What the numbers beside the metadata mean in files that hold points.
+pub(super) const FILE_UNITS: &str = "file units, radians; origin in metres, bounds in metres relative to it";
+
+const KINDS: [(CrsKind, &str); 5] = [
+    (CrsKind::Unknown, "unknown"),
+    (CrsKind::Projected, "projected"),
+    (CrsKind::Geographic, "geographic"),
+    (CrsKind::Geocentric, "geocentric"),
+    (CrsKind::Local, "local"),
+];
+
+/// Origin, bounds, reference system and provenance of `balls`; `units` says what the numbers beside it mean.
+pub(super) fn to_json(balls: &SavedBalls, units: &str) -> String {
+    let crs = &balls.crs;
+    let provenance: Map<String, Value> =
+        balls.provenance.iter().map(|(k, v)| (k.clone(), Value::String(v.clone()))).collect();
+    json!({
+        "format": "belvedere balls 1",
+        "units": units,
+        "origin": balls.origin,
+        "bounds": balls.bounds,
+        "crs": {
+            "wkt": crs.wkt,
+            "epsg": crs.epsg,
+            "vertical_epsg": crs.vertical_epsg,
+            "metres_per_unit": crs.metres_per_unit,
+            "vertical_metres_per_unit": crs.vertical_metres_per_unit,
+            "kind": KINDS.iter().find(|(kind, _)| *kind == crs.kind).map(|&(_, name)| name),
+        },
+        "provenance": provenance,
+    })
+    .to_string()
+}
+
+/// What [`to_json`] keeps; what a file lacks is `None` or the default.
+#[derive(Default)]
+pub(super) struct Metadata {
+    pub(super) crs: Crs,
+    provenance: BTreeMap<String, String>,
+    /// Metres.
+    pub(super) origin: Option<[f64; 3]>,
+    /// Local metres.
+    bounds: Option<([f32; 3], [f32; 3])>,
+}
+
+/// What `text`, written by [`to_json`], says. Programs may have dropped all or part of it.
+pub(super) fn from_json(text: &str) -> Metadata {
+    let value: Value = serde_json::from_str(text).unwrap_or(Value::Null);
+    let crs = &value["crs"];
+    let code = |key: &str| crs[key].as_u64().and_then(|v| u32::try_from(v).ok());
+    let unit = |key: &str| crs[key].as_f64().filter(|v| v.is_finite() && *v > 0.0).unwrap_or(1.0);
+    let named = KINDS.iter().find(|(_, name)| crs["kind"] == *name).map(|&(kind, _)| kind);
+    let is_known = crs["wkt"].is_string() || crs["epsg"].is_number();
+    let provenance = value["provenance"].as_object().into_iter().flatten();
+    let corner = |i: usize| three(&value["bounds"][i]).map(|corner| corner.map(narrow));
+    Metadata {
+        crs: Crs {
+            wkt: crs["wkt"].as_str().map(str::to_owned),
+            epsg: code("epsg"),
+            vertical_epsg: code("vertical_epsg"),
+            metres_per_unit: unit("metres_per_unit"),
+            vertical_metres_per_unit: unit("vertical_metres_per_unit"),
+            // balls are only ever made in a plane
+            kind: named.unwrap_or(if is_known { CrsKind::Projected } else { CrsKind::Unknown }),
+        },
+        provenance: provenance.filter_map(|(k, v)| Some((k.clone(), v.as_str()?.to_owned()))).collect(),
+        origin: three(&value["origin"]),
+        bounds: corner(0).zip(corner(1)),
+    }
+}
+
+fn three(value: &Value) -> Option<[f64; 3]> {
+    match [0, 1, 2].map(|i| value[i].as_f64()) {
+        [Some(x), Some(y), Some(z)] => Some([x, y, z]),
+        _ => None,
+    }
+}
+
+/// What balls let through, where a file says so of any.
+fn transmission(rows: &[FileBall]) -> Option<Vec<f32>> {
+    let known = rows.iter().any(|row| !row.transmission.is_nan());
+    known.then(|| rows.iter().map(|row| row.transmission).collect())
+}
+
+impl Metadata {
+    /// Balls with these centres, local to `origin`, and no further columns yet. Bounds that the file lacks are those of
+    /// the centres.
+    pub(super) fn balls(self, origin: [f64; 3], centers: Vec<[f32; 3]>) -> SavedBalls {
+        let bounds = self.bounds.or_else(|| bounds(&centers)).unwrap_or_default();
+        SavedBalls { origin, crs: self.crs, bounds, centers, provenance: self.provenance, ..SavedBalls::default() }
+    }
+
+    /// Balls from rows in file coordinates. An origin that the file lacks is chosen near the middle of the centres.
+    pub(super) fn fill(mut self, rows: &[FileBall]) -> SavedBalls {
+        let units = self.crs.metres_per_unit_xyz();
+        let metres = |row: &FileBall| -> [f64; 3] { std::array::from_fn(|i| row.center[i] * units[i]) };
+        let origin = self.origin.unwrap_or_else(|| {
+            // bounds mean nothing without the origin they are relative to
+            self.bounds = None;
+            centre_rounded(rows.iter().map(metres))
+        });
+        SavedBalls {
+            radii: rows.iter().map(|row| narrow(row.radius * units[0])).collect(),
+            separation_angles: rows.iter().map(|row| row.separation_angle).collect(),
+            source: rows.iter().map(|row| row.source).collect(),
+            touch: rows.iter().map(|row| row.touch).collect(),
+            transmission: transmission(rows),
+            ..self.balls(origin, rows.iter().map(|row| to_local(metres(row), origin)).collect())
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! The formats of ball files.
+
+mod las;
+mod metadata;
+mod npz;
+mod ply;
+
+pub(crate) use las::{las_has_balls, read_las, write_las};
+pub(crate) use npz::{npz_has_balls, read_npz, write_npz};
+pub(crate) use ply::{ply_has_balls, read_ply, write_ply};
+
+use crate::balls::SavedBalls;
+use crate::columns::{Column, Values};
+use belvedere_data::PointCloud;
+
+/// The centres as a cloud and the rest as columns, for formats that hold points. Indices are signed there, so that
+/// viewers show −1 and not four thousand million for "none".
+fn as_cloud(balls: &SavedBalls) -> (PointCloud, Vec<Column<'_>>) {
+    let cloud = PointCloud {
+        origin: balls.origin,
+        positions: balls.centers.clone(),
+        crs: balls.crs.clone(),
+        ..PointCloud::default()
+    };
+    let unit = balls.crs.metres_per_unit;
+    #[expect(clippy::cast_possible_truncation, reason = "a radius in another unit is still an f32")]
+    let radii = balls.radii.iter().map(|&r| (f64::from(r) / unit) as f32).collect();
+    let signed = |indices: &[u32]| Values::I32(indices.iter().map(|&i| i.cast_signed()).collect());
+    let column = |name, description, values| Column { name, description, values };
+    let mut columns = vec![
+        column("radius".into(), "in the unit of x and y".into(), Values::F32(radii)),
+        column("separation_angle".into(), "radians".into(), Values::F32((&balls.separation_angles).into())),
+        column("source".into(), "index of the tangent point".into(), signed(&balls.source)),
+        column("touch".into(), "second point, -1 none, -2 pulse".into(), signed(&balls.touch)),
+    ];
+    if let Some(transmission) = &balls.transmission {
+        columns.push(column(
+            "transmission".into(),
+            "share of light let through".into(),
+            Values::F32(transmission.into()),
+        ));
+    }
+    (cloud, columns)
+}
+
+/// A ball as the formats that hold points give it.
+#[derive(Clone, Copy, Debug, Default)]
+struct FileBall {
+    /// In the system and unit of the file.
+    center: [f64; 3],
+    /// In the horizontal unit of the file.
+    radius: f64,
+    separation_angle: f32,
+    source: u32,
+    touch: u32,
+    /// NaN where the file has none.
+    transmission: f32,
+}
+
+/// An index that was stored as a signed number: what is negative in 32 bits stands above 2³¹.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "checked against the range; NaN gives none"
+)]
+fn index(value: f64) -> u32 {
+    if value >= f64::from(i32::MIN) && value < 0.0 {
+        (value as i32).cast_unsigned()
+    } else if value >= 0.0 && value <= f64::from(u32::MAX) {
+        value as u32
+    } else {
+        u32::MAX
+    }
+}

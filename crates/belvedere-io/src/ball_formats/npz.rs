@@ -1,0 +1,97 @@
+//! Balls in NumPy's archive format, without loss.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, Write};
+use std::path::Path;
+
+use npyz::npz::{NpzArchive, NpzWriter};
+
+use super::metadata;
+use crate::atomic;
+use crate::balls::{SavedBalls, SavedPulses};
+use crate::npz_arrays::{array, has, invalid, rows, values};
+use belvedere_data::{Error, Result};
+
+const UNITS: &str = "metres relative to origin, radians; coordinates in the crs are \
+                     (origin + centers) / metres_per_unit";
+/// Arrays that files with pulses have.
+const PULSE_ARRAYS: [&str; 3] = ["pulse_starts", "pulse_slopes", "pulse_top"];
+/// Metadata longer than this is not ours.
+const MAX_METADATA_BYTES: u64 = 1 << 24;
+
+pub(crate) fn write_npz(path: &Path, balls: &SavedBalls) -> Result<()> {
+    atomic::write(path, |output| {
+        let mut archive = NpzWriter::new(output);
+        write_arrays(&mut archive, balls).map_err(Error::io(path))
+    })
+}
+
+fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, balls: &SavedBalls) -> io::Result<()> {
+    let metadata = metadata::to_json(balls, UNITS);
+    let n = balls.centers.len() as u64;
+    array(archive, "centers", &[n, 3], balls.centers.iter().flatten().copied())?;
+    array(archive, "origin", &[3], balls.origin.into_iter())?;
+    array(archive, "radii", &[n], balls.radii.iter().copied())?;
+    array(archive, "source", &[n], balls.source.iter().copied())?;
+    array(archive, "touch", &[n], balls.touch.iter().copied())?;
+    array(archive, "separation_angles", &[n], balls.separation_angles.iter().copied())?;
+    if let Some(transmission) = &balls.transmission {
+        array(archive, "transmission", &[n], transmission.iter().copied())?;
+    }
+    if let Some(SavedPulses { starts, slopes, lengths, top }) = &balls.pulses {
+        let p = starts.len() as u64;
+        array(archive, "pulse_starts", &[p, 3], starts.iter().flatten().copied())?;
+        array(archive, "pulse_slopes", &[p, 2], slopes.iter().flatten().copied())?;
+        array(archive, "pulse_top", &[1], [*top].into_iter())?;
+        if !lengths.is_empty() {
+            array(archive, "pulse_lengths", &[p], lengths.iter().copied())?;
+        }
+    }
+    array(archive, "metadata", &[metadata.len() as u64], metadata.bytes())?;
+    archive.zip_writer().finish()?.flush()
+}
+
+pub(crate) fn read_npz(path: &Path) -> Result<SavedBalls> {
+    let malformed = |e: io::Error| Error::malformed(path, format!("not a ball file: {e}"));
+    let file = BufReader::new(File::open(path).map_err(Error::io(path))?);
+    let mut archive = NpzArchive::new(file).map_err(malformed)?;
+    let text = match values::<u8, _>(&mut archive, "metadata", MAX_METADATA_BYTES) {
+        Ok((text, _)) => String::from_utf8_lossy(&text).into_owned(),
+        Err(_) => String::new(),
+    };
+    let metadata = metadata::from_json(&text);
+    let centers = rows::<f32, 3, _>(&mut archive, "centers").map_err(malformed)?;
+    let (origin, _) = values::<f64, _>(&mut archive, "origin", 3).map_err(malformed)?;
+    let origin = <[f64; 3]>::try_from(origin.as_slice())
+        .map_err(|_| Error::malformed(path, format!("origin has {} numbers, but must have 3", origin.len())))?;
+    let mut balls = metadata.balls(origin, centers);
+    balls.radii = values(&mut archive, "radii", u64::MAX).map_err(malformed)?.0;
+    balls.source = values(&mut archive, "source", u64::MAX).map_err(malformed)?.0;
+    balls.touch = values(&mut archive, "touch", u64::MAX).map_err(malformed)?.0;
+    balls.separation_angles = values(&mut archive, "separation_angles", u64::MAX).map_err(malformed)?.0;
+    if has(&archive, "transmission") {
+        balls.transmission = Some(values(&mut archive, "transmission", u64::MAX).map_err(malformed)?.0);
+    }
+    if PULSE_ARRAYS.iter().any(|name| has(&archive, name)) {
+        balls.pulses = Some(pulses(&mut archive).map_err(malformed)?);
+    }
+    Ok(balls)
+}
+
+fn pulses<R: Read + Seek>(archive: &mut NpzArchive<R>) -> io::Result<SavedPulses> {
+    let lengths =
+        if has(archive, "pulse_lengths") { values(archive, "pulse_lengths", u64::MAX)?.0 } else { Vec::new() };
+    let top = values::<f32, _>(archive, "pulse_top", 1)?.0;
+    Ok(SavedPulses {
+        starts: rows::<f32, 3, _>(archive, "pulse_starts")?,
+        slopes: rows::<i16, 2, _>(archive, "pulse_slopes")?,
+        lengths,
+        top: top.first().copied().ok_or_else(|| invalid("pulse_top is empty".to_owned()))?,
+    })
+}
+
+pub(crate) fn npz_has_balls(path: &Path) -> bool {
+    let Ok(file) = File::open(path) else { return false };
+    let Ok(archive) = NpzArchive::new(BufReader::new(file)) else { return false };
+    ["centers", "radii", "origin"].iter().all(|name| has(&archive, name))
+}

@@ -1,0 +1,263 @@
+//! CityJSON city models, versions 1.0 to 2.0.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::polygons::{MeshBuilder, MeshReport};
+use belvedere_data::{Error, Mesh, Result};
+
+/// Which of the levels of detail of each city object to read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum LevelOfDetail {
+    /// The highest that has surfaces, object by object: what normals are best oriented with.
+    #[default]
+    Highest,
+    /// This one, such as `"1"`, `"1.3"` or `"2"`; objects without it are left out.
+    Only(String),
+}
+
+/// The surfaces of a CityJSON file as triangles, one object per city object (in the order of their identifiers), and
+/// what was left out.
+///
+/// Solids, multi- and composite surfaces and solids, and instances of geometry templates are read; rings with holes are
+/// triangulated in their plane. The turning sense of the file is kept: counter-clockwise seen from outside. Coordinates
+/// are taken as metres; an EPSG code in `metadata.referenceSystem` is kept in the mesh's `crs.epsg`.
+///
+/// # Errors
+/// [`Error::Io`] where the file cannot be read, [`Error::Malformed`] for anything that is not CityJSON, indices without a
+/// vertex or template, nesting that does not fit the type of geometry, and files without a triangle.
+///
+/// # Source
+/// CityJSON 2.0.1 specification, sections 2 to 5 and "Geometry templates".
+pub fn read_cityjson(path: &Path, level_of_detail: &LevelOfDetail) -> Result<(Mesh, MeshReport)> {
+    let bytes = std::fs::read(path).map_err(Error::io(path))?;
+    let root: Value =
+        serde_json::from_slice(&bytes).map_err(|e| Error::malformed(path, format!("not readable JSON: {e}")))?;
+    drop(bytes);
+    if root.get("type").and_then(Value::as_str) != Some("CityJSON") {
+        return Err(Error::malformed(path, "not CityJSON: its \"type\" is not \"CityJSON\""));
+    }
+    let version = root.get("version").and_then(Value::as_str).unwrap_or("");
+    if !["1.", "2."].iter().any(|major| version.starts_with(major)) {
+        let what = format!("CityJSON version \"{version}\"; convert it to 1.0, 1.1 or 2.0 with cjio");
+        return Err(Error::malformed(path, what));
+    }
+    let mut builder = MeshBuilder::new(path);
+    builder.mesh.crs.epsg = root.pointer("/metadata/referenceSystem").and_then(Value::as_str).and_then(epsg_code);
+    let (scale, translate) = match root.get("transform") {
+        Some(transform) => (
+            triple(path, transform.get("scale"), "transform.scale")?,
+            triple(path, transform.get("translate"), "transform.translate")?,
+        ),
+        None => ([1.0; 3], [0.0; 3]),
+    };
+    for (row, vertex) in array(path, root.get("vertices"), "vertices")?.iter().enumerate() {
+        let v = triple(path, Some(vertex), &format!("vertex {row}"))?;
+        builder.push_vertex(std::array::from_fn(|i| v[i] * scale[i] + translate[i]))?;
+    }
+    let mut file = CityFile { path, file_vertex_count: builder.mesh.vertices.len(), builder, templates: None };
+    if let Some(templates) = root.get("geometry-templates") {
+        file.templates = Some((
+            array(path, templates.get("templates"), "geometry-templates.templates")?,
+            array(path, templates.get("vertices-templates"), "geometry-templates.vertices-templates")?,
+        ));
+    }
+    let objects = root
+        .get("CityObjects")
+        .and_then(Value::as_object)
+        .ok_or_else(|| Error::malformed(path, "no CityObjects; a CityJSON file needs them"))?;
+    for (name, object) in objects {
+        file.push_city_object(name, object, level_of_detail)?;
+    }
+    file.builder.finish()
+}
+
+/// A file being read, and what its geometries refer to.
+struct CityFile<'a> {
+    path: &'a Path,
+    builder: MeshBuilder<'a>,
+    /// Vertices that boundaries may refer to: those appended for instances of templates come after.
+    file_vertex_count: usize,
+    templates: Option<(&'a [Value], &'a [Value])>,
+}
+
+impl<'a> CityFile<'a> {
+    fn push_city_object(&mut self, name: &str, object: &'a Value, wanted: &LevelOfDetail) -> Result<()> {
+        let Some(geometries) = object.get("geometry").and_then(Value::as_array) else { return Ok(()) };
+        let mut levels = Vec::with_capacity(geometries.len());
+        for geometry in geometries {
+            let body = self.template_of(name, geometry)?.unwrap_or(geometry);
+            if surface_depth(body).is_none() {
+                self.builder.report.skipped_geometry_count += 1;
+                continue;
+            }
+            levels.push((level_of(body), geometry));
+        }
+        let chosen = match wanted {
+            LevelOfDetail::Highest => levels.iter().map(|level| level.0).fold(f64::NEG_INFINITY, f64::max),
+            LevelOfDetail::Only(level) => level.trim().parse().map_err(|_| Error::InvalidParameter {
+                name: "level of detail",
+                value: level.clone(),
+                expected: "a number such as 1, 1.3 or 2.2",
+            })?,
+        };
+        let mut index = None;
+        for (level, geometry) in levels {
+            if level.total_cmp(&chosen).is_ne() {
+                self.builder.report.other_level_of_detail_count += 1;
+                continue;
+            }
+            let index = *index.get_or_insert_with(|| self.builder.push_object(name));
+            self.push_geometry(name, geometry, index)?;
+        }
+        Ok(())
+    }
+
+    /// The template that a `GeometryInstance` refers to, or `None` for other geometries.
+    fn template_of(&self, name: &str, geometry: &Value) -> Result<Option<&'a Value>> {
+        if type_of(geometry) != "GeometryInstance" {
+            return Ok(None);
+        }
+        let index = geometry.get("template").and_then(Value::as_u64).and_then(|i| usize::try_from(i).ok());
+        let template = self.templates.and_then(|(templates, _)| templates.get(index?));
+        template.map(Some).ok_or_else(|| self.bad(name, "refers to a geometry template that is not there"))
+    }
+
+    fn push_geometry(&mut self, name: &str, geometry: &'a Value, object: u32) -> Result<()> {
+        let Some(template) = self.template_of(name, geometry)? else {
+            let (mut surfaces, end) = (Vec::new(), self.file_vertex_count);
+            self.collect_surfaces(name, geometry, &mut surfaces, &mut |i| (i < end).then_some(i))?;
+            return surfaces.iter().try_for_each(|rings| self.builder.push_polygon(rings, Some(object)));
+        };
+        let anchor = geometry.pointer("/boundaries/0").and_then(Value::as_u64).and_then(|i| usize::try_from(i).ok());
+        let anchor = anchor
+            .filter(|&i| i < self.file_vertex_count)
+            .and_then(|i| self.builder.mesh.vertices.get(i).copied())
+            .ok_or_else(|| self.bad(name, "has a geometry instance without an anchor vertex"))?;
+        let matrix = self.matrix(name, geometry)?;
+        let template_vertices = self.templates.map_or(&[][..], |(_, vertices)| vertices);
+        let mut used: BTreeMap<usize, usize> = BTreeMap::new();
+        let mut surfaces = Vec::new();
+        let base = self.builder.mesh.vertices.len();
+        self.collect_surfaces(name, template, &mut surfaces, &mut |i| {
+            let next = base + used.len();
+            (i < template_vertices.len()).then(|| *used.entry(i).or_insert(next))
+        })?;
+        let mut by_position: Vec<(usize, usize)> = used.into_iter().map(|(i, position)| (position, i)).collect();
+        by_position.sort_unstable();
+        for (_, i) in by_position {
+            let v = triple(self.path, template_vertices.get(i), "template vertex")?;
+            let row = |r: usize| matrix[r][0] * v[0] + matrix[r][1] * v[1] + matrix[r][2] * v[2] + matrix[r][3];
+            self.builder.push_vertex(std::array::from_fn(|r| row(r) + anchor[r]))?;
+        }
+        // a mirroring matrix would turn every face inside out
+        let mirrored = determinant(matrix) < 0.0;
+        for mut rings in surfaces {
+            if mirrored {
+                rings.iter_mut().for_each(|ring| ring.reverse());
+            }
+            self.builder.push_polygon(&rings, Some(object))?;
+        }
+        Ok(())
+    }
+
+    fn matrix(&self, name: &str, geometry: &Value) -> Result<[[f64; 4]; 3]> {
+        let Some(values) = geometry.get("transformationMatrix") else {
+            return Ok([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]);
+        };
+        let values: Option<Vec<f64>> = values
+            .as_array()
+            .and_then(|values| values.iter().map(Value::as_f64).collect())
+            .filter(|v: &Vec<_>| v.len() == 16);
+        let values = values.ok_or_else(|| self.bad(name, "has a transformationMatrix that is not 16 numbers"))?;
+        Ok(std::array::from_fn(|r| std::array::from_fn(|c| values[4 * r + c])))
+    }
+
+    /// Appends the surfaces (rings of vertex indices) of a geometry, its indices translated by `vertex`.
+    fn collect_surfaces(
+        &self,
+        name: &str,
+        geometry: &Value,
+        surfaces: &mut Vec<Vec<Vec<u32>>>,
+        vertex: &mut impl FnMut(usize) -> Option<usize>,
+    ) -> Result<()> {
+        let Some(depth) = surface_depth(geometry) else { return Ok(()) };
+        let mut level: Vec<&Value> = array(self.path, geometry.get("boundaries"), "boundaries")?.iter().collect();
+        for _ in 1..depth {
+            let mut next = Vec::new();
+            for value in level {
+                next.extend(value.as_array().ok_or_else(|| self.bad(name, "has boundaries nested too little"))?);
+            }
+            level = next;
+        }
+        for surface in level {
+            let rings = surface.as_array().ok_or_else(|| self.bad(name, "has a surface that is no list of rings"))?;
+            let rings = rings.iter().map(|ring| self.ring(name, ring, vertex)).collect::<Result<Vec<_>>>()?;
+            if !rings.is_empty() {
+                surfaces.push(rings);
+            }
+        }
+        Ok(())
+    }
+
+    fn ring(&self, name: &str, ring: &Value, vertex: &mut impl FnMut(usize) -> Option<usize>) -> Result<Vec<u32>> {
+        let ring = ring.as_array().ok_or_else(|| self.bad(name, "has a ring that is no list of vertices"))?;
+        ring.iter()
+            .map(|index| {
+                let place = index.as_u64().and_then(|i| usize::try_from(i).ok()).and_then(&mut *vertex);
+                place
+                    .and_then(|i| u32::try_from(i).ok())
+                    .ok_or_else(|| self.bad(name, &format!("refers to vertex {index}, which is not there")))
+            })
+            .collect()
+    }
+
+    fn bad(&self, name: &str, what: &str) -> Error {
+        Error::malformed(self.path, format!("city object {name} {what}"))
+    }
+}
+
+fn type_of(geometry: &Value) -> &str {
+    geometry.get("type").and_then(Value::as_str).unwrap_or("")
+}
+
+/// How many lists deep the surfaces of a geometry lie, or `None` for geometries without surfaces.
+fn surface_depth(geometry: &Value) -> Option<usize> {
+    match type_of(geometry) {
+        "MultiSurface" | "CompositeSurface" => Some(1),
+        "Solid" => Some(2),
+        "MultiSolid" | "CompositeSolid" => Some(3),
+        _ => None,
+    }
+}
+
+/// Level of detail as a number: 1.0 writes numbers, later versions text such as "2.2". Unknown is below all.
+fn level_of(geometry: &Value) -> f64 {
+    let lod = geometry.get("lod");
+    lod.and_then(|lod| lod.as_f64().or_else(|| lod.as_str()?.trim().parse().ok())).unwrap_or(-1.0)
+}
+
+/// The code at the end of `urn:ogc:def:crs:EPSG::7415` or `https://www.opengis.net/def/crs/EPSG/0/7415`.
+fn epsg_code(reference_system: &str) -> Option<u32> {
+    let tail = reference_system.to_ascii_uppercase();
+    tail.contains("EPSG").then(|| tail.rsplit([':', '/']).next()?.parse().ok())?
+}
+
+fn array<'v>(path: &Path, value: Option<&'v Value>, name: &str) -> Result<&'v [Value]> {
+    let list = value.and_then(Value::as_array).map(Vec::as_slice);
+    list.ok_or_else(|| Error::malformed(path, format!("{name} is missing or no list")))
+}
+
+fn triple(path: &Path, value: Option<&Value>, name: &str) -> Result<[f64; 3]> {
+    let numbers: Option<Vec<f64>> =
+        value.and_then(Value::as_array).and_then(|list| list.iter().map(Value::as_f64).collect());
+    let three = numbers.and_then(|numbers| <[f64; 3]>::try_from(numbers).ok());
+    three.ok_or_else(|| Error::malformed(path, format!("{name} is missing or not three numbers")))
+}
+
+fn determinant(m: [[f64; 4]; 3]) -> f64 {
+    m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+        + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
+}

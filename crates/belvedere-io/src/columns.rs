@@ -1,0 +1,120 @@
+//! Per-point values of any width, as the writers of all formats share them.
+
+use std::borrow::Cow;
+use std::io::Write;
+
+use belvedere_data::{Error, PointCloud, Result};
+
+/// Values of one column.
+#[derive(Clone, Debug)]
+pub(crate) enum Values<'a> {
+    U8(Cow<'a, [u8]>),
+    U16(Cow<'a, [u16]>),
+    U32(Cow<'a, [u32]>),
+    I32(Cow<'a, [i32]>),
+    F32(Cow<'a, [f32]>),
+    F64(Cow<'a, [f64]>),
+}
+
+/// A named column.
+#[derive(Clone, Debug)]
+pub(crate) struct Column<'a> {
+    pub(crate) name: Cow<'a, str>,
+    pub(crate) description: Cow<'a, str>,
+    pub(crate) values: Values<'a>,
+}
+
+macro_rules! with_values {
+    ($values:expr, $v:ident => $body:expr) => {
+        match $values {
+            Values::U8($v) => $body,
+            Values::U16($v) => $body,
+            Values::U32($v) => $body,
+            Values::I32($v) => $body,
+            Values::F32($v) => $body,
+            Values::F64($v) => $body,
+        }
+    };
+}
+
+impl Values<'_> {
+    pub(crate) fn len(&self) -> usize {
+        with_values!(self, v => v.len())
+    }
+
+    /// Bytes per value.
+    pub(crate) fn width(&self) -> usize {
+        match self {
+            Self::U8(_) => 1,
+            Self::U16(_) => 2,
+            Self::U32(_) | Self::I32(_) | Self::F32(_) => 4,
+            Self::F64(_) => 8,
+        }
+    }
+
+    /// Puts value `index` at the start of `bytes`, little endian. The column must be that long.
+    pub(crate) fn put(&self, index: usize, bytes: &mut [u8]) {
+        with_values!(self, v => {
+            let value = v[index].to_le_bytes();
+            bytes[..value.len()].copy_from_slice(&value);
+        });
+    }
+
+    /// Writes value `index` as text, with as many digits as bring back the same value.
+    pub(crate) fn print(&self, index: usize, text: &mut Vec<u8>) -> std::io::Result<()> {
+        with_values!(self, v => write!(text, "{}", v[index]))
+    }
+}
+
+/// Checks that every column has `expected` values.
+pub(crate) fn check_lengths(columns: &[Column<'_>], expected: usize) -> Result<()> {
+    match columns.iter().find(|c| c.values.len() != expected) {
+        Some(c) => Err(Error::LengthMismatch { what: "result column", expected, found: c.values.len() }),
+        None => Ok(()),
+    }
+}
+
+fn column<'a>(name: &'a str, values: Values<'a>) -> Column<'a> {
+    Column { name: name.into(), description: "".into(), values }
+}
+
+/// The attributes of a cloud as columns for formats without roles of their own: angles in degrees, colours in 8 bits.
+pub(crate) fn attribute_columns(cloud: &PointCloud) -> Vec<Column<'_>> {
+    let a = &cloud.attributes;
+    let mut columns = Vec::new();
+    if let Some(normals) = &a.normals {
+        for (axis, name) in ["nx", "ny", "nz"].into_iter().enumerate() {
+            columns.push(column(name, Values::F32(normals.iter().map(|n| n[axis]).collect())));
+        }
+    }
+    if let Some(colors) = &a.color {
+        // some files hold 8-bit values in their 16-bit fields
+        let shift = if colors.iter().flatten().any(|&c| c > 255) { 8 } else { 0 };
+        for (channel, name) in ["red", "green", "blue"].into_iter().enumerate() {
+            let bytes = colors.iter().map(|c| u8::try_from(c[channel] >> shift).unwrap_or(u8::MAX)).collect();
+            columns.push(column(name, Values::U8(bytes)));
+        }
+    }
+    macro_rules! add {
+        ($($field:ident as $name:literal $kind:ident),* $(,)?) => {$(
+            if let Some(values) = &a.$field {
+                columns.push(column($name, Values::$kind(Cow::Borrowed(values))));
+            }
+        )*};
+    }
+    add!(
+        intensity as "intensity" U16,
+        classification as "classification" U8,
+        return_number as "return_number" U8,
+        return_count as "number_of_returns" U8,
+        gps_time as "gps_time" F64,
+        point_source_id as "point_source_id" U16,
+        scanner_channel as "scanner_channel" U8,
+        flags as "flags" U8,
+        scanner_index as "scanner_index" U16,
+    );
+    if let Some(angles) = &a.scan_angle {
+        columns.push(column("scan_angle_deg", Values::F32(angles.iter().map(|v| v.to_degrees()).collect())));
+    }
+    columns
+}

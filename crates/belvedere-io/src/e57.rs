@@ -1,0 +1,313 @@
+//! E57: all scans of a file in its common coordinates, with the scanner position of each point.
+
+use std::io::{Read, Seek};
+use std::path::Path;
+
+use ::e57::{E57Reader, PointCloud as Scan, Quaternion, Record, RecordDataType, RecordName, RecordValue};
+
+use super::part::{Part, guarded, open};
+use super::rows::{Role, Row, Rows, role_of};
+use belvedere_data::crs::Crs;
+use belvedere_data::{Error, Result};
+
+/// The valid points of all scans of the file at `path`.
+///
+/// Poses are applied to points and normals. The scanner stands where the pose puts it; without a pose at (0, 0, 0) if
+/// the scan is a grid or spherical, and is unknown otherwise, as in clouds that only passed through E57.
+pub(super) fn read(path: &Path) -> Result<Part> {
+    let (file, size) = open(path)?;
+    guarded(path, || {
+        let damaged = |e: ::e57::Error| Error::malformed(path, format!("is not a readable E57 file: {e}"));
+        let mut reader = E57Reader::new(file).map_err(damaged)?;
+        let scans = reader.pointclouds();
+        let mut part = Part::new(path, format!("E57, {} scan{}", scans.len(), if scans.len() == 1 { "" } else { "s" }));
+        if let Some(text) = reader.coordinate_metadata().map(str::trim).filter(|text| !text.is_empty()) {
+            match Crs::parse(text) {
+                Ok(crs) => part.set_crs(crs, "coordinate metadata"),
+                Err(_) => part.note("its coordinate metadata are not understood as a reference system"),
+            }
+        }
+        let plans: Vec<Plan> = scans.iter().map(Plan::new).collect();
+        let common = common_roles(&mut part, &plans, &scans);
+        let mut rows = Rows::new(common);
+        let mut scanner_index: Vec<u16> = Vec::new();
+        let mut invalid = 0;
+        for (i, (scan, plan)) in scans.iter().zip(&plans).enumerate() {
+            if scan.records == 0 {
+                part.note(format!("scan {} has no points", i + 1));
+                continue;
+            }
+            plan.check(path, scan, i, size)?;
+            let index = plan.scanner.map_or(u16::MAX, |position| {
+                part.scanners.push(position);
+                u16::try_from(part.scanners.len() - 1).unwrap_or(u16::MAX)
+            });
+            invalid += read_scan(path, &mut reader, scan, plan, |row| {
+                rows.push(row);
+                scanner_index.push(index);
+            })?;
+            part.single_precision |= plan.single_precision;
+        }
+        rows.finish(&mut part);
+        if !part.scanners.is_empty() {
+            part.attributes.scanner_index = Some(scanner_index);
+        }
+        part.leave_out(invalid, "marked as invalid in the file");
+        Ok(part)
+    })
+}
+
+/// How to read the records of one scan.
+struct Plan {
+    columns: Vec<Column>,
+    single_precision: bool,
+    pose: Pose,
+    scanner: Option<[f64; 3]>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Meaning {
+    /// The value, less the first number, times the second, has a role.
+    Value(Role, f64, f64),
+    Range,
+    Azimuth,
+    Elevation,
+    /// A point with anything but zero here is left out.
+    Invalid,
+    Nothing,
+}
+
+struct Column {
+    meaning: Meaning,
+    kind: RecordDataType,
+}
+
+impl Plan {
+    fn new(scan: &Scan) -> Self {
+        let has = |name: &RecordName| scan.prototype.iter().any(|record| record.name == *name);
+        let cartesian = has(&RecordName::CartesianX);
+        let columns = scan
+            .prototype
+            .iter()
+            .map(|record| Column { meaning: meaning(record, scan, cartesian), kind: record.data_type.clone() })
+            .collect();
+        let pose = Pose::new(scan);
+        let grid = has(&RecordName::RowIndex) || has(&RecordName::ColumnIndex) || has(&RecordName::SphericalRange);
+        Self {
+            columns,
+            single_precision: scan.prototype.iter().any(|record| {
+                record.name == RecordName::CartesianX && matches!(record.data_type, RecordDataType::Single { .. })
+            }),
+            scanner: (scan.transform.is_some() || grid).then_some(pose.translation),
+            pose,
+        }
+    }
+
+    /// Whether the points are given by angles and range.
+    fn is_spherical(&self) -> bool {
+        self.columns.iter().any(|column| column.meaning == Meaning::Range)
+    }
+
+    fn roles(&self) -> Vec<Role> {
+        let mut roles: Vec<Role> = self
+            .columns
+            .iter()
+            .filter_map(|column| match column.meaning {
+                Meaning::Value(role, ..) => Some(role),
+                _ => None,
+            })
+            .collect();
+        if self.is_spherical() {
+            roles.extend([Role::X, Role::Y, Role::Z]);
+        }
+        roles
+    }
+
+    /// Holds the number of points against the size of the file.
+    fn check(&self, path: &Path, scan: &Scan, index: usize, size: u64) -> Result<()> {
+        let has = |meaning: Meaning| self.columns.iter().any(|column| column.meaning == meaning);
+        let position = Rows::new(self.roles()).has_position();
+        if !position || (self.is_spherical() && !(has(Meaning::Azimuth) && has(Meaning::Elevation))) {
+            return Err(Error::malformed(path, format!("scan {} has no coordinates", index + 1)));
+        }
+        let bits: u64 = self.columns.iter().map(|column| bits(&column.kind)).sum();
+        // Records of no bits at all would be unpacked from nothing without end.
+        if bits == 0 || scan.records.saturating_mul(bits) / 8 > size {
+            let what = format!("scan {} announces {} points, more than its {size} bytes hold", index + 1, scan.records);
+            return Err(Error::malformed(path, what));
+        }
+        Ok(())
+    }
+}
+
+fn bits(kind: &RecordDataType) -> u64 {
+    match kind {
+        RecordDataType::Single { .. } => 32,
+        RecordDataType::Double { .. } => 64,
+        RecordDataType::ScaledInteger { min, max, .. } | RecordDataType::Integer { min, max } => {
+            u64::from((i128::from(*max) - i128::from(*min)).checked_ilog2().map_or(0, |bits| bits + 1))
+        }
+    }
+}
+
+fn meaning(record: &Record, scan: &Scan, cartesian: bool) -> Meaning {
+    let plain = |role: Role| Meaning::Value(role, 0.0, 1.0);
+    let limits = |low: Option<RecordValue>, high: Option<RecordValue>| {
+        let (kind_low, kind_high) = type_limits(&record.data_type);
+        let number = |value: Option<RecordValue>| value.and_then(|v| v.to_f64(&record.data_type).ok());
+        let (low, high) = (number(low).or(kind_low)?, number(high).or(kind_high)?);
+        (high > low && (high - low).is_finite()).then(|| (low, 65535.0 / (high - low)))
+    };
+    let scaled = |role: Role, limits: Option<(f64, f64)>| match limits {
+        Some((low, factor)) => Meaning::Value(role, low, factor),
+        None => plain(role),
+    };
+    let colors = scan.color_limits.clone();
+    let intensities = scan.intensity_limits.clone();
+    match &record.name {
+        RecordName::CartesianX if cartesian => plain(Role::X),
+        RecordName::CartesianY if cartesian => plain(Role::Y),
+        RecordName::CartesianZ if cartesian => plain(Role::Z),
+        RecordName::CartesianInvalidState if cartesian => Meaning::Invalid,
+        RecordName::SphericalRange if !cartesian => Meaning::Range,
+        RecordName::SphericalAzimuth if !cartesian => Meaning::Azimuth,
+        RecordName::SphericalElevation if !cartesian => Meaning::Elevation,
+        RecordName::SphericalInvalidState if !cartesian => Meaning::Invalid,
+        RecordName::Intensity => {
+            let found = intensities.map_or((None, None), |l| (l.intensity_min, l.intensity_max));
+            scaled(Role::Intensity, limits(found.0, found.1))
+        }
+        RecordName::ColorRed => {
+            let found = colors.map_or((None, None), |l| (l.red_min, l.red_max));
+            scaled(Role::Red, limits(found.0, found.1))
+        }
+        RecordName::ColorGreen => {
+            let found = colors.map_or((None, None), |l| (l.green_min, l.green_max));
+            scaled(Role::Green, limits(found.0, found.1))
+        }
+        RecordName::ColorBlue => {
+            let found = colors.map_or((None, None), |l| (l.blue_min, l.blue_max));
+            scaled(Role::Blue, limits(found.0, found.1))
+        }
+        RecordName::ReturnCount => plain(Role::ReturnCount),
+        // E57 counts returns from zero.
+        RecordName::ReturnIndex => Meaning::Value(Role::ReturnNumber, -1.0, 1.0),
+        RecordName::Unknown { name, .. } => match role_of(name) {
+            Some(role @ (Role::NormalX | Role::NormalY | Role::NormalZ | Role::Classification)) => plain(role),
+            _ => Meaning::Nothing,
+        },
+        _ => Meaning::Nothing,
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "limits of colours and intensities are small")]
+fn type_limits(kind: &RecordDataType) -> (Option<f64>, Option<f64>) {
+    match kind {
+        RecordDataType::Single { min, max } => (min.map(f64::from), max.map(f64::from)),
+        RecordDataType::Double { min, max } => (*min, *max),
+        RecordDataType::ScaledInteger { min, max, scale, offset } => {
+            (Some(*min as f64 * scale + offset), Some(*max as f64 * scale + offset))
+        }
+        RecordDataType::Integer { min, max } => (Some(*min as f64), Some(*max as f64)),
+    }
+}
+
+/// Roles that all scans with points have; the others are noted.
+fn common_roles(part: &mut Part, plans: &[Plan], scans: &[Scan]) -> Vec<Role> {
+    let all: Vec<Vec<Role>> =
+        plans.iter().zip(scans).filter(|(_, scan)| scan.records > 0).map(|(plan, _)| plan.roles()).collect();
+    let common: Vec<Role> =
+        all.first().into_iter().flatten().copied().filter(|role| all.iter().all(|r| r.contains(role))).collect();
+    if all.iter().any(|roles| roles.len() > common.len()) {
+        part.note("attributes that only some of the scans have were dropped");
+    }
+    common
+}
+
+/// Reads one scan; gives the number of invalid points.
+fn read_scan<R: Read + Seek>(
+    path: &Path,
+    reader: &mut E57Reader<R>,
+    scan: &Scan,
+    plan: &Plan,
+    mut take: impl FnMut(&Row),
+) -> Result<usize> {
+    let damaged = |e: ::e57::Error| Error::malformed(path, format!("has points that cannot be read: {e}"));
+    let spherical = plan.is_spherical();
+    let mut invalid = 0;
+    for record in reader.pointcloud_raw(scan).map_err(damaged)? {
+        let record = record.map_err(damaged)?;
+        let mut row = Row::default();
+        let mut valid = true;
+        let [mut range, mut azimuth, mut elevation] = [0.0; 3];
+        for (column, value) in plan.columns.iter().zip(&record) {
+            let value = value.to_f64(&column.kind).map_err(damaged)?;
+            match column.meaning {
+                Meaning::Value(role, low, factor) => row.set(role, (value - low) * factor),
+                Meaning::Range => range = value,
+                Meaning::Azimuth => azimuth = value,
+                Meaning::Elevation => elevation = value,
+                Meaning::Invalid => valid &= value == 0.0,
+                Meaning::Nothing => {}
+            }
+        }
+        if !valid {
+            invalid += 1;
+            continue;
+        }
+        if spherical {
+            let flat = range * elevation.cos();
+            row.set(Role::X, flat * azimuth.cos());
+            row.set(Role::Y, flat * azimuth.sin());
+            row.set(Role::Z, range * elevation.sin());
+        }
+        plan.pose.apply(&mut row);
+        take(&row);
+    }
+    Ok(invalid)
+}
+
+/// A rigid motion from scan to file coordinates.
+struct Pose {
+    rotation: [[f64; 3]; 3],
+    translation: [f64; 3],
+}
+
+impl Pose {
+    fn new(scan: &Scan) -> Self {
+        let Some(transform) = &scan.transform else {
+            return Self { rotation: rotation(&Quaternion::default()), translation: [0.0; 3] };
+        };
+        let t = &transform.translation;
+        Self { rotation: rotation(&transform.rotation), translation: [t.x, t.y, t.z] }
+    }
+
+    fn turn(&self, v: [f64; 3]) -> [f64; 3] {
+        self.rotation.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
+    }
+
+    fn apply(&self, row: &mut Row) {
+        let position = self.turn(row.three(super::rows::POSITION));
+        for (i, role) in super::rows::POSITION.into_iter().enumerate() {
+            row.set(role, position[i] + self.translation[i]);
+        }
+        let normal = self.turn(row.three(super::rows::NORMAL));
+        for (i, role) in super::rows::NORMAL.into_iter().enumerate() {
+            row.set(role, normal[i]);
+        }
+    }
+}
+
+/// The matrix of a quaternion of any length; the identity where it has none.
+fn rotation(q: &Quaternion) -> [[f64; 3]; 3] {
+    let length = (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z).sqrt();
+    if !length.is_finite() || length == 0.0 {
+        return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    }
+    let (w, x, y, z) = (q.w / length, q.x / length, q.y / length, q.z / length);
+    [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
+        [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
+        [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
+    ]
+}

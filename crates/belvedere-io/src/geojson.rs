@@ -1,0 +1,90 @@
+//! Areas as GeoJSON.
+
+use std::io::Write;
+use std::path::Path;
+
+use serde_json::{Map, Value, json};
+
+use crate::atomic;
+use belvedere_data::crs::{Crs, GeographicProjection};
+use belvedere_data::{Error, Result};
+
+/// Decimals of a degree: a centimetre.
+const DEGREE_DECIMALS: i32 = 7;
+/// Decimals of file coordinates: a millimetre.
+const METRE_DECIMALS: i32 = 3;
+
+/// Polygons with properties in common.
+#[derive(Clone, Debug, Default)]
+pub struct Area {
+    /// For each polygon its rim, counter-clockwise, and its holes, clockwise, each closed; easting and northing in metres.
+    pub polygons: Vec<Vec<Vec<[f64; 2]>>>,
+    /// What is known of it.
+    pub properties: Map<String, Value>,
+}
+
+/// What the coordinates in a GeoJSON file are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GeojsonCoordinates {
+    /// Longitude and latitude of WGS 84, as RFC 7946 wants.
+    Wgs84,
+    /// Those of the cloud's file: its system gives no longitude and latitude.
+    OfTheFile,
+}
+
+/// Writes each of `areas` as a feature with a multipolygon, and tells in which coordinates: longitude and latitude where `crs`, the
+/// system of the areas, gives these; else easting and northing in the unit of `crs`, with a member `crs_note` that says so.
+///
+/// # Errors
+/// [`Error::Io`], and [`Error::UnusableCrs`] for places that have no longitude and latitude.
+///
+/// # Source
+/// RFC 7946, sections 3.1.7, 3.3 and 4.
+pub fn write_geojson_areas(path: &Path, areas: &[Area], crs: &Crs) -> Result<GeojsonCoordinates> {
+    let projection = crs.geographic_projection().ok();
+    let coordinates = if projection.is_some() { GeojsonCoordinates::Wgs84 } else { GeojsonCoordinates::OfTheFile };
+    let mut features = Vec::with_capacity(areas.len());
+    for area in areas {
+        let mut polygons = Vec::with_capacity(area.polygons.len());
+        for polygon in &area.polygons {
+            let rings: Vec<Value> =
+                polygon.iter().map(|ring| written_ring(ring, projection.as_ref(), crs, path)).collect::<Result<_>>()?;
+            polygons.push(Value::Array(rings));
+        }
+        features.push(json!({
+            "type": "Feature",
+            "properties": area.properties,
+            "geometry": { "type": "MultiPolygon", "coordinates": polygons },
+        }));
+    }
+    let mut file = json!({ "type": "FeatureCollection", "features": features });
+    if coordinates == GeojsonCoordinates::OfTheFile
+        && let Some(members) = file.as_object_mut()
+    {
+        let note = format!("coordinates are not WGS 84 but those of the cloud: {}", crs.describe());
+        members.insert("crs_note".to_owned(), note.into());
+    }
+    atomic::write(path, |output| {
+        serde_json::to_writer(&mut *output, &file).map_err(|e| Error::io(path)(e.into()))?;
+        writeln!(output).map_err(Error::io(path))
+    })?;
+    Ok(coordinates)
+}
+
+fn written_ring(ring: &[[f64; 2]], projection: Option<&GeographicProjection>, crs: &Crs, path: &Path) -> Result<Value> {
+    let written = |&place: &[f64; 2]| {
+        let (values, decimals) = match projection {
+            Some(projection) => {
+                let [latitude, longitude] = projection.unproject(place).map_err(|e| Error::UnusableCrs {
+                    path: path.to_owned(),
+                    what: format!("{e}; give the right system with --crs"),
+                })?;
+                ([longitude.to_degrees(), latitude.to_degrees()], DEGREE_DECIMALS)
+            }
+            None => (place.map(|v| v / crs.metres_per_unit), METRE_DECIMALS),
+        };
+        let scale = 10.0_f64.powi(decimals);
+        Ok(json!(values.map(|v| (v * scale).round() / scale)))
+    };
+    ring.iter().map(written).collect::<Result<Vec<Value>>>().map(Value::Array)
+}

@@ -1,0 +1,140 @@
+//! Columns decoded from LAS records.
+
+use ::las::PointData;
+use ::las::point::Format;
+
+use super::las_extra::{ExtraField, ExtraNormals};
+use super::las_header::LasHeader;
+use super::part::{Coordinates, narrow};
+use belvedere_data::cloud::{Attributes, GpsTimeKind};
+
+/// ASPRS class of overlap points in point formats 0 to 5, which have no flag for it.
+const OVERLAP_CLASS: u8 = 12;
+
+/// The columns as they grow batch by batch.
+pub(super) struct Columns {
+    positions: Vec<[i32; 3]>,
+    scale: [f64; 3],
+    offset: [f64; 3],
+    attributes: Attributes,
+    extended: bool,
+    extra_normals: Option<ExtraNormals>,
+}
+
+impl Columns {
+    pub(super) fn new(
+        format: &Format,
+        header: &LasHeader,
+        extra_normals: Option<ExtraNormals>,
+        capacity: usize,
+    ) -> Self {
+        let extended = format.is_extended;
+        let attributes = Attributes {
+            normals: extra_normals.map(|_| Vec::with_capacity(capacity)),
+            classification: Some(Vec::with_capacity(capacity)),
+            gps_time: format.has_gps_time.then(|| Vec::with_capacity(capacity)),
+            gps_time_kind: if header.adjusted_gps_time {
+                GpsTimeKind::AdjustedStandard
+            } else {
+                GpsTimeKind::SecondsOfWeek
+            },
+            return_number: Some(Vec::with_capacity(capacity)),
+            return_count: Some(Vec::with_capacity(capacity)),
+            scan_angle: Some(Vec::with_capacity(capacity)),
+            point_source_id: Some(Vec::with_capacity(capacity)),
+            scanner_channel: extended.then(|| Vec::with_capacity(capacity)),
+            flags: Some(Vec::with_capacity(capacity)),
+            intensity: Some(Vec::with_capacity(capacity)),
+            color: format.has_color.then(|| Vec::with_capacity(capacity)),
+            scanner_index: None,
+        };
+        Self {
+            positions: Vec::with_capacity(capacity),
+            scale: header.scale,
+            offset: header.offset,
+            attributes,
+            extended,
+            extra_normals,
+        }
+    }
+
+    /// Decodes a batch, one task per column.
+    pub(super) fn append(&mut self, batch: &PointData) {
+        let extended = self.extended;
+        let records = || batch.raw_bytes().chunks_exact(batch.record_len().max(1));
+        // All formats keep the returns in byte 14 and flags in byte 15 of a record, which has at least 20 bytes.
+        let byte = |record: &[u8], at: usize| record.get(at).copied().unwrap_or(0);
+        let Attributes {
+            normals,
+            classification,
+            gps_time,
+            return_number,
+            return_count,
+            scan_angle,
+            point_source_id,
+            scanner_channel,
+            flags,
+            intensity,
+            color,
+            ..
+        } = &mut self.attributes;
+        let (positions, extra_normals) = (&mut self.positions, self.extra_normals);
+        rayon::scope(|scope| {
+            scope.spawn(|_| {
+                let xyz = batch.x_raw().zip(batch.y_raw()).zip(batch.z_raw());
+                positions.extend(xyz.map(|((x, y), z)| [x, y, z]));
+            });
+            if let Some(column) = gps_time
+                && let Some(times) = batch.gps_time()
+            {
+                scope.spawn(|_| column.extend(times));
+            }
+            if let Some(column) = color
+                && let Some(colors) = batch.rgb()
+            {
+                scope.spawn(|_| column.extend(colors.map(|(r, g, b)| [r, g, b])));
+            }
+            if let (Some(column), Some([x, y, z])) = (normals, extra_normals) {
+                scope.spawn(move |_| {
+                    let value = |field: ExtraField, record: &[u8]| field.value(record).map_or(0.0, narrow);
+                    column.extend(records().map(|r| [value(x, r), value(y, r), value(z, r)]));
+                });
+            }
+            scope.spawn(|_| extend(scan_angle, batch.scan_angle_degrees().map(f32::to_radians)));
+            scope.spawn(|_| {
+                extend(point_source_id, batch.point_source_id());
+                extend(intensity, batch.intensity());
+            });
+            scope.spawn(|_| {
+                extend(classification, batch.classification());
+                extend(return_number, batch.return_number());
+                extend(return_count, batch.number_of_returns());
+            });
+            scope.spawn(move |_| {
+                if extended {
+                    extend(flags, records().map(|r| byte(r, 15) & 0x0f));
+                    extend(scanner_channel, records().map(|r| byte(r, 15) >> 4 & 3));
+                } else {
+                    extend(
+                        flags,
+                        records().map(|r| {
+                            let overlap = u8::from(byte(r, 15) & 0x1f == OVERLAP_CLASS) << 3;
+                            byte(r, 15) >> 5 | overlap
+                        }),
+                    );
+                }
+            });
+        });
+    }
+
+    pub(super) fn finish(self) -> (Coordinates, Attributes) {
+        let coordinates = Coordinates::Quantised { values: self.positions, scale: self.scale, offset: self.offset };
+        (coordinates, self.attributes)
+    }
+}
+
+fn extend<T>(column: &mut Option<Vec<T>>, values: impl Iterator<Item = T>) {
+    if let Some(column) = column {
+        column.extend(values);
+    }
+}

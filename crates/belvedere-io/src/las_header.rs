@@ -1,0 +1,199 @@
+//! The header of a LAS or LAZ file and its variable-length records, checked against the size of the file.
+//!
+//! The las crate allocates what the header promises; here every length is held against the file first.
+
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+use belvedere_data::{Error, Result};
+
+/// What of the header is needed to read the points.
+pub(super) struct LasHeader {
+    pub(super) version: (u8, u8),
+    /// Point format without the compression bits.
+    pub(super) format: u8,
+    pub(super) compressed: bool,
+    pub(super) record_length: u16,
+    pub(super) points_start: u64,
+    /// Points the header promises.
+    pub(super) points: u64,
+    pub(super) scale: [f64; 3],
+    pub(super) offset: [f64; 3],
+    /// Global encoding bit 0.
+    pub(super) adjusted_gps_time: bool,
+    /// Whether the number of points of the old and the new field differ.
+    pub(super) counts_differ: bool,
+    pub(super) records: Vec<Record>,
+    /// Records that could not be read whole.
+    pub(super) broken_records: usize,
+}
+
+/// A variable-length record.
+pub(super) struct Record {
+    pub(super) user: String,
+    pub(super) id: u16,
+    pub(super) data: Vec<u8>,
+}
+
+/// Extended records larger than this are passed over: only reference systems are looked for there.
+const MAX_EXTENDED: u64 = 1 << 20;
+
+impl LasHeader {
+    /// Data of the first record with this user and number.
+    pub(super) fn record(&self, user: &str, id: u16) -> Option<&[u8]> {
+        self.records.iter().find(|record| record.id == id && record.user == user).map(|record| record.data.as_slice())
+    }
+
+    /// Data of all records with this user and number.
+    pub(super) fn records<'a>(&'a self, user: &'a str, id: u16) -> impl Iterator<Item = &'a [u8]> {
+        self.records.iter().filter(move |r| r.id == id && r.user == user).map(|r| r.data.as_slice())
+    }
+}
+
+/// Reads the header of a file of `size` bytes.
+pub(super) fn read_header(path: &Path, file: &mut (impl Read + Seek), size: u64) -> Result<LasHeader> {
+    let mut bytes = Vec::new();
+    file.take(375).read_to_end(&mut bytes).map_err(Error::io(path))?;
+    if bytes.get(..4) != Some(b"LASF") {
+        return Err(Error::malformed(path, "is not a LAS file: it does not begin with LASF"));
+    }
+    let fields = Fields { path, bytes: &bytes };
+    let version = (fields.u8(24)?, fields.u8(25)?);
+    if version.0 != 1 || version.1 > 4 {
+        return Err(Error::malformed(
+            path,
+            format!("has LAS version {}.{}; 1.0 to 1.4 are read", version.0, version.1),
+        ));
+    }
+    let header_size = u64::from(fields.u16(94)?);
+    let points_start = u64::from(fields.u32(96)?);
+    let record_count = fields.u32(100)?;
+    let legacy_points = u64::from(fields.u32(107)?);
+    let long_points = if version.1 >= 4 && header_size >= 375 { fields.u64(247)? } else { 0 };
+    let format = fields.u8(104)?;
+    let mut header = LasHeader {
+        version,
+        format: format & 0x3f,
+        compressed: format & 0xc0 != 0,
+        record_length: fields.u16(105)?,
+        points_start,
+        points: if long_points == 0 { legacy_points } else { long_points },
+        scale: [fields.f64(131)?, fields.f64(139)?, fields.f64(147)?],
+        offset: [fields.f64(155)?, fields.f64(163)?, fields.f64(171)?],
+        adjusted_gps_time: version.1 >= 2 && fields.u16(6)? & 1 != 0,
+        counts_differ: legacy_points != 0 && long_points != 0 && legacy_points != long_points,
+        records: Vec::new(),
+        broken_records: 0,
+    };
+    if header.scale.iter().any(|s| !s.is_finite() || *s == 0.0) || header.offset.iter().any(|o| !o.is_finite()) {
+        let what = format!("has unusable coordinate scales {:?} or offsets {:?}", header.scale, header.offset);
+        return Err(Error::malformed(path, what));
+    }
+    if header_size < 227 || points_start < header_size || points_start > size {
+        let what = format!("says that points start at byte {points_start} of {size}; the file is cut off or damaged");
+        return Err(Error::malformed(path, what));
+    }
+    read_records(path, file, &mut header, Length::Short, header_size..points_start, record_count)?;
+    if version.1 >= 4 && header_size >= 375 {
+        let (start, count) = (fields.u64(235)?, fields.u32(243)?);
+        read_records(path, file, &mut header, Length::Long, start..size, count)?;
+    }
+    Ok(header)
+}
+
+/// Reads up to `count` records that lie in the bytes of `range`, until one is broken.
+fn read_records(
+    path: &Path,
+    file: &mut (impl Read + Seek),
+    header: &mut LasHeader,
+    length: Length,
+    range: std::ops::Range<u64>,
+    count: u32,
+) -> Result<()> {
+    let mut position = range.start;
+    for _ in 0..count {
+        let is_extended = length == Length::Long;
+        if is_extended && (position < header.points_start || position >= range.end) {
+            header.broken_records += 1;
+            break;
+        }
+        file.seek(SeekFrom::Start(position)).map_err(Error::io(path))?;
+        match read_record(file, length, range.end - position) {
+            Some((record, length)) => {
+                position += length;
+                header.records.extend(record);
+            }
+            None => {
+                header.broken_records += 1;
+                break;
+            }
+        }
+    }
+    Ok(())
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Length {
+    Short,
+    Long,
+}
+
+/// The next record, unless it is too large to be of interest, and its length; `None` where `room` bytes do not hold it.
+fn read_record(file: &mut impl Read, length: Length, room: u64) -> Option<(Option<Record>, u64)> {
+    let head_length: u64 = if length == Length::Short { 54 } else { 60 };
+    let mut head = Vec::new();
+    file.take(head_length.min(room)).read_to_end(&mut head).ok()?;
+    let user = head.get(2..18)?;
+    let id = u16::from_le_bytes(*head.get(18..)?.first_chunk()?);
+    let data_length = match length {
+        Length::Short => u64::from(u16::from_le_bytes(*head.get(20..)?.first_chunk()?)),
+        Length::Long => u64::from_le_bytes(*head.get(20..)?.first_chunk()?),
+    };
+    let total = head_length.checked_add(data_length).filter(|&total| total <= room)?;
+    if data_length > MAX_EXTENDED {
+        return Some((None, total));
+    }
+    let mut data = Vec::new();
+    file.take(data_length).read_to_end(&mut data).ok()?;
+    if data.len() as u64 != data_length {
+        return None;
+    }
+    let user = String::from_utf8_lossy(user).trim_end_matches(['\0', ' ']).to_owned();
+    Some((Some(Record { user, id, data }), total))
+}
+
+/// Little-endian fields of the fixed part.
+struct Fields<'a> {
+    path: &'a Path,
+    bytes: &'a [u8],
+}
+
+impl Fields<'_> {
+    fn array<const N: usize>(&self, at: usize) -> Result<[u8; N]> {
+        self.bytes
+            .get(at..)
+            .and_then(|rest| rest.first_chunk())
+            .copied()
+            .ok_or_else(|| Error::malformed(self.path, "ends within the LAS header"))
+    }
+
+    fn u8(&self, at: usize) -> Result<u8> {
+        Ok(self.array::<1>(at)?[0])
+    }
+
+    fn u16(&self, at: usize) -> Result<u16> {
+        Ok(u16::from_le_bytes(self.array(at)?))
+    }
+
+    fn u32(&self, at: usize) -> Result<u32> {
+        Ok(u32::from_le_bytes(self.array(at)?))
+    }
+
+    fn u64(&self, at: usize) -> Result<u64> {
+        Ok(u64::from_le_bytes(self.array(at)?))
+    }
+
+    fn f64(&self, at: usize) -> Result<f64> {
+        Ok(f64::from_le_bytes(self.array(at)?))
+    }
+}

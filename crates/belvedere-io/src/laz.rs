@@ -1,0 +1,241 @@
+//! LAZ chunks, checked before they are decompressed: the laz crate trusts sizes in the file and would allocate them.
+
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+use ::laz::laszip::{ChunkTable, ChunkTableEntry, CompressorType, LazItemType};
+use ::laz::{DecompressionSelection, LazVlr};
+
+use super::las_header::LasHeader;
+use super::part::guarded;
+use belvedere_data::{Error, Result};
+
+/// A chunk that would decompress to more bytes than this is no chunk that any writer makes (50 000 points are usual).
+const MAX_CHUNK_BYTES: u64 = 1 << 30;
+
+/// Whether extra bytes are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ExtraBytes {
+    Decompress,
+    Skip,
+}
+
+/// Decompresses the points of a file batch by batch.
+pub(super) struct LazReader<'a, R> {
+    path: &'a Path,
+    file: R,
+    vlr: LazVlr,
+    chunks: std::vec::IntoIter<ChunkTableEntry>,
+    layers: Option<usize>,
+    selection: DecompressionSelection,
+    record_length: usize,
+    compressed: Vec<u8>,
+}
+
+impl<'a, R: Read + Seek + Send> LazReader<'a, R> {
+    /// A reader of the points that `header` announces in a file of `size` bytes.
+    pub(super) fn new(path: &'a Path, mut file: R, header: &LasHeader, size: u64, extra: ExtraBytes) -> Result<Self> {
+        let damaged = |what: String| Error::malformed(path, what);
+        let record = header.record(LazVlr::USER_ID, LazVlr::RECORD_ID);
+        let record =
+            record.ok_or_else(|| damaged("lacks the LAZ record that tells how it is compressed".to_owned()))?;
+        let vlr = guarded(path, || {
+            LazVlr::from_buffer(record).map_err(|e| damaged(format!("has an unreadable LAZ record: {e}")))
+        })?;
+        let items_match = vlr.items().iter().all(|item| item.size() == nominal_size(item.item_type()));
+        let item_bytes: u64 = vlr.items().iter().map(|item| u64::from(item.size())).sum();
+        if !items_match || item_bytes != u64::from(header.record_length) {
+            return Err(damaged(format!(
+                "has a LAZ record for points of {item_bytes} bytes that does not fit the {} bytes of its header",
+                header.record_length
+            )));
+        }
+        let layers = layer_count(&vlr);
+        file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
+        check_chunk_count(path, &mut file, header, size)?;
+        let table = guarded(path, || {
+            ChunkTable::read_from(&mut file, &vlr).map_err(|e| damaged(format!("has no readable LAZ chunk table: {e}")))
+        })?;
+        let chunks = checked_chunks(path, &table, &vlr, header, size)?;
+        let selection = DecompressionSelection::all().skip_user_data().skip_nir().skip_wavepacket();
+        let selection = if extra == ExtraBytes::Skip { selection.skip_extra_bytes() } else { selection };
+        Ok(Self {
+            path,
+            file,
+            vlr,
+            chunks: chunks.into_iter(),
+            layers,
+            selection,
+            record_length: usize::from(header.record_length),
+            compressed: Vec::new(),
+        })
+    }
+
+    /// Decompresses whole chunks until `wanted` points are reached; `room` makes a slice for a number of points.
+    /// Returns the number of points, zero at the end.
+    pub(super) fn next_batch<'b>(&mut self, wanted: u64, room: impl FnOnce(usize) -> &'b mut [u8]) -> Result<usize> {
+        let mut batch: Vec<ChunkTableEntry> = Vec::new();
+        let (mut points, mut bytes) = (0, 0);
+        while points < wanted {
+            let Some(chunk) = self.chunks.next() else { break };
+            points += chunk.point_count;
+            bytes += chunk.byte_count;
+            batch.push(chunk);
+        }
+        let points = usize::try_from(points).map_err(|_| self.damaged("has more points than memory can address"))?;
+        if points == 0 {
+            return Ok(0);
+        }
+        self.compressed.clear();
+        (&mut self.file).take(bytes).read_to_end(&mut self.compressed).map_err(Error::io(self.path))?;
+        if self.compressed.len() as u64 != bytes {
+            return Err(self.damaged("ends within its points"));
+        }
+        self.check_streams(&batch)?;
+        let (compressed, vlr) = (&self.compressed, &self.vlr);
+        guarded(self.path, || {
+            ::laz::laszip::parallel::par_decompress_selective(compressed, room(points), vlr, &batch, self.selection)
+                .map_err(|e| Error::malformed(self.path, format!("has points that cannot be decompressed: {e}")))
+        })?;
+        Ok(points)
+    }
+
+    /// Holds what precedes the compressed streams of each chunk against the size of the chunk.
+    fn check_streams(&self, batch: &[ChunkTableEntry]) -> Result<()> {
+        let mut rest = self.compressed.as_slice();
+        for chunk in batch {
+            let length = usize::try_from(chunk.byte_count).unwrap_or(usize::MAX).min(rest.len());
+            let (bytes, after) = rest.split_at(length);
+            rest = after;
+            if chunk.point_count > 0 && !self.streams_are_sound(bytes) {
+                return Err(self.damaged("has a LAZ chunk whose sizes or streams are damaged"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the streams after the first point, which is not compressed, fit in the chunk and begin as they must.
+    fn streams_are_sound(&self, chunk: &[u8]) -> bool {
+        let Some((_, streams)) = chunk.split_at_checked(self.record_length) else { return false };
+        let Some(layers) = self.layers else { return begins_soundly(streams) };
+        // The number of points comes first, then the size of each layer, then the layers.
+        let Some((sizes, mut content)) = streams.split_at_checked(4 + layers * 4) else { return false };
+        for &size in sizes.as_chunks::<4>().0.iter().skip(1) {
+            let size = usize::try_from(u32::from_le_bytes(size)).unwrap_or(usize::MAX);
+            let Some((layer, after)) = content.split_at_checked(size) else { return false };
+            if !begins_soundly(layer) {
+                return false;
+            }
+            content = after;
+        }
+        true
+    }
+
+    fn damaged(&self, what: &str) -> Error {
+        Error::malformed(self.path, what)
+    }
+}
+
+/// Whether an arithmetic-coded stream begins with a value below its interval. From 0xFFFFFFFF the decoder yields the
+/// same symbol forever without consuming a byte, on which the laz crate (0.13) recurses until the stack overflows.
+fn begins_soundly(stream: &[u8]) -> bool {
+    stream.first_chunk() != Some(&[0xff; 4])
+}
+
+/// Bytes of an item, which the file states again, as the decompressor knows them.
+fn nominal_size(item: LazItemType) -> u16 {
+    match item {
+        LazItemType::Point10 => 20,
+        LazItemType::GpsTime | LazItemType::RGBNIR14 => 8,
+        LazItemType::RGB12 | LazItemType::RGB14 => 6,
+        LazItemType::WavePacket13 | LazItemType::WavePacket14 => 29,
+        LazItemType::Point14 => 30,
+        LazItemType::Byte(count) | LazItemType::Byte14(count) => count,
+    }
+}
+
+/// Number of layers of a chunk, or `None` for point formats 0 to 5, which have no layers.
+fn layer_count(vlr: &LazVlr) -> Option<usize> {
+    vlr.items()
+        .iter()
+        .map(|item| match item.item_type() {
+            LazItemType::Point14 => Some(9),
+            LazItemType::RGB14 | LazItemType::WavePacket14 => Some(1),
+            LazItemType::RGBNIR14 => Some(2),
+            LazItemType::Byte14(count) => Some(usize::from(count)),
+            _ => None,
+        })
+        .sum()
+}
+
+/// Every chunk begins with an uncompressed point, so the file bounds the number of chunks.
+fn check_chunk_count(path: &Path, file: &mut (impl Read + Seek), header: &LasHeader, size: u64) -> Result<()> {
+    let broken = || Error::malformed(path, "has no LAZ chunk table: the file is cut off or was not finished");
+    let mut bytes = [0; 8];
+    let mut table_start = |file: &mut dyn ReadSeek, from: SeekFrom| -> Result<u64> {
+        file.seek(from).and_then(|_| file.read_exact(&mut bytes)).map_err(|_| broken())?;
+        Ok(u64::from_le_bytes(bytes))
+    };
+    let valid = |at: u64| at > header.points_start && at.saturating_add(8) <= size;
+    let mut at = table_start(file, SeekFrom::Start(header.points_start))?;
+    if !valid(at) {
+        // A writer that could not seek back leaves the offset at the very end.
+        at = table_start(file, SeekFrom::End(-8))?;
+    }
+    if !valid(at) {
+        return Err(broken());
+    }
+    let count = table_start(file, SeekFrom::Start(at))? >> 32;
+    if count * u64::from(header.record_length) > size {
+        return Err(Error::malformed(path, format!("claims {count} LAZ chunks, more than its {size} bytes can hold")));
+    }
+    file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
+    Ok(())
+}
+
+trait ReadSeek: Read + Seek {}
+impl<T: Read + Seek> ReadSeek for T {}
+
+/// The chunks that hold the points `header` announces, each held against the size of the file.
+fn checked_chunks(
+    path: &Path,
+    table: &ChunkTable,
+    vlr: &LazVlr,
+    header: &LasHeader,
+    size: u64,
+) -> Result<Vec<ChunkTableEntry>> {
+    let mut chunks: Vec<ChunkTableEntry> = Vec::new();
+    let (mut points, mut bytes) = (0_u64, 0_u64);
+    for entry in table {
+        let mut chunk = *entry;
+        let left = header.points - points;
+        if left == 0 {
+            break;
+        }
+        if !vlr.uses_variable_size_chunks() {
+            chunk.point_count = chunk.point_count.min(left);
+        }
+        bytes = bytes.saturating_add(chunk.byte_count);
+        let decompressed = chunk.point_count.saturating_mul(u64::from(header.record_length));
+        if bytes > size || chunk.point_count > left || decompressed > MAX_CHUNK_BYTES {
+            let what = format!(
+                "has a LAZ chunk of {} points in {} bytes, which does not fit the {} points of its header",
+                chunk.point_count, chunk.byte_count, header.points
+            );
+            return Err(Error::malformed(path, what));
+        }
+        points += chunk.point_count;
+        chunks.push(chunk);
+    }
+    if points < header.points {
+        let what = format!("announces {} points, but its LAZ chunks hold {points}; it is cut off", header.points);
+        return Err(Error::malformed(path, what));
+    }
+    Ok(chunks)
+}
+
+/// Whether `vlr` is of a kind that can be read; old files of one single chunk cannot.
+pub(super) fn is_chunked(vlr: &[u8]) -> bool {
+    let kind = vlr.first_chunk().map(|&kind| u16::from_le_bytes(kind));
+    kind == Some(CompressorType::PointWiseChunked as u16) || kind == Some(CompressorType::LayeredChunked as u16)
+}

@@ -1,0 +1,28 @@
+//! The folder layout of masbcpp: `coords.npy`, and `normals.npy` if there are normals.
+
+use std::path::Path;
+
+use super::npy;
+use super::part::{Part, narrow};
+use belvedere_data::{Error, Result};
+
+/// The file that makes a folder a masbcpp folder.
+pub(super) const COORDINATES: &str = "coords.npy";
+const NORMALS: &str = "normals.npy";
+
+/// The points, and normals if present, of the folder at `path`.
+pub(super) fn read(folder: &Path) -> Result<Part> {
+    let mut part = npy::read(&folder.join(COORDINATES))?;
+    part.report.format = format!("masbcpp folder, {}", part.report.format);
+    let path = folder.join(NORMALS);
+    if path.is_file() {
+        let (normals, _) = npy::read_rows(&path)?;
+        if normals.rows.len() != part.coordinates.len() {
+            let what =
+                format!("holds {} normals for {} points of {COORDINATES}", normals.rows.len(), part.coordinates.len());
+            return Err(Error::malformed(&path, what));
+        }
+        part.attributes.normals = Some(normals.rows.into_iter().map(|n| n.map(narrow)).collect());
+    }
+    Ok(part)
+}

@@ -1,0 +1,135 @@
+//! Observers and paths from tables and GeoJSON.
+
+use std::path::Path;
+
+use serde_json::{Map, Value};
+
+use crate::geojson_read::{Shape, read_geojson};
+use crate::table::read_table;
+use belvedere_data::crs::Crs;
+use belvedere_data::{Error, Result};
+
+/// An observer, or a path of observers, as a file has it. What the file does not say is `None`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ObserverRow {
+    /// One place, or the corners of a path, metres in the system of the cloud; a height of NaN is not given.
+    pub corners: Vec<[f64; 3]>,
+    /// Height above the ground, metres.
+    pub height: Option<f64>,
+    /// Least and greatest distance, metres.
+    pub distance: [Option<f64>; 2],
+    /// Azimuth from and to, degrees.
+    pub azimuth_deg: [Option<f64>; 2],
+    /// Least and greatest elevation, degrees.
+    pub elevation_deg: [Option<f64>; 2],
+}
+
+/// Names of the columns, and of the properties in GeoJSON, in the order of [`from_values`].
+const NAMES: [&str; 7] =
+    ["height", "min_distance", "max_distance", "azimuth_from", "azimuth_to", "elevation_from", "elevation_to"];
+
+/// What the rows of a table are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowsAre {
+    /// Observers, each for itself.
+    Places,
+    /// The corners of one path, which takes everything but its places from the first row.
+    Corners,
+}
+
+/// Reads observers from a table (.csv .txt) or GeoJSON (.geojson .json).
+///
+/// A table has columns x and y in the coordinates of the cloud's file, and may have z (height of the eye; empty where it follows from
+/// the ground), height (above the ground, metres), min_distance and max_distance (metres), azimuth_from, azimuth_to,
+/// elevation_from and elevation_to (degrees). GeoJSON has these as properties; points are observers, lines are paths, and
+/// the corners of polygons are walked around.
+///
+/// # Errors
+/// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, text in place of numbers and files without observers, and
+/// what [`read_table`] and [`read_geojson`] refuse.
+pub fn read_observers(path: &Path, crs: &Crs, rows_are: RowsAre) -> Result<Vec<ObserverRow>> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let rows = match extension.as_str() {
+        "csv" | "txt" => of_table(path, crs, rows_are)?,
+        "geojson" | "json" => of_geojson(path, crs)?,
+        _ => {
+            let supported = ".csv .txt .geojson .json";
+            return Err(Error::UnknownFormat { path: path.to_owned(), kind: "observers", supported });
+        }
+    };
+    if rows.is_empty() {
+        return Err(Error::malformed(path, "there is no observer in it"));
+    }
+    Ok(rows)
+}
+
+fn of_table(path: &Path, crs: &Crs, rows_are: RowsAre) -> Result<Vec<ObserverRow>> {
+    let table = read_table(path)?;
+    let scale = crs.metres_per_unit_xyz();
+    let (x, y) = (table.full_column(path, "x")?, table.full_column(path, "y")?);
+    let z = table.column(path, "z")?;
+    let mut columns: [Option<&[f64]>; 7] = [None; 7];
+    for (column, name) in columns.iter_mut().zip(NAMES) {
+        *column = table.column(path, name)?;
+    }
+    let mut rows: Vec<ObserverRow> = Vec::new();
+    for (i, (x, y)) in x.iter().zip(y).enumerate() {
+        let z = z.and_then(|z| z.get(i)).copied().unwrap_or(f64::NAN);
+        let corner = [x * scale[0], y * scale[1], z * scale[2]];
+        if let (RowsAre::Corners, Some(path)) = (rows_are, rows.first_mut()) {
+            path.corners.push(corner);
+            continue;
+        }
+        let values = columns.map(|column| column?.get(i).copied());
+        rows.push(from_values(vec![corner], values, path)?);
+    }
+    Ok(rows)
+}
+
+fn of_geojson(path: &Path, crs: &Crs) -> Result<Vec<ObserverRow>> {
+    let mut rows = Vec::new();
+    for feature in read_geojson(path, crs)? {
+        let corners = match feature.shape {
+            Shape::Point(place) => vec![place],
+            Shape::Line(corners) => corners,
+            Shape::Polygon(rings) => rings.into_iter().next().unwrap_or_default(),
+        };
+        if corners.is_empty() {
+            continue;
+        }
+        let mut values = [None; 7];
+        for (value, name) in values.iter_mut().zip(NAMES) {
+            *value = number(&feature.properties, name, path)?;
+        }
+        rows.push(from_values(corners, values, path)?);
+    }
+    Ok(rows)
+}
+
+fn number(properties: &Map<String, Value>, name: &str, path: &Path) -> Result<Option<f64>> {
+    match properties.get(name) {
+        None | Some(Value::Null) => Ok(None),
+        Some(Value::Number(number)) => Ok(number.as_f64()),
+        Some(Value::String(text)) if text.trim().is_empty() => Ok(None),
+        Some(Value::String(text)) => match text.trim().parse() {
+            Ok(value) => Ok(Some(value)),
+            Err(_) => Err(Error::malformed(path, format!("property {name} is \"{text}\", which is no number"))),
+        },
+        Some(other) => Err(Error::malformed(path, format!("property {name} is {other}, which is no number"))),
+    }
+}
+
+fn from_values(corners: Vec<[f64; 3]>, values: [Option<f64>; 7], path: &Path) -> Result<ObserverRow> {
+    if let Some(corner) = corners.iter().find(|c| !(c[0].is_finite() && c[1].is_finite())) {
+        return Err(Error::malformed(path, format!("an observer stands at {corner:?}")));
+    }
+    let [height, least, most, azimuth_from, azimuth_to, elevation_from, elevation_to] =
+        values.map(|value| value.filter(|v| !v.is_nan()));
+    Ok(ObserverRow {
+        corners,
+        height,
+        distance: [least, most],
+        azimuth_deg: [azimuth_from, azimuth_to],
+        elevation_deg: [elevation_from, elevation_to],
+    })
+}

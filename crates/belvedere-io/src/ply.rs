@@ -1,0 +1,207 @@
+//! PLY: the vertices of ascii and binary files; faces and other elements are passed over.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+
+use ply_rs_bw::parser::{Parser, Reader};
+use ply_rs_bw::ply::{
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
+};
+
+use super::part::{Part, guarded, open};
+use super::rows::{Role, Row, Rows, role_of};
+use belvedere_data::crs::text::crs_from_comments;
+use belvedere_data::{Error, Result};
+
+/// A header longer than this is no header.
+const MAX_HEADER: u64 = 1 << 20;
+
+/// The element that holds the points.
+const VERTEX: &str = "vertex";
+
+/// One vertex: the numbers whose names have a role.
+#[derive(Default)]
+struct Vertex(Row);
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        let Some(value) = scalar(&property) else { return PropertyAccessResult::Ignored };
+        match role_of(name) {
+            Some(role) => {
+                self.0.set(role, value);
+                PropertyAccessResult::Set
+            }
+            None => PropertyAccessResult::Ignored,
+        }
+    }
+}
+
+/// A PLY file whose header has been checked against its size.
+pub(super) struct PlyFile<'a> {
+    path: &'a Path,
+    file: BufReader<File>,
+    header: Header,
+}
+
+impl<'a> PlyFile<'a> {
+    pub(super) fn open(path: &'a Path) -> Result<Self> {
+        let (mut file, size) = open(path)?;
+        guarded(path, || {
+            let bytes = header_bytes(path, &mut file)?;
+            let header = Parser::<Vertex>::new()
+                .read_header(&mut Reader::new(bytes.as_slice()))
+                .map_err(|e| Error::malformed(path, format!("is not a readable PLY file: {e}")))?;
+            let body = size.saturating_sub(bytes.len() as u64);
+            for element in header.elements.values() {
+                check_count(path, element, header.encoding, body)?;
+            }
+            Ok(Self { path, file, header })
+        })
+    }
+
+    pub(super) fn vertex(&self) -> Option<&ElementDef> {
+        self.header.elements.get(VERTEX)
+    }
+
+    pub(super) fn comments(&self) -> impl Iterator<Item = &str> + Clone {
+        self.header.comments.iter().map(String::as_str)
+    }
+
+    /// Hands every vertex to `take`; what follows the vertices is not looked at.
+    pub(super) fn for_each_vertex<V: PropertyAccess>(&mut self, take: impl FnMut(V)) -> Result<()> {
+        let Self { path, file, header } = self;
+        guarded(path, || {
+            for (name, element) in &header.elements {
+                if name == VERTEX {
+                    return for_each(&Parser::<V>::new(), path, file, element, header.encoding, take);
+                }
+                for_each(&Parser::<Vertex>::new(), path, file, element, header.encoding, |_| {})?;
+            }
+            Err(Error::malformed(path, "has no vertices"))
+        })
+    }
+}
+
+/// The vertices of the file at `path`.
+pub(super) fn read(path: &Path) -> Result<Part> {
+    let mut file = PlyFile::open(path)?;
+    let mut part = Part::new(path, format!("PLY, {}", file.header.encoding));
+    if let Some(crs) = crs_from_comments(file.comments()) {
+        part.set_crs(crs, "comments in the header");
+    }
+    let vertex = file.vertex().ok_or_else(|| Error::malformed(path, "has no vertices"))?;
+    let mut rows = Rows::new(vertex.properties.keys().filter_map(|property| role_of(property)));
+    if !rows.has_position() {
+        return Err(Error::malformed(path, "has vertices without x, y and z"));
+    }
+    note_unknown(&mut part, vertex);
+    part.single_precision = vertex.properties.iter().any(|(property, definition)| {
+        role_of(property) == Some(Role::X) && definition.data_type == PropertyType::Scalar(ScalarType::Float)
+    });
+    file.for_each_vertex(|vertex: Vertex| rows.push(&vertex.0))?;
+    rows.finish(&mut part);
+    Ok(part)
+}
+
+/// A property as a number, `None` where it is a list.
+pub(super) fn scalar(property: &Property) -> Option<f64> {
+    Some(match *property {
+        Property::Char(v) => v.into(),
+        Property::UChar(v) => v.into(),
+        Property::Short(v) => v.into(),
+        Property::UShort(v) => v.into(),
+        Property::Int(v) => v.into(),
+        Property::UInt(v) => v.into(),
+        Property::Float(v) => v.into(),
+        Property::Double(v) => v,
+        _ => return None,
+    })
+}
+
+/// Reads up to the line `end_header`.
+fn header_bytes(path: &Path, file: &mut impl BufRead) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let mut limited = file.take(MAX_HEADER);
+    loop {
+        let start = bytes.len();
+        let length = limited.read_until(b'\n', &mut bytes).map_err(Error::io(path))?;
+        if start == 0 && !bytes.starts_with(b"ply") {
+            return Err(Error::malformed(path, "is not a PLY file: it does not begin with ply"));
+        }
+        if length == 0 {
+            return Err(Error::malformed(path, "has a PLY header without end_header"));
+        }
+        if bytes.get(start..).is_some_and(|line| line.trim_ascii() == b"end_header") {
+            return Ok(bytes);
+        }
+    }
+}
+
+/// Holds the number of an element against the bytes there are: in ascii every value takes two.
+fn check_count(path: &Path, element: &ElementDef, encoding: Encoding, body: u64) -> Result<()> {
+    let least: u64 = if encoding == Encoding::Ascii {
+        2 * element.properties.len() as u64
+    } else {
+        element.properties.values().map(|property| least_bytes(&property.data_type)).sum()
+    };
+    // The last line of a text may lack its line break.
+    if (element.count as u64).saturating_mul(least) > body + 1 || (least == 0 && element.count > 0) {
+        let what = format!(
+            "announces {} elements {}, more than its {body} bytes can hold; it is cut off or damaged",
+            element.count, element.name
+        );
+        return Err(Error::malformed(path, what));
+    }
+    Ok(())
+}
+
+fn least_bytes(kind: &PropertyType) -> u64 {
+    let scalar = match kind {
+        PropertyType::Scalar(scalar) | PropertyType::List(scalar, _) => scalar,
+    };
+    match scalar {
+        ScalarType::Char | ScalarType::UChar => 1,
+        ScalarType::Short | ScalarType::UShort => 2,
+        ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
+        ScalarType::Double => 8,
+    }
+}
+
+fn note_unknown(part: &mut Part, element: &ElementDef) {
+    let unknown: Vec<&str> =
+        element.properties.keys().filter(|name| role_of(name).is_none()).map(String::as_str).collect();
+    if !unknown.is_empty() {
+        part.note(format!("properties dropped: {}", unknown.join(", ")));
+    }
+}
+
+fn for_each<V: PropertyAccess>(
+    parser: &Parser<V>,
+    path: &Path,
+    file: &mut impl BufRead,
+    element: &ElementDef,
+    encoding: Encoding,
+    mut take: impl FnMut(V),
+) -> Result<()> {
+    let mut line = Vec::new();
+    for index in 0..element.count {
+        let vertex = match encoding {
+            Encoding::Ascii => {
+                line.clear();
+                file.read_until(b'\n', &mut line).map_err(Error::io(path))?;
+                parser.read_ascii_element(&String::from_utf8_lossy(&line), element)
+            }
+            Encoding::BinaryBigEndian => parser.read_big_endian_element(file, element),
+            Encoding::BinaryLittleEndian => parser.read_little_endian_element(file, element),
+        };
+        take(vertex.map_err(|e| {
+            Error::malformed(path, format!("{} {} of {} is unreadable: {e}", element.name, index + 1, element.count))
+        })?);
+    }
+    Ok(())
+}

@@ -1,0 +1,180 @@
+//! Polygons of any shape, with or without holes, to the triangles of a [`Mesh`].
+
+use std::path::Path;
+
+use earcut::Earcut;
+
+use belvedere_data::vector::{cross, dot, length, sub};
+use belvedere_data::{Error, Mesh, Result};
+
+/// Coordinates beyond this are no place on earth in any unit; kept below, products of three never overflow.
+const MAX_COORDINATE: f64 = 1e9;
+
+/// A triangle is degenerate where its doubled area is below this share of its longest edge squared: f64 coordinates of
+/// 1e6 m determine a height over a 1 m edge to 1e-10 at best.
+const DEGENERATE_AREA_RATIO: f64 = 1e-10;
+
+/// What was found in, and left out of, a mesh file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct MeshReport {
+    /// Polygons in the file, triangles included.
+    pub polygon_count: usize,
+    /// Triangles without area that were dropped.
+    pub degenerate_triangle_count: usize,
+    /// Polygons that gave no triangle at all: fewer than three distinct corners, or all in one line.
+    pub degenerate_polygon_count: usize,
+    /// Geometries without surfaces (points, lines) or of an unknown kind that were passed over.
+    pub skipped_geometry_count: usize,
+    /// Geometries passed over for another level of detail of the same object.
+    pub other_level_of_detail_count: usize,
+}
+
+/// Collects vertices and polygons of one file.
+pub(super) struct MeshBuilder<'a> {
+    path: &'a Path,
+    pub(super) mesh: Mesh,
+    pub(super) report: MeshReport,
+    earcut: Earcut<f64>,
+}
+
+impl<'a> MeshBuilder<'a> {
+    pub(super) fn new(path: &'a Path) -> Self {
+        Self { path, mesh: Mesh::default(), report: MeshReport::default(), earcut: Earcut::new() }
+    }
+
+    /// Appends a vertex, metres; returns its index.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] for coordinates that are not finite or lie beyond a million kilometres, and where u32
+    /// indices run out.
+    pub(super) fn push_vertex(&mut self, vertex: [f64; 3]) -> Result<u32> {
+        if !vertex.iter().all(|v| v.abs() < MAX_COORDINATE) {
+            let what = format!("vertex {} is {vertex:?}; coordinates must be finite metres", self.mesh.vertices.len());
+            return Err(Error::malformed(self.path, what));
+        }
+        let index = u32::try_from(self.mesh.vertices.len())
+            .map_err(|_| Error::malformed(self.path, "more than 4294967295 vertices; split the file"))?;
+        self.mesh.vertices.push(vertex);
+        Ok(index)
+    }
+
+    /// Starts an object of this name, or continues it where it was the last; returns its index.
+    pub(super) fn push_object(&mut self, name: &str) -> u32 {
+        if self.mesh.object_names.last().is_none_or(|last| last != name) {
+            self.mesh.object_names.push(name.to_owned());
+        }
+        u32::try_from(self.mesh.object_names.len() - 1).unwrap_or(u32::MAX)
+    }
+
+    /// Triangulates a polygon whose first ring is its outline and whose others are holes, (R, corners), and appends the
+    /// triangles to `object` with the turning sense of the outline.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] for an index without a vertex.
+    pub(super) fn push_polygon(&mut self, rings: &[Vec<u32>], object: Option<u32>) -> Result<()> {
+        self.report.polygon_count += 1;
+        let mut corners: Vec<u32> = Vec::new();
+        let mut hole_starts: Vec<u32> = Vec::new();
+        for (ring_index, ring) in rings.iter().enumerate() {
+            if let Some(bad) = ring.iter().find(|&&i| i as usize >= self.mesh.vertices.len()) {
+                let what = format!(
+                    "polygon {} refers to vertex {bad} (from 0), but there are only {}",
+                    self.report.polygon_count,
+                    self.mesh.vertices.len()
+                );
+                return Err(Error::malformed(self.path, what));
+            }
+            let start = corners.len();
+            corners.extend_from_slice(ring);
+            // some files repeat the first corner at the end of a ring, others repeat corners in a row
+            let mut tail = corners.split_off(start);
+            tail.dedup();
+            while tail.len() > 1 && tail.first() == tail.last() {
+                tail.pop();
+            }
+            if ring_index == 0 && tail.len() < 3 {
+                self.report.degenerate_polygon_count += 1;
+                return Ok(());
+            }
+            if tail.len() >= 3 {
+                if ring_index > 0 {
+                    hole_starts.push(u32::try_from(start).unwrap_or(u32::MAX));
+                }
+                corners.extend(tail);
+            }
+        }
+        let before = self.mesh.triangles.len();
+        if let [a, b, c] = *corners {
+            self.push_triangle([a, b, c], object);
+        } else {
+            self.push_triangulated(&corners, &hole_starts, object);
+        }
+        if self.mesh.triangles.len() == before {
+            self.report.degenerate_polygon_count += 1;
+        }
+        Ok(())
+    }
+
+    fn push_triangulated(&mut self, corners: &[u32], hole_starts: &[u32], object: Option<u32>) {
+        let outline_length = hole_starts.first().map_or(corners.len(), |&start| start as usize);
+        let Some(flat) = flatten(&self.mesh.vertices, corners, outline_length) else { return };
+        let mut triangles: Vec<u32> = Vec::new();
+        self.earcut.earcut_slice(&flat, hole_starts, &mut triangles);
+        for triangle in triangles.chunks_exact(3) {
+            let [i, j, k] = [triangle[0] as usize, triangle[1] as usize, triangle[2] as usize];
+            let area = (flat[j][0] - flat[i][0]) * (flat[k][1] - flat[i][1])
+                - (flat[k][0] - flat[i][0]) * (flat[j][1] - flat[i][1]);
+            // the plane is seen from where the outline turns counter-clockwise
+            let ordered = if area >= 0.0 { [i, j, k] } else { [i, k, j] };
+            self.push_triangle(ordered.map(|n| corners[n]), object);
+        }
+    }
+
+    fn push_triangle(&mut self, triangle: [u32; 3], object: Option<u32>) {
+        let [a, b, c] = triangle.map(|i| self.mesh.vertices[i as usize]);
+        let (ab, ac, bc) = (sub(b, a), sub(c, a), sub(c, b));
+        let longest = dot(ab, ab).max(dot(ac, ac)).max(dot(bc, bc));
+        let doubled_area = length(cross(ab, ac));
+        if doubled_area > DEGENERATE_AREA_RATIO * longest {
+            self.mesh.triangles.push(triangle);
+            self.mesh.objects.extend(object);
+        } else {
+            self.report.degenerate_triangle_count += 1;
+        }
+    }
+
+    /// The finished mesh.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] where no triangle is left.
+    pub(super) fn finish(self) -> Result<(Mesh, MeshReport)> {
+        if self.mesh.triangles.is_empty() {
+            let what = format!("no triangle with an area among {} polygons", self.report.polygon_count);
+            return Err(Error::malformed(self.path, what));
+        }
+        Ok((self.mesh, self.report))
+    }
+}
+
+/// Coordinates of the corners in the plane of the outline (Newell's normal, which also suits concave and slightly bent
+/// rings), or `None` where the outline has no area.
+fn flatten(vertices: &[[f64; 3]], corners: &[u32], outline_length: usize) -> Option<Vec<[f64; 2]>> {
+    let base = vertices[*corners.first()? as usize];
+    let points: Vec<[f64; 3]> = corners.iter().map(|&i| sub(vertices[i as usize], base)).collect();
+    let outline = points.get(..outline_length)?;
+    let mut normal = [0.0; 3];
+    for (i, &p) in outline.iter().enumerate() {
+        let step = cross(p, outline[(i + 1) % outline.len()]);
+        normal = std::array::from_fn(|axis| normal[axis] + step[axis]);
+    }
+    let size = length(normal);
+    if !(size > 0.0 && size.is_finite()) {
+        return None;
+    }
+    let normal = normal.map(|v| v / size);
+    let least = if normal[2].abs() < 0.7 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
+    let u = cross(least, normal);
+    let u = u.map(|v| v / length(u));
+    let v = cross(normal, u);
+    Some(points.iter().map(|&p| [dot(u, p), dot(v, p)]).collect())
+}

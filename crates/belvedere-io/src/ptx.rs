@@ -1,0 +1,141 @@
+//! PTX (Leica) text files: gridded scans, each with its scanner position and a transformation.
+
+use std::io::{BufRead, Read};
+use std::path::Path;
+
+use super::part::{Part, open};
+use super::rows::{POSITION, Role, Row, Rows};
+use belvedere_data::{Error, Result};
+
+/// A line longer than this is no point.
+const MAX_LINE: u64 = 1 << 12;
+
+/// Lines of a scan's header: two sizes, scanner position and axes, a 4 x 4 matrix.
+const HEADER_LINES: usize = 10;
+
+/// The points of all scans of the file at `path`; grid cells at (0, 0, 0), where nothing came back, are left out.
+///
+/// # Errors
+/// [`Error::Malformed`] for a header that is no scan's, an unreadable line, or a scan that is cut off.
+pub(super) fn read(path: &Path) -> Result<Part> {
+    let (file, size) = open(path)?;
+    let mut lines = Lines { path, file, number: 0, bytes: Vec::new() };
+    let mut part = Part::new(path, "PTX");
+    let mut rows: Option<(usize, Rows)> = None;
+    let mut scanner_index: Vec<u16> = Vec::new();
+    let mut empty = 0;
+    while let Some(header) = read_header(&mut lines)? {
+        // A point takes at least "0 0 0" and a line break.
+        if header.cells.saturating_mul(6) > size + 1 {
+            let what = format!("announces {} grid cells, more than its {size} bytes can hold", header.cells);
+            return Err(Error::malformed(path, what));
+        }
+        part.scanners.push(header.scanner);
+        let index = u16::try_from(part.scanners.len() - 1).unwrap_or(u16::MAX);
+        for _ in 0..header.cells {
+            let values = lines.next()?.ok_or_else(|| lines.malformed("ends within a scan"))?;
+            let width = rows.get_or_insert_with(|| (values.len(), Rows::new(roles(values.len())))).0;
+            if values.len() != width || width < 3 {
+                return Err(lines.malformed("does not have as many numbers as the first point"));
+            }
+            if values.starts_with(&[0.0; 3]) {
+                empty += 1;
+                continue;
+            }
+            if let Some((_, rows)) = &mut rows {
+                rows.push(&row(&header, &values));
+                scanner_index.push(index);
+            }
+        }
+    }
+    let scans = part.scanners.len();
+    part.report.format = format!("PTX, {scans} scan{}", if scans == 1 { "" } else { "s" });
+    if let Some((_, rows)) = rows {
+        rows.finish(&mut part);
+        part.attributes.scanner_index = Some(scanner_index);
+    }
+    part.leave_out(empty, "grid cells where nothing came back");
+    Ok(part)
+}
+
+struct Header {
+    cells: u64,
+    scanner: [f64; 3],
+    /// Rows of the matrix that turns scan into file coordinates; points are row vectors multiplied from the left.
+    matrix: [[f64; 4]; 4],
+}
+
+/// The header of the next scan, or `None` at the end of the file.
+fn read_header<R: BufRead>(lines: &mut Lines<'_, R>) -> Result<Option<Header>> {
+    let Some(columns) = lines.next()? else { return Ok(None) };
+    let mut all = vec![columns];
+    while all.len() < HEADER_LINES {
+        all.push(lines.next()?.ok_or_else(|| lines.malformed("ends within the header of a scan"))?);
+    }
+    let lengths: Vec<usize> = all.iter().map(Vec::len).collect();
+    if lengths != [1, 1, 3, 3, 3, 3, 4, 4, 4, 4] {
+        return Err(lines.malformed("ends what is not the header of a PTX scan"));
+    }
+    let value = |line: usize, i: usize| all.get(line).and_then(|v| v.get(i)).copied().unwrap_or(0.0);
+    let (columns, rows) = (value(0, 0), value(1, 0));
+    if ![columns, rows].iter().all(|n| n.fract() == 0.0 && (0.0..1e9).contains(n)) {
+        return Err(lines.malformed("follows a grid size that is no whole number"));
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and below 1e18, as just seen")]
+    let cells = (columns * rows) as u64;
+    Ok(Some(Header {
+        cells,
+        scanner: std::array::from_fn(|i| value(9, i)),
+        matrix: std::array::from_fn(|row| std::array::from_fn(|column| value(6 + row, column))),
+    }))
+}
+
+/// What the numbers of a point are: x y z, intensity, colour.
+fn roles(width: usize) -> impl Iterator<Item = Role> {
+    const ALL: [Role; 7] = [Role::X, Role::Y, Role::Z, Role::Intensity, Role::Red, Role::Green, Role::Blue];
+    ALL.into_iter().take(width)
+}
+
+fn row(header: &Header, values: &[f64]) -> Row {
+    let mut row = Row::default();
+    for (role, &value) in roles(values.len()).zip(values) {
+        row.set(role, value);
+    }
+    let p = row.three(POSITION);
+    let m = &header.matrix;
+    for (i, role) in POSITION.into_iter().enumerate() {
+        row.set(role, p[0] * m[0][i] + p[1] * m[1][i] + p[2] * m[2][i] + m[3][i]);
+    }
+    row
+}
+
+struct Lines<'a, R> {
+    path: &'a Path,
+    file: R,
+    number: usize,
+    bytes: Vec<u8>,
+}
+
+impl<R: BufRead> Lines<'_, R> {
+    /// The numbers of the next line that is not empty.
+    fn next(&mut self) -> Result<Option<Vec<f64>>> {
+        loop {
+            self.bytes.clear();
+            let read = self.file.by_ref().take(MAX_LINE).read_until(b'\n', &mut self.bytes);
+            if read.map_err(Error::io(self.path))? == 0 {
+                return Ok(None);
+            }
+            self.number += 1;
+            let line = String::from_utf8_lossy(&self.bytes);
+            if line.trim().is_empty() {
+                continue;
+            }
+            let numbers: Option<Vec<f64>> = line.split_ascii_whitespace().map(|word| word.parse().ok()).collect();
+            return numbers.map(Some).ok_or_else(|| self.malformed("holds something that is no number"));
+        }
+    }
+
+    fn malformed(&self, what: &str) -> Error {
+        Error::malformed(self.path, format!("line {} {what}", self.number))
+    }
+}

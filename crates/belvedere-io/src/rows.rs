@@ -1,0 +1,218 @@
+//! Points that come one by one with named numbers, as in text, PLY, PCD and E57 files.
+
+use super::part::{Coordinates, Part, narrow, to_u8, to_u16};
+use belvedere_data::cloud::{Attributes, GpsTimeKind};
+
+/// What a number of a point means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    X,
+    Y,
+    Z,
+    NormalX,
+    NormalY,
+    NormalZ,
+    Red,
+    Green,
+    Blue,
+    Intensity,
+    Classification,
+    GpsTime,
+    ReturnNumber,
+    ReturnCount,
+    ScanAngle,
+    SourceId,
+    ScannerChannel,
+    Flags,
+}
+
+const ROLES: usize = Role::Flags as usize + 1;
+
+/// Flights that pass midnight on Saturday may count on, but not for another week.
+const LONGEST_WEEK: f64 = 2.0 * 604_800.0;
+
+/// The numbers of one point, by role.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row([f64; ROLES]);
+
+impl Default for Row {
+    fn default() -> Self {
+        Self([0.0; ROLES])
+    }
+}
+
+impl Row {
+    pub(super) fn set(&mut self, role: Role, value: f64) {
+        self.0[role as usize] = value;
+    }
+
+    fn get(&self, role: Role) -> f64 {
+        self.0[role as usize]
+    }
+
+    pub(super) fn three(&self, roles: [Role; 3]) -> [f64; 3] {
+        roles.map(|role| self.get(role))
+    }
+}
+
+pub(super) const POSITION: [Role; 3] = [Role::X, Role::Y, Role::Z];
+pub(super) const NORMAL: [Role; 3] = [Role::NormalX, Role::NormalY, Role::NormalZ];
+const COLOR: [Role; 3] = [Role::Red, Role::Green, Role::Blue];
+
+/// The role of a column by its name in any of the formats, or `None` where the name says nothing.
+pub(super) fn role_of(name: &str) -> Option<Role> {
+    // Called for every number of a PLY file, hence no allocation.
+    let mut buffer = [0_u8; 24];
+    let mut length = 0;
+    for byte in name.bytes().filter(u8::is_ascii_alphanumeric) {
+        *buffer.get_mut(length)? = byte.to_ascii_lowercase();
+        length += 1;
+    }
+    let plain = std::str::from_utf8(buffer.get(..length)?).ok()?;
+    let plain = plain.strip_prefix("scalar").unwrap_or(plain);
+    Some(match plain {
+        "x" | "easting" | "east" | "e" | "xcoord" | "coordx" => Role::X,
+        "y" | "northing" | "north" | "n" | "ycoord" | "coordy" => Role::Y,
+        "z" | "height" | "elevation" | "altitude" | "h" | "zcoord" | "coordz" => Role::Z,
+        "nx" | "normalx" | "xnormal" => Role::NormalX,
+        "ny" | "normaly" | "ynormal" => Role::NormalY,
+        "nz" | "normalz" | "znormal" => Role::NormalZ,
+        "r" | "red" | "diffusered" => Role::Red,
+        "g" | "green" | "diffusegreen" => Role::Green,
+        "b" | "blue" | "diffuseblue" => Role::Blue,
+        "i" | "intensity" | "reflectance" => Role::Intensity,
+        "c" | "class" | "classification" | "label" => Role::Classification,
+        "t" | "time" | "gpstime" | "timestamp" => Role::GpsTime,
+        "returnnumber" | "rn" => Role::ReturnNumber,
+        "numberofreturns" | "returncount" | "nr" => Role::ReturnCount,
+        "scanangle" | "scanangledeg" | "scananglerank" => Role::ScanAngle,
+        "pointsourceid" | "sourceid" => Role::SourceId,
+        "scannerchannel" => Role::ScannerChannel,
+        "flags" => Role::Flags,
+        _ => return None,
+    })
+}
+
+/// Points as they are read row by row.
+#[derive(Debug, Default)]
+pub(super) struct Rows {
+    has: [bool; ROLES],
+    coordinates: Vec<[f64; 3]>,
+    normals: Vec<[f32; 3]>,
+    colors: Vec<[f32; 3]>,
+    intensities: Vec<f32>,
+    gps_times: Vec<f64>,
+    scan_angles: Vec<f32>,
+    source_ids: Vec<u16>,
+    classes: Vec<u8>,
+    return_numbers: Vec<u8>,
+    return_counts: Vec<u8>,
+    scanner_channels: Vec<u8>,
+    flags: Vec<u8>,
+}
+
+impl Rows {
+    /// For points that have the numbers of `roles`; a normal or colour counts only with all three parts.
+    pub(super) fn new(roles: impl IntoIterator<Item = Role>) -> Self {
+        let mut rows = Self::default();
+        for role in roles {
+            rows.has[role as usize] = true;
+        }
+        rows
+    }
+
+    fn has(&self, roles: &[Role]) -> bool {
+        roles.iter().all(|&role| self.has[role as usize])
+    }
+
+    /// Whether x, y and z are among the numbers.
+    pub(super) fn has_position(&self) -> bool {
+        self.has(&POSITION)
+    }
+
+    pub(super) fn push(&mut self, row: &Row) {
+        self.coordinates.push(row.three(POSITION));
+        if self.has(&NORMAL) {
+            self.normals.push(row.three(NORMAL).map(narrow));
+        }
+        if self.has(&COLOR) {
+            self.colors.push(row.three(COLOR).map(narrow));
+        }
+        if self.has(&[Role::Intensity]) {
+            self.intensities.push(narrow(row.get(Role::Intensity)));
+        }
+        if self.has(&[Role::GpsTime]) {
+            self.gps_times.push(row.get(Role::GpsTime));
+        }
+        if self.has(&[Role::ScanAngle]) {
+            self.scan_angles.push(narrow(row.get(Role::ScanAngle).to_radians()));
+        }
+        if self.has(&[Role::SourceId]) {
+            self.source_ids.push(to_u16(row.get(Role::SourceId)));
+        }
+        if self.has(&[Role::Classification]) {
+            self.classes.push(to_u8(row.get(Role::Classification)));
+        }
+        if self.has(&[Role::ReturnNumber]) {
+            self.return_numbers.push(to_u8(row.get(Role::ReturnNumber)));
+        }
+        if self.has(&[Role::ReturnCount]) {
+            self.return_counts.push(to_u8(row.get(Role::ReturnCount)));
+        }
+        if self.has(&[Role::ScannerChannel]) {
+            self.scanner_channels.push(to_u8(row.get(Role::ScannerChannel)));
+        }
+        if self.has(&[Role::Flags]) {
+            self.flags.push(to_u8(row.get(Role::Flags)));
+        }
+    }
+
+    /// Moves the points into `part`. Intensities and colours from 0 to 1 become 0 to 65535.
+    pub(super) fn finish(self, part: &mut Part) {
+        let has = |role: Role| self.has[role as usize];
+        let (color, normal) = (self.has(&COLOR), self.has(&NORMAL));
+        let colors: Option<Vec<[u16; 3]>> = color.then(|| {
+            let values = to_16_bit(part, "colours", self.colors.as_flattened());
+            values.as_chunks::<3>().0.to_vec()
+        });
+        let intensity = has(Role::Intensity).then(|| to_16_bit(part, "intensities", &self.intensities));
+        // Only LAS files say what their times count from; a time that no week has can only be the other kind.
+        let in_a_week = |time: &f64| !time.is_finite() || (0.0..=LONGEST_WEEK).contains(time);
+        let gps_time_kind = if self.gps_times.iter().all(in_a_week) {
+            GpsTimeKind::SecondsOfWeek
+        } else {
+            GpsTimeKind::AdjustedStandard
+        };
+        part.attributes = Attributes {
+            normals: normal.then_some(self.normals),
+            classification: has(Role::Classification).then_some(self.classes),
+            gps_time: has(Role::GpsTime).then_some(self.gps_times),
+            gps_time_kind,
+            return_number: has(Role::ReturnNumber).then_some(self.return_numbers),
+            return_count: has(Role::ReturnCount).then_some(self.return_counts),
+            scan_angle: has(Role::ScanAngle).then_some(self.scan_angles),
+            point_source_id: has(Role::SourceId).then_some(self.source_ids),
+            scanner_channel: has(Role::ScannerChannel).then_some(self.scanner_channels),
+            flags: has(Role::Flags).then_some(self.flags),
+            intensity,
+            color: colors,
+            ..Attributes::default()
+        };
+        part.coordinates = Coordinates::Real(self.coordinates);
+    }
+}
+
+/// Numbers as u16, from 0 to 1 scaled to the whole range; noted where they were scaled or cut.
+fn to_16_bit(part: &mut Part, what: &str, values: &[f32]) -> Vec<u16> {
+    let highest = values.iter().copied().fold(0.0_f32, f32::max);
+    let fractions = highest <= 1.0 && values.iter().any(|v| v.fract() != 0.0);
+    let scale = if fractions { 65535.0 } else { 1.0 };
+    let outside = values.iter().filter(|&&v| !(0.0..=65535.0).contains(&v)).count();
+    if fractions {
+        part.note(format!("{what} from 0 to 1 were scaled to 0 to 65535"));
+    }
+    if outside > 0 {
+        part.note(format!("{outside} {what} lie outside 0 to 65535 and were cut off there"));
+    }
+    values.iter().map(|&v| to_u16(f64::from(v) * scale)).collect()
+}

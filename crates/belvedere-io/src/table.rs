@@ -1,0 +1,181 @@
+//! Tables of numbers with a header row, such as pairs of points and observers.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+
+use rayon::prelude::*;
+
+use crate::atomic;
+use belvedere_data::{Error, Result};
+
+/// Rows printed by one task.
+const ROWS_PER_TASK: usize = 1 << 13;
+/// Tasks whose text is held in memory at a time.
+const TASKS_PER_BLOCK: usize = 32;
+
+/// A table of numbers.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    names: Vec<String>,
+    columns: Vec<Vec<f64>>,
+    /// Row and text of the first cell of each column that is no number.
+    not_numbers: Vec<Option<(usize, String)>>,
+    row_count: usize,
+}
+
+impl Table {
+    /// Number of rows below the header.
+    #[must_use]
+    pub fn row_count(&self) -> usize {
+        self.row_count
+    }
+
+    /// Names of the columns as the file has them.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The column of that name, upper or lower case, (rows), NaN in empty cells; `None` where there is none.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] where one of its cells holds text.
+    pub fn column(&self, path: &Path, name: &str) -> Result<Option<&[f64]>> {
+        let Some(index) = self.names.iter().position(|own| own.eq_ignore_ascii_case(name)) else { return Ok(None) };
+        if let Some(Some((row, text))) = self.not_numbers.get(index) {
+            let text: String = text.chars().take(40).collect();
+            return Err(Error::malformed(path, format!("row {row}: \"{text}\" in column {name} is no number")));
+        }
+        Ok(self.columns.get(index).map(Vec::as_slice))
+    }
+
+    /// The column of that name, of which no cell may be empty.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] where it is missing, or a cell is empty, text or not finite.
+    pub fn full_column(&self, path: &Path, name: &str) -> Result<&[f64]> {
+        let column = self.column(path, name)?.ok_or_else(|| {
+            Error::malformed(path, format!("there is no column {name}; the header has {}", self.names.join(", ")))
+        })?;
+        if let Some(row) = column.iter().position(|v| !v.is_finite()) {
+            return Err(Error::malformed(path, format!("row {}: {name} is empty or not finite", row + 1)));
+        }
+        Ok(column)
+    }
+}
+
+/// Reads a table with a header row, its cells parted by commas, semicolons or tabs, whichever the header has. Rows are counted from
+/// 1 below the header in messages.
+///
+/// # Errors
+/// [`Error::Io`], and [`Error::Malformed`] for rows of different lengths and for text that is no UTF-8.
+pub fn read_table(path: &Path) -> Result<Table> {
+    let mut header = String::new();
+    let open = || File::open(path).map_err(Error::io(path));
+    // a file without line breaks must not fill the memory
+    let mut start = std::io::Read::take(BufReader::new(open()?), 1 << 16);
+    start.read_line(&mut header).map_err(Error::io(path))?;
+    let count = |separator: char| header.matches(separator).count();
+    let separator = [';', '\t'].into_iter().find(|&s| count(s) > count(',')).unwrap_or(',');
+    let failed = |error: csv::Error| match error.into_kind() {
+        csv::ErrorKind::Io(source) => Error::io(path)(source),
+        csv::ErrorKind::UnequalLengths { expected_len, len, pos } => {
+            let row = pos.map_or(0, |pos| pos.record());
+            Error::malformed(path, format!("row {row} has {len} cells, but the header {expected_len}"))
+        }
+        csv::ErrorKind::Utf8 { .. } => Error::malformed(path, "is no UTF-8 text"),
+        other => Error::malformed(path, format!("cannot be read as a table: {other:?}")),
+    };
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(u8::try_from(separator).unwrap_or(b','))
+        .trim(csv::Trim::All)
+        .from_reader(BufReader::with_capacity(1 << 18, open()?));
+    let names: Vec<String> =
+        reader.headers().map_err(failed)?.iter().map(|name| name.trim_start_matches('\u{feff}').to_owned()).collect();
+    let mut table =
+        Table { columns: vec![Vec::new(); names.len()], not_numbers: vec![None; names.len()], names, row_count: 0 };
+    let mut record = csv::StringRecord::new();
+    while reader.read_record(&mut record).map_err(failed)? {
+        table.row_count += 1;
+        for ((cell, column), not_number) in record.iter().zip(&mut table.columns).zip(&mut table.not_numbers) {
+            let value = if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
+            if value.is_none() && not_number.is_none() {
+                *not_number = Some((table.row_count, cell.to_owned()));
+            }
+            column.push(value.unwrap_or(f64::NAN));
+        }
+    }
+    Ok(table)
+}
+
+/// The cells of one column to be written.
+#[derive(Clone, Copy, Debug)]
+pub enum Cells<'a> {
+    /// Numbers with so many decimals; empty where not finite.
+    Real(&'a [f64], usize),
+    /// Whole numbers; empty where there is none.
+    Whole(&'a [Option<u64>]),
+    /// Words without separators.
+    Words(&'a [&'a str]),
+}
+
+impl Cells<'_> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Real(values, _) => values.len(),
+            Self::Whole(values) => values.len(),
+            Self::Words(values) => values.len(),
+        }
+    }
+
+    fn print(&self, row: usize, text: &mut Vec<u8>) -> std::io::Result<()> {
+        match self {
+            Self::Real(values, decimals) => match values.get(row) {
+                Some(value) if value.is_finite() => write!(text, "{value:.decimals$}"),
+                _ => Ok(()),
+            },
+            Self::Whole(values) => match values.get(row) {
+                Some(Some(value)) => write!(text, "{value}"),
+                _ => Ok(()),
+            },
+            Self::Words(values) => text.write_all(values.get(row).copied().unwrap_or_default().as_bytes()),
+        }
+    }
+}
+
+/// Writes `columns`, each a name and its cells, as a table with a header row, cells parted by commas.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] unless all columns are equally long, [`Error::Io`].
+pub fn write_table(path: &Path, columns: &[(&str, Cells<'_>)]) -> Result<()> {
+    let expected = columns.first().map_or(0, |(_, cells)| cells.len());
+    if let Some((_, cells)) = columns.iter().find(|(_, cells)| cells.len() != expected) {
+        return Err(Error::LengthMismatch { what: "cells of a column", expected, found: cells.len() });
+    }
+    let print = |start: usize| {
+        let mut text = Vec::new();
+        for row in start..expected.min(start + ROWS_PER_TASK) {
+            for (i, (_, cells)) in columns.iter().enumerate() {
+                if i > 0 {
+                    text.push(b',');
+                }
+                cells.print(row, &mut text)?;
+            }
+            text.push(b'\n');
+        }
+        Ok(text)
+    };
+    atomic::write(path, |output| {
+        let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+        writeln!(output, "{}", names.join(",")).map_err(Error::io(path))?;
+        let starts: Vec<usize> = (0..expected).step_by(ROWS_PER_TASK).collect();
+        for block in starts.chunks(TASKS_PER_BLOCK) {
+            let texts: Vec<std::io::Result<Vec<u8>>> = block.par_iter().map(|&start| print(start)).collect();
+            for text in texts {
+                output.write_all(&text.map_err(Error::io(path))?).map_err(Error::io(path))?;
+            }
+        }
+        Ok(())
+    })
+}

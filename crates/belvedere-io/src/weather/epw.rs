@@ -1,0 +1,75 @@
+//! EnergyPlus weather.
+
+use super::lines::{Line, Lines};
+use belvedere_data::Result;
+use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
+
+/// Lines before the rows.
+const HEAD: usize = 8;
+/// Cells of a row.
+const TEMPERATURE: usize = 6;
+const GLOBAL: usize = 13;
+const DIRECT: usize = 14;
+const DIFFUSE: usize = 15;
+/// Radiation from which on it is missing: 9999, and 999900 of old converters.
+const MISSING: f64 = 9999.0;
+/// Temperature from which on it is missing.
+const MISSING_TEMPERATURE: f64 = 99.9;
+
+pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
+    let place = lines.line(1)?;
+    let cells = place.cells();
+    let latitude = place.number_in(&cells, 6, "the latitude")?;
+    let longitude = place.number_in(&cells, 7, "the longitude")?;
+    let zone = place.number_in(&cells, 8, "the time zone")?;
+    let height = place.number_in(&cells, 9, "the height")?;
+    let periods = lines.line(HEAD)?;
+    if !periods.text.starts_with("DATA PERIODS,") {
+        return Err(periods.wrong("should begin with DATA PERIODS, as line 8 of every EPW file does"));
+    }
+    let per_hour = periods.whole_in(&periods.cells(), 2, "the number of records an hour")?;
+    if !(1..=60).contains(&per_hour) {
+        return Err(periods.wrong(&format!("{per_hour} records an hour, but must be 1 to 60")));
+    }
+    let mut weather = Weather {
+        format: "EPW",
+        latitude: latitude.to_radians(),
+        longitude: longitude.to_radians(),
+        height,
+        rows_hold: RowsHold::Means,
+        steps: Vec::new(),
+        left_out_count: 0,
+        notes: Vec::new(),
+    };
+    for line in lines.all().skip(HEAD).filter(|line| !line.text.is_empty()) {
+        match step(&line, zone, per_hour)? {
+            Some(step) => weather.steps.push(step),
+            None => weather.left_out_count += 1,
+        }
+    }
+    Ok(weather)
+}
+
+fn step(line: &Line<'_>, zone: f64, per_hour: i32) -> Result<Option<WeatherStep>> {
+    let cells = line.cells();
+    let whole = |column: usize, name: &str| line.whole_in(&cells, column, name);
+    let day = line.day(whole(0, "the year")?, whole(1, "the month")?, whole(2, "the day")?)?;
+    let (hour, minute) = (whole(3, "the hour")?, whole(4, "the minute")?);
+    if !(1..=24).contains(&hour) || !(0..=60).contains(&minute) {
+        return Err(line.wrong(&format!("hour {hour} and minute {minute}, but must be 1 to 24 and 0 to 60")));
+    }
+    let radiation = |column: usize, name: &str| line.radiation_in(&cells, column, name, |v| v >= MISSING);
+    let (ghi, dni, dhi) = (
+        radiation(GLOBAL, "global horizontal radiation")?,
+        radiation(DIRECT, "direct normal radiation")?,
+        radiation(DIFFUSE, "diffuse horizontal radiation")?,
+    );
+    let Some(ghi) = ghi else { return Ok(None) };
+    let temperature =
+        Some(line.number_in(&cells, TEMPERATURE, "the temperature")?).filter(|v| *v < MISSING_TEMPERATURE);
+    let hours = 1.0 / f64::from(per_hour);
+    // with one record an hour programs write 0 or 60 for the minute, and mean the same
+    let end = if per_hour == 1 { f64::from(hour) } else { f64::from(hour - 1) + f64::from(minute) / 60.0 };
+    let instant = unix_day(day) as f64 * 86_400.0 + (end - 0.5 * hours - zone) * 3600.0;
+    Ok(Some(WeatherStep { instant, hours, month: day.month, ghi, dni, dhi, temperature }))
+}

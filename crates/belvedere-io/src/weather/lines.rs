@@ -1,0 +1,112 @@
+//! Lines of cells parted by commas, and errors that name them.
+
+use belvedere_data::weather::CalendarDay;
+use belvedere_data::{Error, Result};
+use std::path::Path;
+
+/// Most radiation that any instrument below the atmosphere shows, W/m², with room for clouds that reflect.
+const MOST_RADIATION: f64 = 3000.0;
+/// Noise of sensors at night, W/m².
+const NOISE: f64 = -20.0;
+
+/// The lines of a weather file.
+pub(super) struct Lines<'a> {
+    pub(super) path: &'a Path,
+    text: &'a str,
+}
+
+/// One line, its number counted from 1.
+#[derive(Clone, Copy)]
+pub(super) struct Line<'a> {
+    path: &'a Path,
+    pub(super) number: usize,
+    pub(super) text: &'a str,
+}
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(path: &'a Path, text: &'a str) -> Self {
+        Self { path, text }
+    }
+
+    pub(super) fn all(&self) -> impl Iterator<Item = Line<'a>> {
+        let path = self.path;
+        self.text.lines().enumerate().map(move |(row, text)| Line { path, number: row + 1, text: text.trim_end() })
+    }
+
+    /// Line `number`, from 1.
+    pub(super) fn line(&self, number: usize) -> Result<Line<'a>> {
+        self.all().nth(number - 1).ok_or_else(|| Error::malformed(self.path, format!("ends before line {number}")))
+    }
+}
+
+impl<'a> Line<'a> {
+    pub(super) fn wrong(&self, what: &str) -> Error {
+        Error::malformed(self.path, format!("line {}: {what}", self.number))
+    }
+
+    /// The cells of a row, of which there must be as many as the head of the table has.
+    pub(super) fn row_of(&self, names: &[&str]) -> Result<Vec<&'a str>> {
+        let cells = self.cells();
+        if cells.len() < names.len() {
+            return Err(self.wrong(&format!("has {} cells, but the head of the table {}", cells.len(), names.len())));
+        }
+        Ok(cells)
+    }
+
+    pub(super) fn cells(&self) -> Vec<&'a str> {
+        self.text.split(',').map(|cell| cell.trim().trim_matches('"')).collect()
+    }
+
+    /// The number in a cell, which `name` is said to hold.
+    pub(super) fn number_in(&self, cells: &[&str], column: usize, name: &str) -> Result<f64> {
+        let cell = cells.get(column).ok_or_else(|| {
+            self.wrong(&format!("{name} should stand in cell {}, but there are {}", column + 1, cells.len()))
+        })?;
+        match cell.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(self.wrong(&format!("{name} is \"{}\", which is no number", shortened(cell)))),
+        }
+    }
+
+    /// The same where a whole number is meant.
+    pub(super) fn whole_in(&self, cells: &[&str], column: usize, name: &str) -> Result<i32> {
+        let value = self.number_in(cells, column, name)?;
+        #[expect(clippy::cast_possible_truncation, reason = "tested to be whole and small")]
+        if value.fract() == 0.0 && value.abs() < 1e6 {
+            Ok(value as i32)
+        } else {
+            Err(self.wrong(&format!("{name} is {value}, which is no whole number")))
+        }
+    }
+
+    /// Radiation in a cell, W/m²; `None` where the cell is empty or `is_missing`.
+    pub(super) fn radiation_in(
+        &self,
+        cells: &[&str],
+        column: usize,
+        name: &str,
+        is_missing: impl Fn(f64) -> bool,
+    ) -> Result<Option<f64>> {
+        if cells.get(column).is_some_and(|cell| cell.is_empty()) {
+            return Ok(None);
+        }
+        let value = self.number_in(cells, column, name)?;
+        if is_missing(value) {
+            return Ok(None);
+        }
+        if !(NOISE..=MOST_RADIATION).contains(&value) {
+            return Err(self.wrong(&format!("{name} is {value} W/m², but must be {NOISE} to {MOST_RADIATION}")));
+        }
+        Ok(Some(value.max(0.0)))
+    }
+
+    pub(super) fn day(&self, year: i32, month: i32, day: i32) -> Result<CalendarDay> {
+        let known = |v: i32| u8::try_from(v).unwrap_or(0);
+        CalendarDay::new(year, known(month), known(day))
+            .ok_or_else(|| self.wrong(&format!("there is no day {year}-{month:02}-{day:02}")))
+    }
+}
+
+pub(super) fn shortened(text: &str) -> String {
+    text.chars().take(40).collect()
+}

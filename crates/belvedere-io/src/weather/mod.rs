@@ -1,0 +1,64 @@
+//! Weather files: EPW, PVGIS, TMY3 and NSRDB, told apart by what stands in them.
+//!
+//! | format | time of a row | the sun that goes with it |
+//! |---|---|---|
+//! | EPW | hour 1 to 24 of local standard time, the end of its interval | the middle of the interval |
+//! | TMY3 | 01:00 to 24:00 of local standard time, the end of its interval | the middle of the interval |
+//! | PVGIS, typical year | UTC, plus an offset in the head | that instant |
+//! | PVGIS, series | UTC with minutes | that instant |
+//! | NSRDB | local standard time or UTC with minutes | that instant |
+
+mod epw;
+mod lines;
+mod nsrdb;
+mod pvgis;
+mod tmy3;
+
+use belvedere_data::weather::Weather;
+use belvedere_data::{Error, Result};
+use lines::Lines;
+use std::path::Path;
+
+/// Larger files are no weather: a year in steps of a minute has 50 MB.
+const MOST_BYTES: u64 = 500_000_000;
+
+/// Reads the radiation of a weather file. Its rows keep their own years, of which a typical year has several.
+///
+/// What is missing in a row stays missing where other columns make up for it; rows without global radiation, or with a value that the format
+/// marks as missing, are left out and counted. Values below zero that are noise of sensors at night, down to −20 W/m², count as zero.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Malformed`], which names the line, for files of another kind, columns that are missing, dates that do not exist,
+/// text in place of numbers, radiation beyond 3000 W/m² or below −20, series of PVGIS on tilted planes, and files without rows.
+///
+/// # Source
+/// EnergyPlus, Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary"; Wilcox & Marion 2008, User's manual for TMY3 data sets;
+/// PVGIS user manual, sections 4 and 6; NSRDB, "PSM v3 and v4 CSV".
+pub fn read_weather(path: &Path) -> Result<Weather> {
+    let size = std::fs::metadata(path).map_err(Error::io(path))?.len();
+    if size > MOST_BYTES {
+        return Err(Error::malformed(path, format!("{size} bytes are too many for a weather file")));
+    }
+    let bytes = std::fs::read(path).map_err(Error::io(path))?;
+    // station names are in any encoding; figures are not
+    let text = String::from_utf8_lossy(&bytes);
+    let text = text.trim_start_matches('\u{feff}');
+    let lines = Lines::new(path, text);
+    let first = text.lines().next().unwrap_or("");
+    let second = text.lines().nth(1).unwrap_or("");
+    let weather = if first.starts_with("LOCATION,") {
+        epw::read(&lines)?
+    } else if first.trim_start().starts_with("Latitude") {
+        pvgis::read(&lines)?
+    } else if second.contains("Date (MM/DD/YYYY)") {
+        tmy3::read(&lines)?
+    } else if first.starts_with("Source,") {
+        nsrdb::read(&lines)?
+    } else {
+        let what = "no weather file that is known: EPW begins with LOCATION, PVGIS (as CSV) with Latitude, NSRDB with Source, and TMY3 has \
+                    Date (MM/DD/YYYY) in its second line";
+        return Err(Error::malformed(path, what));
+    };
+    weather.validate().map_err(|error| Error::malformed(path, error.to_string()))?;
+    Ok(weather)
+}

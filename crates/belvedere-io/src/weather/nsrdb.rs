@@ -1,0 +1,69 @@
+//! Series and typical years of the National Solar Radiation Database.
+
+use super::lines::Lines;
+use belvedere_data::Result;
+use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
+
+/// Steps that the database has, hours: where a file has a single row, the usual.
+const USUAL_STEP: f64 = 1.0;
+
+pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
+    let (names, values, head) = (lines.line(1)?, lines.line(2)?, lines.line(3)?);
+    let (names, cells, columns) = (names.cells(), values.cells(), head.cells());
+    let of_place = |name: &str| {
+        let column = names.iter().position(|own| own.eq_ignore_ascii_case(name));
+        let column = column.ok_or_else(|| values.wrong(&format!("the line above does not name {name}")))?;
+        values.number_in(&cells, column, name)
+    };
+    let (latitude, longitude) = (of_place("Latitude")?, of_place("Longitude")?);
+    let (height, zone) = (of_place("Elevation")?, of_place("Time Zone")?);
+    let column = |name: &str| columns.iter().position(|own| own.eq_ignore_ascii_case(name));
+    let needed = |name: &str| column(name).ok_or_else(|| head.wrong(&format!("there is no column {name}")));
+    let [year, month, day, hour, minute, global] =
+        [needed("Year")?, needed("Month")?, needed("Day")?, needed("Hour")?, needed("Minute")?, needed("GHI")?];
+    let (direct, diffuse, air) = (column("DNI"), column("DHI"), column("Temperature"));
+    let mut weather = Weather {
+        format: "NSRDB",
+        latitude: latitude.to_radians(),
+        longitude: longitude.to_radians(),
+        height,
+        rows_hold: RowsHold::Instants,
+        steps: Vec::new(),
+        left_out_count: 0,
+        notes: Vec::new(),
+    };
+    // minutes of the day of all rows: their step is the least between two that follow each other
+    let mut least_step = f64::INFINITY;
+    let mut before: Option<f64> = None;
+    for line in lines.all().skip(3).filter(|line| !line.text.trim_matches(',').is_empty()) {
+        let cells = line.row_of(&columns)?;
+        let whole = |column: usize, name: &str| line.whole_in(&cells, column, name);
+        let date = line.day(whole(year, "Year")?, whole(month, "Month")?, whole(day, "Day")?)?;
+        let (hour, minute) = (whole(hour, "Hour")?, whole(minute, "Minute")?);
+        if !(0..24).contains(&hour) || !(0..60).contains(&minute) {
+            return Err(line.wrong(&format!("hour {hour} and minute {minute}, but must be 0 to 23 and 0 to 59")));
+        }
+        let local = unix_day(date) as f64 * 86_400.0 + f64::from(hour * 60 + minute) * 60.0;
+        if let Some(step) = before.map(|before| local - before).filter(|step| *step > 0.0) {
+            least_step = least_step.min(step / 3600.0);
+        }
+        before = Some(local);
+        let radiation = |column: usize, name: &str| line.radiation_in(&cells, column, name, |v| v <= -99.0);
+        let optional = |column: Option<usize>, name: &str| match column {
+            Some(column) => radiation(column, name),
+            None => Ok(None),
+        };
+        let (dni, dhi) = (optional(direct, "DNI")?, optional(diffuse, "DHI")?);
+        let Some(ghi) = radiation(global, "GHI")? else {
+            weather.left_out_count += 1;
+            continue;
+        };
+        let temperature = air.and_then(|column| cells.get(column)?.parse().ok()).filter(|v| (-90.0..=70.0).contains(v));
+        let instant = local - zone * 3600.0;
+        weather.steps.push(WeatherStep { instant, hours: USUAL_STEP, month: date.month, ghi, dni, dhi, temperature });
+    }
+    if least_step <= 24.0 {
+        weather.steps.iter_mut().for_each(|step| step.hours = least_step);
+    }
+    Ok(weather)
+}

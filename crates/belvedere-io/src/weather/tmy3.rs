@@ -1,0 +1,61 @@
+//! Typical years of the National Renewable Energy Laboratory, third edition.
+
+use super::lines::Lines;
+use belvedere_data::Result;
+use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
+
+/// Values at and below which are missing.
+const MISSING: f64 = -99.0;
+
+pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
+    let place = lines.line(1)?;
+    let cells = place.cells();
+    let zone = place.number_in(&cells, 3, "the time zone")?;
+    let latitude = place.number_in(&cells, 4, "the latitude")?;
+    let longitude = place.number_in(&cells, 5, "the longitude")?;
+    let height = place.number_in(&cells, 6, "the height")?;
+    let head = lines.line(2)?;
+    let names = head.cells();
+    let column = |name: &str| names.iter().position(|own| own.eq_ignore_ascii_case(name));
+    let needed = |name: &str| column(name).ok_or_else(|| head.wrong(&format!("there is no column {name}")));
+    let (date, time, global) = (needed("Date (MM/DD/YYYY)")?, needed("Time (HH:MM)")?, needed("GHI (W/m^2)")?);
+    let (direct, diffuse, air) = (column("DNI (W/m^2)"), column("DHI (W/m^2)"), column("Dry-bulb (C)"));
+    let mut weather = Weather {
+        format: "TMY3",
+        latitude: latitude.to_radians(),
+        longitude: longitude.to_radians(),
+        height,
+        rows_hold: RowsHold::Means,
+        steps: Vec::new(),
+        left_out_count: 0,
+        notes: Vec::new(),
+    };
+    for line in lines.all().skip(2).filter(|line| !line.text.is_empty()) {
+        let cells = line.row_of(&names)?;
+        let text = |column: usize| cells.get(column).copied().unwrap_or_default();
+        let date: Vec<&str> = text(date).split('/').collect();
+        let whole = |column: usize| line.whole_in(&date, column, "a part of the date MM/DD/YYYY");
+        let day = line.day(whole(2)?, whole(0)?, whole(1)?)?;
+        let clock: Vec<&str> = text(time).split(':').collect();
+        let part = |column: usize| line.whole_in(&clock, column, "a part of the time HH:MM");
+        let (hour, minute) = (part(0)?, part(1)?);
+        if !(0..=24).contains(&hour) || !(0..60).contains(&minute) {
+            return Err(line.wrong(&format!("the time is {hour}:{minute:02}, but must be 00:00 to 24:00")));
+        }
+        let radiation = |column: usize, name: &str| line.radiation_in(&cells, column, name, |v| v <= MISSING);
+        let optional = |column: Option<usize>, name: &str| match column {
+            Some(column) => radiation(column, name),
+            None => Ok(None),
+        };
+        let (dni, dhi) = (optional(direct, "DNI")?, optional(diffuse, "DHI")?);
+        let Some(ghi) = radiation(global, "GHI")? else {
+            weather.left_out_count += 1;
+            continue;
+        };
+        let temperature = air.and_then(|column| text(column).parse().ok()).filter(|v| (-90.0..=70.0).contains(v));
+        let middle = f64::from(hour) + f64::from(minute) / 60.0 - 0.5 - zone;
+        let instant = unix_day(day) as f64 * 86_400.0 + middle * 3600.0;
+        weather.steps.push(WeatherStep { instant, hours: 1.0, month: day.month, ghi, dni, dhi, temperature });
+    }
+    Ok(weather)
+}

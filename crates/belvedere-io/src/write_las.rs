@@ -1,0 +1,274 @@
+//! LAS 1.4 and LAZ point clouds.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use las::{Builder, GpsTimeType, PointDataBuilder, Transform, Vector, Vlr};
+use rayon::prelude::*;
+
+use crate::atomic;
+use crate::columns::{Column, Values};
+use crate::write_cloud::WriteReport;
+use belvedere_data::cloud::GpsTimeKind;
+use belvedere_data::crs::text;
+use belvedere_data::{Error, PointCloud, Result};
+
+/// Points encoded at a time: many LAZ chunks of 50 000, so that all threads compress, yet little memory.
+const POINTS_PER_SLAB: usize = 1 << 20;
+/// Degrees per step of the scan angle of point formats 6 and up (LAS 1.4 R15, table 17).
+const DEGREES_PER_SCAN_STEP: f64 = 0.006;
+/// Coarsest step between coordinates, metres.
+const MAX_STEP: f64 = 0.001;
+
+/// Whether points are compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Compression {
+    None,
+    Laz,
+}
+
+/// Writes `cloud` with its attributes, `extra` columns as extra bytes, and `records` as further variable length records.
+///
+/// Attributes beyond the standard fields (scanner index) become extra bytes too. Where the cloud has no return numbers,
+/// each point is the only return of its pulse and the file says that these numbers are synthetic.
+pub(crate) fn write(
+    path: &Path,
+    cloud: &PointCloud,
+    extra: &[Column<'_>],
+    compression: Compression,
+    records: &[Vlr],
+) -> Result<WriteReport> {
+    let las_error = |e: las::Error| Error::malformed(path, format!("cannot be written: {e}"));
+    let mut columns = extra.to_vec();
+    if let Some(index) = &cloud.attributes.scanner_index {
+        columns.push(Column {
+            name: "scanner_index".into(),
+            description: "scanner set-up, 65535 unknown".into(),
+            values: Values::U16(index.into()),
+        });
+    }
+    let mut builder = Builder::from((1, 4));
+    builder.point_format =
+        las::point::Format::new(if cloud.attributes.color.is_some() { 7 } else { 6 }).map_err(las_error)?;
+    builder.point_format.is_compressed = compression == Compression::Laz;
+    let extra_bytes: usize = columns.iter().map(|c| c.values.width()).sum();
+    builder.point_format.extra_bytes = u16::try_from(extra_bytes).unwrap_or(u16::MAX);
+    if usize::from(builder.point_format.extra_bytes) != extra_bytes {
+        return Err(Error::InvalidParameter {
+            name: "number of result columns",
+            value: columns.len().to_string(),
+            expected: "few enough for 65535 bytes per point",
+        });
+    }
+    builder.generating_software = "belvedere".to_owned();
+    builder.system_identifier = "OTHER".to_owned();
+    builder.gps_time_type = match cloud.attributes.gps_time_kind {
+        GpsTimeKind::SecondsOfWeek => GpsTimeType::Week,
+        GpsTimeKind::AdjustedStandard => GpsTimeType::Standard,
+    };
+    builder.has_synthetic_return_numbers = cloud.attributes.return_number.is_none();
+    builder.transforms = transforms(cloud);
+    builder.vlrs.extend(crs_records(cloud));
+    if !columns.is_empty() {
+        builder.vlrs.push(Vlr {
+            user_id: "LASF_Spec".to_owned(),
+            record_id: 4,
+            description: "extra bytes".to_owned(),
+            data: columns.iter().flat_map(descriptor).collect(),
+        });
+    }
+    builder.vlrs.extend_from_slice(records);
+    let header = builder.into_header().map_err(las_error)?;
+
+    atomic::write(path, |output| {
+        let failure = Arc::new(Mutex::new(None));
+        let file = output.get_ref().try_clone().map_err(Error::io(path))?;
+        let latched = Latched { inner: BufWriter::with_capacity(1 << 18, file), failure: Arc::clone(&failure) };
+        let mut writer = las::Writer::new(latched, header).map_err(las_error)?;
+        let encoder = Encoder { cloud, columns: &columns, transforms: *writer.header().transforms() };
+        let clamped = AtomicUsize::new(0);
+        for start in (0..cloud.len()).step_by(POINTS_PER_SLAB) {
+            let mut slab = PointDataBuilder::new().for_header(writer.header()).build();
+            let record_bytes = slab.record_len();
+            slab.resize_for(POINTS_PER_SLAB.min(cloud.len() - start))
+                .par_chunks_mut(record_bytes)
+                .enumerate()
+                .for_each(|(i, record)| {
+                    let count = encoder.encode(record, start + i);
+                    if count > 0 {
+                        clamped.fetch_add(count, Ordering::Relaxed);
+                    }
+                });
+            writer.write_points(&slab).map_err(las_error)?;
+        }
+        writer.close().map_err(las_error)?;
+        writer.into_inner().map_err(las_error)?.flush().map_err(Error::io(path))?;
+        if let Some(error) = failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            return Err(Error::io(path)(error));
+        }
+        let normals_asked = extra.iter().any(|c| c.name.eq_ignore_ascii_case("NormalX"));
+        let left_out = if cloud.attributes.normals.is_some() && !normals_asked { vec!["normals"] } else { Vec::new() };
+        Ok(WriteReport { point_count: cloud.len(), left_out, clamped_count: clamped.into_inner() })
+    })
+}
+
+/// A writer that keeps its first error and swallows what follows: the LAS writer closes itself when it is dropped and
+/// panics when that fails, as it would on a full disk.
+struct Latched {
+    inner: BufWriter<File>,
+    failure: Arc<Mutex<Option<io::Error>>>,
+}
+
+impl Latched {
+    fn attempt<T>(&mut self, otherwise: T, action: impl FnOnce(&mut BufWriter<File>) -> io::Result<T>) -> T {
+        let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
+        if failure.is_some() {
+            return otherwise;
+        }
+        match action(&mut self.inner) {
+            Ok(value) => value,
+            Err(error) => {
+                *failure = Some(error);
+                otherwise
+            }
+        }
+    }
+}
+
+impl Write for Latched {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        Ok(self.attempt(bytes.len(), |w| w.write_all(bytes).map(|()| bytes.len())))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.attempt((), BufWriter::flush);
+        Ok(())
+    }
+}
+
+impl Seek for Latched {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let otherwise = if let SeekFrom::Start(position) = to { position } else { 0 };
+        Ok(self.attempt(otherwise, |w| w.seek(to)))
+    }
+}
+
+/// Steps and offsets in the unit of the file: a power of ten of at most a millimetre and at most a millionth of the
+/// extent, so that small objects keep their detail, but coarse enough for 32-bit integers.
+fn transforms(cloud: &PointCloud) -> Vector<Transform> {
+    let (low, high) = cloud.bounds().unwrap_or_default();
+    let extent = (0..3).map(|i| f64::from(high[i]) - f64::from(low[i])).fold(0.0, f64::max);
+    let reach = (0..3).map(|i| f64::from(high[i].abs().max(low[i].abs()))).fold(1e-6, f64::max);
+    let units = cloud.crs.metres_per_unit_xyz();
+    let origin = cloud.to_file_coordinates([0.0; 3]);
+    let transform = |axis: usize| {
+        let wanted = if extent > 0.0 { MAX_STEP.min(extent * 1e-6) } else { MAX_STEP } / units[axis];
+        // half the range of i32, as the offset is rounded
+        let needed = reach / units[axis] / f64::from(i32::MAX / 2);
+        let exponent = (-12..=9).rev().find(|&e| power_of_ten(e) <= wanted * (1.0 + 1e-9)).unwrap_or(-12);
+        let scale = (exponent..=12).map(power_of_ten).find(|&s| s >= needed).unwrap_or(1e12);
+        Transform { scale, offset: origin[axis].round() }
+    };
+    Vector { x: transform(0), y: transform(1), z: transform(2) }
+}
+
+/// The double next to 10^`exponent`, which repeated multiplication would miss.
+fn power_of_ten(exponent: i32) -> f64 {
+    if exponent < 0 { 1.0 / 10.0_f64.powi(-exponent) } else { 10.0_f64.powi(exponent) }
+}
+
+fn crs_records(cloud: &PointCloud) -> Vec<Vlr> {
+    let record = |record_id, description: &str, data| Vlr {
+        user_id: "LASF_Projection".to_owned(),
+        record_id,
+        description: description.to_owned(),
+        data,
+    };
+    if let Some(wkt) = text::wkt_line(&cloud.crs) {
+        let mut data = wkt.into_bytes();
+        data.push(0);
+        return vec![record(2112, "OGC coordinate system WKT", data)];
+    }
+    let Some(keys) = text::geo_keys(&cloud.crs, text::KeyUse::Points) else { return Vec::new() };
+    vec![record(34735, "GeoTIFF keys", keys.directory.iter().flat_map(|v| v.to_le_bytes()).collect())]
+}
+
+/// The 192 bytes that describe an extra column (LAS 1.4 R15, table 24).
+fn descriptor(column: &Column<'_>) -> [u8; 192] {
+    let mut bytes = [0; 192];
+    bytes[2] = match column.values {
+        Values::U8(_) => 1,
+        Values::U16(_) => 3,
+        Values::U32(_) => 5,
+        Values::I32(_) => 6,
+        Values::F32(_) => 9,
+        Values::F64(_) => 10,
+    };
+    put_text(&mut bytes[4..36], &column.name);
+    put_text(&mut bytes[160..192], &column.description);
+    bytes
+}
+
+/// Text cut to the field so that a zero byte still ends it.
+fn put_text(field: &mut [u8], text: &str) {
+    let longest = field.len() - 1;
+    for (slot, byte) in field[..longest].iter_mut().zip(text.bytes()) {
+        *slot = if byte.is_ascii() { byte } else { b'?' };
+    }
+}
+
+struct Encoder<'a> {
+    cloud: &'a PointCloud,
+    columns: &'a [Column<'a>],
+    transforms: Vector<Transform>,
+}
+
+impl Encoder<'_> {
+    /// Fills a record of point format 6 or 7 with point `index`; returns how many values were cut to their field.
+    fn encode(&self, record: &mut [u8], index: usize) -> usize {
+        let a = &self.cloud.attributes;
+        let mut clamped = 0;
+        let mut cut = |value: u8, most: u8| {
+            clamped += usize::from(value > most);
+            value.min(most)
+        };
+        let xyz = self.cloud.to_file_coordinates(self.cloud.positions[index]);
+        let transforms = [self.transforms.x, self.transforms.y, self.transforms.z];
+        for (axis, (value, transform)) in xyz.into_iter().zip(transforms).enumerate() {
+            let steps = ((value - transform.offset) / transform.scale).round();
+            #[expect(clippy::cast_possible_truncation, reason = "the scale was chosen so that all coordinates fit")]
+            record[axis * 4..axis * 4 + 4].copy_from_slice(&(steps as i32).to_le_bytes());
+        }
+        let of = |column: &Option<Vec<u8>>, default: u8| column.as_ref().map_or(default, |v| v[index]);
+        let intensity = a.intensity.as_ref().map_or(0, |v| v[index]);
+        record[12..14].copy_from_slice(&intensity.to_le_bytes());
+        let number = cut(of(&a.return_number, 1), 15);
+        let count = cut(of(&a.return_count, number), 15);
+        record[14] = number | count << 4;
+        record[15] = cut(of(&a.flags, 0), 15) | cut(of(&a.scanner_channel, 0), 3) << 4;
+        record[16] = of(&a.classification, 0);
+        let angle = a.scan_angle.as_ref().map_or(0.0, |v| f64::from(v[index]).to_degrees());
+        #[expect(clippy::cast_possible_truncation, reason = "clamped to the range of i16")]
+        let steps = (angle / DEGREES_PER_SCAN_STEP).round().clamp(-30000.0, 30000.0) as i16;
+        record[18..20].copy_from_slice(&steps.to_le_bytes());
+        let source = a.point_source_id.as_ref().map_or(0, |v| v[index]);
+        record[20..22].copy_from_slice(&source.to_le_bytes());
+        let time = a.gps_time.as_ref().map_or(0.0, |v| v[index]);
+        record[22..30].copy_from_slice(&time.to_le_bytes());
+        let mut at = 30;
+        if let Some(colors) = &a.color {
+            for channel in colors[index] {
+                record[at..at + 2].copy_from_slice(&channel.to_le_bytes());
+                at += 2;
+            }
+        }
+        for column in self.columns {
+            column.values.put(index, &mut record[at..]);
+            at += column.values.width();
+        }
+        clamped
+    }
+}

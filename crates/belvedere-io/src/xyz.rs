@@ -1,0 +1,273 @@
+//! Text files with one point a line: blanks, tabs, commas or semicolons between numbers, with or without a header.
+
+use std::io::BufRead;
+use std::path::Path;
+
+use super::part::{Part, open};
+use super::rows::{Role, Row, Rows, role_of};
+use belvedere_data::{Error, Result};
+
+/// A line longer than this is no point.
+const MAX_LINE: u64 = 1 << 16;
+
+/// Lines looked at to tell what the columns after z are.
+const LOOK_AHEAD: usize = 1000;
+
+/// Line numbers of unreadable lines that the report names.
+const NAMED_LINES: usize = 5;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Separator {
+    Blank,
+    Character(char),
+}
+
+impl Separator {
+    fn split(self, line: &str) -> impl Iterator<Item = &str> {
+        let (by_character, by_blank) = match self {
+            Self::Character(c) => (Some(line.split(c).map(|token| token.trim().trim_matches('"'))), None),
+            Self::Blank => (None, Some(line.split_ascii_whitespace())),
+        };
+        by_character.into_iter().flatten().chain(by_blank.into_iter().flatten())
+    }
+}
+
+/// The points of the file at `path`.
+///
+/// # Errors
+/// [`Error::Malformed`] for decimal commas, for a header without x, y and z, and where more than half of the lines
+/// cannot be read.
+pub(super) fn read(path: &Path) -> Result<Part> {
+    let (mut file, size) = open(path)?;
+    let mut part = Part::new(path, "text");
+    let mut lines = Lines { path, file: &mut file, number: 0, bytes: Vec::new() };
+    let Some(start) = find_start(path, &mut part, &mut lines)? else {
+        part.report.format = "text, empty".to_owned();
+        return Ok(part);
+    };
+    let Start { separator, columns, ahead } = start;
+    part.report.format = format!("text, {}", columns_in_words(separator, &columns));
+    let mut rows = Rows::new(columns.iter().copied().flatten());
+    let mut bad = Bad::default();
+    let mut take = |number: usize, line: &str| match parse(line, separator, &columns) {
+        Some(row) => {
+            rows.push(&row);
+            bad.good += 1;
+        }
+        None => bad.add(number),
+    };
+    for (number, line) in &ahead {
+        take(*number, line);
+    }
+    while let Some((number, line)) = lines.next_data()? {
+        take(number, &line);
+    }
+    bad.judge(&mut part, path)?;
+    debug_assert!(bad.good as u64 <= size, "every line has a byte");
+    rows.finish(&mut part);
+    Ok(part)
+}
+
+/// What the first lines tell.
+struct Start {
+    separator: Separator,
+    columns: Vec<Option<Role>>,
+    /// Data lines read already, with their numbers.
+    ahead: Vec<(usize, String)>,
+}
+
+struct Lines<'a, R> {
+    path: &'a Path,
+    file: &'a mut R,
+    number: usize,
+    bytes: Vec<u8>,
+}
+
+impl<R: BufRead> Lines<'_, R> {
+    /// The next line and its number, from 1, without surrounding blanks.
+    fn next(&mut self) -> Result<Option<(usize, String)>> {
+        self.bytes.clear();
+        let read = std::io::Read::take(&mut *self.file, MAX_LINE).read_until(b'\n', &mut self.bytes);
+        if read.map_err(Error::io(self.path))? == 0 {
+            return Ok(None);
+        }
+        self.number += 1;
+        let line = String::from_utf8_lossy(&self.bytes);
+        Ok(Some((self.number, line.trim().trim_start_matches('\u{feff}').to_owned())))
+    }
+
+    /// The next line that is neither empty nor a comment.
+    fn next_data(&mut self) -> Result<Option<(usize, String)>> {
+        while let Some((number, line)) = self.next()? {
+            if !line.is_empty() && !is_comment(&line) {
+                return Ok(Some((number, line)));
+            }
+        }
+        Ok(None)
+    }
+}
+
+fn is_comment(line: &str) -> bool {
+    line.starts_with('#') || line.starts_with("//")
+}
+
+/// Reads on to the data; `None` where there is none.
+fn find_start<R: BufRead>(path: &Path, part: &mut Part, lines: &mut Lines<'_, R>) -> Result<Option<Start>> {
+    let mut names: Option<Vec<Option<Role>>> = None;
+    let mut ahead: Vec<(usize, String)> = Vec::new();
+    let mut header_seen = false;
+    while ahead.len() < LOOK_AHEAD {
+        let Some((number, line)) = lines.next()? else { break };
+        if is_comment(&line) {
+            if ahead.is_empty() && names.is_none() {
+                names = header(line.trim_start_matches(['#', '/']));
+            }
+            continue;
+        }
+        if line.is_empty() {
+            continue;
+        }
+        if ahead.is_empty() && !header_seen && line.contains(|c: char| c.is_ascii_alphabetic()) && !is_numeric(&line) {
+            header_seen = true;
+            names = header(&line);
+            if names.is_none() {
+                let what = format!("has a header line ({number}) that names no columns x, y and z: {}", shorten(&line));
+                return Err(Error::malformed(path, what));
+            }
+            continue;
+        }
+        // A first line with nothing but a count is how PTS files begin.
+        if ahead.is_empty() && !header_seen && line.parse::<u64>().is_ok() {
+            header_seen = true;
+            continue;
+        }
+        ahead.push((number, line));
+    }
+    let Some((number, first)) = ahead.first() else { return Ok(None) };
+    let separator = separator(first);
+    refuse_decimal_comma(path, *number, first, separator)?;
+    let columns = names.unwrap_or_else(|| guess_columns(part, separator, &ahead));
+    if separator.split(first).count() > columns.len() {
+        part.note(format!("columns dropped: all after number {}", columns.len()));
+    }
+    Ok(Some(Start { separator, columns, ahead }))
+}
+
+fn is_numeric(line: &str) -> bool {
+    let separator = separator(line);
+    separator.split(line).all(|token| token.parse::<f64>().is_ok())
+}
+
+/// The roles of the names in a header line, or `None` where x, y and z are not among them.
+fn header(line: &str) -> Option<Vec<Option<Role>>> {
+    let columns: Vec<Option<Role>> = separator(line).split(line).map(role_of).collect();
+    [Role::X, Role::Y, Role::Z].iter().all(|&role| columns.contains(&Some(role))).then_some(columns)
+}
+
+fn separator(line: &str) -> Separator {
+    [';', '\t', ',']
+        .into_iter()
+        .find(|&c| line.contains(c))
+        .filter(|&c| c != '\t' || line.split('\t').all(|token| !token.trim().contains(' ')))
+        .map_or(Separator::Blank, Separator::Character)
+}
+
+fn refuse_decimal_comma(path: &Path, number: usize, line: &str, separator: Separator) -> Result<()> {
+    let comma = match separator {
+        // Split at commas, "1,5 2,5 3,5" leaves a blank within a token.
+        Separator::Character(',') => separator.split(line).any(|token| token.contains(char::is_whitespace)),
+        _ => separator.split(line).take(3).any(|token| token.contains(',')),
+    };
+    if comma {
+        let what = format!(
+            "line {number} has decimal commas ({}); replace them by points, for example with: tr ',' '.'",
+            shorten(line)
+        );
+        return Err(Error::malformed(path, what));
+    }
+    Ok(())
+}
+
+/// What nameless columns are, from their number and values.
+fn guess_columns(part: &mut Part, separator: Separator, ahead: &[(usize, String)]) -> Vec<Option<Role>> {
+    let values: Vec<Vec<f64>> = ahead
+        .iter()
+        .map(|(_, line)| separator.split(line).map_while(|token| token.parse().ok()).collect::<Vec<f64>>())
+        .filter(|row| row.len() >= 3)
+        .collect();
+    let width = values.iter().map(Vec::len).min().unwrap_or(3);
+    let last_three = |row: &Vec<f64>| [row[width - 3], row[width - 2], row[width - 1]];
+    let unit = |v: [f64; 3]| (v.iter().map(|c| c * c).sum::<f64>().sqrt() - 1.0).abs() < 0.05;
+    let byte = |v: [f64; 3]| v.iter().all(|c| c.fract() == 0.0 && (0.0..=65535.0).contains(c));
+    let normals = || values.iter().all(|row| unit(last_three(row)));
+    let colors = || values.iter().all(|row| byte(last_three(row)));
+    let position = [Role::X, Role::Y, Role::Z];
+    let more: &[Role] = match width {
+        4 => &[Role::Intensity],
+        6 if normals() => &[Role::NormalX, Role::NormalY, Role::NormalZ],
+        6 if colors() => &[Role::Red, Role::Green, Role::Blue],
+        7 if colors() => &[Role::Intensity, Role::Red, Role::Green, Role::Blue],
+        _ => &[],
+    };
+    if width > 3 {
+        let taken = if more.is_empty() { "nothing".to_owned() } else { format!("{more:?}") };
+        part.note(format!("the columns have no names; those after x, y, z are taken as {taken}"));
+    }
+    position.iter().chain(more).map(|&role| Some(role)).collect()
+}
+
+fn parse(line: &str, separator: Separator, columns: &[Option<Role>]) -> Option<Row> {
+    let mut row = Row::default();
+    let mut tokens = separator.split(line);
+    for column in columns {
+        let token = tokens.next()?;
+        if let Some(role) = column {
+            row.set(*role, token.parse().ok()?);
+        }
+    }
+    Some(row)
+}
+
+/// Lines that could not be read.
+#[derive(Default)]
+struct Bad {
+    good: usize,
+    count: usize,
+    first: Vec<usize>,
+}
+
+impl Bad {
+    fn add(&mut self, number: usize) {
+        self.count += 1;
+        if self.first.len() < NAMED_LINES {
+            self.first.push(number);
+        }
+    }
+
+    fn judge(&self, part: &mut Part, path: &Path) -> Result<()> {
+        let lines: Vec<String> = self.first.iter().map(ToString::to_string).collect();
+        let lines = format!("lines {}{}", lines.join(", "), if self.count > NAMED_LINES { ", …" } else { "" });
+        if self.count > self.good {
+            let total = self.count + self.good;
+            let what = format!("{} of {total} lines are no points ({lines}); is this a point cloud?", self.count);
+            return Err(Error::malformed(path, what));
+        }
+        part.leave_out(self.count, format!("unreadable: {lines}"));
+        Ok(())
+    }
+}
+
+fn columns_in_words(separator: Separator, columns: &[Option<Role>]) -> String {
+    let by = match separator {
+        Separator::Blank => "blanks",
+        Separator::Character('\t') => "tabs",
+        Separator::Character(',') => "commas",
+        Separator::Character(_) => "semicolons",
+    };
+    let named = columns.iter().filter(|column| column.is_some()).count();
+    format!("{named} columns between {by}")
+}
+
+fn shorten(line: &str) -> String {
+    line.chars().take(40).collect()
+}

@@ -1,0 +1,176 @@
+//! The import rules of ARCHITECTURE.md, checked on the sources.
+
+use std::path::{Path, PathBuf};
+
+/// The crates of the library, and the crates of ours that each may import.
+const CRATES: [(&str, &[&str]); 9] = [
+    ("data", &[]),
+    ("io", &["data"]),
+    ("figures", &["data", "io"]),
+    ("core", &["data"]),
+    ("apps", &["data", "core"]),
+    ("", &["data", "io", "figures", "core", "apps"]),
+    ("scenes", &[]),
+    ("baselines", &[""]),
+    ("cli", &["", "scenes", "baselines"]),
+];
+
+/// Level of each module of `belvedere-core`: a module imports from lower levels, or from its own folder.
+const LEVELS: [(&str, u8); 10] = [
+    ("neighbors", 1),
+    ("ray_index", 1),
+    ("clean", 2),
+    ("normals", 2),
+    ("pulses", 2),
+    ("ground", 2),
+    ("summary", 3),
+    ("medial", 3),
+    ("depth", 4),
+    ("query", 5),
+];
+
+/// Crates of others that only one file or folder may name.
+const ONE_HOME: [(&str, &str); 19] = [
+    ("colorous::", "io/src/colors.rs"),
+    ("las::", "io/src/"),
+    ("laz::", "io/src/laz.rs"),
+    ("npyz::", "io/src/"),
+    ("csv::", "io/src/table.rs"),
+    ("e57::", "io/src/e57.rs"),
+    ("tiff::", "io/src/geotiff.rs"),
+    ("tobj::", "io/src/obj.rs"),
+    ("earcut::", "io/src/"),
+    ("ply_rs_bw::", "io/src/"),
+    ("png::", "figures/src/png.rs"),
+    ("delaunator::", "core/src/ground/triangulate.rs"),
+    ("rstar::", "core/src/normals/"),
+    ("nalgebra::", "core/src/pulses/"),
+    ("obvhs::", "core/src/ray_index.rs"),
+    ("proj_core::", "data/src/crs"),
+    ("proj_wkt::", "data/src/crs"),
+    ("solar_positioning::", "apps/src/sun/position.rs"),
+    ("jiff::", "apps/src/sun/time.rs"),
+];
+
+fn level(module: &str) -> Option<u8> {
+    LEVELS.iter().find(|(name, _)| *name == module).map(|&(_, level)| level)
+}
+
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The code of a file before its unit tests, without comments.
+fn code(path: &Path) -> String {
+    let text = std::fs::read_to_string(path).unwrap();
+    let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+    code.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
+}
+
+/// The first segment of everything that follows `crate::`, braces opened one level.
+fn imported_modules(code: &str) -> Vec<String> {
+    let word = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let mut modules = Vec::new();
+    for after in code.split("crate::").skip(1) {
+        if let Some(group) = after.strip_prefix('{') {
+            let group = group.split("};").next().unwrap_or_default();
+            modules.extend(group.split(',').map(|item| word(item.trim())));
+        } else {
+            modules.push(word(after));
+        }
+    }
+    modules
+}
+
+/// Whether `code` names the crate whose paths begin with `prefix`, and not a module of ours that is called the same.
+fn names_crate(code: &str, prefix: &str) -> bool {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let bare = prefix.trim_end_matches(':');
+    let imports = code.split("use super::").skip(1).filter_map(|rest| rest.split(';').next());
+    let is_module = code.contains(&format!("mod {bare};"))
+        || imports.flat_map(|import| import.split(|c| !is_word(c))).any(|word| word == bare);
+    code.match_indices(prefix).any(|(at, _)| {
+        let before = &code[..at];
+        match before.strip_suffix("::") {
+            Some(parent) => !parent.ends_with(is_word),
+            None => !is_module && !before.ends_with(is_word),
+        }
+    })
+}
+
+/// The crates of ours that `code` names, without `belvedere` and the hyphen.
+fn imported_crates(code: &str) -> Vec<String> {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let names = code.match_indices("belvedere").filter(|&(at, _)| !code[..at].ends_with(is_word));
+    names
+        .filter_map(|(at, name)| {
+            let word: String = code[at + name.len()..].chars().take_while(|&c| is_word(c)).collect();
+            let after = &code[at + name.len() + word.len()..];
+            after.starts_with("::").then(|| word.trim_start_matches('_').to_owned())
+        })
+        .collect()
+}
+
+#[test]
+fn crates_and_modules_import_downward_only_and_name_each_crate_in_one_place() {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut wrong = Vec::new();
+    let mut imports = 0;
+    for (name, allowed) in CRATES {
+        let folder = if name.is_empty() { "belvedere".to_owned() } else { format!("belvedere-{name}") };
+        let root = crates.join(folder).join("src");
+        let mut files = Vec::new();
+        sources(&root, &mut files);
+        assert!(!files.is_empty(), "no sources of {name}");
+        let is_library = !["scenes", "baselines", "cli"].contains(&name);
+        for file in files {
+            let within = file.strip_prefix(&root).unwrap().to_string_lossy().replace('\\', "/");
+            let place = format!("{name}/src/{within}");
+            let code = code(&file);
+            for import in imported_crates(&code) {
+                imports += 1;
+                if import != name && !allowed.contains(&import.as_str()) {
+                    wrong.push(format!("{place} imports the crate belvedere-{import}, which lies above it"));
+                }
+            }
+            if !is_library {
+                continue;
+            }
+            for (prefix, home) in ONE_HOME {
+                if names_crate(&code, prefix) && !place.starts_with(home) {
+                    wrong.push(format!("{place} names {prefix} whose place is {home}"));
+                }
+            }
+            for forbidden in ["println!", "eprintln!", "std::env::", "SystemTime", "Instant::now"] {
+                if code.contains(forbidden) {
+                    wrong.push(format!("{place} uses {forbidden}, which the library must not"));
+                }
+            }
+            let own = within.split(['/', '.']).next().unwrap_or_default().to_owned();
+            if name != "core" || own == "lib" {
+                continue;
+            }
+            let Some(own_level) = level(&own) else {
+                wrong.push(format!("{place}: give module {own} a level in this test and in ARCHITECTURE.md"));
+                continue;
+            };
+            for module in imported_modules(&code) {
+                if let Some(other) = level(&module) {
+                    imports += 1;
+                    if module != own && other >= own_level {
+                        wrong.push(format!("{place} (level {own_level}) imports {module} (level {other})"));
+                    }
+                }
+            }
+        }
+    }
+    assert!(imports > 100, "the test sees only {imports} imports");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

@@ -1,0 +1,176 @@
+//! Lines of sight between pairs of points, against every ball tried in turn and against closed forms.
+#![expect(clippy::cast_possible_truncation, reason = "test places in f32")]
+
+use belvedere::depth::Profile;
+use belvedere::medial::MedialBalls;
+use belvedere::query::{Answer, Curvature, EarthParams, MedialScene, SceneParams, merged_crossings};
+use belvedere::random::uniform;
+
+fn balls(list: &[([f32; 3], f32)]) -> MedialBalls {
+    MedialBalls {
+        centers: list.iter().map(|b| b.0).collect(),
+        radii: list.iter().map(|b| b.1).collect(),
+        source: (0..list.len() as u32).collect(),
+        touch: (0..list.len() as u32).collect(),
+        separation_angles: vec![1.0; list.len()],
+    }
+}
+
+fn random_balls(count: u64, size: f64) -> Vec<([f32; 3], f32)> {
+    let at = |i: u64| (size * uniform(3, i)) as f32;
+    (0..count).map(|i| ([at(4 * i), at(4 * i + 1), at(4 * i + 2)], 0.2 + 2.0 * uniform(4, i) as f32)).collect()
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// First block from the observer of every ball tried in turn: balls around the observer are left out.
+fn brute_force(list: &[([f32; 3], f32)], observer: [f64; 3], target: [f64; 3]) -> Option<(f64, usize)> {
+    let size = distance(observer, target);
+    let mut first: Option<(f64, usize)> = None;
+    for (row, (center, radius)) in list.iter().enumerate() {
+        let (center, radius) = (center.map(f64::from), f64::from(*radius));
+        if distance(center, observer) <= radius {
+            continue;
+        }
+        // smaller root of |o + t d − c|² = r²
+        let d: [f64; 3] = std::array::from_fn(|i| (target[i] - observer[i]) / size);
+        let o: [f64; 3] = std::array::from_fn(|i| observer[i] - center[i]);
+        let b: f64 = (0..3).map(|i| o[i] * d[i]).sum();
+        let c = o.iter().map(|v| v * v).sum::<f64>() - radius * radius;
+        let root = b * b - c;
+        if root <= 0.0 {
+            continue;
+        }
+        let enter = -b - root.sqrt();
+        if enter > 0.0 && enter < size && first.is_none_or(|(best, _)| enter < best) {
+            first = Some((enter, row));
+        }
+    }
+    first
+}
+
+#[test]
+fn the_first_block_is_that_of_all_balls_tried_in_turn() {
+    let list = random_balls(400, 40.0);
+    let scene = MedialScene::new(&balls(&list), &SceneParams::default()).unwrap();
+    let at = |i: u64| -> [f64; 3] { std::array::from_fn(|k| 40.0 * uniform(7, 3 * i + k as u64)) };
+    let pairs: Vec<[[f64; 3]; 2]> = (0..3000).map(|i| [at(2 * i), at(2 * i + 1)]).collect();
+    let found = scene.lines_of_sight(&pairs, &EarthParams::default());
+    let mut blocked = 0;
+    for ([observer, target], found) in pairs.iter().zip(found) {
+        let found = found.unwrap();
+        match brute_force(&list, *observer, *target) {
+            None => assert_eq!((found.answer, found.first_block), (Answer::Visible, None)),
+            Some((range, row)) => {
+                blocked += 1;
+                let block = found.first_block.unwrap();
+                assert_eq!((found.answer, block.ball), (Answer::Blocked, row), "{observer:?} {target:?}");
+                // f64 roots of lengths up to 70 m
+                assert!((block.range - range).abs() < 1e-9, "{} {range}", block.range);
+                assert!((distance(*observer, block.place) - range).abs() < 1e-9);
+            }
+        }
+        assert_eq!(scene.sight_answer(*observer, *target, &EarthParams::flat()), found.answer);
+    }
+    assert!((300..2700).contains(&blocked), "{blocked}");
+}
+
+#[test]
+fn chords_answer_as_the_whole_line_where_the_earth_is_nearly_plane() {
+    // an earth so large that the line does not bend by a nanometre, cut into chords all the same
+    let plane = EarthParams { curvature: Curvature::On, radius: 1e18, ..EarthParams::default() };
+    for params in [
+        SceneParams::default(),
+        SceneParams::carved(),
+        SceneParams { profile: Profile::PaperCone, ..SceneParams::default() },
+    ] {
+        let list: Vec<([f32; 3], f32)> =
+            random_balls(600, 1.0).iter().map(|&(c, r)| ([c[0] * 3000.0, c[1] * 30.0, c[2] * 30.0], r * 3.0)).collect();
+        let scene = MedialScene::new(&balls(&list), &params).unwrap();
+        let at = |i: u64, x: f64| [x, 30.0 * uniform(8, 2 * i), 30.0 * uniform(8, 2 * i + 1)];
+        let mut blocked = 0;
+        for i in 0..400 {
+            let (observer, target) = (at(2 * i, 2900.0 * uniform(9, i)), at(2 * i + 1, 3000.0));
+            let straight = scene.line_of_sight(observer, target, &EarthParams::flat()).unwrap();
+            let chords = scene.line_of_sight(observer, target, &plane).unwrap();
+            assert_eq!(straight.answer, chords.answer, "{i}");
+            assert_eq!(scene.sight_answer(observer, target, &plane), straight.answer);
+            if let (Some(a), Some(b)) = (straight.first_block, chords.first_block) {
+                blocked += 1;
+                assert_eq!(a.ball, b.ball);
+                // a block that begins in the chord behind is seen at its corner
+                assert!((a.range - b.range).abs() < 1e-6, "{} {}", a.range, b.range);
+            }
+        }
+        assert!((20..400).contains(&blocked), "{blocked}");
+    }
+}
+
+#[test]
+fn the_horizon_of_a_sphere_of_water_hides_a_hull_but_not_a_mast() {
+    // 20 km of sea at height 0 as a row of large balls just below it; eyes and masts at 10 m see each other up to
+    // 2·√(2·R·h/(1−k)) = 24.4 km, 5 m above the water up to 17.2 km
+    let list: Vec<([f32; 3], f32)> = (0..400).map(|i| ([50.0 * i as f32, 0.0, -500.0], 500.0)).collect();
+    let scene = MedialScene::new(&balls(&list), &SceneParams::default()).unwrap();
+    let (from, to) = (|h| [0.0, 0.0, h], |h| [19_950.0, 0.0, h]);
+    let curved = EarthParams::default();
+    assert_eq!(scene.sight_answer(from(10.0), to(10.0), &curved), Answer::Visible);
+    let hull = scene.line_of_sight(from(5.0), to(5.0), &curved).unwrap();
+    assert_eq!(hull.answer, Answer::Blocked);
+    assert_eq!(scene.sight_answer(from(5.0), to(5.0), &EarthParams::flat()), Answer::Visible);
+    // the eye at 5 m meets the water where z(s) = 5 − (1−k)·s·(S−s)/2R falls to the crests of the balls: within 60 m, which is more than
+    // the distance between balls
+    let (k, radius, span) = (1.0 / 7.0, 6_371_008.8, 19_950.0_f64);
+    let q = (1.0 - k) / (2.0 * radius);
+    let meets = (span - (span * span - 4.0 * 5.0 / q).sqrt()) / 2.0;
+    assert!((hull.first_block.unwrap().range - meets).abs() < 60.0, "{:?} {meets}", hull.first_block);
+}
+
+#[test]
+fn crossings_cover_what_dense_samples_find_inside() {
+    let list = random_balls(900, 30.0);
+    let scene = MedialScene::new(&balls(&list), &SceneParams::carved()).unwrap();
+    let (observer, target) = ([0.0, 3.0, 12.0], [30.0, 25.0, 14.0]);
+    let crossings = scene.crossings(observer, target, &EarthParams::flat());
+    let merged = merged_crossings(&crossings);
+    assert!(crossings.len() > merged.len() && merged.len() > 1, "{} {}", crossings.len(), merged.len());
+    assert!(merged.windows(2).all(|w| w[0][1] < w[1][0]));
+    let size = distance(observer, target);
+    for i in 0..20_000 {
+        let range = size * (f64::from(i) + 0.5) / 20_000.0;
+        let place: [f64; 3] = std::array::from_fn(|k| observer[k] + range / size * (target[k] - observer[k]));
+        // how far outside the union, so that samples on its surface do not decide
+        let outside =
+            list.iter().map(|(c, r)| distance(c.map(f64::from), place) - f64::from(*r)).fold(f64::INFINITY, f64::min);
+        let covered = merged.iter().any(|m| (m[0]..m[1]).contains(&range));
+        if outside.abs() > 1e-6 {
+            assert_eq!(covered, outside < 0.0, "{range}");
+        }
+    }
+}
+
+#[test]
+fn an_observer_in_a_ball_is_told_how_deep() {
+    let list = [([0.0, 0.0, 0.0], 2.0), ([1.0, 0.0, 0.0], 1.5), ([9.0, 0.0, 0.0], 1.0)];
+    let scene = MedialScene::new(&balls(&list), &SceneParams::default()).unwrap();
+    let inside = scene.enclosure([0.5, 0.0, 0.0]);
+    assert_eq!(inside.ball_count, 2);
+    assert!((inside.depth - 1.5).abs() < 1e-12);
+    assert_eq!(scene.enclosure([5.0, 0.0, 0.0]).ball_count, 0);
+    // and sees past the two
+    assert_eq!(scene.sight_answer([0.5, 0.0, 0.0], [6.0, 0.0, 0.0], &EarthParams::flat()), Answer::Visible);
+    assert_eq!(scene.sight_answer([0.5, 0.0, 0.0], [11.0, 0.0, 0.0], &EarthParams::flat()), Answer::Blocked);
+}
+
+#[test]
+fn points_that_are_no_line_get_no_answer() {
+    let scene = MedialScene::new(&balls(&random_balls(5, 10.0)), &SceneParams::default()).unwrap();
+    let earth = EarthParams::default();
+    for (a, b) in [([1.0; 3], [1.0; 3]), ([f64::NAN; 3], [1.0; 3]), ([0.0; 3], [f64::INFINITY, 0.0, 0.0])] {
+        assert_eq!(scene.line_of_sight(a, b, &earth), None);
+        assert_eq!(scene.sight_answer(a, b, &earth), Answer::OutsideView);
+        assert!(scene.crossings(a, b, &earth).is_empty());
+    }
+}

@@ -1,0 +1,55 @@
+//! The tests of the library, in one program: linking many small ones took longer than running them.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::cast_possible_truncation, reason = "the numbers of tests are small, or made to be f32")]
+
+mod animations;
+mod ball_files;
+mod beams;
+mod carving;
+mod certified;
+mod cleaning;
+mod closed_form_shadows;
+mod closed_form_skies;
+mod common;
+mod crowns;
+mod depth_map;
+mod exposure;
+mod ground;
+mod horizons;
+mod hostile_input;
+mod irradiance_models;
+mod irradiation;
+mod isovists;
+mod landmarks;
+mod layers;
+mod lines_of_sight;
+mod masbcpp;
+mod medial_scene;
+mod mesh_targets;
+mod meshes;
+mod neighbors;
+mod orientation;
+mod outlines;
+mod pictures;
+mod pipeline;
+mod proof;
+mod pruning;
+mod pulses;
+mod reading;
+mod relief;
+mod roof_planes;
+mod scanner_location;
+mod simulated_surveys;
+mod slender;
+mod solar_envelope;
+mod sun;
+mod sun_hours;
+mod tau_balls;
+mod thin_surfaces;
+mod top_surface;
+mod tree_light;
+mod viewshed;
+mod visibility_matrix;
+mod weather_files;
+mod writing;
+mod writing_trajectories;

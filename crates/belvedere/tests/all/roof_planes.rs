@@ -1,0 +1,149 @@
+//! Roofs as planes, against roofs whose tilt, azimuth and area are known.
+
+use belvedere::apps::roof_planes::{RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
+use belvedere::ground::{Ground, MapGrid};
+use belvedere::random::uniform;
+use belvedere::{Attributes, PointCloud};
+
+/// Noise of airborne scans, metres, evenly spread.
+const NOISE: f64 = 0.04;
+
+/// Points drawn evenly at `density` a square metre of the map over `[x0, x1] x [y0, y1]`, at a height.
+fn sheet(
+    seed: u64,
+    density: f64,
+    [x0, x1]: [f64; 2],
+    [y0, y1]: [f64; 2],
+    height: impl Fn(f64, f64) -> f64,
+) -> Vec<[f32; 3]> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some thousand points near the origin")]
+    let count = ((x1 - x0) * (y1 - y0) * density) as u64;
+    let point = |i: u64| {
+        let (x, y) = (x0 + (x1 - x0) * uniform(seed, 3 * i), y0 + (y1 - y0) * uniform(seed, 3 * i + 1));
+        #[expect(clippy::cast_possible_truncation, reason = "local metres")]
+        [x, y, height(x, y) + NOISE * (2.0 * uniform(seed, 3 * i + 2) - 1.0)].map(|v| v as f32)
+    };
+    (0..count).map(point).collect()
+}
+
+/// A house of 12 m by 8 m under a roof of 40 degrees whose ridge runs east, and a flat annex of 6 m by 5 m.
+fn house(density: f64) -> Vec<[f32; 3]> {
+    let slope = 40f64.to_radians().tan();
+    let mut points = sheet(1, density, [0.0, 12.0], [0.0, 8.0], |_, y| 9.0 - slope * (y - 4.0).abs());
+    points.extend(sheet(2, density, [20.0, 26.0], [0.0, 5.0], |_, _| 3.0));
+    points
+}
+
+fn faces(plane: &RoofPlane, azimuth_deg: f64) -> bool {
+    (plane.azimuth().to_degrees() - azimuth_deg).abs() < 2.0
+}
+
+#[test]
+fn tilt_azimuth_and_area_of_a_house_are_found() {
+    for density in [4.0, 12.0, 40.0] {
+        let planes = roof_planes(&house(density), &RoofPlaneParams::default()).unwrap();
+        assert_eq!(planes.len(), 3, "{density}: {planes:?}");
+        let side = 12.0 * 4.0 / 40f64.to_radians().cos();
+        // points end half their distance before the rim, which takes a share off; cells of a metre round the rest
+        let tolerance = |area: f64| 0.1 * area;
+        for plane in &planes[..2] {
+            assert!((plane.tilt().to_degrees() - 40.0).abs() < 1.0, "{}", plane.tilt().to_degrees());
+            assert!((plane.area - side).abs() < tolerance(side), "{density}: {} {side}", plane.area);
+            assert!(plane.roughness < NOISE);
+        }
+        assert!(planes[..2].iter().any(|plane| faces(plane, 0.0) || faces(plane, 360.0)));
+        assert!(planes[..2].iter().any(|plane| faces(plane, 180.0)));
+        assert!(
+            planes[2].tilt().to_degrees() < 1.0 && (planes[2].area - 30.0).abs() < tolerance(30.0),
+            "{}",
+            planes[2].area
+        );
+    }
+}
+
+#[test]
+fn cells_lie_in_their_plane_in_level_rows() {
+    let planes = roof_planes(&house(12.0), &RoofPlaneParams::default()).unwrap();
+    for plane in &planes {
+        let cells = plane.cells.middles();
+        assert!(cells.windows(2).all(|pair| pair[0].1 <= pair[1].1));
+        for (place, row) in &cells {
+            let offset: f64 = (0..3).map(|i| (place[i] - plane.middle[i]) * plane.normal[i]).sum();
+            assert!(offset.abs() < 1e-9, "{offset}");
+            let first = cells.iter().find(|(_, other)| other == row).unwrap().0;
+            assert!((first[2] - place[2]).abs() < 1e-6, "a row is a contour line");
+        }
+    }
+}
+
+#[test]
+fn area_is_that_of_a_turned_rectangle() {
+    // rims that run across the cells
+    for turn in [0.0, 17.0, 45.0_f64] {
+        let (sin, cos) = turn.to_radians().sin_cos();
+        #[expect(clippy::cast_possible_truncation, reason = "local metres")]
+        let turned: Vec<[f32; 3]> = sheet(3, 200.0, [0.0, 14.0], [0.0, 9.0], |_, _| 5.0)
+            .iter()
+            .map(|p| {
+                let [x, y, z] = p.map(f64::from);
+                [x * cos - y * sin, x * sin + y * cos, z].map(|v| v as f32)
+            })
+            .collect();
+        let planes = roof_planes(&turned, &RoofPlaneParams::default()).unwrap();
+        assert_eq!(planes.len(), 1);
+        // cells at the rim are chance: a twentieth of 126 m²
+        assert!((planes[0].area - 126.0).abs() < 6.3, "{turn}: {}", planes[0].area);
+    }
+}
+
+#[test]
+fn crowns_and_walls_are_no_roofs() {
+    #[expect(clippy::cast_possible_truncation, reason = "local metres")]
+    let crown: Vec<[f32; 3]> =
+        (0..3000).map(|i| [0, 1, 2].map(|axis| (6.0 * uniform(9, 3 * i + axis)) as f32)).collect();
+    let planes = roof_planes(&crown, &RoofPlaneParams::default()).unwrap();
+    let area: f64 = planes.iter().map(|plane| plane.area).sum();
+    // chance makes no plane of 6 m by 6 m
+    assert!(area < 10.0, "{area} m² in {} planes", planes.len());
+    let wall: Vec<[f32; 3]> =
+        sheet(4, 12.0, [0.0, 10.0], [0.0, 6.0], |_, _| 0.0).iter().map(|p| [p[0], p[2], p[1]]).collect();
+    assert!(roof_planes(&wall, &RoofPlaneParams::default()).unwrap().is_empty());
+    assert!(roof_planes(&[], &RoofPlaneParams::default()).unwrap().is_empty());
+    assert!(roof_planes(&[[1.0, 2.0, 3.0]; 50], &RoofPlaneParams::default()).unwrap().is_empty());
+}
+
+#[test]
+fn roofs_are_told_by_class_or_by_height() {
+    let mut positions = sheet(5, 4.0, [-10.0, 40.0], [-10.0, 20.0], |_, _| 0.0);
+    let ground_count = positions.len();
+    positions.extend(house(4.0));
+    let grid = MapGrid::covering([-10.0, -10.0], [40.0, 20.0], 1.0, [0.0, 0.0]).unwrap();
+    let ground = Ground::of_points(&positions[..ground_count], grid, 60.0).unwrap();
+    let classed = |class: u8| {
+        let of_point = |i: usize| if i < ground_count { 2 } else { class };
+        let classification = Some((0..positions.len()).map(of_point).collect());
+        let attributes = Attributes { classification, ..Attributes::default() };
+        PointCloud { positions: positions.clone(), attributes, ..PointCloud::default() }
+    };
+    let (rows, from) = roof_points(&classed(6), &ground).unwrap();
+    assert_eq!((rows.len(), from), (positions.len() - ground_count, RoofsFrom::Class));
+    let (rows, from) = roof_points(&classed(1), &ground).unwrap();
+    assert_eq!((rows.len(), from), (positions.len() - ground_count, RoofsFrom::Height));
+    assert!(roof_points(&classed(5), &ground).is_err(), "trees");
+}
+
+#[test]
+fn parameters_out_of_range_are_refused() {
+    let usual = RoofPlaneParams::default();
+    for params in [
+        RoofPlaneParams { distance: 0.0, ..usual },
+        RoofPlaneParams { reach: f64::NAN, ..usual },
+        RoofPlaneParams { cell: -1.0, ..usual },
+        // would be 10^18 cells a square metre
+        RoofPlaneParams { cell: 1e-9, ..usual },
+        RoofPlaneParams { angle: 2.0, ..usual },
+        RoofPlaneParams { least_area: f64::NAN, ..usual },
+    ] {
+        assert!(roof_planes(&house(4.0), &params).is_err(), "{params:?}");
+    }
+}

@@ -1,0 +1,380 @@
+//! Hours of sun against closed forms, and against every sun and every ball tried in turn.
+
+use belvedere::apps::sun::{
+    Binning, Date, DayParams, Period, Refraction, Site, SunSchedule, Zone, sun_days, sun_position_with,
+};
+use belvedere::apps::sun_hours::{RuleDays, SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
+use belvedere::apps::tree_light::light_share;
+use belvedere::control::Control;
+use belvedere::io::{SavedMatrix, read_matrix, write_matrix};
+use belvedere::medial::MedialBalls;
+use belvedere::query::{MedialScene, SceneParams, VisibilityMatrix, visibility_matrix};
+use belvedere::random::uniform;
+
+fn scene(centers: &[[f32; 3]], radii: &[f32]) -> MedialScene {
+    let count = radii.len();
+    let balls = MedialBalls {
+        centers: centers.to_vec(),
+        radii: radii.to_vec(),
+        source: vec![0; count],
+        touch: vec![0; count],
+        separation_angles: vec![1.0; count],
+    };
+    MedialScene::new(&balls, &SceneParams { depth_bias: 0.0, shell: 0.0, ..SceneParams::uncarved() }).unwrap()
+}
+
+fn site(latitude_deg: f64) -> Site {
+    Site { latitude: latitude_deg.to_radians(), longitude: 0.1, height: 0.0, convergence: 0.0 }
+}
+
+fn date(text: &str) -> Date {
+    Date::parse(text).unwrap()
+}
+
+fn plain(step: f64) -> DayParams {
+    DayParams { step, refraction: Refraction::Without, ..DayParams::default() }
+}
+
+fn schedule(site: &Site, dates: Vec<Date>, params: &DayParams, binning: Binning) -> SunSchedule {
+    let days = sun_days(site, &Zone::mean_solar(site), &Period::Days(dates), params).unwrap();
+    SunSchedule::new(&days, binning).unwrap()
+}
+
+fn hours_at(
+    scene: &MedialScene,
+    schedule: &SunSchedule,
+    targets: &[[f32; 3]],
+    normals: Option<&[[f32; 3]]>,
+) -> SunHours {
+    let matrix = visibility_matrix(scene, targets, &schedule.directions, &Control::none()).unwrap();
+    sun_hours(&matrix, schedule, normals, &SunHoursParams { sufficient_hours: 2.0, ..SunHoursParams::default() })
+        .unwrap()
+}
+
+/// A ball so far off that it seems 15° wide in each direction, where the sun stands at its noon on the day of the equinox.
+fn ball_before_the_noon_sun(site: &Site, days: &[belvedere::apps::sun::SunDay]) -> MedialScene {
+    let sun = sun_position_with(site, days[0].noon, Refraction::Without).unwrap().to_sun(site);
+    #[expect(clippy::cast_possible_truncation, reason = "a place of a test")]
+    let center = sun.map(|v| (100.0 * v) as f32);
+    #[expect(clippy::cast_possible_truncation, reason = "a radius of a test")]
+    let radius = (100.0 * 15f64.to_radians().sin()) as f32;
+    scene(&[center], &[radius])
+}
+
+#[test]
+fn a_ball_before_the_sun_takes_its_width_in_hours() {
+    // on the equinox the sun moves along a great circle, 15° an hour: a ball of 15° each way hides it for two hours around noon
+    let site = site(40.0);
+    let dates = vec![date("2026-03-20")];
+    for step in [60.0, 300.0, 600.0] {
+        let days = sun_days(&site, &Zone::mean_solar(&site), &Period::Days(dates.clone()), &plain(step)).unwrap();
+        let blockers = ball_before_the_noon_sun(&site, &days);
+        let schedule = SunSchedule::new(&days, Binning::Auto).unwrap();
+        let found = hours_at(&blockers, &schedule, &[[0.0; 3]], None);
+        let possible = days[0].possible_hours();
+        // the sun of a step stands for it: each edge of the shadow errs by half a step at most; the declination moves 0.1° within the 2 hours
+        let tolerance = step / 3600.0 + 0.01;
+        let [hours, longest, share] = [found.hours[0], found.longest[0], found.share[0]].map(f64::from);
+        assert!((hours - (possible - 2.0)).abs() <= tolerance, "{step}: {hours} of {possible}");
+        assert!((longest - (possible / 2.0 - 1.0)).abs() <= tolerance, "{longest}");
+        assert!((share - hours / possible).abs() < 1e-5);
+        // it comes and goes with the sun; half a day before and after noon, which is 12 but for the equation of time, −7.5 minutes
+        let noon = days[0].clock_hours(days[0].noon);
+        assert!((noon - 12.125).abs() < 0.02, "{noon}");
+        assert!((f64::from(found.first[0]) - (noon - possible / 2.0)).abs() < 0.02, "{}", found.first[0]);
+        assert!((f64::from(found.last[0]) - (noon + possible / 2.0)).abs() < 0.02, "{}", found.last[0]);
+        assert_eq!((found.days[0], found.least[0]), (1, found.hours[0]));
+    }
+}
+
+#[test]
+fn walls_see_half_of_the_equinox_and_nothing_from_behind() {
+    // at an equinox the sun stands south of the east-west line all day (north of the tropics): a south wall has it all, a north wall none,
+    // east and west walls half each; a place without normal has it all
+    let site = site(40.0);
+    let schedule_of = |site: &Site, day| schedule(site, vec![date(day)], &plain(120.0), Binning::Exact);
+    let schedule = schedule_of(&site, "2026-03-20");
+    let normals =
+        [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];
+    let targets = [[0.0; 3]; 6];
+    let blockers = scene(&[[0.0, 0.0, -1000.0]], &[1.0]);
+    let found = hours_at(&blockers, &schedule, &targets, Some(&normals));
+    let possible = schedule.possible_hours();
+    for (hours, expected) in found.hours.iter().zip([possible, 0.0, possible / 2.0, possible / 2.0, 0.0, possible]) {
+        // the declination is up to 0.2° from zero: by so much the sun rises north of east, within four minutes
+        assert!((f64::from(*hours) - expected).abs() < 0.1, "{hours} {expected}");
+    }
+    // in winter a north wall has none at all
+    let winter = schedule_of(&site, "2026-12-21");
+    let dark = hours_at(&blockers, &winter, &targets[..1], Some(&normals[1..2]));
+    assert!(dark.first[0].is_nan() && dark.last[0].is_nan() && dark.longest[0] == 0.0 && dark.share[0] == 0.0);
+    assert_eq!(found.days, [1, 0, 1, 1, 0, 1]);
+    let free = hours_at(&blockers, &schedule, &targets[..1], None);
+    assert!((f64::from(free.hours[0]) - possible).abs() < 1e-3 && free.share[0] <= 1.0);
+}
+
+#[test]
+fn a_year_of_shared_suns_is_a_year_of_suns() {
+    // a small town of balls: exact suns against shared ones, and both against every ball tried in turn
+    let site = site(52.0);
+    #[expect(clippy::cast_possible_truncation, reason = "random numbers")]
+    let at = |i: u64| uniform(5, i) as f32;
+    let centers: Vec<[f32; 3]> =
+        (0..60).map(|i| [120.0 * at(3 * i) - 60.0, 120.0 * at(3 * i + 1) - 60.0, 12.0 * at(3 * i + 2)]).collect();
+    let radii: Vec<f32> = (0..60).map(|i| 1.0 + 6.0 * at(1000 + i)).collect();
+    let blockers = scene(&centers, &radii);
+    let targets: Vec<[f32; 3]> =
+        (0..40).map(|i| [60.0 * at(2000 + 2 * i) - 30.0, 60.0 * at(2001 + 2 * i) - 30.0, 0.0]).collect();
+    let dates: Vec<Date> = date("2025-01-01").to(date("2025-12-31")).collect();
+    let params = DayParams { step: 1200.0, ..DayParams::default() };
+    let exact = schedule(&site, dates.clone(), &params, Binning::Exact);
+    let shared = schedule(&site, dates, &params, Binning::Within(1f64.to_radians()));
+    assert!(shared.directions.len() * 10 < exact.directions.len(), "{}", shared.directions.len());
+    let [a, b] = [&exact, &shared].map(|schedule| hours_at(&blockers, schedule, &targets, None));
+    let mut brute = Vec::new();
+    for target in &targets {
+        let mut hours = 0.0;
+        for step in exact.days.iter().flat_map(|day| &day.steps) {
+            let direction = exact.directions[step.direction as usize];
+            let is_blocked = centers.iter().zip(&radii).any(|(center, &radius)| {
+                let to: Vec<f64> = (0..3).map(|i| f64::from(center[i]) - f64::from(target[i])).collect();
+                let along: f64 = (0..3).map(|i| to[i] * direction[i]).sum();
+                let square = to.iter().map(|v| v * v).sum::<f64>() - along * along;
+                let half = f64::from(radius).powi(2) - square;
+                half > 0.0 && along + half.sqrt() > 0.0
+            });
+            hours += if is_blocked { 0.0 } else { f64::from(step.hours) };
+        }
+        brute.push(hours / 365.0);
+    }
+    let mut worst = 0.0_f64;
+    for ((a, b), brute) in a.hours.iter().zip(&b.hours).zip(&brute) {
+        // targets within a ball give way to it in one and not in the other; none here lie so. f32 sums err by 1e-5
+        assert!((f64::from(*a) - brute).abs() < 1e-4, "{a} {brute}");
+        worst = worst.max((f64::from(*a) - f64::from(*b)).abs());
+    }
+    // a sun 1° off comes 4 minutes early or late at each edge of a shadow, early and late in turn; among balls a day has half a dozen edges, and
+    // a year evens out most of their 24 minutes
+    assert!(worst < 0.1, "{worst}");
+    // in spring and autumn the hours of a place change by minutes a day, so that a limit of two hours is passed weeks early or late
+    let differ = a.days.iter().zip(&b.days).map(|(&a, &b)| a.abs_diff(b)).max().unwrap();
+    assert!(differ <= 40, "days with two hours differ by {differ}");
+    let least: f32 = a.least.iter().zip(&b.least).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(least <= 1.01, "{least}");
+}
+
+#[test]
+fn light_through_crowns_counts_by_the_share_of_its_day() {
+    let site = site(52.0);
+    let dates = ["2026-03-20", "2026-04-06", "2026-04-07", "2026-06-21"].map(date).to_vec();
+    let schedule = schedule(&site, dates, &plain(600.0), Binning::Exact);
+    // a crown to the south, and a wall behind it that is not as high
+    let crowns = scene(&[[0.0, -20.0, 10.0], [0.0, -40.0, 2.0]], &[8.0, 12.0]);
+    let opaque = scene(&[[0.0, -40.0, 2.0]], &[12.0]);
+    let targets = [[0.0; 3], [3.0, 1.0, 2.0], [0.0, 30.0, 0.0], [-25.0, -20.0, 0.0]];
+    let [all, opaque] = [crowns, opaque]
+        .map(|scene| visibility_matrix(&scene, &targets, &schedule.directions, &Control::none()).unwrap());
+    let params = SunHoursParams { sufficient_hours: 8.0, ..SunHoursParams::default() };
+    let of = |shares: &[f64]| sun_hours_through_crowns(&all, &opaque, &schedule, None, &params, shares);
+    let shares = [0.5, 0.5, 0.03, 0.03];
+    let found = of(&shares).unwrap();
+    let mut took = 0.0;
+    for target in 0..targets.len() {
+        let of_day = |(day, share): (&belvedere::apps::sun::DayOfLight, &f64)| -> f64 {
+            let light = |step: &belvedere::apps::sun::LightStep| {
+                f64::from(step.hours) * light_share(&all, &opaque, target, step.direction as usize, *share)
+            };
+            day.steps.iter().map(light).sum()
+        };
+        let days: Vec<f64> = schedule.days.iter().zip(&shares).map(of_day).collect();
+        let near =
+            |found: f32, expected: f64| assert!((f64::from(found) - expected).abs() < 1e-4, "{found} {expected}");
+        near(found.hours[target], days.iter().sum::<f64>() / 4.0);
+        near(found.least[target], days.iter().copied().fold(f64::INFINITY, f64::min));
+        near(found.share[target], days.iter().sum::<f64>() / schedule.possible_hours());
+        assert_eq!(found.days[target] as usize, days.iter().filter(|&&hours| hours >= 8.0 - 1e-4).count());
+        took += 12.0 - days[0];
+    }
+    assert!(took > 1.0, "something must stand before the sun: {took}");
+    // nothing through is all, everything through is the rest; first and last light are those of the open sun
+    let plain = |matrix| sun_hours(matrix, &schedule, None, &params).unwrap();
+    let (none, whole) = (of(&[0.0; 4]).unwrap(), of(&[1.0; 4]).unwrap());
+    for (a, b) in none.hours.iter().zip(&plain(&all).hours).chain(whole.hours.iter().zip(&plain(&opaque).hours)) {
+        assert!((a - b).abs() < 1e-4, "{a} {b}");
+    }
+    assert_eq!((&found.first, &found.last, &found.longest), (&none.first, &none.last, &none.longest));
+    assert!(of(&[0.5; 3]).is_err() && of(&[0.5, 0.5, f64::NAN, 0.0]).is_err() && of(&[0.5, 0.5, 1.1, 0.0]).is_err());
+}
+
+#[test]
+fn rules_know_their_days() {
+    let site_north = site(52.0);
+    let zone = Zone::utc();
+    let days = |text: &str, site: &Site| -> Vec<String> {
+        let rule = SunRule::parse(text).unwrap();
+        rule.days.dates(2026, site, &zone).unwrap().iter().map(ToString::to_string).collect()
+    };
+    let light = days("nl-light", &site_north);
+    assert_eq!((light.len(), light[0].as_str(), light[244].as_str()), (245, "2026-02-19", "2026-10-21"));
+    let strict = days("nl-strict", &site_north);
+    assert_eq!((strict.len(), strict[0].as_str(), strict[305].as_str()), (306, "2026-01-21", "2026-11-22"));
+    assert_eq!(days("bre-equinox", &site_north), ["2026-03-21"]);
+    // the solstices of 2026: 21 June 08:25 and 21 December 20:50 UTC
+    assert_eq!(days("1@shortest-day", &site_north), ["2026-12-21"]);
+    assert_eq!(days("1@longest-day", &site_north), ["2026-06-21"]);
+    assert_eq!(days("1@winter-solstice", &site(-30.0)), ["2026-06-21"]);
+    assert_eq!(days("3@12-30..01-02", &site_north), ["2026-01-01", "2026-01-02", "2026-12-30", "2026-12-31"]);
+    assert_eq!(days("3@02-29", &site_north), ["2026-02-28"]);
+    let hague = SunRule::parse("the-hague").unwrap();
+    assert!((hague.least_elevation.to_degrees() - 10.0).abs() < 1e-9 && hague.hours == 2.0);
+    let own = SunRule::parse("1.5@03-21>11").unwrap();
+    assert_eq!((own.hours, own.days), (1.5, RuleDays::On([3, 21])));
+    assert!((own.least_elevation.to_degrees() - 11.0).abs() < 1e-9);
+    for bad in [
+        "",
+        "bre",
+        "2@",
+        "@03-21",
+        "0@03-21",
+        "25@03-21",
+        "nan@03-21",
+        "2@13-01",
+        "2@02-30",
+        "2@3-21",
+        "2@03-21>90",
+        "2@03-21>-1",
+        "2@03-21>x",
+        "2@03-21..",
+        "2@..",
+        "2@03-é",
+    ] {
+        let told = SunRule::parse(bad).unwrap_err().to_string();
+        assert!(told.contains("nl-light"), "{bad}: {told}");
+    }
+}
+
+#[test]
+fn what_does_not_belong_together_is_refused() {
+    let site = site(52.0);
+    let schedule = schedule(&site, vec![date("2026-03-20")], &plain(600.0), Binning::Exact);
+    let blockers = scene(&[[0.0, 0.0, -1000.0]], &[1.0]);
+    let targets = [[0.0; 3], [f32::NAN; 3]];
+    let matrix = visibility_matrix(&blockers, &targets, &schedule.directions, &Control::none()).unwrap();
+    let usual = SunHoursParams::default();
+    let found = sun_hours(&matrix, &schedule, None, &usual).unwrap();
+    assert!(found.hours[0] > 11.0 && found.hours[1] == 0.0, "a place that is none sees nothing");
+    assert!(sun_hours(&matrix, &schedule, Some(&[[0.0, 0.0, 1.0]]), &usual).is_err());
+    for first_direction in [1, usize::MAX] {
+        assert!(sun_hours(&matrix, &schedule, None, &SunHoursParams { first_direction, ..usual }).is_err());
+    }
+    for sufficient_hours in [-1.0, 25.0, f64::NAN] {
+        assert!(sun_hours(&matrix, &schedule, None, &SunHoursParams { sufficient_hours, ..usual }).is_err());
+    }
+    let zone = Zone::utc();
+    let [a, b] = [date("2026-03-20").noon_utc(), date("2026-03-21").noon_utc()];
+    for period in [
+        Period::Days(Vec::new()),
+        Period::Days(vec![date("2026-03-20"); 4000]),
+        Period::Between([b, a]),
+        Period::Between([a, a]),
+        Period::Between([a, f64::NAN]),
+        Period::Between([a, 1e18]),
+    ] {
+        assert!(sun_days(&site, &zone, &period, &plain(600.0)).is_err(), "{period:?}");
+    }
+    // a noon to the next: half of each day's light
+    let between = sun_days(&site, &zone, &Period::Between([a, b]), &plain(600.0)).unwrap();
+    let hours: Vec<f64> = between.iter().map(|day| day.possible_hours()).collect();
+    assert!(hours.len() == 2 && hours.iter().all(|hours| (hours - 6.0).abs() < 0.8), "{hours:?}");
+}
+
+#[test]
+fn polar_night_has_no_share() {
+    let site = site(80.0);
+    let schedule = schedule(&site, vec![date("2026-12-21")], &plain(600.0), Binning::Auto);
+    let blockers = scene(&[[0.0, 0.0, -1000.0]], &[1.0]);
+    let found = hours_at(&blockers, &schedule, &[[0.0; 3]], None);
+    assert!(found.hours[0] == 0.0 && found.share[0].is_nan() && found.first[0].is_nan() && found.days[0] == 0);
+}
+
+#[test]
+fn a_matrix_of_a_year_answers_any_of_its_days() {
+    let site = site(52.0);
+    let zone = Zone::mean_solar(&site);
+    let year: Vec<Date> = date("2025-01-01").to(date("2025-12-31")).collect();
+    let params = DayParams { step: 1800.0, ..DayParams::default() };
+    let kept = schedule(&site, year, &params, Binning::Within(1f64.to_radians()));
+    let day = sun_days(&site, &zone, &Period::Days(vec![date("2025-05-03")]), &params).unwrap();
+    let among = SunSchedule::among(&day, &kept.directions, 1f64.to_radians()).unwrap();
+    assert_eq!(among.directions, kept.directions);
+    assert!(among.greatest_error > 0.0 && among.greatest_error <= 1f64.to_radians());
+    for (step, light) in day[0].steps.iter().zip(&among.days[0].steps) {
+        let cosine = |d: &[f64; 3]| (0..3).map(|i| d[i] * step.direction[i]).sum::<f64>();
+        let best = kept.directions.iter().map(cosine).fold(-1.0, f64::max);
+        assert_eq!(cosine(&kept.directions[light.direction as usize]), best);
+    }
+    let other = SunSchedule::among(&day, &kept.directions[..3], 1f64.to_radians()).unwrap_err().to_string();
+    assert!(other.contains("2025-05-03"), "{other}");
+    assert!(SunSchedule::among(&day, &[], 0.01).is_err() && SunSchedule::among(&day, &kept.directions, 0.0).is_err());
+}
+
+#[test]
+fn kept_matrices_come_back_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("seen.npz");
+    let directions: Vec<[f64; 3]> = (0..70)
+        .map(|i| {
+            let a = 0.01 * f64::from(i);
+            [a.sin(), 0.0, a.cos()]
+        })
+        .collect();
+    let matrix = SavedMatrix {
+        origin: [155_000.0, 463_000.25, -3.5],
+        targets: vec![[1.0, 2.0, 3.5], [f32::NAN, 0.0, 0.0], [-7.0, 0.1, 0.0]],
+        directions,
+        words: vec![u64::MAX, 0b11_1111, 0, 0, 7 << 40, 0b10_0001],
+        scene: u64::MAX - 5,
+    };
+    write_matrix(&path, &matrix).unwrap();
+    let found = read_matrix(&path).unwrap();
+    assert!(found.targets[1][0].is_nan());
+    assert_eq!(
+        (&found.words, &found.directions, found.origin, found.scene),
+        (&matrix.words, &matrix.directions, matrix.origin, matrix.scene)
+    );
+    let back = VisibilityMatrix::from_words(3, 70, found.words).unwrap();
+    assert!(
+        back.is_free(0, 69)
+            && back.is_free(2, 42)
+            && !back.is_free(2, 43)
+            && back.is_free(2, 69)
+            && !back.is_free(1, 0)
+    );
+    assert!(
+        VisibilityMatrix::from_words(3, 70, vec![0; 5]).is_err()
+            && VisibilityMatrix::from_words(usize::MAX, 70, vec![0; 6]).is_err()
+    );
+    // bits beyond the last direction, a word too few, a direction that is none
+    let mut wrong = [matrix.clone(), matrix.clone(), matrix.clone()];
+    wrong[0].words[1] = 1 << 6;
+    wrong[1].words.pop();
+    wrong[2].directions[3] = [f64::NAN, 0.0, 1.0];
+    assert!(wrong.iter().all(|wrong| write_matrix(&folder.path().join("wrong.npz"), wrong).is_err()));
+    // any cut, and any damaged byte, is an error or leaves a matrix that fits together
+    let bytes = std::fs::read(&path).unwrap();
+    let damaged = folder.path().join("damaged.npz");
+    for end in (0..bytes.len()).step_by(97) {
+        std::fs::write(&damaged, &bytes[..end]).unwrap();
+        let told = read_matrix(&damaged).unwrap_err().to_string();
+        assert!(told.contains("damaged.npz"), "{told}");
+    }
+    for at in (0..bytes.len()).step_by(11) {
+        let mut bytes = bytes.clone();
+        bytes[at] ^= 0xff;
+        std::fs::write(&damaged, &bytes).unwrap();
+        assert!(
+            read_matrix(&damaged).is_err_and(|e| !e.to_string().is_empty())
+                || read_matrix(&damaged).is_ok_and(|m| m.validate().is_ok())
+        );
+    }
+}

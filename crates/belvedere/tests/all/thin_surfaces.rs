@@ -1,0 +1,129 @@
+//! Thin surfaces told from solid ones by pulses below them, on a canopy on posts and a block of the same size.
+#![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
+
+use belvedere::medial::{Kind, ThinSurfaceParams, on_thin_surfaces};
+use belvedere::neighbors::NeighborIndex;
+use belvedere::pulses::{NeedleParams, Needles};
+use belvedere::random::uniform;
+
+const HEIGHT: f64 = 3.0;
+/// West, south, east, north of the slab.
+const SLAB: [f64; 4] = [-5.0, -3.0, 5.0, 3.0];
+
+/// What stands on level ground.
+#[derive(Clone, Copy, PartialEq)]
+enum Built {
+    Canopy,
+    Block,
+}
+
+struct Survey {
+    points: Vec<[f32; 3]>,
+    scanner: Vec<[f32; 3]>,
+    kinds: Vec<Kind>,
+    on_top: Vec<bool>,
+}
+
+/// `count` pulses from two lines 120 m to either side, 450 m up: 15 degrees. Exact first hits, by hand: the top, the walls of
+/// the block, the ground.
+fn survey(built: Built, count: u64) -> Survey {
+    let mut survey = Survey { points: Vec::new(), scanner: Vec::new(), kinds: Vec::new(), on_top: Vec::new() };
+    for i in 0..count {
+        let scanner = [if i % 2 == 0 { -120.0 } else { 120.0 }, 10.0 * (uniform(3, i) - 0.5), 450.0];
+        let aim = [24.0 * (uniform(1, i) - 0.5), 16.0 * (uniform(2, i) - 0.5), 0.0];
+        // share of the way from the ground to the scanner
+        let at = |share: f64| -> [f64; 3] { std::array::from_fn(|k| aim[k] + share * (scanner[k] - aim[k])) };
+        let inside = |p: [f64; 3]| (SLAB[0]..=SLAB[2]).contains(&p[0]) && (SLAB[1]..=SLAB[3]).contains(&p[1]);
+        let top = at(HEIGHT / 450.0);
+        let (p, on_top) = if inside(top) {
+            (top, true)
+        } else if built == Built::Block && inside(aim) {
+            // it entered through a side: the last place outside
+            let steps = 0..=300;
+            (steps.map(|k| at(HEIGHT / 450.0 * f64::from(k) / 300.0)).find(|&p| !inside(p)).unwrap(), false)
+        } else {
+            (aim, false)
+        };
+        survey.points.push(p.map(|v| v as f32));
+        survey.scanner.push(scanner.map(|v| v as f32));
+        survey.kinds.push(if p[2] < 0.01 { Kind::Ground } else { Kind::Other });
+        survey.on_top.push(on_top);
+    }
+    survey
+}
+
+/// Shares of the points on top and of all others that are found thin.
+fn found(survey: &Survey) -> [f64; 2] {
+    let thin = thin(survey);
+    [true, false].map(|top| {
+        let rows: Vec<usize> = (0..thin.len()).filter(|&row| survey.on_top[row] == top).collect();
+        rows.iter().filter(|&&row| thin[row]).count() as f64 / rows.len() as f64
+    })
+}
+
+fn thin(survey: &Survey) -> Vec<bool> {
+    let index = NeighborIndex::new(&survey.points).unwrap();
+    let (needles, _) = Needles::new(&survey.points, &survey.scanner, &NeedleParams::default()).unwrap();
+    on_thin_surfaces(&survey.points, &survey.kinds, &index, &needles, &ThinSurfaceParams::default())
+}
+
+/// Ten pulses a square metre.
+const PULSES: u64 = 3840;
+
+#[test]
+fn a_canopy_is_thin_to_its_middle_and_a_block_is_not() {
+    let canopy = survey(Built::Canopy, PULSES);
+    let thin = thin(&canopy);
+    // pulses reach 0.8 m below the rim at most, and the middle is 3 m from the nearest
+    let mut inner_count = 0;
+    for (row, p) in canopy.points.iter().enumerate().filter(|&(row, _)| canopy.on_top[row]) {
+        let p = p.map(f64::from);
+        // two cells from the rim: nearer, a cell that happens to hold ground alone hides the one behind it
+        let is_inner = p[0] > SLAB[0] + 1.0 && p[0] < SLAB[2] - 1.0 && p[1] > SLAB[1] + 1.0 && p[1] < SLAB[3] - 1.0;
+        inner_count += usize::from(is_inner);
+        assert!(thin[row] || !is_inner, "{p:?}");
+    }
+    assert!(inner_count > 250, "{inner_count}");
+    let [top, beside] = found(&canopy);
+    // of the points within a cell of the rim, a third of all, a tenth may be hidden so
+    assert!(top > 0.96, "{top}");
+    assert!(beside == 0.0, "ground was found thin: {beside}");
+    assert_eq!(found(&survey(Built::Block, PULSES)), [0.0, 0.0]);
+}
+
+#[test]
+fn vegetation_and_ground_are_never_thin() {
+    for kind in [Kind::Ground, Kind::Vegetation] {
+        let mut survey = survey(Built::Canopy, PULSES);
+        survey.kinds.fill(kind);
+        assert!(!thin(&survey).contains(&true));
+    }
+}
+
+#[test]
+fn neither_order_of_points_nor_number_of_threads_matters() {
+    let forward = survey(Built::Canopy, PULSES);
+    let mut backward = survey(Built::Canopy, PULSES);
+    backward.points.reverse();
+    backward.scanner.reverse();
+    backward.kinds.reverse();
+    let on = |threads: usize, survey: &Survey| {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| thin(survey))
+    };
+    let expected = on(1, &forward);
+    let mut turned = on(5, &backward);
+    turned.reverse();
+    assert!(expected == turned && expected.contains(&true));
+}
+
+#[test]
+fn no_points_and_no_needles_are_no_thin_surfaces() {
+    let nothing = NeighborIndex::new(&[]).unwrap();
+    let (needles, _) = Needles::new(&[], &[], &NeedleParams::default()).unwrap();
+    let params = ThinSurfaceParams::default();
+    assert!(on_thin_surfaces(&[], &[], &nothing, &needles, &params).is_empty());
+    let survey = survey(Built::Canopy, PULSES);
+    let index = NeighborIndex::new(&survey.points).unwrap();
+    let thin = on_thin_surfaces(&survey.points, &survey.kinds, &index, &needles, &params);
+    assert!(thin.len() == survey.points.len() && !thin.contains(&true));
+}

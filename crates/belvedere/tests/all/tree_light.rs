@@ -1,0 +1,144 @@
+//! Light through a hedge and through a crown, whose shares are formulas.
+#![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
+
+use belvedere::apps::sky_view::{SkyDirections, sky_view};
+use belvedere::apps::tree_light::{
+    Foliage, Transmissivity, light_share, light_sum, through_crowns, vegetation_of_classes, vegetation_of_transmission,
+    without_vegetation,
+};
+use belvedere::control::Control;
+use belvedere::medial::MedialBalls;
+use belvedere::query::{MedialScene, SceneParams, VisibilityMatrix, visibility_matrix};
+use belvedere::view::to_sun;
+
+const LEAF: u8 = 5;
+const WALL: u8 = 6;
+
+/// Balls given with the class of the point each is tangent at.
+struct Balls {
+    balls: MedialBalls,
+    classes: Vec<u8>,
+}
+
+impl Balls {
+    fn new(list: &[([f64; 3], f64, u8)]) -> Self {
+        let balls = MedialBalls {
+            centers: list.iter().map(|(center, ..)| center.map(|v| v as f32)).collect(),
+            radii: list.iter().map(|&(_, radius, _)| radius as f32).collect(),
+            source: (0..).take(list.len()).collect(),
+            touch: vec![0; list.len()],
+            separation_angles: vec![1.0; list.len()],
+        };
+        Self { balls, classes: list.iter().map(|&(.., class)| class).collect() }
+    }
+
+    /// What all balls leave free, and those that are not vegetation.
+    fn matrices(&self, directions: &[[f64; 3]]) -> [VisibilityMatrix; 2] {
+        let opaque = without_vegetation(&self.balls, &vegetation_of_classes(&self.balls, &self.classes)).unwrap();
+        [&self.balls, &opaque].map(|balls| {
+            let scene = MedialScene::new(balls, &SceneParams::default()).unwrap();
+            visibility_matrix(&scene, &[[0.0; 3]], directions, &Control::none()).unwrap()
+        })
+    }
+}
+
+/// Elevation of the tangent to a ball whose centre lies `away` from the eye and `up`.
+fn top(away: f64, up: f64, radius: f64) -> f64 {
+    up.atan2(away) + (radius / away.hypot(up)).asin()
+}
+
+#[test]
+fn a_hedge_before_a_low_wall_lets_its_share_of_the_sun_through() {
+    // to the north: a hedge of 2 m at 3 m, stacked so that it leaves nothing, and at 12 m the rounded top of a wall of 3 m
+    let hedge = [0.0, 0.5, 1.0, 1.5].map(|up| ([0.0, 3.0, up], 0.5, LEAF));
+    let wall = [0.0, 0.5, 1.0, 1.5, 2.0, 2.5].map(|up| ([0.0, 12.0, up], 0.5, WALL));
+    let balls = Balls::new(&[&hedge[..], &wall[..]].concat());
+    let elevations: Vec<f64> = (0..90).map(|degree| (f64::from(degree) + 0.5).to_radians()).collect();
+    let directions: Vec<[f64; 3]> = elevations.iter().map(|&elevation| to_sun(0.0, elevation)).collect();
+    let [all, opaque] = balls.matrices(&directions);
+    let (hedge, wall) = (top(3.0, 1.5, 0.5), top(12.0, 2.5, 0.5));
+    assert!(wall < hedge);
+    let share = |elevation: f64, transmissivity: f64| match elevation {
+        e if e > hedge => 1.0,
+        e if e > wall => transmissivity,
+        _ => 0.0,
+    };
+    for transmissivity in [0.0, 0.03, 0.4, 1.0] {
+        for (direction, &elevation) in elevations.iter().enumerate() {
+            let found = light_share(&all, &opaque, 0, direction, transmissivity);
+            assert_eq!(found, share(elevation, transmissivity), "{} degrees", elevation.to_degrees());
+        }
+        let found = light_sum(&all, &opaque, 0, &[0.25; 90], &[transmissivity; 90]);
+        let expected: f64 = elevations.iter().map(|&e| 0.25 * share(e, transmissivity)).sum();
+        assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
+        // the same from the sums of both, as measures that know no trees are made
+        let sums = [&all, &opaque].map(|matrix| [matrix.sum(0, &[0.25; 90]) as f32]);
+        let mixed = through_crowns(&sums[0], &sums[1], transmissivity).unwrap()[0];
+        assert!((f64::from(mixed) - expected).abs() < 1e-5, "{mixed} instead of {expected}");
+    }
+    // in leaf while the sun is high and bare while it is low
+    let season: Vec<f64> = elevations.iter().map(|&e| if e > 0.4 { 0.03 } else { 0.5 }).collect();
+    let found = light_sum(&all, &opaque, 0, &[1.0; 90], &season);
+    let expected: f64 = elevations.iter().zip(&season).map(|(&e, &t)| share(e, t)).sum();
+    assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
+    assert_eq!(light_sum(&all, &opaque, 0, &[1.0; 90], &[]), 0.0);
+}
+
+#[test]
+fn a_crown_takes_of_the_sky_what_it_covers_but_its_share() {
+    // a crown of 2 m of radius, 5 m above
+    let balls = Balls::new(&[([0.0, 0.0, 5.0], 2.0, LEAF)]);
+    let sky = SkyDirections::even(2305).unwrap();
+    let [all, opaque] = balls.matrices(&sky.directions).map(|matrix| sky_view(&matrix, &sky, None).unwrap());
+    let sin: f64 = 2.0 / 5.0;
+    let covered = [sin * sin, 1.0 - (1.0 - sin * sin).sqrt()];
+    for transmissivity in [0.0, 0.05, 0.5] {
+        let factor = through_crowns(&all.factors, &opaque.factors, transmissivity).unwrap()[0];
+        let openness = through_crowns(&all.openness, &opaque.openness, transmissivity).unwrap()[0];
+        for (found, covered) in [factor, openness].into_iter().zip(covered) {
+            let expected = 1.0 - (1.0 - transmissivity) * covered;
+            // 2305 directions err by 0.0015
+            assert!((f64::from(found) - expected).abs() < 0.002, "{found} instead of {expected}");
+        }
+    }
+    assert!(through_crowns(&[1.0], &[1.0, 1.0], 0.5).is_err());
+    for share in [-0.01, 1.01, f64::NAN, f64::INFINITY] {
+        assert!(through_crowns(&[1.0], &[1.0], share).is_err(), "{share}");
+        assert!(Transmissivity::constant(share).is_err(), "{share}");
+    }
+}
+
+#[test]
+fn trees_are_in_leaf_from_april_to_october_and_half_a_year_later_in_the_south() {
+    let north = 52f64.to_radians();
+    let states = |latitude: f64| (1..=366).map(move |day| Foliage::on_day(day, latitude));
+    let in_leaf = |latitude: f64| states(latitude).filter(|state| *state == Foliage::InLeaf).count();
+    assert_eq!(in_leaf(north), 204);
+    assert_eq!(
+        [96, 97, 300, 301].map(|day| Foliage::on_day(day, north) == Foliage::InLeaf),
+        [false, true, true, false]
+    );
+    // in the south at Christmas and not in July
+    assert_eq!([15, 200, 359].map(|day| Foliage::on_day(day, -north) == Foliage::InLeaf), [true, false, true]);
+    assert!((in_leaf(-north) as i32 - 204).abs() <= 1);
+    // no winter in the tropics
+    assert_eq!(in_leaf(-0.1), 366);
+    let usual = Transmissivity::default();
+    assert!(usual.of(Foliage::InLeaf) < 0.06 && (0.4..=0.53).contains(&usual.of(Foliage::Bare)));
+}
+
+#[test]
+fn what_pulses_measured_is_the_mean_over_the_area_of_crowns() {
+    let balls = Balls::new(&[([0.0; 3], 1.0, LEAF), ([5.0, 0.0, 0.0], 2.0, LEAF), ([9.0, 0.0, 0.0], 9.0, WALL)]);
+    let transmission = [0.5, 0.25, f32::NAN];
+    let found = Transmissivity::measured(&balls.balls, &transmission).unwrap();
+    // areas as 1 to 4: (0.5 + 4 · 0.25) / 5
+    assert!((found.in_leaf - 0.3).abs() < 1e-9 && found.in_leaf == found.bare, "{found:?}");
+    assert_eq!(vegetation_of_transmission(&transmission), [true, true, false]);
+    assert_eq!(vegetation_of_classes(&balls.balls, &balls.classes), [true, true, false]);
+    // classes of a cloud that is shorter than it should be name nothing
+    assert_eq!(vegetation_of_classes(&balls.balls, &[LEAF]), [true, false, false]);
+    assert_eq!(Transmissivity::measured(&balls.balls, &[f32::NAN; 3]), None);
+    assert_eq!(Transmissivity::measured(&balls.balls, &[]), None);
+    assert!(without_vegetation(&balls.balls, &[true]).is_err());
+}

@@ -1,0 +1,89 @@
+//! The visibility matrix is what lines of sight say, pair by pair.
+
+use belvedere::apps::sky_view::SkyDirections;
+use belvedere::control::Control;
+use belvedere::medial::MedialBalls;
+use belvedere::query::{Answer, MedialScene, SceneParams, VisibilityMatrix, visibility_matrix};
+use belvedere::random::uniform;
+
+/// Blocks of balls on a bumpy ground, crowns of small ones between.
+fn place(count: u64, seed: u64) -> MedialBalls {
+    let mut balls = MedialBalls::default();
+    for i in 0..count {
+        let u = |k: u64| uniform(seed, 8 * i + k);
+        let (x, y) = (60.0 * u(0) - 30.0, 60.0 * u(1) - 30.0);
+        let (z, radius) = match i % 3 {
+            0 => (-2.0 + 0.2 * u(2), 2.0),
+            1 if ((x / 12.0).floor() + (y / 12.0).floor()) % 2.0 == 0.0 => (9.0 * u(2), 0.3 + 2.0 * u(3)),
+            _ => (4.0 + 5.0 * u(2), 0.1 + 0.3 * u(3)),
+        };
+        balls.centers.push([x, y, z].map(|v| v as f32));
+        balls.radii.push(radius as f32);
+        balls.source.push(0);
+        balls.touch.push(0);
+        balls.separation_angles.push(0.0);
+    }
+    balls
+}
+
+fn differing(matrix: &VisibilityMatrix, scene: &MedialScene, targets: &[[f32; 3]], directions: &[[f64; 3]]) -> usize {
+    let pairs = targets.iter().enumerate().flat_map(|t| directions.iter().enumerate().map(move |d| (t, d)));
+    pairs
+        .filter(|((row, target), (column, direction))| {
+            let is_finite = target.iter().all(|v| v.is_finite());
+            let is_visible = || scene.answer(target.map(f64::from), **direction, f64::INFINITY) == Answer::Visible;
+            matrix.is_free(*row, *column) != (is_finite && is_visible())
+        })
+        .count()
+}
+
+#[test]
+fn every_bit_is_the_answer_of_a_line_of_sight() {
+    let balls = place(1500, 3);
+    let mut directions = SkyDirections::even(90).unwrap().directions;
+    // along the axes, level, flat, and below the horizon
+    directions.extend([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.6, 0.0, 0.8]]);
+    for flat in [0.02_f64, 0.05, -0.1] {
+        directions.push([(1.0 - flat * flat).sqrt(), 0.0, flat]);
+    }
+    let target = |i: u64| -> [f32; 3] {
+        let u = |k: u64| uniform(9, 8 * i + k);
+        // on the ground, in the air and beside the place
+        let height = if i.is_multiple_of(2) { 0.1 } else { 14.0 * u(2) - 1.0 };
+        [80.0 * u(0) - 40.0, 80.0 * u(1) - 40.0, height].map(|v| v as f32)
+    };
+    let mut targets: Vec<[f32; 3]> = (0..1200).map(target).collect();
+    targets.push([f32::NAN, 0.0, 0.0]);
+    for params in
+        [SceneParams::carved(), SceneParams::default(), SceneParams { depth_bias: 0.7, ..SceneParams::default() }]
+    {
+        let scene = MedialScene::new(&balls, &params).unwrap();
+        // many enough to be swept, and too few
+        let swept = visibility_matrix(&scene, &targets, &directions, &Control::none()).unwrap();
+        assert_eq!(differing(&swept, &scene, &targets, &directions), 0, "{params:?}");
+        let few = visibility_matrix(&scene, &targets, &directions[..5], &Control::none()).unwrap();
+        assert_eq!(differing(&few, &scene, &targets, &directions[..5]), 0, "{params:?}");
+        assert_eq!((swept.target_count(), swept.direction_count()), (1201, 98));
+        let free: usize =
+            (0..1201).map(|row| swept.row(row).iter().map(|w| w.count_ones() as usize).sum::<usize>()).sum();
+        assert!(free > 10_000 && free < 100_000, "a scene with light and shade: {free}");
+        assert!(swept.row(1200) == [0, 0] && swept.row(5000).is_empty() && !swept.is_free(0, 98));
+        let ones = vec![1.0; 98];
+        assert!((0..1201).all(|row| {
+            let expected = (0..98).filter(|&column| swept.is_free(row, column)).count();
+            (swept.sum(row, &ones) - expected as f64).abs() < 1e-9
+        }));
+    }
+}
+
+#[test]
+fn nothing_blocks_without_balls_and_bad_directions_are_refused() {
+    let scene = MedialScene::new(&MedialBalls::default(), &SceneParams::carved()).unwrap();
+    let sky = SkyDirections::even(20).unwrap();
+    let matrix = visibility_matrix(&scene, &[[0.0; 3]], &sky.directions, &Control::none()).unwrap();
+    assert!((0..20).all(|column| matrix.is_free(0, column)));
+    assert!(visibility_matrix(&scene, &[[0.0; 3]], &[[0.0, 0.0, 2.0]], &Control::none()).is_err());
+    assert!(visibility_matrix(&scene, &[[0.0; 3]], &[[f64::NAN, 0.0, 1.0]], &Control::none()).is_err());
+    let none = visibility_matrix(&scene, &[], &sky.directions, &Control::none()).unwrap();
+    assert_eq!(none.target_count(), 0);
+}
