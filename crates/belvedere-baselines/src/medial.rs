@@ -1,6 +1,7 @@
 //! The paper's method as published and its relatives: unions of medial balls that nothing but the points has shrunk.
 
 use crate::Survey;
+use belvedere::Bounds;
 use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::medial::{
@@ -177,7 +178,7 @@ impl MedialBaseline {
     /// # Errors
     /// [`belvedere::Error::NoPoints`] for an empty cloud.
     pub fn of_balls(survey: &Survey<'_>, balls: MedialBalls, params: &MedialParams) -> Result<Self> {
-        let Some((low, high)) = survey.cloud.bounds() else {
+        let Some(Bounds { low, high }) = survey.cloud.bounds() else {
             return Err(belvedere::Error::NoPoints { what: "a union of balls needs a cloud".to_owned() });
         };
         let scene = MedialScene::new(&balls, &params.blocking)?;

@@ -111,7 +111,7 @@ fn carved_variants() -> impl Iterator<Item = (String, String, MedialParams)> {
 /// trace it, then Belvedere's own and variants of them.
 #[must_use]
 pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
-    let (cloud, positions, origin) = (survey.cloud, &survey.cloud.positions, survey.cloud.origin);
+    let (cloud, positions, origin) = (survey.cloud, &survey.cloud.positions, survey.cloud.frame.origin);
     let medial = |key: &str, title: &str, params: MedialParams| {
         Method::new(key, title, "medial-balls", move || MedialBaseline::new(survey, Outward::Survey, &params))
     };

@@ -14,7 +14,6 @@ use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::tree_light::{vegetation_of_classes, vegetation_of_transmission};
 use belvedere::clean::{CleanParams, CleanReport, Treatment, clean};
-use belvedere::crs::Crs;
 use belvedere::depth::Profile;
 use belvedere::io::{
     ReadOptions, ReadReport, SavedBalls, SavedPulses, is_ball_file, read_balls, read_cloud, read_mesh, read_trajectory,
@@ -27,6 +26,7 @@ use belvedere::pulses::NeedleColumns;
 use belvedere::query::UnprovenAs;
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere::{Attributes, Error, PointCloud};
+use belvedere::{Bounds, Frame};
 use scanner::Located;
 use std::borrow::Cow;
 use std::path::Path;
@@ -144,7 +144,7 @@ pub(crate) struct Prepared {
     /// Which points of the cloud as read these are.
     pub(crate) kept: Vec<u32>,
     /// Lowest and highest local corner of these points: a stray point that was cleaned away must not widen a view.
-    pub(crate) bounds: ([f32; 3], [f32; 3]),
+    pub(crate) bounds: Bounds,
     /// Where carving was asked for.
     pub(crate) carving: Option<scanner::CarvingInput>,
     /// Classes of these points, where they have any.
@@ -227,14 +227,14 @@ pub(crate) fn prepare(
         OrientChoice::Given => Orientation::Given,
         OrientChoice::Scanner => Orientation::Scanner,
         OrientChoice::ScannerAt(position) => {
-            let scale = cloud.crs.metres_per_unit_xyz();
+            let scale = cloud.frame.crs.metres_per_unit_xyz();
             Orientation::ScannerAt(vec![std::array::from_fn(|i| position[i] * scale[i])])
         }
         OrientChoice::Trajectory(_) if carving.is_some() => Orientation::Pulses(&scanner),
         OrientChoice::Trajectory(path) => {
             read = match trajectory {
                 Some(read) => read,
-                None => stages.run("reading trajectory", 0, |_| read_trajectory(&path, &cloud.crs))?.0,
+                None => stages.run("reading trajectory", 0, |_| read_trajectory(&path, &cloud.frame.crs))?.0,
             };
             Orientation::Trajectory(&read)
         }
@@ -242,7 +242,7 @@ pub(crate) fn prepare(
         OrientChoice::Mesh(path) => {
             let (model, _) = stages.run("reading mesh", 0, |_| read_mesh(&path))?;
             // like every position that is typed or read, in the unit of the cloud's file
-            mesh = model.scaled_to_metres(&cloud.crs);
+            mesh = model.scaled_to_metres(&cloud.frame.crs);
             Orientation::Mesh(&mesh)
         }
     };
@@ -291,7 +291,7 @@ pub(crate) struct Scene {
     /// Local frame, unit and reference system: a cloud, without points where the balls came from a file.
     pub(crate) cloud: PointCloud,
     /// Lowest and highest local corner of the points that balls were made from.
-    pub(crate) bounds: ([f32; 3], [f32; 3]),
+    pub(crate) bounds: Bounds,
     /// Outward unit normals of the points that are kept, (N, 3): zero where a point has none.
     pub(crate) normals: Option<Vec<[f32; 3]>>,
     /// What pulses proved empty, where balls were carved and the file kept it.
@@ -308,8 +308,8 @@ pub(crate) struct Scene {
 impl Scene {
     /// Local metres of a place in the coordinates and unit of the file.
     pub(crate) fn local_from_file(&self, place: [f64; 3]) -> [f64; 3] {
-        let scale = self.cloud.crs.metres_per_unit_xyz();
-        std::array::from_fn(|i| place[i] * scale[i] - self.cloud.origin[i])
+        let scale = self.cloud.frame.crs.metres_per_unit_xyz();
+        std::array::from_fn(|i| place[i] * scale[i] - self.cloud.frame.origin[i])
     }
 
     /// Whether pulses cut the balls.
@@ -346,7 +346,7 @@ pub(crate) fn scene(
     let given = match points {
         Points::Keep => Cow::Borrowed(&cloud),
         Points::LetGo => {
-            let frame = cloud.without_points();
+            let frame = PointCloud::in_frame(cloud.frame.clone());
             Cow::Owned(std::mem::replace(&mut cloud, frame))
         }
     };
@@ -399,7 +399,7 @@ fn scene_of_saved(saved: SavedBalls, path: &Path) -> Result<Scene> {
         );
     }
     let bounds = saved.bounds;
-    let cloud = PointCloud { origin: saved.origin, crs: saved.crs, ..PointCloud::default() };
+    let cloud = PointCloud::in_frame(saved.frame);
     let balls = MedialBalls {
         centers: saved.centers,
         radii: saved.radii,
@@ -416,7 +416,7 @@ fn scene_of_saved(saved: SavedBalls, path: &Path) -> Result<Scene> {
 }
 
 /// Lowest and highest corner of a cloud that has points.
-pub(crate) fn bounds_of(cloud: &PointCloud) -> Result<([f32; 3], [f32; 3])> {
+pub(crate) fn bounds_of(cloud: &PointCloud) -> Result<Bounds> {
     Ok(cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?)
 }
 
@@ -494,7 +494,7 @@ impl ViewChoice {
     }
 
     fn view(&self, scene: &Scene) -> Result<View> {
-        let (low, high) = (scene.bounds.0.map(f64::from), scene.bounds.1.map(f64::from));
+        let (low, high) = scene.bounds.corners();
         let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));
         let view = if let Some(sun) = &self.kind.sun {
             if !(0.0..=90.0).contains(&sun.0[1]) {
@@ -506,7 +506,7 @@ impl ViewChoice {
         } else if let Some(direction) = &self.kind.direction {
             flagged("--direction, --pixel", View::parallel(direction.0, low, high, pixel))?
         } else if let Some(viewport) = &self.kind.viewport {
-            let scale = scene.cloud.crs.metres_per_unit_xyz();
+            let scale = scene.cloud.frame.crs.metres_per_unit_xyz();
             let metres = |v: [f64; 3]| std::array::from_fn(|i| v[i] * scale[i]);
             let view = View::from_viewport(
                 scene.local_from_file(viewport.p0),
@@ -529,14 +529,13 @@ impl ViewChoice {
 /// What a ball file says of how it was made.
 pub(crate) fn saved(
     Made { balls, transmission }: Made,
-    place: (&[f64; 3], &Crs),
-    bounds: ([f32; 3], [f32; 3]),
+    frame: &Frame,
+    bounds: Bounds,
     pulses: Option<NeedleColumns>,
     provenance: impl IntoIterator<Item = (&'static str, String)>,
 ) -> SavedBalls {
     SavedBalls {
-        origin: *place.0,
-        crs: place.1.clone(),
+        frame: frame.clone(),
         bounds,
         centers: balls.centers,
         radii: balls.radii,
@@ -557,5 +556,5 @@ pub(crate) fn saved(
 /// Local positions as f32 in file coordinates, which is what masbcpp's folders hold.
 #[expect(clippy::cast_possible_truncation, reason = "the layout is f32")]
 pub(crate) fn file_coordinates(cloud: &PointCloud, local: &[[f32; 3]]) -> Vec<[f32; 3]> {
-    local.iter().map(|&p| cloud.to_file_coordinates(p).map(|v| v as f32)).collect()
+    local.iter().map(|&p| cloud.frame.to_file_coordinates(p).map(|v| v as f32)).collect()
 }

@@ -1,6 +1,7 @@
 //! Simulated scans as the rest of the program takes them.
 
 use anyhow::Result;
+use belvedere::Frame;
 use belvedere::cloud::{Attributes, GpsTimeKind, PointCloud, centre_rounded, to_local};
 use belvedere::crs::Crs;
 use belvedere::io::atomic;
@@ -24,7 +25,7 @@ pub(crate) fn cloud_of(scan: &Scan) -> Result<PointCloud> {
     let coordinates = || scan.x.iter().zip(&scan.y).zip(&scan.z).map(|((&x, &y), &z)| [x, y, z]);
     let origin = centre_rounded(coordinates());
     Ok(PointCloud {
-        origin,
+        frame: Frame { origin, crs: crs()? },
         positions: coordinates().map(|c| to_local(c, origin)).collect(),
         attributes: Attributes {
             classification: Some(scan.classification.clone()),
@@ -37,7 +38,6 @@ pub(crate) fn cloud_of(scan: &Scan) -> Result<PointCloud> {
             intensity: Some(scan.intensity.clone()),
             ..Attributes::default()
         },
-        crs: crs()?,
         ..PointCloud::default()
     })
 }

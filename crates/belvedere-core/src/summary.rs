@@ -2,6 +2,7 @@
 
 mod facades;
 
+use belvedere_data::Bounds;
 use belvedere_data::cloud::PointCloud;
 use std::collections::BTreeMap;
 
@@ -112,7 +113,9 @@ impl CloudSummary {
         let cell_size = cell_size_for(cloud);
         let occupied_area = occupied_cell_count(cloud, cell_size) as f64 * cell_size * cell_size;
         Self {
-            bounds: cloud.bounds().map(|(low, high)| (cloud.to_file_coordinates(low), cloud.to_file_coordinates(high))),
+            bounds: cloud.bounds().map(|Bounds { low, high }| {
+                (cloud.frame.to_file_coordinates(low), cloud.frame.to_file_coordinates(high))
+            }),
             occupied_area,
             cell_size,
             density: if occupied_area > 0.0 { cloud.len() as f64 / occupied_area } else { 0.0 },
@@ -130,7 +133,8 @@ impl CloudSummary {
 /// Three times the spacing that the points would have if they filled their bounding rectangle: nine to a cell, so that
 /// cells between sparse points count too, and gaps of lakes and missing tiles do not.
 fn cell_size_for(cloud: &PointCloud) -> f64 {
-    let area = cloud.bounds().map_or(0.0, |(low, high)| f64::from(high[0] - low[0]) * f64::from(high[1] - low[1]));
+    let area =
+        cloud.bounds().map_or(0.0, |Bounds { low, high }| f64::from(high[0] - low[0]) * f64::from(high[1] - low[1]));
     if area > 0.0 { 3.0 * (area / cloud.len() as f64).sqrt() } else { 1.0 }
 }
 

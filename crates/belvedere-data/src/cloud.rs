@@ -1,25 +1,24 @@
 //! Point clouds: f32 positions relative to an f64 origin, with the attributes a laser file carries as columns.
 
 use crate::crs::Crs;
+use crate::frame::{Bounds, Frame};
 use crate::{Error, Result};
 
 /// A point cloud.
 ///
-/// Positions are metres, x east, y north, z up, relative to `origin`; f32 holds a tenth of a millimetre within a
+/// Positions are metres, x east, y north, z up, relative to the origin of its frame; f32 holds a tenth of a millimetre within a
 /// kilometre of the origin, whereas projected coordinates in f32 would be off by centimetres. Every attribute that is
 /// present has one value per point.
 #[derive(Clone, Debug, Default)]
 pub struct PointCloud {
-    /// Where local (0, 0, 0) lies, in metres (file coordinates times [`Crs::metres_per_unit`]).
-    pub origin: [f64; 3],
+    /// Where local positions lie, with the reference system and unit of the file.
+    pub frame: Frame,
     /// Local positions, (N, 3), metres.
     pub positions: Vec<[f32; 3]>,
     /// What else is known of each point.
     pub attributes: Attributes,
     /// Local positions of the scanner set-ups that [`Attributes::scanner_index`] refers to, (S, 3), metres.
     pub scanner_positions: Vec<[f32; 3]>,
-    /// Reference system and unit of the file.
-    pub crs: Crs,
 }
 
 /// Attributes of the points of a [`PointCloud`], each with one value per point where present.
@@ -155,7 +154,20 @@ impl PointCloud {
         let positions: Vec<[f32; 3]> =
             coordinates.iter().filter(|c| c.iter().all(|v| v.is_finite())).map(|&c| to_local(c, origin)).collect();
         let left_out = coordinates.len() - positions.len();
-        (Self { origin, positions, ..Self::default() }, left_out)
+        (Self { frame: Frame { origin, ..Frame::default() }, positions, ..Self::default() }, left_out)
+    }
+
+    /// A cloud without points in `frame`.
+    #[must_use]
+    pub fn in_frame(frame: Frame) -> Self {
+        Self { frame, ..Self::default() }
+    }
+
+    /// The same cloud in another reference system: what its coordinates mean changes, not their numbers in metres.
+    #[must_use]
+    pub fn with_crs(mut self, crs: Crs) -> Self {
+        self.frame.crs = crs;
+        self
     }
 
     /// Number of points.
@@ -170,42 +182,21 @@ impl PointCloud {
         self.positions.is_empty()
     }
 
-    /// Lowest and highest local corner, or `None` without points.
+    /// The smallest box around the points, or `None` without any.
     #[must_use]
-    pub fn bounds(&self) -> Option<([f32; 3], [f32; 3])> {
-        bounds(&self.positions)
-    }
-
-    /// Coordinates of a local position in the unit and reference system of the file.
-    #[must_use]
-    pub fn to_file_coordinates(&self, local: [f32; 3]) -> [f64; 3] {
-        let scale = self.crs.metres_per_unit_xyz();
-        std::array::from_fn(|i| (f64::from(local[i]) + self.origin[i]) / scale[i])
-    }
-
-    /// Local position of coordinates in the unit and reference system of the file.
-    #[must_use]
-    pub fn from_file_coordinates(&self, file: [f64; 3]) -> [f32; 3] {
-        let scale = self.crs.metres_per_unit_xyz();
-        to_local(std::array::from_fn(|i| file[i] * scale[i]), self.origin)
+    pub fn bounds(&self) -> Option<Bounds> {
+        Bounds::around(self.positions.iter().copied())
     }
 
     /// The points at `indices`, in that order, with their attributes. Indices out of range are left out.
     #[must_use]
     pub fn select(&self, indices: &[u32]) -> Self {
         Self {
-            origin: self.origin,
+            frame: self.frame.clone(),
             positions: indices.iter().filter_map(|&i| self.positions.get(i as usize).copied()).collect(),
             attributes: self.attributes.select(indices),
             scanner_positions: self.scanner_positions.clone(),
-            crs: self.crs.clone(),
         }
-    }
-
-    /// A cloud in the same place, unit and reference system that has no points.
-    #[must_use]
-    pub fn without_points(&self) -> Self {
-        Self { origin: self.origin, crs: self.crs.clone(), ..Self::default() }
     }
 
     /// Checks that every column has one value per point and every position is finite.
@@ -223,15 +214,6 @@ impl PointCloud {
         }
         Ok(())
     }
-}
-
-/// Lowest and highest corner of `positions`, (N, 3), or `None` without any.
-#[must_use]
-pub fn bounds(positions: &[[f32; 3]]) -> Option<([f32; 3], [f32; 3])> {
-    let first = *positions.first()?;
-    Some(positions.iter().fold((first, first), |(low, high), p| {
-        (std::array::from_fn(|i| low[i].min(p[i])), std::array::from_fn(|i| high[i].max(p[i])))
-    }))
 }
 
 /// `coordinates − origin`, subtracted in f64.

@@ -6,6 +6,7 @@ pub mod cloud;
 pub mod control;
 pub mod crs;
 pub mod error;
+pub mod frame;
 pub mod mesh;
 pub mod random;
 pub mod raster;
@@ -16,4 +17,5 @@ pub mod weather;
 
 pub use cloud::{Attributes, GpsTimeKind, PointCloud};
 pub use error::{Error, Result};
+pub use frame::{Bounds, Frame};
 pub use mesh::Mesh;

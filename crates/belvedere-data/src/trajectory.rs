@@ -199,7 +199,7 @@ impl Trajectory {
             });
         }
         let position = |&time: &f64| match self.position_at(offset.trajectory_time(time)) {
-            Some(position) => to_local(position, cloud.origin),
+            Some(position) => to_local(position, cloud.frame.origin),
             None => [f32::NAN; 3],
         };
         Ok((times.par_iter().map(position).collect(), offset))

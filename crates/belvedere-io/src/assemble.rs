@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::part::{Coordinates, Part};
 use super::read_cloud::ReadReport;
+use belvedere_data::Frame;
 use belvedere_data::cloud::{PointCloud, centre_rounded, to_local};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
@@ -29,7 +30,7 @@ pub(super) fn assemble(mut parts: Vec<Part>) -> Result<(PointCloud, ReadReport)>
     adopt_common_crs(&mut parts, &mut report);
     let median = middle(&parts, |part| part.crs.metres_per_unit_xyz());
 
-    let mut bounds = Bounds::default();
+    let mut bounds = Extent::default();
     let found: Vec<Found> = parts.iter().map(|part| look(part, median)).collect();
     for one in &found {
         bounds = bounds.join(one.bounds);
@@ -37,16 +38,16 @@ pub(super) fn assemble(mut parts: Vec<Part>) -> Result<(PointCloud, ReadReport)>
     // Adding zero turns −0 into 0, which prints better.
     let origin = centre_rounded([bounds.low, bounds.high].into_iter()).map(|middle| middle + 0.0);
 
-    let mut cloud = PointCloud { origin, ..PointCloud::default() };
+    let mut cloud = PointCloud { frame: Frame { origin, ..Frame::default() }, ..PointCloud::default() };
     if let Some(part) = parts.iter().find(|part| part.crs.kind != CrsKind::Unknown) {
-        cloud.crs = part.crs.clone();
+        cloud.frame.crs = part.crs.clone();
         report.crs_source = part.report.crs_source.clone();
     } else if let Some(part) = parts.first() {
         // a file can tell its unit without naming a system
-        cloud.crs = part.crs.clone();
+        cloud.frame.crs = part.crs.clone();
     }
-    report.crs = cloud.crs.describe();
-    if cloud.crs.kind == CrsKind::Unknown && bounds.looks_like_degrees() {
+    report.crs = cloud.frame.crs.describe();
+    if cloud.frame.crs.kind == CrsKind::Unknown && bounds.looks_like_degrees() {
         report.notes.push(
             "no reference system is known and the coordinates look like degrees, but are taken as metres; convert \
              them to a projected system if they are degrees"
@@ -157,25 +158,25 @@ fn middle(parts: &[Part], scale: impl Fn(&Part) -> [f64; 3]) -> [f64; 3] {
 /// What a pass over a part found.
 #[derive(Clone, Copy, Default)]
 struct Found {
-    bounds: Bounds,
+    bounds: Extent,
     not_finite: usize,
     far: usize,
     coarse: usize,
 }
 
 #[derive(Clone, Copy)]
-struct Bounds {
+struct Extent {
     low: [f64; 3],
     high: [f64; 3],
 }
 
-impl Default for Bounds {
+impl Default for Extent {
     fn default() -> Self {
         Self { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] }
     }
 }
 
-impl Bounds {
+impl Extent {
     fn join(self, other: Self) -> Self {
         Self {
             low: std::array::from_fn(|i| self.low[i].min(other.low[i])),
@@ -222,7 +223,7 @@ fn look(part: &Part, median: [f64; 3]) -> Found {
             Fate::NotFinite => found.not_finite += 1,
             Fate::Far => found.far += 1,
             Fate::Coarse => found.coarse += 1,
-            Fate::Near => found.bounds = found.bounds.join(Bounds { low: p, high: p }),
+            Fate::Near => found.bounds = found.bounds.join(Extent { low: p, high: p }),
         }
         found
     };
@@ -282,13 +283,13 @@ fn join_scanners(cloud: &mut PointCloud, part: &mut Part) {
     let mut new_indices: Vec<u16> = Vec::new();
     for scanner in std::mem::take(&mut part.scanners) {
         let metres: [f64; 3] = std::array::from_fn(|i| scanner[i] * units[i]);
-        let far = (0..3).any(|i| !metres[i].is_finite() || (metres[i] - cloud.origin[i]).abs() > NEAR);
+        let far = (0..3).any(|i| !metres[i].is_finite() || (metres[i] - cloud.frame.origin[i]).abs() > NEAR);
         let index = u16::try_from(cloud.scanner_positions.len()).ok().filter(|&index| !far && index != u16::MAX);
         if far {
             part.note(format!("the scanner position {scanner:?} is far from the cloud and taken as unknown"));
         }
         if index.is_some() {
-            cloud.scanner_positions.push(to_local(metres, cloud.origin));
+            cloud.scanner_positions.push(to_local(metres, cloud.frame.origin));
         }
         new_indices.push(index.unwrap_or(u16::MAX));
     }

@@ -5,8 +5,7 @@ use std::path::Path;
 
 use crate::ball_formats;
 use crate::write_cloud::extension;
-use belvedere_data::crs::Crs;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Bounds, Error, Frame, Result};
 
 /// Extensions of ball files.
 pub(crate) const SUPPORTED: &str = ".npz .ply .laz .las";
@@ -14,13 +13,11 @@ pub(crate) const SUPPORTED: &str = ".npz .ply .laz .las";
 /// Balls as files hold them, one per row, with what is needed to use them again.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SavedBalls {
-    /// Where local (0, 0, 0) lies, metres.
-    pub origin: [f64; 3],
-    /// Reference system and unit of the cloud the balls were made from.
-    pub crs: Crs,
+    /// Frame of the cloud the balls were made from.
+    pub frame: Frame,
     /// Lowest and highest local corner of the points the balls were made from, metres: what a view must hold to show
     /// the scene, whereas the balls may reach far beyond it. Files without it have the corners of the centres.
-    pub bounds: ([f32; 3], [f32; 3]),
+    pub bounds: Bounds,
     /// Centres, (B, 3), local metres.
     pub centers: Vec<[f32; 3]>,
     /// Radii, (B), metres.
@@ -101,11 +98,11 @@ impl SavedBalls {
         if let Some(r) = self.radii.iter().find(|&&r| !(r.is_finite() && r >= 0.0)) {
             return invalid("radius of a ball", r.to_string(), "finite and not negative");
         }
-        if self.bounds.0.iter().chain(&self.bounds.1).any(|v| !v.is_finite()) {
-            return invalid("bounds of balls", format!("{:?}", self.bounds), "finite");
+        if !self.bounds.is_finite() {
+            return invalid("bounds of balls", format!("{:?}", (self.bounds.low, self.bounds.high)), "finite");
         }
-        if self.origin.iter().any(|v| !v.is_finite()) {
-            return invalid("origin of balls", format!("{:?}", self.origin), "finite");
+        if self.frame.origin.iter().any(|v| !v.is_finite()) {
+            return invalid("origin of balls", format!("{:?}", self.frame.origin), "finite");
         }
         if let Some(t) = self.transmission.iter().flatten().find(|t| !(t.is_nan() || (0.0..=1.0).contains(*t))) {
             return invalid("transmission of a ball", t.to_string(), "0 to 1, or NaN");

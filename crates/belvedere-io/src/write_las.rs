@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use crate::atomic;
 use crate::columns::{Column, Values};
 use crate::write_cloud::WriteReport;
+use belvedere_data::Bounds;
 use belvedere_data::cloud::GpsTimeKind;
 use belvedere_data::crs::text;
 use belvedere_data::{Error, PointCloud, Result};
@@ -159,11 +160,11 @@ impl Seek for Latched {
 /// Steps and offsets in the unit of the file: a power of ten of at most a millimetre and at most a millionth of the
 /// extent, so that small objects keep their detail, but coarse enough for 32-bit integers.
 fn transforms(cloud: &PointCloud) -> Vector<Transform> {
-    let (low, high) = cloud.bounds().unwrap_or_default();
+    let Bounds { low, high } = cloud.bounds().unwrap_or_default();
     let extent = (0..3).map(|i| f64::from(high[i]) - f64::from(low[i])).fold(0.0, f64::max);
     let reach = (0..3).map(|i| f64::from(high[i].abs().max(low[i].abs()))).fold(1e-6, f64::max);
-    let units = cloud.crs.metres_per_unit_xyz();
-    let origin = cloud.to_file_coordinates([0.0; 3]);
+    let units = cloud.frame.crs.metres_per_unit_xyz();
+    let origin = cloud.frame.to_file_coordinates([0.0; 3]);
     let transform = |axis: usize| {
         let wanted = if extent > 0.0 { MAX_STEP.min(extent * 1e-6) } else { MAX_STEP } / units[axis];
         // half the range of i32, as the offset is rounded
@@ -187,12 +188,12 @@ fn crs_records(cloud: &PointCloud) -> Vec<Vlr> {
         description: description.to_owned(),
         data,
     };
-    if let Some(wkt) = text::wkt_line(&cloud.crs) {
+    if let Some(wkt) = text::wkt_line(&cloud.frame.crs) {
         let mut data = wkt.into_bytes();
         data.push(0);
         return vec![record(2112, "OGC coordinate system WKT", data)];
     }
-    let Some(keys) = text::geo_keys(&cloud.crs, text::KeyUse::Points) else { return Vec::new() };
+    let Some(keys) = text::geo_keys(&cloud.frame.crs, text::KeyUse::Points) else { return Vec::new() };
     vec![record(34735, "GeoTIFF keys", keys.directory.iter().flat_map(|v| v.to_le_bytes()).collect())]
 }
 
@@ -235,7 +236,7 @@ impl Encoder<'_> {
             clamped += usize::from(value > most);
             value.min(most)
         };
-        let xyz = self.cloud.to_file_coordinates(self.cloud.positions[index]);
+        let xyz = self.cloud.frame.to_file_coordinates(self.cloud.positions[index]);
         let transforms = [self.transforms.x, self.transforms.y, self.transforms.z];
         for (axis, (value, transform)) in xyz.into_iter().zip(transforms).enumerate() {
             let steps = ((value - transform.offset) / transform.scale).round();

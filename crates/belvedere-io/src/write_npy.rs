@@ -26,7 +26,7 @@ pub(crate) fn write_array<T: AutoSerialize>(
 
 /// Writes file coordinates, (N, 3) f64.
 pub(crate) fn write_coordinates(path: &Path, cloud: &PointCloud) -> Result<WriteReport> {
-    let coordinates = cloud.positions.iter().flat_map(|&p| cloud.to_file_coordinates(p));
+    let coordinates = cloud.positions.iter().flat_map(|&p| cloud.frame.to_file_coordinates(p));
     write_array(path, &[cloud.len(), 3], coordinates)?;
     let left_out = cloud.attributes.columns().into_iter().map(|(name, _)| name).collect();
     Ok(WriteReport { point_count: cloud.len(), left_out, clamped_count: 0 })

@@ -35,7 +35,7 @@ pub(crate) fn write(path: &Path, cloud: &PointCloud, extra: &[Column<'_>], comme
 
 fn header(cloud: &PointCloud, columns: &[Column<'_>], comments: &[String]) -> String {
     let mut text = String::from("ply\nformat binary_little_endian 1.0\ncomment written by belvedere\n");
-    for line in comment_lines(&cloud.crs).iter().chain(comments) {
+    for line in comment_lines(&cloud.frame.crs).iter().chain(comments) {
         // many readers refuse headers that are not ASCII
         let line: String = line.chars().map(|c| if c.is_ascii() && !c.is_ascii_control() { c } else { '?' }).collect();
         text.push_str(&format!("comment {line}\n"));
@@ -60,7 +60,7 @@ fn header(cloud: &PointCloud, columns: &[Column<'_>], comments: &[String]) -> St
 }
 
 fn encode(row: &mut [u8], cloud: &PointCloud, columns: &[Column<'_>], index: usize) {
-    for (axis, value) in cloud.to_file_coordinates(cloud.positions[index]).into_iter().enumerate() {
+    for (axis, value) in cloud.frame.to_file_coordinates(cloud.positions[index]).into_iter().enumerate() {
         row[axis * 8..axis * 8 + 8].copy_from_slice(&value.to_le_bytes());
     }
     let mut at = 24;

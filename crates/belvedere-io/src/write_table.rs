@@ -20,7 +20,7 @@ const TASKS_PER_BLOCK: usize = 32;
 pub(crate) fn write(path: &Path, cloud: &PointCloud, extra: &[Column<'_>], separator: char) -> Result<WriteReport> {
     let mut columns = attribute_columns(cloud);
     columns.extend(extra.iter().cloned());
-    let decimals = cloud.crs.metres_per_unit_xyz().map(decimals_for);
+    let decimals = cloud.frame.crs.metres_per_unit_xyz().map(decimals_for);
     let separator = separator.to_string();
     atomic::write(path, |output| {
         let names: Vec<&str> = ["x", "y", "z"].into_iter().chain(columns.iter().map(|c| &*c.name)).collect();
@@ -53,7 +53,7 @@ fn print_row(
     decimals: [usize; 3],
     separator: &str,
 ) -> std::io::Result<()> {
-    let [x, y, z] = cloud.to_file_coordinates(cloud.positions[index]);
+    let [x, y, z] = cloud.frame.to_file_coordinates(cloud.positions[index]);
     let [dx, dy, dz] = decimals;
     write!(text, "{x:.dx$}{separator}{y:.dy$}{separator}{z:.dz$}")?;
     for column in columns {

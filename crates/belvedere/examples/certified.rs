@@ -7,6 +7,7 @@
 //! if one answer differs.
 #![allow(clippy::print_stdout, reason = "the table is what this example is for")]
 
+use belvedere::Bounds;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::read_balls;
 use belvedere::medial::MedialBalls;
@@ -24,7 +25,7 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let path = arguments.next().ok_or("name a ball file")?;
     let count: usize = arguments.next().map_or(Ok(10_000_000), |n| n.parse())?;
     let saved = read_balls(Path::new(&path))?;
-    let (low, high) = saved.bounds;
+    let Bounds { low, high } = saved.bounds;
     let balls = MedialBalls {
         centers: saved.centers,
         radii: saved.radii,

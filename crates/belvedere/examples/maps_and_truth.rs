@@ -6,6 +6,7 @@
 //! corner. Errors are depth minus truth through the middle of each pixel, where both see something.
 #![allow(clippy::print_stdout, reason = "the table is what this example is for")]
 
+use belvedere::Bounds;
 use belvedere::PointCloud;
 use belvedere::control::Control;
 use belvedere::depth::{BoundsParams, ItemBuffer, Profile, depth_bounds, depth_map};
@@ -39,7 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (balls, _) = shrink(&oriented, &index, Side::Interior, &params, &Control::none())?;
         let balls = balls.shrunk();
         let list: Vec<_> = balls.centers.iter().copied().zip(balls.radii.iter().copied()).collect();
-        let (low, high) = cloud.bounds().ok_or("no points")?;
+        let Bounds { low, high } = cloud.bounds().ok_or("no points")?;
         let (low, high) = (low.map(f64::from), high.map(f64::from));
         let middle: [f64; 3] = std::array::from_fn(|i| (low[i] + high[i]) / 2.0);
         let corner = [low[0], low[1], high[2] + 10.0];
@@ -63,7 +64,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                         let place = [column as f64 + 0.5, row as f64 + 0.5];
                         let [start, end] = [0.0, 1.0].map(|depth| {
                             let local = view.frame.local_from_view(view.position(place, depth));
-                            std::array::from_fn::<f64, 3, _>(|i| local[i] + cloud.origin[i])
+                            std::array::from_fn::<f64, 3, _>(|i| local[i] + cloud.frame.origin[i])
                         });
                         let step = sub(end, start);
                         let (Some(hit), Some(mine), Some([lower, upper])) = (

@@ -30,12 +30,12 @@
 //! let (balls, _report) = shrink(&oriented, &index, Side::Interior, &ShrinkParams::tau(), &Control::none())?;
 //!
 //! let sun = to_sun(180f64.to_radians(), 60f64.to_radians());
-//! let (low, high) = cloud.bounds().unwrap();
+//! let Bounds { low, high } = cloud.bounds().unwrap();
 //! let view = View::parallel(sun.map(|v| -v), low.map(f64::from), high.map(f64::from), 0.1)?;
 //! let map = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::Without)?;
 //!
 //! // on the ground north of the roof, where its shadow falls, and south of it
-//! let targets = [[20.0, 26.0, 1.0], [20.0, 5.0, 1.0]].map(|p| cloud.from_file_coordinates(p));
+//! let targets = [[20.0, 26.0, 1.0], [20.0, 5.0, 1.0]].map(|p| cloud.frame.from_file_coordinates(p));
 //! let answers = query_points(&map, &targets, map.default_depth_bias());
 //! assert_eq!(answers, [Answer::Blocked, Answer::Visible]);
 //! # Ok(())
@@ -48,8 +48,8 @@
 #[cfg(feature = "apps")]
 pub use belvedere_apps as apps;
 pub use belvedere_core::{clean, depth, ground, medial, neighbors, normals, pulses, query, ray_index, summary};
-pub use belvedere_data::{Attributes, Error, GpsTimeKind, Mesh, PointCloud, Result, cloud};
-pub use belvedere_data::{control, crs, error, mesh, random, raster, trajectory, vector, view, weather};
+pub use belvedere_data::{Attributes, Bounds, Error, Frame, GpsTimeKind, Mesh, PointCloud, Result, cloud};
+pub use belvedere_data::{control, crs, error, frame, mesh, random, raster, trajectory, vector, view, weather};
 #[cfg(feature = "figures")]
 pub use belvedere_figures as figures;
 #[cfg(feature = "io")]

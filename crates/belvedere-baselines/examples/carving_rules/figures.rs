@@ -1,6 +1,7 @@
 //! The pictures of docs/methods/carving.md: a section through a street, and its shade, with balls made in three ways.
 
 use crate::place::Place;
+use belvedere::Bounds;
 use belvedere::figures::{Picture, side_by_side, write_png};
 use belvedere::medial::{MedialBalls, ShrinkParams};
 use belvedere::query::{Answer, Viewer, Visibility};
@@ -71,7 +72,7 @@ fn pixels(length: f32, pixel: f32) -> usize {
 fn section(place: &Place, balls: &MedialBalls) -> Picture {
     let [width, bottom, top] = SECTION;
     let size = [pixels(width, SECTION_PIXEL), pixels(top - bottom, SECTION_PIXEL)];
-    let (low, high) = place.bounds();
+    let Bounds { low, high } = place.bounds();
     let (west, north) = ((low[0] + high[0] - width) / 2.0, low[1] + SECTION_SHARE * (high[1] - low[1]));
     let at = |column: usize, row: usize| {
         let x = west + (column as f32 + 0.5) * SECTION_PIXEL;
@@ -119,7 +120,7 @@ fn section(place: &Place, balls: &MedialBalls) -> Picture {
 /// What lies in shade 1.5 m above the ground, seen from above.
 fn shade(place: &Place, model: &MedialBaseline) -> Result<Picture> {
     let size = pixels(SHADE_SIDE, SHADE_PIXEL);
-    let (low, high) = place.bounds();
+    let Bounds { low, high } = place.bounds();
     let corner = [low[0] + high[0] - SHADE_SIDE, low[1] + high[1] + SHADE_SIDE].map(|v| v / 2.0);
     let [azimuth, elevation] = SUN_DEG.map(f64::to_radians);
     let sun = to_sun(azimuth, elevation);

@@ -3,6 +3,7 @@
 #[path = "../../tests/all/common/flown.rs"]
 mod flown;
 
+use belvedere::Bounds;
 use belvedere::cloud::to_local;
 use belvedere::query::{Answer, Viewer, Visibility};
 use belvedere::view::to_sun;
@@ -33,7 +34,7 @@ pub(crate) struct Question {
 
 pub(crate) struct Place {
     cloud: PointCloud,
-    bounds: ([f32; 3], [f32; 3]),
+    bounds: Bounds,
     scanner: Vec<[f32; 3]>,
     scene: Scene,
     truth: Truth,
@@ -62,7 +63,7 @@ impl Place {
     }
 
     fn ask(&mut self, seed: u64) {
-        let origin = self.cloud.origin;
+        let origin = self.cloud.frame.origin;
         let site = self.site();
         let sets = [
             ("AIR", QuerySet::Air, TARGETS),
@@ -101,16 +102,16 @@ impl Place {
     }
 
     fn absolute(&self, p: [f32; 3]) -> [f64; 3] {
-        std::array::from_fn(|i| f64::from(p[i]) + self.cloud.origin[i])
+        std::array::from_fn(|i| f64::from(p[i]) + self.cloud.frame.origin[i])
     }
 
     fn site(&self) -> QuerySite<'_> {
-        let (low, high) = self.bounds();
+        let Bounds { low, high } = self.bounds();
         QuerySite { scene: &self.scene, truth: &self.truth, bounds: [self.absolute(low), self.absolute(high)] }
     }
 
     /// Corners of the cloud, local metres.
-    pub(crate) fn bounds(&self) -> ([f32; 3], [f32; 3]) {
+    pub(crate) fn bounds(&self) -> Bounds {
         self.bounds
     }
 
@@ -122,7 +123,7 @@ impl Place {
     /// The free local position `height` above the ground, if there is one.
     pub(crate) fn above_ground(&self, [x, y]: [f32; 2], height: f32) -> Option<[f32; 3]> {
         let [east, north, _] = self.absolute([x, y, 0.0]);
-        let ground = to_local([east, north, self.site().ground_height([east, north])?], self.cloud.origin);
+        let ground = to_local([east, north, self.site().ground_height([east, north])?], self.cloud.frame.origin);
         let p = [x, y, ground[2] + height];
         (!self.is_inside(p)).then_some(p)
     }

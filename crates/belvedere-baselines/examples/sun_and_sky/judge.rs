@@ -5,6 +5,7 @@ mod flown;
 #[path = "score.rs"]
 pub(crate) mod score;
 
+use belvedere::Bounds;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid, SurfaceParams, highest_points, top_surface};
 use belvedere::medial::MedialBalls;
@@ -66,15 +67,15 @@ impl Town {
         let survey = Survey { cloud: &cloud, scanner: &scanner, models: &[] };
         let balls = interior_balls(&survey, Outward::Survey, &MedialParams::carved())?;
         let truth = Truth::new(&scene);
-        let (low, high) = cloud.bounds().unwrap_or_default();
+        let Bounds { low, high } = cloud.bounds().unwrap_or_default();
         let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];
-        let grid = MapGrid::covering(on_map(low), on_map(high), cell, [cloud.origin[0], cloud.origin[1]])?;
+        let grid = MapGrid::covering(on_map(low), on_map(high), cell, [cloud.frame.origin[0], cloud.frame.origin[1]])?;
         let (ground, _) = Ground::of_cloud(&cloud, grid, &GroundParams::default())?;
         let mut town = Self { scene, truth, cloud, scanner, balls, ground, bare: Vec::new() };
         let site = town.site();
         let bare = (0..grid.len()).filter_map(|i| {
             let [x, y] = grid.center(i % grid.width, i / grid.width);
-            let at = [x + town.cloud.origin[0], y + town.cloud.origin[1]];
+            let at = [x + town.cloud.frame.origin[0], y + town.cloud.frame.origin[1]];
             let height = site.ground_height(at)?;
             (!site.is_inside([at[0], at[1], height + 0.05])).then_some(([x, y], height))
         });
@@ -83,18 +84,18 @@ impl Town {
     }
 
     pub(crate) fn site(&self) -> QuerySite<'_> {
-        let (low, high) = self.cloud.bounds().unwrap_or_default();
+        let Bounds { low, high } = self.cloud.bounds().unwrap_or_default();
         let bounds = [low, high].map(|corner| self.absolute(corner));
         QuerySite { scene: &self.scene, truth: &self.truth, bounds }
     }
 
     pub(crate) fn absolute(&self, p: [f32; 3]) -> [f64; 3] {
-        std::array::from_fn(|i| f64::from(p[i]) + self.cloud.origin[i])
+        std::array::from_fn(|i| f64::from(p[i]) + self.cloud.frame.origin[i])
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
     fn local(&self, p: [f64; 3]) -> [f32; 3] {
-        std::array::from_fn(|i| (p[i] - self.cloud.origin[i]) as f32)
+        std::array::from_fn(|i| (p[i] - self.cloud.frame.origin[i]) as f32)
     }
 
     /// About `count` cells of the ground, `height` metres above it: the truth above the exact ground, the question above the ground
@@ -104,9 +105,9 @@ impl Town {
         let (mut exact, mut asked) = (Vec::new(), Vec::new());
         for &([x, y], z) in self.bare.iter().step_by(step) {
             let Some(found) = self.ground.height_at([x, y]) else { continue };
-            let [x, y] = [x + self.cloud.origin[0], y + self.cloud.origin[1]];
+            let [x, y] = [x + self.cloud.frame.origin[0], y + self.cloud.frame.origin[1]];
             exact.push([x, y, z + height]);
-            asked.push(self.local([x, y, found + self.cloud.origin[2] + height]));
+            asked.push(self.local([x, y, found + self.cloud.frame.origin[2] + height]));
         }
         self.places(exact, asked, light)
     }
@@ -123,13 +124,13 @@ impl Town {
         let (mut exact, mut asked) = (Vec::new(), Vec::new());
         for (cell, &top) in tops.values().iter().enumerate() {
             let [x, y] = grid.center(cell % grid.width, cell / grid.width);
-            let at = [x + self.cloud.origin[0], y + self.cloud.origin[1]];
+            let at = [x + self.cloud.frame.origin[0], y + self.cloud.frame.origin[1]];
             let Some(hit) = self.truth.first_hit([at[0], at[1], above], [0.0, 0.0, -1.0], f64::INFINITY) else {
                 continue;
             };
             if self.scene.materials.get(hit.triangle as usize) == Some(&Material::Roof) && top.is_finite() {
                 exact.push([at[0], at[1], above - hit.range + height]);
-                asked.push(self.local([at[0], at[1], f64::from(top) + self.cloud.origin[2] + height]));
+                asked.push(self.local([at[0], at[1], f64::from(top) + self.cloud.frame.origin[2] + height]));
             }
         }
         let step = (asked.len() / count.max(1)).max(1);

@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let lift = if what.ends_with("higher") { 0.1 } else { 0.0 };
             let score = town.judge(places, &light, lift, &carved)?;
             println!("  {what} ({})", places.len());
-            let [mean, absolute] = Town::heights_off(places, town.cloud.origin[2]);
+            let [mean, absolute] = Town::heights_off(places, town.cloud.frame.origin[2]);
             println!("    asked {mean:+.3} m too high, {absolute:.3} m off");
             print_score(&score);
             let raster = town.judge_other(&raster, places, &light)?;

@@ -3,6 +3,7 @@
 #[path = "../../tests/all/common/flown.rs"]
 mod flown;
 
+use belvedere::Bounds;
 use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, cell_targets, viewshed};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
@@ -65,11 +66,11 @@ impl Town {
     pub(crate) fn new(preset: Preset, extent: f64, cell: f64, eyes: usize, seed: u64) -> Result<Self> {
         let scene = town(&preset.params(extent, seed));
         let (cloud, scanner) = flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, 8.0) })?;
-        let origin = cloud.origin;
+        let origin = cloud.frame.origin;
         let survey = Survey { cloud: &cloud, scanner: &scanner, models: &[] };
         let balls = MedialBaseline::new(&survey, Outward::Survey, &MedialParams::carved())?.balls().clone();
         let truth = Truth::new(&scene);
-        let (low, high) = cloud.bounds().unwrap_or_default();
+        let Bounds { low, high } = cloud.bounds().unwrap_or_default();
         let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
         let site = QuerySite { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
         let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];
@@ -95,7 +96,7 @@ impl Town {
         let (needles, _) = Needles::of_cloud(&self.cloud, &self.scanner, &NeedleParams::default())?;
         let scene = scene.with_pulses(Proof::new(needles, &ProofParams::default())?);
         let targets = cell_targets(&self.ground, height);
-        let origin = self.cloud.origin;
+        let origin = self.cloud.frame.origin;
         let mut score = Score::default();
         for &eye in &self.eyes {
             let limits = SightLimits { distance: [0.0, REACH], ..SightLimits::default() };

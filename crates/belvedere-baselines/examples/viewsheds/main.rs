@@ -9,6 +9,7 @@
 
 mod judge;
 
+use belvedere::Bounds;
 use belvedere::apps::viewshed::{Observer, ViewshedParams, cell_targets, viewshed};
 use belvedere::control::Control;
 use belvedere::query::{EarthParams, MedialScene, SceneParams, random_pairs};
@@ -47,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             seconds.push(start.elapsed().as_secs_f64());
         }
         seconds.sort_by(f64::total_cmp);
-        let (low, high) = town.cloud.bounds().unwrap_or_default();
+        let Bounds { low, high } = town.cloud.bounds().unwrap_or_default();
         let pairs = random_pairs(low, high, 1_000_000, 1);
         let start = Instant::now();
         let sights = scene.lines_of_sight(&pairs, &EarthParams::default());

@@ -1,5 +1,6 @@
 //! The radius of the sphere by Katz's rule.
 
+use belvedere::Bounds;
 use belvedere::vector::{length, sub};
 
 use super::flip::FlippedView;
@@ -22,8 +23,7 @@ pub struct RadiusChoice {
 
 /// Centre and diagonal of the box around `positions`, metres.
 pub(crate) fn extent(positions: &[[f32; 3]]) -> ([f64; 3], f64) {
-    let (low, high) = belvedere::cloud::bounds(positions).unwrap_or_default();
-    let (low, high) = (low.map(f64::from), high.map(f64::from));
+    let (low, high) = Bounds::around(positions.iter().copied()).unwrap_or_default().corners();
     let centre = std::array::from_fn(|i| (low[i] + high[i]) / 2.0);
     (centre, length(sub(high, low)))
 }

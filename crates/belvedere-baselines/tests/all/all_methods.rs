@@ -19,10 +19,10 @@ fn ray_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<Method> {
     let survey = Survey { cloud, scanner: &[], models: &[] };
     let dsm = |relief| Dsm::from_points(&cloud.positions, &DsmParams { relief, ..DsmParams::default() }).unwrap();
     vec![
-        ("mesh rays", Box::new(MeshRays::new(mesh, cloud.origin, &MeshRaysParams::default()).unwrap())),
+        ("mesh rays", Box::new(MeshRays::new(mesh, cloud.frame.origin, &MeshRaysParams::default()).unwrap())),
         ("columns", Box::new(dsm(Relief::Columns))),
         ("bilinear", Box::new(dsm(Relief::Bilinear))),
-        ("exact DSM", Box::new(Dsm::from_mesh(mesh, cloud.origin, &DsmParams::default()).unwrap())),
+        ("exact DSM", Box::new(Dsm::from_mesh(mesh, cloud.frame.origin, &DsmParams::default()).unwrap())),
         ("TIN", Box::new(Tin::new(cloud, &TinParams::default()).unwrap())),
         ("voxels", Box::new(Voxels::new(&cloud.positions, &VoxelParams::default()).unwrap())),
         ("surfels", Box::new(Splats::new(cloud, &SplatParams::surfels()).unwrap())),
@@ -41,7 +41,7 @@ fn all_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<Method> {
 /// Few pixels: these tests ask for sameness, not for accuracy.
 fn small_shadow_map(cloud: &PointCloud, mesh: &Mesh) -> ShadowMap {
     let params = ShadowMapParams { pixel_size: 0.5, face_px: 128, ..ShadowMapParams::default() };
-    ShadowMap::new(mesh, cloud.origin, &params).unwrap()
+    ShadowMap::new(mesh, cloud.frame.origin, &params).unwrap()
 }
 
 const SUN: [f64; 3] = [0.48, -0.6, 0.64];

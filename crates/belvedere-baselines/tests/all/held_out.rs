@@ -78,7 +78,7 @@ impl Visibility for Always {
 }
 
 fn exact_score(flown: &Flown) -> HeldOutScore {
-    let exact = ExactMesh { truth: Truth::new(&flown.scene), origin: flown.cloud.origin };
+    let exact = ExactMesh { truth: Truth::new(&flown.scene), origin: flown.cloud.frame.origin };
     score(&exact, &held_out(flown)).unwrap()
 }
 

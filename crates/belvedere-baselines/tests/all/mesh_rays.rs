@@ -13,10 +13,10 @@ fn mesh_rays_agree_with_the_exact_answers_beyond_a_centimetre() {
     let (scene, mesh) = small_town();
     let cloud = scan(&scene);
     let truth = Truth::new(&scene);
-    let rays = MeshRays::new(&mesh, cloud.origin, &MeshRaysParams::default()).unwrap();
+    let rays = MeshRays::new(&mesh, cloud.frame.origin, &MeshRaysParams::default()).unwrap();
     assert_eq!(rays.left_out(), 0);
     let targets = targets(&cloud, 20_000, 1);
-    let absolute = |p: [f64; 3]| std::array::from_fn(|i| p[i] + cloud.origin[i]);
+    let absolute = |p: [f64; 3]| std::array::from_fn(|i| p[i] + cloud.frame.origin[i]);
     let (eye, sun) = ([3.0, -7.0, 30.0], [0.4, -0.3, 0.5]);
     let answers = [Viewer::Direction(sun), Viewer::Eye(eye)].map(|viewer| blocked(&rays, viewer, &targets));
     let mut skin = 0;

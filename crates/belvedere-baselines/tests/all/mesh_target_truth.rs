@@ -1,6 +1,7 @@
 //! What is seen of buildings: carved balls against the exact mesh of a simulated town.
 
 use crate::common::flown::flown;
+use belvedere::Bounds;
 use belvedere::Mesh;
 use belvedere::query::{
     Answer, BackFaces, MedialScene, MeshTargetParams, SceneParams, SeenArea, SurfacePieces, Viewer, Visibility,
@@ -47,11 +48,11 @@ fn shares_of_buildings_that_are_seen_are_those_of_the_mesh() {
     let scene = town(&Preset::Town.params(120.0, 11));
     let params = AirborneParams { seed: 11, ..AirborneParams::covering(&scene, 8.0) };
     let (cloud, scanner) = flown(&scene, &params).unwrap();
-    let origin = cloud.origin;
+    let origin = cloud.frame.origin;
     let survey = Survey { cloud: &cloud, scanner: &scanner, models: &[] };
     let made = MedialBaseline::new(&survey, Outward::Survey, &MedialParams::carved()).unwrap();
     let truth = Truth::new(&scene);
-    let (low, high) = cloud.bounds().unwrap();
+    let Bounds { low, high } = cloud.bounds().unwrap();
     let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
     let site = QuerySite { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
     let mut viewers: Vec<(&str, Viewer<'_>)> = site

@@ -2,6 +2,7 @@
 //! simulated town, against its exact mesh.
 
 use crate::common::flown::flown;
+use belvedere::Bounds;
 use belvedere::PointCloud;
 use belvedere::cloud::to_local;
 use belvedere::control::Control;
@@ -29,10 +30,10 @@ impl Place {
     fn new() -> Self {
         let scene = town(&Preset::Town.params(80.0, 5));
         let (cloud, scanner) = flown(&scene, &AirborneParams::covering(&scene, 8.0)).unwrap();
-        let origin = cloud.origin;
+        let origin = cloud.frame.origin;
         let truth = Truth::new(&scene);
         let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
-        let (low, high) = cloud.bounds().unwrap();
+        let Bounds { low, high } = cloud.bounds().unwrap();
         let site = QuerySite { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
         let exact = site.targets(QuerySet::Pedestrians, 10_000, 5).positions;
         let suns = [[110.0_f64, 20.0_f64], [180.0, 65.0], [240.0, 35.0]].map(|[azimuth, elevation]| {

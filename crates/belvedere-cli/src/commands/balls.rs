@@ -71,7 +71,7 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
             ("parameters", format!("{:?}", params.settled(&prepared))),
             ("input", arguments.input.clouds.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(" ")),
         ];
-        let saved = pipeline::saved(made, (&cloud.origin, &cloud.crs), prepared.bounds, pulses, provenance);
+        let saved = pipeline::saved(made, &cloud.frame, prepared.bounds, pulses, provenance);
         stages.run("writing", 0, |_| write_balls(&arguments.output, &saved))?;
     }
     summary.add("written", arguments.output.display().to_string());

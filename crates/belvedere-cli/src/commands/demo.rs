@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     let [azimuth, elevation] = SUN_DEG.map(f64::to_radians);
     let sun = to_sun(azimuth, elevation);
     let bounds = pipeline::bounds_of(&cloud)?;
-    let (low, high) = (bounds.0.map(f64::from), bounds.1.map(f64::from));
+    let (low, high) = bounds.corners();
     let view = View::parallel(sun.map(|v| -v), low, high, default_pixel_size(low, high))?;
     let map = stages.run("drawing depth map", 0, |_| depth_map(balls, &view, Profile::Sphere, ItemBuffer::Without))?;
     let blockers = stages.run("indexing balls", 0, |_| MedialScene::new(balls, &SceneParams::carved()))?;
@@ -90,10 +90,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
             ("method", params.name().to_owned()),
             ("parameters", format!("{params:?}")),
         ];
-        write_balls(
-            &folder.join("balls.npz"),
-            &pipeline::saved(made, (&cloud.origin, &cloud.crs), bounds, pulses, provenance),
-        )?;
+        write_balls(&folder.join("balls.npz"), &pipeline::saved(made, &cloud.frame, bounds, pulses, provenance))?;
         Ok(())
     })?;
     let seconds = stages.into_seconds();
@@ -133,7 +130,7 @@ fn agreement(scene: &Scene, scan: &Scan, cloud: &PointCloud, blockers: &MedialSc
     let mut section = Summary::default();
     for (name, exact) in [("pedestrians", &pedestrians), ("own_points", &scan.exact_positions)] {
         let shadowed = truth.occluded_towards_each(exact, sun);
-        let asked: Vec<[f32; 3]> = exact.iter().map(|&p| to_local(p, cloud.origin)).collect();
+        let asked: Vec<[f32; 3]> = exact.iter().map(|&p| to_local(p, cloud.frame.origin)).collect();
         let answers = blockers.visible(Viewer::Direction(sun), &asked)?;
         let lit_count = shadowed.iter().filter(|s| !**s).count();
         let wrong = |answer: Answer, truly_shadowed: bool| {

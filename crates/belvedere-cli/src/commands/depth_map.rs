@@ -106,9 +106,9 @@ fn draw(arguments: &DepthMap, scene: &Scene, views: &[View], items: ItemBuffer) 
 /// Where the picture lies on the map, if it looks straight down or up.
 fn georeference(cloud: &PointCloud, view: &View) -> Option<Georeference> {
     let [corner, column_step, row_step] = view.ground_grid()?;
-    let crs = cloud.crs.clone();
+    let crs = cloud.frame.crs.clone();
     let plane = |metres: [f64; 2]| metres.map(|v| v / crs.metres_per_unit);
-    let upper_left = plane([corner[0] + cloud.origin[0], corner[1] + cloud.origin[1]]);
+    let upper_left = plane([corner[0] + cloud.frame.origin[0], corner[1] + cloud.frame.origin[1]]);
     let (column_step, row_step) = (plane(column_step), plane(row_step));
     Some(Georeference { upper_left, column_step, row_step, crs })
 }

@@ -72,8 +72,8 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
     if let Some(output) = &arguments.tops {
         let what = "height of the solar envelope";
         stages.run("writing", 0, |_| {
-            let scale = cloud.crs.metres_per_unit_xyz()[2];
-            let mut tops = found.tops(cloud.origin[2]);
+            let scale = cloud.frame.crs.metres_per_unit_xyz()[2];
+            let mut tops = found.tops(cloud.frame.origin[2]);
             tops.values_mut().iter_mut().for_each(|top| *top = in_unit(*top, scale));
             write_heights(output, &tops, &found, &cloud, what)
         })?;
@@ -245,7 +245,7 @@ impl Land {
     ) -> Result<()> {
         let mesh = mesh_of(path, scene, stages, summary)?;
         let spacing = arguments.spacing.unwrap_or(CELL);
-        let surface = flagged("--spacing", SurfacePieces::of_mesh(&mesh, scene.cloud.origin, spacing, seed))?;
+        let surface = flagged("--spacing", SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, seed))?;
         let first = self.source(path.display().to_string());
         let objects = u32::try_from(mesh.object_names.len()).unwrap_or(0);
         mesh.object_names.iter().for_each(|name| {
@@ -327,7 +327,7 @@ fn is_geojson(path: &Path) -> bool {
 
 /// A grid around everything that needs the ground, and one over the parcel.
 fn grids(parcel: &Parcel, land: &Land, cell: f64, cloud: &PointCloud) -> Result<(MapGrid, MapGrid)> {
-    let origin = [cloud.origin[0], cloud.origin[1]];
+    let origin = [cloud.frame.origin[0], cloud.frame.origin[1]];
     let [low, high] = parcel.bounds();
     let narrow = flagged("--cell", MapGrid::covering(low, high, cell, origin))?;
     let protected = land.bounds();
@@ -390,9 +390,9 @@ fn ranked(areas: &[f64], names: &[String]) -> Vec<String> {
 fn write_one(output: &Path, found: &SolarEnvelope, ground: &Ground, cloud: &PointCloud) -> Result<()> {
     match super::extension(output).as_str() {
         "ply" | "obj" => {
-            let mut mesh = flagged("--ceiling", found.to_mesh(cloud.origin))?;
-            mesh.crs = cloud.crs.clone();
-            Ok(write_mesh(output, &mesh, cloud.crs.metres_per_unit_xyz())?)
+            let mut mesh = flagged("--ceiling", found.to_mesh(cloud.frame.origin))?;
+            mesh.crs = cloud.frame.crs.clone();
+            Ok(write_mesh(output, &mesh, cloud.frame.crs.metres_per_unit_xyz())?)
         }
         "png" => {
             let mut heights = found.heights();

@@ -36,8 +36,8 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
     }
     let turn = match (arguments.north, places.first()) {
         (NorthChoice::True, Some(eye)) => {
-            let origin = scene.cloud.origin;
-            let turn = convergence(&scene.cloud.crs, [eye[0] + origin[0], eye[1] + origin[1]]);
+            let origin = scene.cloud.frame.origin;
+            let turn = convergence(&scene.cloud.frame.crs, [eye[0] + origin[0], eye[1] + origin[1]]);
             let turn = flagged("--north", turn).context(
                 "--north true needs to know where on earth the scene lies: give its cloud with --crs EPSG:CODE, or take --north grid",
             )?;

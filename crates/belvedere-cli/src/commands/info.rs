@@ -33,9 +33,9 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
         summary.add("lowest_corner", low.map(|v| rounded(v, 3)).to_vec());
         summary.add("highest_corner", high.map(|v| rounded(v, 3)).to_vec());
     }
-    summary.add("metres_per_unit", cloud.crs.metres_per_unit);
-    if cloud.crs.vertical_metres_per_unit != cloud.crs.metres_per_unit {
-        summary.add("metres_per_vertical_unit", cloud.crs.vertical_metres_per_unit);
+    summary.add("metres_per_unit", cloud.frame.crs.metres_per_unit);
+    if cloud.frame.crs.vertical_metres_per_unit != cloud.frame.crs.metres_per_unit {
+        summary.add("metres_per_vertical_unit", cloud.frame.crs.vertical_metres_per_unit);
     }
     summary.add("covered_ground_m2", rounded(facts.occupied_area, 1));
     summary.add("points_per_m2_of_covered_ground", rounded(facts.density, 2));
@@ -130,7 +130,10 @@ fn missing(cloud: &PointCloud, facts: &CloudSummary) -> Vec<&'static str> {
         (a.return_number.is_none(), "return numbers"),
         (a.scan_angle.is_none(), "scan angles"),
         (a.point_source_id.is_none() || lines_say_nothing, "flight lines"),
-        (cloud.crs.wkt.is_none() && cloud.crs.epsg.is_none(), "reference system (metres are assumed; see --crs)"),
+        (
+            cloud.frame.crs.wkt.is_none() && cloud.frame.crs.epsg.is_none(),
+            "reference system (metres are assumed; see --crs)",
+        ),
     ];
     wanted.into_iter().filter_map(|(is_missing, name)| is_missing.then_some(name)).collect()
 }

@@ -95,7 +95,7 @@ fn grid(arguments: &Landmark, scene: &Scene) -> Result<MapGrid> {
         Some(_) => belvedere::apps::viewshed::cell_for(low, high),
         None => arguments.cell.unwrap_or_else(|| observer_cell_for(low, high)),
     };
-    let origin = [scene.cloud.origin[0], scene.cloud.origin[1]];
+    let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     flagged("--cell", MapGrid::covering(low, high, cell, origin))
 }
 
@@ -106,8 +106,8 @@ type Row = ([f64; 3], Option<f64>);
 fn rows(arguments: &Landmark, cloud: &PointCloud) -> Result<Option<Vec<Row>>> {
     let Some(path) = &arguments.observers else { return Ok(None) };
     let mut rows = Vec::new();
-    for row in read_observers(path, &cloud.crs, RowsAre::Places)? {
-        let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - cloud.origin[i]);
+    for row in read_observers(path, &cloud.frame.crs, RowsAre::Places)? {
+        let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - cloud.frame.origin[i]);
         rows.extend(row.corners.iter().map(|corner| (place(corner), row.height)));
     }
     Ok(Some(rows))

@@ -87,7 +87,7 @@ fn pairs(arguments: &LineOfSight, scene: &Scene, seed: u64, stages: &mut Stages)
         return Ok(vec![[local(&scene.cloud, from.0), local(&scene.cloud, to.0)]]);
     }
     if let Some(count) = lines.random {
-        return Ok(random_pairs(scene.bounds.0, scene.bounds.1, count, seed));
+        return Ok(random_pairs(scene.bounds.low, scene.bounds.high, count, seed));
     }
     let Some(path) = &lines.pairs else {
         return Err(Usage("say which lines: --pairs, --random, or --from and --to".to_owned()).into());
@@ -155,8 +155,8 @@ fn write_profile(
     let made = stages
         .run("making profile", 0, |_| sight_profile(blockers, ground.as_ref(), pair, earth, arguments.profile_step));
     let profile = flagged("--profile-out", made)?;
-    let up = scene.cloud.crs.vertical_metres_per_unit;
-    let height = |local: f64| (local + scene.cloud.origin[2]) / up;
+    let up = scene.cloud.frame.crs.vertical_metres_per_unit;
+    let height = |local: f64| (local + scene.cloud.frame.origin[2]) / up;
     let ground: Vec<f64> = profile.ground.iter().map(|&v| height(v)).collect();
     let line: Vec<f64> = profile.line.iter().map(|&v| height(v)).collect();
     if extension(output) == "png" {
@@ -224,7 +224,7 @@ fn profile_ground(
         return Ok(None);
     }
     let [low, high] = on_map(scene.bounds);
-    let origin = [scene.cloud.origin[0], scene.cloud.origin[1]];
+    let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     let grid = MapGrid::covering(low, high, belvedere::apps::viewshed::cell_for(low, high), origin)?;
     let (cloud, points) = ground_cloud(&arguments.ground, scene, stages)?;
     Ok(Some(ground(&cloud, points, grid, stages, summary)?))

@@ -49,12 +49,12 @@ pub(super) fn refuse_flags(flags: &MeshTargets) -> Result<()> {
 pub(super) fn mesh_of(path: &Path, scene: &Scene, stages: &mut Stages, summary: &mut Summary) -> Result<Mesh> {
     let (mesh, report) = stages.run("reading mesh", 0, |_| read_mesh(path))?;
     let known = |kind: CrsKind| kind != CrsKind::Unknown;
-    if known(mesh.crs.kind) && known(scene.cloud.crs.kind) && !mesh.crs.same_system(&scene.cloud.crs) {
+    if known(mesh.crs.kind) && known(scene.cloud.frame.crs.kind) && !mesh.crs.same_system(&scene.cloud.frame.crs) {
         bail!(
             "{}: the mesh is in {}, but the scene is in {}; convert one of them",
             path.display(),
             mesh.crs.describe(),
-            scene.cloud.crs.describe()
+            scene.cloud.frame.crs.describe()
         );
     }
     let mut section = Summary::default();
@@ -63,7 +63,7 @@ pub(super) fn mesh_of(path: &Path, scene: &Scene, stages: &mut Stages, summary: 
         .add("objects", mesh.object_names.len())
         .add("triangles_without_area", report.degenerate_triangle_count);
     summary.add("mesh", section);
-    Ok(mesh.scaled_to_metres(&scene.cloud.crs))
+    Ok(mesh.scaled_to_metres(&scene.cloud.frame.crs))
 }
 
 pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Summary> {
@@ -91,8 +91,8 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
         summary.add("notes", note.into_iter().collect::<Vec<_>>());
     }
     let spacing = arguments.mesh.spacing.unwrap_or(SPACING);
-    let surface =
-        stages.run("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.origin, spacing, global.seed));
+    let surface = stages
+        .run("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, global.seed));
     let surface = pipeline::flagged("--spacing", surface)?;
     let Some(view) = views.first() else { bail!("there is no view") };
     let viewer = match view.is_central() {
@@ -117,7 +117,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     stages.run("writing", 0, |_| match extension(output).as_str() {
         "ply" => {
             let shares: Vec<f64> = faces.iter().map(SeenArea::visible_share).collect();
-            let unit = scene.cloud.crs.metres_per_unit_xyz();
+            let unit = scene.cloud.frame.crs.metres_per_unit_xyz();
             write_mesh_values(output, &mesh, unit, "visible_share", &shares, [0.0, 1.0])
         }
         _ => write_rows(output, &mesh, &faces),

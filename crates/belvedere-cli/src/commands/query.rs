@@ -162,19 +162,19 @@ fn counted(answers: &[Answer], unproven_as: UnprovenAs, how: Summary) -> Summary
 
 /// Whether the file of a cloud says in which reference system it is.
 fn is_known(cloud: &PointCloud) -> bool {
-    cloud.crs.kind != CrsKind::Unknown
+    cloud.frame.crs.kind != CrsKind::Unknown
 }
 
 /// The targets as a cloud in the frame of the scene.
 fn targets(
     arguments: &Query,
     scene: PointCloud,
-    (low, high): ([f32; 3], [f32; 3]),
+    belvedere::Bounds { low, high }: belvedere::Bounds,
     seed: u64,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<PointCloud> {
-    let frame = |positions| PointCloud { positions, ..scene.without_points() };
+    let frame = |positions| PointCloud { positions, ..PointCloud::in_frame(scene.frame.clone()) };
     if let Some(count) = arguments.targets.random {
         return Ok(frame(stages.run("spreading targets", 0, |_| random_targets(low, high, count, seed))));
     }
@@ -200,16 +200,16 @@ pub(super) fn points_of_file(
     pipeline::check_every_row(&report)?;
     summary.add("reading_targets", pipeline::reading_section(&report));
     // a table of targets says nothing of its unit: it is in the coordinates of the scene's file
-    let scale = scene.crs.metres_per_unit_xyz();
-    let given = cloud.crs.metres_per_unit_xyz();
+    let scale = scene.frame.crs.metres_per_unit_xyz();
+    let given = cloud.frame.crs.metres_per_unit_xyz();
     // some files tell their unit without naming a system
-    let known = cloud.crs != Crs::default();
-    if is_known(&cloud) && is_known(scene) && !cloud.crs.same_system(&scene.crs) {
+    let known = cloud.frame.crs != Crs::default();
+    if is_known(&cloud) && is_known(scene) && !cloud.frame.crs.same_system(&scene.frame.crs) {
         bail!(
             "{}: the targets are in {}, but the scene is in {}; convert one of them",
             path.display(),
-            cloud.crs.describe(),
-            scene.crs.describe()
+            cloud.frame.crs.describe(),
+            scene.frame.crs.describe()
         );
     }
     let positions = cloud
@@ -217,15 +217,15 @@ pub(super) fn points_of_file(
         .iter()
         .map(|p| {
             let metres: [f64; 3] = std::array::from_fn(|i| {
-                let value = f64::from(p[i]) + cloud.origin[i];
+                let value = f64::from(p[i]) + cloud.frame.origin[i];
                 if known { value } else { value / given[i] * scale[i] }
             });
-            belvedere::cloud::to_local(metres, scene.origin)
+            belvedere::cloud::to_local(metres, scene.frame.origin)
         })
         .collect();
     cloud.positions = positions;
-    cloud.origin = scene.origin;
-    cloud.crs = scene.crs.clone();
+    cloud.frame.origin = scene.frame.origin;
+    cloud.frame.crs = scene.frame.crs.clone();
     cloud.scanner_positions = Vec::new();
     Ok(cloud)
 }

@@ -34,10 +34,10 @@ pub(super) fn shapes(flag: &str, corners: &Corners, typed_are: TypedAre, cloud: 
         }
         Corners::File(path) => path,
     };
-    let from_origin = |corner: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|i| corner[i] - cloud.origin[i]) };
+    let from_origin = |corner: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|i| corner[i] - cloud.frame.origin[i]) };
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let found: Vec<Named> = match super::extension(path).as_str() {
-        "geojson" | "json" => read_geojson(path, &cloud.crs)?
+        "geojson" | "json" => read_geojson(path, &cloud.frame.crs)?
             .into_iter()
             .enumerate()
             .map(|(i, feature)| {
@@ -52,7 +52,7 @@ pub(super) fn shapes(flag: &str, corners: &Corners, typed_are: TypedAre, cloud: 
                 Named { shape, name: own.unwrap_or_else(|| format!("{file} feature {}", i + 1)) }
             })
             .collect(),
-        _ => read_observers(path, &cloud.crs, RowsAre::Corners)?
+        _ => read_observers(path, &cloud.frame.crs, RowsAre::Corners)?
             .iter()
             .map(|row| Named { shape: shape(row.corners.iter().map(from_origin).collect()), name: file.clone() })
             .collect(),

@@ -5,6 +5,7 @@ use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
+use belvedere::Bounds;
 use belvedere::PointCloud;
 use belvedere::depth::Profile;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
@@ -87,33 +88,36 @@ pub(crate) fn ground_cloud(
                 let what = "a ball file holds no points, so that its ground is not known: name the cloud, as in --ground cloud=FILE";
                 return Err(Usage(what.to_owned()).into());
             }
-            let frame = scene.cloud.without_points();
+            let frame = PointCloud::in_frame(scene.cloud.frame.clone());
             Ok((std::mem::replace(&mut scene.cloud, frame), *points))
         }
         GroundChoice::Cloud(path) => {
             let (mut cloud, _) =
                 stages.run("reading ground", 0, |_| read_cloud(std::slice::from_ref(path), &ReadOptions::default()))?;
             let known = |crs: &belvedere::crs::Crs| crs.kind != belvedere::crs::CrsKind::Unknown;
-            if known(&cloud.crs) && known(&scene.cloud.crs) && !cloud.crs.same_system(&scene.cloud.crs) {
+            if known(&cloud.frame.crs)
+                && known(&scene.cloud.frame.crs)
+                && !cloud.frame.crs.same_system(&scene.cloud.frame.crs)
+            {
                 bail!(
                     "{}: the ground is in {}, but the scene is in {}; convert one of them",
                     path.display(),
-                    cloud.crs.describe(),
-                    scene.cloud.crs.describe()
+                    cloud.frame.crs.describe(),
+                    scene.cloud.frame.crs.describe()
                 );
             }
-            let origin = scene.cloud.origin;
+            let origin = scene.cloud.frame.origin;
             // a cloud that says nothing of its coordinates has those of the scene
-            let is_silent = cloud.crs == belvedere::crs::Crs::default();
-            let scale = if is_silent { scene.cloud.crs.metres_per_unit_xyz() } else { [1.0; 3] };
-            if !known(&cloud.crs) {
-                cloud.crs = scene.cloud.crs.clone();
+            let is_silent = cloud.frame.crs == belvedere::crs::Crs::default();
+            let scale = if is_silent { scene.cloud.frame.crs.metres_per_unit_xyz() } else { [1.0; 3] };
+            if !known(&cloud.frame.crs) {
+                cloud.frame.crs = scene.cloud.frame.crs.clone();
             }
             for position in &mut cloud.positions {
-                let absolute = std::array::from_fn(|i| (f64::from(position[i]) + cloud.origin[i]) * scale[i]);
+                let absolute = std::array::from_fn(|i| (f64::from(position[i]) + cloud.frame.origin[i]) * scale[i]);
                 *position = belvedere::cloud::to_local(absolute, origin);
             }
-            cloud.origin = origin;
+            cloud.frame.origin = origin;
             Ok((cloud, GroundPoints::Auto))
         }
     }
@@ -147,27 +151,27 @@ pub(crate) fn ground(
 
 /// Local metres of a place in file coordinates.
 pub(crate) fn local(cloud: &PointCloud, file: [f64; 3]) -> [f64; 3] {
-    let scale = cloud.crs.metres_per_unit_xyz();
-    std::array::from_fn(|i| file[i] * scale[i] - cloud.origin[i])
+    let scale = cloud.frame.crs.metres_per_unit_xyz();
+    std::array::from_fn(|i| file[i] * scale[i] - cloud.frame.origin[i])
 }
 
 /// File coordinates of a local place.
 pub(crate) fn file(cloud: &PointCloud, local: [f64; 3]) -> [f64; 3] {
-    let scale = cloud.crs.metres_per_unit_xyz();
-    std::array::from_fn(|i| (local[i] + cloud.origin[i]) / scale[i])
+    let scale = cloud.frame.crs.metres_per_unit_xyz();
+    std::array::from_fn(|i| (local[i] + cloud.frame.origin[i]) / scale[i])
 }
 
 /// Where a grid lies in the system of a cloud.
 pub(crate) fn georeference(grid: &MapGrid, cloud: &PointCloud) -> Georeference {
-    let unit = cloud.crs.metres_per_unit;
-    let upper_left = [0, 1].map(|i| (grid.corner[i] + cloud.origin[i]) / unit);
+    let unit = cloud.frame.crs.metres_per_unit;
+    let upper_left = [0, 1].map(|i| (grid.corner[i] + cloud.frame.origin[i]) / unit);
     let step = grid.cell / unit;
-    Georeference { upper_left, column_step: [step, 0.0], row_step: [0.0, -step], crs: cloud.crs.clone() }
+    Georeference { upper_left, column_step: [step, 0.0], row_step: [0.0, -step], crs: cloud.frame.crs.clone() }
 }
 
 /// Lowest and highest corner of a scene on the map, local metres.
-pub(crate) fn on_map(bounds: ([f32; 3], [f32; 3])) -> [[f64; 2]; 2] {
-    [bounds.0, bounds.1].map(|p| [f64::from(p[0]), f64::from(p[1])])
+pub(crate) fn on_map(bounds: Bounds) -> [[f64; 2]; 2] {
+    [bounds.low, bounds.high].map(|p| [f64::from(p[0]), f64::from(p[1])])
 }
 
 /// Notes for people on an eye inside something solid.

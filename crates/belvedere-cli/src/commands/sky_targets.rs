@@ -117,13 +117,13 @@ impl SkyPlaces {
             if scene.cloud.is_empty() {
                 return Err(Usage("--self needs the cloud itself; a ball file holds no points".to_owned()).into());
             }
-            let frame = scene.cloud.without_points();
+            let frame = PointCloud::in_frame(scene.cloud.frame.clone());
             let normals = scene.normals.take();
             return self.of_points(std::mem::replace(&mut scene.cloud, frame), normals);
         }
         let [low, high] = on_map(scene.bounds);
         let cell = self.cell.unwrap_or_else(|| cell_for(low, high));
-        let origin = [scene.cloud.origin[0], scene.cloud.origin[1]];
+        let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
         let grid = flagged("--cell", MapGrid::covering(low, high, cell, origin))?;
         let (cloud, points) = ground_cloud(&self.ground, scene, stages)?;
         let mut ground = ground(&cloud, points, grid, stages, summary)?;
@@ -169,13 +169,13 @@ impl SkyPlaces {
         let mesh = mesh_of(path, scene, stages, summary)?;
         let spacing = self.spacing.unwrap_or(SPACING);
         let surface =
-            stages.run("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.origin, spacing, seed));
+            stages.run("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, seed));
         let surface = flagged("--spacing", surface)?;
         let lift = MeshTargetParams::default().lift;
         let positions = surface.pieces.iter().map(|piece| piece.lifted_along_normal(lift)).collect();
         let level = self.facing == Some(FacingChoice::Level);
         let normals = (!level).then(|| surface.pieces.iter().map(|piece| piece.normal).collect());
-        let frame = Box::new(scene.cloud.without_points());
+        let frame = Box::new(PointCloud::in_frame(scene.cloud.frame.clone()));
         Ok(SkyTargets { positions, normals, kind: Kind::Mesh { mesh: Box::new(mesh), surface, frame } })
     }
 }
@@ -262,7 +262,7 @@ impl SkyTargets {
                 let rows: Vec<usize> =
                     (0..self.positions.len()).filter(|&row| self.positions[row][2].is_finite()).collect();
                 let positions = rows.iter().map(|&row| self.positions[row]).collect();
-                let cells = PointCloud { positions, ..cloud.without_points() };
+                let cells = PointCloud { positions, ..PointCloud::in_frame(cloud.frame.clone()) };
                 let picked: Vec<Vec<f32>> =
                     measures.iter().map(|measure| rows.iter().map(|&row| measure.values[row]).collect()).collect();
                 write_points(output, &cells, measures, &picked, summary)
@@ -273,7 +273,7 @@ impl SkyTargets {
             }
             (Kind::Mesh { mesh, surface, frame }, "ply") => {
                 let values = surface.face_means(first.values);
-                let unit = frame.crs.metres_per_unit_xyz();
+                let unit = frame.frame.crs.metres_per_unit_xyz();
                 Ok(write_mesh_values(output, mesh, unit, first.name, &values, span(first, &values))?)
             }
             (Kind::Mesh { mesh, surface, .. }, _) => write_faces(output, mesh, surface, measures),

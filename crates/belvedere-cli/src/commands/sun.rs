@@ -4,6 +4,7 @@ use crate::arguments::{ElevationChoice, SunPeriod, SunPlace, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::summary::{Summary, rounded};
 use anyhow::{Context, Result};
+use belvedere::Bounds;
 use belvedere::apps::sun::{
     Date, DayParams, Period, Refraction, Site, Zone, parse_instant, sun_position_with, zone_of_instant,
 };
@@ -12,10 +13,10 @@ use belvedere::apps::sun_hours::RuleDays;
 impl SunPlace {
     /// Where the middle of the scene lies on earth.
     pub(crate) fn site(&self, scene: &Scene, summary: &mut Summary) -> Result<Site> {
-        let (low, high) = scene.bounds;
+        let Bounds { low, high } = scene.bounds;
         let middle: [f64; 3] =
-            std::array::from_fn(|i| scene.cloud.origin[i] + f64::midpoint(f64::from(low[i]), f64::from(high[i])));
-        let by_crs = Site::of(&scene.cloud.crs, [middle[0], middle[1]], middle[2]);
+            std::array::from_fn(|i| scene.cloud.frame.origin[i] + f64::midpoint(f64::from(low[i]), f64::from(high[i])));
+        let by_crs = Site::of(&scene.cloud.frame.crs, [middle[0], middle[1]], middle[2]);
         let site = match (&self.location, by_crs) {
             (None, by_crs) => by_crs.context(
                 "the sun needs to know where on earth the scene lies: give --location LAT,LON, or its system with --crs EPSG:CODE",

@@ -92,7 +92,7 @@ fn look(
     })?;
     if let Some(keep) = &arguments.keep {
         let saved = SavedMatrix {
-            origin: targets.frame().origin,
+            origin: targets.frame().frame.origin,
             targets: targets.positions.clone(),
             directions: plan.directions.clone(),
             words: (0..matrix.target_count()).flat_map(|target| matrix.row(target)).copied().collect(),
@@ -122,7 +122,7 @@ fn taken(kept: SavedMatrix, targets: &SkyTargets, scene: u64) -> Result<Visibili
         );
     }
     let same = |a: &[f32; 3], b: &[f32; 3]| a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
-    let check_distinct = kept.origin == targets.frame().origin
+    let check_distinct = kept.origin == targets.frame().frame.origin
         && kept.targets.len() == targets.positions.len()
         && kept.targets.iter().zip(&targets.positions).all(|(a, b)| same(a, b));
     if !check_distinct {

@@ -30,9 +30,9 @@ pub(super) fn eyes(
         rows.push((local(&scene.cloud, [x, y, z.unwrap_or(f64::NAN)]), usual));
     }
     if let Some(path) = &arguments.eyes {
-        for row in read_observers(path, &scene.cloud.crs, RowsAre::Places)? {
+        for row in read_observers(path, &scene.cloud.frame.crs, RowsAre::Places)? {
             let height = row.height.unwrap_or(usual);
-            let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - scene.cloud.origin[i]);
+            let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - scene.cloud.frame.origin[i]);
             rows.extend(row.corners.iter().map(|corner| (place(corner), height)));
         }
     }
@@ -43,7 +43,7 @@ pub(super) fn eyes(
         };
         let low = [0, 1].map(|axis| bound(axis, f64::min, f64::INFINITY) - MARGIN);
         let high = [0, 1].map(|axis| bound(axis, f64::max, f64::NEG_INFINITY) + MARGIN);
-        let origin = [scene.cloud.origin[0], scene.cloud.origin[1]];
+        let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
         let grid = flagged("--eye", MapGrid::covering(low, high, cell_for(low, high), origin))?;
         let (cloud, points) = sights::ground_cloud(&arguments.ground, scene, stages)?;
         let ground = sights::ground(&cloud, points, grid, stages, summary)?;

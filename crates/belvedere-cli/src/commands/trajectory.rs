@@ -22,9 +22,9 @@ pub(crate) fn run(arguments: &Trajectory, global: &Global) -> Result<Summary> {
         stages.run("finding the scanner", 0, |_| locate(&cloud, &Means::Pulses, &LocateParams::default()))?;
     summary.add("scanner", scanner::section(&report));
     summary.add("scanner_by_line", scanner::line_sections(&report));
-    let samples = path_samples(&report.paths, cloud.origin, arguments.step)?;
+    let samples = path_samples(&report.paths, cloud.frame.origin, arguments.step)?;
     summary.add("positions", samples.len());
-    stages.run("writing", 0, |_| write_found_trajectory(&arguments.output, &samples, &cloud.crs))?;
+    stages.run("writing", 0, |_| write_found_trajectory(&arguments.output, &samples, &cloud.frame.crs))?;
     summary.add("written", arguments.output.display().to_string());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)

@@ -121,7 +121,7 @@ fn grid(arguments: &Viewshed, scene: &pipeline::Scene, rows: &[who::Row]) -> Res
         [low, high] = [all_low, all_high];
     }
     let cell = arguments.cell.unwrap_or_else(|| cell_for(low, high));
-    let origin = [scene.cloud.origin[0], scene.cloud.origin[1]];
+    let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     flagged("--cell", MapGrid::covering(low, high, cell, origin))
 }
 

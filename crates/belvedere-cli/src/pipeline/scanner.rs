@@ -81,13 +81,13 @@ pub(super) fn of_each_point(
 ) -> Result<Located> {
     let trajectory = match &orienting.orient {
         OrientChoice::Trajectory(path) => {
-            Some(stages.run("reading trajectory", 0, |_| read_trajectory(path, &cloud.crs))?.0)
+            Some(stages.run("reading trajectory", 0, |_| read_trajectory(path, &cloud.frame.crs))?.0)
         }
         _ => None,
     };
     let means = match (&orienting.orient, &trajectory) {
         (_, Some(trajectory)) => Means::Trajectory(trajectory),
-        (OrientChoice::ScannerAt(position), _) => Means::Position(cloud.from_file_coordinates(*position)),
+        (OrientChoice::ScannerAt(position), _) => Means::Position(cloud.frame.from_file_coordinates(*position)),
         (OrientChoice::Scanner, _) => Means::Poses,
         (OrientChoice::Pulses, _) => Means::Pulses,
         _ => Means::Automatic,

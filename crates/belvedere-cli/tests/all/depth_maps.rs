@@ -139,7 +139,7 @@ fn the_rows_that_balls_come_from_are_rows_of_the_file() {
     let origin: Vec<f64> = place.npz("balls.npz", "origin");
     for (i, source) in place.npz::<u32>("balls.npz", "source").into_iter().enumerate() {
         assert!(source >= 3);
-        let point = cloud.to_file_coordinates(cloud.positions[source as usize]);
+        let point = cloud.frame.to_file_coordinates(cloud.positions[source as usize]);
         let square: f64 = (0..3).map(|k| (f64::from(centers[3 * i + k]) + origin[k] - point[k]).powi(2)).sum();
         // a millimetre is the step of the file
         assert!((square.sqrt() - f64::from(radii[i])).abs() < 2e-3, "ball {i}");

@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
 use crate::common::{Workplace, house};
+use belvedere::Frame;
 use belvedere::PointCloud;
 use belvedere::crs::Crs;
 use serde_json::Value;
@@ -74,7 +75,10 @@ fn what_info_says_can_be_served_can_be_served() {
 #[test]
 fn feet_are_told_and_bounds_stay_in_them() {
     let place = Workplace::new();
-    let feet = PointCloud { origin: [200_000.0, 300_000.0, 0.0], crs: Crs::from_epsg(2992).unwrap(), ..house() };
+    let feet = PointCloud {
+        frame: Frame { origin: [200_000.0, 300_000.0, 0.0], crs: Crs::from_epsg(2992).unwrap() },
+        ..house()
+    };
     place.write_cloud("feet.laz", &feet);
     let facts = place.summary("info feet.laz");
     assert_eq!(facts["metres_per_unit"], 0.3048);
@@ -90,7 +94,7 @@ fn feet_are_told_and_bounds_stay_in_them() {
 #[test]
 fn a_reference_system_can_be_given() {
     let place = Workplace::new();
-    let cloud = PointCloud { crs: Crs::default(), ..house() };
+    let cloud = house().with_crs(Crs::default());
     place.write_cloud("house.xyz", &cloud);
     let missing = |facts: &Value| facts["missing"].to_string().contains("reference system");
     assert!(missing(&place.summary("info house.xyz")));

@@ -117,7 +117,7 @@ fn what_cannot_be_is_refused_with_advice() {
     place.refusal(1, &house("--weather broken.epw -o out.csv"), &["broken.epw", "line 9", "cell 14"]);
     // a cloud that does not say where it lies
     let mut adrift = crate::common::house();
-    adrift.crs = belvedere::crs::Crs::default();
+    adrift.frame.crs = belvedere::crs::Crs::default();
     place.write_cloud("adrift.ply", &adrift);
     let flags = "--method tau --orient given --ground found --sun-cell 4 --clear-sky bird --cell 4 -o out.csv";
     place.refusal(1, &format!("irradiance adrift.ply {flags}"), &["--location", "--crs"]);

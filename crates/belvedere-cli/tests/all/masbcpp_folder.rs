@@ -128,7 +128,7 @@ fn thinning_depends_on_the_seed_alone() {
 fn a_folder_at_projected_coordinates_gives_the_balls_of_one_near_zero() {
     let place = Workplace::new();
     let mut near = house();
-    near.origin = [0.0; 3];
+    near.frame.origin = [0.0; 3];
     place.write_folder("near", &near);
     place.write_folder("far", &house());
     let radii = ["near", "far"].map(|name| {

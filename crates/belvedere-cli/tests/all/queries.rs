@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
 use crate::common::{Workplace, at, house};
+use belvedere::Frame;
 use belvedere::PointCloud;
 use belvedere::crs::Crs;
 use serde_json::Value;
@@ -152,14 +153,17 @@ fn a_ball_file_gives_the_answers_of_its_cloud() {
 #[test]
 fn the_same_scene_in_feet_gives_the_same_answers() {
     let place = Workplace::new();
-    let metres = PointCloud { origin: [200_000.0, 300_000.0, 10.0], crs: Crs::from_epsg(32610).unwrap(), ..house() };
-    let feet = PointCloud { crs: Crs::from_epsg(2992).unwrap(), ..metres.clone() };
-    let foot = feet.crs.metres_per_unit;
+    let metres = PointCloud {
+        frame: Frame { origin: [200_000.0, 300_000.0, 10.0], crs: Crs::from_epsg(32610).unwrap() },
+        ..house()
+    };
+    let feet = metres.clone().with_crs(Crs::from_epsg(2992).unwrap());
+    let foot = feet.frame.crs.metres_per_unit;
     assert_eq!(foot, 0.3048);
     let [(metre_targets, _), (foot_targets, _)] = [1.0, foot].map(|unit| {
         let scaled = targets_seen_from_above().into_iter().map(|(t, answer)| {
             let local = [t[0] - crate::common::EAST, t[1] - crate::common::NORTH, t[2]];
-            (std::array::from_fn(|i| (local[i] + metres.origin[i]) / unit), answer)
+            (std::array::from_fn(|i| (local[i] + metres.frame.origin[i]) / unit), answer)
         });
         split(&scaled.collect::<Vec<([f64; 3], u8)>>())
     });
@@ -195,7 +199,7 @@ fn the_same_scene_in_feet_gives_the_same_answers() {
 fn targets_in_another_reference_system_are_refused() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
-    place.write_cloud("belgian.laz", &PointCloud { crs: Crs::from_epsg(31370).unwrap(), ..house() });
+    place.write_cloud("belgian.laz", &house().with_crs(Crs::from_epsg(31370).unwrap()));
     let words = ["belgian.laz", "EPSG:31370", "EPSG:28992", "convert"];
     place.refusal(1, "query house.laz --sun 180,30 --targets belgian.laz -o out.laz", &words);
     assert!(!place.path("out.laz").exists());
@@ -229,7 +233,7 @@ fn the_points_of_the_cloud_keep_number_order_and_attributes_beside_their_answer(
     let points: Vec<las::Point> = reader.read_all().unwrap().points().map(Result::unwrap).collect();
     assert_eq!((points.len(), answers.len()), (n, n));
     for (i, point) in points.iter().enumerate() {
-        let position = cloud.to_file_coordinates(cloud.positions[i]);
+        let position = cloud.frame.to_file_coordinates(cloud.positions[i]);
         // LAS files are written in steps of at most a millimetre
         assert!([point.x, point.y, point.z].iter().zip(position).all(|(a, b)| (a - b).abs() < 1e-3), "{i}");
         assert_eq!(u8::from(point.classification), if i % 50 == 0 { 7 } else { 6 });

@@ -36,7 +36,7 @@ fn an_airborne_survey_comes_with_all_that_one_delivers() {
 
     let cloud = cloud(&place, "out/cloud.laz");
     assert_eq!(summary["points"], cloud.len());
-    assert_eq!(cloud.crs.epsg, Some(7415));
+    assert_eq!(cloud.frame.crs.epsg, Some(7415));
     let a = &cloud.attributes;
     assert_eq!(a.gps_time_kind, GpsTimeKind::AdjustedStandard);
     assert!(a.classification.as_ref().unwrap().iter().all(|class| [1, 2, 5, 6, 14, 17].contains(class)));
@@ -49,7 +49,7 @@ fn an_airborne_survey_comes_with_all_that_one_delivers() {
     // The path is known at all times, from either file.
     let times = a.gps_time.as_ref().unwrap();
     for name in ["out/trajectory.csv", "out/trajectory.sbet"] {
-        let (trajectory, _) = read_trajectory(&place.path(name), &cloud.crs).unwrap();
+        let (trajectory, _) = read_trajectory(&place.path(name), &cloud.frame.crs).unwrap();
         let clock = trajectory.clock_offset_for(times, a.gps_time_kind);
         assert_eq!(clock.served_count, cloud.len(), "{name}");
     }
@@ -130,7 +130,7 @@ fn a_terrestrial_survey_names_its_stations() {
     let sources = cloud.attributes.point_source_id.as_ref().unwrap();
     for (position, &source) in cloud.positions.iter().zip(sources) {
         let station = &stations[usize::from(source) - 1];
-        let p = cloud.to_file_coordinates(*position);
+        let p = cloud.frame.to_file_coordinates(*position);
         let range = (0..3).map(|i| (p[i] - station[i + 1]).powi(2)).sum::<f64>().sqrt();
         // six deviations of the range, and the millimetres of both files
         assert!(range < 30.0 + 6.0 * 0.005 + 0.002, "{range} from station {source}");

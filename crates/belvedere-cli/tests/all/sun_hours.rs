@@ -149,7 +149,7 @@ fn what_cannot_be_is_refused_with_advice() {
     }
     // a cloud that does not say where on earth it lies
     let mut lost = house();
-    lost.crs = Crs::default();
+    lost.frame.crs = Crs::default();
     place.write_cloud("lost.laz", &lost);
     let lost = "lost.laz --orient given --method tau --targets places.csv";
     place.refusal(1, &format!("sun-hours {lost} --date 2026-06-21 -o no.csv"), &["--location LAT,LON", "--crs"]);

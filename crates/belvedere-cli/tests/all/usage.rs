@@ -1,6 +1,7 @@
 //! Exit status, output streams, and what stays in the folder when a run fails.
 
 use crate::common::{Workplace, house};
+use belvedere::Frame;
 use belvedere::PointCloud;
 use belvedere::crs::Crs;
 use std::process::Stdio;
@@ -137,7 +138,8 @@ fn damaged_laz_files_give_one_line_or_a_result_whatever_happens_in_the_decoder()
 #[test]
 fn degrees_are_refused_with_the_conversion_to_run() {
     let place = Workplace::new();
-    let degrees = PointCloud { origin: [5.4, 52.2, 0.0], crs: Crs::from_epsg(4326).unwrap(), ..house() };
+    let degrees =
+        PointCloud { frame: Frame { origin: [5.4, 52.2, 0.0], crs: Crs::from_epsg(4326).unwrap() }, ..house() };
     let small = degrees.positions.iter().map(|p| [p[0] * 1e-5, p[1] * 1e-5, p[2]]).collect();
     place.write_cloud("degrees.las", &PointCloud { positions: small, ..degrees });
     for command in ["info", "balls -o out.npz", "query --sun 180,30 --self -o out.laz"] {

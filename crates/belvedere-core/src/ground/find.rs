@@ -2,6 +2,7 @@
 
 use super::morphology::opened;
 use super::{Ground, MapGrid};
+use belvedere_data::Bounds;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, PointCloud, Result};
 
@@ -86,7 +87,7 @@ pub fn find_ground(cloud: &PointCloud, params: &FinderParams) -> Result<Vec<u32>
     };
     let rows: Vec<usize> = (0..cloud.len()).filter(|&row| usable(row)).collect();
     let positions: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row).copied()).collect();
-    let Some((low, high)) = belvedere_data::cloud::bounds(&positions) else {
+    let Some(Bounds { low, high }) = Bounds::around(positions.iter().copied()) else {
         return Err(Error::NoPoints { what: "all points are noise or withheld, none can be ground".to_owned() });
     };
     let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];

@@ -184,7 +184,7 @@ pub fn orient(cloud: &PointCloud, normals: Normals, by: &Orientation<'_>) -> Res
         .filter(|(verdict, confidence)| verdict.way != Way::Nothing && **confidence < LOW_CONFIDENCE)
         .count();
     let oriented = OrientedCloud::new(cloud.positions.clone(), vectors, quality, confidence)?;
-    Ok((oriented.with_place(cloud.origin, cloud.crs.clone()), report))
+    Ok((oriented.with_place(cloud.frame.origin, cloud.frame.crs.clone()), report))
 }
 
 /// Verdict of `decide(index, position, normal)` on every point that has a normal.
@@ -271,7 +271,7 @@ fn by_own_scanner(cloud: &PointCloud, vectors: &[[f32; 3]]) -> Result<Vec<Option
 
 fn by_nearest_scanner(cloud: &PointCloud, vectors: &[[f32; 3]], scanners: &[[f64; 3]]) -> Result<Vec<Option<Verdict>>> {
     check_finite(scanners)?;
-    let local: Vec<[f64; 3]> = scanners.iter().map(|s| std::array::from_fn(|i| s[i] - cloud.origin[i])).collect();
+    let local: Vec<[f64; 3]> = scanners.iter().map(|s| std::array::from_fn(|i| s[i] - cloud.frame.origin[i])).collect();
     Ok(each(cloud, vectors, |_, position, normal| towards(nearest(&local, position)?, position, normal)))
 }
 
@@ -301,7 +301,7 @@ fn by_pulses(
 }
 
 fn by_mesh(cloud: &PointCloud, vectors: &[[f32; 3]], mesh: &Mesh) -> Result<Vec<Option<Verdict>>> {
-    let reference = ReferenceMesh::new(mesh, cloud.origin).ok_or_else(|| Error::InvalidParameter {
+    let reference = ReferenceMesh::new(mesh, cloud.frame.origin).ok_or_else(|| Error::InvalidParameter {
         name: "mesh",
         value: format!("{} triangles without area", mesh.triangles.len()),
         expected: "at least one triangle with an area",

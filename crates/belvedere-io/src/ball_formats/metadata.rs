@@ -7,8 +7,9 @@ use serde_json::{Map, Value, json};
 use super::FileBall;
 use crate::balls::SavedBalls;
 use crate::part::narrow;
-use belvedere_data::cloud::{bounds, centre_rounded, to_local};
+use belvedere_data::cloud::{centre_rounded, to_local};
 use belvedere_data::crs::{Crs, CrsKind};
+use belvedere_data::{Bounds, Frame};
 
 /// What the numbers beside the metadata mean in files that hold points.
 pub(super) const FILE_UNITS: &str = "file units, radians; origin in metres, bounds in metres relative to it";
@@ -23,14 +24,14 @@ const KINDS: [(CrsKind, &str); 5] = [
 
 /// Origin, bounds, reference system and provenance of `balls`; `units` says what the numbers beside it mean.
 pub(super) fn to_json(balls: &SavedBalls, units: &str) -> String {
-    let crs = &balls.crs;
+    let crs = &balls.frame.crs;
     let provenance: Map<String, Value> =
         balls.provenance.iter().map(|(k, v)| (k.clone(), Value::String(v.clone()))).collect();
     json!({
         "format": "belvedere balls 1",
         "units": units,
-        "origin": balls.origin,
-        "bounds": balls.bounds,
+        "origin": balls.frame.origin,
+        "bounds": [balls.bounds.low, balls.bounds.high],
         "crs": {
             "wkt": crs.wkt,
             "epsg": crs.epsg,
@@ -52,7 +53,7 @@ pub(super) struct Metadata {
     /// Metres.
     pub(super) origin: Option<[f64; 3]>,
     /// Local metres.
-    bounds: Option<([f32; 3], [f32; 3])>,
+    bounds: Option<Bounds>,
 }
 
 /// What `text`, written by [`to_json`], says. Programs may have dropped all or part of it.
@@ -77,7 +78,7 @@ pub(super) fn from_json(text: &str) -> Metadata {
         },
         provenance: provenance.filter_map(|(k, v)| Some((k.clone(), v.as_str()?.to_owned()))).collect(),
         origin: three(&value["origin"]),
-        bounds: corner(0).zip(corner(1)),
+        bounds: corner(0).zip(corner(1)).map(|(low, high)| Bounds { low, high }),
     }
 }
 
@@ -98,8 +99,9 @@ impl Metadata {
     /// Balls with these centres, local to `origin`, and no further columns yet. Bounds that the file lacks are those of
     /// the centres.
     pub(super) fn balls(self, origin: [f64; 3], centers: Vec<[f32; 3]>) -> SavedBalls {
-        let bounds = self.bounds.or_else(|| bounds(&centers)).unwrap_or_default();
-        SavedBalls { origin, crs: self.crs, bounds, centers, provenance: self.provenance, ..SavedBalls::default() }
+        let bounds = self.bounds.or_else(|| Bounds::around(centers.iter().copied())).unwrap_or_default();
+        let frame = Frame { origin, crs: self.crs };
+        SavedBalls { frame, bounds, centers, provenance: self.provenance, ..SavedBalls::default() }
     }
 
     /// Balls from rows in file coordinates. An origin that the file lacks is chosen near the middle of the centres.

@@ -16,13 +16,8 @@ use belvedere_data::PointCloud;
 /// The centres as a cloud and the rest as columns, for formats that hold points. Indices are signed there, so that
 /// viewers show −1 and not four thousand million for "none".
 fn as_cloud(balls: &SavedBalls) -> (PointCloud, Vec<Column<'_>>) {
-    let cloud = PointCloud {
-        origin: balls.origin,
-        positions: balls.centers.clone(),
-        crs: balls.crs.clone(),
-        ..PointCloud::default()
-    };
-    let unit = balls.crs.metres_per_unit;
+    let cloud = PointCloud { frame: balls.frame.clone(), positions: balls.centers.clone(), ..PointCloud::default() };
+    let unit = balls.frame.crs.metres_per_unit;
     #[expect(clippy::cast_possible_truncation, reason = "a radius in another unit is still an f32")]
     let radii = balls.radii.iter().map(|&r| (f64::from(r) / unit) as f32).collect();
     let signed = |indices: &[u32]| Values::I32(indices.iter().map(|&i| i.cast_signed()).collect());

@@ -30,7 +30,7 @@ fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, balls: &SavedBalls)
     let metadata = metadata::to_json(balls, UNITS);
     let n = balls.centers.len() as u64;
     array(archive, "centers", &[n, 3], balls.centers.iter().flatten().copied())?;
-    array(archive, "origin", &[3], balls.origin.into_iter())?;
+    array(archive, "origin", &[3], balls.frame.origin.into_iter())?;
     array(archive, "radii", &[n], balls.radii.iter().copied())?;
     array(archive, "source", &[n], balls.source.iter().copied())?;
     array(archive, "touch", &[n], balls.touch.iter().copied())?;

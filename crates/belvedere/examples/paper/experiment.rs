@@ -52,7 +52,7 @@ pub(crate) fn compare_profiles(model: &Model, views: &[(&str, View)], tables: &m
         let [width, height] = view.size_px.map(|v| v as f64 / s);
         tables.line(&format!(
             "{name}: p0 {}, vx {}, vy {}, s {s}, {} x {} pixels",
-            show(model.cloud.to_file_coordinates(view.frame.eye.map(|v| v as f32))),
+            show(model.cloud.frame.to_file_coordinates(view.frame.eye.map(|v| v as f32))),
             show(view.frame.right.map(|v| v * width)),
             show(view.frame.down.map(|v| v * height)),
             view.size_px[0],

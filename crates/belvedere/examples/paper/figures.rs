@@ -2,6 +2,7 @@
 
 use crate::experiment::Look;
 use crate::model::{Model, Way, unlimited_tau, within_window};
+use belvedere::Bounds;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::figures::{Canvas, Colors, Picture, depth_picture, ramp_colors, side_by_side, write_png};
 use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkParams};
@@ -160,7 +161,7 @@ pub(crate) fn close_views(folder: &Path, cloud: &PointCloud, way: &Way<'_>) -> R
         let [west, south, east, north] = window;
         let around = within_window(cloud, [west - 30.0, south - 30.0, east + 30.0, north + 30.0]);
         let shown = within_window(cloud, window);
-        let Some((low, high)) = shown.bounds() else { continue };
+        let Some(Bounds { low, high }) = shown.bounds() else { continue };
         let view = view_of(low, high, Some(viewer), 440.0)?;
         let mut columns = Vec::new();
         for params in [ShrinkParams::angles(), unlimited_tau(), ShrinkParams::tau()] {

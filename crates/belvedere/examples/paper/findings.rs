@@ -104,7 +104,7 @@ pub(crate) fn delft(published: Model, cloud: &PointCloud, mesh: &Mesh, tables: &
     tables.line("|---|---|---|");
     for method in &methods {
         let all = method.sunlit(&people.all, sun)?;
-        let origin = method.model.cloud.origin;
+        let origin = method.model.cloud.frame.origin;
         let local: Vec<[f32; 3]> = people.modelled.iter().map(|&p| to_local(p, origin)).collect();
         let modelled = method.sunlit(&local, sun)?;
         let lit = |answers: &[bool]| percent(answers.iter().filter(|&&v| v).count(), answers.len());
@@ -138,7 +138,7 @@ fn people(cloud: &PointCloud, city: &Truth) -> People {
     let around: Vec<(f64, f64)> = (0..8).map(|i| (f64::from(i) * std::f64::consts::FRAC_PI_4).sin_cos()).collect();
     let modelled = all
         .iter()
-        .map(|&p| cloud.to_file_coordinates(p))
+        .map(|&p| cloud.frame.to_file_coordinates(p))
         .filter(|&p| has_model(p, (0.0, 0.0)) && around.iter().all(|&d| has_model(p, d)))
         // the model's ground must not lie above the person
         .filter(|&p| city.first_hit(p, [0.0, 0.0, -1.0], 3.0).is_some())
@@ -267,7 +267,7 @@ fn free_centers(model: &Model, scene: &Scene, truth: &Truth) -> Vec<bool> {
             .corners(triangle as usize)
             .is_some_and(|[a, b, c]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0)
     };
-    let centers = model.balls.centers.iter().map(|&c| model.cloud.to_file_coordinates(c));
+    let centers = model.balls.centers.iter().map(|&c| model.cloud.frame.to_file_coordinates(c));
     centers.map(|c| truth.first_hit(c, up, f64::INFINITY).is_none_or(|hit| !faces_up(hit.triangle))).collect()
 }
 
@@ -348,9 +348,9 @@ pub(crate) fn simulated_town(tables: &mut Tables) -> Result<()> {
         .collect();
     let people_lit: Vec<bool> = truth.occluded_towards_each(&people, sun).into_iter().map(|v| !v).collect();
     let own_lit: Vec<bool> = truth.occluded_towards_each(&scan.exact_positions, sun).into_iter().map(|v| !v).collect();
-    let local_people: Vec<[f32; 3]> = people.iter().map(|&p| to_local(p, cloud.origin)).collect();
+    let local_people: Vec<[f32; 3]> = people.iter().map(|&p| to_local(p, cloud.frame.origin)).collect();
     let random = random_targets(methods[0].model.low, methods[0].model.high, RANDOM_COUNT, 1);
-    let random_exact: Vec<[f64; 3]> = random.iter().map(|&p| cloud.to_file_coordinates(p)).collect();
+    let random_exact: Vec<[f64; 3]> = random.iter().map(|&p| cloud.frame.to_file_coordinates(p)).collect();
     let random_lit: Vec<bool> = truth.occluded_towards_each(&random_exact, sun).into_iter().map(|v| !v).collect();
     let lit_share = |lit: &[bool]| percent(lit.iter().filter(|&&v| v).count(), lit.len());
     tables.line(&format!(

@@ -1,6 +1,7 @@
 //! From a cloud to medial balls, stage by stage, with the time each takes.
 
 use crate::Tables;
+use belvedere::Bounds;
 use belvedere::clean::{CleanParams, clean};
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, ShrinkParams, ShrinkReport, Side, shrink};
@@ -47,7 +48,7 @@ pub(crate) fn within_window(cloud: &PointCloud, [west, south, east, north]: [f64
     let inside: Vec<u32> = (0..)
         .zip(&cloud.positions)
         .filter(|&(_, &p)| {
-            let [x, y, _] = cloud.to_file_coordinates(p);
+            let [x, y, _] = cloud.frame.to_file_coordinates(p);
             (west..east).contains(&x) && (south..north).contains(&y)
         })
         .map(|(i, _)| i)
@@ -97,7 +98,8 @@ impl Model {
         given_count: usize,
         mut times: Vec<(&'static str, f64)>,
     ) -> Result<Self> {
-        let (low, high) = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "the data set is empty".to_owned() })?;
+        let Bounds { low, high } =
+            cloud.bounds().ok_or_else(|| Error::NoPoints { what: "the data set is empty".to_owned() })?;
         let (balls, shrink_report) =
             timed(&mut times, "balls", || shrink(&oriented, &index, Side::Interior, &params, &Control::none()))?;
         Ok(Self {

@@ -11,7 +11,7 @@ use std::path::Path;
 
 use belvedere::crs::Crs;
 use belvedere::io::{SavedBalls, SavedPulses, is_ball_file, read_balls, write_balls, write_cloud};
-use belvedere::{Error, PointCloud};
+use belvedere::{Bounds, Error, Frame, PointCloud};
 use tempfile::TempDir;
 
 fn dutch() -> Crs {
@@ -21,9 +21,8 @@ fn dutch() -> Crs {
 fn balls(crs: Crs) -> SavedBalls {
     let n = 500_u16;
     SavedBalls {
-        origin: [84_500.123_456_789, 446_700.0, 3.0],
-        crs,
-        bounds: ([-5.5, -400.25, 0.1], [70.0, 1.0, 30.7]),
+        frame: Frame { origin: [84_500.123_456_789, 446_700.0, 3.0], crs },
+        bounds: Bounds { low: [-5.5, -400.25, 0.1], high: [70.0, 1.0, 30.7] },
         centers: (0..n).map(|i| [f32::from(i) * 0.1234, f32::from(i) * -0.77, f32::from(i).sqrt()]).collect(),
         radii: (0..n).map(|i| f32::from(i) * 0.0137).collect(),
         source: (0..u32::from(n)).rev().collect(),
@@ -57,7 +56,7 @@ fn balls_come_back() {
             write_balls(&path, &balls).unwrap();
             assert!(is_ball_file(&path).unwrap(), "{name}");
             let found = read_balls(&path).unwrap();
-            assert_eq!(found.crs, balls.crs, "{name}");
+            assert_eq!(found.frame.crs, balls.frame.crs, "{name}");
             assert_eq!(found.provenance, balls.provenance);
             assert_eq!(found.bounds, balls.bounds, "{name}");
             assert_eq!(found.source, balls.source);
@@ -66,7 +65,7 @@ fn balls_come_back() {
             assert_eq!(found.transmission, balls.transmission, "{name}");
             assert_eq!(found.pulses.is_some(), name == "b.npz", "{name}");
             if name == "b.npz" {
-                assert_eq!(found.origin, balls.origin);
+                assert_eq!(found.frame.origin, balls.frame.origin);
                 assert!(same_bits(found.centers.as_flattened(), balls.centers.as_flattened()));
                 assert!(same_bits(&found.radii, &balls.radii));
                 let [found, given] = [&found, &balls].map(|balls| balls.pulses.as_ref().unwrap());
@@ -78,8 +77,8 @@ fn balls_come_back() {
             for i in 0..balls.radii.len() {
                 assert!((found.radii[i] - balls.radii[i]).abs() <= balls.radii[i] * 2e-7, "{name}");
                 for axis in 0..3 {
-                    let expected = f64::from(balls.centers[i][axis]) + balls.origin[axis];
-                    let value = f64::from(found.centers[i][axis]) + found.origin[axis];
+                    let expected = f64::from(balls.centers[i][axis]) + balls.frame.origin[axis];
+                    let value = f64::from(found.centers[i][axis]) + found.frame.origin[axis];
                     assert!((value - expected).abs() < 0.0006, "{name}: {value} {expected}");
                 }
             }
@@ -141,14 +140,18 @@ fn pulses_and_transmissions_that_cannot_be_are_errors_that_name_the_file() {
 #[test]
 fn no_balls_come_back_as_none() {
     let folder = TempDir::new().unwrap();
-    let none = SavedBalls { bounds: ([-1.0; 3], [2.0; 3]), crs: dutch(), ..SavedBalls::default() };
+    let none = SavedBalls {
+        bounds: Bounds { low: [-1.0; 3], high: [2.0; 3] },
+        frame: Frame { crs: dutch(), ..Frame::default() },
+        ..SavedBalls::default()
+    };
     for name in ["b.npz", "b.ply", "b.laz", "b.las"] {
         let path = folder.path().join(name);
         write_balls(&path, &none).unwrap();
         assert!(is_ball_file(&path).unwrap(), "{name}");
         assert_eq!(read_balls(&path).unwrap(), none, "{name}");
     }
-    let endless = SavedBalls { bounds: ([0.0; 3], [f32::INFINITY; 3]), ..none };
+    let endless = SavedBalls { bounds: Bounds { low: [0.0; 3], high: [f32::INFINITY; 3] }, ..none };
     assert!(matches!(write_balls(&folder.path().join("b.npz"), &endless), Err(Error::InvalidParameter { .. })));
 }
 
@@ -166,8 +169,8 @@ fn balls_without_metadata_have_the_bounds_of_their_centres() {
     let edited = [format!("{}\n", kept.join("\n")).as_bytes(), &bytes[end..]].concat();
     fs::write(&path, edited).unwrap();
     let found = read_balls(&path).unwrap();
-    assert_eq!((found.crs.epsg, found.radii.len()), (Some(28992), 500));
-    let (low, high) = found.bounds;
+    assert_eq!((found.frame.crs.epsg, found.radii.len()), (Some(28992), 500));
+    let Bounds { low, high } = found.bounds;
     for axis in 0..3 {
         let centers = || found.centers.iter().map(|c| c[axis]);
         assert_eq!(low[axis], centers().fold(f32::INFINITY, f32::min));

@@ -1,6 +1,7 @@
 //! The ground found in clouds, against the exact ground of simulated towns and against the classes of a survey.
 
 use crate::common::simulated::cloud_of;
+use belvedere::Bounds;
 use belvedere::ground::{
     FinderParams, Ground, GroundParams, GroundPoints, MapGrid, find_ground, ground_points, hidden_ground,
 };
@@ -9,9 +10,9 @@ use belvedere::{Attributes, PointCloud};
 use belvedere_scenes::{AirborneParams, Preset, QuerySite, Truth, scan_airborne, town};
 
 fn grid_of(cloud: &PointCloud, cell: f64) -> MapGrid {
-    let (low, high) = cloud.bounds().unwrap();
+    let Bounds { low, high } = cloud.bounds().unwrap();
     let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];
-    MapGrid::covering(on_map(low), on_map(high), cell, [cloud.origin[0], cloud.origin[1]]).unwrap()
+    MapGrid::covering(on_map(low), on_map(high), cell, [cloud.frame.origin[0], cloud.frame.origin[1]]).unwrap()
 }
 
 /// Share of `truth` that `found` holds, and share of `found` that is in `truth`.
@@ -32,8 +33,8 @@ fn ground_found_without_classes_lies_on_the_exact_ground() {
         let cloud = cloud_of(&scan);
         let unclassed = PointCloud { attributes: Attributes::default(), ..cloud.clone() };
         let truth = Truth::new(&scene);
-        let (low, high) = cloud.bounds().unwrap();
-        let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + cloud.origin[i]) };
+        let Bounds { low, high } = cloud.bounds().unwrap();
+        let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + cloud.frame.origin[i]) };
         let site = QuerySite { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
         for (cloud, from, least) in
             [(&cloud, GroundPoints::Classed, least[0]), (&unclassed, GroundPoints::Found, least[1])]
@@ -44,10 +45,10 @@ fn ground_found_without_classes_lies_on_the_exact_ground() {
             for row in 0..ground.grid.height {
                 for column in 0..ground.grid.width {
                     let [x, y] = ground.grid.center(column, row);
-                    let exact = site.ground_height([x + cloud.origin[0], y + cloud.origin[1]]);
+                    let exact = site.ground_height([x + cloud.frame.origin[0], y + cloud.frame.origin[1]]);
                     let height = ground.heights.get(column, row).unwrap();
                     if let Some(exact) = exact.filter(|_| height.is_finite()) {
-                        errors.push((f64::from(height) + cloud.origin[2] - exact).abs());
+                        errors.push((f64::from(height) + cloud.frame.origin[2] - exact).abs());
                     }
                 }
             }

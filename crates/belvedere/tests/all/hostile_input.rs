@@ -248,7 +248,7 @@ fn undamaged_files_read() {
         std::fs::write(&path, &file.bytes).unwrap();
         let (cloud, report) = read_cloud(&[path], &ReadOptions::default()).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(cloud.len() + report.left_out_count(), POINTS as usize, "{}", file.name);
-        let p = cloud.to_file_coordinates(cloud.positions[1]);
+        let p = cloud.frame.to_file_coordinates(cloud.positions[1]);
         let expected = coordinates(if file.name == "scan.e57" { 2 } else { 1 });
         // Single precision at 447 km steps by 3 cm.
         let tolerance = if file.name == "f4.npy" { 0.05 } else { 0.001 };

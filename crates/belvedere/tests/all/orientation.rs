@@ -7,7 +7,7 @@ use std::path::Path;
 use belvedere::io::read_mesh;
 use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
 use belvedere::trajectory::Trajectory;
-use belvedere::{Attributes, GpsTimeKind, Mesh, PointCloud};
+use belvedere::{Attributes, Frame, GpsTimeKind, Mesh, PointCloud};
 
 fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -45,7 +45,11 @@ fn oriented(cloud: &PointCloud, truth: &[[f32; 3]], by: &Orientation<'_>) -> (Or
 }
 
 fn cloud_of(positions: Vec<[f32; 3]>) -> PointCloud {
-    PointCloud { positions, origin: [85_000.0, 447_000.0, 0.0], ..PointCloud::default() }
+    PointCloud {
+        positions,
+        frame: Frame { origin: [85_000.0, 447_000.0, 0.0], ..Frame::default() },
+        ..PointCloud::default()
+    }
 }
 
 fn sphere(radius: f64, count: u32) -> (PointCloud, Vec<[f32; 3]>) {
@@ -337,7 +341,7 @@ fn delft_by_its_city_model_agrees_with_a_scanner_above() {
     // coords.npy is the tile minus this; found by comparing with the tile point by point
     let cloud = PointCloud {
         positions: rows(&folder.join("coords.npy")),
-        origin: [84_808.0, 447_412.0, -1.0],
+        frame: Frame { origin: [84_808.0, 447_412.0, -1.0], ..Frame::default() },
         ..PointCloud::default()
     };
     let by_scanner = rows(&folder.join("normals.npy"));

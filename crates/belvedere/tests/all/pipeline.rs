@@ -2,6 +2,7 @@
 //! wrong against the exact mesh.
 
 use crate::common::simulated::cloud_of;
+use belvedere::Bounds;
 use belvedere::clean::{CleanParams, clean};
 use belvedere::cloud::to_local;
 use belvedere::control::Control;
@@ -50,7 +51,7 @@ fn prepare(path: &Path, by: &Orientation<'_>) -> Result<Prepared> {
 
 fn sun_view(cloud: &PointCloud) -> View {
     let sun = to_sun(235f64.to_radians(), 30f64.to_radians());
-    let (low, high) = cloud.bounds().unwrap();
+    let Bounds { low, high } = cloud.bounds().unwrap();
     View::parallel(sun.map(|v| -v), low.map(f64::from), high.map(f64::from), 0.25).unwrap()
 }
 
@@ -81,7 +82,7 @@ fn every_stage_gives_the_same_bits_for_one_two_and_seven_threads() {
                 let map = depth_map(&balls, &sun_view(&prepared.cloud), Profile::Sphere, ItemBuffer::With).unwrap();
                 let depths = map.depth.values().iter().zip(map.balls.as_ref().unwrap().values());
                 stages.push(depths.map(|(d, &b)| [d.to_bits(), b, 0]).collect());
-                let (low, high) = prepared.cloud.bounds().unwrap();
+                let Bounds { low, high } = prepared.cloud.bounds().unwrap();
                 answers.push(query_points(&map, &random_targets(low, high, 50_000, 3), 0.1));
             }
             (stages, answers)
@@ -111,7 +112,7 @@ fn default_balls_are_right_about_nine_in_ten_pedestrians_of_either_kind() {
         .collect();
     let sun = to_sun(235f64.to_radians(), 30f64.to_radians());
     let shadowed = Truth::new(&scene).occluded_towards_each(&pedestrians, sun);
-    let targets: Vec<[f32; 3]> = pedestrians.iter().map(|&p| to_local(p, prepared.cloud.origin)).collect();
+    let targets: Vec<[f32; 3]> = pedestrians.iter().map(|&p| to_local(p, prepared.cloud.frame.origin)).collect();
     let rates = |params: &ShrinkParams| {
         let map =
             depth_map(&interior(&prepared, params), &sun_view(&prepared.cloud), Profile::Sphere, ItemBuffer::Without)

@@ -135,7 +135,7 @@ fn a_trajectory_gives_the_simulated_path() {
     for (row, position) in per_point.iter().enumerate().step_by(97) {
         // the pulse points from the scanner to the exact place of the return: noise of 5e-5 rad and of the range aside
         let sight = sub(position.map(f64::from), cloud.positions[row].map(f64::from));
-        let exact: [f64; 3] = std::array::from_fn(|i| scan.exact_positions[row][i] - cloud.origin[i]);
+        let exact: [f64; 3] = std::array::from_fn(|i| scan.exact_positions[row][i] - cloud.frame.origin[i]);
         assert!((length(sight) - length(sub(position.map(f64::from), exact))).abs() < 0.1);
         assert!((390.0..600.0).contains(&length(sight)), "{sight:?}");
     }

@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use belvedere::Bounds;
 use belvedere::crs::{Crs, CrsKind, US_SURVEY_FOOT};
 use belvedere::io::{ReadOptions, ReadReport, read_cloud};
 use belvedere::{Error, GpsTimeKind, PointCloud};
@@ -72,11 +73,11 @@ fn las_files_read_as_laspy_reads_them() {
         assert_eq!(file.points, truth.points, "{}", truth.file);
         assert_eq!(file.left_out, [], "{}", truth.file);
         assert_eq!(file.format, truth.format, "{}", truth.file);
-        assert_eq!(cloud.crs.epsg, truth.epsg, "{}", truth.file);
-        assert!((cloud.crs.metres_per_unit - truth.units[0]).abs() < 1e-12, "{}", truth.file);
-        assert!((cloud.crs.vertical_metres_per_unit - truth.units[1]).abs() < 1e-12, "{}", truth.file);
-        let (low, high) = cloud.bounds().unwrap();
-        let (low, high) = (cloud.to_file_coordinates(low), cloud.to_file_coordinates(high));
+        assert_eq!(cloud.frame.crs.epsg, truth.epsg, "{}", truth.file);
+        assert!((cloud.frame.crs.metres_per_unit - truth.units[0]).abs() < 1e-12, "{}", truth.file);
+        assert!((cloud.frame.crs.vertical_metres_per_unit - truth.units[1]).abs() < 1e-12, "{}", truth.file);
+        let Bounds { low, high } = cloud.bounds().unwrap();
+        let (low, high) = (cloud.frame.to_file_coordinates(low), cloud.frame.to_file_coordinates(high));
         for i in 0..3 {
             assert!((low[i] - truth.low[i]).abs() < 1e-3, "{}: {low:?}", truth.file);
             assert!((high[i] - truth.high[i]).abs() < 1e-3, "{}: {high:?}", truth.file);
@@ -150,7 +151,8 @@ fn adjoining_tiles_make_one_cloud_in_file_order() {
     let (second, _) = read(&[two]).unwrap();
     for (i, (cloud, j)) in [(&first, 0), (&first, 640_509), (&second, 0), (&second, 208_431)].into_iter().enumerate() {
         let k = if i < 2 { j } else { j + 640_510 };
-        let (a, b) = (cloud.to_file_coordinates(cloud.positions[j]), both.to_file_coordinates(both.positions[k]));
+        let (a, b) =
+            (cloud.frame.to_file_coordinates(cloud.positions[j]), both.frame.to_file_coordinates(both.positions[k]));
         assert!((0..3).all(|axis| (a[axis] - b[axis]).abs() < 1e-4), "{a:?} {b:?}");
     }
 }
@@ -167,7 +169,7 @@ fn result_is_the_same_for_any_number_of_threads() {
         pool.install(|| read(std::slice::from_ref(&path))).unwrap().0
     };
     let (one, four) = (with(1), with(4));
-    assert_eq!(one.origin, four.origin);
+    assert_eq!(one.frame, four.frame);
     assert_eq!(one.positions, four.positions);
     assert_eq!(one.attributes.gps_time, four.attributes.gps_time);
     assert_eq!(one.attributes.intensity, four.attributes.intensity);
@@ -201,10 +203,10 @@ fn forced_system_overrides_the_file() {
     if let Some(path) = crate::common::data(test, "data/autzen/autzen_stadium_340x320m.laz") {
         let (cloud, report) = read_as(&path, "EPSG:2992").unwrap();
         assert_eq!(report.crs_source, "option");
-        let (low, high) = cloud.bounds().unwrap();
+        let Bounds { low, high } = cloud.bounds().unwrap();
         // The crop is 340 x 320 m.
         assert!((high[0] - low[0] - 340.0).abs() < 1.0 && (high[1] - low[1] - 320.0).abs() < 1.0);
-        assert!((cloud.to_file_coordinates(low)[0] - 636_824.54).abs() < 1e-3);
+        assert!((cloud.frame.to_file_coordinates(low)[0] - 636_824.54).abs() < 1e-3);
     }
     if let Some(path) = crate::common::data(test, "data/delft_ahn3/ahn3_cropped_2.laz") {
         assert!(matches!(read_as(&path, "EPSG:4326"), Err(Error::UnusableCrs { .. })));
@@ -232,15 +234,15 @@ fn e57_scans_read_with_poses_normals_and_colours() {
     if let Some(result) = open("pumpAVisualReferenceImage.e57") {
         let (cloud, _) = result.unwrap();
         assert_eq!(cloud.len(), 155_201);
-        let (low, high) = cloud.bounds().unwrap();
-        let (low, high) = (cloud.to_file_coordinates(low), cloud.to_file_coordinates(high));
+        let Bounds { low, high } = cloud.bounds().unwrap();
+        let (low, high) = (cloud.frame.to_file_coordinates(low), cloud.frame.to_file_coordinates(high));
         for (found, expected) in low.into_iter().zip([-2.903_764, -5.301_103, -1.899_705]) {
             assert!((found - expected).abs() < 1e-5, "{low:?}");
         }
         assert!((high[2] - 1.843_003).abs() < 1e-5);
         assert!(cloud.attributes.color.is_some() && cloud.attributes.intensity.is_some());
         assert_eq!(cloud.scanner_positions.len(), 1);
-        let scanner = cloud.to_file_coordinates(cloud.scanner_positions[0]);
+        let scanner = cloud.frame.to_file_coordinates(cloud.scanner_positions[0]);
         assert!(scanner.iter().all(|c| c.abs() < 1e-6), "{scanner:?}");
         assert!(cloud.attributes.scanner_index.unwrap().iter().all(|&index| index == 0));
     }
@@ -248,7 +250,7 @@ fn e57_scans_read_with_poses_normals_and_colours() {
         let Some(result) = open(file) else { continue };
         let (cloud, _) = result.unwrap();
         assert_eq!(cloud.len(), 30571);
-        let (low, high) = cloud.bounds().unwrap();
+        let Bounds { low, high } = cloud.bounds().unwrap();
         assert!((f64::from(low[0]) + 0.094_689).abs() < 1e-6 && (f64::from(high[1]) - 0.187_321).abs() < 1e-6);
         assert!(cloud.scanner_positions.is_empty());
     }
@@ -259,10 +261,10 @@ fn e57_scans_read_with_poses_normals_and_colours() {
     }
     if let Some(result) = open("translationWithoutRotation.e57") {
         let (cloud, _) = result.unwrap();
-        let (low, high) = cloud.bounds().unwrap();
-        assert_eq!(cloud.to_file_coordinates(low), [4.0, 5.0, 6.0]);
-        assert_eq!(cloud.to_file_coordinates(high), [5.0, 6.0, 6.0]);
-        assert_eq!(cloud.to_file_coordinates(cloud.scanner_positions[0]), [4.0, 5.0, 6.0]);
+        let Bounds { low, high } = cloud.bounds().unwrap();
+        assert_eq!(cloud.frame.to_file_coordinates(low), [4.0, 5.0, 6.0]);
+        assert_eq!(cloud.frame.to_file_coordinates(high), [5.0, 6.0, 6.0]);
+        assert_eq!(cloud.frame.to_file_coordinates(cloud.scanner_positions[0]), [4.0, 5.0, 6.0]);
     }
     if let Some(result) = open("ColouredCubeFloat.e57") {
         let (cloud, _) = result.unwrap();
@@ -292,17 +294,17 @@ fn pcd_text_ply_and_npy_read() {
     }
     if let Some((cloud, report)) = open("quantised/samp11-utm.pcd") {
         assert_eq!((cloud.len(), report.files[0].format.as_str()), (38010, "PCD, binary_compressed"));
-        assert!((cloud.origin[0] - 512_768.0).abs() < 1.0 && (cloud.origin[1] - 5_403_699.0).abs() < 1.0);
+        assert!((cloud.frame.origin[0] - 512_768.0).abs() < 1.0 && (cloud.frame.origin[1] - 5_403_699.0).abs() < 1.0);
     }
     if let Some((cloud, _)) = open("trees/ahn3_delft.xyz") {
         assert_eq!(cloud.len(), 2488);
-        let p = cloud.to_file_coordinates(cloud.positions[0]);
+        let p = cloud.frame.to_file_coordinates(cloud.positions[0]);
         assert!((p[0] - 127.480_003).abs() < 1e-4 && (p[2] - 5.644).abs() < 1e-4);
     }
     for file in ["points", "mesh"] {
         let Some((cloud, _)) = open(&format!("house_dyke_tree/house_dyke_tree.{file}.ply")) else { continue };
         assert_eq!(cloud.len(), 2690);
-        let (low, high) = cloud.bounds().unwrap();
+        let Bounds { low, high } = cloud.bounds().unwrap();
         for (axis, extent) in [9.3, 16.6, 3.6].into_iter().enumerate() {
             assert!((high[axis] - low[axis] - extent).abs() < 0.05);
         }
@@ -325,8 +327,8 @@ fn ptx_scans_read_with_their_scanners() {
         let (cloud, report) = read(&[path]).unwrap();
         // The same points as 1.2-with-color.copc.laz, in one grid of 15 x 71.
         assert_eq!((cloud.len(), report.files[0].format.as_str()), (1065, "PTX, 1 scan"));
-        let (low, high) = cloud.bounds().unwrap();
-        let (low, high) = (cloud.to_file_coordinates(low), cloud.to_file_coordinates(high));
+        let Bounds { low, high } = cloud.bounds().unwrap();
+        let (low, high) = (cloud.frame.to_file_coordinates(low), cloud.frame.to_file_coordinates(high));
         for (found, expected) in low.into_iter().zip([635_619.85, 848_899.70, 406.59]) {
             assert!((found - expected).abs() < 1e-3, "{low:?}");
         }
@@ -342,9 +344,9 @@ fn ptx_scans_read_with_their_scanners() {
     let path = text_file(&folder, "two.ptx", &scan.repeat(2));
     let (cloud, report) = read(&[path]).unwrap();
     assert_eq!((cloud.len(), report.left_out_count()), (2, 2));
-    assert_eq!(cloud.to_file_coordinates(cloud.positions[0]), [10.0, 21.0, 30.0]);
+    assert_eq!(cloud.frame.to_file_coordinates(cloud.positions[0]), [10.0, 21.0, 30.0]);
     assert_eq!(cloud.attributes.scanner_index, Some(vec![0, 1]));
-    assert_eq!(cloud.to_file_coordinates(cloud.scanner_positions[1]), [10.0, 20.0, 30.0]);
+    assert_eq!(cloud.frame.to_file_coordinates(cloud.scanner_positions[1]), [10.0, 20.0, 30.0]);
 }
 
 #[test]
@@ -382,7 +384,7 @@ fn text_variants_give_the_same_points() {
         ("f.csv", "z, y, x\n3.5, 2.5, 1.5\n6.5, 5.5, 4.5\n"),
     ] {
         let (cloud, _) = read(&[text_file(&folder, name, content)]).unwrap_or_else(|e| panic!("{e}"));
-        let points: Vec<_> = cloud.positions.iter().map(|&p| cloud.to_file_coordinates(p)).collect();
+        let points: Vec<_> = cloud.positions.iter().map(|&p| cloud.frame.to_file_coordinates(p)).collect();
         assert_eq!(points, [[1.5, 2.5, 3.5], [4.5, 5.5, 6.5]], "{name}");
     }
 }
@@ -430,8 +432,8 @@ fn one_far_point_does_not_coarsen_the_others() {
     content += "85000.0 558000.0 0\n1e12 0 0\n";
     let (cloud, report) = read(&[text_file(&folder, "a.xyz", &content)]).unwrap();
     assert_eq!((cloud.len(), report.left_out_count()), (101, 1));
-    assert!((cloud.origin[0] - 85050.0).abs() <= 1.0 && (cloud.origin[1] - 447_050.0).abs() <= 1.0);
-    let p = cloud.to_file_coordinates(cloud.positions[3]);
+    assert!((cloud.frame.origin[0] - 85050.0).abs() <= 1.0 && (cloud.frame.origin[1] - 447_050.0).abs() <= 1.0);
+    let p = cloud.frame.to_file_coordinates(cloud.positions[3]);
     assert!((p[0] - 85003.123).abs() < 1e-5 && (p[1] - 447_003.456).abs() < 1e-5);
 }
 
@@ -442,7 +444,7 @@ fn folder_joins_its_files_by_name_and_drops_what_only_some_have() {
     text_file(&folder, "a.xyz", "1 2 3\n");
     text_file(&folder, "notes.md", "no cloud");
     let (cloud, report) = read(&[folder.path().to_owned()]).unwrap();
-    let points: Vec<_> = cloud.positions.iter().map(|&p| cloud.to_file_coordinates(p)).collect();
+    let points: Vec<_> = cloud.positions.iter().map(|&p| cloud.frame.to_file_coordinates(p)).collect();
     assert_eq!(points, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
     assert_eq!(report.dropped_attributes, ["intensity"]);
 }
@@ -527,7 +529,7 @@ fn every_las_point_format_reads() {
             let path = folder.path().join(format!("{format}.{}", if compressed { "laz" } else { "las" }));
             write_las(&path, format, compressed, |_| {}, &[]);
             let (cloud, _) = read(std::slice::from_ref(&path)).unwrap_or_else(|e| panic!("{e}"));
-            let p = cloud.to_file_coordinates(cloud.positions[1]);
+            let p = cloud.frame.to_file_coordinates(cloud.positions[1]);
             assert!((p[0] - 1002.25).abs() < 1e-4 && (p[1] - 2000.5).abs() < 1e-4 && (p[2] - 3.75).abs() < 1e-4);
             let attributes = cloud.attributes;
             assert_eq!(attributes.intensity, Some(vec![40_001, 40_002, 40_003]), "{format}");

@@ -119,7 +119,7 @@ fn what_angles_do_not_tell_is_told_by_pulses_with_several_returns() {
     let (flight, times) = (trajectory(&scan, 0.0), cloud.attributes.gps_time.as_ref().unwrap());
     let shift = |(p, time): (&[f32; 3], &f64)| -> [f32; 3] {
         let [now, soon] = [*time, time + 0.1].map(|time| flight.position_at(time).unwrap());
-        let below = now[2] - cloud.origin[2] - f64::from(p[2]);
+        let below = now[2] - cloud.frame.origin[2] - f64::from(p[2]);
         // flown at 60 m/s: five times the way of a tenth of a second
         let ahead = |i: usize| (5.0 * (soon[i] - now[i]) * below / 450.0) as f32;
         [p[0] + ahead(0), p[1] + ahead(1), p[2]]
@@ -237,9 +237,9 @@ fn a_found_path_is_read_back_as_a_trajectory() {
     let (positions, report) = found(&cloud);
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("found.csv");
-    let samples = path_samples(&report.paths, cloud.origin, 0.5).unwrap();
-    write_found_trajectory(&file, &samples, &cloud.crs).unwrap();
-    let (path, left_out) = read_trajectory(&file, &cloud.crs).unwrap();
+    let samples = path_samples(&report.paths, cloud.frame.origin, 0.5).unwrap();
+    write_found_trajectory(&file, &samples, &cloud.frame.crs).unwrap();
+    let (path, left_out) = read_trajectory(&file, &cloud.frame.crs).unwrap();
     assert_eq!((path.times.len(), left_out.duplicate_count), (samples.len(), 0));
     let (read, clock) = path.scanner_positions(&cloud).unwrap();
     // all but the pulses within half a microsecond of either end, which the file rounds off
@@ -249,7 +249,7 @@ fn a_found_path_is_read_back_as_a_trajectory() {
     assert!(metres < 0.05, "{metres}");
     assert!(samples.iter().all(|s| s.quality.sd.iter().all(|sd| sd.is_finite()) && s.quality.residual > 0.0));
     for step in [0.0, 3.0, f64::NAN] {
-        assert!(matches!(path_samples(&report.paths, cloud.origin, step), Err(Error::InvalidParameter { .. })));
+        assert!(matches!(path_samples(&report.paths, cloud.frame.origin, step), Err(Error::InvalidParameter { .. })));
     }
 }
 

@@ -36,15 +36,15 @@ fn delivered(scan: &Scan, folder: &Path, trajectory_name: &str) -> Delivered {
     let path = &scan.sensor_path;
     let trajectory = Trajectory { times: path.times.clone(), positions: path.positions.clone() };
     let heading = Heading::Given(&path.headings);
-    write_trajectory(&path_file, &trajectory, GpsTimeKind::AdjustedStandard, &cloud.crs, heading).unwrap();
+    write_trajectory(&path_file, &trajectory, GpsTimeKind::AdjustedStandard, &cloud.frame.crs, heading).unwrap();
 
     let (cloud, _) = read_cloud(&[cloud_file], &ReadOptions::default()).unwrap();
-    let (trajectory, _) = read_trajectory(&path_file, &cloud.crs).unwrap();
+    let (trajectory, _) = read_trajectory(&path_file, &cloud.frame.crs).unwrap();
     let times = cloud.attributes.gps_time.clone().unwrap();
     let clock = trajectory.clock_offset_for(&times, cloud.attributes.gps_time_kind);
     assert_eq!(clock.served_count, cloud.len(), "the path is known at the time of every return");
     let sensors = times.iter().map(|&t| trajectory.position_at(clock.trajectory_time(t)).unwrap()).collect();
-    let positions = cloud.positions.iter().map(|&p| cloud.to_file_coordinates(p)).collect();
+    let positions = cloud.positions.iter().map(|&p| cloud.frame.to_file_coordinates(p)).collect();
     Delivered { cloud, positions, sensors }
 }
 

@@ -15,7 +15,7 @@ use belvedere::io::{
     write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_tif_f32, write_tif_u32,
 };
 use belvedere::raster::Raster;
-use belvedere::{Attributes, Error, PointCloud};
+use belvedere::{Attributes, Error, Frame, PointCloud};
 use tempfile::TempDir;
 
 const FOOT: f64 = 0.3048;
@@ -29,7 +29,7 @@ fn full_cloud() -> PointCloud {
     let n = 1000_u16;
     let column = |f: fn(u16) -> u8| Some((0..n).map(f).collect());
     PointCloud {
-        origin: [84_500.0, 446_700.0, 3.0],
+        frame: Frame { origin: [84_500.0, 446_700.0, 3.0], crs: dutch() },
         positions: (0..n).map(|i| [f32::from(i) * 0.25, f32::from(i % 37) * -1.5, f32::from(i % 11) * 0.125]).collect(),
         attributes: Attributes {
             normals: Some((0..n).map(|_| [0.0, 0.6, 0.8]).collect()),
@@ -47,7 +47,6 @@ fn full_cloud() -> PointCloud {
             scanner_index: Some((0..n).map(|i| i % 2).collect()),
         },
         scanner_positions: vec![[0.0; 3]; 2],
-        crs: dutch(),
     }
 }
 
@@ -123,7 +122,7 @@ fn las_and_laz_hold_every_attribute() {
         assert_eq!(points.len(), 1000);
         let a = &cloud.attributes;
         for (i, point) in points.points().map(Result::unwrap).enumerate() {
-            let expected = cloud.to_file_coordinates(cloud.positions[i]);
+            let expected = cloud.frame.to_file_coordinates(cloud.positions[i]);
             for (found, expected) in [point.x, point.y, point.z].into_iter().zip(expected) {
                 assert!((found - expected).abs() <= 0.0005, "{found} {expected}");
             }
@@ -158,7 +157,7 @@ fn a_cloud_in_feet_goes_back_out_in_feet() {
     let crs = Crs { epsg: Some(2992), metres_per_unit: FOOT, vertical_metres_per_unit: FOOT, ..Crs::default() };
     let feet = [[635_577.79, 848_882.15, 406.14], [639_000.0, 853_000.5, 520.25]];
     let metres = feet.map(|p| p.map(|v: f64| v * FOOT));
-    let cloud = PointCloud { crs, ..PointCloud::from_coordinates(&metres).0 };
+    let cloud = PointCloud::from_coordinates(&metres).0.with_crs(crs);
     let path = folder.path().join("feet.laz");
     write_cloud(&path, &cloud, &[]).unwrap();
     let mut reader = las::Reader::from_path(&path).unwrap();
@@ -211,7 +210,7 @@ fn ply_and_tables_hold_columns() {
     assert!(ply.header.comments.iter().any(|c| c.contains("EPSG:28992")));
     assert!(ply.header.comments.iter().all(|c| c.len() < 1000));
     let vertex = &ply.payload["vertex"][500];
-    let expected = cloud.to_file_coordinates(cloud.positions[500]);
+    let expected = cloud.frame.to_file_coordinates(cloud.positions[500]);
     assert!(matches!(vertex["x"], Property::Double(v) if v == expected[0]));
     assert!(matches!(vertex["sun_hours"], Property::Float(5.0)));
     assert!(matches!(vertex["blue"], Property::UChar(255)));
@@ -325,7 +324,7 @@ fn written_clouds_read_back_the_same() {
     assert!((feet.metres_per_unit - FOOT).abs() < 1e-12);
     let folder = TempDir::new().unwrap();
     for (crs, case) in [feet, unnamed, compound].iter().flat_map(|crs| cases.iter().map(move |case| (crs, case))) {
-        let cloud = PointCloud { crs: crs.clone(), ..full_cloud() };
+        let cloud = full_cloud().with_crs(crs.clone());
         let a = &cloud.attributes;
         let normals = a.normals.as_ref().unwrap();
         let part = |axis: usize| normals.iter().map(|n| n[axis]).collect::<Vec<f32>>();
@@ -342,16 +341,16 @@ fn written_clouds_read_back_the_same() {
         }
         let (found, report) = read_cloud(std::slice::from_ref(&path), &ReadOptions { crs: code }).unwrap();
         let about = format!("{} {crs:?} {:?}", case.name, report.files);
-        assert_eq!(found.crs.epsg, crs.epsg, "{about}");
-        assert!((found.crs.metres_per_unit - crs.metres_per_unit).abs() < 1e-12, "{about}");
-        assert!((found.crs.vertical_metres_per_unit - crs.vertical_metres_per_unit).abs() < 1e-12, "{about}");
+        assert_eq!(found.frame.crs.epsg, crs.epsg, "{about}");
+        assert!((found.frame.crs.metres_per_unit - crs.metres_per_unit).abs() < 1e-12, "{about}");
+        assert!((found.frame.crs.vertical_metres_per_unit - crs.vertical_metres_per_unit).abs() < 1e-12, "{about}");
         if case.has_crs {
-            assert_eq!(found.crs.vertical_epsg, crs.vertical_epsg, "{about}");
+            assert_eq!(found.frame.crs.vertical_epsg, crs.vertical_epsg, "{about}");
         }
         assert_eq!(found.len(), cloud.len());
         for (&f, &e) in found.positions.iter().zip(&cloud.positions) {
             for axis in 0..3 {
-                let off = f64::from(f[axis]) + found.origin[axis] - f64::from(e[axis]) - cloud.origin[axis];
+                let off = f64::from(f[axis]) + found.frame.origin[axis] - f64::from(e[axis]) - cloud.frame.origin[axis];
                 // positions near 250 m are f32 with steps of 0.015 mm
                 assert!(off.abs() < case.position + 2e-5, "{about}: {off}");
             }

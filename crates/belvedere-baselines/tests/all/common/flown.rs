@@ -2,7 +2,7 @@
 
 use belvedere::cloud::{centre_rounded, to_local};
 use belvedere::trajectory::Trajectory;
-use belvedere::{Attributes, GpsTimeKind, PointCloud, Result};
+use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud, Result};
 use belvedere_scenes::{AirborneParams, Scene, scan_airborne};
 
 /// The cloud of a survey, and where the scanner was at each of its points, (N, 3) local metres.
@@ -11,7 +11,7 @@ pub(crate) fn flown(scene: &Scene, params: &AirborneParams) -> Result<(PointClou
     let coordinates = || (0..scan.len()).map(|i| [scan.x[i], scan.y[i], scan.z[i]]);
     let origin = centre_rounded(coordinates());
     let cloud = PointCloud {
-        origin,
+        frame: Frame { origin, ..Frame::default() },
         positions: coordinates().map(|c| to_local(c, origin)).collect(),
         attributes: Attributes {
             classification: Some(scan.classification.clone()),

@@ -2,6 +2,7 @@
 
 pub(crate) mod flown;
 
+use belvedere::Bounds;
 use belvedere::query::{Answer, Viewer, Visibility};
 use belvedere::{Mesh, PointCloud};
 use belvedere_scenes::{AirborneParams, Scene, TownParams, scan_airborne, town};
@@ -72,7 +73,7 @@ pub(crate) fn scan(scene: &Scene) -> PointCloud {
 
 /// Random positions in the box of a cloud and somewhat beyond.
 pub(crate) fn targets(cloud: &PointCloud, count: usize, seed: u64) -> Vec<[f32; 3]> {
-    let (low, high) = cloud.bounds().unwrap();
+    let Bounds { low, high } = cloud.bounds().unwrap();
     let mut random = Lcg(seed);
     (0..count).map(|_| random.point(low.map(|v| f64::from(v) - 3.0), high.map(|v| f64::from(v) + 3.0))).collect()
 }

@@ -136,7 +136,7 @@ fn set_on_ground(
     };
     let low = [0, 1].map(|axis| bound(axis, f64::min, f64::INFINITY) - MARGIN);
     let high = [0, 1].map(|axis| bound(axis, f64::max, f64::NEG_INFINITY) + MARGIN);
-    let origin = [scene.cloud.origin[0], scene.cloud.origin[1]];
+    let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     let grid = flagged("--route", MapGrid::covering(low, high, cell_for(low, high), origin))?;
     let (cloud, points) = ground_cloud(&arguments.ground, scene, stages)?;
     let ground = ground(&cloud, points, grid, stages, summary)?;
@@ -217,7 +217,7 @@ fn faces(
 ) -> Result<Places> {
     let mesh = mesh_of(path, scene, stages, summary)?;
     let spacing = arguments.spacing.unwrap_or(CELL);
-    let surface = flagged("--spacing", SurfacePieces::of_mesh(&mesh, scene.cloud.origin, spacing, seed))?;
+    let surface = flagged("--spacing", SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, seed))?;
     let pieces = &surface.pieces;
     // pieces of a face follow each other
     let mut groups: Vec<Range<usize>> = Vec::new();

@@ -89,9 +89,9 @@ impl Case {
     pub(super) fn new(ingredients: Ingredients, count: usize, seed: u64) -> Result<Self> {
         let Ingredients { cloud, scanner, models, scene } = ingredients;
         let truth = Truth::new(&scene);
-        let origin = cloud.origin;
+        let origin = cloud.frame.origin;
         let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
-        let (low, high) = crate::pipeline::bounds_of(&cloud)?;
+        let belvedere::Bounds { low, high } = crate::pipeline::bounds_of(&cloud)?;
         let site = QuerySite { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
 
         let mut views: Vec<View> = SUNS_DEG
@@ -141,7 +141,7 @@ impl Case {
     /// Whether a local position lies in a solid or in the ground.
     pub(super) fn is_inside(&self, local: [f32; 3]) -> bool {
         let site = QuerySite { scene: &self.scene, truth: &self.truth, bounds: [[0.0; 3]; 2] };
-        site.is_inside(std::array::from_fn(|i| f64::from(local[i]) + self.cloud.origin[i]))
+        site.is_inside(std::array::from_fn(|i| f64::from(local[i]) + self.cloud.frame.origin[i]))
     }
 
     pub(super) fn viewer<'a>(&'a self, view: usize, set: &'a Set) -> Viewer<'a> {
@@ -189,7 +189,7 @@ fn sources(
     cloud: &PointCloud,
     scanner: &[[f32; 3]],
 ) -> Vec<Option<(Source<Material>, [f64; 3])>> {
-    let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + cloud.origin[i]) };
+    let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + cloud.frame.origin[i]) };
     let source = |(i, &position): (usize, &[f32; 3])| {
         let from = scanner.get(i).copied().filter(|s| s.iter().all(|v| v.is_finite()))?;
         let (hit, outside) = site.surface_of_return(absolute(from), absolute(position))?;

@@ -24,7 +24,7 @@ pub(super) fn judge_all(
     let (pulses, _) = group(&cloud).with_context(named)?;
     let (scanner, report) = stages.run("finding the scanner", 0, |_| match &arguments.trajectory {
         Some(file) => {
-            let (trajectory, _) = read_trajectory(file, &cloud.crs)?;
+            let (trajectory, _) = read_trajectory(file, &cloud.frame.crs)?;
             SensorPositions::from_trajectory(&cloud, &pulses, &trajectory)
         }
         None => SensorPositions::from_returns(&cloud, &pulses, &SensorEstimateParams::default()),

@@ -129,7 +129,7 @@ fn describe(
     methods: &[belvedere_baselines::methods::Method<'_>],
     seed: u64,
 ) -> Result<PlaceResult> {
-    let (low, high) = crate::pipeline::bounds_of(&case.cloud)?;
+    let belvedere::Bounds { low, high } = crate::pipeline::bounds_of(&case.cloud)?;
     let (audit, ablation) = judge::audit_published(case, seed)?;
     Ok(PlaceResult {
         made_from: made_from.to_owned(),

@@ -25,7 +25,7 @@ pub(super) const LEGEND: &str = "yellow: sunlit and said so; grey-blue: shaded a
 pub(super) fn write_errors(path: &Path, case: &Case, title: &str, answers: &[Answer]) -> Result<()> {
     let Some(set) = case.sets.iter().find(|set| set.name == SHOWN_SET) else { return Ok(()) };
     let Some((_, truth)) = set.truth.iter().find(|(view, _)| *view == SHOWN_VIEW) else { return Ok(()) };
-    let (low, high) = crate::pipeline::bounds_of(&case.cloud)?;
+    let belvedere::Bounds { low, high } = crate::pipeline::bounds_of(&case.cloud)?;
     let (low, high) = (low.map(f64::from), high.map(f64::from));
     let pixel = (0..2).map(|i| high[i] - low[i]).fold(0.0, f64::max) / SIDE_PX;
     let from_above = View::parallel([0.0, 0.0, -1.0], low, high, pixel)?;

@@ -81,11 +81,12 @@ impl Place {
             }
             Self::Given { clouds, mesh, trajectory, models } => {
                 let (cloud, _) = read_cloud(clouds, &ReadOptions::default())?;
-                let in_metres = |path: &Path| -> Result<Mesh> { Ok(read_mesh(path)?.0.scaled_to_metres(&cloud.crs)) };
+                let in_metres =
+                    |path: &Path| -> Result<Mesh> { Ok(read_mesh(path)?.0.scaled_to_metres(&cloud.frame.crs)) };
                 let mesh = in_metres(mesh)?;
                 let scene = Scene::from_model(mesh.vertices, mesh.triangles, mesh.objects, mesh.object_names);
                 let scanner = match trajectory {
-                    Some(path) => read_trajectory(path, &cloud.crs)?.0.scanner_positions(&cloud)?.0,
+                    Some(path) => read_trajectory(path, &cloud.frame.crs)?.0.scanner_positions(&cloud)?.0,
                     None => Vec::new(),
                 };
                 let models = models

@@ -59,12 +59,12 @@ pub(super) fn find(
         ..usual
     };
     let [low, high] = on_map(scene.bounds);
-    let origin = [scene.cloud.origin[0], scene.cloud.origin[1]];
+    let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     let grid = MapGrid::covering(low, high, GROUND_CELL, origin)?;
     let (cloud, points) = ground_cloud(&arguments.places.ground, scene, stages)?;
     let mut section = Summary::default();
     let ground = ground(&cloud, points, grid, stages, &mut section)?;
-    let frame = cloud.without_points();
+    let frame = PointCloud::in_frame(cloud.frame.clone());
     let (rows, from) = roof_points(&cloud, &ground)?;
     let places: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
     let planes = stages.run("finding planes of roofs", 0, |_| roof_planes(&places, &params));
@@ -167,8 +167,8 @@ fn figures(roofs: &Roofs, rows: &[Row], site: &Site) -> Vec<(&'static str, Vec<f
     let of_planes = |value: &dyn Fn(&RoofPlane) -> f64| -> Vec<f64> { roofs.planes.iter().map(value).collect() };
     let of_rows = |value: &dyn Fn(&Row) -> f64| -> Vec<f64> { rows.iter().map(value).collect() };
     let middle = |axis: usize| {
-        let scale = roofs.frame.crs.metres_per_unit_xyz();
-        of_planes(&|plane| (plane.middle[axis] + roofs.frame.origin[axis]) / scale[axis])
+        let scale = roofs.frame.frame.crs.metres_per_unit_xyz();
+        of_planes(&|plane| (plane.middle[axis] + roofs.frame.frame.origin[axis]) / scale[axis])
     };
     let lost = |row: &Row| 1.0 - row.string_limited.total() / row.mean.unshaded.max(f64::MIN_POSITIVE);
     let energy = roofs.planes.iter().zip(rows).map(|(plane, row)| plane.area * row.mean.total()).collect();
@@ -219,7 +219,7 @@ fn write_outlines(output: &std::path::Path, roofs: &Roofs, rows: &[Row], site: &
         }
         let corner = |corner: &[usize; 2]| {
             let place = plane.cells.place(corner.map(|v| v as f64));
-            [place[0] + roofs.frame.origin[0], place[1] + roofs.frame.origin[1]]
+            [place[0] + roofs.frame.frame.origin[0], place[1] + roofs.frame.frame.origin[1]]
         };
         for polygon in outlines(&plane.cells.filled) {
             let rings = std::iter::once(&polygon.rim).chain(&polygon.holes);
@@ -228,7 +228,7 @@ fn write_outlines(output: &std::path::Path, roofs: &Roofs, rows: &[Row], site: &
         }
         areas.push(area);
     }
-    write_geojson_areas(output, &areas, &roofs.frame.crs)?;
+    write_geojson_areas(output, &areas, &roofs.frame.frame.crs)?;
     Ok(())
 }
 

@@ -56,11 +56,12 @@ pub(super) fn site(
     weather: Option<&Weather>,
     summary: &mut Summary,
 ) -> Result<Site> {
-    let origin = scene.cloud.origin;
-    let middle: [f64; 3] =
-        std::array::from_fn(|i| origin[i] + f64::midpoint(f64::from(scene.bounds.0[i]), f64::from(scene.bounds.1[i])));
+    let origin = scene.cloud.frame.origin;
+    let middle: [f64; 3] = std::array::from_fn(|i| {
+        origin[i] + f64::midpoint(f64::from(scene.bounds.low[i]), f64::from(scene.bounds.high[i]))
+    });
     let height = middle[2].clamp(-500.0, 10_000.0);
-    let of_crs = Site::of(&scene.cloud.crs, [middle[0], middle[1]], height);
+    let of_crs = Site::of(&scene.cloud.frame.crs, [middle[0], middle[1]], height);
     let (site, from) = match (&arguments.location, of_crs, weather) {
         (Some(location), of_crs, _) => {
             let [latitude, longitude] = location.0.map(f64::to_radians);

@@ -27,7 +27,7 @@ pub(super) fn surface(
         let spacing = arguments.spacing.unwrap_or_else(|| spacing_for(mesh.area()));
         section.add("triangles", mesh.triangles.len()).add("spacing_m", rounded(spacing, 3));
         let surface =
-            stages.run("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.origin, spacing, seed));
+            stages.run("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, seed));
         flagged("--spacing", surface)?
     } else {
         if scene.cloud.is_empty() {
@@ -92,8 +92,8 @@ fn polygons_of(path: &Path, scene: &Scene) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
     let cloud = &scene.cloud;
     let polygons: Vec<Vec<Vec<[f64; 2]>>> = match extension(path).as_str() {
         "geojson" | "json" => {
-            let place = |corner: &[f64; 3]| [corner[0] - cloud.origin[0], corner[1] - cloud.origin[1]];
-            read_geojson(path, &cloud.crs)?
+            let place = |corner: &[f64; 3]| [corner[0] - cloud.frame.origin[0], corner[1] - cloud.frame.origin[1]];
+            read_geojson(path, &cloud.frame.crs)?
                 .into_iter()
                 .filter_map(|feature| match feature.shape {
                     Shape::Polygon(rings) => Some(rings.iter().map(|ring| ring.iter().map(place).collect()).collect()),

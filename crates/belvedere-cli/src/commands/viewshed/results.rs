@@ -134,7 +134,7 @@ fn write_areas(output: &Path, seen: &Viewshed, grid: &MapGrid, cloud: &PointClou
         area.polygons = polygons.iter().map(|polygon| rings(polygon, grid, cloud)).collect();
         areas.push(area);
     }
-    write_geojson_areas(output, &areas, &cloud.crs)?;
+    write_geojson_areas(output, &areas, &cloud.frame.crs)?;
     Ok(())
 }
 
@@ -142,7 +142,7 @@ fn write_areas(output: &Path, seen: &Viewshed, grid: &MapGrid, cloud: &PointClou
 fn rings(polygon: &GridPolygon, grid: &MapGrid, cloud: &PointCloud) -> Vec<Vec<[f64; 2]>> {
     let place = |&corner: &[usize; 2]| {
         let [x, y] = grid.corner_at(corner);
-        [x + cloud.origin[0], y + cloud.origin[1]]
+        [x + cloud.frame.origin[0], y + cloud.frame.origin[1]]
     };
     std::iter::once(&polygon.rim).chain(&polygon.holes).map(|ring| ring.iter().map(place).collect()).collect()
 }

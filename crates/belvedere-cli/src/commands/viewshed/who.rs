@@ -50,11 +50,11 @@ pub(super) fn rows(arguments: &Viewshed, cloud: &PointCloud) -> Result<Vec<Row>>
     };
     let rows_are = if looking.step.is_some() { RowsAre::Corners } else { RowsAre::Places };
     let mut rows = Vec::new();
-    for row in read_observers(path, &cloud.crs, rows_are)? {
+    for row in read_observers(path, &cloud.frame.crs, rows_are)? {
         let limits = limits_of(&row, limits);
         flagged(&path.display().to_string(), limits.validate())?;
         let corners: Vec<[f64; 3]> =
-            row.corners.iter().map(|c| std::array::from_fn(|i| c[i] - cloud.origin[i])).collect();
+            row.corners.iter().map(|c| std::array::from_fn(|i| c[i] - cloud.frame.origin[i])).collect();
         let places = flagged("--step", places_along(&corners, looking.step.unwrap_or(STEP)))?;
         let height = row.height.unwrap_or(height);
         rows.extend(places.into_iter().map(|place| Row { place, height, limits }));
@@ -87,8 +87,8 @@ pub(super) fn observers(
         let mut eye = row.place;
         if eye[2].is_nan() {
             let Some(height) = ground.height_at([eye[0], eye[1]]) else {
-                let scale = cloud.crs.metres_per_unit;
-                let [x, y] = [0, 1].map(|i| (eye[i] + cloud.origin[i]) / scale);
+                let scale = cloud.frame.crs.metres_per_unit;
+                let [x, y] = [0, 1].map(|i| (eye[i] + cloud.frame.origin[i]) / scale);
                 let who = if arguments.who.target.is_some() { "the target" } else { "observer" };
                 bail!(
                     "{who} {} at {x:.3},{y:.3}: there is no ground known below it; is it in the coordinates of the cloud? Else give its \

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 use belvedere::crs::Crs;
 use belvedere::io::{ExtraColumn, ExtraValues, MasbcppFolder, write_cloud, write_masbcpp};
-use belvedere::{Attributes, PointCloud};
+use belvedere::{Attributes, Frame, PointCloud};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -190,10 +190,9 @@ pub(crate) fn house() -> PointCloud {
         }
     }
     PointCloud {
-        origin: [EAST, NORTH, 0.0],
+        frame: Frame { origin: [EAST, NORTH, 0.0], crs: Crs::from_epsg(28992).unwrap() },
         positions: points.iter().map(|p| p.0).collect(),
         attributes: Attributes { normals: Some(points.iter().map(|p| p.1).collect()), ..Attributes::default() },
-        crs: Crs::from_epsg(28992).unwrap(),
         ..PointCloud::default()
     }
 }

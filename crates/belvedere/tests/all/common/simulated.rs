@@ -2,7 +2,7 @@
 
 use belvedere::cloud::{centre_rounded, to_local};
 use belvedere::crs::Crs;
-use belvedere::{Attributes, GpsTimeKind, PointCloud};
+use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud};
 use belvedere_scenes::Scan;
 
 /// The scan in the reference system that simulated towns lie in.
@@ -10,7 +10,7 @@ pub(crate) fn cloud_of(scan: &Scan) -> PointCloud {
     let coordinates = || (0..scan.len()).map(|i| [scan.x[i], scan.y[i], scan.z[i]]);
     let origin = centre_rounded(coordinates());
     PointCloud {
-        origin,
+        frame: Frame { origin, crs: Crs::parse("EPSG:7415").unwrap() },
         positions: coordinates().map(|c| to_local(c, origin)).collect(),
         attributes: Attributes {
             classification: Some(scan.classification.clone()),
@@ -22,7 +22,6 @@ pub(crate) fn cloud_of(scan: &Scan) -> PointCloud {
             point_source_id: Some(scan.point_source_id.clone()),
             ..Attributes::default()
         },
-        crs: Crs::parse("EPSG:7415").unwrap(),
         ..PointCloud::default()
     }
 }
