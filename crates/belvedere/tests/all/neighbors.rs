@@ -77,7 +77,7 @@ fn both(points: &[[f32; 3]]) -> Vec<NeighborIndex> {
     if Instructions::detect() != Instructions::Scalar {
         kinds.push(Instructions::detect());
     } else {
-        eprintln!("SKIPPED the AVX2 half of the neighbour tests: this machine has none");
+        crate::common::skipped("the AVX2 half of the neighbour tests: this machine has none");
     }
     kinds.into_iter().map(|kind| NeighborIndex::with_instructions(points, kind).unwrap()).collect()
 }

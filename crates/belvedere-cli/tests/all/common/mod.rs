@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, clippy::panic, reason = "tests stop at the first surprise")]
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -243,6 +244,10 @@ pub(crate) fn shared_data(test: &str) -> Option<PathBuf> {
     if folder.join("reference").is_dir() {
         return Some(folder);
     }
-    eprintln!("SKIPPED {test}: there is no reference data; name its folder in BELVEDERE_TEST_DATA");
+    // not `eprintln!`, which the test runner captures and shows for failed tests only
+    let _ = writeln!(
+        std::io::stderr().lock(),
+        "SKIPPED {test}: there is no reference data; name its folder in BELVEDERE_TEST_DATA"
+    );
     None
 }

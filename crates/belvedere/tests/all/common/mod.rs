@@ -2,6 +2,7 @@
 
 pub(crate) mod simulated;
 
+use std::io::Write;
 use std::path::PathBuf;
 
 /// The file or folder at `relative` under `BELVEDERE_TEST_DATA` (default: `shared` beside the repository), or `None`
@@ -13,6 +14,12 @@ pub(crate) fn data(test: &str, relative: &str) -> Option<PathBuf> {
     if path.exists() {
         return Some(path);
     }
-    eprintln!("SKIPPED {test}: {relative} is not under BELVEDERE_TEST_DATA");
+    skipped(&format!("{test}: {relative} is not under BELVEDERE_TEST_DATA"));
     None
+}
+
+/// Says that a test, or a part of one, did not run. The test runner captures what `eprintln!` prints and shows it for failed tests only,
+/// so this writes to standard error itself.
+pub(crate) fn skipped(what: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "SKIPPED {what}");
 }
