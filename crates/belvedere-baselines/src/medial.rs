@@ -11,7 +11,7 @@ use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, orient};
 use belvedere::pulses::{NeedleParams, Needles, group};
-use belvedere::query::{MedialScene, SceneParams, Sight, Viewer, Visibility, query_points};
+use belvedere::query::{BlockRule, MedialScene, Sight, Viewer, Visibility, query_points};
 use belvedere::view::View;
 use belvedere::{Mesh, Result};
 
@@ -35,7 +35,7 @@ pub struct MedialParams {
     /// How lines of sight of parallel views are answered.
     pub parallel_views: ParallelViews,
     /// How balls block lines of sight.
-    pub blocking: SceneParams,
+    pub blocking: BlockRule,
 }
 
 /// How balls are made.
@@ -66,7 +66,7 @@ impl MedialParams {
             neighbors: 6,
             making: Making::Shrinking(ShrinkParams::angles()),
             parallel_views: ParallelViews::DepthMap,
-            blocking: SceneParams { profile: Profile::PaperCone, depth_bias: 0.0, shell: 0.0 },
+            blocking: BlockRule { profile: Profile::PaperCone, bias: 0.0, shell: 0.0 },
         }
     }
 
@@ -75,7 +75,7 @@ impl MedialParams {
     pub fn published_with_spheres() -> Self {
         Self {
             parallel_views: ParallelViews::Rays,
-            blocking: SceneParams { profile: Profile::Sphere, depth_bias: DEPTH_BIAS, shell: 0.0 },
+            blocking: BlockRule { profile: Profile::Sphere, bias: DEPTH_BIAS, shell: 0.0 },
             ..Self::published()
         }
     }
@@ -96,7 +96,7 @@ impl MedialParams {
     #[must_use]
     pub fn carved() -> Self {
         let making = Making::Carving(CarvedParams::default());
-        Self { neighbors: 16, making, blocking: SceneParams::carved(), ..Self::published_with_spheres() }
+        Self { neighbors: 16, making, blocking: BlockRule::carved(), ..Self::published_with_spheres() }
     }
 
     /// Balls of bounded penetration, cut down to half a metre: what Belvedere does without pulses, `--method tau`.
@@ -196,7 +196,7 @@ impl Visibility for MedialBaseline {
         let view = View::parallel(to_viewer.map(|v| -v), low, high, PIXEL_SIZE)?;
         let map = depth_map(&self.balls, &view, self.params.blocking.profile, ItemBuffer::Without)?;
         #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
-        let bias = self.params.blocking.depth_bias as f32;
+        let bias = self.params.blocking.bias as f32;
         Ok(Box::new(move |targets| Ok(query_points(&map, targets, bias))))
     }
 }

@@ -12,7 +12,7 @@ use crate::voxels::{VoxelParams, Voxels};
 use crate::{Model, Survey};
 use belvedere::Result;
 use belvedere::medial::{CarvedParams, CrownParams, Rule, Trees};
-use belvedere::query::{SceneParams, Visibility};
+use belvedere::query::{BlockRule, Visibility};
 
 /// When a comparison of all methods takes one in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,7 +93,7 @@ const MESH_CLEARANCE: f64 = 0.1;
 fn carved_for_winter() -> MedialParams {
     let carving = CarvedParams::default();
     let crowns = carving.crowns.map(|crowns| CrownParams { trees: Trees::Porous, ..crowns });
-    let blocking = SceneParams { shell: 0.0, ..SceneParams::carved() };
+    let blocking = BlockRule { shell: 0.0, ..BlockRule::carved() };
     MedialParams { making: Making::Carving(CarvedParams { crowns, ..carving }), blocking, ..MedialParams::carved() }
 }
 

@@ -9,7 +9,7 @@ use belvedere::apps::sky_view::SkyDirections;
 use belvedere::control::Control;
 use belvedere::medial::{ShrinkParams, Side, shrink};
 use belvedere::query::{
-    EarthParams, MedialScene, SceneParams, TargetTree, Viewer, Visibility, random_pairs, visibility_matrix,
+    BlockRule, EarthParams, MedialScene, TargetTree, Viewer, Visibility, random_pairs, visibility_matrix,
 };
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
@@ -21,7 +21,7 @@ fn sights(c: &mut Criterion) {
         (std::array::from_fn(|i| f32::min(low[i], p[i])), std::array::from_fn(|i| f32::max(high[i], p[i])))
     });
     let (balls, _) = shrink(&cloud, &index, Side::Interior, &ShrinkParams::tau(), &Control::none()).unwrap();
-    let scene = MedialScene::new(&balls, &SceneParams::carved()).unwrap();
+    let scene = MedialScene::new(&balls, &BlockRule::carved()).unwrap();
     // the ground of the city of these benches
     let ground = |x: f32, y: f32| 2.0 * (x / 90.0).sin() + 2.0 * (y / 70.0).cos();
     let side = high[0] / CELLS as f32;

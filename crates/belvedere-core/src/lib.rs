@@ -2,6 +2,7 @@
 //!
 //! Users add the crate `belvedere`, which holds everything here under the same names.
 
+pub mod blocking;
 pub mod clean;
 pub mod depth;
 pub mod ground;

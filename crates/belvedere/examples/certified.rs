@@ -11,7 +11,7 @@ use belvedere::Bounds;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::read_balls;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, CertifiedMap, MedialScene, SceneParams, Scope, Viewer, Visibility, random_targets};
+use belvedere::query::{Answer, BlockRule, CertifiedMap, MedialScene, Scope, Viewer, Visibility, random_targets};
 use belvedere::view::{View, to_sun};
 use std::path::Path;
 use std::process::ExitCode;
@@ -33,7 +33,7 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
         touch: saved.touch,
         separation_angles: saved.separation_angles,
     };
-    let scene = MedialScene::new(&balls, &SceneParams::carved())?;
+    let scene = MedialScene::new(&balls, &BlockRule::carved())?;
     println!("{} balls, {count} targets", scene.ball_count());
     let [l, h] = [low, high].map(|corner| corner.map(f64::from));
     let middle: [f64; 3] = std::array::from_fn(|i| (l[i] + h[i]) / 2.0);

@@ -8,6 +8,7 @@
 
 use belvedere::Bounds;
 use belvedere::PointCloud;
+use belvedere::blocking::Ball;
 use belvedere::control::Control;
 use belvedere::depth::{BoundsParams, ItemBuffer, Profile, depth_bounds, depth_map};
 use belvedere::medial::{ShrinkMethod, ShrinkParams, Side, shrink};
@@ -39,7 +40,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let params = ShrinkParams { method, initial_radius: 5.0, max_radius: 5.0 };
         let (balls, _) = shrink(&oriented, &index, Side::Interior, &params, &Control::none())?;
         let balls = balls.shrunk();
-        let list: Vec<_> = balls.centers.iter().copied().zip(balls.radii.iter().copied()).collect();
+        let list: Vec<_> =
+            balls.centers.iter().zip(&balls.radii).map(|(&center, &radius)| Ball { center, radius }).collect();
         let Bounds { low, high } = cloud.bounds().ok_or("no points")?;
         let (low, high) = (low.map(f64::from), high.map(f64::from));
         let middle: [f64; 3] = std::array::from_fn(|i| (low[i] + high[i]) / 2.0);

@@ -47,7 +47,9 @@
 
 #[cfg(feature = "apps")]
 pub use belvedere_apps as apps;
-pub use belvedere_core::{clean, depth, ground, medial, neighbors, normals, pulses, query, ray_index, summary};
+pub use belvedere_core::{
+    blocking, clean, depth, ground, medial, neighbors, normals, pulses, query, ray_index, summary,
+};
 pub use belvedere_data::{Attributes, Bounds, Error, Frame, GpsTimeKind, Mesh, PointCloud, Result, cloud};
 pub use belvedere_data::{control, crs, error, frame, mesh, random, raster, trajectory, vector, view, weather};
 #[cfg(feature = "figures")]

@@ -12,7 +12,7 @@ mod figures;
 mod place;
 
 use belvedere::medial::{CarvedParams, CrownParams, Rule, Trees};
-use belvedere::query::{Answer, SceneParams, Viewer, Visibility};
+use belvedere::query::{Answer, BlockRule, Viewer, Visibility};
 use belvedere::{Error, Result};
 use belvedere_baselines::agreement::{Counts, Rate};
 use belvedere_baselines::medial::{Making, MedialBaseline, MedialParams, Outward};
@@ -31,7 +31,7 @@ fn variants() -> Vec<(String, MedialParams)> {
     let trees =
         |trees: Trees| CarvedParams { crowns: carving.crowns.map(|crowns| CrownParams { trees, ..crowns }), ..carving };
     let blocked = |name: &str, depth_bias: f64, shell: f64| {
-        (name.to_owned(), MedialParams { blocking: SceneParams { depth_bias, shell, ..all.blocking }, ..all })
+        (name.to_owned(), MedialParams { blocking: BlockRule { bias: depth_bias, shell, ..all.blocking }, ..all })
     };
     let mut variants = vec![with("all", carving)];
     variants.extend(Rule::ALL.map(|rule| with(&format!("without {}", rule.name()), carving.without(rule))));

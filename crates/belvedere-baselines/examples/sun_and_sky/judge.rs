@@ -9,7 +9,7 @@ use belvedere::Bounds;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid, SurfaceParams, highest_points, top_surface};
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, MedialScene, SceneParams, Viewer, Visibility, visibility_matrix};
+use belvedere::query::{Answer, BlockRule, MedialScene, Viewer, Visibility, visibility_matrix};
 use belvedere::{PointCloud, Result};
 use belvedere_baselines::Survey;
 use belvedere_baselines::medial::{MedialParams, Outward, interior_balls};
@@ -205,7 +205,7 @@ impl Town {
     }
 
     /// What balls that block as `params` say answer for places, asked `lift` metres higher.
-    pub(crate) fn judge(&self, places: &Places, light: &Light, lift: f32, params: &SceneParams) -> Result<Score> {
+    pub(crate) fn judge(&self, places: &Places, light: &Light, lift: f32, params: &BlockRule) -> Result<Score> {
         let scene = MedialScene::new(&self.balls, params)?;
         let asked: Vec<[f32; 3]> = places.asked.iter().map(|p| [p[0], p[1], p[2] + lift]).collect();
         let found = visibility_matrix(&scene, &asked, &light.directions, &Control::none())?;
@@ -228,7 +228,7 @@ impl Town {
         places: &Places,
         light: &Light,
         lift: f32,
-        params: &SceneParams,
+        params: &BlockRule,
     ) -> Result<Vec<(String, f64)>> {
         let scene = MedialScene::new(&self.balls, params)?;
         let mut sums = std::collections::BTreeMap::<String, f64>::new();

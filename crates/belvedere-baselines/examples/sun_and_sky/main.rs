@@ -10,7 +10,7 @@
 
 mod judge;
 
-use belvedere::query::SceneParams;
+use belvedere::query::BlockRule;
 use belvedere_baselines::dsm::{Dsm, DsmParams};
 use belvedere_scenes::Preset;
 use judge::score::{ELEVATIONS_DEG, Light, Score, Setting};
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let preset = Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or("no such town")?;
         let town = Town::new(preset, extent, cell, seed)?;
         println!("{name}: {} points, {} balls", town.cloud.len(), town.balls.len());
-        let carved = SceneParams::carved();
+        let carved = BlockRule::carved();
         let raster = Dsm::from_points(&town.cloud.positions, &DsmParams { cell: 0.5, ..DsmParams::default() })?;
         let ground = town.ground_cells(0.0, count, &light);
         let roofs = town.roofs(count, &light);
@@ -88,7 +88,7 @@ fn print_score(score: &Score) {
 fn print_lifts(town: &Town, what: &str, places: &Places, light: &Light) -> belvedere::Result<()> {
     for shell in [0.1, 0.2, 0.3] {
         for lift in [0.0, 0.05, 0.1, 0.2] {
-            let score = town.judge(places, light, lift, &SceneParams { shell, ..SceneParams::carved() })?;
+            let score = town.judge(places, light, lift, &BlockRule { shell, ..BlockRule::carved() })?;
             let [_, error, false_lit, false_shaded] = score.sun;
             println!(
                 "  {what}, shell {shell} m, lift {lift} m: MAE {error:.3} h (lit {false_lit:.3}, shaded {false_shaded:.3}), above 5 deg {:.3}, sky view {:.4}, openness {:.4}",

@@ -9,7 +9,7 @@ use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
 use belvedere::medial::MedialBalls;
 use belvedere::pulses::{NeedleParams, Needles};
-use belvedere::query::{Answer, MedialScene, Proof, ProofParams, SceneParams};
+use belvedere::query::{Answer, BlockRule, MedialScene, Proof, ProofParams};
 use belvedere::{PointCloud, Result};
 use belvedere_baselines::Survey;
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
@@ -92,7 +92,7 @@ impl Town {
 
     /// What people in the streets see of targets `height` metres above the ground.
     pub(crate) fn judge(&self, height: f64) -> Result<Score> {
-        let scene = MedialScene::new(&self.balls, &SceneParams::carved())?;
+        let scene = MedialScene::new(&self.balls, &BlockRule::carved())?;
         let (needles, _) = Needles::of_cloud(&self.cloud, &self.scanner, &NeedleParams::default())?;
         let scene = scene.with_pulses(Proof::new(needles, &ProofParams::default())?);
         let targets = cell_targets(&self.ground, height);

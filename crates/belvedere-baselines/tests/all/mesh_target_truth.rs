@@ -4,7 +4,7 @@ use crate::common::flown::flown;
 use belvedere::Bounds;
 use belvedere::Mesh;
 use belvedere::query::{
-    Answer, BackFaces, MedialScene, MeshTargetParams, SceneParams, SeenArea, SurfacePieces, Viewer, Visibility,
+    Answer, BackFaces, BlockRule, MedialScene, MeshTargetParams, SeenArea, SurfacePieces, Viewer, Visibility,
     seen_faces, seen_objects,
 };
 use belvedere::view::to_sun;
@@ -64,7 +64,7 @@ fn shares_of_buildings_that_are_seen_are_those_of_the_mesh() {
     for (azimuth, elevation) in [(110.0f64, 20.0f64), (180.0, 65.0), (240.0, 35.0)] {
         viewers.push(("sun", Viewer::Direction(to_sun(azimuth.to_radians(), elevation.to_radians()))));
     }
-    let balls = MedialScene::new(made.balls(), &SceneParams::carved()).unwrap();
+    let balls = MedialScene::new(made.balls(), &BlockRule::carved()).unwrap();
     for (material, name) in [(Material::Facade, "facades"), (Material::Roof, "roofs")] {
         let mesh = buildings(&scene, material);
         let surface = SurfacePieces::of_mesh(&mesh, origin, SPACING, 1).unwrap();

@@ -4,7 +4,7 @@
 #[path = "../../examples/sun_and_sky/judge.rs"]
 mod judge;
 
-use belvedere::query::SceneParams;
+use belvedere::query::BlockRule;
 use belvedere_scenes::Preset;
 use judge::Town;
 use judge::score::Light;
@@ -19,7 +19,7 @@ fn sun_hours_and_sky_views_are_those_of_the_mesh() {
     assert!(ground.len() > 900 && roofs.len() > 900, "{} {}", ground.len(), roofs.len());
     // measured 0.24 and 0.25 h, 0.012 and 0.014; the room is for changes of the last bits and of a rule or two, not of the method
     for (what, places, hours, sky) in [("ground", &ground, 0.28, 0.016), ("roofs", &roofs, 0.28, 0.016)] {
-        let score = town.judge(places, &light, 0.0, &SceneParams::carved()).unwrap();
+        let score = town.judge(places, &light, 0.0, &BlockRule::carved()).unwrap();
         println!("{what}: {score:.4?}");
         // some places have sun all day and others little: the truth tells something
         assert!(score.sun[0] > 5.0 && score.sun[0] < 16.0, "{what}: {score:?}");
@@ -27,6 +27,6 @@ fn sun_hours_and_sky_views_are_those_of_the_mesh() {
         assert!(score.factor[1] < sky && score.openness[1] < sky, "{what}: {score:?}");
     }
     // what stands close to the ground in the shade of it: a lift of half a metre adds sun that is not there
-    let lifted = town.judge(&roofs, &light, 0.5, &SceneParams::carved()).unwrap();
+    let lifted = town.judge(&roofs, &light, 0.5, &BlockRule::carved()).unwrap();
     assert!(lifted.sun[2] > 3.0 * lifted.sun[3], "{lifted:?}");
 }

@@ -11,7 +11,7 @@ use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, OrientedCloud, orient};
 use belvedere::pulses::{NeedleParams, Needles, VerticalParams, vertical_pulses};
-use belvedere::query::{MedialScene, SceneParams, Viewer, Visibility};
+use belvedere::query::{BlockRule, MedialScene, Viewer, Visibility};
 use belvedere::view::to_sun;
 use belvedere_baselines::agreement::{Counts, Rate};
 use belvedere_baselines::medial::DEPTH_BIAS;
@@ -62,7 +62,7 @@ impl Place {
         let attributes = &self.cloud.attributes;
         let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses: None };
         let balls = carved_balls(&input, &CarvedParams::default(), &Control::none()).unwrap().balls;
-        let blocking = SceneParams { depth_bias: DEPTH_BIAS, ..SceneParams::default() };
+        let blocking = BlockRule { bias: DEPTH_BIAS, ..BlockRule::default() };
         let scene = MedialScene::new(&balls, &blocking).unwrap();
         let balanced = |(direction, visible): &([f64; 3], Vec<bool>)| {
             let answers = scene.visible(Viewer::Direction(*direction), &self.targets).unwrap();

@@ -11,7 +11,7 @@ use belvedere::depth::{DepthMap, ItemBuffer, Profile, depth_map};
 use belvedere::figures::{Canvas, Colors, class_color, depth_picture, in_shadow, ramp_colors, side_by_side, write_png};
 use belvedere::io::{ExtraColumn, ExtraValues, atomic, write_balls, write_cloud, write_tif_f32};
 use belvedere::medial::{CarvedParams, MedialBalls, Side};
-use belvedere::query::{Answer, MedialScene, SceneParams, Viewer, Visibility};
+use belvedere::query::{Answer, BlockRule, MedialScene, Viewer, Visibility};
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere_scenes::{AirborneParams, Scan, Scene, TownParams, Truth, scan_airborne, town};
 use std::borrow::Cow;
@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     let (low, high) = bounds.corners();
     let view = View::parallel(sun.map(|v| -v), low, high, default_pixel_size(low, high))?;
     let map = stages.run("drawing depth map", 0, |_| depth_map(balls, &view, Profile::Sphere, ItemBuffer::Without))?;
-    let blockers = stages.run("indexing balls", 0, |_| MedialScene::new(balls, &SceneParams::carved()))?;
+    let blockers = stages.run("indexing balls", 0, |_| MedialScene::new(balls, &BlockRule::carved()))?;
     let answers = stages.run("querying", 0, |_| blockers.visible(Viewer::Direction(sun), &cloud.positions))?;
     let shadowed = answers.iter().filter(|&&a| a == Answer::Blocked).count();
     summary.add("own_points_in_shadow_percent", percent(shadowed, answers.len()));

@@ -13,8 +13,8 @@ use belvedere::io::{ExtraColumn, ExtraValues, ReadOptions, WriteReport, read_clo
 use belvedere::medial::MedialBalls;
 use belvedere::pulses::{NeedleColumns, Needles};
 use belvedere::query::{
-    Answer, AnswerCounts, CertifiedReport, MedialScene, Proof, ProofParams, SceneParams, Scope, UnprovenAs,
-    answer_views, query_points, random_targets,
+    Answer, AnswerCounts, BlockRule, CertifiedReport, MedialScene, Proof, ProofParams, Scope, UnprovenAs, answer_views,
+    query_points, random_targets,
 };
 use belvedere::view::View;
 use std::path::Path;
@@ -107,10 +107,10 @@ fn by_lines_of_sight(
     stages: &mut Stages,
     section: &mut Summary,
 ) -> Result<Vec<Answer>> {
-    let usual = if blockers.is_carved { SceneParams::carved() } else { SceneParams::uncarved() };
-    let depth_bias = arguments.bias.map_or(usual.depth_bias, f64::from);
+    let usual = if blockers.is_carved { BlockRule::carved() } else { BlockRule::uncarved() };
+    let depth_bias = arguments.bias.map_or(usual.bias, f64::from);
     let shell = arguments.shell.map_or(usual.shell, f64::from);
-    let params = SceneParams { profile: arguments.scene.profile.into(), depth_bias, shell };
+    let params = BlockRule { profile: arguments.scene.profile.into(), bias: depth_bias, shell };
     let mut scene = stages.run("indexing balls", 0, |_| MedialScene::new(&blockers.balls, &params))?;
     section.add("depth_bias_m", rounded(depth_bias, 4)).add("shell_m", rounded(shell, 4));
     if let Some(view) = views.iter().find(|view| view.is_central()) {

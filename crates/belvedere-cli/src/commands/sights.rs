@@ -11,7 +11,7 @@ use belvedere::depth::Profile;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
 use belvedere::io::{Georeference, ReadOptions, read_cloud};
 use belvedere::pulses::Needles;
-use belvedere::query::{EarthParams, MedialScene, Proof, ProofParams, SceneParams, UnprovenAs};
+use belvedere::query::{BlockRule, EarthParams, MedialScene, Proof, ProofParams, UnprovenAs};
 
 /// Whether pulses are asked about lines of sight that nothing blocks.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -23,9 +23,9 @@ pub(crate) enum Proving {
 }
 
 /// How balls block, as the flags say.
-pub(crate) fn scene_params(scene: &Scene, profile: Profile, flags: &GivingWay) -> SceneParams {
-    let usual = if scene.is_carved() { SceneParams::carved() } else { SceneParams::uncarved() };
-    SceneParams { profile, shell: flags.shell.map_or(usual.shell, f64::from), ..usual }
+pub(crate) fn scene_params(scene: &Scene, profile: Profile, flags: &GivingWay) -> BlockRule {
+    let usual = if scene.is_carved() { BlockRule::carved() } else { BlockRule::uncarved() };
+    BlockRule { profile, shell: flags.shell.map_or(usual.shell, f64::from), ..usual }
 }
 
 /// Balls that lines of sight are cut with, and what to make of what is not proven.
@@ -49,7 +49,7 @@ pub(crate) fn blockers(
     let mut blockers = stages.run("indexing balls", 0, |_| MedialScene::new(&scene.balls, &params))?;
     section
         .add("balls", blockers.ball_count())
-        .add("depth_bias_m", rounded(params.depth_bias, 4))
+        .add("depth_bias_m", rounded(params.bias, 4))
         .add("shell_m", rounded(params.shell, 4));
     let unproven_as = flags.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
     let decides = proving == Proving::IfItDecides && unproven_as != UnprovenAs::Visible;

@@ -12,7 +12,7 @@ use anyhow::{Result, bail};
 use belvedere::apps::sun::{Binning, DayOfLight, DayParams, Period, Site, SunSchedule, Zone, sun_days};
 use belvedere::apps::sun_hours::{SunHours as Found, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
 use belvedere::io::{SavedMatrix, read_matrix, write_matrix};
-use belvedere::query::{SceneParams, VisibilityMatrix, scene_fingerprint, visibility_matrix};
+use belvedere::query::{BlockRule, VisibilityMatrix, scene_fingerprint, visibility_matrix};
 
 /// Names of the columns of rules of one's own, in the order given.
 const OWN_RULES: [&str; 8] = ["rule_1", "rule_2", "rule_3", "rule_4", "rule_5", "rule_6", "rule_7", "rule_8"];
@@ -105,7 +105,7 @@ fn look(
 }
 
 /// How balls block.
-fn matrix_params(scene: &Scene, arguments: &SunHours) -> SceneParams {
+fn matrix_params(scene: &Scene, arguments: &SunHours) -> BlockRule {
     scene_params(scene, arguments.scene.profile.into(), &arguments.shell.giving_way())
 }
 

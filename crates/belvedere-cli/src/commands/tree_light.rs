@@ -6,7 +6,7 @@ use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::apps::sun::Date;
 use belvedere::apps::tree_light::{Foliage, Transmissivity, without_vegetation};
-use belvedere::query::{MedialScene, SceneParams};
+use belvedere::query::{BlockRule, MedialScene};
 
 /// A scene without its vegetation, and what share of the light vegetation lets through.
 pub(crate) struct TreeLight {
@@ -18,7 +18,7 @@ pub(crate) struct TreeLight {
 
 impl ThroughTrees {
     /// What was typed, for balls that block as `params`; `None` where trees are opaque.
-    pub(crate) fn of(&self, scene: &Scene, params: &SceneParams, summary: &mut Summary) -> Result<Option<TreeLight>> {
+    pub(crate) fn of(&self, scene: &Scene, params: &BlockRule, summary: &mut Summary) -> Result<Option<TreeLight>> {
         if self.leaves.is_some() && self.through_trees != ThroughTreesChoice::Seasons {
             return Err(Usage("--leaves belongs to --through-trees seasons".to_owned()).into());
         }

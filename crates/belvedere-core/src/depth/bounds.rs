@@ -4,12 +4,10 @@ use super::central::{self, Central};
 use super::depth_map::ItemBuffer;
 use super::parallel::{self, Parallel};
 use super::tiles;
+use crate::blocking::{Ball, BlockRule};
 use belvedere_data::raster::Raster;
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Result};
-
-/// Most of its radius that a ball gives way to a target near its surface.
-pub(crate) const SHELL_SHARE: f64 = 0.5;
 
 /// Rounding of f32 as a share of the coordinates it works on: 32 units of 2⁻²³. Positions in the view, directions of pixels and
 /// products of both err by fewer than 16 of them together.
@@ -21,7 +19,7 @@ const LEAST_ROUNDING: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundsParams {
     /// How far balls may give way to a target near their surface, metres, 0 or more, never more than half their radius: see
-    /// [`SceneParams::shell`](crate::query::SceneParams::shell). Default 0.
+    /// [`BlockRule::shell`]. Default 0.
     pub shell: f64,
     /// Where lines of sight end on the viewer's side, as a depth or, in a view from an eye, as a range in metres: balls that reach
     /// before it block nothing. −∞ for a viewer infinitely far away. Default 0, the picture plane or the eye. In a perspective view
@@ -57,7 +55,7 @@ pub struct DepthBounds {
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for 2³² balls or more.
-pub fn depth_bounds(balls: &[([f32; 3], f32)], view: &View, params: &BoundsParams) -> Result<DepthBounds> {
+pub fn depth_bounds(balls: &[Ball], view: &View, params: &BoundsParams) -> Result<DepthBounds> {
     if u32::try_from(balls.len()).is_err() {
         return Err(Error::InvalidParameter {
             name: "number of balls",
@@ -65,7 +63,7 @@ pub fn depth_bounds(balls: &[([f32; 3], f32)], view: &View, params: &BoundsParam
             expected: "below 2^32",
         });
     }
-    let ball = |i: usize| balls.get(i).copied().filter(|(_, radius)| *radius > 0.0 && radius.is_finite());
+    let ball = |i: usize| balls.get(i).copied().filter(|ball| ball.radius > 0.0 && ball.radius.is_finite());
     // what limits lines of sight is said by `start`
     let unlimited = view.with_limits(0.0, f64::INFINITY)?;
     let most_range_per_depth = match view.projection {
@@ -74,7 +72,8 @@ pub fn depth_bounds(balls: &[([f32; 3], f32)], view: &View, params: &BoundsParam
     };
     let farthest_start = if params.start > 0.0 { params.start * most_range_per_depth } else { params.start };
     let draw = |side: BoundSide| {
-        let bound = BallBound { side, shell: params.shell, start: [params.start, farthest_start] };
+        let rule = BlockRule { shell: params.shell, ..BlockRule::default() };
+        let bound = BallBound { side, rule, start: [params.start, farthest_start] };
         let drawn = match view.projection {
             Projection::Orthographic { pixels_per_metre } => {
                 let surface = parallel::Bound::new(bound, pixels_per_metre);
@@ -105,7 +104,7 @@ pub(super) enum BoundSide {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BallBound {
     pub(super) side: BoundSide,
-    shell: f64,
+    rule: BlockRule,
     /// Where lines of sight end on the viewer's side, the nearest and the farthest of them, metres.
     start: [f64; 2],
 }
@@ -131,9 +130,8 @@ impl BallBound {
 impl BallBound {
     /// The radius that is left of a ball drawn with `radius` for any target, however near to its surface.
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "a length and a share")]
     pub(super) fn least_radius(&self, radius: f32) -> f32 {
-        radius - (self.shell as f32).min(SHELL_SHARE as f32 * radius)
+        self.rule.least_radius_f32(radius)
     }
 
     /// A depth behind which every target lies farther than the shell from a ball drawn with `radius` around `center` deep, so that
@@ -141,7 +139,7 @@ impl BallBound {
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "a length")]
     pub(super) fn behind(&self, center: f32, radius: f32, margin: f32) -> f32 {
-        center + radius + self.shell as f32 + 4.0 * margin
+        center + radius + self.rule.shell as f32 + 4.0 * margin
     }
 }
 

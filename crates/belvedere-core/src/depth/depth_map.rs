@@ -3,6 +3,7 @@
 use super::central::{self, Central};
 use super::parallel::{self, Parallel};
 use super::tiles;
+use crate::blocking::{Ball, Profile, SLOPE, SURFACE_DEVIATION, holds_at};
 use crate::medial::{MedialBalls, NO_TOUCH};
 use belvedere_data::raster::Raster;
 use belvedere_data::view::{Projection, View};
@@ -11,18 +12,6 @@ use rayon::prelude::*;
 
 /// Value of the item buffer where no ball is hit.
 pub const NO_BALL: u32 = u32::MAX;
-
-/// Which surface of a ball is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Profile {
-    /// The sphere itself, sampled at pixel centres at its exact sub-pixel place. Balls before the picture plane, or the near limit,
-    /// are not seen; one that it cuts blocks from there on. Balls that hold the eye of a view are left out.
-    #[default]
-    Sphere,
-    /// Algorithm 1 of the paper to the letter: a cone with its tip at the nearest point of the ball, around the middle of
-    /// the pixel that holds the centre, before and behind the picture plane alike. Parallel views only.
-    PaperCone,
-}
 
 /// Whether a depth map also says which ball each pixel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,13 +48,14 @@ pub struct DepthMap {
 /// number of threads and any order of balls.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for 2³² balls or more, and for [`Profile::PaperCone`] in a view that is not parallel.
+/// [`Error::LengthMismatch`] for columns of unequal length, [`Error::InvalidParameter`] for 2³² balls or more, and for [`Profile::PaperCone`] in a view that is not parallel.
 ///
 /// # Source
 /// Peters, Ledoux & Biljecki 2015, section 3.2 and Algorithm 1 (`WRITEBALL`), of which [`Profile::PaperCone`] is the
 /// printed form and [`Profile::Sphere`] the corrected one: the printed depth describes a cone inside the ball. Skipping
 /// hidden blocks: Greene, Kass & Miller 1993.
 pub fn depth_map(balls: &MedialBalls, view: &View, profile: Profile, items: ItemBuffer) -> Result<DepthMap> {
+    balls.validate()?;
     if u32::try_from(balls.len()).is_err() {
         return Err(Error::InvalidParameter {
             name: "number of balls",
@@ -75,7 +65,7 @@ pub fn depth_map(balls: &MedialBalls, view: &View, profile: Profile, items: Item
     }
     let usable = |i: usize| {
         let (center, radius) = (balls.centers[i], balls.radii[i]);
-        (balls.touch[i] != NO_TOUCH && radius > 0.0 && radius.is_finite()).then_some((center, radius))
+        (balls.touch[i] != NO_TOUCH && radius > 0.0 && radius.is_finite()).then_some(Ball { center, radius })
     };
     let (size, count) = (view.size_px, balls.len());
     let drawn = match (view.projection, profile) {
@@ -97,29 +87,15 @@ pub fn depth_map(balls: &MedialBalls, view: &View, profile: Profile, items: Item
         }
     };
     let around_eye_count = if view.is_central() {
-        let holds_eye = |&(center, radius): &([f32; 3], f32)| {
-            let square: f64 = view.frame.view_from_local(center).map(|v| v * v).iter().sum();
-            square.sqrt() <= f64::from(radius)
+        let holds_eye = |ball: &Ball| {
+            let square: f64 = view.frame.view_from_local(ball.center).map(|v| v * v).iter().sum();
+            holds_at(f64::from(ball.radius), square.sqrt())
         };
         (0..count).into_par_iter().with_min_len(1 << 13).filter_map(usable).filter(holds_eye).count()
     } else {
         0
     };
     Ok(DepthMap { view: *view, profile, depth: drawn.0, balls: drawn.1, around_eye_count })
-}
-
-/// How far a point of an airborne scan may lie from the surface of the balls around it, metres: 0.05 of noise, and as much
-/// by which the default balls stand out over points.
-const SURFACE_DEVIATION: f64 = 0.1;
-/// Slope of a surface against the picture plane up to which its own points shall be visible: 63°, level ground under a sun
-/// 27° high.
-const SLOPE: f64 = 2.0;
-
-/// The bias, metres, by which a target may lie inside a ball along its line of sight and still count as visible, where noise and balls
-/// are all that stands between a point and its surface: [`DepthMap::default_depth_bias`] for pixels without extent, 0.22 m.
-#[must_use]
-pub fn surface_bias() -> f64 {
-    SURFACE_DEVIATION * (1.0 + SLOPE * SLOPE).sqrt()
 }
 
 impl DepthMap {

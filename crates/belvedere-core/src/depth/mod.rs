@@ -8,7 +8,7 @@ pub mod panorama;
 mod parallel;
 mod tiles;
 
-pub(crate) use bounds::SHELL_SHARE;
+pub use crate::blocking::{Profile, surface_bias};
 pub use bounds::{BoundsParams, DepthBounds, depth_bounds};
-pub use depth_map::{DepthMap, ItemBuffer, NO_BALL, Profile, depth_map, surface_bias};
+pub use depth_map::{DepthMap, ItemBuffer, NO_BALL, depth_map};
 pub use panorama::{Panorama, panorama};

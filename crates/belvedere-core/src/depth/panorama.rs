@@ -1,6 +1,7 @@
 //! Depth all around an eye, as a picture that people read: azimuth across, elevation down.
 
-use super::depth_map::{ItemBuffer, NO_BALL, Profile, depth_map};
+use super::depth_map::{ItemBuffer, NO_BALL, depth_map};
+use crate::blocking::Profile;
 use crate::medial::MedialBalls;
 use belvedere_data::Result;
 use belvedere_data::raster::Raster;
@@ -22,6 +23,7 @@ pub struct Panorama {
 
 /// Range from `eye` to a ball along a unit vector, both local, if it meets the ball.
 fn front(balls: &MedialBalls, ball: usize, eye: [f64; 3], direction: [f64; 3]) -> Option<f32> {
+    // by the vector product, which keeps more digits at the edge of a ball: the pixel may just touch it
     let (center, radius) = (balls.centers.get(ball)?, f64::from(*balls.radii.get(ball)?));
     let offset = sub(center.map(f64::from), eye);
     let along = dot(offset, direction);

@@ -6,6 +6,7 @@
 //! is seen of them.
 
 use super::depth_map::{ItemBuffer, NO_BALL};
+use crate::blocking::Ball;
 use belvedere_data::raster::Raster;
 use rayon::prelude::*;
 
@@ -51,14 +52,14 @@ pub(super) fn draw<S: Shape>(
     shape: &S,
     [width, height]: [usize; 2],
     count: usize,
-    ball: impl Fn(usize) -> Option<([f32; 3], f32)> + Sync,
+    ball: impl Fn(usize) -> Option<Ball> + Sync,
     items: ItemBuffer,
 ) -> (Raster<f32>, Option<Raster<u32>>) {
     let splats: Vec<S::Splat> = (0..count)
         .into_par_iter()
         .with_min_len(CHUNK)
         .filter_map(|i| {
-            let (center, radius) = ball(i)?;
+            let Ball { center, radius } = ball(i)?;
             #[expect(clippy::cast_possible_truncation, reason = "callers check the number of balls")]
             shape.place(center, radius, i as u32)
         })

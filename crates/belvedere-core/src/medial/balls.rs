@@ -1,5 +1,7 @@
 //! The balls themselves, as columns.
 
+use belvedere_data::{Error, Result};
+
 /// Value of [`MedialBalls::touch`] for a ball that never shrank.
 pub const NO_TOUCH: u32 = u32::MAX;
 
@@ -31,6 +33,24 @@ pub struct MedialBalls {
 }
 
 impl MedialBalls {
+    /// Checks that all columns are equally long.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] for the first column that is not.
+    pub fn validate(&self) -> Result<()> {
+        let expected = self.radii.len();
+        let columns = [
+            ("centres of balls", self.centers.len()),
+            ("source points of balls", self.source.len()),
+            ("touching points of balls", self.touch.len()),
+            ("separation angles of balls", self.separation_angles.len()),
+        ];
+        match columns.into_iter().find(|(_, found)| *found != expected) {
+            Some((what, found)) => Err(Error::LengthMismatch { what, expected, found }),
+            None => Ok(()),
+        }
+    }
+
     /// Number of balls.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -13,12 +13,12 @@ mod blockers;
 use super::medial_scene::MedialScene;
 use super::target_tree::{LEAF, TargetNode, TargetTree};
 use super::{Answer, Viewer};
-use crate::depth::Profile;
+use crate::blocking::{Ball, Profile};
 use crate::ray_index::{Part, Ray};
 use beam::Beam;
 use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Result};
-use blockers::{Ball, Balls, LANES, Node};
+use blockers::{BallColumns, LANES, Node};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -142,7 +142,7 @@ impl<'a> Sweep<'a> {
             scale = scale.max(farthest(root.low.map(f64::from))).max(farthest(root.high.map(f64::from)));
         }
         // with a bias below zero what lies that much behind a target blocks it too
-        let behind = (-scene.params.depth_bias).max(0.0);
+        let behind = (-scene.params.bias).max(0.0);
         Ok(Self { scene, targets, viewer, apex, room: ROUNDING * scale + behind })
     }
 
@@ -232,10 +232,10 @@ impl<'a> Sweep<'a> {
             let met = beam.meets(lists.balls.lanes(start));
             (0..LANES).any(|lane| {
                 met.is_hit[lane] && {
-                    let ball = lists.balls.get(start + lane);
-                    lists.balls.push(ball);
-                    met.may_be_covered[lane] && self.hides(ball.row, target) && {
-                        lists.hider = Some(ball.row);
+                    let (ball, row) = lists.balls.get(start + lane);
+                    lists.balls.push(ball, row);
+                    met.may_be_covered[lane] && self.hides(row, target) && {
+                        lists.hider = Some(row);
                         true
                     }
                 }
@@ -251,10 +251,10 @@ impl<'a> Sweep<'a> {
             let met = beam.meets(fresh.lanes(start));
             (0..LANES).any(|lane| {
                 met.is_hit[lane] && {
-                    let ball = fresh.get(start + lane);
-                    balls.push(ball);
-                    met.may_be_covered[lane] && self.hides(ball.row, target) && {
-                        *hider = Some(ball.row);
+                    let (ball, row) = fresh.get(start + lane);
+                    balls.push(ball, row);
+                    met.may_be_covered[lane] && self.hides(row, target) && {
+                        *hider = Some(row);
                         true
                     }
                 }
@@ -283,7 +283,7 @@ impl<'a> Sweep<'a> {
                         Part::Nothing => {}
                         Part::Node(number) => unopened.push(Node::of(number, &parts, lane)),
                         Part::Rows { first, count } => {
-                            (first..first + count).for_each(|row| fresh.push(self.ball(row)));
+                            (first..first + count).for_each(|row| fresh.push(self.scene.ball(row as usize), row));
                         }
                     }
                 }
@@ -291,25 +291,19 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    #[inline]
-    fn ball(&self, row: u32) -> Ball {
-        let (center, radius) = self.scene.ball(row as usize);
-        Ball { center, radius, row }
-    }
-
     /// Whether a ball blocks every line of sight of the targets, wherever in their box they lie.
     ///
     /// The shadow of a ball is convex: a box lies in it if its corners do. Targets near its surface meet a ball smaller by up
-    /// to the shell, so the shadow of that one is asked; a target counts as `depth_bias` nearer to the viewer.
+    /// to the shell, so the shadow of that one is asked; a target counts as `bias` nearer to the viewer.
     fn hides(&self, ball: u32, target: &TargetNode) -> bool {
         let params = &self.scene.params;
         if params.profile == Profile::PaperCone {
             return false;
         }
-        let (center, whole) = self.scene.ball(ball as usize);
-        let (center, whole) = (center.map(f64::from), f64::from(whole));
-        let radius = whole - params.shell_of(whole);
-        let corners = target.corners(params.depth_bias.max(0.0));
+        let Ball { center, radius } = self.scene.ball(ball as usize);
+        let (center, whole) = (center.map(f64::from), f64::from(radius));
+        let radius = params.least_radius(whole);
+        let corners = target.corners(params.bias.max(0.0));
         let squared = |v: [f64; 3]| dot(v, v);
         let farthest = corners.iter().map(|&corner| squared(sub(center, corner))).fold(0.0, f64::max);
         match (self.apex, self.viewer) {
@@ -355,7 +349,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// The first of the balls from place `first` on that blocks the target at `place`.
-    fn blocked_among(&self, place: usize, balls: &Balls, first: usize) -> Option<u32> {
+    fn blocked_among(&self, place: usize, balls: &BallColumns, first: usize) -> Option<u32> {
         let ray = self.ray(place)?;
         let origin = self.targets.positions()[place];
         #[expect(clippy::cast_possible_truncation, reason = "balls count as larger by more than what is rounded")]
@@ -379,11 +373,11 @@ enum Opening {
 #[derive(Default)]
 struct Lists {
     nodes: Vec<Node>,
-    balls: Balls,
+    balls: BallColumns,
     /// Nodes still to be looked at.
     unopened: Vec<Node>,
     /// Balls out of opened nodes.
-    fresh: Balls,
+    fresh: BallColumns,
     /// The last ball that hid a whole box.
     hider: Option<u32>,
     /// The last balls that blocked single targets.

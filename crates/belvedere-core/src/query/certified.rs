@@ -1,7 +1,8 @@
 //! Exact answers at the speed of a depth map: targets that bounds of depth settle, and lines of sight for the rest.
 
 use super::{Answer, MedialScene, Viewer};
-use crate::depth::{BoundsParams, DepthBounds, Profile, depth_bounds};
+use crate::blocking::Profile;
+use crate::depth::{BoundsParams, DepthBounds, depth_bounds};
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
@@ -161,7 +162,7 @@ impl<'a> CertifiedMap<'a> {
                 (self.scene.answer_unblocked(position, towards, range), Way::Settled)
             }
             // before its surface a target may lie in the shell of a ball that reaches past it
-            Some((depth, [_, upper])) if depth > upper && self.scene.params().depth_bias >= 0.0 => {
+            Some((depth, [_, upper])) if depth > upper && self.scene.params().bias >= 0.0 => {
                 (Answer::Blocked, Way::Settled)
             }
             _ => (self.scene.answer(position, towards, range), Way::ByLineOfSight),
@@ -189,7 +190,7 @@ impl<'a> CertifiedMap<'a> {
         )]
         let (column, row) = (x as usize, y as usize);
         let bracket = bounds.bounds.get(column, row)?.map(f64::from);
-        (depth.abs() < FARTHEST_SETTLED).then_some((depth - self.scene.params().depth_bias, bracket))
+        (depth.abs() < FARTHEST_SETTLED).then_some((depth - self.scene.params().bias, bracket))
     }
 }
 

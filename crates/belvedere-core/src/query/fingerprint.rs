@@ -1,7 +1,6 @@
 //! A number that tells whether two scenes are the same, so that what was found in one is not taken for what is in the other.
 
-use super::SceneParams;
-use crate::depth::Profile;
+use crate::blocking::{BlockRule, Profile};
 use crate::medial::MedialBalls;
 
 /// A number that differs, but for one chance in 10¹⁹, between scenes whose balls or parameters differ in any bit; the same on any machine.
@@ -9,10 +8,10 @@ use crate::medial::MedialBalls;
 /// # Source
 /// FNV-1a of 64 bits (Fowler, Noll & Vo), taken over words of 32 bits.
 #[must_use]
-pub fn scene_fingerprint(balls: &MedialBalls, params: &SceneParams) -> u64 {
+pub fn scene_fingerprint(balls: &MedialBalls, params: &BlockRule) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut mix = |word: u32| hash = (hash ^ u64::from(word)).wrapping_mul(0x0100_0000_01b3);
-    for number in [params.depth_bias, params.shell] {
+    for number in [params.bias, params.shell] {
         let bits = number.to_bits();
         #[expect(clippy::cast_possible_truncation, reason = "both halves are taken")]
         [bits as u32, (bits >> 32) as u32].into_iter().for_each(&mut mix);

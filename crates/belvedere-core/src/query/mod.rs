@@ -18,10 +18,11 @@ pub mod target_tree;
 pub mod visibility;
 pub mod visibility_matrix;
 
+pub use crate::blocking::{Ball, BlockRule, Profile};
 pub use certified::{CertifiedMap, CertifiedReport, Scope, answer_views};
 pub use earth::{Curvature, EarthParams};
 pub use fingerprint::scene_fingerprint;
-pub use medial_scene::{MedialScene, SceneParams};
+pub use medial_scene::MedialScene;
 pub use mesh::{BackFaces, MeshTargetParams, SeenArea, facing, seen_faces, seen_in_all, seen_objects};
 pub use points::{Answer, AnswerCounts, UnprovenAs, query_points, random_targets};
 pub use proof::{Beside, Proof, ProofParams};

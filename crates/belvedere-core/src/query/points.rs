@@ -1,6 +1,7 @@
 //! Point targets against a depth map: constant time each.
 
-use crate::depth::{DepthMap, Profile};
+use crate::blocking::Profile;
+use crate::depth::DepthMap;
 use belvedere_data::random;
 use rayon::prelude::*;
 

@@ -1,9 +1,9 @@
 //! Lines of sight between pairs of points: what blocks them first, and all that lies on them.
 
 use super::{Answer, EarthParams, MedialScene};
-use crate::depth::Profile;
+use crate::blocking::Chord;
 use crate::ray_index::Ray;
-use belvedere_data::vector::{dot, length, sub};
+use belvedere_data::vector::{length, sub};
 use rayon::prelude::*;
 
 /// Pairs handed to a thread at once.
@@ -51,10 +51,11 @@ pub struct Enclosure {
     pub depth: f64,
 }
 
-/// The ends of a line of sight, and whether a piece of it reaches them.
+/// A piece of a line of sight between two points.
 struct Piece {
     /// From the end nearer to the target towards the observer.
     ray: Ray,
+    /// Ends of the whole line.
     target: [f64; 3],
     observer: [f64; 3],
 }
@@ -138,13 +139,10 @@ impl MedialScene {
             let piece = length(sub(to, from));
             let Some(ray) = Ray::new(from, sub(to, from), [0.0, piece]) else { continue };
             self.index.each(&ray, |number| {
-                let Some(&(center, radius)) = self.balls.get(number) else { return };
-                let offset = sub(center.map(f64::from), ray.origin);
-                let along = dot(offset, ray.direction);
-                let half_square = f64::from(radius).powi(2) - (dot(offset, offset) - along * along).max(0.0);
-                let half = half_square.max(0.0).sqrt();
-                let ranges = [(along - half).max(0.0), (along + half).min(piece)];
-                if half_square > 0.0 && ranges[0] < ranges[1] {
+                let inside = self.balls.get(number).and_then(|ball| ball.interval(ray.origin, ray.direction));
+                let Some([enters, leaves]) = inside else { return };
+                let ranges = [enters.max(0.0), leaves.min(piece)];
+                if ranges[0] < ranges[1] {
                     let ball = self.rows.get(number).map_or(usize::MAX, |&row| row as usize);
                     crossings.push(Crossing { ball, ranges: ranges.map(|range| passed + range) });
                 }
@@ -161,8 +159,8 @@ impl MedialScene {
         let mut enclosure = Enclosure::default();
         let Some(ray) = Ray::new(point, [0.0, 0.0, 1.0], [0.0, PROBE]) else { return enclosure };
         self.index.each(&ray, |number| {
-            let Some(&(center, radius)) = self.balls.get(number) else { return };
-            let depth = f64::from(radius) - length(sub(center.map(f64::from), point));
+            let Some(ball) = self.balls.get(number) else { return };
+            let depth = ball.depth_of(point);
             if depth > 0.0 {
                 enclosure.ball_count += 1;
                 enclosure.depth = enclosure.depth.max(depth);
@@ -214,7 +212,7 @@ impl MedialScene {
     }
 
     fn biased(&self, mut ray: Ray) -> Ray {
-        ray.ranges[0] = self.params.depth_bias;
+        ray.ranges[0] = self.params.bias;
         ray
     }
 
@@ -234,32 +232,17 @@ impl MedialScene {
         })
     }
 
-    /// As [`MedialScene::front`], for a chord of a longer line: balls may reach over its ends, and only the ends of the whole line
-    /// have rights.
+    /// As [`MedialScene::front`], for a chord of a longer line.
     fn front_on(&self, number: usize, piece: &Piece) -> Option<f64> {
-        let &(center, radius) = self.balls.get(number)?;
-        let (center, mut radius) = (center.map(f64::from), f64::from(radius));
-        let from_observer = sub(center, piece.observer);
-        if dot(from_observer, from_observer) <= radius * radius {
-            return None;
-        }
-        let shell = self.params.shell_of(radius);
-        let outside = length(sub(center, piece.target)) - radius;
-        if outside.abs() < shell {
-            radius -= shell - outside.max(0.0);
-        }
-        let offset = sub(center, piece.ray.origin);
-        let along = dot(offset, piece.ray.direction);
-        let beside = (dot(offset, offset) - along * along).max(0.0);
-        if radius <= 0.0 || beside >= radius * radius {
-            return None;
-        }
-        let half = match self.params.profile {
-            Profile::Sphere => (radius * radius - beside).sqrt(),
-            Profile::PaperCone => radius - beside.sqrt(),
+        let Piece { ray, target, observer } = piece;
+        let chord = Chord {
+            start: ray.origin,
+            towards: ray.direction,
+            ranges: ray.ranges,
+            target: *target,
+            observer: *observer,
         };
-        let [from, to] = piece.ray.ranges;
-        (along - half < to && along + half > from).then(|| (along + half).min(to))
+        self.params.blocks_chord(*self.balls.get(number)?, &chord)
     }
 }
 

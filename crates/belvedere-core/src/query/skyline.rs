@@ -1,8 +1,7 @@
 //! The skyline around a place: how high the sky begins in each direction.
 
 use super::{EarthParams, MedialScene};
-use crate::depth::SHELL_SHARE;
-use belvedere_data::vector::{dot, sub};
+use crate::blocking::Ball;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -41,7 +40,7 @@ impl MedialScene {
     ///
     /// Exact for the union of balls, by the tangents of every ball in the vertical plane of each azimuth: nothing that floats above a
     /// gap is missed, and there is no step to choose. The eye may be a place on a surface: balls give way to it by
-    /// [`super::SceneParams::shell`] as to any target. Those that hold it even so are left out; [`MedialScene::enclosure`] tells of them.
+    /// [`crate::blocking::BlockRule::shell`] as to any target. Those that hold it even so are left out; [`MedialScene::enclosure`] tells of them.
     /// Over the earth of `earth` far balls sink.
     #[must_use]
     pub fn skyline(&self, eye: [f64; 3], count: usize, earth: &EarthParams) -> Vec<SkylinePoint> {
@@ -62,8 +61,8 @@ impl MedialScene {
             .enumerate()
             .map(|(chunk, balls)| {
                 let mut skyline = vec![EMPTY; count];
-                for (i, &(center, radius)) in balls.iter().enumerate() {
-                    let Some((offset, radius)) = self.before(eye, center, radius, earth) else { continue };
+                for (i, &ball) in balls.iter().enumerate() {
+                    let Some((offset, radius)) = self.before(eye, ball, earth) else { continue };
                     let ball = self.rows.get(chunk * CHUNK + i).map(|&row| row as usize);
                     each_azimuth(offset, radius, [first, step], count, |azimuth| {
                         if let Some((elevation, range)) = top(offset, radius, directions[azimuth]) {
@@ -76,20 +75,10 @@ impl MedialScene {
             .reduce(|| vec![EMPTY; count], |a, b| a.into_iter().zip(b).map(|(a, b)| a.or(b)).collect())
     }
 
-    /// Where a ball stands before the eye, and its radius after giving way; `None` if it holds the eye.
-    fn before(&self, eye: [f64; 3], center: [f32; 3], radius: f32, earth: &EarthParams) -> Option<([f64; 3], f64)> {
-        let (center, mut radius) = (center.map(f64::from), f64::from(radius));
-        let mut offset = sub(center, eye);
-        let distance = dot(offset, offset).sqrt();
-        let shell = self.params.shell.min(SHELL_SHARE * radius);
-        let outside = distance - radius;
-        if outside.abs() < shell {
-            radius -= shell - outside.max(0.0);
-        }
-        if radius <= 0.0 || distance <= radius {
-            return None;
-        }
-        if earth.bends(eye, center) {
+    /// From the eye to the centre of a ball, and its radius after giving way; `None` if it holds the eye even so.
+    fn before(&self, eye: [f64; 3], ball: Ball, earth: &EarthParams) -> Option<([f64; 3], f64)> {
+        let (mut offset, radius) = self.params.seen_from(ball, eye)?;
+        if earth.bends(eye, ball.center.map(f64::from)) {
             let span = offset[0].hypot(offset[1]);
             offset[2] -= (1.0 - earth.refraction) * span * span / (2.0 * earth.radius);
         }

@@ -3,7 +3,7 @@
 use belvedere::Error;
 use belvedere::depth::Profile;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, MedialScene, SceneParams, TargetTree, Viewer, Visibility};
+use belvedere::query::{Answer, BlockRule, MedialScene, TargetTree, Viewer, Visibility};
 use belvedere::random::uniform;
 
 fn add(balls: &mut MedialBalls, center: [f32; 3], radius: f32) {
@@ -11,6 +11,7 @@ fn add(balls: &mut MedialBalls, center: [f32; 3], radius: f32) {
     balls.radii.push(radius);
     balls.source.push(0);
     balls.touch.push(0);
+    balls.separation_angles.push(1.0);
 }
 
 /// Balls on rolling ground and in blocks above it, as crowded as in a town.
@@ -63,11 +64,11 @@ fn viewers(targets: &[[f32; 3]], shift: f64) -> Vec<Viewer<'static>> {
 #[test]
 fn many_at_once_are_answered_as_one_by_one() {
     let kinds = [
-        SceneParams::default(),
-        SceneParams::carved(),
-        SceneParams { depth_bias: 0.4, ..SceneParams::carved() },
-        SceneParams { depth_bias: -0.6, ..SceneParams::carved() },
-        SceneParams { profile: Profile::PaperCone, ..SceneParams::default() },
+        BlockRule::default(),
+        BlockRule::carved(),
+        BlockRule { bias: 0.4, ..BlockRule::carved() },
+        BlockRule { bias: -0.6, ..BlockRule::carved() },
+        BlockRule { profile: Profile::PaperCone, ..BlockRule::default() },
     ];
     // 20 km from the origin f32 steps by 2 mm, and beams must still not miss a ball
     for shift in [0.0, 20_000.0] {
@@ -94,7 +95,7 @@ fn many_at_once_are_answered_as_one_by_one() {
 #[test]
 fn the_scene_of_these_tests_has_targets_of_either_kind() {
     let targets = targets(5, 6000, 0.0);
-    let scene = MedialScene::new(&town(3, 8000, 0.0), &SceneParams::carved()).unwrap();
+    let scene = MedialScene::new(&town(3, 8000, 0.0), &BlockRule::carved()).unwrap();
     let answers = scene.answer_among(viewers(&targets, 0.0)[0], &TargetTree::new(&targets)).unwrap();
     let visible = answers.iter().filter(|&&answer| answer == Answer::Visible).count();
     assert!((100..5900).contains(&visible), "{visible} of 6000 visible");
@@ -102,13 +103,13 @@ fn the_scene_of_these_tests_has_targets_of_either_kind() {
 
 #[test]
 fn what_is_not_finite_is_outside_and_nothing_is_no_error() {
-    let scene = MedialScene::new(&town(3, 500, 0.0), &SceneParams::carved()).unwrap();
+    let scene = MedialScene::new(&town(3, 500, 0.0), &BlockRule::carved()).unwrap();
     let eye = Viewer::Eye([50.0, 50.0, 20.0]);
     let odd = [[f32::NAN, 0.0, 0.0], [50.0, 50.0, 19.0], [0.0, f32::INFINITY, 0.0]];
     let answers = scene.answer_among(eye, &TargetTree::new(&odd)).unwrap();
     assert_eq!(answers, [Answer::OutsideView, Answer::Visible, Answer::OutsideView]);
     assert!(scene.answer_among(eye, &TargetTree::new(&[])).unwrap().is_empty());
-    let nothing = MedialScene::new(&MedialBalls::default(), &SceneParams::carved()).unwrap();
+    let nothing = MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap();
     assert_eq!(nothing.answer_among(eye, &TargetTree::new(&odd[1..2])).unwrap(), [Answer::Visible]);
     let eyes = [[0.0_f32; 3]];
     let refused = scene.answer_among(Viewer::Each(&eyes), &TargetTree::new(&odd[1..2]));
@@ -122,7 +123,7 @@ fn a_wall_of_one_ball_hides_what_the_closed_form_says() {
     // from (0, 0, 0) a ball of radius 1 at 10 m east hides the cone within asin(1/10), from its tangent on
     let mut ball = MedialBalls::default();
     add(&mut ball, [10.0, 0.0, 0.0], 1.0);
-    let scene = MedialScene::new(&ball, &SceneParams::default()).unwrap();
+    let scene = MedialScene::new(&ball, &BlockRule::default()).unwrap();
     let targets: Vec<[f32; 3]> =
         (0..4000).map(|i| [5.0 + (i % 80) as f32 * 0.5, (i / 80) as f32 * 0.125 - 3.0, 0.25]).collect();
     let answers = scene.answer_among(Viewer::Eye([0.0; 3]), &TargetTree::new(&targets)).unwrap();

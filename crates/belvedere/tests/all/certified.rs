@@ -1,8 +1,9 @@
 //! Certified answers against those of exact lines of sight, and bounds of depth against rays through the pixels.
 
+use belvedere::blocking::Ball;
 use belvedere::depth::{BoundsParams, Profile, depth_bounds};
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, CertifiedMap, MedialScene, SceneParams, Scope, Viewer, Visibility, random_targets};
+use belvedere::query::{Answer, BlockRule, CertifiedMap, MedialScene, Scope, Viewer, Visibility, random_targets};
 use belvedere::random::uniform;
 use belvedere::view::View;
 
@@ -54,7 +55,7 @@ fn certified_answers_are_those_of_exact_lines_of_sight() {
     balls.radii[..3].copy_from_slice(&[0.3, 2.0, 0.5]);
     let targets = targets(&balls, 10_000);
     for (depth_bias, shell) in [(0.0, 0.0), (0.0, 0.2), (0.1, 0.25), (-0.1, 0.3)] {
-        let scene = MedialScene::new(&balls, &SceneParams { profile: Profile::Sphere, depth_bias, shell }).unwrap();
+        let scene = MedialScene::new(&balls, &BlockRule { profile: Profile::Sphere, bias: depth_bias, shell }).unwrap();
         for (name, views) in views() {
             let viewer = match views[0].is_central() {
                 true => Viewer::Eye(views[0].frame.eye),
@@ -79,7 +80,7 @@ fn certified_answers_are_those_of_exact_lines_of_sight() {
 #[test]
 fn bounds_settle_most_targets_and_more_with_finer_pixels() {
     let balls = balls(3000, 1);
-    let scene = MedialScene::new(&balls, &SceneParams::carved()).unwrap();
+    let scene = MedialScene::new(&balls, &BlockRule::carved()).unwrap();
     let targets = random_targets([0.0; 3], [60.0, 60.0, 30.0], 20_000, 8);
     let share = |pixel: f64| {
         let view = View::parallel([0.2, 0.1, -0.9], [0.0; 3], [60.0, 60.0, 30.0], pixel).unwrap();
@@ -93,11 +94,11 @@ fn bounds_settle_most_targets_and_more_with_finer_pixels() {
 }
 
 /// Least front of all balls along a line from the eye, or from the plane of a parallel view, in f64.
-fn first_front(balls: &[([f32; 3], f32)], view: &View, place: [f64; 2], start: f64) -> f64 {
+fn first_front(balls: &[Ball], view: &View, place: [f64; 2], start: f64) -> f64 {
     let direction = view.direction(place);
     let origin = if view.is_central() { [0.0; 3] } else { view.position(place, 0.0) };
     let range_per_depth = if view.limits()[1].is_finite() { 1.0 / direction[2] } else { 1.0 };
-    let fronts = balls.iter().filter_map(|&(center, radius)| {
+    let fronts = balls.iter().filter_map(|&Ball { center, radius }| {
         let c = view.frame.view_from_local(center);
         let c: [f64; 3] = std::array::from_fn(|i| c[i] - origin[i]);
         let along: f64 = (0..3).map(|i| c[i] * direction[i]).sum();
@@ -111,7 +112,8 @@ fn first_front(balls: &[([f32; 3], f32)], view: &View, place: [f64; 2], start: f
 #[test]
 fn the_first_surface_of_every_place_of_a_pixel_lies_within_its_bounds() {
     let balls = balls(2000, 3);
-    let list: Vec<_> = balls.centers.iter().copied().zip(balls.radii.iter().copied()).collect();
+    let list: Vec<_> =
+        balls.centers.iter().zip(&balls.radii).map(|(&center, &radius)| Ball { center, radius }).collect();
     let mut within_upper = 0;
     for (name, views) in views() {
         for view in views {
@@ -144,7 +146,7 @@ fn answers_of_a_certified_map_are_the_same_for_any_number_of_threads() {
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let scene = MedialScene::new(&balls, &SceneParams::carved()).unwrap();
+            let scene = MedialScene::new(&balls, &BlockRule::carved()).unwrap();
             let map = CertifiedMap::new(&scene, &View::panorama(EYE, 200).unwrap(), Scope::Viewer).unwrap();
             let bits: Vec<u32> =
                 map.bounds().iter().flat_map(|b| b.bounds.values().iter().flat_map(|v| v.map(f32::to_bits))).collect();
@@ -158,11 +160,11 @@ fn answers_of_a_certified_map_are_the_same_for_any_number_of_threads() {
 #[test]
 fn views_and_balls_that_cannot_be_certified_are_refused() {
     let balls = balls(10, 4);
-    let scene = MedialScene::new(&balls, &SceneParams::carved()).unwrap();
+    let scene = MedialScene::new(&balls, &BlockRule::carved()).unwrap();
     let eyes = [[0.0; 3], [1.0, 0.0, 0.0]].map(|eye| View::hemisphere(eye, [0.0, 0.0, 1.0], 10).unwrap());
     assert!(CertifiedMap::new(&scene, &[], Scope::Viewer).is_err());
     assert!(CertifiedMap::new(&scene, &eyes, Scope::Viewer).is_err());
-    let cone = SceneParams { profile: Profile::PaperCone, ..SceneParams::default() };
+    let cone = BlockRule { profile: Profile::PaperCone, ..BlockRule::default() };
     let cones = MedialScene::new(&balls, &cone).unwrap();
     assert!(CertifiedMap::new(&cones, &eyes[..1], Scope::Viewer).is_err());
     let odd = [[f32::NAN, 1.0, 1.0], [f32::INFINITY, 0.0, 0.0], [f32::MAX, f32::MAX, 0.0], [0.0; 3]];

@@ -6,7 +6,7 @@ use belvedere::medial::{MedialBalls, ShrinkMethod, ShrinkParams, Side, shrink};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, orient};
-use belvedere::query::{MedialScene, SceneParams, visibility_matrix};
+use belvedere::query::{BlockRule, MedialScene, visibility_matrix};
 use belvedere::random::uniform;
 use belvedere::view::to_sun;
 use belvedere::{Mesh, PointCloud};
@@ -47,7 +47,7 @@ fn balls_of(points: Vec<[f32; 3]>, model: &Scene, neighbors: usize) -> MedialBal
 /// Whether the shade that balls cast on squares of ground of 2 · `half_side` about `middles` is that of `form`: every pixel that lies a pixel
 /// off the outline has to be. Returns how many pixels were compared, in the sun and in the shade, each sun having both.
 fn compare(balls: &MedialBalls, form: Form<'_>, pixel: f64, middles: &[[f64; 2]], half_side: f64) -> [usize; 2] {
-    let scene = MedialScene::new(balls, &SceneParams::carved()).unwrap();
+    let scene = MedialScene::new(balls, &BlockRule::carved()).unwrap();
     let across = (2.0 * half_side / pixel).round() as usize;
     let center = |i: usize| (i as f64 + 0.5) * pixel - half_side;
     let place = |middle: &[f64; 2], i: usize| {

@@ -4,7 +4,7 @@
 use belvedere::apps::sky_view::{SkyDirections, SkyView, sky_view};
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{MedialScene, SceneParams, visibility_matrix};
+use belvedere::query::{BlockRule, MedialScene, visibility_matrix};
 use belvedere::random::uniform;
 use std::f64::consts::{PI, TAU};
 
@@ -45,7 +45,7 @@ fn canyon(width: f64, heights: [f64; 2]) -> MedialScene {
             }
         }
     }
-    MedialScene::new(&balls, &SceneParams::default()).unwrap()
+    MedialScene::new(&balls, &BlockRule::default()).unwrap()
 }
 
 /// Round basin whose rim lies `radius` metres off at height `rim`.
@@ -58,7 +58,7 @@ fn basin(radius: f64, rim: f64) -> MedialScene {
             add(&mut balls, [(radius + beyond) * cos, (radius + beyond) * sin, z], ball);
         }
     }
-    MedialScene::new(&balls, &SceneParams::default()).unwrap()
+    MedialScene::new(&balls, &BlockRule::default()).unwrap()
 }
 
 fn view(scene: &MedialScene, targets: &[[f64; 3]], normals: Option<&[[f32; 3]]>, count: usize) -> SkyView {
@@ -130,7 +130,7 @@ fn basins_have_the_sky_of_the_formula() {
 
 #[test]
 fn tilted_free_planes_see_what_their_tilt_leaves() {
-    let scene = MedialScene::new(&MedialBalls::default(), &SceneParams::default()).unwrap();
+    let scene = MedialScene::new(&MedialBalls::default(), &BlockRule::default()).unwrap();
     let tilts_deg = [0.0, 15.0, 40.0, 65.0, 90.0, 120.0, 180.0];
     for azimuth in [0.0, 2.0, 4.5] {
         let normals: Vec<[f32; 3]> = tilts_deg

@@ -4,7 +4,7 @@ use belvedere::apps::exposure::{plane_normal, route_lengths, shaded_shares, sky_
 use belvedere::apps::sky_view::SkyDirections;
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{MedialScene, SceneParams, VisibilityMatrix, visibility_matrix};
+use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix, visibility_matrix};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn scene(center: [f32; 3], radius: f32) -> MedialScene {
@@ -15,7 +15,7 @@ fn scene(center: [f32; 3], radius: f32) -> MedialScene {
         touch: vec![0],
         separation_angles: vec![3.0],
     };
-    MedialScene::new(&balls, &SceneParams::uncarved()).unwrap()
+    MedialScene::new(&balls, &BlockRule::uncarved()).unwrap()
 }
 
 fn matrix(scene: &MedialScene, targets: &[[f32; 3]], directions: &[[f64; 3]]) -> VisibilityMatrix {

@@ -3,12 +3,12 @@
 
 use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, Curvature, EarthParams, MedialScene, SceneParams};
+use belvedere::query::{Answer, BlockRule, Curvature, EarthParams, MedialScene};
 use belvedere::random::uniform;
 use belvedere::view::to_sun;
 use std::f64::consts::FRAC_PI_2;
 
-fn scene(list: &[([f32; 3], f32)], params: &SceneParams) -> MedialScene {
+fn scene(list: &[([f32; 3], f32)], params: &BlockRule) -> MedialScene {
     let balls = MedialBalls {
         centers: list.iter().map(|b| b.0).collect(),
         radii: list.iter().map(|b| b.1).collect(),
@@ -23,7 +23,7 @@ fn scene(list: &[([f32; 3], f32)], params: &SceneParams) -> MedialScene {
 fn a_ball_stands_as_high_as_its_tangents() {
     // due east, its middle 30° high at a distance of 20 m, 3 m of radius
     let center = to_sun(FRAC_PI_2, 30f64.to_radians()).map(|v| (20.0 * v) as f32);
-    let scene = scene(&[(center, 3.0)], &SceneParams::default());
+    let scene = scene(&[(center, 3.0)], &BlockRule::default());
     let skyline = scene.skyline([0.0; 3], 360, &EarthParams::flat());
     let expected = 30f64.to_radians() + (3.0f64 / 20.0).asin();
     // centres are f32: 1e-7
@@ -52,7 +52,7 @@ fn skylines_are_what_lines_of_sight_tried_one_by_one_find() {
     let at = |i: u64| (60.0 * uniform(7, i) - 30.0) as f32;
     let list: Vec<([f32; 3], f32)> =
         (0..150).map(|i| ([at(3 * i), at(3 * i + 1), 0.3 * at(3 * i + 2)], 0.3 + 2.5 * uniform(8, i) as f32)).collect();
-    for params in [SceneParams::default(), SceneParams::carved()] {
+    for params in [BlockRule::default(), BlockRule::carved()] {
         let scene = scene(&list, &params);
         let mut compared = 0;
         for eye in 0..12 {
@@ -82,7 +82,7 @@ fn skylines_are_what_lines_of_sight_tried_one_by_one_find() {
 fn what_floats_above_a_gap_is_the_horizon_and_a_roof_overhead_hides_the_zenith() {
     let north = ([0.0, 20.0, 0.0], 1.0);
     let floating = ([0.0, 20.0, 15.0], 0.2);
-    let scene_of = |list: &[_]| scene(list, &SceneParams::default());
+    let scene_of = |list: &[_]| scene(list, &BlockRule::default());
     let low = scene_of(&[north]).skyline([0.0; 3], 4, &EarthParams::flat())[0].elevation;
     let high = scene_of(&[north, floating]).skyline([0.0; 3], 4, &EarthParams::flat())[0].elevation;
     assert!((low - 0.05f64.asin()).abs() < 1e-7);
@@ -96,7 +96,7 @@ fn what_floats_above_a_gap_is_the_horizon_and_a_roof_overhead_hides_the_zenith()
 
 #[test]
 fn far_balls_sink_with_the_earth() {
-    let scene = scene(&[([0.0, 10_000.0, 50.0], 10.0)], &SceneParams::default());
+    let scene = scene(&[([0.0, 10_000.0, 50.0], 10.0)], &BlockRule::default());
     let height = |earth: &EarthParams| scene.skyline([0.0; 3], 1, earth)[0].elevation.tan() * 10_000.0;
     let bare = EarthParams { curvature: Curvature::On, refraction: 0.0, ..EarthParams::default() };
     // S² / 2R = 7.848 m; tangents of a ball so far away differ from its top by r² / 2S = 5 mm
@@ -112,7 +112,7 @@ fn azimuths_may_count_from_true_north_and_any_number_of_threads_gives_the_same()
             ([at(0, 400.0), at(1, 400.0), at(2, 20.0)], 0.5)
         })
         .collect();
-    let scene = scene(&list, &SceneParams::default());
+    let scene = scene(&list, &BlockRule::default());
     let grid = HorizonParams { azimuth_count: 720, ..HorizonParams::default() };
     let [all] = horizons(&scene, &[[0.0, 0.0, 12.0]], &grid).unwrap().try_into().unwrap();
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();

@@ -8,7 +8,7 @@ use belvedere::apps::sky_view::{SkyDirections, sky_view};
 use belvedere::apps::sun::{Site, Zone, sun_position};
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, MedialScene, SceneParams, visibility_matrix};
+use belvedere::query::{Answer, BlockRule, MedialScene, visibility_matrix};
 use belvedere::random::uniform;
 use belvedere::vector::dot;
 use belvedere::weather::{CalendarDay, Irradiance, RowsHold, Weather, WeatherStep, unix_day};
@@ -38,7 +38,7 @@ fn scene(centers: Vec<[f32; 3]>, radii: Vec<f32>) -> MedialScene {
         touch: vec![0; count],
         separation_angles: vec![1.0; count],
     };
-    MedialScene::new(&balls, &SceneParams::default()).unwrap()
+    MedialScene::new(&balls, &BlockRule::default()).unwrap()
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "a unit vector")]

@@ -2,7 +2,7 @@
 
 use belvedere::apps::isovist::{Isovist, IsovistParams, isovist, isovist_of};
 use belvedere::medial::MedialBalls;
-use belvedere::query::{MedialScene, SceneParams};
+use belvedere::query::{BlockRule, MedialScene};
 use std::f64::consts::{PI, TAU};
 
 /// Range along a unit vector to the walls of a box from `low` to `high` about the eye.
@@ -29,7 +29,7 @@ fn scene(list: &[([f32; 3], f32)]) -> MedialScene {
         touch: vec![0; list.len()],
         separation_angles: vec![1.0; list.len()],
     };
-    MedialScene::new(&balls, &SceneParams::default()).unwrap()
+    MedialScene::new(&balls, &BlockRule::default()).unwrap()
 }
 
 #[test]

@@ -6,7 +6,7 @@ use belvedere::apps::landmark::{
 };
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{BackFaces, MedialScene, MeshTargetParams, SceneParams, SurfacePieces};
+use belvedere::query::{BackFaces, BlockRule, MedialScene, MeshTargetParams, SurfacePieces};
 use belvedere::{Attributes, Mesh, PointCloud};
 use std::f64::consts::TAU;
 
@@ -18,7 +18,7 @@ fn scene(list: &[([f32; 3], f32)]) -> MedialScene {
         touch: vec![0; list.len()],
         separation_angles: vec![1.0; list.len()],
     };
-    MedialScene::new(&balls, &SceneParams::default()).unwrap()
+    MedialScene::new(&balls, &BlockRule::default()).unwrap()
 }
 
 /// A wall of 10 m by 10 m in the plane y = 0 about the origin that faces south.

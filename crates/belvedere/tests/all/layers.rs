@@ -16,9 +16,10 @@ const CRATES: [(&str, &[&str]); 9] = [
 ];
 
 /// Level of each module of `belvedere-core`: a module imports from lower levels, or from its own folder.
-const LEVELS: [(&str, u8); 10] = [
+const LEVELS: [(&str, u8); 11] = [
     ("neighbors", 1),
     ("ray_index", 1),
+    ("blocking", 1),
     ("clean", 2),
     ("normals", 2),
     ("pulses", 2),

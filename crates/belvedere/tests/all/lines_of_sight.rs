@@ -3,7 +3,7 @@
 
 use belvedere::depth::Profile;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, Curvature, EarthParams, MedialScene, SceneParams, merged_crossings};
+use belvedere::query::{Answer, BlockRule, Curvature, EarthParams, MedialScene, merged_crossings};
 use belvedere::random::uniform;
 
 fn balls(list: &[([f32; 3], f32)]) -> MedialBalls {
@@ -54,7 +54,7 @@ fn brute_force(list: &[([f32; 3], f32)], observer: [f64; 3], target: [f64; 3]) -
 #[test]
 fn the_first_block_is_that_of_all_balls_tried_in_turn() {
     let list = random_balls(400, 40.0);
-    let scene = MedialScene::new(&balls(&list), &SceneParams::default()).unwrap();
+    let scene = MedialScene::new(&balls(&list), &BlockRule::default()).unwrap();
     let at = |i: u64| -> [f64; 3] { std::array::from_fn(|k| 40.0 * uniform(7, 3 * i + k as u64)) };
     let pairs: Vec<[[f64; 3]; 2]> = (0..3000).map(|i| [at(2 * i), at(2 * i + 1)]).collect();
     let found = scene.lines_of_sight(&pairs, &EarthParams::default());
@@ -81,11 +81,9 @@ fn the_first_block_is_that_of_all_balls_tried_in_turn() {
 fn chords_answer_as_the_whole_line_where_the_earth_is_nearly_plane() {
     // an earth so large that the line does not bend by a nanometre, cut into chords all the same
     let plane = EarthParams { curvature: Curvature::On, radius: 1e18, ..EarthParams::default() };
-    for params in [
-        SceneParams::default(),
-        SceneParams::carved(),
-        SceneParams { profile: Profile::PaperCone, ..SceneParams::default() },
-    ] {
+    for params in
+        [BlockRule::default(), BlockRule::carved(), BlockRule { profile: Profile::PaperCone, ..BlockRule::default() }]
+    {
         let list: Vec<([f32; 3], f32)> =
             random_balls(600, 1.0).iter().map(|&(c, r)| ([c[0] * 3000.0, c[1] * 30.0, c[2] * 30.0], r * 3.0)).collect();
         let scene = MedialScene::new(&balls(&list), &params).unwrap();
@@ -113,7 +111,7 @@ fn the_horizon_of_a_sphere_of_water_hides_a_hull_but_not_a_mast() {
     // 20 km of sea at height 0 as a row of large balls just below it; eyes and masts at 10 m see each other up to
     // 2·√(2·R·h/(1−k)) = 24.4 km, 5 m above the water up to 17.2 km
     let list: Vec<([f32; 3], f32)> = (0..400).map(|i| ([50.0 * i as f32, 0.0, -500.0], 500.0)).collect();
-    let scene = MedialScene::new(&balls(&list), &SceneParams::default()).unwrap();
+    let scene = MedialScene::new(&balls(&list), &BlockRule::default()).unwrap();
     let (from, to) = (|h| [0.0, 0.0, h], |h| [19_950.0, 0.0, h]);
     let curved = EarthParams::default();
     assert_eq!(scene.sight_answer(from(10.0), to(10.0), &curved), Answer::Visible);
@@ -131,7 +129,7 @@ fn the_horizon_of_a_sphere_of_water_hides_a_hull_but_not_a_mast() {
 #[test]
 fn crossings_cover_what_dense_samples_find_inside() {
     let list = random_balls(900, 30.0);
-    let scene = MedialScene::new(&balls(&list), &SceneParams::carved()).unwrap();
+    let scene = MedialScene::new(&balls(&list), &BlockRule::carved()).unwrap();
     let (observer, target) = ([0.0, 3.0, 12.0], [30.0, 25.0, 14.0]);
     let crossings = scene.crossings(observer, target, &EarthParams::flat());
     let merged = merged_crossings(&crossings);
@@ -154,7 +152,7 @@ fn crossings_cover_what_dense_samples_find_inside() {
 #[test]
 fn an_observer_in_a_ball_is_told_how_deep() {
     let list = [([0.0, 0.0, 0.0], 2.0), ([1.0, 0.0, 0.0], 1.5), ([9.0, 0.0, 0.0], 1.0)];
-    let scene = MedialScene::new(&balls(&list), &SceneParams::default()).unwrap();
+    let scene = MedialScene::new(&balls(&list), &BlockRule::default()).unwrap();
     let inside = scene.enclosure([0.5, 0.0, 0.0]);
     assert_eq!(inside.ball_count, 2);
     assert!((inside.depth - 1.5).abs() < 1e-12);
@@ -166,7 +164,7 @@ fn an_observer_in_a_ball_is_told_how_deep() {
 
 #[test]
 fn points_that_are_no_line_get_no_answer() {
-    let scene = MedialScene::new(&balls(&random_balls(5, 10.0)), &SceneParams::default()).unwrap();
+    let scene = MedialScene::new(&balls(&random_balls(5, 10.0)), &BlockRule::default()).unwrap();
     let earth = EarthParams::default();
     for (a, b) in [([1.0; 3], [1.0; 3]), ([f64::NAN; 3], [1.0; 3]), ([0.0; 3], [f64::INFINITY, 0.0, 0.0])] {
         assert_eq!(scene.line_of_sight(a, b, &earth), None);

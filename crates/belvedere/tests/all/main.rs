@@ -5,6 +5,7 @@
 mod animations;
 mod ball_files;
 mod beams;
+mod blocking;
 mod carving;
 mod certified;
 mod cleaning;

@@ -2,7 +2,7 @@
 
 use belvedere::depth::Profile;
 use belvedere::medial::{MedialBalls, NO_TOUCH};
-use belvedere::query::{Answer, MedialScene, SceneParams, Viewer, Visibility};
+use belvedere::query::{Answer, BlockRule, MedialScene, Viewer, Visibility};
 use belvedere::random::uniform;
 use belvedere::ray_index::{Ray, RayIndex};
 
@@ -11,8 +11,8 @@ fn balls(centers: Vec<[f32; 3]>, radii: Vec<f32>) -> MedialBalls {
     MedialBalls { centers, radii, source: vec![0; count], touch: vec![0; count], separation_angles: vec![1.0; count] }
 }
 
-fn params(profile: Profile, depth_bias: f64) -> SceneParams {
-    SceneParams { profile, depth_bias, shell: 0.0 }
+fn params(profile: Profile, depth_bias: f64) -> BlockRule {
+    BlockRule { profile, bias: depth_bias, shell: 0.0 }
 }
 
 /// A number in 0 to 1 that belongs to `index`.
@@ -67,7 +67,7 @@ fn answers_equal_those_of_every_ball_tried_in_turn() {
     }
 }
 
-/// The rule of the documentation for [`SceneParams::shell`], ball after ball: a ball whose whole extent the line leaves before
+/// The rule of the documentation for [`BlockRule::shell`], ball after ball: a ball whose whole extent the line leaves before
 /// the viewer counts with radius r − (shell − max(d − r, 0)) where the target at distance d from its centre lies less
 /// than the shell from its surface.
 fn brute_force_with_shell(balls: &MedialBalls, target: [f32; 3], eye: [f64; 3], bias: f64, shell: f64) -> bool {
@@ -104,8 +104,7 @@ fn balls_give_way_to_targets_near_their_surface_by_the_written_rule() {
     }
     let eyes = random_points(54, 1500, 100.0);
     for (bias, shell) in [(0.0, 0.2), (0.1, 0.25)] {
-        let scene =
-            MedialScene::new(&balls, &SceneParams { profile: Profile::Sphere, depth_bias: bias, shell }).unwrap();
+        let scene = MedialScene::new(&balls, &BlockRule { profile: Profile::Sphere, bias: bias, shell }).unwrap();
         let bare = MedialScene::new(&balls, &params(Profile::Sphere, bias)).unwrap();
         let found = scene.visible(Viewer::Each(&eyes), &targets).unwrap();
         let without = bare.visible(Viewer::Each(&eyes), &targets).unwrap();
@@ -127,7 +126,7 @@ fn balls_give_way_to_targets_near_their_surface_by_the_written_rule() {
 fn a_shell_in_numbers() {
     // a ball of radius 1 and a shell of 0.2; lines of sight run past it at a height, from 0.1 or 0.3 m off its surface
     let one = balls(vec![[0.0; 3]], vec![1.0]);
-    let scene = MedialScene::new(&one, &SceneParams { shell: 0.2, ..params(Profile::Sphere, 0.0) }).unwrap();
+    let scene = MedialScene::new(&one, &BlockRule { shell: 0.2, ..params(Profile::Sphere, 0.0) }).unwrap();
     let towards = |target: [f64; 3], height: f64| {
         let d = [-target[0], 0.0, height];
         let length = (d[0] * d[0] + height * height).sqrt();

@@ -2,7 +2,7 @@
 
 use belvedere::medial::MedialBalls;
 use belvedere::query::{
-    Answer, BackFaces, MedialScene, MeshTargetParams, SceneParams, SeenArea, Sides, SurfacePieces, Viewer, Visibility,
+    Answer, BackFaces, BlockRule, MedialScene, MeshTargetParams, SeenArea, Sides, SurfacePieces, Viewer, Visibility,
     seen_faces, seen_in_all, seen_objects,
 };
 use belvedere::{Error, Mesh};
@@ -16,7 +16,7 @@ fn scene(list: &[([f32; 3], f32)]) -> MedialScene {
         touch: vec![0; list.len()],
         separation_angles: vec![1.0; list.len()],
     };
-    MedialScene::new(&balls, &SceneParams::default()).unwrap()
+    MedialScene::new(&balls, &BlockRule::default()).unwrap()
 }
 
 /// A cube of 2 m about `middle`, two triangles to each side: east, west, north, south, up, down; each an object.

@@ -5,7 +5,7 @@ use belvedere::Error;
 use belvedere::medial::MedialBalls;
 use belvedere::pulses::{NeedleColumns, NeedleParams, Needles};
 use belvedere::query::{
-    Answer, AnswerCounts, Beside, MedialScene, Proof, ProofParams, SceneParams, UnprovenAs, Viewer, Visibility,
+    Answer, AnswerCounts, Beside, BlockRule, MedialScene, Proof, ProofParams, UnprovenAs, Viewer, Visibility,
 };
 use belvedere::random::uniform;
 use belvedere::view::View;
@@ -195,7 +195,7 @@ fn what_nothing_blocks_is_visible_where_pulses_passed_and_unproven_where_none_di
     };
     let scene = |tolerance: f64| {
         let params = ProofParams { tolerance, ..ProofParams::default() };
-        let balls = MedialScene::new(&ball, &SceneParams::default()).unwrap();
+        let balls = MedialScene::new(&ball, &BlockRule::default()).unwrap();
         balls.with_pulses(Proof::new(needles(&returns, &scanner), &params).unwrap())
     };
     let targets = [[10.0, 10.0, 1.0], [24.0, 10.0, 1.0], [10.0, 20.0, 0.5], [10.0, 10.0, 30.0], [10.0, 10.0, f32::NAN]];
@@ -232,7 +232,7 @@ fn answers_depend_on_neither_threads_nor_the_order_of_pulses() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let proof = Proof::new(needles(&returns, &scanner), &ProofParams::default()).unwrap();
-            let empty = MedialScene::new(&MedialBalls::default(), &SceneParams::default()).unwrap();
+            let empty = MedialScene::new(&MedialBalls::default(), &BlockRule::default()).unwrap();
             empty.with_pulses(proof).visible(Viewer::Direction([0.5, 0.3, 0.4]), &targets).unwrap()
         })
     };

@@ -7,7 +7,7 @@ use belvedere::medial::{CarvedBalls, CarvedInput, CarvedParams, ReliefParams, ca
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::OrientedCloud;
 use belvedere::pulses::{NeedleParams, Needles};
-use belvedere::query::{Answer, MedialScene, SceneParams};
+use belvedere::query::{Answer, BlockRule, MedialScene};
 use belvedere::random::uniform;
 
 /// Half the thickness and the height of the wall, metres; it runs north.
@@ -63,7 +63,7 @@ fn balls(survey: &Survey, relief: Option<ReliefParams>) -> CarvedBalls {
 /// Share of level lines of sight across the wall straight below points on its top, all of them blocked in truth, that the
 /// balls block. They run between 0.2 m above the roof and 0.2 m below the top.
 fn blocked_share(survey: &Survey, balls: &CarvedBalls) -> f64 {
-    let scene = MedialScene::new(&balls.balls, &SceneParams::default()).unwrap();
+    let scene = MedialScene::new(&balls.balls, &BlockRule::default()).unwrap();
     let top: Vec<f64> = survey.points.iter().filter(|p| f64::from(p[2]) > HEIGHT - 0.01).map(|p| p[1].into()).collect();
     let is_blocked = |&(i, &north): &(u64, &f64)| {
         let from = [-2.0, north, 0.2 + (HEIGHT - 0.4) * uniform(5, i)];

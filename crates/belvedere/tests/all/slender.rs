@@ -7,7 +7,7 @@ use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, orient};
 use belvedere::pulses::{NeedleParams, Needles};
-use belvedere::query::{MedialScene, SceneParams};
+use belvedere::query::{BlockRule, MedialScene};
 use belvedere::random::uniform;
 use belvedere::{Attributes, PointCloud};
 
@@ -54,7 +54,7 @@ fn carved(cloud: &PointCloud, scanner: &[[f32; 3]], slender: Option<SlenderParam
 
 /// Share of level lines of sight across the middle, at a height, that are blocked.
 fn blocked(found: &CarvedBalls, height: f64) -> f64 {
-    let scene = MedialScene::new(&found.balls, &SceneParams::default()).unwrap();
+    let scene = MedialScene::new(&found.balls, &BlockRule::default()).unwrap();
     let lines = 150;
     let blocked = (0..lines).filter(|i| {
         let x = 2.0 + f64::from(*i) * 0.1;

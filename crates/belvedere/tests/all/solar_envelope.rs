@@ -7,7 +7,7 @@ use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::medial::MedialBalls;
 use belvedere::mesh::Mesh;
-use belvedere::query::{MedialScene, SceneParams, SurfacePieces, visibility_matrix};
+use belvedere::query::{BlockRule, MedialScene, SurfacePieces, visibility_matrix};
 use belvedere::random::uniform;
 use belvedere::raster::Raster;
 use belvedere::view::to_sun;
@@ -282,7 +282,7 @@ fn where_something_else_shades_already_the_credit_lifts_the_bound() {
         touch: vec![0],
         separation_angles: vec![3.0],
     };
-    let scene = MedialScene::new(&balls, &SceneParams::carved()).unwrap();
+    let scene = MedialScene::new(&balls, &BlockRule::carved()).unwrap();
     let samples: Vec<[f32; 3]> = pieces.iter().map(|piece| piece.sample).collect();
     let free = visibility_matrix(&scene, &samples, &suns, &Control::none()).unwrap();
     let parcel = rectangle([-6.0, -8.0], [6.0, 0.0]);

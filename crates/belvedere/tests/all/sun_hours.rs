@@ -8,7 +8,7 @@ use belvedere::apps::tree_light::light_share;
 use belvedere::control::Control;
 use belvedere::io::{SavedMatrix, read_matrix, write_matrix};
 use belvedere::medial::MedialBalls;
-use belvedere::query::{MedialScene, SceneParams, VisibilityMatrix, visibility_matrix};
+use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix, visibility_matrix};
 use belvedere::random::uniform;
 
 fn scene(centers: &[[f32; 3]], radii: &[f32]) -> MedialScene {
@@ -20,7 +20,7 @@ fn scene(centers: &[[f32; 3]], radii: &[f32]) -> MedialScene {
         touch: vec![0; count],
         separation_angles: vec![1.0; count],
     };
-    MedialScene::new(&balls, &SceneParams { depth_bias: 0.0, shell: 0.0, ..SceneParams::uncarved() }).unwrap()
+    MedialScene::new(&balls, &BlockRule { bias: 0.0, shell: 0.0, ..BlockRule::uncarved() }).unwrap()
 }
 
 fn site(latitude_deg: f64) -> Site {

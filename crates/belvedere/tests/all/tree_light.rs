@@ -8,7 +8,7 @@ use belvedere::apps::tree_light::{
 };
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{MedialScene, SceneParams, VisibilityMatrix, visibility_matrix};
+use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix, visibility_matrix};
 use belvedere::view::to_sun;
 
 const LEAF: u8 = 5;
@@ -36,7 +36,7 @@ impl Balls {
     fn matrices(&self, directions: &[[f64; 3]]) -> [VisibilityMatrix; 2] {
         let opaque = without_vegetation(&self.balls, &vegetation_of_classes(&self.balls, &self.classes)).unwrap();
         [&self.balls, &opaque].map(|balls| {
-            let scene = MedialScene::new(balls, &SceneParams::default()).unwrap();
+            let scene = MedialScene::new(balls, &BlockRule::default()).unwrap();
             visibility_matrix(&scene, &[[0.0; 3]], directions, &Control::none()).unwrap()
         })
     }

@@ -7,10 +7,10 @@ use belvedere::apps::viewshed::{
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, Curvature, EarthParams, MedialScene, SceneParams};
+use belvedere::query::{Answer, BlockRule, Curvature, EarthParams, MedialScene};
 use belvedere::random::uniform;
 
-fn scene(list: &[([f32; 3], f32)], params: &SceneParams) -> MedialScene {
+fn scene(list: &[([f32; 3], f32)], params: &BlockRule) -> MedialScene {
     let balls = MedialBalls {
         centers: list.iter().map(|b| b.0).collect(),
         radii: list.iter().map(|b| b.1).collect(),
@@ -42,7 +42,7 @@ fn looking(eye: [f64; 3]) -> Observer {
 fn the_shadow_of_a_ball_on_a_plain_is_its_conic() {
     // a ball of 2 m at 5 m height, 10 m before an eye at 8 m: a cell is hidden where its line of sight comes within 2 m of the middle
     let (eye, center, radius) = ([5.0, 20.0, 8.0], [15.0, 20.0, 5.0], 2.0);
-    let scene = scene(&[(center.map(|v: f64| v as f32), radius as f32)], &SceneParams::default());
+    let scene = scene(&[(center.map(|v: f64| v as f32), radius as f32)], &BlockRule::default());
     let ground = plain(40.0, 0.25);
     let targets = cell_targets(&ground, 0.0);
     let result = viewshed(&scene, &[looking(eye)], &targets, &ViewshedParams::default(), &Control::none()).unwrap();
@@ -67,7 +67,7 @@ fn least_heights_are_where_answers_change() {
     let list = random_balls(120, 60.0);
     let ground = plain(60.0, 2.0);
     let (ceiling, flat) = (80.0, EarthParams::flat());
-    for params in [SceneParams::default(), SceneParams::carved(), SceneParams::uncarved()] {
+    for params in [BlockRule::default(), BlockRule::carved(), BlockRule::uncarved()] {
         let scene = scene(&list, &params);
         let observer = looking([31.0, 29.0, 1.7]);
         let heights = least_visible_heights(&scene, &[observer], &ground, ceiling, &flat, &Control::none()).unwrap();
@@ -101,7 +101,7 @@ fn beyond_the_horizon_a_thing_must_reach_the_closed_form() {
     // water as a row of large balls whose crests lie at height 0, an eye 10 m above it: a mast at S metres is seen from (S − d)²·q on,
     // where d = √(10/q) is the way to the horizon and q = (1 − k)/2R
     let list: Vec<([f32; 3], f32)> = (0..1500).map(|i| ([20.0 * i as f32, 0.0, -5000.0], 5000.0)).collect();
-    let scene = scene(&list, &SceneParams::default());
+    let scene = scene(&list, &BlockRule::default());
     let earth = EarthParams { curvature: Curvature::On, ..EarthParams::default() };
     let q = (1.0 - 1.0 / 7.0) / (2.0 * 6_371_008.8);
     for span in [20_000.0, 25_000.0] {
@@ -115,7 +115,7 @@ fn beyond_the_horizon_a_thing_must_reach_the_closed_form() {
 
 #[test]
 fn counts_and_masks_are_those_of_each_observer_alone() {
-    let scene = scene(&random_balls(150, 40.0), &SceneParams::carved());
+    let scene = scene(&random_balls(150, 40.0), &BlockRule::carved());
     let ground = plain(40.0, 1.0);
     let targets = cell_targets(&ground, 0.0);
     let observers: Vec<Observer> =
@@ -140,7 +140,7 @@ fn counts_and_masks_are_those_of_each_observer_alone() {
 
 #[test]
 fn what_lies_outside_the_limits_is_not_asked() {
-    let scene = scene(&random_balls(50, 40.0), &SceneParams::carved());
+    let scene = scene(&random_balls(50, 40.0), &BlockRule::carved());
     let targets = cell_targets(&plain(40.0, 1.0), 0.0);
     let all = looking([20.0, 20.0, 1.7]);
     let limits = SightLimits { azimuth: Some([0.0, 1.0]), distance: [5.0, 15.0], ..SightLimits::default() };
@@ -154,7 +154,7 @@ fn what_lies_outside_the_limits_is_not_asked() {
 
 #[test]
 fn eyes_and_parameters_that_are_no_numbers_are_refused() {
-    let scene = scene(&random_balls(5, 10.0), &SceneParams::default());
+    let scene = scene(&random_balls(5, 10.0), &BlockRule::default());
     let run = |observer, params| viewshed(&scene, &[observer], &[[1.0; 3]], &params, &Control::none());
     assert!(run(looking([f64::NAN; 3]), ViewshedParams::default()).is_err());
     let earth = EarthParams { refraction: 2.0, ..EarthParams::default() };

@@ -3,7 +3,7 @@
 use belvedere::apps::sky_view::SkyDirections;
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, MedialScene, SceneParams, VisibilityMatrix, visibility_matrix};
+use belvedere::query::{Answer, BlockRule, MedialScene, VisibilityMatrix, visibility_matrix};
 use belvedere::random::uniform;
 
 /// Blocks of balls on a bumpy ground, crowns of small ones between.
@@ -54,9 +54,7 @@ fn every_bit_is_the_answer_of_a_line_of_sight() {
     };
     let mut targets: Vec<[f32; 3]> = (0..1200).map(target).collect();
     targets.push([f32::NAN, 0.0, 0.0]);
-    for params in
-        [SceneParams::carved(), SceneParams::default(), SceneParams { depth_bias: 0.7, ..SceneParams::default() }]
-    {
+    for params in [BlockRule::carved(), BlockRule::default(), BlockRule { bias: 0.7, ..BlockRule::default() }] {
         let scene = MedialScene::new(&balls, &params).unwrap();
         // many enough to be swept, and too few
         let swept = visibility_matrix(&scene, &targets, &directions, &Control::none()).unwrap();
@@ -78,7 +76,7 @@ fn every_bit_is_the_answer_of_a_line_of_sight() {
 
 #[test]
 fn nothing_blocks_without_balls_and_bad_directions_are_refused() {
-    let scene = MedialScene::new(&MedialBalls::default(), &SceneParams::carved()).unwrap();
+    let scene = MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap();
     let sky = SkyDirections::even(20).unwrap();
     let matrix = visibility_matrix(&scene, &[[0.0; 3]], &sky.directions, &Control::none()).unwrap();
     assert!((0..20).all(|column| matrix.is_free(0, column)));

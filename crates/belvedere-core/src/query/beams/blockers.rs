@@ -1,5 +1,6 @@
 //! Balls and boxes of the index as beams take them: by column, so that several are tested at once.
 
+use crate::blocking::Ball;
 use crate::ray_index::{PARTS, Parts};
 use belvedere_data::vector::{cross, dot};
 
@@ -21,17 +22,9 @@ impl Node {
     }
 }
 
-/// A ball, local metres.
-#[derive(Clone, Copy)]
-pub(super) struct Ball {
-    pub(super) center: [f32; 3],
-    pub(super) radius: f32,
-    pub(super) row: u32,
-}
-
 /// Balls by column, so that several are tested at once; padded to whole lanes with balls that nothing meets.
 #[derive(Default)]
-pub(super) struct Balls {
+pub(super) struct BallColumns {
     x: Vec<f32>,
     y: Vec<f32>,
     z: Vec<f32>,
@@ -39,11 +32,11 @@ pub(super) struct Balls {
     pub(super) row: Vec<u32>,
 }
 
-impl Balls {
+impl BallColumns {
     /// Fills up the lanes.
     pub(super) fn pad(&mut self) {
         while !self.len().is_multiple_of(LANES) {
-            self.push(Ball { center: [0.0; 3], radius: f32::NEG_INFINITY, row: 0 });
+            self.push(Ball { center: [0.0; 3], radius: f32::NEG_INFINITY }, 0);
         }
     }
 
@@ -52,18 +45,18 @@ impl Balls {
     }
 
     #[inline]
-    pub(super) fn push(&mut self, ball: Ball) {
+    pub(super) fn push(&mut self, ball: Ball, row: u32) {
         self.x.push(ball.center[0]);
         self.y.push(ball.center[1]);
         self.z.push(ball.center[2]);
         self.radius.push(ball.radius);
-        self.row.push(ball.row);
+        self.row.push(row);
     }
 
     #[inline]
-    pub(super) fn get(&self, place: usize) -> Ball {
+    pub(super) fn get(&self, place: usize) -> (Ball, u32) {
         let center = [self.x[place], self.y[place], self.z[place]];
-        Ball { center, radius: self.radius[place], row: self.row[place] }
+        (Ball { center, radius: self.radius[place] }, self.row[place])
     }
 
     pub(super) fn truncate(&mut self, length: usize) {

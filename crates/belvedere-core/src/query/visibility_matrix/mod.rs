@@ -6,7 +6,7 @@ mod space_layers;
 mod sweep;
 
 use super::{MedialScene, TargetTree};
-use crate::depth::Profile;
+use crate::blocking::Profile;
 use belvedere_data::control::Control;
 use belvedere_data::vector::length;
 use belvedere_data::{Error, Result};
@@ -142,7 +142,7 @@ pub fn visibility_matrix(
         && directions.len() >= WORTH_GATHERING
         && lines > WORTH_SWEEPING * scene.ball_count() as f64;
     let space = is_swept.then(|| {
-        let space = SpaceLayers::new(scene.balls(), |radius| scene.params().shell_of(radius));
+        let space = SpaceLayers::new(scene.balls(), scene.params());
         let descending = Descending::new(&space, tree.positions());
         (space, descending)
     });
@@ -157,7 +157,7 @@ pub fn visibility_matrix(
             None => Vec::new(),
             Some((space, descending)) => batch
                 .par_iter()
-                .map(|heading| sweep(space, descending, heading.direction, heading.near.max(scene.params().depth_bias)))
+                .map(|heading| sweep(space, descending, heading.direction, heading.near.max(scene.params().bias)))
                 .collect(),
         };
         let sky = Sky::new(scene, batch, settled, directions.len());

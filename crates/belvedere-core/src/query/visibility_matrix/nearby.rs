@@ -1,5 +1,6 @@
 //! Balls around a target, as the parts of its sky that they cover.
 
+use crate::blocking::{Ball, Cover};
 use crate::query::MedialScene;
 use crate::ray_index::{PARTS, Part, Ray};
 
@@ -54,10 +55,7 @@ impl Nearby {
                     Part::Nothing => {}
                     Part::Node(node) => self.nodes.push(node),
                     Part::Rows { first, count } => {
-                        let meets = |row: &u32| {
-                            let (center, radius) = scene.ball(*row as usize);
-                            beside(center.map(f64::from), [low, high]) <= f64::from(radius) * f64::from(radius)
-                        };
+                        let meets = |row: &u32| reaches(scene.ball(*row as usize), [low, high]);
                         self.around.extend((first..first + count).filter(meets));
                     }
                 }
@@ -80,23 +78,11 @@ impl Nearby {
     }
 
     fn take(&mut self, scene: &MedialScene, target: [f64; 3], corners: [[f64; 3]; 2], row: u32) {
-        let (center, radius) = scene.ball(row as usize);
-        let (center, radius) = (center.map(f64::from), f64::from(radius));
-        if beside(center, corners) > radius * radius {
+        let ball = scene.ball(row as usize);
+        if !reaches(ball, corners) {
             return;
         }
-        let offset: [f64; 3] = std::array::from_fn(|i| center[i] - target[i]);
-        let distance = offset.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let radius = scene.radius_for(radius, distance);
-        let (cosine, towards, highest) = if distance <= radius {
-            (-2.0, [0.0, 0.0, 1.0], 1.0)
-        } else {
-            let (sine, up) = (radius / distance, offset[2] / distance);
-            let cosine = (1.0 - sine * sine).sqrt();
-            // the sine of the elevation of its highest part, unless it covers the zenith
-            let highest = if up >= cosine { 1.0 } else { up * cosine + (1.0 - up * up).max(0.0).sqrt() * sine };
-            (cosine, offset.map(|v| v / distance), highest)
-        };
+        let Cover { towards, cosine, highest } = scene.params().cover(ball, target);
         if highest > -f64::from(ROUNDING) {
             #[expect(clippy::cast_possible_truncation, reason = "tests allow for it")]
             let [x, y, z, cosine, highest] =
@@ -141,7 +127,9 @@ impl Nearby {
     }
 }
 
-/// Square of the distance of `place` to a box.
-fn beside(place: [f64; 3], [low, high]: [[f64; 3]; 2]) -> f64 {
-    (0..3).map(|i| (low[i] - place[i]).max(place[i] - high[i]).max(0.0).powi(2)).sum()
+/// Whether a ball reaches a box.
+fn reaches(ball: Ball, [low, high]: [[f64; 3]; 2]) -> bool {
+    let (center, radius) = (ball.center.map(f64::from), f64::from(ball.radius));
+    let square: f64 = (0..3).map(|i| (low[i] - center[i]).max(center[i] - high[i]).max(0.0).powi(2)).sum();
+    square <= radius * radius
 }

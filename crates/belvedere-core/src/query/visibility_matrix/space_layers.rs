@@ -1,5 +1,6 @@
 //! Space in layers of cells, a bit each: cells that some ball reaches, and cells that one ball fills.
 
+use crate::blocking::{Ball, BlockRule};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -33,12 +34,12 @@ pub(super) struct SpaceLayers {
 }
 
 impl SpaceLayers {
-    /// Layers over `balls`, centre and radius, each of which gives way by up to `shell(radius)`.
-    pub(super) fn new(balls: &[([f32; 3], f32)], shell: impl Fn(f64) -> f64 + Sync) -> Self {
+    /// Layers over `balls`, which give way as `rule` says.
+    pub(super) fn new(balls: &[Ball], rule: &BlockRule) -> Self {
         let (low, high) = balls
             .par_iter()
             .with_min_len(CHUNK)
-            .map(|&(center, radius)| {
+            .map(|&Ball { center, radius }| {
                 let reach = f64::from(radius) + MARGIN;
                 (center.map(|c| f64::from(c) - reach), center.map(|c| f64::from(c) + reach))
             })
@@ -61,9 +62,9 @@ impl SpaceLayers {
         let low = [low[0] - cell, low[1] - cell, low[2]];
         let mut layers = Self { low, cell, size, width, reached: Vec::new(), filled: Vec::new(), taken: Vec::new() };
         // bits are only ever set, so that their order does not matter
-        balls.par_iter().with_min_len(CHUNK).for_each(|&(center, radius)| {
+        balls.par_iter().with_min_len(CHUNK).for_each(|&Ball { center, radius }| {
             let radius = f64::from(radius);
-            let radii = [radius + MARGIN, radius - shell(radius) - MARGIN];
+            let radii = [radius + MARGIN, rule.least_radius(radius) - MARGIN];
             layers.mark([&reached, &filled], center.map(f64::from), radii);
         });
         let plain = |bits: Vec<AtomicU64>| -> Vec<u64> { bits.into_iter().map(AtomicU64::into_inner).collect() };

@@ -1,0 +1,56 @@
+//! Values that are made when they are first needed, by all threads at once.
+
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+/// A value that is made on first use.
+///
+/// Whoever asks first makes it, on threads of its own: the caller may itself be one of many threads at work, of which one that waits for
+/// shared threads could be handed work that needs this very value.
+#[derive(Default)]
+pub(super) struct Lazy<T> {
+    value: OnceLock<T>,
+    making: Mutex<()>,
+}
+
+impl<T: Send + Sync> Lazy<T> {
+    pub(super) fn new() -> Self {
+        Self { value: OnceLock::new(), making: Mutex::new(()) }
+    }
+
+    /// The value, made by `make` if it is not there yet. Nothing is kept of one that fails.
+    ///
+    /// # Errors
+    /// Those of `make`.
+    pub(super) fn get_or_make(&self, make: impl FnOnce() -> Result<T> + Send) -> Result<&T> {
+        if let Some(value) = self.value.get() {
+            return Ok(value);
+        }
+        let _making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(value) = self.value.get() {
+            return Ok(value);
+        }
+        let value = on_own_threads(make)?;
+        Ok(self.value.get_or_init(|| value))
+    }
+
+    /// The value, made by `make` if it is not there yet; for what cannot fail unless it is cancelled.
+    pub(super) fn get(&self, make: impl Fn(&Control<'_>) -> Result<T> + Send + Sync) -> Option<&T> {
+        self.get_or_make(|| make(&Control::none())).ok()
+    }
+}
+
+/// Runs `work` on as many new threads as the caller may use.
+fn on_own_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let threads = rayon::current_num_threads();
+    let run = || match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(work),
+        // without more threads those of everybody must do
+        Err(_) => work(),
+    };
+    std::thread::scope(|scope| match scope.spawn(run).join() {
+        Ok(value) => value,
+        Err(panic) => std::panic::resume_unwind(panic),
+    })
+}
