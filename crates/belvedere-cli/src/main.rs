@@ -2,32 +2,39 @@
 
 mod arguments;
 mod commands;
+mod help;
 mod pipeline;
 mod progress;
+mod scene_config;
 mod simulated;
 mod summary;
 
-use clap::{CommandFactory, FromArgMatches};
+use clap::FromArgMatches;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     keep_decoders_quiet();
-    let matches = arguments::Cli::command().get_matches();
+    let matches = match scene_config::matches(&help::command(), std::env::args_os().collect()) {
+        Ok(matches) => matches,
+        Err(error) => return failure(&error),
+    };
     let cli = match arguments::Cli::from_arg_matches(&matches) {
         Ok(cli) => cli,
         Err(error) => error.exit(),
     };
     match commands::run(&cli) {
         Ok(summary) => summary.print(&cli.global),
-        Err(error) => {
-            // a reader that stops listening, such as `head`, is not a failure of ours
-            if is_broken_pipe(&error) {
-                return ExitCode::SUCCESS;
-            }
-            summary::print_error(&error);
-            if error.downcast_ref::<arguments::Usage>().is_some() { ExitCode::from(2) } else { ExitCode::FAILURE }
-        }
+        Err(error) => failure(&error),
     }
+}
+
+fn failure(error: &anyhow::Error) -> ExitCode {
+    // a reader that closes its pipe, such as `head`, is not an error
+    if is_broken_pipe(error) {
+        return ExitCode::SUCCESS;
+    }
+    summary::print_error(error);
+    if error.downcast_ref::<arguments::Usage>().is_some() { ExitCode::from(2) } else { ExitCode::FAILURE }
 }
 
 /// Says nothing of panics in the decoders of damaged files: the readers catch them and name the file instead.

@@ -447,7 +447,7 @@ impl ViewChoice {
                 let eye = scene.local_from_file(eye.0);
                 flagged("--panorama, --size", View::panorama(eye, self.panorama_width()?))?.to_vec()
             }
-            None => vec![self.view(scene)?],
+            None => vec![self.view(scene, summary)?],
         };
         let mut section = Summary::default();
         if let [view] = &views[..] {
@@ -493,7 +493,7 @@ impl ViewChoice {
         flagged("--eye, --look-at, --fov, --size, --near, --far", View::perspective(eye, look_at, fov, size, near, far))
     }
 
-    fn view(&self, scene: &Scene) -> Result<View> {
+    fn view(&self, scene: &Scene, summary: &mut Summary) -> Result<View> {
         let (low, high) = scene.bounds.corners();
         let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));
         let view = if let Some(sun) = &self.kind.sun {
@@ -502,7 +502,10 @@ impl ViewChoice {
                 return Err(Usage(format!("--sun: the elevation is {elevation}, but must be 0 to 90 degrees")).into());
             }
             let [azimuth, elevation] = sun.0.map(f64::to_radians);
-            flagged("--sun, --pixel", View::parallel(to_sun(azimuth, elevation).map(|v| -v), low, high, pixel))?
+            let north = self.north.of_scene(scene);
+            north.report(summary);
+            let sun = to_sun(azimuth - north.of_grid, elevation);
+            flagged("--sun, --pixel", View::parallel(sun.map(|v| -v), low, high, pixel))?
         } else if let Some(direction) = &self.kind.direction {
             flagged("--direction, --pixel", View::parallel(direction.0, low, high, pixel))?
         } else if let Some(viewport) = &self.kind.viewport {

@@ -1,13 +1,15 @@
 //! A progress bar on a terminal, nothing in a pipe.
 
-use crate::arguments::Global;
+use crate::arguments::{Global, ProgressChoice};
 use belvedere::control::{Control, Watcher};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::json;
 use std::time::{Duration, Instant};
 
 /// The stages of a command, shown one after the other and timed.
 pub(crate) struct Stages {
     shown: bool,
+    json: bool,
     verbose: bool,
     seconds: Vec<(&'static str, f64)>,
 }
@@ -23,7 +25,9 @@ impl Watcher for Bar<'_> {
 
 impl Stages {
     pub(crate) fn new(global: &Global) -> Self {
-        Self { shown: !global.quiet, verbose: global.verbose, seconds: Vec::new() }
+        let json = global.progress == ProgressChoice::Json;
+        let shown = global.progress == ProgressChoice::Bar && !global.quiet;
+        Self { shown, json, verbose: global.verbose, seconds: Vec::new() }
     }
 
     /// Runs one stage over `count` items (0: unknown).
@@ -42,6 +46,13 @@ impl Stages {
         let result = work(&Control::new(&Bar(&bar)));
         bar.finish_and_clear();
         let seconds = start.elapsed().as_secs_f64();
+        if self.json {
+            let item_count = (count > 0).then_some(count);
+            crate::summary::note(
+                &json!({ "stage": name, "item_count": item_count, "seconds": (seconds * 1000.0).round() / 1000.0 })
+                    .to_string(),
+            );
+        }
         if self.verbose {
             crate::summary::note(&format!("{name}: {seconds:.3} s"));
         }

@@ -75,19 +75,19 @@ bits = numpy.load(masks)
 assert bits.shape == (1, *counts.shape) and (numpy.bitwise_count(bits[0]) == counts).all()
 # a landmark as a raster, and a horizon as a table of one elevation an azimuth, from north on
 share = folder / "share.tif"
-told = run("landmark", *scene, "--target", folder / "town.obj", "--max-distance", 60, "--cell", 10, "-o", share)
+told = run("landmark", *scene, "--targets", folder / "town.obj", "--max-distance", 60, "--cell", 10, "-o", share)
 with rasterio.open(share) as raster:
     values = raster.read(1, masked=True)
     assert raster.dtypes == ("float32",) and raster.crs.to_epsg() in (7415, 28992), (raster.dtypes, raster.crs)
     assert raster.res == (10, 10) and values.count() > 50 and 0 < values.max() <= 1 and values.min() >= 0, values
 horizon = folder / "horizon.csv"
-run("horizon", *scene, "--eye", f"{x},{y}", "--north", "true", "-o", horizon)
+run("horizon", *scene, "--observer", f"{x},{y}", "-o", horizon)
 table = numpy.genfromtxt(horizon, delimiter=",", names=True)
 assert len(table) == 360 and (table[table.dtype.names[0]] == numpy.arange(360)).all(), table.dtype.names
 assert 0 <= table[table.dtype.names[1]].min() and 10 < table[table.dtype.names[1]].max() < 90
 
 # shadow at three hours of a morning: as rasters, a raster of one sun, and a film
-day = ["--from", "2026-06-21T08:00+02:00", "--to", "2026-06-21T11:00+02:00", "--step", 60, "--cell", 2]
+day = ["--from", "2026-06-21T08:00+02:00", "--to", "2026-06-21T11:00+02:00", "--time-step-min", 60, "--cell", 2]
 lit, film, rasters = folder / "lit.tif", folder / "film.png", folder / "lit"
 told = run("shadow", *scene, *day, "-o", lit, "--film", film, "--measures", rasters)
 suns = told["sun"]["suns"]
@@ -109,7 +109,7 @@ with Image.open(film) as frames:
 
 hours = folder / "hours.tif"
 measures = folder / "sun"
-told = run("sun-hours", *scene, "--date", "2026-06-21", "--step", 60, "--cell", 2, "-o", hours, "--measures", measures)
+told = run("sun-hours", *scene, "--date", "2026-06-21", "--time-step-min", 60, "--cell", 2, "-o", hours, "--measures", measures)
 with rasterio.open(hours) as raster, rasterio.open(measures / "sun_share.tif") as shares:
     values, share = raster.read(1, masked=True), shares.read(1, masked=True)
     assert raster.transform == shares.transform and raster.nodata == -9999

@@ -1,7 +1,8 @@
 //! Flags of solar envelopes, routes and windows.
 
 use super::{
-    GroundChoice, Numbers, PatchesChoice, SceneInput, Shell, SunPeriod, SunPlace, above_zero, at_least_one, finite,
+    GroundChoice, North, Numbers, PatchesChoice, SceneInput, Shell, SunPeriod, SunPlace, above_zero, at_least_one,
+    finite,
 };
 use clap::Args;
 use std::path::PathBuf;
@@ -64,37 +65,47 @@ impl FromStr for Hours {
 pub(crate) struct Envelope {
     #[command(flatten)]
     pub(crate) scene: SceneInput,
-    /// The parcel: polygons from GeoJSON, a ring from a table with columns x and y (.csv), or its corners as "X,Y X,Y X,Y …"
+    /// Parcel: polygons (GeoJSON), a table of corners with columns x and y (.csv), or "X,Y X,Y X,Y ..."
     #[arg(long, value_name = "FILE|CORNERS", required = true, allow_hyphen_values = true, help_heading = "Land")]
     pub(crate) parcel: Corners,
-    /// What shadows must stay off: lines, rims of polygons and points from GeoJSON, one line from a table with columns x, y and perhaps z
-    /// (.csv) or its corners as "X,Y X,Y …", or facades as a mesh (.obj .json .ply with faces). May be given several times
+    /// Lines, polygon outlines, points or facades that stay free of new shadows; repeatable
+    ///
+    /// GeoJSON; a line from a table with columns x, y and optionally z (.csv) or as "X,Y X,Y ..."; or facades as a mesh (.obj .json .ply
+    /// with faces).
     #[arg(long, value_name = "FILE|CORNERS", required = true, allow_hyphen_values = true, help_heading = "Land")]
     pub(crate) protect: Vec<Corners>,
-    /// Height of a fence on protected lines and points, up to which shadows may reach, in metres [default: 0]
-    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite, help_heading = "Land")]
+    /// Height of a fence on protected lines and points, in metres; shadows may reach its top [default: 0]
+    #[arg(long = "fence-height", value_name = "M", allow_negative_numbers = true, value_parser = finite, help_heading = "Land")]
     pub(crate) fence: Option<f32>,
-    /// Greatest height above the ground, in metres [default: none]
-    #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Land")]
+    /// Maximum height above the ground, in metres [default: no limit]
+    #[arg(long = "max-height", value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Land")]
     pub(crate) ceiling: Option<f64>,
-    /// Side of a column, in metres [default: 0.5]
+    /// Side of a column in metres [default: 0.5]
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Land")]
     pub(crate) cell: Option<f64>,
-    /// Longest piece of lines and of faces: lines follow the ground by pieces, and shade is credited by pieces [default: 0.5]
+    /// Maximum length of the parts that protected lines and facades are cut into, in metres [default: 0.5]
+    ///
+    /// Lines follow the ground from part to part. --credit-shade works for each part.
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Land")]
     pub(crate) spacing: Option<f64>,
-    /// Where the ground comes from: auto (class 2 where there is one, else found), classed, found, or cloud=FILE, which a ball file
-    /// needs
+    /// Source of the ground heights: auto, classed, found or cloud=FILE
+    ///
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
+    /// cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Land")]
     pub(crate) ground: GroundChoice,
-    /// What is in shade already bounds nothing: asks the balls of the scene, the parcel's own buildings and trees among them
+    /// Ignore parts that are already in shadow of the scene, including buildings and trees on the parcel
     #[arg(long, help_heading = "Land")]
     pub(crate) credit_shade: bool,
-    /// Suns as azimuth from grid north and elevation in degrees, in place of days. May be given several times
-    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, conflicts_with_all = ["date", "between"], help_heading = "When")]
+    /// A sun direction: azimuth clockwise from true north and elevation, in degrees; repeatable
+    ///
+    /// See --grid-north.
+    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, conflicts_with_all = ["date", "between"], help_heading = "Period")]
     pub(crate) sun: Vec<Numbers<2>>,
-    /// Hours of each day on the clocks of --zone between which the sun is kept, both included [default: from sunrise to sunset]
-    #[arg(long, value_name = "HH:MM,HH:MM", help_heading = "When")]
+    #[command(flatten)]
+    pub(crate) north: North,
+    /// Hours of each day in which sun is protected, on the clocks of --zone, both included [default: sunrise to sunset]
+    #[arg(long, value_name = "HH:MM,HH:MM", help_heading = "Period")]
     pub(crate) between: Option<Hours>,
     #[command(flatten)]
     pub(crate) when: SunPeriod,
@@ -102,11 +113,12 @@ pub(crate) struct Envelope {
     pub(crate) place: SunPlace,
     #[command(flatten)]
     pub(crate) shell: Shell,
-    /// Heights above the ground (.tif, nodata -9999 beside the parcel and where nothing bounds; .npy, NaN and infinity), a map of them
-    /// (.png), or the envelope as closed solids (.ply .obj). May be given several times
+    /// Heights above ground (.tif .npy), a map (.png), or closed solids (.ply .obj); repeatable
+    ///
+    /// .tif: nodata -9999 outside the parcel and where no sun limits the height. .npy: NaN outside, infinity where nothing limits.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
-    /// Also write heights of the envelope in the heights of the cloud (.tif .npy)
+    /// Also write the top of the envelope in the vertical system of the cloud (.tif .npy)
     #[arg(long, value_name = "OUT", help_heading = "Result")]
     pub(crate) tops: Option<PathBuf>,
 }
@@ -117,20 +129,24 @@ pub(crate) struct Comfort {
     pub(crate) scene: SceneInput,
     #[command(flatten)]
     pub(crate) places: ComfortPlaces,
-    /// Metres between places along a route [default: 2]
-    #[arg(long, value_name = "M", requires = "route", value_parser = above_zero::<f64>, allow_negative_numbers = true,
-        help_heading = "Places")]
+    #[command(flatten)]
+    pub(crate) north: North,
+    /// Distance between targets along a route, in metres [default: 2]
+    #[arg(long = "distance-step-m", value_name = "M", requires = "route", value_parser = above_zero::<f64>, allow_negative_numbers = true,
+        help_heading = "Targets")]
     pub(crate) route_step: Option<f64>,
-    /// Height of places on a route above the ground, in metres [default: 1.1, for which PET and UTCI are defined]
-    #[arg(long, value_name = "M", requires = "route", allow_negative_numbers = true, value_parser = finite, help_heading = "Places")]
+    /// Height of targets on a route above the ground, in metres [default: 1.1, as defined for PET and UTCI]
+    #[arg(long = "target-height", value_name = "M", requires = "route", allow_negative_numbers = true, value_parser = finite, help_heading = "Targets")]
     pub(crate) height: Option<f32>,
-    /// Longest side of the pieces that windows of a mesh are cut into, in metres [default: 0.5]
+    /// Maximum side of the triangles that windows of a mesh are cut into, in metres [default: 0.5]
     #[arg(long, value_name = "M", requires = "windows", value_parser = above_zero::<f64>, allow_negative_numbers = true,
-        help_heading = "Places")]
+        help_heading = "Targets")]
     pub(crate) spacing: Option<f64>,
-    /// Where the ground comes from: auto (class 2 where there is one, else found), classed, found, or cloud=FILE, which a ball file
-    /// needs
-    #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Places")]
+    /// Source of the ground heights: auto, classed, found or cloud=FILE
+    ///
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
+    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Targets")]
     pub(crate) ground: GroundChoice,
     #[command(flatten)]
     pub(crate) when: SunPeriod,
@@ -138,33 +154,36 @@ pub(crate) struct Comfort {
     pub(crate) place: SunPlace,
     #[command(flatten)]
     pub(crate) shell: Shell,
-    /// Directions spread evenly over the sky, 1 to 100000 [default: 577]
+    /// Number of directions, evenly spread over the sky, 1 to 100000 [default: 577]
     #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with = "patches", help_heading = "Sky")]
     pub(crate) directions: Option<usize>,
-    /// The middles of sky patches instead: tregenza (145) or reinhart (577)
+    /// Use the centres of standard sky patches instead: tregenza (145) or reinhart (577)
     #[arg(long, value_enum, value_name = "NAME", help_heading = "Sky")]
     pub(crate) patches: Option<PatchesChoice>,
-    /// Table with a row for each place of the routes, or for each window (.csv)
+    /// Table with a row for each target of the routes, or for each window (.csv)
     #[arg(short, long, value_name = "CSV", help_heading = "Result")]
     pub(crate) output: PathBuf,
-    /// Also write a row for each route as a whole (.csv)
+    /// Also write a table with a row for each whole route (.csv)
     #[arg(long, value_name = "CSV", requires = "route", help_heading = "Result")]
     pub(crate) routes: Option<PathBuf>,
-    /// Also write a row for each route and sun: time, direction of the sun, share of the route in shade (.csv)
+    /// Also write a table with a row for each route and sun: time, sun direction, shaded share of the route (.csv)
     #[arg(long, value_name = "CSV", requires = "route", help_heading = "Result")]
     pub(crate) times: Option<PathBuf>,
 }
 
 #[derive(Args)]
-#[command(next_help_heading = "Places (one of)")]
+#[command(next_help_heading = "Targets (one of)")]
 #[group(required = true, multiple = false)]
 pub(crate) struct ComfortPlaces {
-    /// Walking routes: lines from GeoJSON, one from a table with columns x, y and perhaps z, the height of the eye (.csv), or its corners
-    /// as "X,Y X,Y …"
+    /// Walking routes: lines (GeoJSON), a table with columns x, y and optionally z (.csv), or "X,Y X,Y ..."
+    ///
+    /// z is the height of the eye.
     #[arg(long, value_name = "FILE|CORNERS", allow_hyphen_values = true)]
     pub(crate) route: Option<Corners>,
-    /// Windows: a table with columns x, y, z of the middle and azimuth in degrees from grid north, which may have tilt (90: upright), width
-    /// and height in metres (.csv), or the faces of a mesh (.obj .json .ply)
+    /// Windows: a table (.csv), or the faces of a mesh (.obj .json .ply)
+    ///
+    /// The table has the columns x, y, z of the middle and azimuth in degrees from true north (see --grid-north). It may have tilt (90: vertical),
+    /// width and height in metres.
     #[arg(long, value_name = "FILE")]
     pub(crate) windows: Option<PathBuf>,
 }

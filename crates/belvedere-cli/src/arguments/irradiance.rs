@@ -11,33 +11,32 @@ pub(crate) struct Irradiance {
     pub(crate) scene: SceneInput,
     #[command(flatten)]
     pub(crate) radiation: RadiationChoice,
-    /// Linke turbidity of a clear sky by ineichen, 1 to 20: 2 clean, 3 usual, 5 hazy [default: 3]
+    /// Linke turbidity of a clear sky by ineichen, 1 to 20: 2 clean, 3 normal, 5 hazy [default: 3]
     #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Radiation")]
     pub(crate) linke: Option<f64>,
-    /// Year of a clear sky [default: 2026]
+    /// Year of the clear sky [default: 2026]
     #[arg(long, value_name = "YEAR", requires = "clear_sky", help_heading = "Radiation")]
     pub(crate) year: Option<i16>,
-    /// Latitude and longitude in degrees, north and east positive [default: those of the cloud's reference system, else those of the weather
-    /// file]
+    /// Latitude and longitude in degrees, north and east positive [default: from the reference system, else the weather file]
     #[arg(long, value_name = "LAT,LON", allow_hyphen_values = true, help_heading = "Radiation")]
     pub(crate) location: Option<Numbers<2>>,
-    /// Parts of a row of weather, each with a sun of its own; 1 is what pvlib does [default: 4]
-    #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with = "clear_sky", help_heading = "Radiation")]
+    /// Number of sun positions for each row of weather; pvlib uses 1 [default: 4]
+    #[arg(long = "parts-per-row", value_name = "N", value_parser = at_least_one, conflicts_with = "clear_sky", help_heading = "Radiation")]
     pub(crate) parts: Option<usize>,
     /// Model of the diffuse sky [default: patches]
-    #[arg(long, value_enum, value_name = "MODEL", help_heading = "Radiation")]
+    #[arg(long = "sky-model", value_enum, value_name = "MODEL", help_heading = "Radiation")]
     pub(crate) sky: Option<SkyModelChoice>,
-    /// Division of the sky into patches: 145 for 1, 577 for 2, 2305 for 4 [default: 2]
+    /// Number of sky patches: 1 for 145, 2 for 577, 4 for 2305 [default: 2]
     #[arg(long, value_name = "N", value_parser = at_least_one, help_heading = "Radiation")]
     pub(crate) patch_division: Option<usize>,
-    /// Share of global radiation that the ground reflects, 0 to 1 [default: 0.2]
+    /// Albedo of the ground, 0 to 1 [default: 0.2]
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true, help_heading = "Radiation")]
     pub(crate) albedo: Option<f64>,
-    /// What obstacles send in place of the sky that they hide [default: dark]
+    /// Radiation from obstacles, instead of the sky that they hide [default: dark]
     #[arg(long, value_enum, value_name = "HOW", help_heading = "Radiation")]
     pub(crate) surroundings: Option<SurroundingsChoice>,
-    /// Side in degrees of the cells in which directions of the sun count as one, 0.5 to 36 [default: 1]
-    #[arg(long, value_name = "DEG", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Radiation")]
+    /// Side of the cells that group the sun directions, in degrees, 0.5 to 36 [default: 1]
+    #[arg(long = "sun-cell-deg", value_name = "DEG", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Radiation")]
     pub(crate) sun_cell: Option<f64>,
     #[command(flatten)]
     pub(crate) places: SkyPlaces,
@@ -45,22 +44,30 @@ pub(crate) struct Irradiance {
     pub(crate) shell: Shell,
     #[command(flatten)]
     pub(crate) trees: ThroughTrees,
-    /// Planes of roofs: a table (.csv) or their outlines (.geojson), with tilt, azimuth from true north, area, energy, and the least and most
-    /// that a plant there loses by shading. May be given several times
+    /// Also write the roof planes, as a table (.csv) or outlines (.geojson); repeatable
+    ///
+    /// Columns: tilt, azimuth from true north, area, energy, and the minimum and maximum shading loss of a photovoltaic plant there.
     #[arg(long, value_name = "OUT", help_heading = "Roofs")]
     pub(crate) planes: Vec<PathBuf>,
-    /// Least area of a plane in m² [default: 4]
-    #[arg(long, value_name = "M2", requires = "planes", allow_negative_numbers = true, help_heading = "Roofs")]
+    /// Minimum area of a roof plane in square metres [default: 4]
+    #[arg(
+        long = "min-area",
+        value_name = "M2",
+        requires = "planes",
+        allow_negative_numbers = true,
+        help_heading = "Roofs"
+    )]
     pub(crate) least_area: Option<f64>,
-    /// Side of the cells that a plane is cut into, whose rows are strings of panels, in metres [default: 1]
+    /// Side of the panels that a roof plane is divided into, in metres; a row of panels is a string [default: 1]
     #[arg(long, value_name = "M", requires = "planes", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Roofs")]
     pub(crate) panel: Option<f64>,
-    /// Also write the horizon around the middle of each plane into this folder, made if it is not there, as PVGIS takes it: a height in
-    /// degrees for each of 48 azimuths, clockwise from true north
+    /// Also write the horizon of each roof plane into this folder, in the format of PVGIS; created if it does not exist
+    ///
+    /// One elevation in degrees for each of 48 azimuths, clockwise from true north, from the middle of the plane.
     #[arg(long, value_name = "DIR", requires = "planes", help_heading = "Roofs")]
     pub(crate) horizons: Option<PathBuf>,
-    /// Also tell the energy of each month
+    /// Also report the energy of each month
     #[arg(long, help_heading = "Result")]
     pub(crate) months: bool,
     #[command(flatten)]
@@ -71,10 +78,10 @@ pub(crate) struct Irradiance {
 #[command(next_help_heading = "Radiation")]
 #[group(required = true, multiple = false)]
 pub(crate) struct RadiationChoice {
-    /// Weather: EPW, CSV of PVGIS (typical year, or series on a level plane), TMY3, CSV of NSRDB
+    /// Weather file: EPW, TMY3, CSV of PVGIS (typical year, or series on a horizontal plane), or CSV of NSRDB
     #[arg(long, value_name = "FILE")]
     pub(crate) weather: Option<PathBuf>,
-    /// A year without clouds
+    /// Model of a year without clouds
     #[arg(long, value_enum, value_name = "MODEL", id = "clear_sky")]
     pub(crate) clear_sky: Option<ClearSkyChoice>,
 }
@@ -82,12 +89,13 @@ pub(crate) struct RadiationChoice {
 /// As [`SkyOutputs`], but needed only where there are no planes.
 #[derive(Args)]
 pub(crate) struct IrradianceOutputs {
-    /// Results on a grid as raster of the total (.tif, nodata -9999), or a map with a legend (.png); on cells and points all measures as
-    /// columns (.laz .las .ply .csv); on a mesh a table with a row for each object and face (.csv), or the mesh coloured by the total (.ply).
-    /// May be given several times
+    /// Raster (.tif), map (.png), points (.laz .las .ply .csv) or mesh table (.csv .ply); repeatable
+    ///
+    /// On a grid: .tif is the raster of the total with nodata -9999, and .png a map with a legend. Cells and points: all measures as columns. A
+    /// mesh: a table with a row for each object and each face (.csv), or the mesh coloured by the total (.ply).
     #[arg(short, long, value_name = "OUT", required_unless_present = "planes", help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
-    /// Also write a raster for each measure of a grid into this folder, made if it is not there
+    /// Also write a raster of each measure of a grid into this folder; created if it does not exist
     #[arg(long, value_name = "DIR", help_heading = "Result")]
     pub(crate) measures: Option<PathBuf>,
 }
@@ -101,23 +109,23 @@ impl IrradianceOutputs {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ClearSkyChoice {
-    /// Ineichen & Perez 2002, by height and turbidity
+    /// Ineichen & Perez 2002, from height and turbidity
     Ineichen,
-    /// Haurwitz 1945, by the sun's height alone
+    /// Haurwitz 1945, from the elevation of the sun only
     Haurwitz,
-    /// Bird & Hulstrom 1981, of a standard atmosphere
+    /// Bird & Hulstrom 1981, with a standard atmosphere
     Bird,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum SkyModelChoice {
-    /// The same from everywhere
+    /// The same radiance from all directions
     Isotropic,
-    /// Hay & Davies 1980: a part from the sun
+    /// Hay & Davies 1980: isotropic and circumsolar
     HayDavies,
-    /// Perez et al. 1990: parts from the sun and the horizon
+    /// Perez et al. 1990: isotropic, circumsolar and horizon
     Perez,
-    /// Perez et al. 1993: a radiance for each patch of the sky
+    /// Perez et al. 1993: a radiance for each sky patch
     Patches,
 }
 
@@ -134,9 +142,9 @@ impl From<SkyModelChoice> for SkyModel {
 
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum SurroundingsChoice {
-    /// Nothing: a lower bound
+    /// None: a lower bound
     Dark,
-    /// As much as the ground: an upper bound
+    /// As much as the ground reflects: an upper bound
     LikeGround,
 }
 

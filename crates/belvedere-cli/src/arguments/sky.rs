@@ -1,64 +1,75 @@
-//! Flags of what is asked about the sun and the sky.
+//! Flags of the targets of sun and sky commands, and of the sky view.
 
 use super::{GroundChoice, SceneInput, Shell, ThroughTrees, above_zero, at_least_one, finite};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// Where the sun and the sky are asked about, and what results are written to.
+/// The targets of sun and sky commands.
 #[derive(Args)]
 pub(crate) struct SkyPlaces {
     #[command(flatten)]
     pub(crate) places: SkyPlacesChoice,
     /// Side of a cell in metres [default: 0.5, doubled until there are at most 4 million cells]
-    #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Places")]
+    #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Targets")]
     pub(crate) cell: Option<f64>,
-    /// Height of cells above the ground, or above --surface, in metres [default: 0.1; a person's head is 1.5 up]
-    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite, help_heading = "Places")]
+    /// Height of cells above the ground or above --surface, in metres [default: 0.1]
+    ///
+    /// Use 1.5 for the head of a person.
+    #[arg(long = "target-height", value_name = "M", allow_negative_numbers = true, value_parser = finite, help_heading = "Targets")]
     pub(crate) height: Option<f32>,
-    /// Where the ground comes from: auto (class 2 where there is one, else found), classed, found, or cloud=FILE, which a ball file
-    /// needs
-    #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Places")]
+    /// Source of the ground heights: auto, classed, found or cloud=FILE
+    ///
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
+    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Targets")]
     pub(crate) ground: GroundChoice,
-    /// Longest side of the pieces that faces of a mesh are cut into, each asked at a place drawn on it, in metres [default: 0.5]
-    #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Places")]
+    /// Maximum side of the triangles that a mesh is cut into, in metres [default: 0.5]
+    ///
+    /// Each triangle has one sample point.
+    #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Targets")]
     pub(crate) spacing: Option<f64>,
-    /// What surfaces are turned to: level, or their normals; grids are level [default: normals for a mesh, level otherwise]
-    #[arg(long, value_enum, value_name = "HOW", help_heading = "Places")]
+    /// Orientation of surfaces: level, or their normals [default: normals for a mesh, else level]
+    ///
+    /// Cells of a grid are always level.
+    #[arg(long, value_enum, value_name = "HOW", help_heading = "Targets")]
     pub(crate) facing: Option<FacingChoice>,
 }
 
 #[derive(Args)]
-#[command(next_help_heading = "Places (one of) [default: cells on the ground]")]
+#[command(next_help_heading = "Targets (one of) [default: cells on the ground]")]
 #[group(multiple = false)]
 pub(crate) struct SkyPlacesChoice {
-    /// Cells on top of what stands on the ground: roofs and the ground between at the middle of each cell, crowns at their highest point. Without it cells are on the ground, but for those
-    /// that nothing was measured on within a metre and that something of more than 2 m stands on: not under buildings
+    /// Query cells on the top surface: roofs, the ground between them, and tree crowns
+    ///
+    /// Roofs and ground use the height in the middle of each cell; crowns use their highest point. Without this flag the cells lie on the ground.
+    /// Cells below buildings are then left out: those without a measured point within 1 m below an object higher than 2 m.
     #[arg(long)]
     pub(crate) surface: bool,
-    /// The points of the cloud themselves, all of them and in their order
+    /// Query all points of the cloud, in their order
     #[arg(long = "self")]
     pub(crate) own: bool,
-    /// Points from a file of any cloud format, or a mesh (.obj .json .ply with faces), in the coordinates of the scene's file
+    /// Query points of a file, or a mesh (.obj .json .ply with faces), in the coordinates of the scene
     #[arg(long, value_name = "FILE")]
     pub(crate) targets: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum FacingChoice {
-    /// To the zenith
+    /// Horizontal, facing the zenith
     Level,
-    /// Square to the surface
+    /// Perpendicular to their normals
     Normals,
 }
 
 #[derive(Args)]
 pub(crate) struct SkyOutputs {
-    /// Results on a grid as raster of the first measure (.tif, nodata -9999), or a map with a legend (.png); on cells and points all
-    /// measures as columns (.laz .las .ply .csv); on a mesh a table with a row for each object and face (.csv), or the mesh coloured by
-    /// the first measure (.ply). May be given several times
+    /// Raster (.tif), map (.png), points (.laz .las .ply .csv) or mesh table (.csv .ply); repeatable
+    ///
+    /// On a grid: .tif is the raster of the first measure with nodata -9999, and .png a map with a legend. Cells and points: all measures as
+    /// columns. A mesh: a table with a row for each object and each face (.csv), or the mesh coloured by the first measure (.ply).
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
-    /// Also write a raster for each measure of a grid into this folder, made if it is not there
+    /// Also write a raster of each measure of a grid into this folder; created if it does not exist
     #[arg(long, value_name = "DIR", help_heading = "Result")]
     pub(crate) measures: Option<PathBuf>,
 }
@@ -71,12 +82,13 @@ pub(crate) struct SkyView {
     pub(crate) places: SkyPlaces,
     #[command(flatten)]
     pub(crate) shell: Shell,
-    /// Directions spread evenly over the sky, 1 to 100000. Root mean square error of either measure in street canyons: 0.012 with
-    /// 145, 0.004 with 577, 0.0015 with 2305 [default: 577]
+    /// Number of directions, evenly spread over the sky, 1 to 100000 [default: 577]
+    ///
+    /// Root mean square error of either measure in street canyons: 0.012 with 145 directions, 0.004 with 577, 0.0015 with 2305.
     #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with = "patches", help_heading = "Sky",
         allow_negative_numbers = true)]
     pub(crate) directions: Option<usize>,
-    /// The middles of sky patches instead: tregenza (145) or reinhart (577)
+    /// Use the centres of standard sky patches instead: tregenza (145) or reinhart (577)
     #[arg(long, value_enum, value_name = "NAME", help_heading = "Sky")]
     pub(crate) patches: Option<PatchesChoice>,
     #[command(flatten)]

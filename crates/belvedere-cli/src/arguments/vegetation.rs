@@ -1,19 +1,21 @@
-//! Flags of what gets through trees.
+//! Flags of light through trees.
 
 use clap::{Args, ValueEnum};
 use std::str::FromStr;
 
-/// What share of the light gets through trees.
+/// The share of light that passes through trees.
 #[derive(Args)]
 #[command(next_help_heading = "Trees")]
 pub(crate) struct ThroughTrees {
-    /// Share of the light that gets through crowns: none, seasons (0.03 in leaf and 0.5 bare, after Konarska et al. 2014), pulses (what
-    /// share of the laser's pulses got through, which is rather more), or a number from 0 to 1. Crowns that --trees leaves gaps in let
-    /// light through these besides; --trees opaque closes them
+    /// Share of light that passes through tree crowns: none, seasons, pulses, or a number from 0 to 1
+    ///
+    /// seasons: 0.03 in leaf and 0.5 without leaves (Konarska et al. 2014). pulses: the share of laser pulses that passed, which is higher than
+    /// that of light. Gaps that --trees leaves in crowns let light through in addition; --trees opaque closes them.
     #[arg(long, value_name = "SHARE", default_value = "none", allow_negative_numbers = true)]
     pub(crate) through_trees: ThroughTreesChoice,
-    /// Whether trees carry leaves, with --through-trees seasons: on, off, or auto: from 7 April to 27 October, half a year later in the
-    /// south, always in the tropics [default: auto where there is a date, otherwise on]
+    /// Whether trees have leaves, with --through-trees seasons [default: auto with a date, else on]
+    ///
+    /// auto: from 7 April to 27 October in the north, half a year later in the south, always in the tropics.
     #[arg(long, value_enum, value_name = "LEAVES")]
     pub(crate) leaves: Option<LeavesChoice>,
 }
@@ -48,6 +50,6 @@ pub(crate) enum LeavesChoice {
     Auto,
     /// In leaf
     On,
-    /// Bare
+    /// Without leaves
     Off,
 }

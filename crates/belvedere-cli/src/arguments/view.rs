@@ -1,4 +1,4 @@
-//! From where one looks, as typed.
+//! Flags of views: the sun, directions, cameras and panoramas.
 
 use super::{Numbers, above_zero, at_least_one, length};
 use clap::Args;
@@ -8,48 +8,67 @@ use std::str::FromStr;
 #[command(next_help_heading = "View (one of)")]
 #[group(required = true, multiple = false, id = "view")]
 pub(crate) struct ViewKind {
-    /// The paper's p0, v_x, v_y and s in one quoted text: upper left corner, vector along the rows, vector down the columns,
-    /// all in file coordinates, and pixels per unit. The lengths of the vectors are the size of the picture; one looks along
-    /// v_x x v_y, and what lies behind the corner's plane is not seen
+    /// The viewport of the paper: "p0 v_x v_y s", corner, row vector, column vector, pixels per unit
+    ///
+    /// p0 is the upper left corner; v_x runs along the rows and v_y down the columns; all in file coordinates. The lengths of the vectors are
+    /// the size of the picture. The view direction is v_x x v_y. Points behind the plane of the picture are outside the view.
     #[arg(long, value_name = "\"X,Y,Z X,Y,Z X,Y,Z S\"", allow_hyphen_values = true)]
     pub(crate) viewport: Option<ViewportChoice>,
-    /// Parallel view from the sun onto the whole scene: azimuth clockwise from grid north (90 is east), elevation above the
-    /// horizon, 0 to 90, in degrees
+    /// Parallel view from the sun: azimuth clockwise from true north and elevation, in degrees
+    ///
+    /// 90 is east. The elevation is above the horizon, 0 to 90. The view covers the whole scene. See --grid-north.
     #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true)]
     pub(crate) sun: Option<Numbers<2>>,
-    /// Parallel view onto the whole scene along a direction, of any length: 0,0,-1 looks straight down
+    /// Parallel view along a direction in file coordinates; 0,0,-1 looks straight down
+    ///
+    /// The vector may have any length. The view covers the whole scene.
     #[arg(long, value_name = "DX,DY,DZ", allow_hyphen_values = true)]
     pub(crate) direction: Option<Numbers<3>>,
-    /// What a camera at this place sees, in file coordinates and their height; say where to with --look-at
+    /// Position of a camera in file coordinates; needs --look-at
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "look_at")]
     pub(crate) eye: Option<Numbers<3>>,
-    /// Everything around this place, in file coordinates and their height
+    /// Position of a panorama in file coordinates: all directions around it
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(crate) panorama: Option<Numbers<3>>,
+}
+
+/// The north that azimuths are counted from.
+#[derive(Args)]
+pub(crate) struct North {
+    /// Count azimuths clockwise from grid north instead of true north
+    ///
+    /// Azimuths are also from grid north if the scene has no coordinate reference system. The summary states which north was used.
+    #[arg(long)]
+    pub(crate) grid_north: bool,
 }
 
 #[derive(Args)]
 pub(crate) struct ViewChoice {
     #[command(flatten)]
     pub(crate) kind: ViewKind,
-    /// Pixel size of --sun and --direction in metres [default: 0.25, finer for small objects]
+    #[command(flatten)]
+    pub(crate) north: North,
+    /// Pixel size with --sun and --direction, in metres [default: 0.25, smaller for small objects]
     #[arg(long, value_name = "M", conflicts_with_all = ["viewport", "eye", "panorama"], value_parser = above_zero::<f64>,
         allow_negative_numbers = true)]
     pub(crate) pixel: Option<f64>,
-    /// Place in the middle of the picture of --eye, in file coordinates
+    /// Point in the middle of the camera picture, in file coordinates
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, conflicts_with_all = ["viewport", "sun", "direction", "panorama"])]
     pub(crate) look_at: Option<Numbers<3>>,
-    /// Angle from the left to the right edge of the picture of --eye in degrees, up to 175 [default: 60]
+    /// Horizontal field of view of the camera in degrees, up to 175 [default: 60]
     #[arg(long, value_name = "DEG", conflicts_with_all = ["viewport", "sun", "direction", "panorama"], allow_negative_numbers = true, value_parser = above_zero::<f64>)]
     pub(crate) fov: Option<f64>,
-    /// Width and height of the picture of --eye in pixels [default: 1280x720], or width of a --panorama, which is half as
-    /// high [default: 2048]
+    /// Size of the camera picture in pixels [default: 1280x720], or width of a panorama [default: 2048]
+    ///
+    /// A panorama is half as high as it is wide.
     #[arg(long, value_name = "WxH|N", conflicts_with_all = ["viewport", "sun", "direction"])]
     pub(crate) size: Option<SizeChoice>,
-    /// Least depth that --eye sees in metres; balls that it cuts block from there on in a depth map [default: 0]
+    /// Minimum depth that the camera sees, in metres [default: 0]
+    ///
+    /// In a depth map, balls that cross this depth block from there on.
     #[arg(long, value_name = "M", conflicts_with_all = ["viewport", "sun", "direction", "panorama"], allow_negative_numbers = true, value_parser = length)]
     pub(crate) near: Option<f32>,
-    /// Most depth that --eye sees in metres [default: no limit]
+    /// Maximum depth that the camera sees, in metres [default: no limit]
     #[arg(long, value_name = "M", conflicts_with_all = ["viewport", "sun", "direction", "panorama"], allow_negative_numbers = true, value_parser = above_zero::<f64>)]
     pub(crate) far: Option<f64>,
 }

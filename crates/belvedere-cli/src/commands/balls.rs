@@ -118,7 +118,7 @@ fn write_folder(
         })?;
         let params =
             SimplifyParams { spacing, cell_size: arguments.cell_size, seed: global.seed, ..SimplifyParams::default() };
-        keep = pipeline::flagged("--simplify, --cell-size", simplify(&cloud.positions, &sizes, &params))?
+        keep = pipeline::flagged("--simplify, --cell", simplify(&cloud.positions, &sizes, &params))?
             .into_iter()
             .map(u8::from)
             .collect::<Vec<u8>>();

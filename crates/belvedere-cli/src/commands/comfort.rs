@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     let Some(period) = arguments.when.period(&arguments.place, &site, &zone)? else {
         return Err(Usage("say when: --date DAY, or --from and --to".to_owned()).into());
     };
-    let days = flagged("--step, --least-elevation or --from", sun_days(&site, &zone, &period, &params))?;
+    let days = flagged("--time-step-min, --min-sun-elevation or --from", sun_days(&site, &zone, &period, &params))?;
     // each row of --times is about a sun of its own
     let binning = if arguments.times.is_some() { Binning::Exact } else { Binning::Auto };
     let schedule = SunSchedule::new(&days, binning)?;
@@ -58,9 +58,15 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
         .add("directions", schedule.directions.len())
         .add("possible_hours_a_day", rounded(schedule.possible_hours() / schedule.days.len().max(1) as f64, 3));
     summary.add("when", section);
+    let north = arguments.north.of_scene(&scene);
+    if arguments.places.windows.is_some() || arguments.times.is_some() {
+        north.report(&mut summary);
+    }
     let places = match (&arguments.places.route, &arguments.places.windows) {
         (Some(route), _) => routes(arguments, route, &mut scene, &mut stages, &mut summary)?,
-        (None, Some(path)) => windows(arguments, path, &scene, global.seed, &mut stages, &mut summary)?,
+        (None, Some(path)) => {
+            windows(arguments, path, (&scene, north.of_grid), global.seed, &mut stages, &mut summary)?
+        }
         (None, None) => return Err(Usage("say where: --route or --windows".to_owned()).into()),
     };
     let mut section = Summary::default();
@@ -98,7 +104,7 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
         write_groups(output, &places, &found)?;
     }
     if let Some(output) = &arguments.times {
-        write_times(output, &places, &of_sun, &schedule)?;
+        write_times(output, &places, &of_sun, &schedule, north.of_grid)?;
     }
     let written = [Some(&arguments.output), arguments.routes.as_ref(), arguments.times.as_ref()];
     let written: Vec<String> = written.into_iter().flatten().map(|path| path.display().to_string()).collect();
@@ -202,7 +208,13 @@ fn write_groups(output: &Path, places: &Places, found: &Found) -> Result<()> {
 }
 
 /// A row for each route and sun.
-fn write_times(output: &Path, places: &Places, of_sun: &VisibilityMatrix, schedule: &SunSchedule) -> Result<()> {
+fn write_times(
+    output: &Path,
+    places: &Places,
+    of_sun: &VisibilityMatrix,
+    schedule: &SunSchedule,
+    grid_north: f64,
+) -> Result<()> {
     let (mut numbers, mut dates) = (Vec::new(), Vec::new());
     let mut columns: [Vec<f64>; 4] = std::array::from_fn(|_| Vec::new());
     for (group, number) in places.groups.iter().zip(1_u64..) {
@@ -218,7 +230,7 @@ fn write_times(output: &Path, places: &Places, of_sun: &VisibilityMatrix, schedu
                 // the sun of a step is the one halfway
                 let values = [
                     f64::from(step.start) + f64::from(step.hours) / 2.0,
-                    east.atan2(north).to_degrees().rem_euclid(360.0),
+                    (east.atan2(north) + grid_north).to_degrees().rem_euclid(360.0),
                     up.clamp(-1.0, 1.0).asin().to_degrees(),
                     shares[row],
                 ];
@@ -234,7 +246,7 @@ fn write_times(output: &Path, places: &Places, of_sun: &VisibilityMatrix, schedu
             ("route", Cells::Whole(&numbers)),
             ("date", Cells::Words(&dates)),
             ("hour", Cells::Real(hours, 4)),
-            ("grid_azimuth_deg", Cells::Real(azimuths, 3)),
+            ("azimuth_deg", Cells::Real(azimuths, 3)),
             ("elevation_deg", Cells::Real(elevations, 3)),
             ("shaded_share", Cells::Real(shares, 4)),
         ],

@@ -19,9 +19,9 @@ const NOTHING_HIT: f32 = -9999.0;
 pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["tif", "tiff", "npy", "png"])?;
     if let Some(path) = &arguments.balls_id {
-        check_output("--balls-id", path, &["tif", "tiff", "npy"])?;
+        check_output("--ball-ids", path, &["tif", "tiff", "npy"])?;
         if is_same(path, &arguments.output) {
-            return Err(Usage(format!("--balls-id {}: -o writes there too", path.display())).into());
+            return Err(Usage(format!("--ball-ids {}: -o writes there too", path.display())).into());
         }
     }
     let mut stages = Stages::new(global);
@@ -92,11 +92,11 @@ fn draw(arguments: &DepthMap, scene: &Scene, views: &[View], items: ItemBuffer) 
     let profile = arguments.scene.profile.into();
     if let [view] = views {
         let look = if view.is_central() { Look::Camera(*view) } else { Look::Parallel };
-        let map = flagged("--profile", depth_map(&scene.balls, view, profile, items))?;
+        let map = flagged("--ball-profile", depth_map(&scene.balls, view, profile, items))?;
         return Ok(Drawn { depth: map.depth, balls: map.balls, around_eye_count: map.around_eye_count, look });
     }
     if profile != Profile::Sphere {
-        return Err(Usage("--profile: the paper's cone is for parallel views only".to_owned()).into());
+        return Err(Usage("--ball-profile: the paper's cone is for parallel views only".to_owned()).into());
     }
     let eye = views.first().map_or([0.0; 3], |view| view.frame.eye);
     let map = panorama(&scene.balls, eye, arguments.view.panorama_width()?, items)?;

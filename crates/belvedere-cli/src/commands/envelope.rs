@@ -64,7 +64,7 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
     let found = stages.run("bounding", 0, |_| {
         solar_envelope(&parcel, &below, &land.pieces, &suns.directions, free.as_ref(), &params)
     });
-    let found = flagged("--spacing, --step, --ceiling", found)?;
+    let found = flagged("--spacing, --time-step-min, --max-height", found)?;
     summary.add("envelope", told(&found, &land, &suns, arguments));
     for output in &arguments.output {
         stages.run("writing", 0, |_| write_one(output, &found, &below, &cloud))?;
@@ -141,13 +141,15 @@ impl Suns {
     fn new(arguments: &Envelope, scene: &Scene, summary: &mut Summary) -> Result<Self> {
         if !arguments.sun.is_empty() {
             let mut suns = Self { directions: Vec::new(), names: Vec::new() };
+            let north = arguments.north.of_scene(scene);
+            north.report(summary);
             for [azimuth, elevation] in arguments.sun.iter().map(|sun| sun.0) {
                 if !(elevation > 0.0 && elevation <= 90.0) {
                     let what =
                         format!("--sun {azimuth},{elevation}: the elevation must be above 0 and at most 90 degrees");
                     return Err(Usage(what).into());
                 }
-                suns.directions.push(to_sun(azimuth.to_radians(), elevation.to_radians()));
+                suns.directions.push(to_sun(azimuth.to_radians() - north.of_grid, elevation.to_radians()));
                 suns.names.push(format!("azimuth {azimuth}, elevation {elevation}"));
             }
             return Ok(suns);
@@ -160,7 +162,7 @@ impl Suns {
         };
         let params = arguments.when.params(&arguments.place)?;
         let between = arguments.between.map_or([0.0, 24.0], |hours| hours.0);
-        let (suns, low) = flagged("--between, --step", envelope_suns(&site, &zone, &dates, between, &params))?;
+        let (suns, low) = flagged("--between, --time-step-min", envelope_suns(&site, &zone, &dates, between, &params))?;
         let mut section = Summary::default();
         section
             .add("days", dates.len())
@@ -279,8 +281,10 @@ impl Land {
                 }
             };
             for line in lines {
-                let (pieces, without) =
-                    flagged("--protect, --fence, --spacing", protected_line(&line, fence, spacing, ground, source))?;
+                let (pieces, without) = flagged(
+                    "--protect, --fence-height, --spacing",
+                    protected_line(&line, fence, spacing, ground, source),
+                )?;
                 self.pieces.extend(pieces);
                 unknown += without;
             }
@@ -356,7 +360,8 @@ fn told(found: &SolarEnvelope, land: &Land, suns: &Suns, arguments: &Envelope) -
             .add("greatest_height_m", rounded(found.greatest_height(), 2));
     } else {
         section.add("columns_that_nothing_bounds", unbounded);
-        section.add("notes", vec!["volume and solids need --ceiling: some columns are bounded by nothing".to_owned()]);
+        section
+            .add("notes", vec!["volume and solids need --max-height: some columns are bounded by nothing".to_owned()]);
     }
     let no_room = found.columns.iter().filter(|column| column.height() <= 0.0).count();
     let at_ceiling = found.columns.iter().filter(|column| column.binding.is_none()).count();
@@ -390,7 +395,7 @@ fn ranked(areas: &[f64], names: &[String]) -> Vec<String> {
 fn write_one(output: &Path, found: &SolarEnvelope, ground: &Ground, cloud: &PointCloud) -> Result<()> {
     match super::extension(output).as_str() {
         "ply" | "obj" => {
-            let mut mesh = flagged("--ceiling", found.to_mesh(cloud.frame.origin))?;
+            let mut mesh = flagged("--max-height", found.to_mesh(cloud.frame.origin))?;
             mesh.crs = cloud.frame.crs.clone();
             Ok(write_mesh(output, &mesh, cloud.frame.crs.metres_per_unit_xyz())?)
         }

@@ -3,12 +3,12 @@
 use super::sights::{Proving, blockers};
 use super::surroundings::{eyes, needs_ground, note_enclosed};
 use super::{check_output, extension};
-use crate::arguments::{BelowChoice, GivingWay, Global, Horizon, NorthChoice, Usage};
+use crate::arguments::{BelowChoice, GivingWay, Global, Horizon, Usage};
 use crate::pipeline::{self, Points, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
-use anyhow::{Context, Result};
-use belvedere::apps::horizon::{HorizonParams, azimuth_count, convergence, horizons};
+use anyhow::Result;
+use belvedere::apps::horizon::{HorizonParams, azimuth_count, horizons};
 use belvedere::figures::{horizon_picture, write_png};
 use belvedere::io::atomic;
 use std::io::Write;
@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
     let earth = arguments.earth.params()?;
     let usual = HorizonParams::default();
     let azimuth_count = match arguments.step {
-        Some(step) => flagged("--step", azimuth_count(step.to_radians()))?,
+        Some(step) => flagged("--angle-step-deg", azimuth_count(step.to_radians()))?,
         None => usual.azimuth_count,
     };
     let mut stages = Stages::new(global);
@@ -34,25 +34,18 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
         let what = format!("{}: it holds a single eye, these are {}; use .csv", output.display(), places.len());
         return Err(Usage(what).into());
     }
-    let turn = match (arguments.north, places.first()) {
-        (NorthChoice::True, Some(eye)) => {
-            let origin = scene.cloud.frame.origin;
-            let turn = convergence(&scene.cloud.frame.crs, [eye[0] + origin[0], eye[1] + origin[1]]);
-            let turn = flagged("--north", turn).context(
-                "--north true needs to know where on earth the scene lies: give its cloud with --crs EPSG:CODE, or take --north grid",
-            )?;
-            summary.add("meridian_convergence_deg", rounded(turn.to_degrees(), 4));
-            turn
-        }
-        _ => 0.0,
+    let north = match places.first() {
+        Some(eye) => arguments.north.at(&scene, [eye[0], eye[1]]),
+        None => arguments.north.of_scene(&scene),
     };
+    north.report(&mut summary);
     let mut section = Summary::default();
     let giving_way = GivingWay { shell: None, unproven: None };
     let (blockers, _) =
         blockers(&scene, arguments.scene.profile.into(), &giving_way, Proving::Never, &mut stages, &mut section)?;
     summary.add("lines_of_sight", section);
     note_enclosed(&blockers, &places, &mut summary);
-    let params = HorizonParams { azimuth_count, turn, earth };
+    let params = HorizonParams { azimuth_count, turn: north.of_grid, earth };
     let found = stages.run("looking around", 0, |_| horizons(&blockers, &places, &params))?;
     let least = if arguments.below == BelowChoice::Zero { 0.0 } else { -90.0 };
     let elevations: Vec<Vec<f64>> = found

@@ -31,6 +31,8 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
         let what = format!("{}: a picture shows a single eye, these are {}", output.display(), places.len());
         return Err(Usage(what).into());
     }
+    let north = arguments.north.of_scene(&scene);
+    north.report(&mut summary);
     let mut section = Summary::default();
     let giving_way = GivingWay { shell: None, unproven: None };
     let (blockers, _) =
@@ -52,8 +54,9 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
             })
             .collect::<belvedere::Result<Vec<_>>>()
     });
-    let isovists = flagged("--step, --max-distance, --jump", isovists)?;
-    let rows: Vec<Row> = places.iter().zip(&isovists).map(|(&eye, isovist)| row(&scene.cloud, eye, isovist)).collect();
+    let isovists = flagged("--angle-step-deg, --max-distance, --min-jump", isovists)?;
+    let rows: Vec<Row> =
+        places.iter().zip(&isovists).map(|(&eye, isovist)| row(&scene.cloud, eye, isovist, north.of_grid)).collect();
     if let [row] = &rows[..] {
         let mut section = Summary::default();
         for &(name, value, decimals) in row {
@@ -65,7 +68,7 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
     }
     for output in &arguments.output {
         stages.run("writing", 0, |_| match extension(output).as_str() {
-            "json" => write_json(output, &rows, &isovists),
+            "json" => write_json(output, &rows, &isovists, north.of_grid),
             "png" => {
                 let Some(isovist) = isovists.first() else { return Ok(()) };
                 write_png(output, &panorama_picture(&isovist.panorama, "Ranges around the eye"))
@@ -81,7 +84,7 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
 /// Name, value and decimals of every measure.
 type Row = Vec<(&'static str, f64, usize)>;
 
-fn row(cloud: &PointCloud, eye: [f64; 3], isovist: &isovist::Isovist) -> Row {
+fn row(cloud: &PointCloud, eye: [f64; 3], isovist: &isovist::Isovist, grid_north: f64) -> Row {
     let [x, y, z] = file(cloud, eye);
     let plan = &isovist.plan;
     let mut row: Row = vec![
@@ -112,7 +115,7 @@ fn row(cloud: &PointCloud, eye: [f64; 3], isovist: &isovist::Isovist) -> Row {
         ("plan_openness", plan.openness, 5),
         ("plan_occlusivity_m", plan.occlusivity, 2),
         ("plan_drift_m", plan.drift_length(), 4),
-        ("plan_drift_azimuth_deg", plan.drift[0].atan2(plan.drift[1]).to_degrees().rem_euclid(360.0), 2),
+        ("plan_drift_azimuth_deg", (plan.drift[0].atan2(plan.drift[1]) + grid_north).to_degrees().rem_euclid(360.0), 2),
     ]);
     row
 }
@@ -128,12 +131,14 @@ fn write_rows(output: &Path, rows: &[Row]) -> belvedere::Result<()> {
     write_table(output, &named)
 }
 
-fn write_json(output: &Path, rows: &[Row], isovists: &[isovist::Isovist]) -> belvedere::Result<()> {
+fn write_json(output: &Path, rows: &[Row], isovists: &[isovist::Isovist], grid_north: f64) -> belvedere::Result<()> {
     let object = |(row, isovist): (&Row, &isovist::Isovist)| {
         let mut object: Map<String, Value> =
             row.iter().map(|&(name, value, _)| (name.to_owned(), json!(value))).collect();
         let corners = isovist.plan.corners.iter();
-        let corners: Vec<Value> = corners.map(|[azimuth, range]| json!([azimuth.to_degrees(), range])).collect();
+        let corners: Vec<Value> = corners
+            .map(|[azimuth, range]| json!([(azimuth + grid_north).to_degrees().rem_euclid(360.0), range]))
+            .collect();
         object.insert("plan_corners_azimuth_deg_range_m".to_owned(), corners.into());
         Value::Object(object)
     };

@@ -90,7 +90,7 @@ fn pairs(arguments: &LineOfSight, scene: &Scene, seed: u64, stages: &mut Stages)
         return Ok(random_pairs(scene.bounds.low, scene.bounds.high, count, seed));
     }
     let Some(path) = &lines.pairs else {
-        return Err(Usage("say which lines: --pairs, --random, or --from and --to".to_owned()).into());
+        return Err(Usage("say which lines: --pairs, --random, or --observer and --target".to_owned()).into());
     };
     let table = stages.run("reading pairs", 0, |_| read_table(path))?;
     let mut columns: [&[f64]; 6] = [&[]; 6];

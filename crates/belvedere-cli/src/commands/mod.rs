@@ -5,6 +5,7 @@ mod comfort;
 mod compare;
 mod demo;
 mod depth_map;
+mod describe;
 mod envelope;
 mod horizon;
 mod info;
@@ -14,6 +15,7 @@ mod landmark;
 mod line_of_sight;
 mod mesh_targets;
 mod normals;
+mod north;
 mod query;
 mod shadow;
 mod shapes;
@@ -29,10 +31,10 @@ mod tree_light;
 mod viewshed;
 
 use crate::arguments::{Cli, Command, Usage};
+use crate::help;
 use crate::summary::Summary;
 use anyhow::{Context, Result, bail};
 use belvedere::io::{ExtraColumn, ExtraValues};
-use clap::CommandFactory;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -63,14 +65,15 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::Envelope(arguments) => envelope::run(arguments, global),
         Command::Comfort(arguments) => comfort::run(arguments, global),
         Command::Compare(arguments) => compare::run(arguments, global),
+        Command::Describe => Ok(describe::run()),
         Command::Completions { shell } => {
             let mut script = Vec::new();
-            clap_complete::generate(*shell, &mut Cli::command(), "belvedere", &mut script);
+            clap_complete::generate(*shell, &mut help::command(), "belvedere", &mut script);
             print_raw(&script)
         }
         Command::Man => {
             let mut page = Vec::new();
-            clap_mangen::Man::new(Cli::command()).render(&mut page)?;
+            clap_mangen::Man::new(help::command()).render(&mut page)?;
             print_raw(&page)
         }
     }

@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     let mut views = arguments.view.views(&scene, &mut summary)?;
     let is_central = views.iter().any(View::is_central);
     if is_central && Profile::from(arguments.scene.profile) != Profile::Sphere {
-        return Err(Usage("--profile: the paper's cone is for parallel views only".to_owned()).into());
+        return Err(Usage("--ball-profile: the paper's cone is for parallel views only".to_owned()).into());
     }
     if arguments.targets.own && extension(output) == "npy" {
         pipeline::check_every_row(&scene.left_out)?;

@@ -143,12 +143,17 @@ fn suns(arguments: &Shadow, scene: &Scene, summary: &mut Summary) -> Result<Vec<
     let mut suns = Vec::new();
     let mut below = 0;
     let typed = &arguments.suns.direction;
+    let north = arguments.suns.north.of_scene(scene);
+    if !typed.is_empty() {
+        north.report(summary);
+    }
     for (number, direction) in (1..).zip(typed) {
         let [azimuth, elevation] = direction.0;
         let column = if typed.len() == 1 { "lit".to_owned() } else { format!("lit_{number}") };
         let title = format!("Shadow, sun at azimuth {azimuth}, elevation {elevation} degrees");
         below += usize::from(elevation <= 0.0);
-        suns.push(Sun { to_sun: to_sun(azimuth.to_radians(), elevation.to_radians()), column, title, date: None });
+        let to_sun = to_sun(azimuth.to_radians() - north.of_grid, elevation.to_radians());
+        suns.push(Sun { to_sun, column, title, date: None });
     }
     if typed.is_empty() {
         let site = arguments.sun.site(scene, summary)?;
@@ -187,7 +192,7 @@ fn instants(arguments: &Shadow, site: &Site, zone: &Zone) -> Result<Vec<f64>> {
         return Err(Usage("say when: --time, --date, --from and --to, or --sun".to_owned()).into());
     };
     let params = arguments.when.params(&arguments.sun)?;
-    let days = flagged("--step, --least-elevation or --from", sun_days(site, zone, &period, &params))?;
+    let days = flagged("--time-step-min, --min-sun-elevation or --from", sun_days(site, zone, &period, &params))?;
     let steps: Vec<f64> =
         days.iter().flat_map(|day| &day.steps).map(|step| f64::midpoint(step.start, step.end)).collect();
     if steps.is_empty() {

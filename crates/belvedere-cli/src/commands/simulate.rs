@@ -86,7 +86,7 @@ fn check_flags(arguments: &Simulate) -> Result<()> {
     ];
     let of_terrestrial = [
         ("--stations", ground.stations.is_some()),
-        ("--angular-step", ground.angular_step.is_some()),
+        ("--angle-step-deg", ground.angular_step.is_some()),
         ("--max-range", ground.max_range.is_some()),
     ];
     let (unused, scanner): (&[(&str, bool)], &str) = match arguments.scanner {
@@ -109,7 +109,7 @@ fn check_pulses(arguments: &Simulate) -> Result<()> {
         ScannerChoice::Terrestrial => {
             let params = terrestrial(arguments, 0);
             let stations = if let Stations::Chosen(count) = params.stations { f64::from(count) } else { 0.0 };
-            (stations * params.pulses_per_station() as f64, "raise --angular-step or lower --stations")
+            (stations * params.pulses_per_station() as f64, "raise --angle-step-deg or lower --stations")
         }
     };
     if count <= MOST_PULSES {

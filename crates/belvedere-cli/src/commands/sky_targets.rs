@@ -75,7 +75,7 @@ impl SkyPlaces {
         let refused = [
             ("--measures", outputs.measures.is_some(), mesh || points, "a grid"),
             ("--cell", self.cell.is_some(), mesh || points, "a grid"),
-            ("--height", self.height.is_some(), mesh || points, "a grid"),
+            ("--target-height", self.height.is_some(), mesh || points, "a grid"),
             ("--spacing", self.spacing.is_some(), !mesh, "a mesh"),
         ];
         if let Some((flag, .., what)) = refused.into_iter().find(|(_, given, wrong, _)| *given && *wrong) {

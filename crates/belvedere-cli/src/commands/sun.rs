@@ -54,7 +54,7 @@ impl SunPlace {
     pub(crate) fn refraction(&self) -> Result<Refraction> {
         match (self.elevation, &self.air) {
             (ElevationChoice::Geometric, Some(_)) => {
-                Err(Usage("--air belongs to --elevation apparent".to_owned()).into())
+                Err(Usage("--air belongs to --sun-elevation apparent".to_owned()).into())
             }
             (ElevationChoice::Geometric, None) => Ok(Refraction::Without),
             (ElevationChoice::Apparent, None) => Ok(Refraction::Standard),
@@ -69,7 +69,7 @@ impl SunPlace {
 impl SunPeriod {
     /// Refuses what cannot be anywhere on earth, before hours of work go into a scene.
     pub(crate) fn check(&self, place: &SunPlace) -> Result<()> {
-        flagged("--step or --least-elevation", self.params(place)?.validate())?;
+        flagged("--time-step-min or --min-sun-elevation", self.params(place)?.validate())?;
         let [latitude, longitude] = place.location.map_or([0.0; 2], |given| given.0.map(f64::to_radians));
         let anywhere = Site { latitude, longitude, height: 0.0, convergence: 0.0 };
         let anywhere = flagged("--location", anywhere.validate())?;

@@ -26,11 +26,11 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
     arguments.when.check(&arguments.sun)?;
     let params = arguments.when.params(&arguments.sun)?;
     if let Some(keep) = &arguments.keep {
-        check_output("--keep", keep, &["npz"])?;
+        check_output("--save-matrix", keep, &["npz"])?;
         check_distinct(arguments.outputs.output.iter().chain([keep]))?;
     }
     if arguments.trees.is_given() && (arguments.keep.is_some() || arguments.from_matrix.is_some()) {
-        let what = "--through-trees: a matrix keeps what all balls hide, trees with the rest; leave out --keep and --from-matrix";
+        let what = "--through-trees: a matrix keeps what all balls hide, trees with the rest; leave out --save-matrix and --load-matrix";
         return Err(Usage(what.to_owned()).into());
     }
     let kept = arguments.from_matrix.as_deref().map(read_matrix).transpose()?;
@@ -118,7 +118,7 @@ fn matrix_scene(scene: &Scene, arguments: &SunHours) -> u64 {
 fn taken(kept: SavedMatrix, targets: &SkyTargets, scene: u64) -> Result<VisibilityMatrix> {
     if kept.scene != scene {
         bail!(
-            "--from-matrix: it was made of other balls, or with another --shell or --profile; make it again with --keep"
+            "--load-matrix: it was made of other balls, or with another --shell or --ball-profile; make it again with --save-matrix"
         );
     }
     let same = |a: &[f32; 3], b: &[f32; 3]| a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
@@ -127,7 +127,7 @@ fn taken(kept: SavedMatrix, targets: &SkyTargets, scene: u64) -> Result<Visibili
         && kept.targets.iter().zip(&targets.positions).all(|(a, b)| same(a, b));
     if !check_distinct {
         bail!(
-            "--from-matrix: it was made for {} other places; ask with the flags of places it was kept with, or make it again with --keep",
+            "--load-matrix: it was made for {} other places; ask with the flags of places it was kept with, or make it again with --save-matrix",
             kept.targets.len()
         );
     }
@@ -185,9 +185,10 @@ impl Plan {
         let when = &arguments.when;
         let zone = arguments.sun.zone(site, &when.times())?;
         let schedule = |period: &Period, params: &DayParams| {
-            let days = flagged("--step, --least-elevation or --from", sun_days(site, &zone, period, params))?;
+            let days =
+                flagged("--time-step-min, --min-sun-elevation or --from", sun_days(site, &zone, period, params))?;
             flagged(
-                "--within",
+                "--sun-tolerance-deg",
                 match suns {
                     Suns::Of(binning) => SunSchedule::new(&days, *binning),
                     Suns::Among(directions, angle) => SunSchedule::among(&days, directions, *angle),

@@ -44,7 +44,7 @@ pub(super) fn eyes(
         let low = [0, 1].map(|axis| bound(axis, f64::min, f64::INFINITY) - MARGIN);
         let high = [0, 1].map(|axis| bound(axis, f64::max, f64::NEG_INFINITY) + MARGIN);
         let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
-        let grid = flagged("--eye", MapGrid::covering(low, high, cell_for(low, high), origin))?;
+        let grid = flagged("--observer", MapGrid::covering(low, high, cell_for(low, high), origin))?;
         let (cloud, points) = sights::ground_cloud(&arguments.ground, scene, stages)?;
         let ground = sights::ground(&cloud, points, grid, stages, summary)?;
         for (number, (place, height)) in rows.iter_mut().enumerate().filter(|(_, row)| row.0[2].is_nan()) {
@@ -60,7 +60,7 @@ pub(super) fn eyes(
         }
     }
     if let Some((place, _)) = rows.iter().find(|(place, _)| !place.iter().all(|v| v.is_finite())) {
-        return Err(Usage(format!("--eye, --height: the eye is at {place:?}, but must be finite")).into());
+        return Err(Usage(format!("--observer, --observer-height: the eye is at {place:?}, but must be finite")).into());
     }
     Ok(rows.into_iter().map(|row| row.0).collect())
 }

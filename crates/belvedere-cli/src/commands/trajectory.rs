@@ -13,7 +13,9 @@ pub(crate) fn run(arguments: &Trajectory, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["csv", "txt"])?;
     if !(0.01..=2.0).contains(&arguments.step) {
         let step = arguments.step;
-        return Err(Usage(format!("--step is {step}, but must be 0.01 to 2 s: readers do not bridge more")).into());
+        return Err(
+            Usage(format!("--time-step-s is {step}, but must be 0.01 to 2 s: readers do not bridge more")).into()
+        );
     }
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();

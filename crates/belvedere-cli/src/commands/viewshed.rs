@@ -31,7 +31,11 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
-    let rows = who::rows(arguments, &scene.cloud)?;
+    let north = arguments.looking.north.of_scene(&scene);
+    let rows = who::rows(arguments, &scene.cloud, north.of_grid)?;
+    if rows.iter().any(|row| row.limits.azimuth.is_some()) {
+        north.report(&mut summary);
+    }
     let grid = grid(arguments, &scene, &rows)?;
     let (cloud, ground_points) = ground_cloud(&arguments.ground, &mut scene, &mut stages)?;
     let ground = ground(&cloud, ground_points, grid, &mut stages, &mut summary)?;

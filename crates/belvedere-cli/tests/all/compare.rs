@@ -4,7 +4,7 @@ use crate::common::Workplace;
 use serde_json::Value;
 use std::fs;
 
-const SMALL: &str = "--extent 100 --density 2 --targets 1500 --methods paper-sphere,tau";
+const SMALL: &str = "--extent 100 --density 2 --target-count 1500 --methods paper-sphere,tau";
 
 /// What is kept of `method` on one set and group of views, at the first place.
 fn score<'a>(results: &'a Value, method: &str, set: &str, views: &str) -> &'a Value {
@@ -86,7 +86,7 @@ fn a_run_goes_on_where_it_stopped_and_redoes_what_is_stale() {
     let methods = |run: &Value| run["results"]["methods"].as_array().unwrap().len();
     assert_eq!((methods(&first), methods(&second)), (2, 2));
     // other questions: what was kept does not answer them
-    place.summary(&format!("compare {SMALL} --targets 1000 -o out").replacen("--targets 1500 ", "", 1));
+    place.summary(&format!("compare {SMALL} --target-count 1000 -o out").replacen("--target-count 1500 ", "", 1));
     assert!(fs::metadata(&kept).unwrap().modified().unwrap() > untouched);
 }
 
@@ -108,8 +108,8 @@ fn a_place_of_ones_own_takes_part() {
     let place = Workplace::new();
     assert_eq!(place.run("demo -o demo --extent 100").status, 0);
     let files =
-        "--scene demo/town.laz --mesh demo/town.obj --trajectory demo/trajectory.csv --model city=demo/town.obj";
-    let run = place.summary(&format!("compare {files} --targets 1500 --methods tau,mesh-city -o out"));
+        "--clouds demo/town.laz --mesh demo/town.obj --trajectory demo/trajectory.csv --model city=demo/town.obj";
+    let run = place.summary(&format!("compare {files} --target-count 1500 --methods tau,mesh-city -o out"));
     let results = &run["results"];
     let street = rate(results, "tau", "PED", "suns", "false_blocked");
     assert!((0.01..0.3).contains(&street), "{street}");
@@ -117,7 +117,8 @@ fn a_place_of_ones_own_takes_part() {
     // the exact mesh as a method: what is left is the millimetre of the file
     let exact = rate(results, "mesh-city", "PED", "suns", "balanced");
     assert!(exact > 0.999, "{exact}");
-    let upward = place.summary("compare --scene demo/town.laz --mesh demo/town.obj --targets 800 --methods tau -o up");
+    let upward =
+        place.summary("compare --clouds demo/town.laz --mesh demo/town.obj --target-count 800 --methods tau -o up");
     let sets = upward["results"]["methods"][0]["scores"].as_array().unwrap().clone();
     assert!(sets.iter().all(|score| score["set"] != "OWN"), "without a scanner own points have no truth");
 }
@@ -158,7 +159,7 @@ fn clouds_are_judged_by_the_pulses_kept_from_the_methods() {
 fn variants_run_only_when_named_in_full_and_costly_eyes_are_few() {
     let place = Workplace::new();
     let methods = |list: &str| -> Vec<Value> {
-        let run = place.summary(&format!("compare --extent 60 --density 2 --targets 200 --methods {list} -o out"));
+        let run = place.summary(&format!("compare --extent 60 --density 2 --target-count 200 --methods {list} -o out"));
         run["results"]["methods"].as_array().unwrap().clone()
     };
     let keys = |results: &[Value]| -> Vec<String> {
@@ -181,11 +182,11 @@ fn variants_run_only_when_named_in_full_and_costly_eyes_are_few() {
 #[test]
 fn what_cannot_be_compared_is_refused() {
     let place = Workplace::new();
-    place.refusal(2, "compare --scene a.laz -o out", &["--mesh"]);
+    place.refusal(2, "compare --clouds a.laz -o out", &["--mesh"]);
     place.refusal(2, "compare --presets metropolis -o out", &["metropolis", "old-town"]);
-    place.refusal(2, "compare --scene a.laz --mesh b.obj --model City=c.obj -o out", &["lower-case"]);
-    place.refusal(1, "compare --scene a.laz --mesh b.obj -o out", &["a.laz"]);
+    place.refusal(2, "compare --clouds a.laz --mesh b.obj --model City=c.obj -o out", &["lower-case"]);
+    place.refusal(1, "compare --clouds a.laz --mesh b.obj -o out", &["a.laz"]);
     place.refusal(2, "compare --trajectory t.csv -o out", &["--trajectory", "--held-out"]);
     place.refusal(1, "compare -o missing/out", &["missing"]);
-    place.refusal(2, "compare --extent 60 --targets 10 --methods magic -o out", &["magic", "paper-cone"]);
+    place.refusal(2, "compare --extent 60 --target-count 10 --methods magic -o out", &["magic", "paper-cone"]);
 }

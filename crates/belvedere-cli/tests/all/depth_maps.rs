@@ -73,7 +73,7 @@ fn depths_from_above_are_heights_below_the_plane() {
 fn a_tif_of_a_view_straight_down_lies_on_the_map() {
     let place = with_house();
     place.summary_with("depth-map house.laz -o depth.npy --viewport", &[FROM_ABOVE]);
-    place.summary_with("depth-map house.laz -o depth.tif --balls-id ids.tif --viewport", &[FROM_ABOVE]);
+    place.summary_with("depth-map house.laz -o depth.tif --ball-ids ids.tif --viewport", &[FROM_ABOVE]);
     let depth = tif(&place, "depth.tif");
     assert_eq!((depth.size, depth.nodata.as_str()), ((120, 80), "-9999"));
     assert_eq!(depth.place, Some(([EAST - 15.0, NORTH + 10.0], [0.25, 0.25])));
@@ -99,7 +99,7 @@ fn the_item_buffer_names_rows_of_the_ball_file() {
     let centers: Vec<f32> = place.npz("balls.npz", "centers");
     let radii: Vec<f32> = place.npz("balls.npz", "radii");
     let origin: Vec<f64> = place.npz("balls.npz", "origin");
-    place.summary_with("depth-map balls.npz -o depth.npy --balls-id ids.npy --viewport", &[FROM_ABOVE]);
+    place.summary_with("depth-map balls.npz -o depth.npy --ball-ids ids.npy --viewport", &[FROM_ABOVE]);
     let ((shape, ids), (_, depth)) = (place.npy::<u32>("ids.npy"), place.npy::<f32>("depth.npy"));
     assert_eq!(shape, [80, 120]);
     for (row, (&id, &depth)) in ids.iter().zip(&depth).enumerate() {
@@ -118,7 +118,7 @@ fn the_item_buffer_names_rows_of_the_ball_file() {
         assert!((expected - f64::from(depth)).abs() < 0.01, "ball {id}: {depth} for {expected}");
     }
     // a cloud names the rows of the ball file it would give
-    place.summary_with("depth-map house.laz -o cloud.npy --balls-id cloud-ids.npy --viewport", &[FROM_ABOVE]);
+    place.summary_with("depth-map house.laz -o cloud.npy --ball-ids cloud-ids.npy --viewport", &[FROM_ABOVE]);
     assert_eq!(place.bytes("ids.npy"), place.bytes("cloud-ids.npy"));
     assert_eq!(place.bytes("depth.npy"), place.bytes("cloud.npy"));
 }
@@ -154,10 +154,10 @@ fn a_picture_is_a_png_whether_something_is_hit_or_not() {
     assert!(hit > 30.0, "{hit}");
     // looks up into the sky from above the house
     let up = "84985,446010,20 0,20,0 30,0,0 4";
-    let summary = place.summary_with("depth-map house.laz -o sky.png --balls-id sky.npy --viewport", &[up]);
+    let summary = place.summary_with("depth-map house.laz -o sky.png --ball-ids sky.npy --viewport", &[up]);
     assert_eq!(summary["view"]["looks_along"].as_array().unwrap()[2].as_f64(), Some(-1.0));
     let away = "84985,446010,20 30,0,0 0,20,0 4";
-    let summary = place.summary_with("depth-map house.laz -o sky.png --balls-id sky.npy --viewport", &[away]);
+    let summary = place.summary_with("depth-map house.laz -o sky.png --ball-ids sky.npy --viewport", &[away]);
     assert_eq!(summary["view"]["looks_along"].as_array().unwrap()[2].as_f64(), Some(1.0));
     assert_eq!(summary["pixels_hit_percent"], 0.0);
     assert!(place.npy::<u32>("sky.npy").1.iter().all(|&id| id == NO_BALL));
@@ -185,7 +185,7 @@ fn negative_numbers_are_numbers_and_not_flags() {
 fn the_cone_of_the_paper_lies_behind_the_sphere() {
     let place = with_house();
     let depths = ["sphere", "paper-cone"].map(|profile| {
-        place.summary_with(&format!("depth-map house.laz --profile {profile} -o d.npy --viewport"), &[FROM_ABOVE]);
+        place.summary_with(&format!("depth-map house.laz --ball-profile {profile} -o d.npy --viewport"), &[FROM_ABOVE]);
         place.npy::<f32>("d.npy").1
     });
     let [sphere, cone] = depths;
@@ -205,7 +205,7 @@ fn camera(size: &str) -> String {
 #[test]
 fn a_camera_sees_a_wall_at_its_depth_wherever_it_looks_at_it() {
     let place = with_house();
-    let summary = place.summary(&format!("depth-map house.laz -o depth.npy --balls-id ids.npy {}", camera("160x120")));
+    let summary = place.summary(&format!("depth-map house.laz -o depth.npy --ball-ids ids.npy {}", camera("160x120")));
     assert_eq!(summary["balls_around_the_eye_left_out"], 0);
     let ((shape, depth), (_, ids)) = (place.npy::<f32>("depth.npy"), place.npy::<u32>("ids.npy"));
     assert_eq!(shape, [120, 160]);
@@ -285,10 +285,10 @@ fn views_from_an_eye_that_make_no_sense_are_wrong_usage() {
         (format!("{look} --size 100000x100000"), vec!["--size", "pixels"]),
         (format!("{look} --near 5 --far 4"), vec!["--near", "far"]),
         (format!("{look} --pixel 0.5"), vec!["--pixel"]),
-        (format!("{look} --profile paper-cone"), vec!["--profile", "parallel"]),
+        (format!("{look} --ball-profile paper-cone"), vec!["--ball-profile", "parallel"]),
         (format!("--panorama {EAST},{NORTH},30 --size 100x80"), vec!["--size", "twice"]),
         (format!("--panorama {EAST},{NORTH},30 --fov 80"), vec!["--fov"]),
-        (format!("--panorama {EAST},{NORTH},30 --profile paper-cone"), vec!["--profile", "parallel"]),
+        (format!("--panorama {EAST},{NORTH},30 --ball-profile paper-cone"), vec!["--ball-profile", "parallel"]),
         (format!("{look} --sun 180,30"), vec!["--sun"]),
         ("--sun 180,30 --size 100x80".to_owned(), vec!["--size"]),
     ] {

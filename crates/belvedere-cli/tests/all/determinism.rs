@@ -16,11 +16,11 @@ fn outputs_have_the_same_bytes_for_any_number_of_threads() {
         run("balls house.laz --orient up -o balls.laz");
         run("balls folder --simplify 0.4 -o folder");
         run("normals house.laz --neighbors adaptive -o normals.laz");
-        run("depth-map house.laz --sun 160,35 -o depth.tif --balls-id ids.npy");
+        run("depth-map house.laz --sun 160,35 -o depth.tif --ball-ids ids.npy");
         run("depth-map house.laz --sun 160,35 -o depth.png");
         run("query house.laz --sun 160,35 --self -o self.laz");
         run("query house.laz --sun 160,35 --random 20000 -o random.csv");
-        run("query house.laz --sun 160,35 --random 20000 --profile paper-cone -o random.npy");
+        run("query house.laz --sun 160,35 --random 20000 --ball-profile paper-cone -o random.npy");
         let outputs = [
             "balls.npz",
             "balls.laz",

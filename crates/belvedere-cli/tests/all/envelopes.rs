@@ -30,7 +30,7 @@ fn an_envelope_rises_from_the_fence_at_the_elevation_of_the_sun_and_its_solid_ha
     let fence = corners(&[[-19.0, -10.0], [19.0, -10.0]]);
     let with = ["--parcel", &parcel, "--protect", &fence];
     let told = place.summary_with(
-        "envelope house.laz --fence 2 --sun 180,45 --ceiling 50 -o heights.npy -o solid.obj -o solid.ply -o map.png -o heights.tif --tops tops.npy",
+        "envelope house.laz --fence-height 2 --sun 180,45 --max-height 50 -o heights.npy -o solid.obj -o solid.ply -o map.png -o heights.tif --tops tops.npy",
         &with,
     );
     let read = |name: &str| -> Vec<f32> {
@@ -56,7 +56,7 @@ fn an_envelope_rises_from_the_fence_at_the_elevation_of_the_sun_and_its_solid_ha
     }
     // days and hours by clocks: the suns at both ends are among them
     let told = place.summary_with(
-        "envelope house.laz --date 2026-12-21 --between 10:00,14:00 --step 60 --location 52,5 --zone +01:00 --ceiling 40 -o day.tif",
+        "envelope house.laz --date 2026-12-21 --between 10:00,14:00 --time-step-min 60 --location 52,5 --zone +01:00 --max-height 40 -o day.tif",
         &with,
     );
     assert_eq!(told["when"]["suns"].as_u64(), Some(5), "{told}");
@@ -91,7 +91,7 @@ fn a_route_past_a_house_sees_less_sky_and_lies_in_its_shade_in_part() {
     let place = place();
     let route = corners(&[[-18.0, 7.0], [18.0, 7.0]]);
     let asked = format!(
-        "comfort {HOUSE} --date 2026-03-21 --step 60 --location 52,5 -o places.csv --routes routes.csv --times times.csv"
+        "comfort {HOUSE} --date 2026-03-21 --time-step-min 60 --location 52,5 -o places.csv --routes routes.csv --times times.csv"
     );
     let told = place.summary_with(&asked, &["--route", &route]);
     assert_eq!(told["exposure"]["routes"].as_u64(), Some(1));

@@ -2,7 +2,7 @@
 
 use crate::common::{Workplace, house};
 
-const COMMANDS: [&str; 22] = [
+const COMMANDS: [&str; 23] = [
     "demo",
     "simulate",
     "info",
@@ -23,13 +23,16 @@ const COMMANDS: [&str; 22] = [
     "sky-view",
     "sun-hours",
     "compare",
+    "describe",
     "completions",
     "man",
 ];
 
 /// The command lines in a help text: what follows a heading "Example:" or "Examples:", without remarks behind it.
 fn examples(help: &str) -> Vec<String> {
-    let from = help.lines().skip_while(|line| !line.starts_with("Example"));
+    // a line that ends in a backslash goes on in the next
+    let joined = help.replace(" \\\n     ", "");
+    let from = joined.lines().skip_while(|line| !line.starts_with("Example"));
     let lines = from.filter_map(|line| line.strip_prefix("  belvedere "));
     // remarks stand two blanks or more behind the command
     lines.map(|line| line.split("  ").next().unwrap_or(line).trim().to_owned()).collect()

@@ -4,7 +4,7 @@
 use crate::common::{EAST, NORTH, Workplace, house};
 
 /// The house's flags: its normals are given and no pulses are known.
-const HOUSE: &str = "house.laz --method tau --orient given --ground found --sun-cell 4 --patch-division 1";
+const HOUSE: &str = "house.laz --method tau --orient given --ground found --sun-cell-deg 4 --patch-division 1";
 
 fn place() -> Workplace {
     let place = Workplace::new();
@@ -84,7 +84,8 @@ fn weather(latitude: f64, offset: f64) -> String {
 fn weather_comes_from_files() {
     let place = place();
     place.write("weather.csv", weather(52.0, 0.0));
-    let summary = place.summary(&format!("irradiance {HOUSE} --weather weather.csv --cell 4 --sky perez -o out.csv"));
+    let summary =
+        place.summary(&format!("irradiance {HOUSE} --weather weather.csv --cell 4 --sky-model perez -o out.csv"));
     assert_eq!(summary["radiation"]["from"], "PVGIS, typical year");
     assert_eq!(
         (&summary["radiation"]["rows"], summary["radiation"]["global_kwh_m2"].as_f64()),
@@ -119,7 +120,7 @@ fn what_cannot_be_is_refused_with_advice() {
     let mut adrift = crate::common::house();
     adrift.frame.crs = belvedere::crs::Crs::default();
     place.write_cloud("adrift.ply", &adrift);
-    let flags = "--method tau --orient given --ground found --sun-cell 4 --clear-sky bird --cell 4 -o out.csv";
+    let flags = "--method tau --orient given --ground found --sun-cell-deg 4 --clear-sky bird --cell 4 -o out.csv";
     place.refusal(1, &format!("irradiance adrift.ply {flags}"), &["--location", "--crs"]);
     let summary = place.summary(&format!("irradiance adrift.ply {flags} --location 52,4.4"));
     assert_eq!(summary["site"]["from"], "--location");

@@ -5,6 +5,7 @@
 mod carved;
 mod common;
 mod compare;
+mod conventions;
 mod depth_maps;
 mod determinism;
 mod envelopes;

@@ -279,7 +279,7 @@ fn the_cone_of_the_paper_blocks_less_than_the_sphere() {
     place.write_cloud("house.laz", &house());
     let arguments = "query house.laz --random 50000 --bias 0 -o answers.npy --viewport";
     let mut answers = |profile: &str| {
-        place.summary_with(&format!("--seed 3 {arguments}"), &[FROM_ABOVE, "--profile", profile]);
+        place.summary_with(&format!("--seed 3 {arguments}"), &[FROM_ABOVE, "--ball-profile", profile]);
         place.npy::<u8>("answers.npy").1
     };
     let [sphere, cone] = ["sphere", "paper-cone"].map(&mut answers);
@@ -345,7 +345,7 @@ fn a_camera_and_a_panorama_answer_by_exact_lines_of_sight() {
     }
     place.refusal(
         2,
-        &format!("query house.laz --targets targets.npy -o a.npy --profile paper-cone {camera}"),
+        &format!("query house.laz --targets targets.npy -o a.npy --ball-profile paper-cone {camera}"),
         &["cone"],
     );
 }

@@ -142,7 +142,7 @@ fn faces_that_are_turned_away_are_not_lit() {
 fn a_film_has_a_frame_for_each_sun() {
     let place = place();
     let run = place.summary(&format!(
-        "shadow {HOUSE} --date 2026-12-21 --zone Europe/Amsterdam --step 60 --cell 1 -o day.csv --film day.png --frames frames --seconds 0.5"
+        "shadow {HOUSE} --date 2026-12-21 --zone Europe/Amsterdam --time-step-min 60 --cell 1 -o day.csv --film day.png --frames frames --frame-duration-s 0.5"
     ));
     let suns = run["sun"]["suns"].as_u64().unwrap();
     // the sun is up for 7 h 40
@@ -171,7 +171,7 @@ fn what_cannot_be_is_refused_with_advice() {
         ("--sun nan,30 -o no.csv", "finite"),
         ("--sun 180,30 --time 2026-06-21T15:00Z -o no.csv", "--time"),
         ("--date shortest-day --location 80,15 -o no.csv", "does not rise"),
-        ("--date 2026-06-21 --step 0 -o no.csv", "--step"),
+        ("--date 2026-06-21 --time-step-min 0 -o no.csv", "--time-step-min"),
         ("--sun 180,30 --unproven report -o no.csv", "pulses"),
         ("--sun 180,30 --soft --unproven report -o no.csv", "hard edges"),
         ("--sun 180,30 --sun 180,40 --unproven report -o no.csv", "one sun"),
@@ -179,8 +179,8 @@ fn what_cannot_be_is_refused_with_advice() {
         ("--sun 180,30 --film no.png -o no.png", "two results"),
         ("--sun 180,30 --film film.png --targets places.csv -o no.csv", "grid"),
         ("--sun 180,30 --frames frames --targets places.csv -o no.csv", "grid"),
-        ("--sun 180,30 --seconds 0.1 -o no.csv", "--film"),
-        ("--sun 180,30 --film film.png --seconds 0 -o no.csv", "--seconds"),
+        ("--sun 180,30 --frame-duration-s 0.1 -o no.csv", "--film"),
+        ("--sun 180,30 --film film.png --frame-duration-s 0 -o no.csv", "--frame-duration-s"),
         ("--sun 180,30 --targets places.csv --cell 2 -o no.csv", "--cell"),
         ("--sun 180,30 --targets places.csv -o no.tif", "csv"),
         ("--sun 180,30 --facing normals -o no.csv", "level"),

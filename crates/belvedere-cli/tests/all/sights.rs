@@ -49,8 +49,8 @@ fn pairs_around_a_house_are_blocked_where_its_walls_stand() {
 #[test]
 fn a_profile_shows_the_house_between() {
     let place = place();
-    let line = format!("--from {},{},2 --to {},{},2", EAST - 12.0, NORTH, EAST + 12.0, NORTH);
-    place.summary(&format!("line-of-sight {HOUSE} {line} --profile-out profile.csv --profile-step 0.5"));
+    let line = format!("--observer {},{},2 --target {},{},2", EAST - 12.0, NORTH, EAST + 12.0, NORTH);
+    place.summary(&format!("line-of-sight {HOUSE} {line} --profile-out profile.csv --distance-step-m 0.5"));
     let text = place.text("profile.csv");
     let (distances, blocked, ground) =
         (numbers(&text, "distance_m"), numbers(&text, "blocked"), numbers(&text, "ground"));
@@ -91,7 +91,7 @@ fn a_viewshed_hides_what_lies_behind_the_house() {
     assert_eq!(cells.len(), (width * height) as usize);
     let cell = |x: f64, y: f64| cells[index(at(x, y, 0.0))];
     // before the house, behind it, in it, and beside it
-    assert_eq!((cell(-8.5, 0.5), cell(8.5, 0.5), cell(0.5, 0.5), cell(-6.5, 10.5)), (255, 0, 0, 255));
+    assert_eq!((cell(-8.5, 0.5), cell(8.5, 0.5), cell(0.5, 0.5), cell(-6.5, 10.5)), (1, 0, 0, 1));
     let (shape, heights) = place.npy::<f32>("heights.npy");
     assert_eq!(shape, [u64::from(height), u64::from(width)]);
     // the eye at 1.7 m looks over the west end of the ridge, 7 m off and 8.9 m high where the line passes: 20.5 m off a thing must reach
@@ -101,7 +101,7 @@ fn a_viewshed_hides_what_lies_behind_the_house() {
     assert_eq!(heights[index(at(-8.5, 0.5, 0.0))], 0.0);
     let (shape, masks) = place.npy::<u32>("masks.npy");
     assert_eq!(shape, [1, u64::from(height), u64::from(width)]);
-    assert!(masks.iter().zip(&cells).all(|(bits, cell)| (*bits == 1) == (*cell == 255)));
+    assert!(masks.iter().zip(&cells).all(|(bits, cell)| (*bits == 1) == (*cell == 1)));
     assert!(place.text("seen.geojson").contains("MultiPolygon"));
     assert!(column(&place.text("seen.csv"), "answer").contains(&"0".to_owned()));
 }
@@ -125,7 +125,7 @@ fn observers_come_from_tables_and_geojson_and_paths_have_a_step() {
     );
     let summary = place.summary(&format!("viewshed {HOUSE} --observers observers.csv --cell 1 -o count.tif"));
     assert_eq!(summary["observers"]["count"], 2);
-    let walk = format!("viewshed {HOUSE} --observers observers.csv --step 2 --cell 2 -o count.tif");
+    let walk = format!("viewshed {HOUSE} --observers observers.csv --distance-step-m 2 --cell 2 -o count.tif");
     assert_eq!(place.summary(&walk)["observers"]["count"], 6, "10 m in steps of 2 m, and the end is one of them");
     // the older member `crs` and its plane coordinates
     let line = format!(
@@ -159,7 +159,11 @@ fn what_cannot_be_is_refused_with_advice() {
         &format!("viewshed {HOUSE} {observer} --min-distance 9 --max-distance 5 -o seen.tif"),
         &["distance"],
     );
-    place.refusal(2, &format!("viewshed {HOUSE} --target {EAST},{NORTH} --azimuth 0,90 -o seen.tif"), &["--azimuth"]);
+    place.refusal(
+        2,
+        &format!("viewshed {HOUSE} --target {EAST},{NORTH} --azimuth-range 0,90 -o seen.tif"),
+        &["--azimuth-range"],
+    );
     place.refusal(1, "viewshed house.laz --method tau --ground classed --observer 85000,446000 -o a.tif", &["class 2"]);
     place.write("pairs.csv", "ax,ay,az,bx,by\n1,2,3,4,5\n");
     place.refusal(1, "line-of-sight house.laz --method tau --pairs pairs.csv -o out.csv", &["bz", "ax, ay"]);

@@ -119,7 +119,7 @@ fn flags_of_the_airborne_scanner_do_what_they_say() {
 #[test]
 fn a_terrestrial_survey_names_its_stations() {
     let place = Workplace::new();
-    let flags = "--scanner terrestrial --stations 3 --angular-step 1 --max-range 30";
+    let flags = "--scanner terrestrial --stations 3 --angle-step-deg 1 --max-range 30";
     let summary = place.summary(&format!("simulate old-town -o out --extent 100 {flags}"));
     assert_eq!(summary["survey"]["stations"], 3);
     let text = place.text("out/stations.csv");
@@ -165,8 +165,8 @@ fn wrong_use_is_refused_with_the_way_out() {
     place.refusal(2, "simulate -o out --extent 5000 --density 200", &["--density", "memory"]);
     place.refusal(
         2,
-        "simulate -o out --scanner terrestrial --angular-step 0.01 --stations 9",
-        &["--angular-step", "memory"],
+        "simulate -o out --scanner terrestrial --angle-step-deg 0.01 --stations 9",
+        &["--angle-step-deg", "memory"],
     );
     place.refusal(1, "simulate -o out --extent 60 --density 0.1 --dropout 1", &["--dropout"]);
     place.refusal(1, "simulate -o no/such/out --extent 60 --density 0.1", &["no/such"]);

@@ -33,8 +33,9 @@ fn exact(spot: [f64; 3]) -> [f64; 2] {
 #[test]
 fn cells_and_points_see_as_much_sky_as_beside_the_exact_house() {
     let place = place();
-    let run = place
-        .summary(&format!("sky-view {HOUSE} --cell 2 --height 0.5 -o sky.csv -o sky.tif -o sky.png --measures all"));
+    let run = place.summary(&format!(
+        "sky-view {HOUSE} --cell 2 --target-height 0.5 -o sky.csv -o sky.tif -o sky.png --measures all"
+    ));
     assert_eq!(run["lines_of_sight"]["directions"], 577);
     let columns = ["x", "y", "z", "sky_view_factor", "sky_openness"];
     let [x, y, z, factor, openness] = columns.map(|name| column(&place, "sky.csv", name));
@@ -108,7 +109,7 @@ fn faces_of_a_mesh_see_the_half_that_they_are_turned_to() {
 #[test]
 fn cells_of_the_surface_stand_on_the_roof() {
     let place = place();
-    place.summary(&format!("sky-view {HOUSE} --surface --cell 1 --height 0 --directions 64 -o roof.csv"));
+    place.summary(&format!("sky-view {HOUSE} --surface --cell 1 --target-height 0 --directions 64 -o roof.csv"));
     let [x, y, z] = ["x", "y", "z"].map(|name| column(&place, "roof.csv", name));
     let mut on_roof = 0;
     for i in 0..x.len() {
@@ -134,8 +135,8 @@ fn what_cannot_be_is_refused_with_advice() {
         ("--surface --self -o no.csv", "--self"),
         ("--cell 0 -o no.csv", "--cell"),
         ("--cell 1e-9 -o no.csv", "--cell"),
-        ("--height nan -o no.csv", "--height"),
-        ("--targets places.csv --height 1 -o no.csv", "--height"),
+        ("--target-height nan -o no.csv", "--target-height"),
+        ("--targets places.csv --target-height 1 -o no.csv", "--target-height"),
         ("--targets places.csv --measures all -o no.csv", "--measures"),
         ("--targets places.csv --facing normals -o no.csv", "belvedere normals"),
         ("--cell 2 -o no.xls", "-o"),

@@ -70,7 +70,8 @@ fn hours_are_those_of_the_exact_house() {
 fn rules_and_periods_have_columns_and_a_kept_matrix_answers_the_same() {
     let place = place();
     let rules = "--rule bre-equinox --rule 11@03-21 --rule 1@shortest-day>5";
-    let first = place.summary(&format!("sun-hours {HOUSE} {rules} --targets places.csv -o rules.csv --keep seen.npz"));
+    let first =
+        place.summary(&format!("sun-hours {HOUSE} {rules} --targets places.csv -o rules.csv --save-matrix seen.npz"));
     let met = |name: &str| ["bre_equinox", "rule_1", "rule_2"].map(|rule| column(&place, name, rule));
     // two hours everywhere; eleven only where the house does not stand before the sun
     assert_eq!(met("rules.csv")[0], [1.0; 4]);
@@ -81,17 +82,17 @@ fn rules_and_periods_have_columns_and_a_kept_matrix_answers_the_same() {
     let directions: Vec<f64> = place.npz("seen.npz", "directions");
     assert_eq!(bits.len(), 4 * (directions.len() / 3).div_ceil(64));
     let again =
-        place.summary(&format!("sun-hours {HOUSE} {rules} --targets places.csv -o again.csv --from-matrix seen.npz"));
+        place.summary(&format!("sun-hours {HOUSE} {rules} --targets places.csv -o again.csv --load-matrix seen.npz"));
     assert_eq!(place.text("again.csv"), place.text("rules.csv"));
     assert!(again.get("lines_of_sight").is_none(), "nothing is looked at again");
     // another day than those kept, other places, other balls, a file that is none
     for (status, flags, words) in [
-        (2, "--date 2026-06-21 --targets places.csv --from-matrix seen.npz", "degrees"),
-        (1, "--rule bre-equinox --cell 5 --from-matrix seen.npz", "places"),
-        (1, "--rule bre-equinox --targets places.csv --shell 0.3 --from-matrix seen.npz", ""),
-        (1, "--rule bre-equinox --targets places.csv --from-matrix places.csv", "places.csv"),
-        (1, "--rule bre-equinox --targets places.csv --from-matrix missing.npz", "missing.npz"),
-        (2, "--rule bre-equinox --targets places.csv --from-matrix seen.npz --keep other.npz", "--keep"),
+        (2, "--date 2026-06-21 --targets places.csv --load-matrix seen.npz", "degrees"),
+        (1, "--rule bre-equinox --cell 5 --load-matrix seen.npz", "places"),
+        (1, "--rule bre-equinox --targets places.csv --shell 0.3 --load-matrix seen.npz", ""),
+        (1, "--rule bre-equinox --targets places.csv --load-matrix places.csv", "places.csv"),
+        (1, "--rule bre-equinox --targets places.csv --load-matrix missing.npz", "missing.npz"),
+        (2, "--rule bre-equinox --targets places.csv --load-matrix seen.npz --save-matrix other.npz", "--save-matrix"),
     ] {
         let run = place.run(&format!("sun-hours {HOUSE} {flags} -o no.csv"));
         assert!(run.status != 0 && run.stderr.contains(words), "{flags}: {run:?}");
@@ -101,12 +102,12 @@ fn rules_and_periods_have_columns_and_a_kept_matrix_answers_the_same() {
     place.write("cut.npz", &whole[..whole.len() / 2]);
     place.refusal(
         1,
-        &format!("sun-hours {HOUSE} {rules} --targets places.csv -o no.csv --from-matrix cut.npz"),
+        &format!("sun-hours {HOUSE} {rules} --targets places.csv -o no.csv --load-matrix cut.npz"),
         &["cut.npz"],
     );
     // a span between two times, on a grid
     place.summary(&format!(
-        "sun-hours {HOUSE} --from 2026-03-20T12:00+01:00 --to 2026-03-22T12:00+01:00 --step 30 --cell 4 -o grid.csv -o grid.tif -o grid.png"
+        "sun-hours {HOUSE} --from 2026-03-20T12:00+01:00 --to 2026-03-22T12:00+01:00 --time-step-min 30 --cell 4 -o grid.csv -o grid.tif -o grid.png"
     ));
     let [hours, total, least] = ["sun_hours", "total_hours", "least_day"].map(|name| column(&place, "grid.csv", name));
     assert!(hours.iter().zip(&total).all(|(hours, total)| (3.0 * hours - total).abs() < 5e-3));
@@ -121,17 +122,17 @@ fn what_cannot_be_is_refused_with_advice() {
         ("", "--date"),
         ("--date 2026-02-30", "--date"),
         ("--date soon", "2026-06-21"),
-        ("--date 2026-06-21 --step 0", "--step"),
-        ("--date 2026-06-21 --step 61", "3600"),
-        ("--date 2026-06-21 --step nan", "--step"),
-        ("--date 2026-06-21 --within 6", "--within"),
-        ("--date 2026-06-21 --within -1", "--within"),
-        ("--date 2026-06-21 --least-elevation 90", "elevation"),
+        ("--date 2026-06-21 --time-step-min 0", "--time-step-min"),
+        ("--date 2026-06-21 --time-step-min 61", "3600"),
+        ("--date 2026-06-21 --time-step-min nan", "--time-step-min"),
+        ("--date 2026-06-21 --sun-tolerance-deg 6", "--sun-tolerance-deg"),
+        ("--date 2026-06-21 --sun-tolerance-deg -1", "--sun-tolerance-deg"),
+        ("--date 2026-06-21 --min-sun-elevation 90", "elevation"),
         ("--date 2026-06-21 --zone Mars/Olympus", "--zone"),
         ("--date 2026-06-21 --location 91,5", "--location"),
         ("--date 2026-06-21 --location 52", "--location"),
         ("--date 2026-06-21 --air 0,10", "hPa"),
-        ("--date 2026-06-21 --air 1000,10 --elevation geometric", "--air"),
+        ("--date 2026-06-21 --air 1000,10 --sun-elevation geometric", "--air"),
         ("--date 2026-06-21 --from 2026-06-21 --to 2026-06-22", "--from"),
         ("--from 2026-06-21", "--to"),
         ("--from 2026-06-22 --to 2026-06-21", "--to"),
@@ -142,7 +143,7 @@ fn what_cannot_be_is_refused_with_advice() {
         ("--rule sunny", "nl-light"),
         ("--rule bre-equinox --rule bre-equinox", "twice"),
         ("--rule bre-equinox --year 999", "1000"),
-        ("--rule bre-equinox --keep seen.txt", "--keep"),
+        ("--rule bre-equinox --save-matrix seen.txt", "--save-matrix"),
     ] {
         let run = place.run(&format!("sun-hours {HOUSE} {flags} --targets places.csv -o no.csv"));
         assert!(run.status == 2 && run.stderr.contains(words), "{flags}: {run:?}");

@@ -76,7 +76,7 @@ fn meshes_refuse_what_is_for_points_and_points_what_is_for_meshes() {
 #[test]
 fn landmarks_give_tables_rasters_and_maps() {
     let place = place();
-    let wall = format!("landmark {HOUSE} --target wall.obj --object back");
+    let wall = format!("landmark {HOUSE} --targets wall.obj --object back");
     let (east, west) = (at(40.0, 0.0, 3.5), at(0.0, 0.0, 14.0));
     place.write(
         "eyes.csv",
@@ -93,7 +93,7 @@ fn landmarks_give_tables_rasters_and_maps() {
     assert!((column(&place, "views.csv", "horizon_share")[0] - extent / 360.0).abs() < 1e-4);
     assert!(column(&place, "views.csv", "nearest_m")[1].is_nan());
     let run = place.summary(&format!(
-        "landmark {HOUSE} --ground found --target wall.obj --cell 3 --measures all -o share.tif -o share.png -o grid.csv"
+        "landmark {HOUSE} --ground found --targets wall.obj --cell 3 --measures all -o share.tif -o share.png -o grid.csv"
     ));
     let standing = run["observers"]["count"].as_u64().unwrap();
     assert!(run["observers"]["inside_something_solid"].as_u64().unwrap() > 0, "{run}");
@@ -115,14 +115,14 @@ fn landmarks_give_tables_rasters_and_maps() {
 #[test]
 fn landmarks_say_what_is_wrong_with_them() {
     let place = place();
-    place.refusal(1, &format!("landmark {HOUSE} --target wall.obj --object tower -o a.csv"), &["tower", "wall, west"]);
-    place.refusal(2, &format!("landmark {HOUSE} -o a.csv"), &["--target"]);
+    place.refusal(1, &format!("landmark {HOUSE} --targets wall.obj --object tower -o a.csv"), &["tower", "wall, west"]);
+    place.refusal(2, &format!("landmark {HOUSE} -o a.csv"), &["--targets"]);
     place.refusal(1, &format!("landmark {HOUSE} --target-class 6 -o a.csv"), &["class"]);
     place.write("eyes.csv", "x,y\n1,2\n");
-    place.refusal(2, &format!("landmark {HOUSE} --target wall.obj --observers eyes.csv -o a.tif"), &["grid", ".csv"]);
+    place.refusal(2, &format!("landmark {HOUSE} --targets wall.obj --observers eyes.csv -o a.tif"), &["grid", ".csv"]);
     place.refusal(
         1,
-        &format!("landmark {HOUSE} --target wall.obj --observers eyes.csv -o a.csv"),
+        &format!("landmark {HOUSE} --targets wall.obj --observers eyes.csv -o a.csv"),
         &["observer 1", "ground"],
     );
     place.write("line.csv", "x,y\n1,2\n3,4\n");
@@ -135,7 +135,7 @@ fn isovists_and_horizons_of_a_house_are_those_of_its_shape() {
     let place = place();
     let eye = at(0.0, -14.0, 1.7).map(|v| v.to_string()).join(",");
     let run =
-        place.summary(&format!("isovist {HOUSE} --eye {eye} --max-distance 30 -o one.csv -o one.json -o one.png"));
+        place.summary(&format!("isovist {HOUSE} --observer {eye} --max-distance 30 -o one.csv -o one.json -o one.png"));
     // the wall of the house is 10 m north of the eye
     let nearest = run["isovist"]["plan_range_min_m"].as_f64().unwrap();
     assert!((nearest - 10.0).abs() < 0.3, "{run}");
@@ -151,7 +151,7 @@ fn isovists_and_horizons_of_a_house_are_those_of_its_shape() {
     );
     assert!(json["isovists"][0]["plan_corners_azimuth_deg_range_m"].as_array().unwrap().len() >= 1440);
 
-    place.summary(&format!("horizon {HOUSE} --eye {eye} -o sky.csv -o sky.txt -o sky.png"));
+    place.summary(&format!("horizon {HOUSE} --grid-north --observer {eye} -o sky.csv -o sky.txt -o sky.png"));
     let (names, _) = rows(&place, "sky.csv");
     assert_eq!(names, ["azimuth", "elevation"]);
     assert_eq!(column(&place, "sky.csv", "azimuth"), (0..360).map(f64::from).collect::<Vec<_>>());
@@ -162,8 +162,8 @@ fn isovists_and_horizons_of_a_house_are_those_of_its_shape() {
     assert!(elevations[180] < 2.0 && elevations[45] < 2.0);
     let lines: Vec<f64> = place.text("sky.txt").lines().map(|line| line.parse().unwrap()).collect();
     assert!(lines.iter().zip(&elevations).all(|(line, elevation)| (line - elevation).abs() < 0.0051));
-    // true north lies elsewhere: the grid is turned by some tenths of a degree west of its middle
-    let run = place.summary(&format!("horizon {HOUSE} --eye {eye} --north true --step 7.5 --below keep -o true.csv"));
+    // true north differs: west of the middle of the grid it is turned by some tenths of a degree
+    let run = place.summary(&format!("horizon {HOUSE} --observer {eye} --angle-step-deg 7.5 --below keep -o true.csv"));
     let convergence = run["meridian_convergence_deg"].as_f64().unwrap();
     assert!((-1.2..-0.5).contains(&convergence), "{convergence}");
     assert_eq!(column(&place, "true.csv", "azimuth")[1], 7.5);
@@ -172,15 +172,19 @@ fn isovists_and_horizons_of_a_house_are_those_of_its_shape() {
     // several eyes on the ground that is found below them: a column, or a row, each
     let eyes: String = [-13.0, 13.0].iter().map(|y| format!("{},{}\n", EAST, NORTH + y)).collect();
     place.write("eyes.csv", format!("x,y\n{eyes}"));
-    place.summary(&format!("horizon {HOUSE} --eyes eyes.csv -o two.csv"));
+    place.summary(&format!("horizon {HOUSE} --observers eyes.csv -o two.csv"));
     assert_eq!(rows(&place, "two.csv").0, ["azimuth", "elevation_1", "elevation_2"]);
-    place.summary(&format!("isovist {HOUSE} --eyes eyes.csv -o two_isovists.csv"));
+    place.summary(&format!("isovist {HOUSE} --observers eyes.csv -o two_isovists.csv"));
     let heights = column(&place, "two_isovists.csv", "z");
     assert!(heights.len() == 2 && heights.iter().all(|z| (z - 1.7).abs() < 0.1), "{heights:?}");
-    place.refusal(2, &format!("horizon {HOUSE} --eyes eyes.csv -o two.txt"), &[".csv"]);
-    place.refusal(2, &format!("isovist {HOUSE} --eyes eyes.csv -o two.png"), &["single eye"]);
-    place.refusal(2, &format!("horizon {HOUSE} --eye {eye} --step 7 -o sky.csv"), &["--step", "360"]);
-    place.refusal(2, &format!("isovist {HOUSE} --eye {eye} --step 100 -o a.csv"), &["--step"]);
+    place.refusal(2, &format!("horizon {HOUSE} --observers eyes.csv -o two.txt"), &[".csv"]);
+    place.refusal(2, &format!("isovist {HOUSE} --observers eyes.csv -o two.png"), &["single eye"]);
+    place.refusal(
+        2,
+        &format!("horizon {HOUSE} --observer {eye} --angle-step-deg 7 -o sky.csv"),
+        &["--angle-step-deg", "360"],
+    );
+    place.refusal(2, &format!("isovist {HOUSE} --observer {eye} --angle-step-deg 100 -o a.csv"), &["--angle-step-deg"]);
     let far = format!("{},{}", EAST + 500.0, NORTH);
-    place.refusal(1, &format!("horizon {HOUSE} --eye {far} -o sky.csv"), &["eye 1", "ground"]);
+    place.refusal(1, &format!("horizon {HOUSE} --observer {far} -o sky.csv"), &["eye 1", "ground"]);
 }

@@ -20,7 +20,7 @@ fn flown(truth: &[Vec<f64>], time: f64) -> [f64; 3] {
 fn the_path_is_the_one_flown_and_serves_as_a_trajectory() {
     let place = Workplace::new();
     place.summary("simulate town -o town --extent 100 --density 6");
-    let made = place.summary("trajectory town/cloud.laz --step 0.25 -o found.csv");
+    let made = place.summary("trajectory town/cloud.laz --time-step-s 0.25 -o found.csv");
     assert_eq!(made["scanner"]["found_by"], "pulses with several returns", "{made}");
     let lines = made["scanner_by_line"].as_array().unwrap();
     assert_eq!(lines.len(), 2, "{made}");
@@ -57,6 +57,6 @@ fn what_tells_no_path_is_refused() {
     place.write("bare.xyz", "1 1 1\n2 2 2\n3 4 4\n4 4 5\n");
     place.refusal(1, "trajectory bare.xyz -o found.csv", &["GPS time"]);
     place.refusal(2, "trajectory bare.xyz -o found.laz", &[".csv"]);
-    place.refusal(2, "trajectory bare.xyz --step 5 -o found.csv", &["--step", "2 s"]);
+    place.refusal(2, "trajectory bare.xyz --time-step-s 5 -o found.csv", &["--time-step-s", "2 s"]);
     assert_eq!(place.names(), ["bare.xyz"]);
 }

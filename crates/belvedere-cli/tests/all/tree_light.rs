@@ -51,12 +51,17 @@ fn values(place: &Workplace, command: &str, flags: &str, names: &[&str]) -> Vec<
 /// Each command with the days that count in leaf and bare, and the columns that light through crowns changes.
 const COMMANDS: [(&str, &str, &str, &[&str]); 4] = [
     ("shadow", "--time 2026-07-01T13:40+02:00", "--time 2026-01-15T12:40+01:00", &["lit"]),
-    ("sun-hours", "--date 2026-07-01 --step 30", "--date 2026-01-15 --step 30", &["sun_hours", "sun_share"]),
+    (
+        "sun-hours",
+        "--date 2026-07-01 --time-step-min 30",
+        "--date 2026-01-15 --time-step-min 30",
+        &["sun_hours", "sun_share"],
+    ),
     ("sky-view", "--leaves on", "--leaves off", &["sky_view_factor", "sky_openness"]),
     (
         "irradiance",
-        "--clear-sky haurwitz --sun-cell 6 --patch-division 1 --leaves on",
-        "--clear-sky haurwitz --sun-cell 6 --patch-division 1 --leaves off",
+        "--clear-sky haurwitz --sun-cell-deg 6 --patch-division 1 --leaves on",
+        "--clear-sky haurwitz --sun-cell-deg 6 --patch-division 1 --leaves off",
         &["kwh_m2", "beam_kwh_m2", "sky_kwh_m2"],
     ),
 ];
@@ -107,7 +112,7 @@ fn what_arrives_lies_between_shade_and_open_by_the_share() {
 fn a_year_has_both_seasons() {
     let place = place();
     let energy = |flags: &str| {
-        let usual = "--clear-sky haurwitz --sun-cell 6 --patch-division 1 --months";
+        let usual = "--clear-sky haurwitz --sun-cell-deg 6 --patch-division 1 --months";
         let run = place.summary(&format!("irradiance {TREES} {usual} {flags} --targets places.csv -o out.csv"));
         let months = |month: u32| column(&place, "out.csv", &format!("kwh_m2_{month:02}"));
         (months(1), months(7), column(&place, "out.csv", "kwh_m2"), run)
@@ -127,10 +132,11 @@ fn a_year_has_both_seasons() {
     let whole = |run: &serde_json::Value| run["radiation"]["global_kwh_m2"].as_f64().unwrap();
     assert!((whole(&run) - whole(&energy("").3)).abs() < 0.11);
     // sun hours of days on both sides of 7 April
-    let hours = |flags: &str| values(&place, &format!("sun-hours {TREES} --step 30"), flags, &["sun_hours"]).remove(0);
-    let both = hours("--from 2026-04-05 --to 2026-04-08 --through-trees seasons --within 0");
+    let hours =
+        |flags: &str| values(&place, &format!("sun-hours {TREES} --time-step-min 30"), flags, &["sun_hours"]).remove(0);
+    let both = hours("--from 2026-04-05 --to 2026-04-08 --through-trees seasons --sun-tolerance-deg 0");
     let parts = ["2026-04-05 --to 2026-04-06", "2026-04-07 --to 2026-04-08"]
-        .map(|days| hours(&format!("--from {days} --through-trees seasons --within 0")));
+        .map(|days| hours(&format!("--from {days} --through-trees seasons --sun-tolerance-deg 0")));
     for i in 0..4 {
         assert!((both[i] - f64::midpoint(parts[0][i], parts[1][i])).abs() < 2e-3, "{both:?} {parts:?}");
     }
@@ -141,7 +147,7 @@ fn a_year_has_both_seasons() {
 fn planes_of_roofs_get_light_through_crowns() {
     let place = place();
     let energy = |flags: &str| {
-        let usual = "--clear-sky haurwitz --sun-cell 6 --patch-division 1";
+        let usual = "--clear-sky haurwitz --sun-cell-deg 6 --patch-division 1";
         place.summary(&format!("irradiance tall.laz --orient given --method tau {usual} {flags} --planes roofs.csv"));
         ["kwh_m2", "free_kwh_m2", "least_loss", "most_loss"].map(|name| column(&place, "roofs.csv", name))
     };
@@ -174,10 +180,10 @@ fn what_cannot_be_is_refused_with_advice() {
             assert!(run.status == 2 && run.stderr.contains(words), "{command} {trees}: {run:?}");
         }
     }
-    for flags in ["--keep seen.npz", "--from-matrix seen.npz"] {
+    for flags in ["--save-matrix seen.npz", "--load-matrix seen.npz"] {
         let command =
             format!("sun-hours {TREES} --date 2026-06-21 --through-trees 0.5 --targets places.csv {flags} -o no.csv");
-        place.refusal(2, &command, &["--through-trees", "--keep"]);
+        place.refusal(2, &command, &["--through-trees", "--save-matrix"]);
     }
     assert!(!place.path("no.csv").exists() && !place.path("seen.npz").exists());
     // commands that ask no pulses know no --unproven

@@ -166,7 +166,7 @@ fn wrong_usage_names_the_flag_and_ends_with_status_2() {
         ("balls house.laz -o out.npz --nan", &["--nan", "without extension"]),
         ("balls house.laz -o out --simplify 0", &["--simplify", "above zero"]),
         ("balls house.laz -o out --simplify -1", &["--simplify", "above zero"]),
-        ("balls house.laz -o out --cell-size 1", &["--simplify"]),
+        ("balls house.laz -o out --cell 1", &["--simplify"]),
         ("balls house.laz -o out.npz --method tau --first-angle 30", &["--first-angle", "--method angles"]),
         ("balls house.laz -o out.npz --first-angle 30", &["--first-angle", "--method angles"]),
         ("balls house.laz -o out --penetration 0.1", &["--penetration", "--method tau"]),
@@ -184,8 +184,8 @@ fn wrong_usage_names_the_flag_and_ends_with_status_2() {
         ("depth-map house.laz -o out.tif", &["--viewport", "--sun", "--direction"]),
         ("depth-map house.laz --sun 180,30 --direction 0,0,-1 -o out.tif", &["--sun", "--direction"]),
         ("depth-map house.laz --sun 180,30 -o out.jpg", &["-o out.jpg", ".tif"]),
-        ("depth-map house.laz --sun 180,30 -o out.tif --balls-id out.png", &["--balls-id out.png", ".npy"]),
-        ("depth-map house.laz --sun 180,30 -o out.tif --balls-id out.tif", &["--balls-id"]),
+        ("depth-map house.laz --sun 180,30 -o out.tif --ball-ids out.png", &["--ball-ids out.png", ".npy"]),
+        ("depth-map house.laz --sun 180,30 -o out.tif --ball-ids out.tif", &["--ball-ids"]),
         ("depth-map house.laz --sun 180,30 --pixel 0 -o out.tif", &["--pixel", "above zero"]),
         ("depth-map house.laz --sun 180,30 --pixel -1 -o out.tif", &["--pixel", "above zero"]),
         ("depth-map house.laz --sun 180,30 --pixel nan -o out.tif", &["--pixel", "above zero"]),
@@ -240,7 +240,7 @@ fn an_output_in_a_folder_that_is_not_there_is_refused_at_once() {
         "balls house.laz -o nowhere/out.npz",
         "balls house.laz -o nowhere/out",
         "depth-map house.laz --sun 180,30 -o nowhere/out.tif",
-        "depth-map house.laz --sun 180,30 -o out.tif --balls-id nowhere/out.npy",
+        "depth-map house.laz --sun 180,30 -o out.tif --ball-ids nowhere/out.npy",
         "query house.laz --sun 180,30 --self -o nowhere/out.csv",
     ] {
         let run = place.refusal(1, &format!("{arguments} -v"), &["nowhere/out", "does not exist", "create it"]);

@@ -70,7 +70,7 @@ pub(super) fn routes(
         if corners.len() < 2 {
             return wrong_shape("--route", route, "a route needs two corners or more");
         }
-        let along = flagged("--route-step", places_along(&corners, step))?;
+        let along = flagged("--distance-step-m", places_along(&corners, step))?;
         groups.push(places.len()..places.len() + along.len());
         names.push(quoted(&named.name));
         places.extend(along);
@@ -150,17 +150,17 @@ fn set_on_ground(
     Ok(unknown)
 }
 
-/// Windows of a table, or the faces of a mesh.
+/// Windows of a table, or the faces of a mesh. `grid_north` is the azimuth of grid north, radians.
 pub(super) fn windows(
     arguments: &Comfort,
     path: &Path,
-    scene: &Scene,
+    (scene, grid_north): (&Scene, f64),
     seed: u64,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<Places> {
     if is_mesh(path) {
-        return faces(arguments, path, scene, seed, stages, summary);
+        return faces(arguments, path, (scene, grid_north), seed, stages, summary);
     }
     if arguments.spacing.is_some() {
         return Err(Usage("--spacing belongs to windows that are a mesh".to_owned()).into());
@@ -185,7 +185,7 @@ pub(super) fn windows(
         if !(0.0..=180.0).contains(&tilt) {
             bail!("{}: row {}: a tilt of {tilt} is not from 0 (up) to 180 degrees", path.display(), row + 1);
         }
-        let normal = plane_normal(azimuth[row].to_radians(), tilt.to_radians());
+        let normal = plane_normal(azimuth[row].to_radians() - grid_north, tilt.to_radians());
         let size = [width[row], height[row]];
         let size = size.iter().all(|v| v.is_finite()).then_some(size);
         let center = local(&scene.cloud, [x[row], y[row], z[row]]);
@@ -210,7 +210,7 @@ pub(super) fn windows(
 fn faces(
     arguments: &Comfort,
     path: &Path,
-    scene: &Scene,
+    (scene, grid_north): (&Scene, f64),
     seed: u64,
     stages: &mut Stages,
     summary: &mut Summary,
@@ -239,7 +239,8 @@ fn faces(
         centers.push([middle(0), middle(1), middle(2)]);
         let [nx, ny, nz] = run[0].normal.map(f64::from);
         let upright = nx.hypot(ny);
-        azimuths.push(if upright > 1e-6 { nx.atan2(ny).to_degrees().rem_euclid(360.0) } else { f64::NAN });
+        let azimuth = || (nx.atan2(ny) + grid_north).to_degrees().rem_euclid(360.0);
+        azimuths.push(if upright > 1e-6 { azimuth() } else { f64::NAN });
         tilts.push(upright.atan2(nz).to_degrees());
         areas.push(area);
         let object = mesh.objects.get(run[0].face as usize).and_then(|&object| mesh.object_names.get(object as usize));

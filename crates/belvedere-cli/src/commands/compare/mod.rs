@@ -23,10 +23,10 @@ use std::path::Path;
 
 pub(crate) fn run(arguments: &Compare, global: &Global) -> Result<Summary> {
     if !arguments.scene.is_empty() && arguments.mesh.is_none() {
-        return Err(Usage("--scene needs --mesh, the exact surface that answers are held against".to_owned()).into());
+        return Err(Usage("--clouds needs --mesh, the exact surface that answers are held against".to_owned()).into());
     }
     if arguments.trajectory.is_some() && arguments.scene.is_empty() && arguments.held_out.is_empty() {
-        return Err(Usage("--trajectory needs --scene or --held-out, whose scanner it is".to_owned()).into());
+        return Err(Usage("--trajectory needs --clouds or --held-out, whose scanner it is".to_owned()).into());
     }
     let folder = &arguments.output;
     atomic::make_folder(folder)?;

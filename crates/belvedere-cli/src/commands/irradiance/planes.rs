@@ -68,7 +68,7 @@ pub(super) fn find(
     let (rows, from) = roof_points(&cloud, &ground)?;
     let places: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
     let planes = stages.run("finding planes of roofs", 0, |_| roof_planes(&places, &params));
-    let planes = flagged("--panel, --least-area", planes)?;
+    let planes = flagged("--panel, --min-area", planes)?;
     let mut section = Summary::default();
     let from = match from {
         RoofsFrom::Class => "class 6",

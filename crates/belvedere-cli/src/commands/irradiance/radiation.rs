@@ -35,7 +35,7 @@ pub(super) fn params(arguments: &Irradiance) -> Result<IrradianceParams> {
         surroundings: arguments.surroundings.map_or(usual.surroundings, Into::into),
         grouping: if arguments.months { Grouping::Months } else { Grouping::Whole },
     };
-    flagged("--albedo, --sun-cell", params.validate())?;
+    flagged("--albedo, --sun-cell-deg", params.validate())?;
     Ok(params)
 }
 
@@ -169,7 +169,7 @@ pub(super) fn gather(
             let parts_of_row = arguments.parts.unwrap_or(PARTS);
             for (share, weather) in sky.parted(weather, &zone)? {
                 let instants = stages.run("following the sun", 0, |_| weather_instants(&weather, site, parts_of_row));
-                put(share, flagged("--parts", instants)?);
+                put(share, flagged("--parts-per-row", instants)?);
             }
         }
         None => {

@@ -31,7 +31,7 @@ pub(super) fn surface(
         flagged("--spacing", surface)?
     } else {
         if scene.cloud.is_empty() {
-            let what = "a ball file holds no points that could be a landmark: give the cloud, or a mesh with --target";
+            let what = "a ball file holds no points that could be a landmark: give the cloud, or a mesh with --targets";
             return Err(Usage(what.to_owned()).into());
         }
         let polygons;
@@ -42,9 +42,10 @@ pub(super) fn surface(
                 LandmarkPoints::Inside(&polygons)
             }
             (None, None) => {
-                return Err(
-                    Usage("say what the landmark is: --target, --target-class or --target-polygon".to_owned()).into()
-                );
+                return Err(Usage(
+                    "say what the landmark is: --targets, --target-class or --target-polygon".to_owned(),
+                )
+                .into());
             }
         };
         let (rows, surface) = stages.run("finding the landmark", 0, |_| landmark_points(&scene.cloud, &which))?;

@@ -16,11 +16,8 @@ use belvedere::query::Answer;
 use belvedere::raster::Raster;
 use std::path::Path;
 
-/// Values of a raster of answers: visible and invisible as in GDAL.
-const VISIBLE: u8 = 255;
-const UNPROVEN: u8 = 128;
-const INVISIBLE: u8 = 0;
-const NOTHING: u8 = 254;
+/// Cells without an answer in a raster of answers.
+const NODATA: u8 = 255;
 /// No count.
 const NO_COUNT: u16 = u16::MAX;
 /// No height.
@@ -53,15 +50,13 @@ pub(super) fn on_cells(
         }
         _ if one => {
             let code = |answer: &Answer| match answer {
-                Answer::Visible => VISIBLE,
-                Answer::Unproven => UNPROVEN,
-                Answer::Blocked => INVISIBLE,
-                _ => NOTHING,
+                Answer::OutsideView => NODATA,
+                known => *known as u8,
             };
             let values = seen.answers.iter().map(code).collect();
             let raster = Raster::from_values(grid.width, grid.height, values)?;
-            let what = "255 visible, 128 unproven, 0 invisible, 254 nodata";
-            Ok(write_tif_u8(output, &raster, Some(&georeference(&grid, cloud)), Some(NOTHING), Some(what))?)
+            let what = "1 visible, 0 blocked, 2 unproven, 255 nodata";
+            Ok(write_tif_u8(output, &raster, Some(&georeference(&grid, cloud)), Some(NODATA), Some(what))?)
         }
         _ => {
             let count = |(answer, &count): (&Answer, &u32)| match answer {
@@ -168,7 +163,7 @@ fn write_map(
         _ => None,
     };
     let colors: Vec<Option<[u8; 3]>> = seen.answers.iter().zip(&seen.counts).map(color).collect();
-    let mut meanings = vec![(SEEN_COLOR, "visible"), (HIDDEN_COLOR, "invisible")];
+    let mut meanings = vec![(SEEN_COLOR, "visible"), (HIDDEN_COLOR, "blocked")];
     if seen.answers.contains(&Answer::Unproven) {
         meanings.insert(1, (UNPROVEN_COLOR, "unproven"));
     }

@@ -20,19 +20,19 @@ pub(super) struct Row {
     pub(super) limits: SightLimits,
 }
 
-/// The observers that were typed or are in the file named.
-pub(super) fn rows(arguments: &Viewshed, cloud: &PointCloud) -> Result<Vec<Row>> {
+/// The observers of the flags or of the file. `grid_north` is the azimuth of grid north, radians.
+pub(super) fn rows(arguments: &Viewshed, cloud: &PointCloud, grid_north: f64) -> Result<Vec<Row>> {
     let (who, looking) = (&arguments.who, &arguments.looking);
     let unlimited = SightLimits::default();
     let limits = SightLimits {
-        azimuth: looking.azimuth.map(|v| v.0.map(f64::to_radians)),
+        azimuth: looking.azimuth.map(|v| v.0.map(|azimuth| azimuth.to_radians() - grid_north)),
         elevation: looking.elevation.map(|v| v.0.map(f64::to_radians)),
         distance: [
             looking.min_distance.map_or(unlimited.distance[0], f64::from),
             looking.max_distance.unwrap_or(unlimited.distance[1]),
         ],
     };
-    flagged("--min-distance, --max-distance, --azimuth, --elevation", limits.validate())?;
+    flagged("--min-distance, --max-distance, --azimuth-range, --elevation-range", limits.validate())?;
     let height = looking.observer_height.unwrap_or(OBSERVER_HEIGHT);
     let typed = |place: &crate::arguments::Place, height: f64| {
         let &crate::arguments::Place([x, y], z) = place;
@@ -40,7 +40,8 @@ pub(super) fn rows(arguments: &Viewshed, cloud: &PointCloud) -> Result<Vec<Row>>
     };
     if let Some(target) = &who.target {
         if limits.azimuth.is_some() || limits.elevation.is_some() {
-            let what = "--azimuth and --elevation say where an observer looks; --target has many";
+            let what =
+                "--azimuth-range and --elevation-range limit the view of one observer; with --target there are many";
             return Err(Usage(what.to_owned()).into());
         }
         return Ok(vec![typed(target, looking.target_height.unwrap_or(TARGET_HEIGHT))]);
@@ -51,25 +52,28 @@ pub(super) fn rows(arguments: &Viewshed, cloud: &PointCloud) -> Result<Vec<Row>>
     let rows_are = if looking.step.is_some() { RowsAre::Corners } else { RowsAre::Places };
     let mut rows = Vec::new();
     for row in read_observers(path, &cloud.frame.crs, rows_are)? {
-        let limits = limits_of(&row, limits);
+        let limits = limits_of(&row, limits, grid_north);
         flagged(&path.display().to_string(), limits.validate())?;
         let corners: Vec<[f64; 3]> =
             row.corners.iter().map(|c| std::array::from_fn(|i| c[i] - cloud.frame.origin[i])).collect();
-        let places = flagged("--step", places_along(&corners, looking.step.unwrap_or(STEP)))?;
+        let places = flagged("--distance-step-m", places_along(&corners, looking.step.unwrap_or(STEP)))?;
         let height = row.height.unwrap_or(height);
         rows.extend(places.into_iter().map(|place| Row { place, height, limits }));
     }
     Ok(rows)
 }
 
-/// What a file says of its observer goes before what was typed.
-fn limits_of(row: &ObserverRow, typed: SightLimits) -> SightLimits {
+/// The limits of a file override those of the flags.
+fn limits_of(row: &ObserverRow, typed: SightLimits, grid_north: f64) -> SightLimits {
     let pair = |given: [Option<f64>; 2], typed: Option<[f64; 2]>| match given {
         [Some(from), Some(to)] => Some([from.to_radians(), to.to_radians()]),
         _ => typed,
     };
     SightLimits {
-        azimuth: pair(row.azimuth_deg, typed.azimuth),
+        azimuth: match row.azimuth_deg {
+            [Some(from), Some(to)] => Some([from, to].map(|azimuth| azimuth.to_radians() - grid_north)),
+            _ => typed.azimuth,
+        },
         elevation: pair(row.elevation_deg, typed.elevation),
         distance: [row.distance[0].unwrap_or(typed.distance[0]), row.distance[1].unwrap_or(typed.distance[1])],
     }

@@ -1,0 +1,212 @@
+//! Flags of normals and balls. Every command that builds balls has them; only `normals` and `balls` list them in their help.
+
+use super::{CloudInput, Numbers, SceneConfig, above_zero};
+use belvedere::medial::Rule;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+#[derive(Args)]
+pub(crate) struct Normals {
+    #[command(flatten)]
+    pub(crate) input: CloudInput,
+    #[command(flatten)]
+    pub(crate) config: SceneConfig,
+    #[command(flatten)]
+    pub(crate) cleaning: Cleaning,
+    #[command(flatten)]
+    pub(crate) orienting: Orienting,
+    /// Cloud with normals (.laz .las .ply .csv), or a folder for coords.npy and normals.npy
+    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Args)]
+pub(crate) struct Balls {
+    #[command(flatten)]
+    pub(crate) input: CloudInput,
+    #[command(flatten)]
+    pub(crate) config: SceneConfig,
+    #[command(flatten)]
+    pub(crate) cleaning: Cleaning,
+    #[command(flatten)]
+    pub(crate) orienting: Orienting,
+    #[command(flatten)]
+    pub(crate) shrinking: Shrinking,
+    /// Side of the surface on which balls are built [default: interior]
+    ///
+    /// Interior balls block lines of sight. A folder always gets both sides.
+    #[arg(long, value_enum, default_value_t = SideChoice::Interior, hide_default_value = true)]
+    pub(crate) side: SideChoice,
+    /// Ball file (.npz, or .ply .laz .las to look at), or a folder in the layout of masbcpp
+    ///
+    /// .npz keeps everything that later commands use, including the pulses. .ply, .laz and .las keep only the balls; the radius is an
+    /// attribute. A folder gets ma_coords_*.npy and ma_qidx_*.npy with one row for each input point; no point is removed, and the
+    /// default method is `angles`.
+    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
+    pub(crate) output: PathBuf,
+    /// In a folder: write NaN as the centre of balls that never shrank
+    #[arg(long, help_heading = "Result")]
+    pub(crate) nan: bool,
+    /// In a folder: also write the local feature size and a thinning of the points
+    ///
+    /// Writes lfs.npy, and decimate_lfs.npy, which marks the points that a thinning to this share of the local feature size keeps.
+    #[arg(long, value_name = "EPSILON", help_heading = "Result", value_parser = above_zero::<f32>, allow_negative_numbers = true)]
+    pub(crate) simplify: Option<f32>,
+    /// Side of the cells in which --simplify counts points, in metres
+    #[arg(long = "cell", value_name = "M", default_value_t = 0.5, requires = "simplify", help_heading = "Result",
+        value_parser = above_zero::<f32>, allow_negative_numbers = true)]
+    pub(crate) cell_size: f32,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Cleaning")]
+pub(crate) struct Cleaning {
+    /// Keep noise points (classes 7 and 18) and withheld points
+    #[arg(long)]
+    pub(crate) keep_noise: bool,
+    /// Keep points within a millimetre of another point
+    #[arg(long)]
+    pub(crate) keep_duplicates: bool,
+    /// Keep isolated points
+    #[arg(long)]
+    pub(crate) keep_isolated: bool,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Normals")]
+pub(crate) struct Orienting {
+    /// Number of neighbours for a normal, 3 to 256, or `adaptive`
+    ///
+    /// The paper uses 6; masbcpp uses 10.
+    #[arg(long, value_name = "K", default_value = "16", allow_negative_numbers = true)]
+    pub(crate) neighbors: NeighborChoice,
+    /// How normals are oriented: auto, given, up, scanner, scanner=X,Y,Z, trajectory=FILE, pulses or mesh=FILE
+    ///
+    /// auto: the normals of the file if it has them, else the scanner positions of the file, else up; `normals` always estimates new ones.
+    /// given: the normals of the file. up: toward the sky. scanner: toward the scanner positions of the file. scanner=X,Y,Z: toward one
+    /// position. trajectory=FILE: toward the scanner positions in a table or SBET file (.csv .txt .sbet). pulses: toward scanner positions
+    /// estimated from pulses with several returns. mesh=FILE: as the nearest face of a mesh (.obj .ply .json).
+    #[arg(long, value_name = "HOW", default_value = "auto")]
+    pub(crate) orient: OrientChoice,
+}
+
+fn rule(name: &str) -> Result<Rule, String> {
+    Rule::ALL
+        .into_iter()
+        .find(|rule| rule.name() == name)
+        .ok_or_else(|| format!("unknown rule; the rules are {}", Rule::ALL.map(Rule::name).join(", ")))
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Balls")]
+pub(crate) struct Shrinking {
+    /// Method that limits the balls [default: carved if pulses are known, else tau; angles for a folder]
+    ///
+    /// Scans from the ground and --side exterior use tau, because their pulses cannot carve.
+    #[arg(long, value_enum)]
+    pub(crate) method: Option<MethodChoice>,
+    /// How carved balls represent the crowns of trees [default: measured]
+    #[arg(long, value_enum, value_name = "TREES")]
+    pub(crate) trees: Option<TreesChoice>,
+    /// Rules of carved balls to switch off, for research
+    ///
+    /// docs/methods/carving.md describes each rule.
+    #[arg(long, value_name = "RULE,...", value_delimiter = ',', value_parser = rule)]
+    pub(crate) without: Vec<Rule>,
+    /// Initial radius of balls in metres [default: 5 for carved, 30 for tau, 200 for angles]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub(crate) initial_radius: Option<f32>,
+    /// Maximum radius of balls in metres [default: 0.5 for tau, else no limit]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub(crate) max_radius: Option<f32>,
+    /// Maximum depth of a point or a pulse inside a ball, in metres [default: 0.02 for carved, 0.05 for tau]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub(crate) penetration: Option<f32>,
+    /// Separation angle t_a of the paper, in degrees [default: 32]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    pub(crate) first_angle: Option<f64>,
+    /// Separation angle t_b of the paper, in degrees [default: 20]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    pub(crate) next_angle: Option<f64>,
+}
+
+#[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]
+pub(crate) enum SideChoice {
+    /// Inside solid objects: these balls block lines of sight
+    Interior,
+    /// In free space
+    Exterior,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TreesChoice {
+    /// Solid from the highest to the lowest return, as in leaf
+    Opaque,
+    /// Twigs with gaps between them, as in winter
+    Porous,
+    /// Each part by the share of pulses that passed through it
+    Measured,
+}
+
+#[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]
+pub(crate) enum MethodChoice {
+    /// Neither points nor pulses lie deeper than --penetration inside a ball
+    Carved,
+    /// No point lies deeper than --penetration inside a ball, and radii are limited to half a metre
+    Tau,
+    /// The separation angles of the paper, as in masbcpp
+    Angles,
+}
+
+#[derive(Clone, Copy)]
+pub(crate) enum NeighborChoice {
+    Fixed(usize),
+    Adaptive,
+}
+
+impl FromStr for NeighborChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "adaptive" => Ok(Self::Adaptive),
+            _ => text.parse().map(Self::Fixed).map_err(|_| "not a number of neighbours or `adaptive`".to_owned()),
+        }
+    }
+}
+
+#[derive(Clone)]
+pub(crate) enum OrientChoice {
+    Auto,
+    Given,
+    Up,
+    Scanner,
+    ScannerAt([f64; 3]),
+    Trajectory(PathBuf),
+    Pulses,
+    Mesh(PathBuf),
+}
+
+impl FromStr for OrientChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            None => match text {
+                "auto" => Ok(Self::Auto),
+                "given" => Ok(Self::Given),
+                "up" => Ok(Self::Up),
+                "scanner" => Ok(Self::Scanner),
+                "pulses" => Ok(Self::Pulses),
+                _ => {
+                    Err("use auto, given, up, scanner, scanner=X,Y,Z, trajectory=FILE, pulses or mesh=FILE".to_owned())
+                }
+            },
+            Some(("scanner", position)) => Ok(Self::ScannerAt(position.parse::<Numbers<3>>()?.0)),
+            Some(("trajectory", file)) => Ok(Self::Trajectory(file.into())),
+            Some(("mesh", file)) => Ok(Self::Mesh(file.into())),
+            Some(_) => Err("use scanner=X,Y,Z, trajectory=FILE or mesh=FILE".to_owned()),
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Flags of the scene that a command works on: clouds to build balls from, or a ball file.
+
+use super::{Cleaning, Orienting, Shrinking, known_crs};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub(crate) struct CloudInput {
+    /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy), or a folder of them
+    ///
+    /// Several files, or a folder, are read as one cloud. A folder with coords.npy is read in the layout of masbcpp.
+    #[arg(value_name = "CLOUD", required = true)]
+    pub(crate) clouds: Vec<PathBuf>,
+    /// Coordinate reference system, as EPSG:CODE or WKT [default: that of the file]
+    #[arg(long, value_name = "CRS", value_parser = known_crs)]
+    pub(crate) crs: Option<String>,
+}
+
+/// Clouds to build balls from, or a ball file.
+#[derive(Args)]
+pub(crate) struct SceneInput {
+    #[command(flatten)]
+    pub(crate) input: CloudInput,
+    #[command(flatten)]
+    pub(crate) config: SceneConfig,
+    #[command(flatten)]
+    pub(crate) cleaning: Cleaning,
+    #[command(flatten)]
+    pub(crate) orienting: Orienting,
+    #[command(flatten)]
+    pub(crate) shrinking: Shrinking,
+    /// Shape that represents a ball: the sphere, or the cone of the paper
+    #[arg(long = "ball-profile", id = "ball_profile", value_name = "SHAPE", value_enum, default_value_t = ProfileChoice::Sphere, hide_short_help = true)]
+    pub(crate) profile: ProfileChoice,
+}
+
+/// The parameters of balls in a file.
+#[derive(Args)]
+pub(crate) struct SceneConfig {
+    /// JSON file with the parameters of balls, instead of the flags that `belvedere balls --help` lists
+    ///
+    /// Keys are the names of the flags with underscores, for example {"orient": "pulses", "max_radius": 2, "keep_noise": true}. A flag on
+    /// the command line overrides the file. These flags (--orient, --method, --trees and more) are
+    /// accepted here too. A ball file refuses them, because its balls are already built.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scene_config: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum ProfileChoice {
+    /// The sphere itself
+    Sphere,
+    /// The cone of the paper's Algorithm 1, unchanged
+    PaperCone,
+}

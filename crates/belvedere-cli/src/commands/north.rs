@@ -1,0 +1,48 @@
+//! From which north azimuths are counted: true north, or grid north where that is wanted or true north is unknown.
+
+use crate::arguments::North;
+use crate::pipeline::Scene;
+use crate::summary::{Summary, rounded};
+use belvedere::apps::horizon::convergence;
+
+/// The north of the azimuths of a command.
+#[derive(Clone, Copy)]
+pub(crate) struct AzimuthNorth {
+    /// Azimuth of grid north, clockwise from the north that azimuths are counted from, radians: subtract it from a given azimuth to get
+    /// one in the grid, and add it to an azimuth in the grid to report it.
+    pub(crate) of_grid: f64,
+    name: &'static str,
+}
+
+impl North {
+    /// The north at the middle of the scene.
+    pub(crate) fn of_scene(&self, scene: &Scene) -> AzimuthNorth {
+        let (low, high) = scene.bounds.corners();
+        self.at(scene, [0, 1].map(|i| f64::midpoint(low[i], high[i])))
+    }
+
+    /// The north at a local place.
+    pub(crate) fn at(&self, scene: &Scene, place: [f64; 2]) -> AzimuthNorth {
+        if self.grid_north {
+            return AzimuthNorth { of_grid: 0.0, name: "grid north" };
+        }
+        let [x, y] = [0, 1].map(|i| scene.cloud.frame.origin[i] + place[i]);
+        match convergence(&scene.cloud.frame.crs, [x, y]) {
+            Ok(of_grid) => AzimuthNorth { of_grid, name: "true north" },
+            Err(_) => AzimuthNorth {
+                of_grid: 0.0,
+                name: "grid north, because true north is unknown: the scene has no usable reference system (see --crs)",
+            },
+        }
+    }
+}
+
+impl AzimuthNorth {
+    /// States the north, and how far grid north is from it.
+    pub(crate) fn report(&self, summary: &mut Summary) {
+        summary.add("azimuths_from", self.name);
+        if self.of_grid != 0.0 {
+            summary.add("meridian_convergence_deg", rounded(self.of_grid.to_degrees(), 4));
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! The command line with its long texts, one file for each command, and without the flags that only `normals` and `balls` list.
+
+use crate::arguments::Cli;
+use clap::{Command, CommandFactory};
+
+/// Flags of how balls are built, by their names with underscores. They are also the keys of `--scene-config`.
+pub(crate) const BALL_FLAGS: [&str; 14] = [
+    "keep_noise",
+    "keep_duplicates",
+    "keep_isolated",
+    "neighbors",
+    "orient",
+    "method",
+    "trees",
+    "without",
+    "initial_radius",
+    "max_radius",
+    "penetration",
+    "first_angle",
+    "next_angle",
+    "ball_profile",
+];
+
+/// What a command does, its input, output, units and limits, and examples that work as printed on the files of the demo.
+const TEXTS: [(&str, &str); 23] = [
+    ("demo", include_str!("help/demo.txt")),
+    ("simulate", include_str!("help/simulate.txt")),
+    ("info", include_str!("help/info.txt")),
+    ("trajectory", include_str!("help/trajectory.txt")),
+    ("normals", include_str!("help/normals.txt")),
+    ("balls", include_str!("help/balls.txt")),
+    ("depth-map", include_str!("help/depth-map.txt")),
+    ("query", include_str!("help/query.txt")),
+    ("line-of-sight", include_str!("help/line-of-sight.txt")),
+    ("viewshed", include_str!("help/viewshed.txt")),
+    ("landmark", include_str!("help/landmark.txt")),
+    ("isovist", include_str!("help/isovist.txt")),
+    ("horizon", include_str!("help/horizon.txt")),
+    ("shadow", include_str!("help/shadow.txt")),
+    ("sky-view", include_str!("help/sky-view.txt")),
+    ("irradiance", include_str!("help/irradiance.txt")),
+    ("sun-hours", include_str!("help/sun-hours.txt")),
+    ("envelope", include_str!("help/envelope.txt")),
+    ("comfort", include_str!("help/comfort.txt")),
+    ("compare", include_str!("help/compare.txt")),
+    ("describe", include_str!("help/describe.txt")),
+    ("completions", include_str!("help/completions.txt")),
+    ("man", include_str!("help/man.txt")),
+];
+
+/// The command line as users see it.
+pub(crate) fn command() -> Command {
+    let command = Cli::command().long_about(include_str!("help/belvedere.txt").trim_end());
+    TEXTS.iter().fold(command, |command, (name, text)| command.mut_subcommand(name, |sub| described(sub, text)))
+}
+
+/// A text before and after its heading of examples.
+fn parts(text: &str) -> (&str, &str) {
+    let examples = text.find("\nExample").map_or(text.len(), |before| before + 1);
+    let (description, examples) = text.split_at(examples);
+    (description.trim_end(), examples.trim_end())
+}
+
+/// The command lines under a heading of examples, without the remarks behind them. A line that ends in a backslash goes on in the next.
+pub(crate) fn examples(text: &str) -> Vec<String> {
+    let joined = text.replace(" \\\n     ", "");
+    let lines = joined.lines().filter_map(|line| line.strip_prefix("  "));
+    lines.map(|line| line.split("  ").next().unwrap_or(line).trim().to_owned()).collect()
+}
+
+fn described(command: Command, text: &'static str) -> Command {
+    let (description, examples) = parts(text);
+    let lists_ball_flags = matches!(command.get_name(), "normals" | "balls");
+    command.long_about(description).after_help(examples).mut_args(|argument| {
+        let hidden = !lists_ball_flags && is_ball_flag(argument.get_id().as_str());
+        if hidden { argument.hide(true) } else { argument }
+    })
+}
+
+/// Whether a flag says how balls are built. Their shape in queries is not a part of that, and is listed.
+fn is_ball_flag(id: &str) -> bool {
+    id != "ball_profile" && BALL_FLAGS.contains(&id)
+}
