@@ -62,7 +62,7 @@ pub(crate) struct Irradiance {
     #[arg(long, value_name = "M", requires = "planes", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Roofs")]
     pub(crate) panel: Option<f64>,
-    /// Also write the horizon of each roof plane into this folder, in the format of PVGIS; created if it does not exist
+    /// Also write the horizon of each roof plane into this folder (for PVGIS); created if it does not exist
     ///
     /// One elevation in degrees for each of 48 azimuths, clockwise from true north, from the middle of the plane.
     #[arg(long, value_name = "DIR", requires = "planes", help_heading = "Roofs")]
