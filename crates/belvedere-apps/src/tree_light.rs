@@ -102,39 +102,6 @@ impl Transmissivity {
     }
 }
 
-/// Which balls are vegetation, (B), by what carving kept of it: those that `transmission`, (B), is known of.
-#[must_use]
-pub fn vegetation_of_transmission(transmission: &[f32]) -> Vec<bool> {
-    transmission.iter().map(|share| !share.is_nan()).collect()
-}
-
-/// Which balls are vegetation, (B), by the class of the points they are tangent at, `classification` having a row for each point that the
-/// balls were made from: low, medium and high vegetation (3 to 5).
-#[must_use]
-pub fn vegetation_of_classes(balls: &MedialBalls, classification: &[u8]) -> Vec<bool> {
-    let is_vegetation = |source: &u32| matches!(classification.get(*source as usize), Some(3..=5));
-    balls.source.iter().map(is_vegetation).collect()
-}
-
-/// The balls that are not vegetation, which `is_vegetation`, (B), says.
-///
-/// # Errors
-/// [`Error::LengthMismatch`] where there is not a row for each ball.
-pub fn without_vegetation(balls: &MedialBalls, is_vegetation: &[bool]) -> Result<MedialBalls> {
-    let (expected, found) = (balls.len(), is_vegetation.len());
-    if expected != found {
-        return Err(Error::LengthMismatch { what: "balls told to be vegetation", expected, found });
-    }
-    let rows: Vec<usize> = (0..expected).filter(|&row| !is_vegetation[row]).collect();
-    Ok(MedialBalls {
-        centers: rows.iter().map(|&row| balls.centers[row]).collect(),
-        radii: rows.iter().map(|&row| balls.radii[row]).collect(),
-        source: rows.iter().map(|&row| balls.source[row]).collect(),
-        touch: rows.iter().map(|&row| balls.touch[row]).collect(),
-        separation_angles: rows.iter().map(|&row| balls.separation_angles[row]).collect(),
-    })
-}
-
 /// Share of the light that reaches a target from a direction: 1 where nothing blocks, 0 where anything but vegetation does, and
 /// `transmissivity` where only vegetation does. `all` is the matrix of all balls, `opaque` that of those that are not vegetation, of the
 /// same targets and directions. A crown behind a crown takes no more: their balls overlap within one, and nothing tells two apart.

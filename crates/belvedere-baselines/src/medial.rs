@@ -2,15 +2,12 @@
 
 use crate::Survey;
 use belvedere::Bounds;
+use belvedere::clean::CleanParams;
 use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
-use belvedere::medial::{
-    CarvedInput, CarvedParams, MedialBalls, ShrinkMethod, ShrinkParams, Side, carved_balls, shrink,
-};
-use belvedere::neighbors::NeighborIndex;
-use belvedere::normals::estimate::{Neighborhood, estimate};
-use belvedere::normals::{Orientation, orient};
-use belvedere::pulses::{NeedleParams, Needles, group};
+use belvedere::medial::{CarvedParams, MedialBalls, ShrinkMethod, ShrinkParams};
+use belvedere::model::{BallParams, ModelParams, OrientBy, SceneModel};
+use belvedere::normals::estimate::Neighborhood;
 use belvedere::query::{BlockRule, MedialScene, Sight, Viewer, Visibility, query_points};
 use belvedere::view::View;
 use belvedere::{Mesh, Result};
@@ -31,21 +28,11 @@ pub struct MedialParams {
     /// Neighbours that make a normal, 3 to 256.
     pub neighbors: usize,
     /// How balls are made.
-    pub making: Making,
+    pub making: BallParams,
     /// How lines of sight of parallel views are answered.
     pub parallel_views: ParallelViews,
     /// How balls block lines of sight.
     pub blocking: BlockRule,
-}
-
-/// How balls are made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "there is one of them for each method")]
-pub enum Making {
-    /// By the points alone.
-    Shrinking(ShrinkParams),
-    /// By points and pulses.
-    Carving(CarvedParams),
 }
 
 /// How targets in a parallel view are answered.
@@ -64,7 +51,7 @@ impl MedialParams {
     pub fn published() -> Self {
         Self {
             neighbors: 6,
-            making: Making::Shrinking(ShrinkParams::angles()),
+            making: BallParams::Shrunk(ShrinkParams::angles()),
             parallel_views: ParallelViews::DepthMap,
             blocking: BlockRule { profile: Profile::PaperCone, bias: 0.0, shell: 0.0 },
         }
@@ -87,7 +74,7 @@ impl MedialParams {
         let method = ShrinkMethod::Angles { first_separation_angle: 0.0, next_separation_angle: 0.0 };
         Self {
             neighbors: 16,
-            making: Making::Shrinking(ShrinkParams { method, ..ShrinkParams::angles() }),
+            making: BallParams::Shrunk(ShrinkParams { method, ..ShrinkParams::angles() }),
             ..Self::published_with_spheres()
         }
     }
@@ -95,14 +82,14 @@ impl MedialParams {
     /// Balls cut by what each pulse proves empty: what Belvedere does by default.
     #[must_use]
     pub fn carved() -> Self {
-        let making = Making::Carving(CarvedParams::default());
+        let making = BallParams::Carved(CarvedParams::default());
         Self { neighbors: 16, making, blocking: BlockRule::carved(), ..Self::published_with_spheres() }
     }
 
     /// Balls of bounded penetration, cut down to half a metre: what Belvedere does without pulses, `--method tau`.
     #[must_use]
     pub fn cut_to_half_a_metre() -> Self {
-        Self { neighbors: 16, making: Making::Shrinking(ShrinkParams::tau()), ..Self::published_with_spheres() }
+        Self { neighbors: 16, making: BallParams::Shrunk(ShrinkParams::tau()), ..Self::published_with_spheres() }
     }
 }
 
@@ -123,42 +110,33 @@ pub struct MedialBaseline {
     params: MedialParams,
 }
 
-/// The interior balls of a cloud that shrank.
+/// The scene model of a survey.
 ///
 /// # Errors
-/// Those of normal estimation, orientation and shrinking; an empty cloud is one.
-pub fn interior_balls(survey: &Survey<'_>, outward: Outward<'_>, params: &MedialParams) -> Result<MedialBalls> {
-    let index = NeighborIndex::new(&survey.cloud.positions)?;
-    let normals = estimate(&survey.cloud.positions, &index, Neighborhood::Fixed { k: params.neighbors })?;
-    let by = match outward {
-        Outward::Model(mesh) => Orientation::Mesh(mesh),
-        Outward::Survey if survey.scanner.is_empty() => Orientation::Up,
-        Outward::Survey => Orientation::Pulses(survey.scanner),
+/// Those of [`SceneModel::build`]; an empty cloud is one.
+pub fn scene_model(survey: &Survey<'_>, outward: Outward<'_>, params: &MedialParams) -> Result<SceneModel> {
+    let orient = match outward {
+        Outward::Model(mesh) => OrientBy::Mesh(mesh.clone()),
+        // carving fails without a scanner rather than assume one
+        Outward::Survey if survey.scanner.is_empty() && matches!(params.making, BallParams::Shrunk(_)) => OrientBy::Up,
+        Outward::Survey => OrientBy::ScannerOfEachPoint(survey.scanner.to_vec()),
     };
-    let (oriented, _) = orient(survey.cloud, normals, &by)?;
-    match &params.making {
-        Making::Shrinking(shrinking) => {
-            Ok(shrink(&oriented, &index, Side::Interior, shrinking, &Control::none())?.0.shrunk())
-        }
-        Making::Carving(carving) => {
-            let (needles, _) = Needles::of_cloud(survey.cloud, survey.scanner, &NeedleParams::default())?;
-            let attributes = &survey.cloud.attributes;
-            // without times nothing tells what gets through crowns
-            let pulses = group(survey.cloud).ok().map(|(pulses, _)| pulses);
-            let pulses = pulses.as_ref();
-            let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses };
-            Ok(carved_balls(&input, carving, &Control::none())?.balls)
-        }
-    }
+    // methods are compared on the same points
+    let params = ModelParams::default()
+        .with_clean(CleanParams::nothing())
+        .with_neighborhood(Neighborhood::Fixed { k: params.neighbors })
+        .with_orient(orient)
+        .with_balls(params.making);
+    Ok(SceneModel::build(survey.cloud, &params, &Control::none())?.0)
 }
 
 impl MedialBaseline {
     /// Shrinks the balls of a survey.
     ///
     /// # Errors
-    /// As [`interior_balls`].
+    /// As [`scene_model`].
     pub fn new(survey: &Survey<'_>, outward: Outward<'_>, params: &MedialParams) -> Result<Self> {
-        Self::of_balls(survey, interior_balls(survey, outward, params)?, params)
+        Self::of_balls(survey, scene_model(survey, outward, params)?.into_parts().balls, params)
     }
 
     /// The balls that block.

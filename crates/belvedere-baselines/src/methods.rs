@@ -3,7 +3,7 @@
 use crate::dsm::{Dsm, DsmParams};
 use crate::hidden_points::{ForeignTargets, HiddenPoints, HiddenPointsParams};
 use crate::implicit_surface::{ImplicitSurface, ImplicitSurfaceParams};
-use crate::medial::{Making, MedialBaseline, MedialParams, Outward};
+use crate::medial::{MedialBaseline, MedialParams, Outward};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
 use crate::shadow_map::{ShadowMap, ShadowMapParams};
 use crate::splatting::{SplatParams, Splats};
@@ -12,6 +12,7 @@ use crate::voxels::{VoxelParams, Voxels};
 use crate::{Model, Survey};
 use belvedere::Result;
 use belvedere::medial::{CarvedParams, CrownParams, Rule, Trees};
+use belvedere::model::BallParams;
 use belvedere::query::{BlockRule, Visibility};
 
 /// When a comparison of all methods takes one in.
@@ -94,13 +95,13 @@ fn carved_for_winter() -> MedialParams {
     let carving = CarvedParams::default();
     let crowns = carving.crowns.map(|crowns| CrownParams { trees: Trees::Porous, ..crowns });
     let blocking = BlockRule { shell: 0.0, ..BlockRule::carved() };
-    MedialParams { making: Making::Carving(CarvedParams { crowns, ..carving }), blocking, ..MedialParams::carved() }
+    MedialParams { making: BallParams::Carved(CarvedParams { crowns, ..carving }), blocking, ..MedialParams::carved() }
 }
 
 /// Carved balls without one rule: key, title and parameters. They run when named.
 fn carved_variants() -> impl Iterator<Item = (String, String, MedialParams)> {
     Rule::ALL.into_iter().map(|rule| {
-        let making = Making::Carving(CarvedParams::default().without(rule));
+        let making = BallParams::Carved(CarvedParams::default().without(rule));
         let name = rule.name();
         let params = MedialParams { making, ..MedialParams::carved() };
         (format!("carved-without-{name}"), format!("carved balls without {name}"), params)

@@ -3,6 +3,7 @@
 mod arguments;
 mod commands;
 mod help;
+mod interrupt;
 mod pipeline;
 mod progress;
 mod scene_config;
@@ -14,6 +15,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     keep_decoders_quiet();
+    interrupt::listen();
     let matches = match scene_config::matches(&help::command(), std::env::args_os().collect()) {
         Ok(matches) => matches,
         Err(error) => return failure(&error),
@@ -29,6 +31,9 @@ fn main() -> ExitCode {
 }
 
 fn failure(error: &anyhow::Error) -> ExitCode {
+    if matches!(error.downcast_ref(), Some(belvedere::Error::Cancelled)) {
+        return interrupt::exit();
+    }
     // a reader that closes its pipe, such as `head`, is not an error
     if is_broken_pipe(error) {
         return ExitCode::SUCCESS;

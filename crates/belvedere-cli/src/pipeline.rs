@@ -1,34 +1,19 @@
-//! From what was typed to clouds, oriented clouds, balls and views. Calls the core in order; computes nothing itself.
+//! From arguments to clouds, scene models and views. Calls the library; decides and computes nothing itself.
 
-pub(crate) mod balls;
-pub(crate) mod scanner;
-
-pub(crate) use balls::{BallParams, Carving, Made, shrink_side};
+pub(crate) mod params;
 
 use crate::arguments::{
-    Cleaning, CloudInput, MethodChoice, NeighborChoice, OrientChoice, Orienting, ProfileChoice, SceneInput, SizeChoice,
-    UnprovenChoice, Usage, ViewChoice,
+    CloudInput, MethodChoice, OrientChoice, ProfileChoice, SceneInput, SizeChoice, UnprovenChoice, Usage, ViewChoice,
 };
 use crate::progress::Stages;
-use crate::summary::{Summary, percent, rounded};
+use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
-use belvedere::apps::tree_light::{vegetation_of_classes, vegetation_of_transmission};
-use belvedere::clean::{CleanParams, CleanReport, Treatment, clean};
 use belvedere::depth::Profile;
-use belvedere::io::{
-    ReadOptions, ReadReport, SavedBalls, SavedPulses, is_ball_file, read_balls, read_cloud, read_mesh, read_trajectory,
-};
-use belvedere::medial::{MedialBalls, PULSE_TOUCH, Side};
-use belvedere::neighbors::NeighborIndex;
-use belvedere::normals::estimate::{Neighborhood, estimate};
-use belvedere::normals::{Normals, OrientReport, Orientation, OrientedCloud, orient};
-use belvedere::pulses::NeedleColumns;
+use belvedere::io::{ReadOptions, ReadReport, is_ball_file, read_balls, read_cloud};
+use belvedere::model::SceneModel;
 use belvedere::query::UnprovenAs;
 use belvedere::view::{View, default_pixel_size, to_sun};
-use belvedere::{Attributes, Error, PointCloud};
-use belvedere::{Bounds, Frame};
-use scanner::Located;
-use std::borrow::Cow;
+use belvedere::{Bounds, Error, PointCloud};
 use std::path::Path;
 
 /// Picture of a camera that nobody gave a size: what screens show.
@@ -75,232 +60,25 @@ fn read_counted(input: &CloudInput, stages: &mut Stages, summary: &mut Summary) 
     let options = ReadOptions { crs: input.crs.clone() };
     let (cloud, report) = stages.run("reading", 0, |_| read_cloud(&input.clouds, &options))?;
     summary.add("points", cloud.len());
-    let section = reading_section(&report);
-    summary.add("reading", section);
+    summary.add("reading", Summary::of(&report));
     Ok((cloud, report))
 }
 
-/// What reading found, without what goes without saying.
-pub(crate) fn reading_section(report: &ReadReport) -> Summary {
-    let mut section = Summary::default();
-    let crs = if report.crs.is_empty() { "unknown" } else { &report.crs };
-    section.add("reference_system", crs);
-    let left_out: Vec<String> = report
-        .files
-        .iter()
-        .flat_map(|file| &file.left_out)
-        .map(|left_out| format!("{} {}", left_out.count, left_out.reason))
-        .collect();
-    section.add("left_out", left_out);
-    section.add("attributes_not_in_every_file", report.dropped_attributes.clone());
-    let notes = report.files.iter().flat_map(|file| {
-        let name = file.path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-        file.notes.iter().map(move |note| format!("{name}: {note}"))
-    });
-    section.add("notes", report.notes.iter().cloned().chain(notes).collect::<Vec<_>>());
-    section
-}
-
-impl Cleaning {
-    /// Parameters as typed.
-    pub(crate) fn params(&self) -> CleanParams {
-        let mut params = CleanParams::default();
-        if self.keep_noise {
-            params.dropped_classes = Vec::new();
-            params.withheld = Treatment::Keep;
+/// The error of building a model, with the flags that help.
+pub(crate) fn advised(error: Error) -> anyhow::Error {
+    match error {
+        Error::NoPoints { what } => {
+            Error::NoPoints { what: format!("{what}; see --keep-noise, --keep-isolated") }.into()
         }
-        if self.keep_duplicates {
-            params.exact_duplicates = Treatment::Keep;
-            params.near_duplicate_distance = None;
-        }
-        if self.keep_isolated {
-            params.isolated = None;
-        }
-        params
-    }
-
-    /// Parameters that clean nothing away.
-    pub(crate) fn nothing() -> Self {
-        Self { keep_noise: true, keep_duplicates: true, keep_isolated: true }
+        other => other.into(),
     }
 }
 
-fn cleaning_section(report: &CleanReport) -> Summary {
-    let mut section = Summary::default();
-    section
-        .add("noise_classes", report.class_count)
-        .add("withheld", report.withheld_count)
-        .add("exact_duplicates", report.exact_duplicate_count)
-        .add("near_duplicates", report.near_duplicate_count)
-        .add("isolated", report.isolated_count)
-        .add("kept", report.kept_count);
-    section
-}
-
-/// A cloud whose normals point outward, and its index.
-pub(crate) struct Prepared {
-    pub(crate) oriented: OrientedCloud,
-    pub(crate) index: NeighborIndex,
-    /// Which points of the cloud as read these are.
-    pub(crate) kept: Vec<u32>,
-    /// Lowest and highest local corner of these points: a stray point that was cleaned away must not widen a view.
-    pub(crate) bounds: Bounds,
-    /// Where carving was asked for.
-    pub(crate) carving: Option<scanner::CarvingInput>,
-    /// Classes of these points, where they have any.
-    classification: Option<Vec<u8>>,
-}
-
-impl Prepared {
-    /// Normals for the `count` points of the cloud as read, zero for those that were cleaned away.
-    fn normals_of_rows(&self, count: usize) -> Vec<[f32; 3]> {
-        let mut normals = vec![[0.0; 3]; count];
-        for (&row, &normal) in self.kept.iter().zip(self.oriented.normals()) {
-            normals[row as usize] = normal;
-        }
-        normals
-    }
-
-    /// What pulses proved empty, as ball files keep it, where carving was asked for and pulses are known rather than assumed.
-    pub(crate) fn pulses(&self) -> Option<NeedleColumns> {
-        self.carving.as_ref().filter(|input| !input.is_assumed).map(|input| input.needles.to_columns())
-    }
-}
-
-/// Cleans, estimates normals and orients them. A cloud that is given away is let go as soon as it has served.
-pub(crate) fn prepare(
-    cloud: Cow<'_, PointCloud>,
-    cleaning: &Cleaning,
-    orienting: &Orienting,
-    carving: Carving,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<Prepared> {
-    let (kept, report) = stages.run("cleaning", 0, |_| clean(&cloud, &cleaning.params()))?;
-    summary.add("removed_by_cleaning", cleaning_section(&report));
-    if kept.is_empty() {
-        let what = format!("{} were read and cleaning removed all; see --keep-noise, --keep-isolated", cloud.len());
-        return Err(Error::NoPoints { what }.into());
-    }
-    let mut cloud = if kept.len() == cloud.len() { cloud } else { Cow::Owned(cloud.select(&kept)) };
-    let wants_pulses = carving != Carving::Unwanted || matches!(orienting.orient, OrientChoice::Pulses);
-    let Located { positions: scanner, trajectory, is_assumed } =
-        if wants_pulses { scanner::of_each_point(&cloud, orienting, stages, summary)? } else { Located::default() };
-    let carving = match carving {
-        Carving::Unwanted => None,
-        _ => scanner::carving_input(&cloud, (&scanner, is_assumed), carving, stages, summary)?,
-    };
-    let classification = cloud.attributes.classification.clone();
-    if let Cow::Owned(owned) = &mut cloud {
-        // nothing but orientation asks for attributes from here on, and they weigh more than the positions
-        let attributes = std::mem::take(&mut owned.attributes);
-        owned.attributes = Attributes {
-            normals: attributes.normals,
-            scanner_index: attributes.scanner_index,
-            gps_time: attributes.gps_time.filter(|_| matches!(orienting.orient, OrientChoice::Trajectory(_))),
-            gps_time_kind: attributes.gps_time_kind,
-            ..Attributes::default()
-        };
-    }
-    let index = stages.run("indexing", 0, |_| NeighborIndex::new(&cloud.positions))?;
-    let choice = match &orienting.orient {
-        OrientChoice::Auto if wants_pulses && !is_assumed => OrientChoice::Pulses,
-        OrientChoice::Auto if cloud.attributes.normals.is_some() => OrientChoice::Given,
-        OrientChoice::Auto if !cloud.scanner_positions.is_empty() => OrientChoice::Scanner,
-        OrientChoice::Auto => OrientChoice::Up,
-        other => other.clone(),
-    };
-    let normals = match choice {
-        OrientChoice::Given => Normals::default(),
-        _ => {
-            let neighborhood = match orienting.neighbors {
-                NeighborChoice::Fixed(k) => Neighborhood::Fixed { k },
-                NeighborChoice::Adaptive => Neighborhood::adaptive(),
-            };
-            let normals = stages.run("estimating normals", 0, |_| estimate(&cloud.positions, &index, neighborhood));
-            flagged("--neighbors", normals)?
-        }
-    };
-    let (mesh, read);
-    let by = match choice {
-        OrientChoice::Auto | OrientChoice::Up => Orientation::Up,
-        OrientChoice::Given => Orientation::Given,
-        OrientChoice::Scanner => Orientation::Scanner,
-        OrientChoice::ScannerAt(position) => {
-            let scale = cloud.frame.crs.metres_per_unit_xyz();
-            Orientation::ScannerAt(vec![std::array::from_fn(|i| position[i] * scale[i])])
-        }
-        OrientChoice::Trajectory(_) if carving.is_some() => Orientation::Pulses(&scanner),
-        OrientChoice::Trajectory(path) => {
-            read = match trajectory {
-                Some(read) => read,
-                None => stages.run("reading trajectory", 0, |_| read_trajectory(&path, &cloud.frame.crs))?.0,
-            };
-            Orientation::Trajectory(&read)
-        }
-        OrientChoice::Pulses => Orientation::Pulses(&scanner),
-        OrientChoice::Mesh(path) => {
-            let (model, _) = stages.run("reading mesh", 0, |_| read_mesh(&path))?;
-            // like every position that is typed or read, in the unit of the cloud's file
-            mesh = model.scaled_to_metres(&cloud.frame.crs);
-            Orientation::Mesh(&mesh)
-        }
-    };
-    let (oriented, report) = stages.run("orienting normals", 0, |_| orient(&cloud, normals, &by))?;
-    summary.add("normals", orientation_section(&by, &report));
-    let bounds = bounds_of(&cloud)?;
-    Ok(Prepared { oriented, index, kept, bounds, carving, classification })
-}
-
-fn orientation_section(by: &Orientation<'_>, report: &OrientReport) -> Summary {
-    let mut section = Summary::default();
-    let way = match by {
-        Orientation::Up => "up (facades are guesswork: give a trajectory, a scanner or a mesh if you can)",
-        Orientation::Given => "as given",
-        Orientation::Scanner | Orientation::ScannerAt(_) => "scanner position",
-        Orientation::Trajectory(_) => "trajectory",
-        Orientation::Pulses(_) => "pulses",
-        Orientation::Mesh(_) => "mesh",
-        _ => "other",
-    };
-    section.add("oriented_by", way);
-    let shares = [
-        ("as_given_percent", report.by_file_count),
-        ("towards_scanner_percent", report.by_scanner_count),
-        ("as_aligned_face_percent", report.by_face_count),
-        ("by_parity_percent", report.by_parity_count),
-        ("by_vote_of_roof_and_ground_percent", report.by_vote_count),
-        ("upward_percent", report.by_up_count),
-        ("without_normal_percent", report.without_normal_count),
-        ("low_confidence_percent", report.low_confidence_count),
-    ];
-    for (name, count) in shares {
-        if count > 0 {
-            section.add(name, percent(count, report.point_count));
-        }
-    }
-    if let Some(clock) = &report.clock {
-        section.add("points_served_by_trajectory", clock.served_count);
-    }
-    section
-}
-
-/// Balls that block, where they lie, and the cloud they came from unless they were read from a file.
+/// A scene model, and the cloud it was made from unless it was read from a file.
 pub(crate) struct Scene {
-    pub(crate) balls: MedialBalls,
-    /// Local frame, unit and reference system: a cloud, without points where the balls came from a file.
+    pub(crate) model: SceneModel,
+    /// In the frame of the model; without points where it was read from a file or its points are not needed.
     pub(crate) cloud: PointCloud,
-    /// Lowest and highest local corner of the points that balls were made from.
-    pub(crate) bounds: Bounds,
-    /// Outward unit normals of the points that are kept, (N, 3): zero where a point has none.
-    pub(crate) normals: Option<Vec<[f32; 3]>>,
-    /// What pulses proved empty, where balls were carved and the file kept it.
-    pub(crate) pulses: Option<NeedleColumns>,
-    /// Share of the pulses that got through the piece of crown that a ball is part of, (B), NaN for one that is no vegetation; empty
-    /// where that was not measured.
-    pub(crate) transmission: Vec<f32>,
-    /// Which balls are vegetation, (B), empty where that is not known.
-    pub(crate) vegetation: Vec<bool>,
     /// Rows of the files that reading left out.
     pub(crate) left_out: ReadReport,
 }
@@ -308,13 +86,7 @@ pub(crate) struct Scene {
 impl Scene {
     /// Local metres of a place in the coordinates and unit of the file.
     pub(crate) fn local_from_file(&self, place: [f64; 3]) -> [f64; 3] {
-        let scale = self.cloud.frame.crs.metres_per_unit_xyz();
-        std::array::from_fn(|i| place[i] * scale[i] - self.cloud.frame.origin[i])
-    }
-
-    /// Whether pulses cut the balls.
-    pub(crate) fn is_carved(&self) -> bool {
-        self.pulses.is_some() || self.balls.touch.contains(&PULSE_TOUCH)
+        self.model.frame().local_from_file(place)
     }
 }
 
@@ -325,7 +97,7 @@ pub(crate) enum Points {
     LetGo,
 }
 
-/// Reads a ball file, or a cloud and makes its interior balls.
+/// The scene of a ball file, or of a cloud.
 pub(crate) fn scene(
     arguments: &SceneInput,
     points: Points,
@@ -337,31 +109,32 @@ pub(crate) fn scene(
         && is_ball_file(path)?
     {
         refuse_flags_of_clouds(arguments, path)?;
-        let saved = stages.run("reading balls", 0, |_| read_balls(path))?;
-        summary.add("balls_read", saved.radii.len());
-        return scene_of_saved(saved, path);
+        let parts = stages.run("reading balls", 0, |_| read_balls(path))?;
+        if parts.provenance.get("side").is_some_and(|side| side == "exterior") {
+            bail!(
+                "{}: these balls lie in free space (--side exterior) and block nothing; give the interior ones",
+                path.display()
+            );
+        }
+        summary.add("balls_read", parts.balls.len());
+        let model = SceneModel::from_parts(parts)?;
+        let cloud = PointCloud::in_frame(model.frame().clone());
+        return Ok(Scene { model, cloud, left_out: ReadReport::default() });
     }
-    let params = arguments.shrinking.params(MethodChoice::Carved)?;
+    let balls = arguments.shrinking.params(MethodChoice::Carved)?;
     let (mut cloud, left_out) = read_counted(&arguments.input, stages, summary)?;
-    let given = match points {
-        Points::Keep => Cow::Borrowed(&cloud),
+    let frame = cloud.frame.clone();
+    let params = params::model(&arguments.cleaning, &arguments.orienting, balls, &frame.crs, stages)?;
+    let built = match points {
+        Points::Keep => SceneModel::build(&cloud, &params, &stages.control()),
         Points::LetGo => {
-            let frame = PointCloud::in_frame(cloud.frame.clone());
-            Cow::Owned(std::mem::replace(&mut cloud, frame))
+            let given = std::mem::replace(&mut cloud, PointCloud::in_frame(frame));
+            SceneModel::build_owned(given, &params, &stages.control())
         }
     };
-    let prepared = prepare(given, &arguments.cleaning, &arguments.orienting, params.carving(), stages, summary)?;
-    // as in a ball file, so that rows of balls mean the same
-    let Made { balls, transmission } = shrink_side(&prepared, Side::Interior, params, stages, summary)?;
-    let balls = balls.shrunk();
-    let vegetation = match &prepared.classification {
-        _ if !transmission.is_empty() => vegetation_of_transmission(&transmission),
-        Some(classes) => vegetation_of_classes(&balls, classes),
-        None => Vec::new(),
-    };
-    let pulses = prepared.pulses();
-    let normals = (points == Points::Keep).then(|| prepared.normals_of_rows(cloud.len()));
-    Ok(Scene { balls, cloud, bounds: prepared.bounds, normals, pulses, transmission, vegetation, left_out })
+    let (model, report) = built.map_err(advised)?;
+    summary.add_report(&report);
+    Ok(Scene { model, cloud, left_out })
 }
 
 /// Flags that say how to make balls are of no use where they are made already.
@@ -389,30 +162,6 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, path: &Path) -> Result<()> {
         }
         None => Ok(()),
     }
-}
-
-fn scene_of_saved(saved: SavedBalls, path: &Path) -> Result<Scene> {
-    if saved.provenance.get("side").is_some_and(|side| side == "exterior") {
-        bail!(
-            "{}: these balls lie in free space (--side exterior) and block nothing; give the interior ones",
-            path.display()
-        );
-    }
-    let bounds = saved.bounds;
-    let cloud = PointCloud::in_frame(saved.frame);
-    let balls = MedialBalls {
-        centers: saved.centers,
-        radii: saved.radii,
-        source: saved.source,
-        touch: saved.touch,
-        separation_angles: saved.separation_angles,
-    };
-    let pulses =
-        saved.pulses.map(|SavedPulses { starts, slopes, lengths, top }| NeedleColumns { starts, slopes, lengths, top });
-    let transmission = saved.transmission.unwrap_or_default();
-    let vegetation = vegetation_of_transmission(&transmission);
-    let left_out = ReadReport::default();
-    Ok(Scene { balls, cloud, bounds, normals: None, pulses, transmission, vegetation, left_out })
 }
 
 /// Lowest and highest corner of a cloud that has points.
@@ -494,7 +243,7 @@ impl ViewChoice {
     }
 
     fn view(&self, scene: &Scene, summary: &mut Summary) -> Result<View> {
-        let (low, high) = scene.bounds.corners();
+        let (low, high) = scene.model.bounds().corners();
         let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));
         let view = if let Some(sun) = &self.kind.sun {
             if !(0.0..=90.0).contains(&sun.0[1]) {
@@ -509,7 +258,7 @@ impl ViewChoice {
         } else if let Some(direction) = &self.kind.direction {
             flagged("--direction, --pixel", View::parallel(direction.0, low, high, pixel))?
         } else if let Some(viewport) = &self.kind.viewport {
-            let scale = scene.cloud.frame.crs.metres_per_unit_xyz();
+            let scale = scene.model.frame().crs.metres_per_unit_xyz();
             let metres = |v: [f64; 3]| std::array::from_fn(|i| v[i] * scale[i]);
             let view = View::from_viewport(
                 scene.local_from_file(viewport.p0),
@@ -526,33 +275,6 @@ impl ViewChoice {
             );
         };
         Ok(view)
-    }
-}
-
-/// What a ball file says of how it was made.
-pub(crate) fn saved(
-    Made { balls, transmission }: Made,
-    frame: &Frame,
-    bounds: Bounds,
-    pulses: Option<NeedleColumns>,
-    provenance: impl IntoIterator<Item = (&'static str, String)>,
-) -> SavedBalls {
-    SavedBalls {
-        frame: frame.clone(),
-        bounds,
-        centers: balls.centers,
-        radii: balls.radii,
-        source: balls.source,
-        touch: balls.touch,
-        separation_angles: balls.separation_angles,
-        transmission: (!transmission.is_empty()).then_some(transmission),
-        pulses: pulses.map(|NeedleColumns { starts, slopes, lengths, top }| SavedPulses {
-            starts,
-            slopes,
-            lengths,
-            top,
-        }),
-        provenance: provenance.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
     }
 }
 

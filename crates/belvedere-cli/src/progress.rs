@@ -1,25 +1,109 @@
-//! A progress bar on a terminal, nothing in a pipe.
+//! The stages of a run: a progress bar on a terminal, lines of JSON where these are asked for, and how long each took.
 
 use crate::arguments::{Global, ProgressChoice};
+use crate::interrupt;
+use crate::summary::note;
 use belvedere::control::{Control, Watcher};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde_json::json;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The stages of a command, shown one after the other and timed.
+/// The stages of a command, one after the other: what the library reports to, and where it learns of Ctrl-C.
 pub(crate) struct Stages {
+    run: Run,
+}
+
+/// The watcher of a whole run.
+struct Run {
     shown: bool,
     json: bool,
     verbose: bool,
+    state: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    /// Stages that have begun: the last one runs, the others wait for it.
+    open: Vec<Open>,
+    /// Stages that are over, each name once, in the order of their first end.
     seconds: Vec<(&'static str, f64)>,
 }
 
-/// A progress bar as the watcher of a stage.
-struct Bar<'a>(&'a ProgressBar);
+struct Open {
+    name: &'static str,
+    start: Instant,
+    /// Time that stages within this one took.
+    within: Duration,
+    total: usize,
+    done: usize,
+    bar: ProgressBar,
+}
 
-impl Watcher for Bar<'_> {
+impl Run {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn target(&self) -> ProgressDrawTarget {
+        // standard error: the bar hides itself where that is no terminal
+        if self.shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() }
+    }
+}
+
+impl Watcher for Run {
+    fn begin(&self, stage: &'static str, total: usize) {
+        let bar = ProgressBar::with_draw_target((total > 0).then_some(total as u64), self.target());
+        let template =
+            if total > 0 { "{msg:24} [{bar:30}] {human_pos}/{human_len} {eta}" } else { "{msg:24} {spinner}" };
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        bar.set_message(stage);
+        bar.enable_steady_tick(Duration::from_millis(200));
+        let mut state = self.state();
+        if let Some(waiting) = state.open.last() {
+            waiting.bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        state.open.push(Open { name: stage, start: Instant::now(), within: Duration::ZERO, total, done: 0, bar });
+    }
+
     fn advance(&self, count: usize) {
-        self.0.inc(count as u64);
+        if let Some(open) = self.state().open.last_mut() {
+            open.done += count;
+            open.bar.inc(count as u64);
+        }
+    }
+
+    fn end(&self, stage: &'static str) {
+        let mut state = self.state();
+        let Some(place) = state.open.iter().rposition(|open| open.name == stage) else { return };
+        let open = state.open.remove(place);
+        open.bar.finish_and_clear();
+        let whole = open.start.elapsed();
+        if let Some(outer) = state.open.last_mut() {
+            outer.within += whole;
+            outer.bar.set_draw_target(self.target());
+        }
+        // what stages within took is theirs
+        let seconds = whole.saturating_sub(open.within).as_secs_f64();
+        match state.seconds.iter_mut().find(|(name, _)| *name == stage) {
+            Some((_, sum)) => *sum += seconds,
+            None => state.seconds.push((stage, seconds)),
+        }
+        drop(state);
+        if self.json {
+            let item_count = if open.done > 0 { open.done } else { open.total };
+            let item_count = (item_count > 0).then_some(item_count);
+            let line = serde_json::json!({ "stage": stage, "item_count": item_count, "seconds": (seconds * 1000.0).round() / 1000.0 });
+            note(&line.to_string());
+        }
+        if self.verbose {
+            note(&format!("{stage}: {seconds:.3} s"));
+        }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        interrupt::is_requested()
     }
 }
 
@@ -27,41 +111,24 @@ impl Stages {
     pub(crate) fn new(global: &Global) -> Self {
         let json = global.progress == ProgressChoice::Json;
         let shown = global.progress == ProgressChoice::Bar && !global.quiet;
-        Self { shown, json, verbose: global.verbose, seconds: Vec::new() }
+        Self { run: Run { shown, verbose: global.verbose, json, state: Mutex::default() } }
+    }
+
+    /// What functions of the library report their stages to.
+    pub(crate) fn control(&self) -> Control<'_> {
+        Control::new(&self.run)
     }
 
     /// Runs one stage over `count` items (0: unknown).
     pub(crate) fn run<T>(&mut self, name: &'static str, count: usize, work: impl FnOnce(&Control<'_>) -> T) -> T {
-        // standard error: the bar hides itself where that is no terminal
-        let target = if self.shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-        let bar = ProgressBar::with_draw_target(if count > 0 { Some(count as u64) } else { None }, target);
-        let template =
-            if count > 0 { "{msg:24} [{bar:30}] {human_pos}/{human_len} {eta}" } else { "{msg:24} {spinner}" };
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
-        }
-        bar.set_message(name);
-        bar.enable_steady_tick(Duration::from_millis(200));
-        let start = Instant::now();
-        let result = work(&Control::new(&Bar(&bar)));
-        bar.finish_and_clear();
-        let seconds = start.elapsed().as_secs_f64();
-        if self.json {
-            let item_count = (count > 0).then_some(count);
-            crate::summary::note(
-                &json!({ "stage": name, "item_count": item_count, "seconds": (seconds * 1000.0).round() / 1000.0 })
-                    .to_string(),
-            );
-        }
-        if self.verbose {
-            crate::summary::note(&format!("{name}: {seconds:.3} s"));
-        }
-        self.seconds.push((name, seconds));
+        self.run.begin(name, count);
+        let result = work(&self.control());
+        self.run.end(name);
         result
     }
 
-    /// Seconds each stage took.
+    /// Seconds that each stage took, stages of one name together.
     pub(crate) fn into_seconds(self) -> Vec<(&'static str, f64)> {
-        self.seconds
+        self.run.state.into_inner().unwrap_or_else(PoisonError::into_inner).seconds
     }
 }

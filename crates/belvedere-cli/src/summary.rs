@@ -2,6 +2,8 @@
 
 use crate::arguments::Global;
 use belvedere::io::WriteReport;
+use belvedere::report;
+use serde::Serialize;
 use serde_json::{Map, Value};
 use std::io::Write;
 use std::process::ExitCode;
@@ -21,6 +23,20 @@ impl Summary {
     pub(crate) fn add_all(&mut self, other: Self) -> &mut Self {
         self.0.extend(other.0);
         self
+    }
+
+    /// Adds a report of the library under its own names.
+    pub(crate) fn add_report(&mut self, report: &impl Serialize) -> &mut Self {
+        self.add_all(Self::of(report))
+    }
+
+    /// The entries of a report of the library.
+    pub(crate) fn of(report: &impl Serialize) -> Self {
+        match serde_json::to_value(report) {
+            Ok(Value::Object(entries)) => Self(entries),
+            // reports are maps of numbers and texts, which JSON holds
+            _ => Self::default(),
+        }
     }
 
     /// Adds the seconds of each stage and their sum.
@@ -74,12 +90,14 @@ impl From<Summary> for Value {
     }
 }
 
+/// A section for each of several reports.
+pub(crate) fn sections(reports: &[impl Serialize]) -> Vec<Value> {
+    reports.iter().map(|report| Summary::of(report).into()).collect()
+}
+
 /// A number with `digits` decimals.
 pub(crate) fn rounded(value: f64, digits: i32) -> Value {
-    let scale = 10f64.powi(digits);
-    // no minus before a zero
-    let rounded = (value * scale).round() / scale + 0.0;
-    Value::from(if rounded.is_finite() { rounded } else { value })
+    Value::from(report::rounded(value, digits))
 }
 
 /// A number without decimals.
@@ -88,9 +106,9 @@ pub(crate) fn whole(value: f64) -> Value {
     Value::from(value.round() as i64)
 }
 
-/// A share as a percentage with one decimal.
+/// A share as a percentage with two decimals.
 pub(crate) fn percent(part: usize, whole: usize) -> Value {
-    rounded(100.0 * part as f64 / whole.max(1) as f64, 2)
+    Value::from(report::percent(part, whole))
 }
 
 fn lines(section: &Map<String, Value>, depth: usize, text: &mut String) {

@@ -7,6 +7,7 @@ pub mod clean;
 pub mod depth;
 pub mod ground;
 pub mod medial;
+pub mod model;
 pub mod neighbors;
 pub mod normals;
 pub mod pulses;

@@ -1,15 +1,20 @@
-//! Plain data that all of Belvedere shares: point clouds, reference systems, meshes, rasters, views, errors, progress.
+//! Plain data that all of Belvedere shares: point clouds, reference systems, meshes, medial balls, rasters, views, errors,
+//! progress.
 //!
 //! Users add the crate `belvedere`, which holds everything here under the same names.
 
+pub mod balls;
 pub mod cloud;
 pub mod control;
 pub mod crs;
 pub mod error;
 pub mod frame;
 pub mod mesh;
+pub mod model;
+pub mod needles;
 pub mod random;
 pub mod raster;
+pub mod report;
 pub mod trajectory;
 pub mod vector;
 pub mod view;

@@ -49,7 +49,7 @@ pub struct TrajectoryQuality {
     pub line: u16,
 }
 
-/// How the times of a cloud become times of a trajectory, and how many that serves.
+/// How the times of a cloud become times of a trajectory, and at how many of them the trajectory knows a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClockOffset {
     /// Which clock the trajectory was written with.
@@ -57,7 +57,7 @@ pub struct ClockOffset {
     /// Seconds added after the change of clock: 0, or ±18 for a trajectory in UTC (or a cloud in UTC).
     pub leap_seconds: f64,
     /// Cloud times at which the trajectory knows a position.
-    pub served_count: usize,
+    pub known_count: usize,
     /// Cloud times in all.
     pub time_count: usize,
 }
@@ -139,9 +139,9 @@ impl Trajectory {
     }
 
     /// How the times of a cloud, (N) seconds of `kind`, become times of this trajectory: the change of clock and leap
-    /// seconds that let it serve the most of them, and how many that is.
+    /// seconds that let it know a position at the most of them, and how many that is.
     ///
-    /// Where several serve equally many the plainest wins, without leap seconds if possible: a difference of 18 s can
+    /// Where several know equally many the plainest wins, without leap seconds if possible: a difference of 18 s can
     /// only be told where the trajectory begins or ends within 18 s of the cloud. A header may lie about its kind of
     /// time, hence all changes of clock are tried whatever `kind` says; `kind` only breaks ties.
     #[must_use]
@@ -154,17 +154,17 @@ impl Trajectory {
         let mut best: Option<ClockOffset> = None;
         for leap_seconds in [0.0, -LEAP_SECONDS_S, LEAP_SECONDS_S] {
             for clock in clocks {
-                let mut offset = ClockOffset { clock, leap_seconds, served_count: 0, time_count: times.len() };
-                offset.served_count = times.par_iter().filter(|&&t| self.knows(offset.trajectory_time(t))).count();
-                if best.is_none_or(|best| offset.served_count > best.served_count) {
+                let mut offset = ClockOffset { clock, leap_seconds, known_count: 0, time_count: times.len() };
+                offset.known_count = times.par_iter().filter(|&&t| self.knows(offset.trajectory_time(t))).count();
+                if best.is_none_or(|best| offset.known_count > best.known_count) {
                     best = Some(offset);
                 }
-                if offset.served_count == times.len() {
+                if offset.known_count == times.len() {
                     return offset;
                 }
             }
         }
-        best.unwrap_or(ClockOffset { clock: Same, leap_seconds: 0.0, served_count: 0, time_count: times.len() })
+        best.unwrap_or(ClockOffset { clock: Same, leap_seconds: 0.0, known_count: 0, time_count: times.len() })
     }
 
     /// Local position of the scanner for each point of `cloud`, (N, 3), metres, NaN where the trajectory knows none; and how
@@ -187,7 +187,7 @@ impl Trajectory {
     /// [`Error::InvalidParameter`] where it knows a position at none of the times.
     pub fn scanner_positions_at(&self, times: &[f64], cloud: &PointCloud) -> Result<(Vec<[f32; 3]>, ClockOffset)> {
         let offset = self.clock_offset_for(times, cloud.attributes.gps_time_kind);
-        if offset.served_count == 0 && !times.is_empty() {
+        if offset.known_count == 0 && !times.is_empty() {
             let span = |times: &[f64]| {
                 let least = times.iter().copied().fold(f64::INFINITY, f64::min);
                 format!("{least} to {} s", times.iter().copied().fold(f64::NEG_INFINITY, f64::max))
@@ -270,7 +270,7 @@ mod tests {
         let times: Vec<f64> = (1..29).map(|i| 2200.0 * WEEK_S + 300_000.0 + f64::from(i) - 1e9).collect();
         let offset = flight.clock_offset_for(&times, GpsTimeKind::AdjustedStandard);
         assert_eq!(offset.clock, TrajectoryClock::WeekFromAdjusted);
-        assert_eq!((offset.leap_seconds, offset.served_count), (0.0, 28));
+        assert_eq!((offset.leap_seconds, offset.known_count), (0.0, 28));
         assert!((offset.trajectory_time(times[0]) - 300_001.0).abs() < 1e-6);
     }
 
@@ -279,13 +279,13 @@ mod tests {
         let flight = straight_flight(300_000.0);
         let times: Vec<f64> = (1..29).map(|i| 300_000.0 + f64::from(i) + 18.0).collect();
         let offset = flight.clock_offset_for(&times, GpsTimeKind::SecondsOfWeek);
-        assert_eq!((offset.clock, offset.leap_seconds, offset.served_count), (TrajectoryClock::Same, -18.0, 28));
+        assert_eq!((offset.clock, offset.leap_seconds, offset.known_count), (TrajectoryClock::Same, -18.0, 28));
     }
 
     #[test]
-    fn strange_times_are_served_by_nothing() {
+    fn strange_times_are_not_on_any_trajectory() {
         let offset = straight_flight(300_000.0).clock_offset_for(&[f64::NAN, -1e300, 5.0], GpsTimeKind::SecondsOfWeek);
-        assert_eq!((offset.served_count, offset.time_count), (0, 3));
+        assert_eq!((offset.known_count, offset.time_count), (0, 3));
         assert_eq!(Trajectory::default().position_at(0.0), None);
     }
 }

@@ -3,6 +3,7 @@
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use belvedere_data::{Error, Result};
 
@@ -15,8 +16,33 @@ struct Temporary {
     kept: bool,
 }
 
+/// Temporary files that are being written. A program that ends without unwinding, as on Ctrl-C, has no other way to know of them.
+static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished { paths: Vec::new(), is_abandoned: false });
+
+struct Unfinished {
+    paths: Vec<PathBuf>,
+    is_abandoned: bool,
+}
+
+fn unfinished() -> MutexGuard<'static, Unfinished> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes every temporary file of this process, whose outputs then never appear, and refuses to begin others.
+///
+/// For a program that ends at once while other threads may still write. Nothing can be written afterwards.
+pub fn abandon_unfinished() {
+    let mut unfinished = unfinished();
+    unfinished.is_abandoned = true;
+    for path in unfinished.paths.drain(..) {
+        // a failure leaves a file that says by its name that it is unfinished
+        let _ = fs::remove_file(path);
+    }
+}
+
 impl Drop for Temporary {
     fn drop(&mut self) {
+        unfinished().paths.retain(|path| *path != self.path);
         if !self.kept {
             // nothing can be done about a failure here, and the error that led here is the one to report
             let _ = fs::remove_file(&self.path);
@@ -92,8 +118,15 @@ fn create_beside(target: &Path) -> Result<(File, Temporary)> {
         hidden.push(name);
         hidden.push(format!(".{attempt}.part"));
         let path = target.with_file_name(hidden);
+        let mut unfinished = unfinished();
+        if unfinished.is_abandoned {
+            return Err(Error::Cancelled);
+        }
         match OpenOptions::new().read(true).write(true).create_new(true).open(&path) {
-            Ok(file) => return Ok((file, Temporary { path, kept: false })),
+            Ok(file) => {
+                unfinished.paths.push(path.clone());
+                return Ok((file, Temporary { path, kept: false }));
+            }
             Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
             Err(e) => return Err(Error::io(target)(e)),
         }

@@ -1,115 +1,14 @@
-//! Ball files: medial balls saved for later runs and for other programs.
+//! Ball files: scene models saved for later runs and for other programs.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::ball_formats;
 use crate::write_cloud::extension;
-use belvedere_data::{Bounds, Error, Frame, Result};
+use belvedere_data::model::ModelParts;
+use belvedere_data::{Error, Result};
 
 /// Extensions of ball files.
 pub(crate) const SUPPORTED: &str = ".npz .ply .laz .las";
-
-/// Balls as files hold them, one per row, with what is needed to use them again.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct SavedBalls {
-    /// Frame of the cloud the balls were made from.
-    pub frame: Frame,
-    /// Lowest and highest local corner of the points the balls were made from, metres: what a view must hold to show
-    /// the scene, whereas the balls may reach far beyond it. Files without it have the corners of the centres.
-    pub bounds: Bounds,
-    /// Centres, (B, 3), local metres.
-    pub centers: Vec<[f32; 3]>,
-    /// Radii, (B), metres.
-    pub radii: Vec<f32>,
-    /// Index of the point each ball is tangent at, (B).
-    pub source: Vec<u32>,
-    /// Index of the second point each ball touches, `u32::MAX` where it never shrank, (B).
-    pub touch: Vec<u32>,
-    /// Separation angle in radians, NaN where the ball never shrank, (B).
-    pub separation_angles: Vec<f32>,
-    /// Share of the pulses that got through the piece of crown that a ball is part of, 0 to 1, NaN where it is part of none, (B),
-    /// where that was measured.
-    pub transmission: Option<Vec<f32>>,
-    /// The pulses that say what is proven visible, where they are known. Only `.npz` files hold them.
-    pub pulses: Option<SavedPulses>,
-    /// How the balls were made: parameters, version of the program, names of inputs.
-    pub provenance: BTreeMap<String, String>,
-}
-
-/// The proven-empty lines above first returns, one per row.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct SavedPulses {
-    /// Lower ends, (P, 3), local metres.
-    pub starts: Vec<[f32; 3]>,
-    /// Shift to the east and to the north for each metre of height, in steps of 0.0001, (P, 2).
-    pub slopes: Vec<[i16; 2]>,
-    /// Lengths, (P), metres, infinite for a line that reaches `top`; empty where all do.
-    pub lengths: Vec<f32>,
-    /// Height that no line rises above, local metres.
-    pub top: f32,
-}
-
-impl SavedPulses {
-    fn validate(&self) -> Result<()> {
-        let expected = self.starts.len();
-        if self.slopes.len() != expected {
-            return Err(Error::LengthMismatch { what: "slopes of pulses", expected, found: self.slopes.len() });
-        }
-        if !(self.lengths.is_empty() || self.lengths.len() == expected) {
-            return Err(Error::LengthMismatch { what: "lengths of pulses", expected, found: self.lengths.len() });
-        }
-        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
-        if let Some(start) = self.starts.iter().find(|start| !start.iter().all(|v| v.is_finite())) {
-            return invalid("lower end of a pulse", format!("{start:?}"), "finite");
-        }
-        if let Some(length) = self.lengths.iter().find(|length| !(**length > 0.0)) {
-            return invalid("length of a pulse", length.to_string(), "above zero");
-        }
-        if !self.top.is_finite() {
-            return invalid("top of all pulses", self.top.to_string(), "finite");
-        }
-        Ok(())
-    }
-}
-
-impl SavedBalls {
-    /// Checks that all columns are equally long, centres, bounds and origin finite, radii finite and not negative, shares of
-    /// light between 0 and 1, and pulses likewise.
-    ///
-    /// # Errors
-    /// [`Error::LengthMismatch`] or [`Error::InvalidParameter`] for the first fault.
-    pub fn validate(&self) -> Result<()> {
-        let expected = self.centers.len();
-        let lengths = [
-            ("radii of balls", self.radii.len()),
-            ("source points of balls", self.source.len()),
-            ("second points of balls", self.touch.len()),
-            ("separation angles of balls", self.separation_angles.len()),
-            ("transmissions of balls", self.transmission.as_ref().map_or(expected, Vec::len)),
-        ];
-        if let Some(&(what, found)) = lengths.iter().find(|&&(_, found)| found != expected) {
-            return Err(Error::LengthMismatch { what, expected, found });
-        }
-        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
-        if let Some(c) = self.centers.iter().find(|c| c.iter().any(|v| !v.is_finite())) {
-            return invalid("centre of a ball", format!("{c:?}"), "finite");
-        }
-        if let Some(r) = self.radii.iter().find(|&&r| !(r.is_finite() && r >= 0.0)) {
-            return invalid("radius of a ball", r.to_string(), "finite and not negative");
-        }
-        if !self.bounds.is_finite() {
-            return invalid("bounds of balls", format!("{:?}", (self.bounds.low, self.bounds.high)), "finite");
-        }
-        if self.frame.origin.iter().any(|v| !v.is_finite()) {
-            return invalid("origin of balls", format!("{:?}", self.frame.origin), "finite");
-        }
-        if let Some(t) = self.transmission.iter().flatten().find(|t| !(t.is_nan() || (0.0..=1.0).contains(*t))) {
-            return invalid("transmission of a ball", t.to_string(), "0 to 1, or NaN");
-        }
-        self.pulses.as_ref().map_or(Ok(()), SavedPulses::validate)
-    }
-}
 
 /// Writes `balls` in the format that follows from the extension (.npz .ply .laz .las).
 ///
@@ -126,9 +25,9 @@ impl SavedBalls {
 /// pulses.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`] for other extensions, those of [`SavedBalls::validate`], and [`Error::Io`]. An existing file
+/// [`Error::UnknownFormat`] for other extensions, those of [`ModelParts::validate`], and [`Error::Io`]. An existing file
 /// is replaced only by a complete one.
-pub fn write_balls(path: &Path, balls: &SavedBalls) -> Result<()> {
+pub fn write_balls(path: &Path, balls: &ModelParts) -> Result<()> {
     balls.validate()?;
     match extension(path).as_str() {
         "npz" => ball_formats::write_npz(path, balls),
@@ -145,7 +44,7 @@ pub fn write_balls(path: &Path, balls: &SavedBalls) -> Result<()> {
 ///
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Io`], and [`Error::Malformed`] for a file that is damaged or holds no balls.
-pub fn read_balls(path: &Path) -> Result<SavedBalls> {
+pub fn read_balls(path: &Path) -> Result<ModelParts> {
     let balls = match extension(path).as_str() {
         "npz" => ball_formats::read_npz(path),
         "ply" => ball_formats::read_ply(path),

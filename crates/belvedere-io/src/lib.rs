@@ -30,6 +30,7 @@ mod ply;
 mod polygons;
 mod ptx;
 mod read_cloud;
+mod read_report;
 mod rows;
 mod saved_matrix;
 mod table;
@@ -46,7 +47,7 @@ mod write_table;
 mod write_trajectory;
 mod xyz;
 
-pub use balls::{SavedBalls, SavedPulses, is_ball_file, read_balls, write_balls};
+pub use balls::{is_ball_file, read_balls, write_balls};
 pub use cityjson::{LevelOfDetail, read_cityjson};
 pub use colors::{class_color, in_shadow, ramp_colors};
 pub use geojson::{Area, GeojsonCoordinates, write_geojson_areas};

@@ -8,10 +8,11 @@
 #![allow(clippy::print_stdout, reason = "the table is what this example is for")]
 
 use belvedere::Bounds;
+use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::read_balls;
-use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, BlockRule, CertifiedMap, MedialScene, Scope, Viewer, Visibility, random_targets};
+use belvedere::model::SceneModel;
+use belvedere::query::{Answer, BlockRule, CertifiedMap, Scope, UnprovenAs, Viewer, Visibility, random_targets};
 use belvedere::view::{View, to_sun};
 use std::path::Path;
 use std::process::ExitCode;
@@ -24,16 +25,10 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let path = arguments.next().ok_or("name a ball file")?;
     let count: usize = arguments.next().map_or(Ok(10_000_000), |n| n.parse())?;
-    let saved = read_balls(Path::new(&path))?;
-    let Bounds { low, high } = saved.bounds;
-    let balls = MedialBalls {
-        centers: saved.centers,
-        radii: saved.radii,
-        source: saved.source,
-        touch: saved.touch,
-        separation_angles: saved.separation_angles,
-    };
-    let scene = MedialScene::new(&balls, &BlockRule::carved())?;
+    let model = SceneModel::from_parts(read_balls(Path::new(&path))?)?;
+    let Bounds { low, high } = model.bounds();
+    let balls = model.balls();
+    let scene = model.scene(&BlockRule::carved(), UnprovenAs::Visible, &Control::none())?;
     println!("{} balls, {count} targets", scene.ball_count());
     let [l, h] = [low, high].map(|corner| corner.map(f64::from));
     let middle: [f64; 3] = std::array::from_fn(|i| (l[i] + h[i]) / 2.0);
@@ -69,7 +64,7 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
         let drawn = start.elapsed();
         let start = Instant::now();
         for view in &views {
-            depth_map(&balls, view, Profile::Sphere, ItemBuffer::Without)?;
+            depth_map(balls, view, Profile::Sphere, ItemBuffer::Without)?;
         }
         let plain = start.elapsed();
         let (mut settled, mut differ, mut visible, mut asked) = (0, 0, 0, 0);

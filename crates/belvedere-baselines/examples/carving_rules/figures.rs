@@ -4,10 +4,11 @@ use crate::place::Place;
 use belvedere::Bounds;
 use belvedere::figures::{Picture, side_by_side, write_png};
 use belvedere::medial::{MedialBalls, ShrinkParams};
+use belvedere::model::BallParams;
 use belvedere::query::{Answer, Viewer, Visibility};
 use belvedere::view::to_sun;
 use belvedere::{Error, Result};
-use belvedere_baselines::medial::{Making, MedialBaseline, MedialParams, Outward};
+use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
 use belvedere_scenes::Preset;
 use std::path::Path;
 
@@ -33,7 +34,7 @@ pub(crate) fn draw(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|source| Error::Io { path: folder.to_owned(), source })?;
     let place = Place::simulated(Preset::OldTown, 7)?;
     let uncarved = MedialParams {
-        making: Making::Shrinking(ShrinkParams { max_radius: f32::INFINITY, ..ShrinkParams::tau() }),
+        making: BallParams::Shrunk(ShrinkParams { max_radius: f32::INFINITY, ..ShrinkParams::tau() }),
         ..MedialParams::cut_to_half_a_metre()
     };
     let ways = [

@@ -12,10 +12,11 @@ mod figures;
 mod place;
 
 use belvedere::medial::{CarvedParams, CrownParams, Rule, Trees};
+use belvedere::model::BallParams;
 use belvedere::query::{Answer, BlockRule, Viewer, Visibility};
 use belvedere::{Error, Result};
 use belvedere_baselines::agreement::{Counts, Rate};
-use belvedere_baselines::medial::{Making, MedialBaseline, MedialParams, Outward};
+use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
 use belvedere_scenes::Preset;
 use place::{Place, Question};
 use std::collections::BTreeMap;
@@ -26,8 +27,9 @@ use std::time::Instant;
 fn variants() -> Vec<(String, MedialParams)> {
     let all = MedialParams::carved();
     let carving = CarvedParams::default();
-    let with =
-        |name: &str, carving: CarvedParams| (name.to_owned(), MedialParams { making: Making::Carving(carving), ..all });
+    let with = |name: &str, carving: CarvedParams| {
+        (name.to_owned(), MedialParams { making: BallParams::Carved(carving), ..all })
+    };
     let trees =
         |trees: Trees| CarvedParams { crowns: carving.crowns.map(|crowns| CrownParams { trees, ..crowns }), ..carving };
     let blocked = |name: &str, depth_bias: f64, shell: f64| {

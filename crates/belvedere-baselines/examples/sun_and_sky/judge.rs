@@ -12,7 +12,7 @@ use belvedere::medial::MedialBalls;
 use belvedere::query::{Answer, BlockRule, MedialScene, Viewer, Visibility, visibility_matrix};
 use belvedere::{PointCloud, Result};
 use belvedere_baselines::Survey;
-use belvedere_baselines::medial::{MedialParams, Outward, interior_balls};
+use belvedere_baselines::medial::{MedialParams, Outward, scene_model};
 use belvedere_scenes::{AirborneParams, Material, Preset, QuerySet, QuerySite, Scene, Truth, town};
 use flown::flown;
 use score::{Light, Score, Setting};
@@ -65,7 +65,7 @@ impl Town {
         let scene = town(&preset.params(extent, seed));
         let (cloud, scanner) = flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, 8.0) })?;
         let survey = Survey { cloud: &cloud, scanner: &scanner, models: &[] };
-        let balls = interior_balls(&survey, Outward::Survey, &MedialParams::carved())?;
+        let balls = scene_model(&survey, Outward::Survey, &MedialParams::carved())?.into_parts().balls;
         let truth = Truth::new(&scene);
         let Bounds { low, high } = cloud.bounds().unwrap_or_default();
         let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];

@@ -2,7 +2,7 @@
 
 use super::{check_output, check_parent, extension, is_folder, is_same};
 use crate::arguments::{Balls, Cleaning, Global, MethodChoice, SideChoice, Usage};
-use crate::pipeline::{self, BallParams, Carving, Prepared};
+use crate::pipeline::{self, params};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
@@ -10,7 +10,7 @@ use belvedere::PointCloud;
 use belvedere::io::{MasbcppFolder, write_balls, write_masbcpp};
 use belvedere::medial::feature_size::{FeatureSizeParams, SimplifyParams, local_feature_size, simplify};
 use belvedere::medial::{MedialBalls, NO_TOUCH, Side};
-use std::borrow::Cow;
+use belvedere::model::{BallParams, ModelParams, ModelParts, OrientedSurvey, SceneModel};
 
 pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
     let is_folder = is_folder(&arguments.output);
@@ -29,8 +29,9 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
         (false, SideChoice::Interior) => MethodChoice::Carved,
         (false, SideChoice::Exterior) => MethodChoice::Tau,
     };
-    let params = arguments.shrinking.params(method)?;
-    if params.carving() == Carving::Wanted && (is_folder || arguments.side == SideChoice::Exterior) {
+    let balls = arguments.shrinking.params(method)?;
+    let is_carved = matches!(balls, BallParams::Carved(_));
+    if is_carved && (is_folder || arguments.side == SideChoice::Exterior) {
         let what =
             "--method carved makes interior balls in a ball file; a folder and --side exterior need tau or angles";
         return Err(Usage(what.to_owned()).into());
@@ -44,52 +45,61 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
     };
     let nothing = Cleaning::nothing();
     let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
-    let (orienting, carving) = (&arguments.orienting, params.carving());
-    let prepared = pipeline::prepare(Cow::Borrowed(&cloud), cleaning, orienting, carving, &mut stages, &mut summary)?;
-    if is_folder {
-        write_folder(arguments, global, &cloud, &prepared, params, &mut stages, &mut summary)?;
-    } else {
-        let side = match arguments.side {
-            SideChoice::Interior => Side::Interior,
-            SideChoice::Exterior => Side::Exterior,
-        };
-        let mut made = pipeline::shrink_side(&prepared, side, params, &mut stages, &mut summary)?;
-        made.balls = made.balls.shrunk();
-        // rows of the cloud as read, not as cleaned
-        for row in made.balls.source.iter_mut().chain(&mut made.balls.touch) {
-            // a pulse has no row
-            *row = prepared.kept.get(*row as usize).copied().unwrap_or(*row);
+    let params = params::model(cleaning, &arguments.orienting, balls, &cloud.frame.crs, &mut stages)?;
+    match (is_folder, arguments.side) {
+        (true, _) => write_folder(arguments, global, &cloud, &params, &mut stages, &mut summary)?,
+        (false, side) => {
+            let model = match side {
+                SideChoice::Interior => interior(cloud, &params, &stages, &mut summary)?,
+                SideChoice::Exterior => exterior(&cloud, &params, &stages, &mut summary)?,
+            };
+            let inputs: Vec<String> = arguments.input.clouds.iter().map(|p| p.display().to_string()).collect();
+            let program = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
+            let model = model.with_provenance("program", program).with_provenance("input", inputs.join(" "));
+            if model.pulses.is_some() && extension(&arguments.output) != "npz" {
+                summary.add("not_written", "pulses: only .npz keeps what tells visible from unproven");
+            }
+            stages.run("writing", 0, |_| write_balls(&arguments.output, &model))?;
         }
-        let pulses = prepared.pulses();
-        if pulses.is_some() && extension(&arguments.output) != "npz" {
-            summary.add("not_written", "pulses: only .npz keeps what tells visible from unproven");
-        }
-        let provenance = [
-            ("program", concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned()),
-            ("side", format!("{side:?}").to_lowercase()),
-            ("method", params.settled(&prepared).name().to_owned()),
-            ("parameters", format!("{:?}", params.settled(&prepared))),
-            ("input", arguments.input.clouds.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(" ")),
-        ];
-        let saved = pipeline::saved(made, &cloud.frame, prepared.bounds, pulses, provenance);
-        stages.run("writing", 0, |_| write_balls(&arguments.output, &saved))?;
     }
     summary.add("written", arguments.output.display().to_string());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
 }
 
+/// The scene model, as it is saved.
+fn interior(cloud: PointCloud, params: &ModelParams, stages: &Stages, summary: &mut Summary) -> Result<ModelParts> {
+    let (model, report) = SceneModel::build_owned(cloud, params, &stages.control()).map_err(pipeline::advised)?;
+    summary.add_report(&report);
+    Ok(model.into_parts())
+}
+
+/// Balls in free space, which are for looking at and for other programs: no scene is made of them.
+fn exterior(cloud: &PointCloud, params: &ModelParams, stages: &Stages, summary: &mut Summary) -> Result<ModelParts> {
+    let (survey, report) = OrientedSurvey::prepare(cloud, params, &stages.control()).map_err(pipeline::advised)?;
+    summary.add_report(&report);
+    let (parts, report) = survey.exterior_parts(cloud.frame.clone(), params, &stages.control())?;
+    summary.add("exterior_balls", Summary::of(&report));
+    Ok(parts)
+}
+
 fn write_folder(
     arguments: &Balls,
     global: &Global,
     cloud: &PointCloud,
-    prepared: &Prepared,
-    params: BallParams,
+    params: &ModelParams,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<()> {
-    let interior = pipeline::shrink_side(prepared, Side::Interior, params, stages, summary)?.balls;
-    let exterior = pipeline::shrink_side(prepared, Side::Exterior, params, stages, summary)?.balls;
+    let (survey, report) = OrientedSurvey::prepare(cloud, params, &stages.control()).map_err(pipeline::advised)?;
+    summary.add_report(&report);
+    let mut made = |name, side| -> Result<MedialBalls> {
+        let (balls, report) = survey.shrink(side, params.balls.shrinking(), &stages.control())?;
+        summary.add(name, Summary::of(&report));
+        Ok(balls)
+    };
+    let interior = made("interior_balls", Side::Interior)?;
+    let exterior = made("exterior_balls", Side::Exterior)?;
     let mut folder = MasbcppFolder::default();
     let centers = |balls: &MedialBalls| {
         let mut centers = pipeline::file_coordinates(cloud, &balls.centers);
@@ -106,7 +116,7 @@ fn write_folder(
     let is_input = arguments.input.clouds.iter().any(|input| is_same(input, &arguments.output));
     // what was read from this folder stays as it is: its coordinates may be finer than the layout's f32
     folder.coords = (!is_input).then_some(&coords);
-    folder.normals = (!is_input || cloud.attributes.normals.is_none()).then_some(prepared.oriented.normals());
+    folder.normals = (!is_input || cloud.attributes.normals.is_none()).then_some(survey.oriented.normals());
     folder.ma_coords_in = Some(&inner);
     folder.ma_coords_out = Some(&outer);
     folder.ma_qidx_in = Some(&inner_touch);

@@ -1,7 +1,7 @@
 //! `belvedere demo`: a simulated town, everything done on it, and how right the answers are.
 
-use crate::arguments::{Cleaning, CloudInput, Demo, Global, NeighborChoice, OrientChoice, Orienting};
-use crate::pipeline::{self, BallParams, Carving};
+use crate::arguments::{CloudInput, Demo, Global};
+use crate::pipeline;
 use crate::progress::Stages;
 use crate::simulated::{cloud_of, write_text};
 use crate::summary::{Summary, percent, rounded};
@@ -9,12 +9,12 @@ use anyhow::Result;
 use belvedere::cloud::{PointCloud, to_local};
 use belvedere::depth::{DepthMap, ItemBuffer, Profile, depth_map};
 use belvedere::figures::{Canvas, Colors, class_color, depth_picture, in_shadow, ramp_colors, side_by_side, write_png};
-use belvedere::io::{ExtraColumn, ExtraValues, atomic, write_balls, write_cloud, write_tif_f32};
-use belvedere::medial::{CarvedParams, MedialBalls, Side};
-use belvedere::query::{Answer, BlockRule, MedialScene, Viewer, Visibility};
+use belvedere::io::{ExtraColumn, ExtraValues, atomic, read_trajectory, write_balls, write_cloud, write_tif_f32};
+use belvedere::medial::{CarvedParams, MedialBalls};
+use belvedere::model::{BallParams, ModelParams, OrientBy, SceneModel};
+use belvedere::query::{Answer, MedialScene, UnprovenAs, Viewer, Visibility};
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere_scenes::{AirborneParams, Scan, Scene, TownParams, Truth, scan_airborne, town};
-use std::borrow::Cow;
 use std::io::Write;
 use std::path::Path;
 
@@ -40,18 +40,15 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     // from here on only what a survey would deliver: the LAZ file and the trajectory
     let input = CloudInput { clouds: vec![folder.join("town.laz")], crs: None };
     let cloud = pipeline::read(&input, &mut stages, &mut summary)?;
-    let orienting = Orienting {
-        neighbors: NeighborChoice::Fixed(16),
-        orient: OrientChoice::Trajectory(folder.join("trajectory.csv")),
-    };
-    let cleaning = Cleaning { keep_noise: false, keep_duplicates: false, keep_isolated: false };
-    let prepared =
-        pipeline::prepare(Cow::Borrowed(&cloud), &cleaning, &orienting, Carving::Wanted, &mut stages, &mut summary)?;
-    let params = BallParams::Carved(CarvedParams::default());
-    let made = pipeline::shrink_side(&prepared, Side::Interior, params, &mut stages, &mut summary)?;
-    let pulses = prepared.pulses();
-    drop(prepared);
-    let balls = &made.balls;
+    let path = folder.join("trajectory.csv");
+    let (trajectory, _) = stages.run("reading trajectory", 0, |_| read_trajectory(&path, &cloud.frame.crs))?;
+    let params = ModelParams::default()
+        .with_orient(OrientBy::Trajectory(trajectory))
+        .with_balls(BallParams::Carved(CarvedParams::default()));
+    let (model, report) = SceneModel::build(&cloud, &params, &stages.control())?;
+    summary.add_report(&report);
+    let model = model.with_provenance("program", concat!("belvedere ", env!("CARGO_PKG_VERSION"), " demo"));
+    let balls = model.balls();
 
     let [azimuth, elevation] = SUN_DEG.map(f64::to_radians);
     let sun = to_sun(azimuth, elevation);
@@ -59,7 +56,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     let (low, high) = bounds.corners();
     let view = View::parallel(sun.map(|v| -v), low, high, default_pixel_size(low, high))?;
     let map = stages.run("drawing depth map", 0, |_| depth_map(balls, &view, Profile::Sphere, ItemBuffer::Without))?;
-    let blockers = stages.run("indexing balls", 0, |_| MedialScene::new(balls, &BlockRule::carved()))?;
+    let blockers = model.scene(&model.rule(), UnprovenAs::Visible, &stages.control())?;
     let answers = stages.run("querying", 0, |_| blockers.visible(Viewer::Direction(sun), &cloud.positions))?;
     let shadowed = answers.iter().filter(|&&a| a == Answer::Blocked).count();
     summary.add("own_points_in_shadow_percent", percent(shadowed, answers.len()));
@@ -84,13 +81,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
             None,
             Some("depth in metres from the sun"),
         )?;
-        let provenance = [
-            ("program", concat!("belvedere ", env!("CARGO_PKG_VERSION"), " demo").to_owned()),
-            ("side", "interior".to_owned()),
-            ("method", params.name().to_owned()),
-            ("parameters", format!("{params:?}")),
-        ];
-        write_balls(&folder.join("balls.npz"), &pipeline::saved(made, &cloud.frame, bounds, pulses, provenance))?;
+        write_balls(&folder.join("balls.npz"), model.parts())?;
         Ok(())
     })?;
     let seconds = stages.into_seconds();

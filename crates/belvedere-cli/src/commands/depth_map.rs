@@ -92,14 +92,14 @@ fn draw(arguments: &DepthMap, scene: &Scene, views: &[View], items: ItemBuffer) 
     let profile = arguments.scene.profile.into();
     if let [view] = views {
         let look = if view.is_central() { Look::Camera(*view) } else { Look::Parallel };
-        let map = flagged("--ball-profile", depth_map(&scene.balls, view, profile, items))?;
+        let map = flagged("--ball-profile", depth_map(scene.model.balls(), view, profile, items))?;
         return Ok(Drawn { depth: map.depth, balls: map.balls, around_eye_count: map.around_eye_count, look });
     }
     if profile != Profile::Sphere {
         return Err(Usage("--ball-profile: the paper's cone is for parallel views only".to_owned()).into());
     }
     let eye = views.first().map_or([0.0; 3], |view| view.frame.eye);
-    let map = panorama(&scene.balls, eye, arguments.view.panorama_width()?, items)?;
+    let map = panorama(scene.model.balls(), eye, arguments.view.panorama_width()?, items)?;
     Ok(Drawn { depth: map.range, balls: map.balls, around_eye_count: map.around_eye_count, look: Look::Panorama })
 }
 

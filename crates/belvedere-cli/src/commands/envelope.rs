@@ -21,7 +21,7 @@ use belvedere::apps::viewshed::CELL;
 use belvedere::figures::write_png;
 use belvedere::ground::{Ground, MapGrid, highest_points};
 use belvedere::io::{ReadReport, Shape, is_ball_file, write_mesh, write_npy_f32_2d, write_tif_f32};
-use belvedere::medial::MedialBalls;
+use belvedere::model::{ModelParts, SceneModel};
 use belvedere::query::{MeshTargetParams, SurfacePieces, visibility_matrix};
 use belvedere::view::to_sun;
 use std::path::Path;
@@ -118,17 +118,8 @@ fn scene(arguments: &Envelope, stages: &mut Stages, summary: &mut Summary) -> Re
     }
     let cloud = pipeline::read(&arguments.scene.input, stages, summary)?;
     let bounds = pipeline::bounds_of(&cloud)?;
-    let (balls, left_out) = (MedialBalls::default(), ReadReport::default());
-    Ok(Scene {
-        balls,
-        cloud,
-        bounds,
-        normals: None,
-        pulses: None,
-        left_out,
-        transmission: Vec::new(),
-        vegetation: Vec::new(),
-    })
+    let parts = ModelParts { frame: cloud.frame.clone(), bounds, ..ModelParts::default() };
+    Ok(Scene { model: SceneModel::from_parts(parts)?, cloud, left_out: ReadReport::default() })
 }
 
 /// Directions, and what to call each.

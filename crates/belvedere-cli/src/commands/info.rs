@@ -1,12 +1,11 @@
 //! `belvedere info`.
 
 use crate::arguments::{Global, Info};
-use crate::pipeline::{self, scanner};
 use crate::progress::Stages;
-use crate::summary::{Summary, rounded, whole};
+use crate::summary::{Summary, rounded, sections, whole};
 use anyhow::Result;
 use belvedere::io::{ReadOptions, read_cloud};
-use belvedere::pulses::{LocateParams, Means, ScannerReport, ServedBy, locate};
+use belvedere::pulses::{FoundBy, LocateParams, Means, ScannerReport, locate};
 use belvedere::summary::{CloudSummary, FacadeSummary};
 use belvedere::{Error, PointCloud};
 
@@ -63,10 +62,9 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
             }
             Err(error) => return Err(error.into()),
         };
-    summary.add("scanner", scanner::section(&scanner));
-    summary.add("scanner_by_line", scanner::line_sections(&scanner));
-    let reading = pipeline::reading_section(&report);
-    summary.add("reading", reading);
+    summary.add("scanner", Summary::of(&scanner));
+    summary.add("scanner_by_line", sections(&scanner.lines()));
+    summary.add("reading", Summary::of(&report));
     summary.add("attributes", attributes(&cloud, &facts));
     summary.add("missing", missing(&cloud, &facts));
     summary.add("can_serve", can_serve(&cloud, &facts, &scanner));
@@ -149,12 +147,12 @@ fn can_serve(cloud: &PointCloud, facts: &CloudSummary, scanner: &ScannerReport) 
     section.add("--orient scanner", yes_if(!cloud.scanner_positions.is_empty(), "the file has no scanner positions"));
     let times = facts.gps_time.is_some_and(|t| t.can_tell_pulses_apart(cloud.len()));
     section.add("--orient trajectory=FILE", yes_if(times, "the file has no usable GPS times"));
-    let by_pulses = [ServedBy::Returns, ServedBy::ScanAngle].iter().any(|means| scanner.served.contains_key(means));
+    let by_pulses = [FoundBy::Returns, FoundBy::ScanAngle].iter().any(|means| scanner.found.contains_key(means));
     section.add("--orient pulses", yes_if(by_pulses, "the pulses do not tell where the scanner was"));
     section.add("--orient mesh=FILE", "yes");
     let carved = if !enough {
         "no: fewer than 4 points"
-    } else if scanner.served.is_empty() {
+    } else if scanner.found.is_empty() {
         "no: nothing tells where the scanner was"
     } else if scanner.is_assumed() {
         "yes, with pulses assumed to be vertical"

@@ -90,7 +90,7 @@ fn check_outputs(arguments: &Landmark) -> Result<()> {
 
 /// The cells that observers stand in, or that the ground below those of a file is asked on.
 fn grid(arguments: &Landmark, scene: &Scene) -> Result<MapGrid> {
-    let [low, high] = on_map(scene.bounds);
+    let [low, high] = on_map(scene.model.bounds());
     let cell = match &arguments.observers {
         Some(_) => belvedere::apps::viewshed::cell_for(low, high),
         None => arguments.cell.unwrap_or_else(|| observer_cell_for(low, high)),

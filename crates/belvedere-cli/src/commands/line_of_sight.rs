@@ -44,7 +44,7 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     )?;
     if blockers.proof().is_none() {
         // nothing then says how much of a line no pulse came near to
-        scene.pulses = None;
+        scene.model = scene.model.without_pulses();
     }
     let sights = stages.run("answering", 0, |_| blockers.lines_of_sight(&pairs, &earth));
     let settled = |sight: &Option<belvedere::query::LineOfSight>| {
@@ -60,9 +60,9 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
                 one.add("first_block_range_m", rounded(block.range, 3))
                     .add("block_at", file(&scene.cloud, block.place).map(|v| rounded(v, 3)).to_vec())
                     .add("block_ball", block.ball)
-                    .add("block_source_point", scene.balls.source.get(block.ball).copied().unwrap_or_default());
+                    .add("block_source_point", scene.model.balls().source.get(block.ball).copied().unwrap_or_default());
             }
-            if scene.pulses.is_some() {
+            if scene.model.pulses().is_some() {
                 one.add("unproven_m", rounded(sight.unproven_length, 3));
             }
         }
@@ -87,7 +87,7 @@ fn pairs(arguments: &LineOfSight, scene: &Scene, seed: u64, stages: &mut Stages)
         return Ok(vec![[local(&scene.cloud, from.0), local(&scene.cloud, to.0)]]);
     }
     if let Some(count) = lines.random {
-        return Ok(random_pairs(scene.bounds.low, scene.bounds.high, count, seed));
+        return Ok(random_pairs(scene.model.bounds().low, scene.model.bounds().high, count, seed));
     }
     let Some(path) = &lines.pairs else {
         return Err(Usage("say which lines: --pairs, --random, or --observer and --target".to_owned()).into());
@@ -126,12 +126,12 @@ fn write(
     let codes: Vec<Option<u64>> = answers.iter().map(|&answer| Some(u64::from(answer as u8))).collect();
     let balls: Vec<Option<u64>> = (0..count).map(|i| block(i).map(|block| block.ball as u64)).collect();
     let sources: Vec<Option<u64>> =
-        (0..count).map(|i| scene.balls.source.get(block(i)?.ball).map(|&row| u64::from(row))).collect();
+        (0..count).map(|i| scene.model.balls().source.get(block(i)?.ball).map(|&row| u64::from(row))).collect();
     let mut columns: Vec<(&'static str, Cells<'_>)> =
         ENDS.iter().zip(&ends).map(|(&name, values)| (name, Cells::Real(values, 4))).collect();
     columns.push(("answer", Cells::Whole(&codes)));
     columns.push(("first_block_range_m", Cells::Real(&range, 3)));
-    if scene.pulses.is_some() {
+    if scene.model.pulses().is_some() {
         columns.push(("unproven_m", Cells::Real(&unproven, 3)));
     }
     columns.extend(["block_x", "block_y", "block_z"].into_iter().zip(&place).map(|(n, v)| (n, Cells::Real(v, 3))));
@@ -223,7 +223,7 @@ fn profile_ground(
     if scene.cloud.is_empty() && matches!(arguments.ground, GroundChoice::OfScene(_)) {
         return Ok(None);
     }
-    let [low, high] = on_map(scene.bounds);
+    let [low, high] = on_map(scene.model.bounds());
     let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     let grid = MapGrid::covering(low, high, belvedere::apps::viewshed::cell_for(low, high), origin)?;
     let (cloud, points) = ground_cloud(&arguments.ground, scene, stages)?;

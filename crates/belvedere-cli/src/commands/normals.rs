@@ -2,12 +2,13 @@
 
 use super::{NormalColumns, check_output, check_parent, is_folder, is_same};
 use crate::arguments::{Cleaning, Global, Normals, OrientChoice};
-use crate::pipeline::{self, Carving};
+use crate::pipeline::{self, params};
 use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::io::{ExtraColumn, ExtraValues, MasbcppFolder, WriteReport, write_cloud, write_masbcpp};
-use std::borrow::Cow;
+use belvedere::medial::ShrinkParams;
+use belvedere::model::{BallParams, OrientedSurvey};
 
 pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
     let output = &arguments.output;
@@ -31,15 +32,11 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
     let nothing = Cleaning::nothing();
     // the rows of a folder belong to the rows of its coords.npy
     let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
-    let prepared = pipeline::prepare(
-        Cow::Borrowed(&cloud),
-        cleaning,
-        &arguments.orienting,
-        Carving::Unwanted,
-        &mut stages,
-        &mut summary,
-    )?;
-    let oriented = &prepared.oriented;
+    let balls = BallParams::Shrunk(ShrinkParams::tau());
+    let params = params::model(cleaning, &arguments.orienting, balls, &cloud.frame.crs, &mut stages)?;
+    let (survey, report) = OrientedSurvey::prepare(&cloud, &params, &stages.control()).map_err(pipeline::advised)?;
+    summary.add_report(&report);
+    let oriented = &survey.oriented;
     let report = stages.run("writing", 0, |_| -> Result<WriteReport> {
         if is_folder {
             // the points of the input are never replaced: its coordinates may be finer than the layout's f32
@@ -53,7 +50,7 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
             write_masbcpp(output, &folder)?;
             return Ok(WriteReport::default());
         }
-        let mut kept = if prepared.kept.len() == cloud.len() { cloud.clone() } else { cloud.select(&prepared.kept) };
+        let mut kept = if survey.kept.len() == cloud.len() { cloud.clone() } else { cloud.select(&survey.kept) };
         kept.attributes.normals = None;
         let normals = NormalColumns::new(oriented.normals());
         let [x, y, z] = normals.columns(output);

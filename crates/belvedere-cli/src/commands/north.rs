@@ -17,7 +17,7 @@ pub(crate) struct AzimuthNorth {
 impl North {
     /// The north at the middle of the scene.
     pub(crate) fn of_scene(&self, scene: &Scene) -> AzimuthNorth {
-        let (low, high) = scene.bounds.corners();
+        let (low, high) = scene.model.bounds().corners();
         self.at(scene, [0, 1].map(|i| f64::midpoint(low[i], high[i])))
     }
 

@@ -1,8 +1,8 @@
 //! `belvedere query`.
 
-use super::{NormalColumns, check_output, extension, is_las, mesh_targets};
+use super::{NormalColumns, check_output, extension, is_las, mesh_targets, sights};
 use crate::arguments::{Global, Query, Usage};
-use crate::pipeline::{self, Points};
+use crate::pipeline::{self, Points, Scene};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
@@ -10,11 +10,9 @@ use belvedere::PointCloud;
 use belvedere::crs::{Crs, CrsKind};
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::{ExtraColumn, ExtraValues, ReadOptions, WriteReport, read_cloud, write_cloud, write_npy_u8};
-use belvedere::medial::MedialBalls;
-use belvedere::pulses::{NeedleColumns, Needles};
+use belvedere::model::SceneModel;
 use belvedere::query::{
-    Answer, AnswerCounts, BlockRule, CertifiedReport, MedialScene, Proof, ProofParams, Scope, UnprovenAs, answer_views,
-    query_points, random_targets,
+    Answer, AnswerCounts, BlockRule, CertifiedReport, Scope, UnprovenAs, answer_views, query_points, random_targets,
 };
 use belvedere::view::View;
 use std::path::Path;
@@ -30,12 +28,12 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     let mut summary = Summary::default();
     let points = if arguments.targets.own { Points::Keep } else { Points::LetGo };
     let scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
-    if arguments.unproven.is_some() && scene.pulses.is_none() {
+    if arguments.unproven.is_some() && scene.model.pulses().is_none() {
         let what = "--unproven needs to know the pulses: a cloud of which the scanner can be found (see `belvedere info`), or an \
                     .npz that `belvedere balls` made of one";
         return Err(Usage(what.to_owned()).into());
     }
-    if arguments.shell.is_some() && !scene.is_carved() {
+    if arguments.shell.is_some() && !scene.model.is_carved() {
         return Err(Usage("--shell belongs to carved balls, which these are not".to_owned()).into());
     }
     let mut views = arguments.view.views(&scene, &mut summary)?;
@@ -46,19 +44,19 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     if arguments.targets.own && extension(output) == "npy" {
         pipeline::check_every_row(&scene.left_out)?;
     }
-    let blockers = Blockers { is_carved: scene.is_carved(), balls: scene.balls, pulses: scene.pulses };
-    let mut targets = targets(arguments, scene.cloud, scene.bounds, global.seed, &mut stages, &mut summary)?;
+    let Scene { model, cloud, .. } = scene;
+    let mut targets = targets(arguments, cloud, model.bounds(), global.seed, &mut stages, &mut summary)?;
     if arguments.view.kind.viewport.is_none() {
         // a view that fits the scene has no plane of its own that a target could lie before
         views = views.iter().map(|view| view.moved_before(&targets.positions)).collect();
     }
     let mut section = Summary::default();
-    let answers = if blockers.is_carved || is_central {
-        by_lines_of_sight(arguments, &blockers, &views, &targets.positions, &mut stages, &mut section)?
+    let answers = if model.is_carved() || is_central {
+        by_lines_of_sight(arguments, &model, &views, &targets.positions, &mut stages, &mut section)?
     } else {
         let Some(view) = views.first() else { bail!("there is no view") };
         let map = stages.run("drawing depth map", 0, |_| {
-            depth_map(&blockers.balls, view, arguments.scene.profile.into(), ItemBuffer::Without)
+            depth_map(model.balls(), view, arguments.scene.profile.into(), ItemBuffer::Without)
         })?;
         let bias = arguments.bias.unwrap_or_else(|| map.default_depth_bias());
         section.add("answered_by", "depth map").add("depth_bias_m", rounded(f64::from(bias), 4));
@@ -91,40 +89,25 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     Ok(summary)
 }
 
-/// What lines of sight run into, and what is known of where they run.
-struct Blockers {
-    balls: MedialBalls,
-    pulses: Option<NeedleColumns>,
-    is_carved: bool,
-}
-
 /// Answers by exact lines of sight, told apart by pulses where these are known.
 fn by_lines_of_sight(
     arguments: &Query,
-    blockers: &Blockers,
+    model: &SceneModel,
     views: &[View],
     targets: &[[f32; 3]],
     stages: &mut Stages,
     section: &mut Summary,
 ) -> Result<Vec<Answer>> {
-    let usual = if blockers.is_carved { BlockRule::carved() } else { BlockRule::uncarved() };
+    let usual = model.rule();
     let depth_bias = arguments.bias.map_or(usual.bias, f64::from);
     let shell = arguments.shell.map_or(usual.shell, f64::from);
-    let params = BlockRule { profile: arguments.scene.profile.into(), bias: depth_bias, shell };
-    let mut scene = stages.run("indexing balls", 0, |_| MedialScene::new(&blockers.balls, &params))?;
+    let rule = BlockRule { profile: arguments.scene.profile.into(), bias: depth_bias, shell };
+    let scene = model.scene(&rule, UnprovenAs::Reported, &stages.control())?;
     section.add("depth_bias_m", rounded(depth_bias, 4)).add("shell_m", rounded(shell, 4));
     if let Some(view) = views.iter().find(|view| view.is_central()) {
         section.add("balls_around_the_eye_left_out", scene.around_eye_count(view.frame.eye));
     }
-    if let Some(pulses) = &blockers.pulses {
-        let proof = stages.run("indexing pulses to prove by", 0, |_| {
-            Proof::new(Needles::from_columns(pulses)?, &ProofParams::default())
-        })?;
-        section
-            .add("seen_within_m", rounded(proof.nearness(), 3))
-            .add("unseen_length_tolerated_m", rounded(proof.tolerance(), 3));
-        scene = scene.with_pulses(proof);
-    }
+    sights::add_proof(&scene, section);
     // the sun, a direction and a panorama only say from where: without a picture there is nothing beside it
     let has_picture = arguments.view.kind.viewport.is_some() || arguments.view.kind.eye.is_some();
     let scope = if has_picture { Scope::View } else { Scope::Viewer };
@@ -198,7 +181,7 @@ pub(super) fn points_of_file(
     let options = ReadOptions { crs };
     let (mut cloud, report) = stages.run("reading targets", 0, |_| read_cloud(&[path.to_owned()], &options))?;
     pipeline::check_every_row(&report)?;
-    summary.add("reading_targets", pipeline::reading_section(&report));
+    summary.add("reading_targets", Summary::of(&report));
     // a table of targets says nothing of its unit: it is in the coordinates of the scene's file
     let scale = scene.frame.crs.metres_per_unit_xyz();
     let given = cloud.frame.crs.metres_per_unit_xyz();

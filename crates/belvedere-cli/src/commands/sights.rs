@@ -10,8 +10,7 @@ use belvedere::PointCloud;
 use belvedere::depth::Profile;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
 use belvedere::io::{Georeference, ReadOptions, read_cloud};
-use belvedere::pulses::Needles;
-use belvedere::query::{BlockRule, EarthParams, MedialScene, Proof, ProofParams, UnprovenAs};
+use belvedere::query::{BlockRule, EarthParams, MedialScene, UnprovenAs};
 
 /// Whether pulses are asked about lines of sight that nothing blocks.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -24,7 +23,7 @@ pub(crate) enum Proving {
 
 /// How balls block, as the flags say.
 pub(crate) fn scene_params(scene: &Scene, profile: Profile, flags: &GivingWay) -> BlockRule {
-    let usual = if scene.is_carved() { BlockRule::carved() } else { BlockRule::uncarved() };
+    let usual = scene.model.rule();
     BlockRule { profile, shell: flags.shell.map_or(usual.shell, f64::from), ..usual }
 }
 
@@ -37,32 +36,33 @@ pub(crate) fn blockers(
     stages: &mut Stages,
     section: &mut Summary,
 ) -> Result<(MedialScene, UnprovenAs)> {
-    if flags.unproven.is_some() && scene.pulses.is_none() {
+    if flags.unproven.is_some() && scene.model.pulses().is_none() {
         let what = "--unproven needs to know the pulses: a cloud of which the scanner can be found (see `belvedere info`), or an \
                     .npz that `belvedere balls` made of one";
         return Err(Usage(what.to_owned()).into());
     }
-    if flags.shell.is_some() && !scene.is_carved() {
+    if flags.shell.is_some() && !scene.model.is_carved() {
         return Err(Usage("--shell belongs to carved balls, which these are not".to_owned()).into());
     }
     let params = scene_params(scene, profile, flags);
-    let mut blockers = stages.run("indexing balls", 0, |_| MedialScene::new(&scene.balls, &params))?;
+    let unproven_as = flags.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
+    let asked = if proving == Proving::IfItDecides { unproven_as } else { UnprovenAs::Visible };
+    let blockers = scene.model.scene(&params, asked, &stages.control())?;
     section
         .add("balls", blockers.ball_count())
         .add("depth_bias_m", rounded(params.bias, 4))
         .add("shell_m", rounded(params.shell, 4));
-    let unproven_as = flags.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
-    let decides = proving == Proving::IfItDecides && unproven_as != UnprovenAs::Visible;
-    if decides && let Some(pulses) = &scene.pulses {
-        let proof = stages.run("indexing pulses to prove by", 0, |_| {
-            Proof::new(Needles::from_columns(pulses)?, &ProofParams::default())
-        })?;
+    add_proof(&blockers, section);
+    Ok((blockers, unproven_as))
+}
+
+/// How near pulses must pass and how much may be unseen, where pulses tell visible from unproven.
+pub(crate) fn add_proof(scene: &MedialScene, section: &mut Summary) {
+    if let Some(proof) = scene.proof() {
         section
             .add("seen_within_m", rounded(proof.nearness(), 3))
             .add("unseen_length_tolerated_m", rounded(proof.tolerance(), 3));
-        blockers = blockers.with_pulses(proof);
     }
-    Ok((blockers, unproven_as))
 }
 
 impl Earth {

@@ -118,10 +118,10 @@ impl SkyPlaces {
                 return Err(Usage("--self needs the cloud itself; a ball file holds no points".to_owned()).into());
             }
             let frame = PointCloud::in_frame(scene.cloud.frame.clone());
-            let normals = scene.normals.take();
+            let normals = scene.model.take_normals();
             return self.of_points(std::mem::replace(&mut scene.cloud, frame), normals);
         }
-        let [low, high] = on_map(scene.bounds);
+        let [low, high] = on_map(scene.model.bounds());
         let cell = self.cell.unwrap_or_else(|| cell_for(low, high));
         let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
         let grid = flagged("--cell", MapGrid::covering(low, high, cell, origin))?;

@@ -13,7 +13,7 @@ use belvedere::apps::sun_hours::RuleDays;
 impl SunPlace {
     /// Where the middle of the scene lies on earth.
     pub(crate) fn site(&self, scene: &Scene, summary: &mut Summary) -> Result<Site> {
-        let Bounds { low, high } = scene.bounds;
+        let Bounds { low, high } = scene.model.bounds();
         let middle: [f64; 3] =
             std::array::from_fn(|i| scene.cloud.frame.origin[i] + f64::midpoint(f64::from(low[i]), f64::from(high[i])));
         let by_crs = Site::of(&scene.cloud.frame.crs, [middle[0], middle[1]], middle[2]);

@@ -111,7 +111,7 @@ fn matrix_params(scene: &Scene, arguments: &SunHours) -> BlockRule {
 
 /// The number by which a matrix knows the balls that it was made of.
 fn matrix_scene(scene: &Scene, arguments: &SunHours) -> u64 {
-    scene_fingerprint(&scene.balls, &matrix_params(scene, arguments))
+    scene_fingerprint(scene.model.balls(), &matrix_params(scene, arguments))
 }
 
 /// The bits that were kept, if they belong to these places and balls.

@@ -2,9 +2,9 @@
 
 use super::check_output;
 use crate::arguments::{Global, Trajectory, Usage};
-use crate::pipeline::{self, scanner};
+use crate::pipeline;
 use crate::progress::Stages;
-use crate::summary::Summary;
+use crate::summary::{Summary, sections};
 use anyhow::Result;
 use belvedere::io::write_found_trajectory;
 use belvedere::pulses::{LocateParams, Means, locate, path_samples};
@@ -22,8 +22,8 @@ pub(crate) fn run(arguments: &Trajectory, global: &Global) -> Result<Summary> {
     let cloud = pipeline::read(&arguments.input, &mut stages, &mut summary)?;
     let (_, report) =
         stages.run("finding the scanner", 0, |_| locate(&cloud, &Means::Pulses, &LocateParams::default()))?;
-    summary.add("scanner", scanner::section(&report));
-    summary.add("scanner_by_line", scanner::line_sections(&report));
+    summary.add("scanner", Summary::of(&report));
+    summary.add("scanner_by_line", sections(&report.lines()));
     let samples = path_samples(&report.paths, cloud.frame.origin, arguments.step)?;
     summary.add("positions", samples.len());
     stages.run("writing", 0, |_| write_found_trajectory(&arguments.output, &samples, &cloud.frame.crs))?;

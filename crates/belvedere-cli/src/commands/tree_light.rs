@@ -5,7 +5,8 @@ use crate::pipeline::Scene;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::apps::sun::Date;
-use belvedere::apps::tree_light::{Foliage, Transmissivity, without_vegetation};
+use belvedere::apps::tree_light::{Foliage, Transmissivity};
+use belvedere::control::Control;
 use belvedere::query::{BlockRule, MedialScene};
 
 /// A scene without its vegetation, and what share of the light vegetation lets through.
@@ -27,21 +28,21 @@ impl ThroughTrees {
             ThroughTreesChoice::Seasons => Transmissivity::default(),
             ThroughTreesChoice::Share(share) => Transmissivity::constant(share)?,
             ThroughTreesChoice::Pulses => {
-                Transmissivity::measured(&scene.balls, &scene.transmission).ok_or_else(|| {
+                Transmissivity::measured(scene.model.balls(), scene.model.transmission()).ok_or_else(|| {
                     let what = "--through-trees pulses: nothing is known of pulses that met vegetation; that takes a cloud with return \
                                 numbers, GPS times and, best, classes, or a ball file made of one";
                     Usage(what.to_owned())
                 })?
             }
         };
-        if !scene.vegetation.contains(&true) {
+        if !scene.model.vegetation().contains(&true) {
             let what = "--through-trees: no ball is known to be vegetation; that takes a cloud with its classes (3 to 5), or with return \
                         numbers and GPS times, or a ball file made of one";
             return Err(Usage(what.to_owned()).into());
         }
-        let opaque = MedialScene::new(&without_vegetation(&scene.balls, &scene.vegetation)?, params)?;
+        let opaque = scene.model.scene_without_vegetation(params, &Control::none())?;
         let mut section = Summary::default();
-        section.add("balls_of_vegetation", scene.vegetation.iter().filter(|&&is| is).count());
+        section.add("balls_of_vegetation", scene.model.vegetation().iter().filter(|&&is| is).count());
         if transmissivity.in_leaf == transmissivity.bare {
             section.add("transmissivity", rounded(transmissivity.in_leaf, 4));
         } else {

@@ -113,7 +113,7 @@ fn check_outputs(arguments: &Viewshed) -> Result<()> {
 
 /// The cells looked at: those of the cloud that are near enough to any observer.
 fn grid(arguments: &Viewshed, scene: &pipeline::Scene, rows: &[who::Row]) -> Result<MapGrid> {
-    let [mut low, mut high] = on_map(scene.bounds);
+    let [mut low, mut high] = on_map(scene.model.bounds());
     let [all_low, all_high] = [low, high];
     let reach = |row: &who::Row| row.limits.distance[1];
     for axis in 0..2 {

@@ -51,9 +51,9 @@ fn a_carved_ball_file_answers_as_the_cloud_does_and_reports_what_was_cut() {
     let place = Workplace::new();
     place.summary("simulate village -o town --extent 100 --density 6");
     let made = place.summary("balls town/cloud.laz --method carved -o balls.npz");
-    let cut = made["interior_balls"]["cut_by_pulses"].as_u64().unwrap();
-    assert!(cut > 1000 && made["scanner"]["served_percent"].as_f64().unwrap() > 90.0, "{made}");
-    assert!(made["pulses"]["used_to_carve"].as_u64().unwrap() > 10_000);
+    let cut = made["interior_balls"]["balls_cut_by_pulses"].as_u64().unwrap();
+    assert!(cut > 1000 && made["scanner"]["scanner_known_percent"].as_f64().unwrap() > 90.0, "{made}");
+    assert!(made["pulses"]["pulses_used"].as_u64().unwrap() > 10_000);
     let asked = "--sun 200,40 --random 20000";
     let run = place.summary(&format!("query town/cloud.laz --method carved {asked} -o from_cloud.npy"));
     let cloud = place.npy::<u8>("from_cloud.npy").1;

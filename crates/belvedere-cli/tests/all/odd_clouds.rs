@@ -81,7 +81,7 @@ fn a_ball_file_without_balls_shows_nothing() {
     let rows: Vec<String> = (0..400).map(|i| format!("{},{},0,0,0,1\n", i % 20, i / 20)).collect();
     place.write("plane.csv", format!("x,y,z,nx,ny,nz\n{}", rows.concat()));
     let summary = place.summary("balls plane.csv -o balls.npz");
-    assert_eq!(summary["interior_balls"]["shrunk"], 0);
+    assert_eq!(summary["interior_balls"]["balls_shrunk"], 0);
     // the file knows where its scene is
     let summary = place.summary("depth-map balls.npz --direction 0,0,-1 -o out.npy");
     assert_eq!(summary["pixels_hit_percent"], 0.0);

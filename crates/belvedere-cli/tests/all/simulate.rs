@@ -51,7 +51,7 @@ fn an_airborne_survey_comes_with_all_that_one_delivers() {
     for name in ["out/trajectory.csv", "out/trajectory.sbet"] {
         let (trajectory, _) = read_trajectory(&place.path(name), &cloud.frame.crs).unwrap();
         let clock = trajectory.clock_offset_for(times, a.gps_time_kind);
-        assert_eq!(clock.served_count, cloud.len(), "{name}");
+        assert_eq!(clock.known_count, cloud.len(), "{name}");
     }
     // Both meshes are the town.
     let scene = town(&Preset::Village.params(120.0, 1));

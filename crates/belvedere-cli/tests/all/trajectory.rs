@@ -44,8 +44,8 @@ fn the_path_is_the_one_flown_and_serves_as_a_trajectory() {
     let used = place.summary("balls town/cloud.laz --method carved --orient trajectory=found.csv -o balls.npz");
     assert_eq!(used["scanner"]["found_by"], "trajectory");
     // half a microsecond at either end of a line is rounded off
-    assert!(used["scanner"]["served_percent"].as_f64().unwrap() > 99.9, "{used}");
-    assert_eq!(used["scanner"]["height_offset_corrected"].as_str().unwrap().get(..2), Some("no"), "{used}");
+    assert!(used["scanner"]["scanner_known_percent"].as_f64().unwrap() > 99.9, "{used}");
+    assert_eq!(used["scanner"]["trajectory_height_offset_corrected"].as_str().unwrap().get(..2), Some("no"), "{used}");
     let facts = place.summary("info town/cloud.laz");
     assert_eq!(facts["scanner"]["found_by"], made["scanner"]["found_by"]);
     assert_eq!(facts["scanner_by_line"], made["scanner_by_line"]);

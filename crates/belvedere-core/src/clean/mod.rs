@@ -8,7 +8,9 @@ use rayon::prelude::*;
 
 pub use outliers::{IsolatedPoints, IsolationRadius};
 
+use belvedere_data::report::rounded;
 use belvedere_data::{Error, PointCloud, Result};
+use serde::{Serialize, Serializer};
 
 /// LAS flag of a point that its producer withdrew.
 const WITHHELD_FLAG: u8 = 4;
@@ -51,27 +53,55 @@ impl Default for CleanParams {
     }
 }
 
+impl CleanParams {
+    /// Leaves out nothing but positions that are not finite.
+    #[must_use]
+    pub fn nothing() -> Self {
+        Self {
+            withheld: Treatment::Keep,
+            dropped_classes: Vec::new(),
+            exact_duplicates: Treatment::Keep,
+            near_duplicate_distance: None,
+            isolated: None,
+        }
+    }
+}
+
 /// How many points each step left out, in the order of the steps. All counts together are the points of the cloud.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct CleanReport {
     /// Points before.
+    #[serde(rename = "points")]
     pub point_count: usize,
     /// Points after.
+    #[serde(rename = "points_kept")]
     pub kept_count: usize,
     /// Positions that are not finite; always left out.
+    #[serde(rename = "points_not_finite")]
     pub not_finite_count: usize,
     /// Withheld points.
+    #[serde(rename = "points_withheld")]
     pub withheld_count: usize,
     /// Points of the classes left out, unless withheld too.
+    #[serde(rename = "points_of_noise_classes")]
     pub class_count: usize,
     /// Points at the position of an earlier one.
+    #[serde(rename = "exact_duplicates")]
     pub exact_duplicate_count: usize,
     /// Points close to an earlier one.
+    #[serde(rename = "near_duplicates")]
     pub near_duplicate_count: usize,
     /// Points alone.
+    #[serde(rename = "points_isolated")]
     pub isolated_count: usize,
     /// Radius in metres within which neighbours were counted, where they were.
+    #[serde(rename = "isolation_radius_m", skip_serializing_if = "Option::is_none", serialize_with = "in_centimetres")]
     pub isolation_radius: Option<f64>,
+}
+
+/// A radius in metres, to the centimetre.
+fn in_centimetres<S: Serializer>(radius: &Option<f64>, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    radius.map(|radius| rounded(radius, 2)).serialize(serializer)
 }
 
 /// Indices of the points worth keeping, ascending, and how many each step left out.

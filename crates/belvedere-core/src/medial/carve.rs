@@ -1,27 +1,28 @@
 //! Cutting balls down to what the pulses leave of them.
 
-use super::balls::{MedialBalls, NO_TOUCH};
 use super::bounds::RadiusBounds;
 use crate::neighbors::Tangent;
 use crate::normals::OrientedCloud;
 use crate::pulses::Needles;
+use belvedere_data::balls::{MedialBalls, NO_TOUCH, PULSE_TOUCH};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
-
-/// Value of [`MedialBalls::touch`] for a ball whose second contact is a pulse instead of a point.
-pub const PULSE_TOUCH: u32 = NO_TOUCH - 1;
+use serde::Serialize;
 
 /// Balls handed to a thread at once; their searches share the cache.
 const CHUNK: usize = 512;
 
 /// What became of the balls in [`carve`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CarveReport {
     /// Balls that a pulse made smaller.
+    #[serde(rename = "balls_cut_by_pulses")]
     pub carved: usize,
     /// Balls that were cut to the most radius for their kind of point.
+    #[serde(rename = "balls_limited")]
     pub limited: usize,
     /// Balls grown again to the least radius.
+    #[serde(rename = "balls_grown_to_least_radius")]
     pub grown: usize,
 }
 

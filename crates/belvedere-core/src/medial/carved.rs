@@ -1,6 +1,5 @@
 //! The model that Belvedere answers from: balls cut by pulses, and the rules for what balls alone represent badly.
 
-use super::balls::{MedialBalls, Side};
 use super::bounds::{KindBounds, RadiusBounds, kinds};
 use super::carve::{CarveReport, carve};
 use super::cells::lowest_near;
@@ -15,8 +14,10 @@ use super::vegetation::{VegetationParams, tell_vegetation};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use crate::pulses::{Needles, Pulses};
+use belvedere_data::balls::{MedialBalls, Side};
 use belvedere_data::control::Control;
 use belvedere_data::{Attributes, Result};
+use serde::Serialize;
 
 /// Upward part of a normal below which a point lies on the face of a wall rather than on its edge: within 17° of upright.
 const FACE_NORMAL_Z: f32 = 0.3;
@@ -158,31 +159,43 @@ pub struct CarvedInput<'a> {
 }
 
 /// What became of the balls in [`carved_balls`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CarvedReport {
     /// By the points.
+    #[serde(flatten)]
     pub shrinking: ShrinkReport,
     /// By the pulses.
+    #[serde(flatten)]
     pub carving: CarveReport,
     /// Points told to be vegetation in a cloud without its classes.
+    #[serde(rename = "points_found_to_be_vegetation")]
     pub told_vegetation: usize,
     /// Points in crowns with gaps.
+    #[serde(rename = "points_in_crowns_with_gaps")]
     pub in_crowns_with_gaps: usize,
     /// Balls that fill solid crowns.
+    #[serde(rename = "balls_in_crowns")]
     pub crown_fills: usize,
     /// Points of fences, wires and the like.
+    #[serde(rename = "points_on_thin_objects")]
     pub slender: usize,
     /// Balls that fill fences and the like.
+    #[serde(rename = "balls_in_thin_objects")]
     pub slender_fills: usize,
     /// Balls left out because others make them superfluous.
+    #[serde(rename = "balls_superfluous")]
     pub pruned: usize,
     /// Points found on thin surfaces.
+    #[serde(rename = "points_on_thin_surfaces")]
     pub thin: usize,
     /// Points of thin relief.
+    #[serde(rename = "points_on_thin_relief")]
     pub relief: usize,
     /// Balls that fill it.
+    #[serde(rename = "balls_in_thin_relief")]
     pub relief_fills: usize,
     /// Balls cut below the edges of roofs.
+    #[serde(rename = "balls_cut_at_roof_edges")]
     pub cut_at_edges: usize,
 }
 

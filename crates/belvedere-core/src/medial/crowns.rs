@@ -1,12 +1,11 @@
 //! Crowns of trees: what share of the pulses gets through them, and balls that fill those that let few through.
 
-use super::balls::MedialBalls;
 use super::bounds::{Kind, RadiusBounds};
-use super::carve::PULSE_TOUCH;
 use super::cells::{Cell, Cells, cell};
 use crate::neighbors::Tangent;
 use crate::pulses::{Needles, Pulses};
 use belvedere_data::Attributes;
+use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
 use rayon::prelude::*;
 
 /// What crowns are taken for.

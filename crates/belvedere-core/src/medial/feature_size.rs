@@ -1,7 +1,7 @@
 //! Local feature size, and thinning of a cloud by it.
 
-use super::balls::{MedialBalls, NO_TOUCH};
 use crate::neighbors::NeighborIndex;
+use belvedere_data::balls::{MedialBalls, NO_TOUCH};
 use belvedere_data::{Error, Result, random};
 use rayon::prelude::*;
 

@@ -1,6 +1,5 @@
 //! Medial balls: the volume of a scene as a union of balls that touch its surface.
 
-pub mod balls;
 pub mod bounds;
 pub mod carve;
 pub mod carved;
@@ -17,10 +16,11 @@ pub mod shrinking_ball;
 pub mod slender;
 pub mod thin_surfaces;
 pub mod vegetation;
+pub mod vegetation_balls;
 
-pub use balls::{MedialBalls, NO_TOUCH, Side};
+pub use belvedere_data::balls::{MedialBalls, NO_TOUCH, PULSE_TOUCH, Side};
 pub use bounds::{Kind, KindBounds, RadiusBounds, kinds};
-pub use carve::{CarveReport, PULSE_TOUCH, carve};
+pub use carve::{CarveReport, carve};
 pub use carved::{CarvedBalls, CarvedInput, CarvedParams, CarvedReport, Rule, carved_balls};
 pub use crowns::{CrownParams, Trees};
 pub use orient_by_carving::{OrientByCarvingParams, OrientByCarvingReport, orient_by_carving};
@@ -31,3 +31,4 @@ pub use shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 pub use slender::SlenderParams;
 pub use thin_surfaces::{ThinSurfaceParams, on_thin_surfaces};
 pub use vegetation::VegetationParams;
+pub use vegetation_balls::{vegetation_of_classes, vegetation_of_transmission, without_vegetation};

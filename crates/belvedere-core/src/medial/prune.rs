@@ -1,8 +1,8 @@
 //! Fewer balls for the same surface.
 
-use super::balls::{MedialBalls, NO_TOUCH};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
+use belvedere_data::balls::{MedialBalls, NO_TOUCH};
 use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;

@@ -4,12 +4,11 @@
 //! the spacing of pulses, normals at its few points say little. What is left of it lets lines of sight through just below its
 //! points, where it is most certain to be solid.
 
-use super::balls::MedialBalls;
 use super::bounds::Kind;
-use super::carve::PULSE_TOUCH;
 use super::chains::Chain;
 use crate::neighbors::NeighborIndex;
 use crate::pulses::Needles;
+use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
 use rayon::prelude::*;
 
 /// How thin relief is told and filled.

@@ -3,14 +3,13 @@
 //! Behind balconies and on walls along the flight there are hardly any points, and balls from the far side of a house bulge out
 //! between them. A house does not reach beyond its roof, so that what comes from within is cut below the roof's edge.
 
-use super::balls::{MedialBalls, NO_TOUCH};
 use super::bounds::Kind;
-use super::carve::PULSE_TOUCH;
 use super::cells::{Cells, cell};
 use super::thin_surfaces::widest_gap;
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use belvedere_data::Result;
+use belvedere_data::balls::{MedialBalls, NO_TOUCH, PULSE_TOUCH};
 use belvedere_data::vector::{dot, sub};
 use rayon::prelude::*;
 

@@ -1,12 +1,13 @@
 //! The shrinking ball: from oriented points to medial balls.
 
-use super::balls::{MedialBalls, NO_TOUCH, Side};
 use crate::neighbors::{NeighborIndex, Tangent};
 use crate::normals::OrientedCloud;
+use belvedere_data::balls::{MedialBalls, NO_TOUCH, Side};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
+use serde::Serialize;
 
 /// How a ball stops shrinking in the presence of noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,13 +101,16 @@ impl ShrinkParams {
 }
 
 /// What became of the points of a cloud in [`shrink`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ShrinkReport {
     /// Balls that touch a second point.
+    #[serde(rename = "balls_shrunk")]
     pub shrunk: usize,
     /// Balls that kept the initial radius; never used for visibility.
+    #[serde(rename = "balls_never_shrunk_and_unused")]
     pub never_shrunk: usize,
     /// Points without a normal, which get no ball: radius 0, no touch.
+    #[serde(rename = "points_without_normal")]
     pub without_normal: usize,
 }
 

@@ -2,14 +2,13 @@
 //!
 //! Their points have no surface about them that a normal could be taken from, and the balls there fill the air beside them.
 
-use super::balls::MedialBalls;
 use super::bounds::{Kind, RadiusBounds};
-use super::carve::PULSE_TOUCH;
 use super::cells::{Cells, cell};
 use super::chains::Chain;
 use crate::neighbors::{NeighborIndex, Tangent};
 use crate::pulses::Needles;
 use belvedere_data::Attributes;
+use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
 use rayon::prelude::*;
 use std::f32::consts::FRAC_1_SQRT_2;
 

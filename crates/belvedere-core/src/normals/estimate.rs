@@ -29,6 +29,25 @@ impl Default for Neighborhood {
 }
 
 impl Neighborhood {
+    /// Checks what [`estimate`] checks, before a cloud is there.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for fewer than 3 or more than 256 neighbours, or a flatness that is not above zero.
+    pub fn check(self) -> Result<()> {
+        self.largest().map(|_| ())
+    }
+
+    /// The most neighbours that are looked at.
+    fn largest(self) -> Result<usize> {
+        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        match self {
+            Self::Fixed { k } if (3..=256).contains(&k) => Ok(k),
+            Self::Fixed { k } => invalid("number of neighbours", k.to_string(), "3 to 256"),
+            Self::Adaptive { flatness } if flatness > 0.0 && flatness.is_finite() => Ok(ADAPTIVE_SIZES[6]),
+            Self::Adaptive { flatness } => invalid("flatness", flatness.to_string(), "above zero metres"),
+        }
+    }
+
     /// Adaptive with a flatness of 0.05 m, the noise of airborne scans.
     #[must_use]
     pub fn adaptive() -> Self {
@@ -58,24 +77,7 @@ pub fn estimate(positions: &[[f32; 3]], index: &NeighborIndex, neighborhood: Nei
     if index.len() != positions.len() {
         return Err(Error::LengthMismatch { what: "neighbour index", expected: positions.len(), found: index.len() });
     }
-    let k = match neighborhood {
-        Neighborhood::Fixed { k } if (3..=256).contains(&k) => k,
-        Neighborhood::Fixed { k } => {
-            return Err(Error::InvalidParameter {
-                name: "number of neighbours",
-                value: k.to_string(),
-                expected: "3 to 256",
-            });
-        }
-        Neighborhood::Adaptive { flatness } if flatness > 0.0 && flatness.is_finite() => ADAPTIVE_SIZES[6],
-        Neighborhood::Adaptive { flatness } => {
-            return Err(Error::InvalidParameter {
-                name: "flatness",
-                value: flatness.to_string(),
-                expected: "above zero metres",
-            });
-        }
-    };
+    let k = neighborhood.largest()?;
     let order = index.tree_order();
     let mut in_tree_order = vec![([0.0; 3], 0.0); positions.len()];
     in_tree_order.par_chunks_mut(CHUNK).zip(order.par_chunks(CHUNK)).for_each(|(normals, points)| {

@@ -1,11 +1,13 @@
 //! Which way is out: the signs of normals from up, scanners, a trajectory, a city model, or the file.
 
 use rayon::prelude::*;
+use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use super::Normals;
 use super::oriented::{OrientedCloud, unit_or_zero};
 use super::reference_mesh::{MeshVerdict, ReferenceMesh};
 use super::surroundings::Surroundings;
+use belvedere_data::report::percent;
 use belvedere_data::trajectory::{ClockOffset, Trajectory};
 use belvedere_data::vector::dot;
 use belvedere_data::{Error, Mesh, PointCloud, Result};
@@ -49,6 +51,8 @@ pub enum Orientation<'a> {
 }
 
 /// How the normals of a cloud got their signs. The `by_` counts and `without_normal_count` add up to the points.
+///
+/// Serialised, counts become percentages of the points, those that are zero left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OrientReport {
     /// Points in all.
@@ -80,6 +84,29 @@ impl OrientReport {
     #[must_use]
     pub fn share(&self, count: usize) -> f64 {
         count as f64 / self.point_count.max(1) as f64
+    }
+}
+
+impl Serialize for OrientReport {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let counts = [
+            ("as_given_percent", self.by_file_count),
+            ("towards_scanner_percent", self.by_scanner_count),
+            ("as_aligned_face_percent", self.by_face_count),
+            ("by_parity_percent", self.by_parity_count),
+            ("by_vote_of_roof_and_ground_percent", self.by_vote_count),
+            ("upward_percent", self.by_up_count),
+            ("without_normal_percent", self.without_normal_count),
+            ("low_confidence_percent", self.low_confidence_count),
+        ];
+        let mut map = serializer.serialize_map(None)?;
+        for (key, count) in counts.into_iter().filter(|(_, count)| *count > 0) {
+            map.serialize_entry(key, &percent(count, self.point_count))?;
+        }
+        if let Some(clock) = &self.clock {
+            map.serialize_entry("points_on_trajectory", &clock.known_count)?;
+        }
+        map.end()
     }
 }
 

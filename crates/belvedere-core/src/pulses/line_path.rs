@@ -1,6 +1,6 @@
 //! The path of a scanner along a flight line, from estimates for its parts.
 
-use super::locate::ServedBy;
+use super::scanner_report::FoundBy;
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
 /// Where the scanner was along a flight line, and when that is known.
@@ -9,7 +9,7 @@ pub struct LinePath {
     /// Flight line; 0 where the cloud names none.
     pub source_id: u16,
     /// What it was found by.
-    pub means: ServedBy,
+    pub means: FoundBy,
     /// The times at which it is known, increasing.
     pub stretches: Vec<Stretch>,
     knots: Vec<Knot>,
@@ -28,7 +28,7 @@ pub struct Stretch {
 
 impl LinePath {
     /// The path through `knots`, which increase in time, over `stretches`.
-    pub(super) fn new(source_id: u16, means: ServedBy, stretches: Vec<Stretch>, knots: Vec<Knot>) -> Self {
+    pub(super) fn new(source_id: u16, means: FoundBy, stretches: Vec<Stretch>, knots: Vec<Knot>) -> Self {
         Self { source_id, means, stretches, knots }
     }
 

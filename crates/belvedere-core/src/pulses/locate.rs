@@ -3,21 +3,22 @@
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-use super::group::{PulseReport, Pulses, group};
+use super::group::{Pulses, group};
 use super::height_offset::{HeightOffset, height_offset};
-use super::line_path::{LinePath, position_on};
+use super::line_path::position_on;
 use super::scan_angle::{AngleVerdict, ScanAngleParams, ScanAnglePart, paths_from_angles};
-use super::sensor_estimate::{SensorEstimateParams, SensorPart, SensorPositions, Verdict, paths_from_returns};
+use super::scanner_report::{FoundBy, ScannerReport};
+use super::sensor_estimate::{SensorEstimateParams, SensorPositions, Verdict, paths_from_returns};
 use super::vertical::{VerticalParams, vertical_pulses};
 use belvedere_data::cloud::to_local;
-use belvedere_data::trajectory::{ClockOffset, Trajectory};
+use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{Error, PointCloud, Result};
 
 /// What the scanner is to be found by.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum Means<'a> {
     /// Poses in the file; without them pulses with several returns, then scan angles where they can be trusted; where none of these
-    /// serves a single point, the assumption that pulses fall straight down.
+    /// finds the scanner of a single point, the assumption that pulses fall straight down.
     #[default]
     Automatic,
     /// Pulses with several returns, then scan angles, and no assumption.
@@ -41,74 +42,14 @@ pub struct LocateParams {
     pub vertical: VerticalParams,
 }
 
-/// What the scanner of a point was found by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ServedBy {
-    /// A pose in the file.
-    Pose,
-    /// A position that was given.
-    Position,
-    /// A trajectory that was given.
-    Trajectory,
-    /// Pulses with several returns.
-    Returns,
-    /// Scan angles.
-    ScanAngle,
-    /// Nothing: pulses are assumed to fall straight down.
-    Assumed,
-}
-
-/// How the scanner was found.
-#[derive(Clone, Debug, Default)]
-pub struct ScannerReport {
-    /// Points in all.
-    pub point_count: usize,
-    /// Points served by each means; those not counted are unknown.
-    pub served: BTreeMap<ServedBy, usize>,
-    /// How returns were grouped into pulses, where that was tried and possible.
-    pub grouping: Option<PulseReport>,
-    /// Parts of flight lines by their pulses with several returns.
-    pub parts: Vec<SensorPart>,
-    /// Parts of flight lines by their scan angles.
-    pub angle_parts: Vec<ScanAnglePart>,
-    /// Where the scanner was found to be: by line, and by returns before scan angles.
-    pub paths: Vec<LinePath>,
-    /// How GPS times became those of the trajectory, where one was given.
-    pub clock: Option<ClockOffset>,
-    /// What the heights of that trajectory are off by; `None` where pulses do not tell.
-    pub height_offset: Option<HeightOffset>,
-    /// What did not serve, and why.
-    pub remarks: Vec<String>,
-}
-
-impl ScannerReport {
-    /// Points whose scanner is known, or assumed.
-    #[must_use]
-    pub fn served_count(&self) -> usize {
-        self.served.values().sum()
-    }
-
-    /// Whether all that is returned is an assumption.
-    #[must_use]
-    pub fn is_assumed(&self) -> bool {
-        self.served.contains_key(&ServedBy::Assumed)
-    }
-
-    fn serve(&mut self, means: ServedBy, count: usize) {
-        if count > 0 {
-            *self.served.entry(means).or_default() += count;
-        }
-    }
-}
-
 /// Local position of the scanner for each point of `cloud`, (N, 3) metres, NaN where it is not known; and how it was found.
 ///
-/// Every point with a time on a known path is served, whether or not it could be told to which pulse it belongs. Which points
+/// The scanner of every point with a time on a known path is found, whether or not it could be told to which pulse it belongs. Which points
 /// and parts of lines are left out and why is in the report. The result is the same for any number of threads and, but for
 /// points of the same pulse and number, any order of the points.
 ///
 /// # Errors
-/// [`Error::MissingAttribute`] where the means asked for serve no point; [`Means::Automatic`] serves at least one of every cloud
+/// [`Error::MissingAttribute`] where the means asked for find the scanner of no point; [`Means::Automatic`] finds it for at least one of every cloud
 /// but those with poses that no point refers to: a scanner on the ground does not look straight down. [`Error::LengthMismatch`] for a column of another length than the positions, [`Error::InvalidParameter`] for
 /// parameters out of range and a trajectory that covers no time of the cloud.
 pub fn locate(cloud: &PointCloud, means: &Means<'_>, params: &LocateParams) -> Result<(Vec<[f32; 3]>, ScannerReport)> {
@@ -116,7 +57,7 @@ pub fn locate(cloud: &PointCloud, means: &Means<'_>, params: &LocateParams) -> R
     let mut report = ScannerReport { point_count: cloud.len(), ..ScannerReport::default() };
     let positions = match means {
         Means::Position(position) => {
-            report.serve(ServedBy::Position, cloud.len());
+            report.count(FoundBy::Position, cloud.len());
             vec![*position; cloud.len()]
         }
         Means::Poses => by_poses(cloud, &mut report),
@@ -124,13 +65,13 @@ pub fn locate(cloud: &PointCloud, means: &Means<'_>, params: &LocateParams) -> R
         Means::Automatic if !cloud.scanner_positions.is_empty() => by_poses(cloud, &mut report),
         Means::Automatic | Means::Pulses => by_pulses(cloud, params, &mut report)?,
     };
-    if report.served_count() > 0 || cloud.is_empty() {
+    if report.known_count() > 0 || cloud.is_empty() {
         return Ok((positions, report));
     }
     match means {
         Means::Automatic if cloud.scanner_positions.is_empty() => {
             let positions = vertical_pulses(&cloud.positions, &params.vertical)?;
-            report.serve(ServedBy::Assumed, positions.iter().filter(|p| is_known(p)).count());
+            report.count(FoundBy::Assumed, positions.iter().filter(|p| is_known(p)).count());
             report.remarks.push("pulses are assumed to fall straight down onto what nothing stands above".to_owned());
             Ok((positions, report))
         }
@@ -168,14 +109,14 @@ fn by_poses(cloud: &PointCloud, report: &mut ScannerReport) -> Vec<[f32; 3]> {
             vec![unknown; cloud.len()]
         }
     };
-    report.serve(ServedBy::Pose, positions.iter().filter(|p| is_known(p)).count());
+    report.count(FoundBy::Pose, positions.iter().filter(|p| is_known(p)).count());
     positions
 }
 
 fn by_trajectory(cloud: &PointCloud, trajectory: &Trajectory, report: &mut ScannerReport) -> Result<Vec<[f32; 3]>> {
     let (mut positions, clock) = trajectory.scanner_positions(cloud)?;
     report.clock = Some(clock);
-    report.serve(ServedBy::Trajectory, positions.iter().filter(|p| is_known(p)).count());
+    report.count(FoundBy::Trajectory, positions.iter().filter(|p| is_known(p)).count());
     match pulses_of(cloud, report) {
         Some(pulses) => {
             let per_pulse = SensorPositions::from_trajectory(cloud, &pulses, trajectory)?.0.per_pulse;
@@ -230,18 +171,18 @@ fn by_pulses(cloud: &PointCloud, params: &LocateParams, report: &mut ScannerRepo
         let lines = cloud.attributes.point_source_id.as_ref();
         lines.and_then(|lines| lines.get(row)).copied().unwrap_or(0)
     };
-    let is_served = |report: &ScannerReport| {
-        let served = |(row, time): (usize, &f64)| position_on(&report.paths, line(row), *time).is_some();
-        times.par_iter().enumerate().all(served)
+    let is_known_everywhere = |report: &ScannerReport| {
+        let is_on_path = |(row, time): (usize, &f64)| position_on(&report.paths, line(row), *time).is_some();
+        times.par_iter().enumerate().all(is_on_path)
     };
-    if !is_served(report) {
+    if !is_known_everywhere(report) {
         let (by_angle, parts) = paths_from_angles(cloud, pulses.as_ref(), &params.angles)?;
         report.paths.extend(by_angle);
         // by line; the sort keeps those by returns first
         report.paths.sort_by_key(|path| path.source_id);
         report.angle_parts = parts;
     }
-    let found: Vec<Option<(ServedBy, [f32; 3])>> = times
+    let found: Vec<Option<(FoundBy, [f32; 3])>> = times
         .par_iter()
         .enumerate()
         .map(|(row, &time)| {
@@ -249,14 +190,14 @@ fn by_pulses(cloud: &PointCloud, params: &LocateParams, report: &mut ScannerRepo
             Some((path.means, to_local(place, [0.0; 3])))
         })
         .collect();
-    for means in [ServedBy::Returns, ServedBy::ScanAngle] {
-        report.serve(means, found.iter().flatten().filter(|(by, _)| *by == means).count());
+    for means in [FoundBy::Returns, FoundBy::ScanAngle] {
+        report.count(means, found.iter().flatten().filter(|(by, _)| *by == means).count());
     }
     remark_parts(report);
     Ok(found.into_iter().map(|found| found.map_or(unknown, |(_, place)| place)).collect())
 }
 
-/// Says which parts of flight lines did not serve, and why.
+/// Says which parts of flight lines could not be used, and why.
 fn remark_parts(report: &mut ScannerReport) {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     for part in &report.parts {
@@ -271,7 +212,7 @@ fn remark_parts(report: &mut ScannerReport) {
     }
     let is_needed = |part: &&ScanAnglePart| {
         let middle = f64::midpoint(part.times[0], part.times[1]);
-        position_on(&report.paths, part.source_id, middle).is_none_or(|(path, _)| path.means != ServedBy::Returns)
+        position_on(&report.paths, part.source_id, middle).is_none_or(|(path, _)| path.means != FoundBy::Returns)
     };
     for part in report.angle_parts.iter().filter(is_needed) {
         let why = match part.verdict {

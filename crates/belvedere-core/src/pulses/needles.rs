@@ -3,11 +3,12 @@
 mod columns;
 mod proximity;
 
-pub use columns::NeedleColumns;
+pub use belvedere_data::needles::NeedleColumns;
 
 use crate::neighbors::Tangent;
 use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, PointCloud, Result};
+use serde::Serialize;
 
 /// Needles in a leaf.
 const LEAF: usize = 8;
@@ -64,13 +65,16 @@ pub struct Needles {
 }
 
 /// How many pulses became needles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct NeedleReport {
     /// Needles.
+    #[serde(rename = "pulses_used")]
     pub used: usize,
     /// First returns whose scanner position is unknown.
+    #[serde(rename = "pulses_without_scanner")]
     pub without_scanner: usize,
     /// Pulses too flat for the index.
+    #[serde(rename = "pulses_too_flat")]
     pub too_flat: usize,
 }
 

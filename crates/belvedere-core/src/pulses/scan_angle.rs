@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::Pulses;
 use super::line_path::{Knot, LinePath, Stretch};
-use super::locate::ServedBy;
+use super::scanner_report::FoundBy;
 use super::sensor_fit::median;
 use belvedere_data::trajectory::MAX_GAP_S;
 use belvedere_data::vector::length;
@@ -256,7 +256,7 @@ fn estimate(part: &[Sample], pairs: &[Direction], params: &ScanAngleParams) -> (
         let covariance = Matrix6::from_diagonal(&Vector6::from_fn(|i, _| position_sd[i % 3].powi(2)));
         let knot = Knot { time: middle, state: Vector6::new(x, y, z, u, v, w), covariance };
         let stretch = Stretch { times: [first, last], position_sd, median_angle: fit.misses[0].hypot(fit.misses[1]) };
-        LinePath::new(result.source_id, ServedBy::ScanAngle, vec![stretch], vec![knot])
+        LinePath::new(result.source_id, FoundBy::ScanAngle, vec![stretch], vec![knot])
     });
     (result, path)
 }

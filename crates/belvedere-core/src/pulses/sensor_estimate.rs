@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::Pulses;
 use super::line_path::{Knot, LinePath, Stretch, position_on, smoothed};
-use super::locate::ServedBy;
+use super::scanner_report::FoundBy;
 use super::sensor_fit::{Fit, Pair, fit, median};
 use belvedere_data::trajectory::{ClockOffset, MAX_GAP_S, Trajectory};
 use belvedere_data::vector::length;
@@ -103,7 +103,7 @@ pub struct SensorPart {
 pub enum Verdict {
     /// Used.
     Accepted,
-    /// Used, though its own pulses do not serve: other parts of the line tell where it must have been.
+    /// Used, though its own pulses do not suffice: other parts of the line tell where it must have been.
     Bridged,
     /// Too few pulses with returns far enough apart.
     TooFewPairs,
@@ -144,7 +144,7 @@ impl SensorPositions {
     /// [`SensorEstimateParams::part_s`]. In each part the scanner moves evenly, S + V t, such that the last return of each
     /// pulse lies as near as possible to the line from the scanner through the first. Misses that stand out count less, and level flight is
     /// assumed where the pulses tell nothing. The parts of a line are then joined to one path by a smoother that knows how far an
-    /// aircraft leaves a constant velocity; it also serves parts with too few pulses between or beside good ones, as long as it
+    /// aircraft leaves a constant velocity; it also places parts with too few pulses between or beside good ones, as long as it
     /// is sure enough. Parts whose estimate is not fit for use are unknown; [`SensorReport::parts`] says why.
     ///
     /// # Errors
@@ -301,7 +301,7 @@ fn join(line: &mut [Estimate], params: &SensorEstimateParams) -> Option<LinePath
         path.push(knot);
     }
     let source_id = line.first()?.part.source_id;
-    (!path.is_empty()).then(|| LinePath::new(source_id, ServedBy::Returns, stretches, path))
+    (!path.is_empty()).then(|| LinePath::new(source_id, FoundBy::Returns, stretches, path))
 }
 
 /// The paths of flight lines that pulses with several returns tell, by line, and the parts of lines they were found in.

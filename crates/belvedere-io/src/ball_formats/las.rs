@@ -5,32 +5,32 @@ use std::path::Path;
 use ::las::Vlr;
 
 use super::{FileBall, as_cloud, index, metadata};
-use crate::balls::SavedBalls;
 use crate::las::LasFile;
 use crate::las_extra::ExtraField;
 use crate::laz::ExtraBytes;
 use crate::part::narrow;
 use crate::write_cloud::extension;
 use crate::write_las;
+use belvedere_data::model::ModelParts;
 use belvedere_data::{Error, Result};
 
 /// Identity of the record that holds the metadata.
 const RECORD_USER: &str = "belvedere";
 const RECORD_ID: u16 = 1;
 
-pub(crate) fn write_las(path: &Path, balls: &SavedBalls) -> Result<()> {
-    let (cloud, columns) = as_cloud(balls);
+pub(crate) fn write_las(path: &Path, parts: &ModelParts) -> Result<()> {
+    let (cloud, columns) = as_cloud(parts);
     let record = Vlr {
         user_id: RECORD_USER.to_owned(),
         record_id: RECORD_ID,
         description: "medial balls".to_owned(),
-        data: metadata::to_json(balls, metadata::FILE_UNITS).into_bytes(),
+        data: metadata::to_json(parts, metadata::FILE_UNITS).into_bytes(),
     };
     let compression = if extension(path) == "laz" { write_las::Compression::Laz } else { write_las::Compression::None };
     write_las::write(path, &cloud, &columns, compression, &[record]).map(|_| ())
 }
 
-pub(crate) fn read_las(path: &Path) -> Result<SavedBalls> {
+pub(crate) fn read_las(path: &Path) -> Result<ModelParts> {
     let file = LasFile::open(path)?;
     let Some(fields) = Fields::of(&file) else {
         return Err(Error::malformed(path, "holds no balls; it needs the extra bytes radius and touch"));

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use serde_json::{Map, Value, json};
 
 use super::FileBall;
-use crate::balls::SavedBalls;
 use crate::part::narrow;
+use belvedere_data::balls::MedialBalls;
 use belvedere_data::cloud::{centre_rounded, to_local};
 use belvedere_data::crs::{Crs, CrsKind};
+use belvedere_data::model::ModelParts;
 use belvedere_data::{Bounds, Frame};
 
 /// What the numbers beside the metadata mean in files that hold points.
@@ -23,15 +24,15 @@ const KINDS: [(CrsKind, &str); 5] = [
 ];
 
 /// Origin, bounds, reference system and provenance of `balls`; `units` says what the numbers beside it mean.
-pub(super) fn to_json(balls: &SavedBalls, units: &str) -> String {
-    let crs = &balls.frame.crs;
+pub(super) fn to_json(parts: &ModelParts, units: &str) -> String {
+    let crs = &parts.frame.crs;
     let provenance: Map<String, Value> =
-        balls.provenance.iter().map(|(k, v)| (k.clone(), Value::String(v.clone()))).collect();
+        parts.provenance.iter().map(|(k, v)| (k.clone(), Value::String(v.clone()))).collect();
     json!({
         "format": "belvedere balls 1",
         "units": units,
-        "origin": balls.frame.origin,
-        "bounds": [balls.bounds.low, balls.bounds.high],
+        "origin": parts.frame.origin,
+        "bounds": [parts.bounds.low, parts.bounds.high],
         "crs": {
             "wkt": crs.wkt,
             "epsg": crs.epsg,
@@ -89,23 +90,24 @@ fn three(value: &Value) -> Option<[f64; 3]> {
     }
 }
 
-/// What balls let through, where a file says so of any.
-fn transmission(rows: &[FileBall]) -> Option<Vec<f32>> {
+/// What balls let through, empty where a file says so of none.
+fn transmission(rows: &[FileBall]) -> Vec<f32> {
     let known = rows.iter().any(|row| !row.transmission.is_nan());
-    known.then(|| rows.iter().map(|row| row.transmission).collect())
+    if known { rows.iter().map(|row| row.transmission).collect() } else { Vec::new() }
 }
 
 impl Metadata {
     /// Balls with these centres, local to `origin`, and no further columns yet. Bounds that the file lacks are those of
     /// the centres.
-    pub(super) fn balls(self, origin: [f64; 3], centers: Vec<[f32; 3]>) -> SavedBalls {
+    pub(super) fn balls(self, origin: [f64; 3], centers: Vec<[f32; 3]>) -> ModelParts {
         let bounds = self.bounds.or_else(|| Bounds::around(centers.iter().copied())).unwrap_or_default();
         let frame = Frame { origin, crs: self.crs };
-        SavedBalls { frame, bounds, centers, provenance: self.provenance, ..SavedBalls::default() }
+        let balls = MedialBalls { centers, ..MedialBalls::default() };
+        ModelParts { frame, bounds, balls, provenance: self.provenance, ..ModelParts::default() }
     }
 
     /// Balls from rows in file coordinates. An origin that the file lacks is chosen near the middle of the centres.
-    pub(super) fn fill(mut self, rows: &[FileBall]) -> SavedBalls {
+    pub(super) fn fill(mut self, rows: &[FileBall]) -> ModelParts {
         let units = self.crs.metres_per_unit_xyz();
         let metres = |row: &FileBall| -> [f64; 3] { std::array::from_fn(|i| row.center[i] * units[i]) };
         let origin = self.origin.unwrap_or_else(|| {
@@ -113,13 +115,12 @@ impl Metadata {
             self.bounds = None;
             centre_rounded(rows.iter().map(metres))
         });
-        SavedBalls {
-            radii: rows.iter().map(|row| narrow(row.radius * units[0])).collect(),
-            separation_angles: rows.iter().map(|row| row.separation_angle).collect(),
-            source: rows.iter().map(|row| row.source).collect(),
-            touch: rows.iter().map(|row| row.touch).collect(),
-            transmission: transmission(rows),
-            ..self.balls(origin, rows.iter().map(|row| to_local(metres(row), origin)).collect())
-        }
+        let mut parts = self.balls(origin, rows.iter().map(|row| to_local(metres(row), origin)).collect());
+        parts.balls.radii = rows.iter().map(|row| narrow(row.radius * units[0])).collect();
+        parts.balls.separation_angles = rows.iter().map(|row| row.separation_angle).collect();
+        parts.balls.source = rows.iter().map(|row| row.source).collect();
+        parts.balls.touch = rows.iter().map(|row| row.touch).collect();
+        parts.transmission = transmission(rows);
+        parts
     }
 }

@@ -9,30 +9,31 @@ pub(crate) use las::{las_has_balls, read_las, write_las};
 pub(crate) use npz::{npz_has_balls, read_npz, write_npz};
 pub(crate) use ply::{ply_has_balls, read_ply, write_ply};
 
-use crate::balls::SavedBalls;
 use crate::columns::{Column, Values};
 use belvedere_data::PointCloud;
+use belvedere_data::model::ModelParts;
 
 /// The centres as a cloud and the rest as columns, for formats that hold points. Indices are signed there, so that
 /// viewers show −1 and not four thousand million for "none".
-fn as_cloud(balls: &SavedBalls) -> (PointCloud, Vec<Column<'_>>) {
-    let cloud = PointCloud { frame: balls.frame.clone(), positions: balls.centers.clone(), ..PointCloud::default() };
-    let unit = balls.frame.crs.metres_per_unit;
+fn as_cloud(parts: &ModelParts) -> (PointCloud, Vec<Column<'_>>) {
+    let cloud =
+        PointCloud { frame: parts.frame.clone(), positions: parts.balls.centers.clone(), ..PointCloud::default() };
+    let unit = parts.frame.crs.metres_per_unit;
     #[expect(clippy::cast_possible_truncation, reason = "a radius in another unit is still an f32")]
-    let radii = balls.radii.iter().map(|&r| (f64::from(r) / unit) as f32).collect();
+    let radii = parts.balls.radii.iter().map(|&r| (f64::from(r) / unit) as f32).collect();
     let signed = |indices: &[u32]| Values::I32(indices.iter().map(|&i| i.cast_signed()).collect());
     let column = |name, description, values| Column { name, description, values };
     let mut columns = vec![
         column("radius".into(), "in the unit of x and y".into(), Values::F32(radii)),
-        column("separation_angle".into(), "radians".into(), Values::F32((&balls.separation_angles).into())),
-        column("source".into(), "index of the tangent point".into(), signed(&balls.source)),
-        column("touch".into(), "second point, -1 none, -2 pulse".into(), signed(&balls.touch)),
+        column("separation_angle".into(), "radians".into(), Values::F32((&parts.balls.separation_angles).into())),
+        column("source".into(), "index of the tangent point".into(), signed(&parts.balls.source)),
+        column("touch".into(), "second point, -1 none, -2 pulse".into(), signed(&parts.balls.touch)),
     ];
-    if let Some(transmission) = &balls.transmission {
+    if !parts.transmission.is_empty() {
         columns.push(column(
             "transmission".into(),
             "share of light let through".into(),
-            Values::F32(transmission.into()),
+            Values::F32((&parts.transmission).into()),
         ));
     }
     (cloud, columns)

@@ -8,8 +8,9 @@ use npyz::npz::{NpzArchive, NpzWriter};
 
 use super::metadata;
 use crate::atomic;
-use crate::balls::{SavedBalls, SavedPulses};
 use crate::npz_arrays::{array, has, invalid, rows, values};
+use belvedere_data::model::ModelParts;
+use belvedere_data::needles::NeedleColumns;
 use belvedere_data::{Error, Result};
 
 const UNITS: &str = "metres relative to origin, radians; coordinates in the crs are \
@@ -19,26 +20,26 @@ const PULSE_ARRAYS: [&str; 3] = ["pulse_starts", "pulse_slopes", "pulse_top"];
 /// Metadata longer than this is not ours.
 const MAX_METADATA_BYTES: u64 = 1 << 24;
 
-pub(crate) fn write_npz(path: &Path, balls: &SavedBalls) -> Result<()> {
+pub(crate) fn write_npz(path: &Path, parts: &ModelParts) -> Result<()> {
     atomic::write(path, |output| {
         let mut archive = NpzWriter::new(output);
-        write_arrays(&mut archive, balls).map_err(Error::io(path))
+        write_arrays(&mut archive, parts).map_err(Error::io(path))
     })
 }
 
-fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, balls: &SavedBalls) -> io::Result<()> {
-    let metadata = metadata::to_json(balls, UNITS);
-    let n = balls.centers.len() as u64;
-    array(archive, "centers", &[n, 3], balls.centers.iter().flatten().copied())?;
-    array(archive, "origin", &[3], balls.frame.origin.into_iter())?;
-    array(archive, "radii", &[n], balls.radii.iter().copied())?;
-    array(archive, "source", &[n], balls.source.iter().copied())?;
-    array(archive, "touch", &[n], balls.touch.iter().copied())?;
-    array(archive, "separation_angles", &[n], balls.separation_angles.iter().copied())?;
-    if let Some(transmission) = &balls.transmission {
-        array(archive, "transmission", &[n], transmission.iter().copied())?;
+fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, parts: &ModelParts) -> io::Result<()> {
+    let metadata = metadata::to_json(parts, UNITS);
+    let n = parts.balls.centers.len() as u64;
+    array(archive, "centers", &[n, 3], parts.balls.centers.iter().flatten().copied())?;
+    array(archive, "origin", &[3], parts.frame.origin.into_iter())?;
+    array(archive, "radii", &[n], parts.balls.radii.iter().copied())?;
+    array(archive, "source", &[n], parts.balls.source.iter().copied())?;
+    array(archive, "touch", &[n], parts.balls.touch.iter().copied())?;
+    array(archive, "separation_angles", &[n], parts.balls.separation_angles.iter().copied())?;
+    if !parts.transmission.is_empty() {
+        array(archive, "transmission", &[n], parts.transmission.iter().copied())?;
     }
-    if let Some(SavedPulses { starts, slopes, lengths, top }) = &balls.pulses {
+    if let Some(NeedleColumns { starts, slopes, lengths, top }) = &parts.pulses {
         let p = starts.len() as u64;
         array(archive, "pulse_starts", &[p, 3], starts.iter().flatten().copied())?;
         array(archive, "pulse_slopes", &[p, 2], slopes.iter().flatten().copied())?;
@@ -51,7 +52,7 @@ fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, balls: &SavedBalls)
     archive.zip_writer().finish()?.flush()
 }
 
-pub(crate) fn read_npz(path: &Path) -> Result<SavedBalls> {
+pub(crate) fn read_npz(path: &Path) -> Result<ModelParts> {
     let malformed = |e: io::Error| Error::malformed(path, format!("not a ball file: {e}"));
     let file = BufReader::new(File::open(path).map_err(Error::io(path))?);
     let mut archive = NpzArchive::new(file).map_err(malformed)?;
@@ -64,25 +65,25 @@ pub(crate) fn read_npz(path: &Path) -> Result<SavedBalls> {
     let (origin, _) = values::<f64, _>(&mut archive, "origin", 3).map_err(malformed)?;
     let origin = <[f64; 3]>::try_from(origin.as_slice())
         .map_err(|_| Error::malformed(path, format!("origin has {} numbers, but must have 3", origin.len())))?;
-    let mut balls = metadata.balls(origin, centers);
-    balls.radii = values(&mut archive, "radii", u64::MAX).map_err(malformed)?.0;
-    balls.source = values(&mut archive, "source", u64::MAX).map_err(malformed)?.0;
-    balls.touch = values(&mut archive, "touch", u64::MAX).map_err(malformed)?.0;
-    balls.separation_angles = values(&mut archive, "separation_angles", u64::MAX).map_err(malformed)?.0;
+    let mut parts = metadata.balls(origin, centers);
+    parts.balls.radii = values(&mut archive, "radii", u64::MAX).map_err(malformed)?.0;
+    parts.balls.source = values(&mut archive, "source", u64::MAX).map_err(malformed)?.0;
+    parts.balls.touch = values(&mut archive, "touch", u64::MAX).map_err(malformed)?.0;
+    parts.balls.separation_angles = values(&mut archive, "separation_angles", u64::MAX).map_err(malformed)?.0;
     if has(&archive, "transmission") {
-        balls.transmission = Some(values(&mut archive, "transmission", u64::MAX).map_err(malformed)?.0);
+        parts.transmission = values(&mut archive, "transmission", u64::MAX).map_err(malformed)?.0;
     }
     if PULSE_ARRAYS.iter().any(|name| has(&archive, name)) {
-        balls.pulses = Some(pulses(&mut archive).map_err(malformed)?);
+        parts.pulses = Some(pulses(&mut archive).map_err(malformed)?);
     }
-    Ok(balls)
+    Ok(parts)
 }
 
-fn pulses<R: Read + Seek>(archive: &mut NpzArchive<R>) -> io::Result<SavedPulses> {
+fn pulses<R: Read + Seek>(archive: &mut NpzArchive<R>) -> io::Result<NeedleColumns> {
     let lengths =
         if has(archive, "pulse_lengths") { values(archive, "pulse_lengths", u64::MAX)?.0 } else { Vec::new() };
     let top = values::<f32, _>(archive, "pulse_top", 1)?.0;
-    Ok(SavedPulses {
+    Ok(NeedleColumns {
         starts: rows::<f32, 3, _>(archive, "pulse_starts")?,
         slopes: rows::<i16, 2, _>(archive, "pulse_slopes")?,
         lengths,

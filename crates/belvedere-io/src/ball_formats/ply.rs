@@ -5,20 +5,20 @@ use std::path::Path;
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
 use super::{FileBall, as_cloud, index, metadata};
-use crate::balls::SavedBalls;
 use crate::part::narrow;
 use crate::ply::{PlyFile, scalar};
 use crate::write_ply;
 use belvedere_data::crs::text::{crs_from_comments, joined, pieces};
+use belvedere_data::model::ModelParts;
 use belvedere_data::{Error, Result};
 
 /// Begins the comments that hold the metadata.
 const METADATA_KEY: &str = "belvedere_balls";
 const NEEDED: [&str; 5] = ["x", "y", "z", "radius", "touch"];
 
-pub(crate) fn write_ply(path: &Path, balls: &SavedBalls) -> Result<()> {
-    let (cloud, columns) = as_cloud(balls);
-    let json = metadata::to_json(balls, metadata::FILE_UNITS);
+pub(crate) fn write_ply(path: &Path, parts: &ModelParts) -> Result<()> {
+    let (cloud, columns) = as_cloud(parts);
+    let json = metadata::to_json(parts, metadata::FILE_UNITS);
     let comments = pieces(METADATA_KEY, &in_ascii(&json));
     write_ply::write(path, &cloud, &columns, &comments).map(|_| ())
 }
@@ -38,7 +38,7 @@ fn in_ascii(json: &str) -> String {
     text
 }
 
-pub(crate) fn read_ply(path: &Path) -> Result<SavedBalls> {
+pub(crate) fn read_ply(path: &Path) -> Result<ModelParts> {
     let mut file = PlyFile::open(path)?;
     if !has_columns(&file) {
         let what = format!("holds no balls; the vertices need the properties {}", NEEDED.join(", "));

@@ -10,7 +10,10 @@ use std::fs;
 use std::path::Path;
 
 use belvedere::crs::Crs;
-use belvedere::io::{SavedBalls, SavedPulses, is_ball_file, read_balls, write_balls, write_cloud};
+use belvedere::io::{is_ball_file, read_balls, write_balls, write_cloud};
+use belvedere::medial::MedialBalls;
+use belvedere::model::ModelParts;
+use belvedere::pulses::NeedleColumns;
 use belvedere::{Bounds, Error, Frame, PointCloud};
 use tempfile::TempDir;
 
@@ -18,18 +21,20 @@ fn dutch() -> Crs {
     Crs { epsg: Some(28992), ..Crs::default() }
 }
 
-fn balls(crs: Crs) -> SavedBalls {
+fn balls(crs: Crs) -> ModelParts {
     let n = 500_u16;
-    SavedBalls {
+    ModelParts {
         frame: Frame { origin: [84_500.123_456_789, 446_700.0, 3.0], crs },
         bounds: Bounds { low: [-5.5, -400.25, 0.1], high: [70.0, 1.0, 30.7] },
-        centers: (0..n).map(|i| [f32::from(i) * 0.1234, f32::from(i) * -0.77, f32::from(i).sqrt()]).collect(),
-        radii: (0..n).map(|i| f32::from(i) * 0.0137).collect(),
-        source: (0..u32::from(n)).rev().collect(),
-        touch: (0..u32::from(n)).map(|i| if i % 10 == 0 { u32::MAX } else { i }).collect(),
-        separation_angles: (0..n).map(|i| if i % 10 == 0 { f32::NAN } else { f32::from(i) * 0.006 }).collect(),
-        transmission: Some((0..n).map(|i| f32::from(i) / 499.0).collect()),
-        pulses: Some(SavedPulses {
+        balls: MedialBalls {
+            centers: (0..n).map(|i| [f32::from(i) * 0.1234, f32::from(i) * -0.77, f32::from(i).sqrt()]).collect(),
+            radii: (0..n).map(|i| f32::from(i) * 0.0137).collect(),
+            source: (0..u32::from(n)).rev().collect(),
+            touch: (0..u32::from(n)).map(|i| if i % 10 == 0 { u32::MAX } else { i }).collect(),
+            separation_angles: (0..n).map(|i| if i % 10 == 0 { f32::NAN } else { f32::from(i) * 0.006 }).collect(),
+        },
+        transmission: (0..n).map(|i| f32::from(i) / 499.0).collect(),
+        pulses: Some(NeedleColumns {
             starts: (0..700_u16).map(|i| [f32::from(i) * 0.37, f32::from(i).sqrt(), 1.0 / f32::from(i + 3)]).collect(),
             slopes: (0..700_i16).map(|i| [i * 40 - 9000, 3000 - i]).collect(),
             lengths: (0..700_u16).map(|i| if i % 5 == 0 { f32::INFINITY } else { f32::from(i) * 0.11 }).collect(),
@@ -59,26 +64,26 @@ fn balls_come_back() {
             assert_eq!(found.frame.crs, balls.frame.crs, "{name}");
             assert_eq!(found.provenance, balls.provenance);
             assert_eq!(found.bounds, balls.bounds, "{name}");
-            assert_eq!(found.source, balls.source);
-            assert_eq!(found.touch, balls.touch);
-            assert!(same_bits(&found.separation_angles, &balls.separation_angles));
+            assert_eq!(found.balls.source, balls.balls.source);
+            assert_eq!(found.balls.touch, balls.balls.touch);
+            assert!(same_bits(&found.balls.separation_angles, &balls.balls.separation_angles));
             assert_eq!(found.transmission, balls.transmission, "{name}");
             assert_eq!(found.pulses.is_some(), name == "b.npz", "{name}");
             if name == "b.npz" {
                 assert_eq!(found.frame.origin, balls.frame.origin);
-                assert!(same_bits(found.centers.as_flattened(), balls.centers.as_flattened()));
-                assert!(same_bits(&found.radii, &balls.radii));
+                assert!(same_bits(found.balls.centers.as_flattened(), balls.balls.centers.as_flattened()));
+                assert!(same_bits(&found.balls.radii, &balls.balls.radii));
                 let [found, given] = [&found, &balls].map(|balls| balls.pulses.as_ref().unwrap());
                 assert!(same_bits(found.starts.as_flattened(), given.starts.as_flattened()));
                 assert!(same_bits(&found.lengths, &given.lengths) && same_bits(&[found.top], &[given.top]));
                 assert_eq!(found.slopes, given.slopes);
                 continue;
             }
-            for i in 0..balls.radii.len() {
-                assert!((found.radii[i] - balls.radii[i]).abs() <= balls.radii[i] * 2e-7, "{name}");
+            for i in 0..balls.balls.radii.len() {
+                assert!((found.balls.radii[i] - balls.balls.radii[i]).abs() <= balls.balls.radii[i] * 2e-7, "{name}");
                 for axis in 0..3 {
-                    let expected = f64::from(balls.centers[i][axis]) + balls.frame.origin[axis];
-                    let value = f64::from(found.centers[i][axis]) + found.frame.origin[axis];
+                    let expected = f64::from(balls.balls.centers[i][axis]) + balls.frame.origin[axis];
+                    let value = f64::from(found.balls.centers[i][axis]) + found.frame.origin[axis];
                     assert!((value - expected).abs() < 0.0006, "{name}: {value} {expected}");
                 }
             }
@@ -111,14 +116,14 @@ fn a_file_written_anew_has_the_same_bytes_and_pulses_take_sixteen_of_them_each()
 fn pulses_and_transmissions_that_cannot_be_are_errors_that_name_the_file() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("odd.npz");
-    let refused = |change: &dyn Fn(&mut SavedBalls)| {
+    let refused = |change: &dyn Fn(&mut ModelParts)| {
         let mut odd = balls(dutch());
         change(&mut odd);
         write_balls(&path, &odd).is_err()
     };
-    assert!(refused(&|b| b.transmission.as_mut().unwrap()[7] = 1.5));
-    assert!(refused(&|b| b.transmission.as_mut().unwrap()[7] = f32::INFINITY));
-    assert!(refused(&|b| assert!(b.transmission.as_mut().unwrap().pop().is_some())));
+    assert!(refused(&|b| b.transmission[7] = 1.5));
+    assert!(refused(&|b| b.transmission[7] = f32::INFINITY));
+    assert!(refused(&|b| assert!(b.transmission.pop().is_some())));
     assert!(refused(&|b| assert!(b.pulses.as_mut().unwrap().slopes.pop().is_some())));
     assert!(refused(&|b| assert!(b.pulses.as_mut().unwrap().lengths.pop().is_some())));
     assert!(refused(&|b| b.pulses.as_mut().unwrap().lengths[1] = 0.0));
@@ -140,10 +145,10 @@ fn pulses_and_transmissions_that_cannot_be_are_errors_that_name_the_file() {
 #[test]
 fn no_balls_come_back_as_none() {
     let folder = TempDir::new().unwrap();
-    let none = SavedBalls {
+    let none = ModelParts {
         bounds: Bounds { low: [-1.0; 3], high: [2.0; 3] },
         frame: Frame { crs: dutch(), ..Frame::default() },
-        ..SavedBalls::default()
+        ..ModelParts::default()
     };
     for name in ["b.npz", "b.ply", "b.laz", "b.las"] {
         let path = folder.path().join(name);
@@ -151,7 +156,7 @@ fn no_balls_come_back_as_none() {
         assert!(is_ball_file(&path).unwrap(), "{name}");
         assert_eq!(read_balls(&path).unwrap(), none, "{name}");
     }
-    let endless = SavedBalls { bounds: Bounds { low: [0.0; 3], high: [f32::INFINITY; 3] }, ..none };
+    let endless = ModelParts { bounds: Bounds { low: [0.0; 3], high: [f32::INFINITY; 3] }, ..none };
     assert!(matches!(write_balls(&folder.path().join("b.npz"), &endless), Err(Error::InvalidParameter { .. })));
 }
 
@@ -169,10 +174,10 @@ fn balls_without_metadata_have_the_bounds_of_their_centres() {
     let edited = [format!("{}\n", kept.join("\n")).as_bytes(), &bytes[end..]].concat();
     fs::write(&path, edited).unwrap();
     let found = read_balls(&path).unwrap();
-    assert_eq!((found.frame.crs.epsg, found.radii.len()), (Some(28992), 500));
+    assert_eq!((found.frame.crs.epsg, found.balls.radii.len()), (Some(28992), 500));
     let Bounds { low, high } = found.bounds;
     for axis in 0..3 {
-        let centers = || found.centers.iter().map(|c| c[axis]);
+        let centers = || found.balls.centers.iter().map(|c| c[axis]);
         assert_eq!(low[axis], centers().fold(f32::INFINITY, f32::min));
         assert_eq!(high[axis], centers().fold(f32::NEG_INFINITY, f32::max));
     }
@@ -190,7 +195,7 @@ fn clouds_are_no_ball_files() {
     assert!(is_ball_file(&folder.path().join("missing.npz")).is_err());
     assert!(matches!(write_balls(Path::new("b.obj"), &balls(dutch())), Err(Error::UnknownFormat { .. })));
     let mut uneven = balls(dutch());
-    uneven.radii.pop();
+    uneven.balls.radii.pop();
     assert!(matches!(write_balls(Path::new("b.npz"), &uneven), Err(Error::LengthMismatch { .. })));
 }
 

@@ -16,7 +16,7 @@ const CRATES: [(&str, &[&str]); 9] = [
 ];
 
 /// Level of each module of `belvedere-core`: a module imports from lower levels, or from its own folder.
-const LEVELS: [(&str, u8); 11] = [
+const LEVELS: [(&str, u8); 12] = [
     ("neighbors", 1),
     ("ray_index", 1),
     ("blocking", 1),
@@ -28,6 +28,7 @@ const LEVELS: [(&str, u8); 11] = [
     ("medial", 3),
     ("depth", 4),
     ("query", 5),
+    ("model", 6),
 ];
 
 /// Crates of others that only one file or folder may name.

@@ -104,7 +104,7 @@ fn balls_give_way_to_targets_near_their_surface_by_the_written_rule() {
     }
     let eyes = random_points(54, 1500, 100.0);
     for (bias, shell) in [(0.0, 0.2), (0.1, 0.25)] {
-        let scene = MedialScene::new(&balls, &BlockRule { profile: Profile::Sphere, bias: bias, shell }).unwrap();
+        let scene = MedialScene::new(&balls, &BlockRule { profile: Profile::Sphere, bias, shell }).unwrap();
         let bare = MedialScene::new(&balls, &params(Profile::Sphere, bias)).unwrap();
         let found = scene.visible(Viewer::Each(&eyes), &targets).unwrap();
         let without = bare.visible(Viewer::Each(&eyes), &targets).unwrap();

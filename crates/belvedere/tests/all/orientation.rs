@@ -236,7 +236,7 @@ fn a_trajectory_gives_every_point_its_own_sensor() {
     let (result, report) = oriented(&cloud, &truth, &Orientation::Trajectory(&trajectory));
     assert!(agreement(result.normals(), &truth, |i| i < 1490) == 1.0);
     assert_eq!((report.by_scanner_count, report.by_up_count + report.by_vote_count), (1490, 10));
-    assert_eq!(report.clock.unwrap().served_count, 1490);
+    assert_eq!(report.clock.unwrap().known_count, 1490);
     let elsewhere = Trajectory { times: vec![0.0, 1.0], positions: vec![[0.0; 3]; 2] };
     assert!(orient(&cloud, scrambled(&truth), &Orientation::Trajectory(&elsewhere)).is_err());
 }

@@ -9,7 +9,7 @@
 use crate::common::simulated::cloud_of;
 use belvedere::io::{ReadOptions, read_cloud, read_trajectory, write_found_trajectory};
 use belvedere::pulses::{
-    AngleVerdict, LocateParams, Means, ScannerReport, SensorEstimateParams, ServedBy, Verdict, locate, path_samples,
+    AngleVerdict, FoundBy, LocateParams, Means, ScannerReport, SensorEstimateParams, Verdict, locate, path_samples,
 };
 use belvedere::trajectory::Trajectory;
 use belvedere::vector::{cross, length, sub};
@@ -73,7 +73,7 @@ fn scan_angles_give_the_path_of_scanners_that_look_across_the_flight() {
                 angles.iter_mut().for_each(|angle| *angle = angle.to_degrees().round().to_radians());
             }
             let (positions, report) = found(&cloud);
-            assert_eq!(report.served.get(&ServedBy::ScanAngle), Some(&cloud.len()), "{pattern:?}: {report:?}");
+            assert_eq!(report.found.get(&FoundBy::ScanAngle), Some(&cloud.len()), "{pattern:?}: {report:?}");
             let [metres, degrees] = apart(&cloud, &positions, &truth);
             // the path wanders by a metre about the straight line that is fitted; half a degree of rounding averages out over
             // thousands of points
@@ -126,7 +126,7 @@ fn what_angles_do_not_tell_is_told_by_pulses_with_several_returns() {
     };
     late.positions = cloud.positions.iter().zip(times).map(shift).collect();
     let (positions, report) = locate(&late);
-    assert!(report.served.contains_key(&ServedBy::ScanAngle), "{report:?}");
+    assert!(report.found.contains_key(&FoundBy::ScanAngle), "{report:?}");
     let [metres, degrees] = apart(&late, &positions, &truth);
     assert!(degrees < 0.5, "{metres} m, {degrees} deg");
     let [_, untold] = apart(&late, &locate_singles(&late), &truth);
@@ -185,7 +185,7 @@ fn times_that_tell_little_are_counted_and_lead_to_a_stated_assumption() {
     let (positions, report) = found(&with_holes);
     assert_eq!(report.grouping.unwrap().without_time_count, 500);
     assert!(positions[virtual_rows].iter().all(|p| p[0].is_nan()));
-    assert_eq!(report.served.get(&ServedBy::Returns), Some(&(cloud.len() - 500)), "{report:?}");
+    assert_eq!(report.found.get(&FoundBy::Returns), Some(&(cloud.len() - 500)), "{report:?}");
     assert!(report.remarks.iter().any(|remark| remark.starts_with("500 points have no time")), "{:?}", report.remarks);
     // every point twice: positions are those of the single ones
     let twice: Vec<u32> = (0..u32::try_from(cloud.len()).unwrap()).flat_map(|row| [row, row]).collect();
@@ -200,7 +200,7 @@ fn times_that_tell_little_are_counted_and_lead_to_a_stated_assumption() {
     assert!(report.is_assumed());
     assert!(report.remarks.iter().any(|remark| remark.contains("tells pulses apart")), "{:?}", report.remarks);
     let served = positions.iter().filter(|p| p[0].is_finite()).count();
-    assert_eq!(report.served.get(&ServedBy::Assumed), Some(&served));
+    assert_eq!(report.found.get(&FoundBy::Assumed), Some(&served));
     // walls and what lies under crowns are left out
     assert!(served > cloud.len() / 2 && served < cloud.len(), "{served} of {}", cloud.len());
 }
@@ -224,7 +224,7 @@ fn parts_without_pulses_of_several_returns_follow_from_their_neighbours() {
     };
     let (positions, report) = locate(&cloud, &Means::Automatic, &params).unwrap();
     assert!(report.parts.iter().any(|part| part.verdict == Verdict::Bridged), "{:?}", report.parts);
-    assert_eq!(report.served.get(&ServedBy::Returns), Some(&cloud.len()));
+    assert_eq!(report.found.get(&FoundBy::Returns), Some(&cloud.len()));
     let [_, degrees] = apart(&cloud, &positions, &truth);
     // as for the pulses themselves; see the simulator's echoes in `pulses.rs`
     assert!(degrees < 0.5, "{degrees}");
@@ -243,7 +243,7 @@ fn a_found_path_is_read_back_as_a_trajectory() {
     assert_eq!((path.times.len(), left_out.duplicate_count), (samples.len(), 0));
     let (read, clock) = path.scanner_positions(&cloud).unwrap();
     // all but the pulses within half a microsecond of either end, which the file rounds off
-    assert!(clock.served_count + 4 >= cloud.len(), "{clock:?}");
+    assert!(clock.known_count + 4 >= cloud.len(), "{clock:?}");
     let [metres, _] = apart(&cloud, &read, &positions);
     // millimetres in the file, and cubics between samples of a cubic
     assert!(metres < 0.05, "{metres}");
@@ -272,7 +272,7 @@ fn means_that_are_not_there_are_refused_with_advice() {
         assert!(error.contains("trajectory") || error.contains("GPS time"), "{error}");
     }
     let (positions, report) = locate(&bare, &Means::Position([0.0, 0.0, 9.0]), &LocateParams::default()).unwrap();
-    assert_eq!((positions, report.served_count()), (vec![[0.0, 0.0, 9.0]; 3], 3));
+    assert_eq!((positions, report.known_count()), (vec![[0.0, 0.0, 9.0]; 3], 3));
     assert!(found(&PointCloud::default()).0.is_empty());
 }
 
@@ -291,7 +291,7 @@ fn real_clouds_are_served_by_what_they_have() {
         let (_, by_returns) = found(&cloud);
         let singles = singles(&cloud);
         let (by_angle, report) = found(&singles);
-        let served = report.served.get(&ServedBy::ScanAngle).copied().unwrap_or(0);
+        let served = report.found.get(&FoundBy::ScanAngle).copied().unwrap_or(0);
         assert!(served as f64 > least_share * singles.len() as f64, "{file}: {report:?}");
         let line = |row: usize| singles.attributes.point_source_id.as_ref().unwrap()[row];
         let times = singles.attributes.gps_time.as_ref().unwrap();
@@ -310,7 +310,7 @@ fn real_clouds_are_served_by_what_they_have() {
     // cones, with and without pulses of several returns
     let Some(cloud) = read("data/bresse_lidarhd/870000_6618000.subset.50mx100m.las") else { return };
     let (_, report) = found(&cloud);
-    assert_eq!(report.served.get(&ServedBy::Returns), Some(&cloud.len()));
+    assert_eq!(report.found.get(&FoundBy::Returns), Some(&cloud.len()));
     let (_, report) = found(&singles(&cloud));
     assert!(report.is_assumed(), "{report:?}");
     let Some(towns) = crate::common::data("real_clouds_are_served_by_what_they_have", "data/ign_decimated_towns")
@@ -324,7 +324,7 @@ fn real_clouds_are_served_by_what_they_have() {
         }
         let (cloud, _) = read_cloud(&[path], &ReadOptions::default()).unwrap();
         let (_, report) = found(&cloud);
-        assert!(!report.served.contains_key(&ServedBy::ScanAngle), "{:?}", report.remarks);
+        assert!(!report.found.contains_key(&FoundBy::ScanAngle), "{:?}", report.remarks);
     }
     let Some(rounded) = read("data/tudelft_ahn4_small/small.laz") else { return };
     let (_, report) = found(&rounded);

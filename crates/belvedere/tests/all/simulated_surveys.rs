@@ -42,7 +42,7 @@ fn delivered(scan: &Scan, folder: &Path, trajectory_name: &str) -> Delivered {
     let (trajectory, _) = read_trajectory(&path_file, &cloud.frame.crs).unwrap();
     let times = cloud.attributes.gps_time.clone().unwrap();
     let clock = trajectory.clock_offset_for(&times, cloud.attributes.gps_time_kind);
-    assert_eq!(clock.served_count, cloud.len(), "the path is known at the time of every return");
+    assert_eq!(clock.known_count, cloud.len(), "the path is known at the time of every return");
     let sensors = times.iter().map(|&t| trajectory.position_at(clock.trajectory_time(t)).unwrap()).collect();
     let positions = cloud.positions.iter().map(|&p| cloud.frame.to_file_coordinates(p)).collect();
     Delivered { cloud, positions, sensors }

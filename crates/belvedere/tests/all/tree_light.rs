@@ -2,12 +2,9 @@
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::apps::sky_view::{SkyDirections, sky_view};
-use belvedere::apps::tree_light::{
-    Foliage, Transmissivity, light_share, light_sum, through_crowns, vegetation_of_classes, vegetation_of_transmission,
-    without_vegetation,
-};
+use belvedere::apps::tree_light::{Foliage, Transmissivity, light_share, light_sum, through_crowns};
 use belvedere::control::Control;
-use belvedere::medial::MedialBalls;
+use belvedere::medial::{MedialBalls, vegetation_of_classes, vegetation_of_transmission, without_vegetation};
 use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix, visibility_matrix};
 use belvedere::view::to_sun;
 

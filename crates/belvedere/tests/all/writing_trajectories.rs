@@ -56,7 +56,7 @@ fn the_path_of_a_simulated_survey_comes_back_from_both_formats() {
         assert!(greatest_difference(&trajectory, &read) < tolerance, "{name}");
         // The clock of the file is found, and at each time of the cloud the position is that of the simulation.
         let clock = read.clock_offset_for(&scan.gps_time, GpsTimeKind::AdjustedStandard);
-        assert_eq!((clock.served_count, clock.leap_seconds), (scan.len(), 0.0), "{name}");
+        assert_eq!((clock.known_count, clock.leap_seconds), (scan.len(), 0.0), "{name}");
         for (time, position) in path.times.iter().zip(&path.positions).step_by(17) {
             let found = read.position_at(clock.trajectory_time(*time)).unwrap();
             // Microseconds at 60 m/s, and the interpolation between records next to the one meant.

@@ -3,12 +3,12 @@
 use super::case::{Case, STREET, STREET_GROUP, Set};
 use super::memory::{reset_peak, resident_and_peak_mib};
 use super::results::{AblationRow, AnswerRow, AuditRow, Cost, MethodResult, Rated, Score};
+use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, NO_TOUCH};
-use belvedere::pulses::{NeedleParams, Needles};
-use belvedere::query::{Answer, MedialScene, Proof, ProofParams, Visibility};
+use belvedere::query::{Answer, UnprovenAs, Visibility};
 use belvedere_baselines::agreement::{Counts, Interval, Rate, count_by_tile, interval, quantile};
 use belvedere_baselines::audit::{Verdict, audit};
-use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward, interior_balls};
+use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward, scene_model};
 use belvedere_baselines::methods::{Method, PerEye};
 use belvedere_scenes::Material;
 use std::time::Instant;
@@ -184,11 +184,8 @@ pub(super) fn worth_of_answers(case: &Case) -> belvedere::Result<Vec<AnswerRow>>
         return Ok(Vec::new());
     }
     let params = MedialParams::carved();
-    let balls = interior_balls(&survey, Outward::Survey, &params)?;
-    let (needles, _) = Needles::of_cloud(survey.cloud, survey.scanner, &NeedleParams::default())?;
-    // as ball files hold them
-    let proof = Proof::new(Needles::from_columns(&needles.to_columns())?, &ProofParams::default())?;
-    let scene = MedialScene::new(&balls, &params.blocking)?.with_pulses(proof);
+    let model = scene_model(&survey, Outward::Survey, &params)?;
+    let scene = model.scene(&params.blocking, UnprovenAs::Reported, &Control::none())?;
     let mut rows: Vec<AnswerRow> = Vec::new();
     for set in case.sets.iter().filter(|set| ["PED", "AIR", STREET].contains(&set.name)) {
         for (view, _) in &set.truth {
@@ -210,7 +207,7 @@ pub(super) fn worth_of_answers(case: &Case) -> belvedere::Result<Vec<AnswerRow>>
 pub(super) fn audit_published(case: &Case, seed: u64) -> belvedere::Result<(Vec<AuditRow>, Vec<AblationRow>)> {
     let survey = case.survey();
     let params = MedialParams::published_with_spheres();
-    let balls = interior_balls(&survey, Outward::Survey, &params)?;
+    let balls = scene_model(&survey, Outward::Survey, &params)?.into_parts().balls;
     let (verdicts, audits) = audit(&balls, &case.cloud.positions, &case.sources, |p| case.is_inside(p));
     let rows = audits
         .iter()

@@ -58,7 +58,7 @@ pub(super) fn find(
         cell: arguments.panel.unwrap_or(usual.cell),
         ..usual
     };
-    let [low, high] = on_map(scene.bounds);
+    let [low, high] = on_map(scene.model.bounds());
     let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     let grid = MapGrid::covering(low, high, GROUND_CELL, origin)?;
     let (cloud, points) = ground_cloud(&arguments.places.ground, scene, stages)?;

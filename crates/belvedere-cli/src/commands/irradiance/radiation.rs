@@ -58,7 +58,7 @@ pub(super) fn site(
 ) -> Result<Site> {
     let origin = scene.cloud.frame.origin;
     let middle: [f64; 3] = std::array::from_fn(|i| {
-        origin[i] + f64::midpoint(f64::from(scene.bounds.low[i]), f64::from(scene.bounds.high[i]))
+        origin[i] + f64::midpoint(f64::from(scene.model.bounds().low[i]), f64::from(scene.model.bounds().high[i]))
     });
     let height = middle[2].clamp(-500.0, 10_000.0);
     let of_crs = Site::of(&scene.cloud.frame.crs, [middle[0], middle[1]], height);

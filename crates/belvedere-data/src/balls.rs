@@ -1,9 +1,12 @@
-//! The balls themselves, as columns.
+//! Medial balls as columns of numbers.
 
-use belvedere_data::{Error, Result};
+use crate::{Error, Result};
 
 /// Value of [`MedialBalls::touch`] for a ball that never shrank.
 pub const NO_TOUCH: u32 = u32::MAX;
+
+/// Value of [`MedialBalls::touch`] for a ball whose second contact is a pulse instead of a point.
+pub const PULSE_TOUCH: u32 = NO_TOUCH - 1;
 
 /// Which side of the surface a ball lies on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,23 +29,35 @@ pub struct MedialBalls {
     pub radii: Vec<f32>,
     /// Index of the point p each ball is tangent at, (B).
     pub source: Vec<u32>,
-    /// Index of the second point q each ball touches, [`super::PULSE_TOUCH`] where a pulse bounds it, or [`NO_TOUCH`], (B).
+    /// Index of the second point q each ball touches, [`PULSE_TOUCH`] where a pulse bounds it, or [`NO_TOUCH`], (B).
     pub touch: Vec<u32>,
     /// Separation angle ∠pcq in radians, (B); NaN for a ball that never shrank or that a pulse bounds.
     pub separation_angles: Vec<f32>,
 }
 
 impl MedialBalls {
+    /// Number of balls.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.radii.len()
+    }
+
+    /// Whether there is no ball.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.radii.is_empty()
+    }
+
     /// Checks that all columns are equally long.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] for the first column that is not.
     pub fn validate(&self) -> Result<()> {
-        let expected = self.radii.len();
+        let expected = self.centers.len();
         let columns = [
-            ("centres of balls", self.centers.len()),
+            ("radii of balls", self.radii.len()),
             ("source points of balls", self.source.len()),
-            ("touching points of balls", self.touch.len()),
+            ("second points of balls", self.touch.len()),
             ("separation angles of balls", self.separation_angles.len()),
         ];
         match columns.into_iter().find(|(_, found)| *found != expected) {
@@ -51,38 +66,35 @@ impl MedialBalls {
         }
     }
 
-    /// Number of balls.
+    /// The balls of these rows, in this order. Columns shorter than a row asks for lack it.
     #[must_use]
-    pub fn len(&self) -> usize {
-        self.radii.len()
+    pub fn select(&self, rows: &[usize]) -> Self {
+        fn of<T: Copy>(column: &[T], rows: &[usize]) -> Vec<T> {
+            rows.iter().filter_map(|&row| column.get(row).copied()).collect()
+        }
+        Self {
+            centers: of(&self.centers, rows),
+            radii: of(&self.radii, rows),
+            source: of(&self.source, rows),
+            touch: of(&self.touch, rows),
+            separation_angles: of(&self.separation_angles, rows),
+        }
     }
 
     /// Only the balls that shrank.
     #[must_use]
     pub fn shrunk(&self) -> Self {
-        let rows: Vec<usize> = (0..self.len()).filter(|&i| self.touch[i] != NO_TOUCH).collect();
-        Self {
-            centers: rows.iter().map(|&i| self.centers[i]).collect(),
-            radii: rows.iter().map(|&i| self.radii[i]).collect(),
-            source: rows.iter().map(|&i| self.source[i]).collect(),
-            touch: rows.iter().map(|&i| self.touch[i]).collect(),
-            separation_angles: rows.iter().map(|&i| self.separation_angles[i]).collect(),
-        }
+        let is_shrunk = |row: &usize| self.touch.get(*row).is_some_and(|&touch| touch != NO_TOUCH);
+        self.select(&(0..self.len()).filter(is_shrunk).collect::<Vec<_>>())
     }
 
     /// Adds a ball at point `source` that touches `touch` and has no separation angle.
-    pub(super) fn push(&mut self, source: usize, center: [f32; 3], radius: f32, touch: u32) {
+    pub fn push(&mut self, source: usize, center: [f32; 3], radius: f32, touch: u32) {
         self.centers.push(center);
         self.radii.push(radius);
         #[expect(clippy::cast_possible_truncation, reason = "rows of a cloud are numbered with 32 bits everywhere")]
         self.source.push(source as u32);
         self.touch.push(touch);
         self.separation_angles.push(f32::NAN);
-    }
-
-    /// Whether there is no ball.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.radii.is_empty()
     }
 }

@@ -1,0 +1,48 @@
+//! Ctrl-C: work stops at its next check, and the program ends soon even where there is none.
+
+use crate::summary::note;
+use belvedere::io::atomic;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Exit status of a run that was interrupted, as shells have it for SIGINT.
+const STATUS: u8 = 130;
+/// How long work may go on after the signal before the program ends without it.
+const PATIENCE: Duration = Duration::from_millis(120);
+
+static IS_REQUESTED: AtomicBool = AtomicBool::new(false);
+static IS_REPORTED: AtomicBool = AtomicBool::new(false);
+
+/// Whether the run should stop.
+pub(crate) fn is_requested() -> bool {
+    IS_REQUESTED.load(Ordering::Relaxed)
+}
+
+/// Begins to listen. Where that is refused the system's own way of ending a program remains.
+pub(crate) fn listen() {
+    let listening = ctrlc::set_handler(|| {
+        IS_REQUESTED.store(true, Ordering::Relaxed);
+        std::thread::sleep(PATIENCE);
+        // decoders of other libraries and sorting cannot be asked to stop
+        atomic::abandon_unfinished();
+        report();
+        std::process::exit(i32::from(STATUS));
+    });
+    if let Err(error) = listening {
+        note(&format!("Ctrl-C may leave unfinished files behind: {error}"));
+    }
+}
+
+/// Says once that the run was interrupted.
+fn report() {
+    if !IS_REPORTED.swap(true, Ordering::Relaxed) {
+        note("interrupted; no unfinished file is left");
+    }
+}
+
+/// The end of a run that stopped because it was asked to.
+pub(crate) fn exit() -> ExitCode {
+    report();
+    ExitCode::from(STATUS)
+}

@@ -1,0 +1,161 @@
+//! From flags to the parameters of a scene model.
+
+use super::flagged;
+use crate::arguments::{
+    Cleaning, MethodChoice, NeighborChoice, OrientChoice, Orienting, Shrinking, TreesChoice, Usage,
+};
+use crate::progress::Stages;
+use anyhow::Result;
+use belvedere::Error;
+use belvedere::clean::{CleanParams, Treatment};
+use belvedere::crs::Crs;
+use belvedere::io::{read_mesh, read_trajectory};
+use belvedere::medial::{CarvedParams, CrownParams, ShrinkMethod, ShrinkParams, Trees};
+use belvedere::model::{BallParams, ModelParams, OrientBy};
+use belvedere::normals::estimate::Neighborhood;
+
+/// Parameters of a model as typed, with the trajectory or the mesh that they name, for a cloud in `crs`.
+pub(crate) fn model(
+    cleaning: &Cleaning,
+    orienting: &Orienting,
+    balls: BallParams,
+    crs: &Crs,
+    stages: &mut Stages,
+) -> Result<ModelParams> {
+    let neighborhood = match orienting.neighbors {
+        NeighborChoice::Fixed(k) => Neighborhood::Fixed { k },
+        NeighborChoice::Adaptive => Neighborhood::adaptive(),
+    };
+    flagged("--neighbors", neighborhood.check())?;
+    let orient = match &orienting.orient {
+        OrientChoice::Auto => OrientBy::Auto,
+        OrientChoice::Given => OrientBy::Given,
+        OrientChoice::Up => OrientBy::Up,
+        OrientChoice::Scanner => OrientBy::Scanner,
+        OrientChoice::ScannerAt(position) => OrientBy::ScannerAt(*position),
+        OrientChoice::Pulses => OrientBy::Pulses,
+        OrientChoice::Trajectory(path) => {
+            let (trajectory, _) = stages.run("reading trajectory", 0, |_| read_trajectory(path, crs))?;
+            OrientBy::Trajectory(trajectory)
+        }
+        OrientChoice::Mesh(path) => {
+            let (mesh, _) = stages.run("reading mesh", 0, |_| read_mesh(path))?;
+            // like every position that is typed or read, in the unit of the cloud's file
+            OrientBy::Mesh(mesh.scaled_to_metres(crs))
+        }
+    };
+    let params = ModelParams::default().with_clean(cleaning.params());
+    Ok(params.with_neighborhood(neighborhood).with_orient(orient).with_balls(balls))
+}
+
+impl Cleaning {
+    /// Parameters as typed.
+    pub(crate) fn params(&self) -> CleanParams {
+        let mut params = CleanParams::default();
+        if self.keep_noise {
+            params.dropped_classes = Vec::new();
+            params.withheld = Treatment::Keep;
+        }
+        if self.keep_duplicates {
+            params.exact_duplicates = Treatment::Keep;
+            params.near_duplicate_distance = None;
+        }
+        if self.keep_isolated {
+            params.isolated = None;
+        }
+        params
+    }
+
+    /// Flags that clean nothing away.
+    pub(crate) fn nothing() -> Self {
+        Self { keep_noise: true, keep_duplicates: true, keep_isolated: true }
+    }
+}
+
+impl Shrinking {
+    /// Parameters as typed; without a method those of `default`, where carving gives way to what is possible.
+    pub(crate) fn params(&self, default: MethodChoice) -> Result<BallParams> {
+        match (self.method, default) {
+            (None, MethodChoice::Carved) => {
+                if self.first_angle.is_some() || self.next_angle.is_some() {
+                    return Err(angles_only());
+                }
+                Ok(BallParams::CarvedIfPossible(self.carved()?, self.shrunk(MethodChoice::Tau)?))
+            }
+            (Some(MethodChoice::Carved), _) => Ok(BallParams::Carved(self.carved()?)),
+            (method, default) => {
+                if self.trees.is_some() || !self.without.is_empty() {
+                    return Err(Usage("--trees and --without belong to --method carved".to_owned()).into());
+                }
+                Ok(BallParams::Shrunk(self.shrunk(method.unwrap_or(default))?))
+            }
+        }
+    }
+
+    fn shrunk(&self, method: MethodChoice) -> Result<ShrinkParams> {
+        let mut params = if method == MethodChoice::Tau { ShrinkParams::tau() } else { ShrinkParams::angles() };
+        if let Some(radius) = self.initial_radius {
+            params.initial_radius = radius;
+        }
+        if let Some(radius) = self.max_radius {
+            params.max_radius = radius;
+        }
+        match &mut params.method {
+            ShrinkMethod::Tau { penetration } => {
+                if self.first_angle.is_some() || self.next_angle.is_some() {
+                    return Err(angles_only());
+                }
+                *penetration = self.penetration.unwrap_or(*penetration);
+            }
+            ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
+                if self.penetration.is_some() {
+                    return Err(Usage("--penetration belongs to --method tau and carved".to_owned()).into());
+                }
+                let typed = |angle: Option<f64>, default: f64| angle.map_or(default, f64::to_radians);
+                *first_separation_angle = typed(self.first_angle, *first_separation_angle);
+                *next_separation_angle = typed(self.next_angle, *next_separation_angle);
+            }
+        }
+        check_shrinking(&params)?;
+        Ok(params)
+    }
+
+    fn carved(&self) -> Result<CarvedParams> {
+        if self.first_angle.is_some() || self.next_angle.is_some() {
+            return Err(angles_only());
+        }
+        let mut params = CarvedParams::default();
+        params.penetration = self.penetration.unwrap_or(params.penetration);
+        params.initial_radius = self.initial_radius.unwrap_or(params.initial_radius);
+        params.max_radius = self.max_radius.unwrap_or(params.max_radius);
+        check_shrinking(&params.shrinking())?;
+        if let Some(trees) = self.trees {
+            let trees = match trees {
+                TreesChoice::Opaque => Trees::Opaque,
+                TreesChoice::Porous => Trees::Porous,
+                TreesChoice::Measured => Trees::Measured,
+            };
+            params.crowns = params.crowns.map(|crowns| CrownParams { trees, ..crowns });
+        }
+        Ok(self.without.iter().fold(params, |params, &rule| params.without(rule)))
+    }
+}
+
+fn angles_only() -> anyhow::Error {
+    Usage("--first-angle and --next-angle belong to --method angles".to_owned()).into()
+}
+
+/// Makes a parameter out of range an error about its flag.
+fn check_shrinking(params: &ShrinkParams) -> Result<()> {
+    params.check().map_err(|error| match error {
+        Error::InvalidParameter { name, .. } => {
+            let flag = match name {
+                "separation angle" => "--first-angle, --next-angle".to_owned(),
+                "greatest radius" => "--max-radius".to_owned(),
+                _ => format!("--{}", name.replace(' ', "-")),
+            };
+            anyhow::Error::from(Usage(format!("{flag}: {error}")))
+        }
+        other => other.into(),
+    })
+}

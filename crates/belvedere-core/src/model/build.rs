@@ -1,0 +1,146 @@
+//! From a cloud to a scene model.
+
+use super::params::{BallParams, ModelParams};
+use super::prepare::{OrientedSurvey, prepare};
+use super::report::{BallsReport, BuildReport};
+use super::{ModelParts, SceneModel};
+use crate::medial::{
+    CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, carved_balls, shrink, vegetation_of_classes,
+    vegetation_of_transmission,
+};
+use belvedere_data::control::Control;
+use belvedere_data::{Error, Frame, PointCloud, Result};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+impl SceneModel {
+    /// The scene model of `cloud`, and what became of its points on the way.
+    ///
+    /// The result is the same, bit by bit, for any number of threads.
+    ///
+    /// # Errors
+    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::MissingAttribute`] where the cloud lacks what the parameters need,
+    /// [`Error::InvalidParameter`] for a parameter out of range, [`Error::Cancelled`].
+    pub fn build(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
+        let (survey, report) = prepare(Cow::Borrowed(cloud), params, control)?;
+        let normals = survey.normals_of_rows(cloud.len());
+        let (mut model, report) = of_survey(survey, cloud.frame.clone(), params, report, control)?;
+        model.normals = Some(normals);
+        Ok((model, report))
+    }
+
+    /// The same for a cloud that nothing else needs: its memory is freed on the way, and the model has no
+    /// [`SceneModel::normals`].
+    ///
+    /// # Errors
+    /// Those of [`SceneModel::build`].
+    pub fn build_owned(cloud: PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
+        let frame = cloud.frame.clone();
+        let (survey, report) = prepare(Cow::Owned(cloud), params, control)?;
+        of_survey(survey, frame, params, report, control)
+    }
+}
+
+fn of_survey(
+    survey: OrientedSurvey,
+    frame: Frame,
+    params: &ModelParams,
+    mut report: BuildReport,
+    control: &Control<'_>,
+) -> Result<(SceneModel, BuildReport)> {
+    let (mut balls, transmission);
+    let settled = match params.balls {
+        BallParams::CarvedIfPossible(carved, _) if survey.carving.is_some() => BallParams::Carved(carved),
+        BallParams::CarvedIfPossible(_, shrunk) => BallParams::Shrunk(shrunk),
+        settled => settled,
+    };
+    match (&settled, &survey.carving) {
+        (BallParams::Carved(params), Some(input)) => {
+            let (attributes, needles, pulses) = (&input.attributes, &input.needles, input.pulses.as_ref());
+            let input = CarvedInput { oriented: &survey.oriented, index: &survey.index, attributes, needles, pulses };
+            let found;
+            let count = survey.oriented.len();
+            CarvedBalls { balls, transmission, report: found } =
+                control.stage("making balls", count, || carved_balls(&input, params, control))?;
+            report.interior_balls = Some(BallsReport::Carved(found));
+        }
+        (BallParams::Shrunk(params), _) => {
+            let found;
+            (balls, found) = survey.shrink(Side::Interior, *params, control)?;
+            // as in a ball file, so that rows of balls mean the same
+            balls = balls.shrunk();
+            transmission = Vec::new();
+            report.interior_balls = Some(found);
+        }
+        _ => {
+            return Err(Error::MissingAttribute {
+                attribute: "pulses that can carve",
+                needed_for: "carving",
+                advice: "make balls from the points alone",
+            });
+        }
+    }
+    let vegetation = match &survey.classification {
+        _ if !transmission.is_empty() => vegetation_of_transmission(&transmission),
+        Some(classes) => vegetation_of_classes(&balls, classes),
+        None => Vec::new(),
+    };
+    survey.restore_rows(&mut balls);
+    let provenance = BTreeMap::from([
+        ("side".to_owned(), "interior".to_owned()),
+        ("method".to_owned(), settled.name().to_owned()),
+        ("parameters".to_owned(), format!("{settled:?}")),
+    ]);
+    let parts = ModelParts { frame, bounds: survey.bounds, balls, transmission, pulses: survey.pulses(), provenance };
+    Ok((SceneModel { parts, vegetation, normals: None }, report))
+}
+
+/// How balls were made, as a saved model says it.
+fn provenance(side: &str, made: &BallParams) -> BTreeMap<String, String> {
+    let entries = [("side", side.to_owned()), ("method", made.name().to_owned()), ("parameters", format!("{made:?}"))];
+    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+impl OrientedSurvey {
+    /// Balls from the points alone on one side, one for each point that was kept, rows as in [`OrientedSurvey::kept`].
+    ///
+    /// # Errors
+    /// Those of [`shrink`].
+    pub fn shrink(
+        &self,
+        side: Side,
+        params: ShrinkParams,
+        control: &Control<'_>,
+    ) -> Result<(MedialBalls, BallsReport)> {
+        let (oriented, index) = (&self.oriented, &self.index);
+        let (balls, report) =
+            control.stage("shrinking balls", oriented.len(), || shrink(oriented, index, side, &params, control))?;
+        Ok((balls, BallsReport::Shrunk(report)))
+    }
+
+    /// Turns the points that `balls` are tangent at and touch from rows of the points kept into rows of the cloud as given.
+    pub fn restore_rows(&self, balls: &mut MedialBalls) {
+        for row in balls.source.iter_mut().chain(&mut balls.touch) {
+            // neither a pulse nor nothing has a row
+            *row = self.kept.get(*row as usize).copied().unwrap_or(*row);
+        }
+    }
+
+    /// The balls in free space, as they are saved. They block nothing: [`SceneModel::from_parts`] refuses them.
+    ///
+    /// # Errors
+    /// Those of [`shrink`].
+    pub fn exterior_parts(
+        &self,
+        frame: Frame,
+        params: &ModelParams,
+        control: &Control<'_>,
+    ) -> Result<(ModelParts, BallsReport)> {
+        let made = BallParams::Shrunk(params.balls.shrinking());
+        let (balls, report) = self.shrink(Side::Exterior, params.balls.shrinking(), control)?;
+        let mut balls = balls.shrunk();
+        self.restore_rows(&mut balls);
+        let provenance = provenance("exterior", &made);
+        Ok((ModelParts { frame, bounds: self.bounds, balls, provenance, ..ModelParts::default() }, report))
+    }
+}

@@ -1,0 +1,136 @@
+//! The scene model: what Belvedere answers from, made from a cloud in one step.
+//!
+//! [`SceneModel::build`] decides how a cloud becomes a scene: which points are kept, where the scanner was, how normals are turned
+//! outward, whether pulses can carve, and what is vegetation. [`ModelParams`] says otherwise where that is wanted. A saved model
+//! ([`SceneModel::parts`], [`SceneModel::from_parts`]) is a ball file.
+//!
+//! The stages are public functions of the modules below; [`OrientedSurvey::prepare`] stops before the balls are made.
+
+mod build;
+mod params;
+mod prepare;
+mod questions;
+mod report;
+
+pub use belvedere_data::model::ModelParts;
+pub use params::{BallParams, ModelParams, OrientBy};
+pub use prepare::OrientedSurvey;
+pub use report::{BallsReport, BuildReport, NormalsReport, PulsesReport};
+
+use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
+use crate::pulses::NeedleColumns;
+use belvedere_data::{Bounds, Error, Frame, Result};
+
+/// A scene that answers what is visible: balls that block lines of sight, and the pulses that prove others free.
+///
+/// Rows of points ([`MedialBalls::source`], [`MedialBalls::touch`]) are those of the cloud that the model was built from, also
+/// where points were cleaned away.
+#[derive(Clone, Debug, Default)]
+pub struct SceneModel {
+    parts: ModelParts,
+    /// Which balls are vegetation, (B); empty where that is not known.
+    vegetation: Vec<bool>,
+    /// Outward unit normals of the points, (N, 3); zero where a point has none.
+    normals: Option<Vec<[f32; 3]>>,
+}
+
+impl SceneModel {
+    /// The model of saved parts, as [`SceneModel::parts`] gave them.
+    ///
+    /// # Errors
+    /// Those of [`ModelParts::validate`], and [`Error::InvalidParameter`] for exterior balls, which lie in free space and block
+    /// nothing.
+    pub fn from_parts(parts: ModelParts) -> Result<Self> {
+        parts.validate()?;
+        if let Some(side) = parts.provenance.get("side").filter(|side| *side == "exterior") {
+            return Err(Error::InvalidParameter {
+                name: "side of the balls",
+                value: side.clone(),
+                expected: "interior; exterior balls lie in free space and block nothing",
+            });
+        }
+        let vegetation = vegetation_of_transmission(&parts.transmission);
+        Ok(Self { parts, vegetation, normals: None })
+    }
+
+    /// Everything that is saved of a model: what a ball file holds.
+    #[must_use]
+    pub fn parts(&self) -> &ModelParts {
+        &self.parts
+    }
+
+    /// The same, of a model that is needed no more.
+    #[must_use]
+    pub fn into_parts(self) -> ModelParts {
+        self.parts
+    }
+
+    /// The same model with a further note on how it was made, such as the name of the input.
+    #[must_use]
+    pub fn with_provenance(mut self, name: &str, value: impl Into<String>) -> Self {
+        self.parts = self.parts.with_provenance(name, value);
+        self
+    }
+
+    /// The same model without its pulses: nothing is then unproven, and saving it takes less room.
+    #[must_use]
+    pub fn without_pulses(mut self) -> Self {
+        self.parts.pulses = None;
+        self
+    }
+
+    /// Local coordinates of the model.
+    #[must_use]
+    pub fn frame(&self) -> &Frame {
+        &self.parts.frame
+    }
+
+    /// The smallest box around the points that the balls were made from: what a view must hold to show the scene.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.parts.bounds
+    }
+
+    /// The balls that block lines of sight.
+    #[must_use]
+    pub fn balls(&self) -> &MedialBalls {
+        &self.parts.balls
+    }
+
+    /// The pulses that prove lines of sight free, where they are known.
+    #[must_use]
+    pub fn pulses(&self) -> Option<&NeedleColumns> {
+        self.parts.pulses.as_ref()
+    }
+
+    /// Share of the pulses that got through the part of a crown that a ball belongs to, (B), NaN for a ball that is no vegetation;
+    /// empty where this was not measured.
+    #[must_use]
+    pub fn transmission(&self) -> &[f32] {
+        &self.parts.transmission
+    }
+
+    /// Which balls are vegetation, (B); empty where that is not known.
+    #[must_use]
+    pub fn vegetation(&self) -> &[bool] {
+        &self.vegetation
+    }
+
+    /// Outward unit normals of the points that the model was built from, (N, 3); zero for points without one and for those that were
+    /// cleaned away. `None` for a model that was read from a file, or whose cloud was given away ([`SceneModel::build_owned`]).
+    #[must_use]
+    pub fn normals(&self) -> Option<&[[f32; 3]]> {
+        self.normals.as_deref()
+    }
+
+    /// The same, taken out of the model.
+    pub fn take_normals(&mut self) -> Option<Vec<[f32; 3]>> {
+        self.normals.take()
+    }
+
+    /// Whether pulses cut the balls.
+    #[must_use]
+    pub fn is_carved(&self) -> bool {
+        self.parts.pulses.is_some() || self.parts.balls.touch.contains(&PULSE_TOUCH)
+    }
+}

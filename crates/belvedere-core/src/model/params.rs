@@ -1,0 +1,173 @@
+//! How a scene model is built.
+
+use crate::clean::CleanParams;
+use crate::medial::{CarvedParams, ShrinkMethod, ShrinkParams};
+use crate::normals::estimate::Neighborhood;
+use crate::pulses::{LocateParams, NeedleParams};
+use belvedere_data::trajectory::Trajectory;
+use belvedere_data::{Mesh, Result};
+
+/// How a scene model is built. [`ModelParams::default`] is what Belvedere does without being asked for anything else.
+///
+/// ```
+/// use belvedere_core::medial::ShrinkParams;
+/// use belvedere_core::model::{BallParams, ModelParams, OrientBy};
+///
+/// let params = ModelParams::default().with_orient(OrientBy::Up).with_balls(BallParams::Shrunk(ShrinkParams::tau()));
+/// assert_eq!(params.balls.name(), "tau");
+/// ```
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct ModelParams {
+    /// Which points are left out.
+    pub clean: CleanParams,
+    /// How many neighbours a normal is estimated from.
+    pub neighborhood: Neighborhood,
+    /// How normals are turned outward, and where the scanner was.
+    pub orient: OrientBy,
+    /// How the scanner is found.
+    pub locate: LocateParams,
+    /// How pulses become what they prove empty.
+    pub needles: NeedleParams,
+    /// How balls are made.
+    pub balls: BallParams,
+}
+
+impl ModelParams {
+    /// The same with other rules for cleaning.
+    #[must_use]
+    pub fn with_clean(mut self, clean: CleanParams) -> Self {
+        self.clean = clean;
+        self
+    }
+
+    /// The same with normals from other neighbourhoods.
+    #[must_use]
+    pub fn with_neighborhood(mut self, neighborhood: Neighborhood) -> Self {
+        self.neighborhood = neighborhood;
+        self
+    }
+
+    /// The same with another way of turning normals outward.
+    #[must_use]
+    pub fn with_orient(mut self, orient: OrientBy) -> Self {
+        self.orient = orient;
+        self
+    }
+
+    /// The same with other parameters of finding the scanner.
+    #[must_use]
+    pub fn with_locate(mut self, locate: LocateParams) -> Self {
+        self.locate = locate;
+        self
+    }
+
+    /// The same with other parameters of pulses.
+    #[must_use]
+    pub fn with_needles(mut self, needles: NeedleParams) -> Self {
+        self.needles = needles;
+        self
+    }
+
+    /// The same with balls made in another way.
+    #[must_use]
+    pub fn with_balls(mut self, balls: BallParams) -> Self {
+        self.balls = balls;
+        self
+    }
+}
+
+/// How the outward side of normals is found. Ways that know where the scanner was also say where pulses came from.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub enum OrientBy {
+    /// By the pulses where the scanner can be found and the balls are to be carved; otherwise as the cloud gives its normals;
+    /// otherwise towards its scanner positions; otherwise up.
+    #[default]
+    Auto,
+    /// As the cloud gives its normals.
+    Given,
+    /// Upward.
+    Up,
+    /// Towards the scanner positions in the cloud.
+    Scanner,
+    /// Towards one scanner at this place, in the coordinates of the cloud's file.
+    ScannerAt([f64; 3]),
+    /// Towards the scanner position of each point, (N, 3), local metres, NaN where it is not known.
+    ScannerOfEachPoint(Vec<[f32; 3]>),
+    /// Towards the scanner's place on this trajectory.
+    Trajectory(Trajectory),
+    /// Towards where the pulses say that the scanner was.
+    Pulses,
+    /// As the faces of this mesh, in the metres of the cloud's reference system.
+    Mesh(Mesh),
+}
+
+/// How balls are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BallParams {
+    /// From the points alone.
+    Shrunk(ShrinkParams),
+    /// From points and pulses. Building fails where the scanner is not known.
+    Carved(CarvedParams),
+    /// From points and pulses, or from the points alone where pulses cannot carve: scans from the ground.
+    CarvedIfPossible(CarvedParams, ShrinkParams),
+}
+
+impl Default for BallParams {
+    fn default() -> Self {
+        Self::CarvedIfPossible(CarvedParams::default(), ShrinkParams::tau())
+    }
+}
+
+/// What pulses are needed for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Carving {
+    /// Carving, or building fails.
+    Wanted,
+    /// Carving, if they can.
+    IfPossible,
+    /// Nothing.
+    Unwanted,
+}
+
+impl BallParams {
+    pub(super) fn carving(&self) -> Carving {
+        match self {
+            Self::Shrunk(_) => Carving::Unwanted,
+            Self::Carved(_) => Carving::Wanted,
+            Self::CarvedIfPossible(..) => Carving::IfPossible,
+        }
+    }
+
+    /// Checks the parameters of shrinking, before a cloud is there.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) for the first that is out of its range.
+    pub fn check(&self) -> Result<()> {
+        match self {
+            Self::Shrunk(shrunk) => shrunk.check(),
+            Self::Carved(carved) => carved.shrinking().check(),
+            Self::CarvedIfPossible(carved, shrunk) => carved.shrinking().check().and_then(|()| shrunk.check()),
+        }
+    }
+
+    /// How balls are made from the points alone, be it because pulses cannot carve or before they do.
+    #[must_use]
+    pub fn shrinking(&self) -> ShrinkParams {
+        match self {
+            Self::Shrunk(shrunk) | Self::CarvedIfPossible(_, shrunk) => *shrunk,
+            Self::Carved(carved) => carved.shrinking(),
+        }
+    }
+
+    /// Short name of the method: `carved`, `tau` or `angles`.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Carved(_) | Self::CarvedIfPossible(..) => "carved",
+            Self::Shrunk(ShrinkParams { method: ShrinkMethod::Tau { .. }, .. }) => "tau",
+            Self::Shrunk(ShrinkParams { method: ShrinkMethod::Angles { .. }, .. }) => "angles",
+        }
+    }
+}

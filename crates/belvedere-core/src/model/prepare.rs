@@ -1,0 +1,229 @@
+//! From a cloud to a cleaned cloud with outward normals, and what its pulses prove empty.
+
+use super::params::{Carving, ModelParams, OrientBy};
+use super::report::{BuildReport, NormalsReport, PulsesReport};
+use crate::clean::clean;
+use crate::neighbors::NeighborIndex;
+use crate::normals::estimate::estimate;
+use crate::normals::{Normals, Orientation, OrientedCloud, orient};
+use crate::pulses::{FoundBy, Means, NeedleColumns, Needles, Pulses, ScannerReport, group, locate};
+use belvedere_data::control::Control;
+use belvedere_data::{Attributes, Bounds, Error, PointCloud, Result};
+use std::borrow::Cow;
+
+/// A cloud that is ready for balls: cleaned, with outward normals, an index, and what its pulses prove empty.
+pub struct OrientedSurvey {
+    /// The points that were kept, with outward normals.
+    pub oriented: OrientedCloud,
+    /// Index of these points.
+    pub index: NeighborIndex,
+    /// Their rows in the cloud as it was given, ascending.
+    pub kept: Vec<u32>,
+    /// The smallest box around them: a stray point that was cleaned away does not widen a view.
+    pub bounds: Bounds,
+    /// Classes of these points, where they have any.
+    pub(super) classification: Option<Vec<u8>>,
+    /// What carving needs, where it is wanted and possible.
+    pub(super) carving: Option<CarvingInput>,
+}
+
+/// What carving needs beside an oriented cloud.
+pub(super) struct CarvingInput {
+    pub(super) needles: Needles,
+    /// Classes, numbers and counts of returns.
+    pub(super) attributes: Attributes,
+    /// Whether pulses are only assumed.
+    pub(super) is_assumed: bool,
+    /// Which returns share a pulse, where that can be known.
+    pub(super) pulses: Option<Pulses>,
+}
+
+/// Where the scanner was.
+#[derive(Default)]
+struct Scanner {
+    /// For each point, local metres, NaN where unknown.
+    positions: Vec<[f32; 3]>,
+    /// Whether pulses are only assumed to fall straight down.
+    is_assumed: bool,
+}
+
+impl OrientedSurvey {
+    /// Cleans `cloud`, finds the scanner where [`ModelParams::balls`] or [`ModelParams::orient`] need it, estimates normals and
+    /// turns them outward.
+    ///
+    /// # Errors
+    /// [`Error::NoPoints`] where cleaning leaves none; those of [`clean`], [`locate`], [`estimate`] and [`orient`];
+    /// [`Error::Cancelled`].
+    pub fn prepare(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
+        prepare(Cow::Borrowed(cloud), params, control)
+    }
+
+    /// Normals for the `count` points of the cloud as it was given, (N, 3); zero for those that were cleaned away.
+    #[must_use]
+    pub fn normals_of_rows(&self, count: usize) -> Vec<[f32; 3]> {
+        let mut normals = vec![[0.0; 3]; count];
+        for (&row, &normal) in self.kept.iter().zip(self.oriented.normals()) {
+            if let Some(of_row) = normals.get_mut(row as usize) {
+                *of_row = normal;
+            }
+        }
+        normals
+    }
+
+    /// What pulses prove empty, where carving was wanted and possible and pulses are known rather than assumed.
+    #[must_use]
+    pub fn pulses(&self) -> Option<NeedleColumns> {
+        self.carving.as_ref().filter(|input| !input.is_assumed).map(|input| input.needles.to_columns())
+    }
+}
+
+/// As [`OrientedSurvey::prepare`]. A cloud that is given away is freed as soon as nothing needs it.
+pub(super) fn prepare(
+    cloud: Cow<'_, PointCloud>,
+    params: &ModelParams,
+    control: &Control<'_>,
+) -> Result<(OrientedSurvey, BuildReport)> {
+    let mut report = BuildReport::default();
+    let read_count = cloud.len();
+    let (kept, cleaned) = control.stage("cleaning", read_count, || clean(&cloud, &params.clean))?;
+    report.removed_by_cleaning = cleaned;
+    if kept.is_empty() {
+        return Err(Error::NoPoints { what: format!("{read_count} were read and cleaning removed all") });
+    }
+    let mut cloud = if kept.len() == read_count { cloud } else { Cow::Owned(cloud.select(&kept)) };
+    let carving = params.balls.carving();
+    let wants_scanner =
+        carving != Carving::Unwanted || matches!(params.orient, OrientBy::Pulses | OrientBy::ScannerOfEachPoint(_));
+    let scanner = if wants_scanner {
+        let (scanner, found) = find_scanner(&cloud, &kept, read_count, params, control)?;
+        report.scanner = Some(found);
+        scanner
+    } else {
+        Scanner::default()
+    };
+    let carving = match carving {
+        Carving::Unwanted => None,
+        carving => {
+            let (input, pulses) = carving_input(&cloud, &scanner, carving, params, control)?;
+            report.pulses = Some(pulses);
+            input
+        }
+    };
+    let classification = cloud.attributes.classification.clone();
+    if let Cow::Owned(owned) = &mut cloud {
+        // only orientation needs attributes from here on, and they take more memory than the positions
+        let attributes = std::mem::take(&mut owned.attributes);
+        owned.attributes = Attributes {
+            normals: attributes.normals,
+            scanner_index: attributes.scanner_index,
+            gps_time: attributes.gps_time.filter(|_| matches!(params.orient, OrientBy::Trajectory(_))),
+            gps_time_kind: attributes.gps_time_kind,
+            ..Attributes::default()
+        };
+    }
+    let index = control.stage("indexing points", cloud.len(), || NeighborIndex::new(&cloud.positions))?;
+    let by = orientation(&cloud, params, &scanner, wants_scanner, carving.is_some());
+    let normals = match by {
+        Orientation::Given => Normals::default(),
+        _ => control
+            .stage("estimating normals", cloud.len(), || estimate(&cloud.positions, &index, params.neighborhood))?,
+    };
+    let (oriented, orientation) = control.stage("orienting normals", cloud.len(), || orient(&cloud, normals, &by))?;
+    report.normals = NormalsReport::new(&by, orientation);
+    let bounds = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?;
+    Ok((OrientedSurvey { oriented, index, kept, bounds, classification, carving }, report))
+}
+
+/// How normals are turned outward, decided by what was asked for and by what the cloud offers.
+fn orientation<'a>(
+    cloud: &PointCloud,
+    params: &'a ModelParams,
+    scanner: &'a Scanner,
+    wants_scanner: bool,
+    is_carved: bool,
+) -> Orientation<'a> {
+    match &params.orient {
+        OrientBy::Auto if wants_scanner && !scanner.is_assumed => Orientation::Pulses(&scanner.positions),
+        OrientBy::Auto if cloud.attributes.normals.is_some() => Orientation::Given,
+        OrientBy::Auto if !cloud.scanner_positions.is_empty() => Orientation::Scanner,
+        OrientBy::Auto | OrientBy::Up => Orientation::Up,
+        OrientBy::Given => Orientation::Given,
+        OrientBy::Scanner => Orientation::Scanner,
+        OrientBy::ScannerAt(position) => {
+            let scale = cloud.frame.crs.metres_per_unit_xyz();
+            Orientation::ScannerAt(vec![std::array::from_fn(|i| position[i] * scale[i])])
+        }
+        OrientBy::ScannerOfEachPoint(_) | OrientBy::Pulses => Orientation::Pulses(&scanner.positions),
+        // heights of the trajectory were checked by the pulses where these carve
+        OrientBy::Trajectory(_) if is_carved => Orientation::Pulses(&scanner.positions),
+        OrientBy::Trajectory(trajectory) => Orientation::Trajectory(trajectory),
+        OrientBy::Mesh(mesh) => Orientation::Mesh(mesh),
+    }
+}
+
+/// Where the scanner was for each point of `cloud`, whose points are the rows `kept` of `read_count` that were given.
+fn find_scanner(
+    cloud: &PointCloud,
+    kept: &[u32],
+    read_count: usize,
+    params: &ModelParams,
+    control: &Control<'_>,
+) -> Result<(Scanner, ScannerReport)> {
+    let means = match &params.orient {
+        OrientBy::ScannerOfEachPoint(given) => {
+            if given.len() != read_count {
+                let (expected, found) = (read_count, given.len());
+                return Err(Error::LengthMismatch { what: "scanner positions", expected, found });
+            }
+            let positions: Vec<[f32; 3]> = kept.iter().filter_map(|&row| given.get(row as usize).copied()).collect();
+            let known_count = positions.iter().filter(|p| p.iter().all(|v| v.is_finite())).count();
+            let mut report = ScannerReport { point_count: cloud.len(), ..ScannerReport::default() };
+            report.found.insert(FoundBy::Position, known_count);
+            return Ok((Scanner { positions, is_assumed: false }, report));
+        }
+        OrientBy::Trajectory(trajectory) => Means::Trajectory(trajectory),
+        OrientBy::ScannerAt(position) => Means::Position(cloud.frame.from_file_coordinates(*position)),
+        OrientBy::Scanner => Means::Poses,
+        OrientBy::Pulses => Means::Pulses,
+        _ => Means::Automatic,
+    };
+    let (positions, report) = control.stage("finding the scanner", 0, || locate(cloud, &means, &params.locate))?;
+    let is_assumed = report.is_assumed();
+    Ok((Scanner { positions, is_assumed }, report))
+}
+
+/// What carving needs of a cloud, and how that was found; `None` where pulses are too flat to carve and need not.
+fn carving_input(
+    cloud: &PointCloud,
+    scanner: &Scanner,
+    carving: Carving,
+    params: &ModelParams,
+    control: &Control<'_>,
+) -> Result<(Option<CarvingInput>, PulsesReport)> {
+    let (needles, report) = control
+        .stage("indexing pulses", cloud.len(), || Needles::of_cloud(cloud, &scanner.positions, &params.needles))?;
+    let mut report = PulsesReport { needles: report, ..PulsesReport::default() };
+    if report.needles.used <= report.needles.too_flat && carving == Carving::IfPossible {
+        report.remark = Some(
+            "pulses cannot carve here: most are too flat, as of a scanner on the ground; balls are cut to half a metre"
+                .to_owned(),
+        );
+        return Ok((None, report));
+    }
+    let attributes = Attributes {
+        classification: cloud.attributes.classification.clone(),
+        return_number: cloud.attributes.return_number.clone(),
+        return_count: cloud.attributes.return_count.clone(),
+        ..Attributes::default()
+    };
+    let pulses = match group(cloud) {
+        Ok((pulses, _)) => Some(pulses),
+        // without pulses nothing is known of what gets through crowns, and all else is
+        Err(error @ Error::MissingAttribute { .. }) => {
+            report.crowns_not_measured = Some(error.to_string());
+            None
+        }
+        Err(error) => return Err(error),
+    };
+    Ok((Some(CarvingInput { needles, attributes, is_assumed: scanner.is_assumed, pulses }), report))
+}

@@ -1,0 +1,44 @@
+//! From a scene model to scenes that answer lines of sight.
+
+use super::SceneModel;
+use crate::medial::without_vegetation;
+use crate::pulses::Needles;
+use crate::query::{BlockRule, MedialScene, Proof, ProofParams, UnprovenAs};
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+
+impl SceneModel {
+    /// How the balls of this model block lines of sight unless something else is wanted: carved balls give way to what lies at
+    /// their surface, others have a bias.
+    #[must_use]
+    pub fn rule(&self) -> BlockRule {
+        if self.is_carved() { BlockRule::carved() } else { BlockRule::uncarved() }
+    }
+
+    /// The scene that answers lines of sight by `rule`.
+    ///
+    /// Its answers tell unproven from visible where the pulses are known. With [`UnprovenAs::Visible`] that makes no difference, and
+    /// the pulses are not indexed.
+    ///
+    /// # Errors
+    /// Those of [`MedialScene::new`] and [`Proof::new`]; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub fn scene(&self, rule: &BlockRule, unproven: UnprovenAs, control: &Control<'_>) -> Result<MedialScene> {
+        let balls = self.balls();
+        let scene = control.stage("indexing balls", balls.len(), || MedialScene::new(balls, rule))?;
+        let Some(pulses) = self.pulses().filter(|_| unproven != UnprovenAs::Visible) else { return Ok(scene) };
+        let proof = control.stage("indexing pulses to prove by", pulses.starts.len(), || {
+            Proof::new(Needles::from_columns(pulses)?, &ProofParams::default())
+        })?;
+        Ok(scene.with_pulses(proof))
+    }
+
+    /// The same without the balls that are vegetation, and without pulses: what blocks where no tree stood.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) where it is not known which balls are vegetation, and those
+    /// of [`MedialScene::new`].
+    pub fn scene_without_vegetation(&self, rule: &BlockRule, control: &Control<'_>) -> Result<MedialScene> {
+        let balls = without_vegetation(self.balls(), self.vegetation())?;
+        control.stage("indexing balls without trees", balls.len(), || MedialScene::new(&balls, rule))
+    }
+}

@@ -1,0 +1,76 @@
+//! What became of a cloud on the way to a scene model.
+
+use crate::clean::CleanReport;
+use crate::medial::{CarvedReport, ShrinkReport};
+use crate::normals::{OrientReport, Orientation};
+use crate::pulses::{NeedleReport, ScannerReport};
+use serde::Serialize;
+
+/// What became of a cloud on the way to a scene model, by stage.
+#[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
+pub struct BuildReport {
+    /// Points that cleaning left out.
+    pub removed_by_cleaning: CleanReport,
+    /// How the scanner was found, where it was needed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scanner: Option<ScannerReport>,
+    /// The pulses, where they were to carve.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pulses: Option<PulsesReport>,
+    /// How normals were turned outward.
+    pub normals: NormalsReport,
+    /// The balls, where they were made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interior_balls: Option<BallsReport>,
+}
+
+/// What the pulses of a cloud are good for.
+#[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
+pub struct PulsesReport {
+    /// How many of them prove space empty.
+    #[serde(flatten)]
+    pub needles: NeedleReport,
+    /// Why the crowns of trees could not be measured, if they could not: what is missing to tell pulses apart.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crowns_not_measured: Option<String>,
+    /// Why pulses do not carve, where they were to carve if possible.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub remark: Option<String>,
+}
+
+/// How normals were turned outward.
+#[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
+pub struct NormalsReport {
+    /// The way, in words.
+    pub oriented_by: &'static str,
+    /// How many points each rule decided.
+    #[serde(flatten)]
+    pub orientation: OrientReport,
+}
+
+impl NormalsReport {
+    pub(super) fn new(by: &Orientation<'_>, orientation: OrientReport) -> Self {
+        let oriented_by = match by {
+            Orientation::Up => "up (facades are uncertain: give a trajectory, a scanner position or a mesh if you can)",
+            Orientation::Given => "normals of the file",
+            Orientation::Scanner | Orientation::ScannerAt(_) => "scanner position",
+            Orientation::Trajectory(_) => "trajectory",
+            Orientation::Pulses(_) => "pulses",
+            Orientation::Mesh(_) => "mesh",
+        };
+        Self { oriented_by, orientation }
+    }
+}
+
+/// What became of the balls.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(untagged)]
+pub enum BallsReport {
+    /// Made from the points alone.
+    Shrunk(ShrinkReport),
+    /// Made from points and pulses.
+    Carved(CarvedReport),
+}

@@ -1,0 +1,67 @@
+//! The numbers that a scene consists of: what a ball file holds.
+
+use crate::balls::MedialBalls;
+use crate::frame::{Bounds, Frame};
+use crate::needles::NeedleColumns;
+use crate::{Error, Result};
+use std::collections::BTreeMap;
+
+/// The plain data of a scene model: what is saved in a ball file and read from it.
+///
+/// The crate `belvedere` makes it from a cloud and answers from it (`SceneModel`).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ModelParts {
+    /// Local coordinates of everything here: the frame of the cloud that the model was made from.
+    pub frame: Frame,
+    /// The smallest box around the points that the balls were made from, local metres: what a view must hold to show the scene.
+    /// The balls may reach far beyond it.
+    pub bounds: Bounds,
+    /// The balls that block lines of sight.
+    pub balls: MedialBalls,
+    /// Share of the pulses that got through the part of a crown that a ball belongs to, (B), 0 to 1; NaN for a ball that is no
+    /// vegetation. Empty where this was not measured.
+    pub transmission: Vec<f32>,
+    /// The pulses that prove lines of sight free, where they are known.
+    pub pulses: Option<NeedleColumns>,
+    /// How the model was made, by name: side, method, parameters, program, input.
+    pub provenance: BTreeMap<String, String>,
+}
+
+impl ModelParts {
+    /// The same with a further note on how they were made, such as the name of the input.
+    #[must_use]
+    pub fn with_provenance(mut self, name: &str, value: impl Into<String>) -> Self {
+        self.provenance.insert(name.to_owned(), value.into());
+        self
+    }
+
+    /// Checks that all columns are equally long, centres, bounds and origin finite, radii finite and not negative, transmissions
+    /// between 0 and 1, and the pulses.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] or [`Error::InvalidParameter`] for the first fault.
+    pub fn validate(&self) -> Result<()> {
+        self.balls.validate()?;
+        let (expected, found) = (self.balls.len(), self.transmission.len());
+        if !(found == 0 || found == expected) {
+            return Err(Error::LengthMismatch { what: "transmissions of balls", expected, found });
+        }
+        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        if let Some(c) = self.balls.centers.iter().find(|c| c.iter().any(|v| !v.is_finite())) {
+            return invalid("centre of a ball", format!("{c:?}"), "finite");
+        }
+        if let Some(r) = self.balls.radii.iter().find(|&&r| !(r.is_finite() && r >= 0.0)) {
+            return invalid("radius of a ball", r.to_string(), "finite and not negative");
+        }
+        if !self.bounds.is_finite() {
+            return invalid("bounds of balls", format!("{:?}", (self.bounds.low, self.bounds.high)), "finite");
+        }
+        if self.frame.origin.iter().any(|v| !v.is_finite()) {
+            return invalid("origin of balls", format!("{:?}", self.frame.origin), "finite");
+        }
+        if let Some(t) = self.transmission.iter().find(|t| !(t.is_nan() || (0.0..=1.0).contains(*t))) {
+            return invalid("transmission of a ball", t.to_string(), "0 to 1, or NaN");
+        }
+        self.pulses.as_ref().map_or(Ok(()), NeedleColumns::validate)
+    }
+}
