@@ -1,7 +1,12 @@
 //! Exposure of routes and windows to sun and sky: what studies of thermal comfort, daylight and property value ask of them.
 
-use crate::sky_view::SkyDirections;
-use belvedere_core::query::VisibilityMatrix;
+use crate::rows::{check_normals, fold_rows, normals_of};
+use crate::sky_view::{SkyDirections, SkyView, sky_view};
+use crate::sun::SunSchedule;
+use crate::sun_hours::{SunHours, SunHoursParams, sun_hours};
+use crate::targets::{Measure, Targets, weighted_mean};
+use belvedere_core::query::{MedialScene, VisibilityMatrix};
+use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, dot, unit};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
@@ -54,6 +59,153 @@ pub fn window_places(center: [f64; 3], normal: [f64; 3], size: Option<[f64; 2]>)
         }
     }
     Ok(places)
+}
+
+/// How the value of a whole route or window follows from those of its places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WholeIs {
+    /// Their mean by weight.
+    Mean,
+    /// The least of them.
+    Least,
+    /// The greatest of them.
+    Most,
+}
+
+/// Whether the share of each group in shade is kept for each sun.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ShadeAtEachSun {
+    /// No. Default.
+    #[default]
+    NotKept,
+    /// Yes: one number for each group and direction.
+    Kept,
+}
+
+/// What targets, in groups, get of sun and sky.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exposure {
+    /// `sky_view_factor`, `sky_openness`, for targets with normals `sky_component`, then `sun_hours`, `sun_share`, `first_light`,
+    /// `last_light` and `longest`; and what a group has of each.
+    pub measures: Vec<(Measure, WholeIs)>,
+    /// For each group the share of its weight that each direction of the sun does not reach, (groups) rows of (D); empty
+    /// unless kept.
+    pub shaded_shares: Vec<Vec<f64>>,
+}
+
+impl Exposure {
+    /// The values of a measure for each group of `targets`.
+    #[must_use]
+    pub fn of_groups(&self, number: usize, targets: &Targets) -> Vec<f64> {
+        match self.measures.get(number) {
+            Some((measure, WholeIs::Mean)) => targets.group_means(&measure.values),
+            Some((measure, WholeIs::Least)) => targets.group_minima(&measure.values),
+            Some((measure, WholeIs::Most)) => targets.group_maxima(&measure.values),
+            None => Vec::new(),
+        }
+    }
+
+    /// The mean over all groups, by their weight, of each measure that is a mean; without those that no group has.
+    #[must_use]
+    pub fn means(&self, targets: &Targets) -> Vec<(&Measure, f64)> {
+        let weights = targets.group_weights();
+        let means = self.measures.iter().enumerate().filter(|(_, (_, whole))| *whole == WholeIs::Mean);
+        means
+            .filter_map(|(number, (measure, _))| {
+                Some((measure, weighted_mean(&self.of_groups(number, targets), &weights)?))
+            })
+            .collect()
+    }
+}
+
+/// What `targets`, routes or windows, get of `sky` and of the suns of `schedule` in `scene`. Progress counts targets, twice each.
+///
+/// # Errors
+/// Those of [`fold_rows`], [`sky_view`], [`sky_component`] and [`sun_hours`].
+pub fn scene_exposure(
+    scene: &MedialScene,
+    targets: &Targets,
+    sky: &SkyDirections,
+    schedule: &SunSchedule,
+    shade: ShadeAtEachSun,
+    control: &Control<'_>,
+) -> Result<Exposure> {
+    let normals = targets.normals.as_deref();
+    check_normals(normals, targets.len())?;
+    let mut seen = SkyView { factors: Vec::new(), openness: Vec::new() };
+    let mut components = Vec::new();
+    fold_rows(scene.into(), &targets.positions, &sky.directions, control, |block| {
+        let normals = normals_of(normals, &block.rows);
+        let own = sky_view(&block.matrix, sky, normals)?;
+        seen.factors.extend(own.factors);
+        seen.openness.extend(own.openness);
+        if let Some(normals) = normals {
+            components.extend(sky_component(&block.matrix, sky, normals)?);
+        }
+        Ok(())
+    })?;
+    let mut sun = SunHours::default();
+    let mut shaded = match shade {
+        ShadeAtEachSun::Kept => Some(Shaded::new(targets, schedule.directions.len())),
+        ShadeAtEachSun::NotKept => None,
+    };
+    fold_rows(scene.into(), &targets.positions, &schedule.directions, control, |block| {
+        let normals = normals_of(normals, &block.rows);
+        sun.append(sun_hours(&block.matrix, schedule, normals, &SunHoursParams::default())?);
+        if let Some(shaded) = &mut shaded {
+            shaded.add(targets, block.rows.start, &block.matrix);
+        }
+        Ok(())
+    })?;
+    let mut measures = Vec::new();
+    let mut push = |name: &str, description, decimals, mut values: Vec<f32>, whole| {
+        targets.clear_unasked(&mut values);
+        measures.push((Measure { name: name.to_owned(), description, decimals, range: None, values }, whole));
+    };
+    push("sky_view_factor", "sky view factor, cosine", 4, seen.factors, WholeIs::Mean);
+    push("sky_openness", "sky openness, solid angle", 4, seen.openness, WholeIs::Mean);
+    if normals.is_some() {
+        push("sky_component", "sky component, overcast sky", 4, components, WholeIs::Mean);
+    }
+    push("sun_hours", "hours of sun a day", 3, sun.hours, WholeIs::Mean);
+    push("sun_share", "share of possible sun", 4, sun.share, WholeIs::Mean);
+    push("first_light", "first sun, hour of the day", 3, sun.first, WholeIs::Least);
+    push("last_light", "last sun, hour of the day", 3, sun.last, WholeIs::Most);
+    push("longest", "longest sun on end, hours", 3, sun.longest, WholeIs::Mean);
+    Ok(Exposure { measures, shaded_shares: shaded.map(|shaded| shaded.shares(targets)).unwrap_or_default() })
+}
+
+/// Weights of each group that each direction does not reach, added up target after target.
+struct Shaded {
+    /// (groups) rows of (D).
+    sums: Vec<Vec<f64>>,
+}
+
+impl Shaded {
+    fn new(targets: &Targets, direction_count: usize) -> Self {
+        Self { sums: vec![vec![0.0; direction_count]; targets.groups.len()] }
+    }
+
+    /// Adds the rows of `matrix`, the first of which is that of target `first`.
+    fn add(&mut self, targets: &Targets, first: usize, matrix: &VisibilityMatrix) {
+        let end = first + matrix.target_count();
+        self.sums.par_iter_mut().zip(&targets.groups).for_each(|(sums, group)| {
+            for row in group.start.max(first)..group.end.min(end) {
+                let weight = targets.weight(row);
+                for (direction, sum) in sums.iter_mut().enumerate() {
+                    if !matrix.is_free(row - first, direction) {
+                        *sum += weight;
+                    }
+                }
+            }
+        });
+    }
+
+    fn shares(self, targets: &Targets) -> Vec<Vec<f64>> {
+        let wholes = targets.group_weights();
+        let of_group = |(sums, whole): (Vec<f64>, f64)| sums.into_iter().map(|sum| sum / whole).collect();
+        self.sums.into_iter().zip(wholes).map(of_group).collect()
+    }
 }
 
 /// The sky component of each target of `matrix`: the light that its plane (`normals`, (M, 3) unit vectors) gets straight from an overcast

@@ -1,6 +1,7 @@
 //! Horizon profiles: above which elevation the sky is free around a place, as photovoltaic tools read it.
 
 use belvedere_core::query::{EarthParams, MedialScene, SkylinePoint};
+use belvedere_data::control::Control;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
 use std::f64::consts::{PI, TAU};
@@ -24,11 +25,16 @@ impl Default for HorizonParams {
 }
 
 /// The skyline around each of `eyes`, (N) local metres, at azimuths of equal steps clockwise from north. See
-/// [`MedialScene::skyline`]; elevations are exact for the balls.
+/// [`MedialScene::skyline`]; elevations are exact for the balls. Progress counts eyes.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range.
-pub fn horizons(scene: &MedialScene, eyes: &[[f64; 3]], params: &HorizonParams) -> Result<Vec<Vec<SkylinePoint>>> {
+/// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range, and [`Error::Cancelled`].
+pub fn horizons(
+    scene: &MedialScene,
+    eyes: &[[f64; 3]],
+    params: &HorizonParams,
+    control: &Control<'_>,
+) -> Result<Vec<Vec<SkylinePoint>>> {
     params.earth.validate()?;
     if !(1..=1_000_000).contains(&params.azimuth_count) {
         return Err(Error::InvalidParameter {
@@ -50,7 +56,10 @@ pub fn horizons(scene: &MedialScene, eyes: &[[f64; 3]], params: &HorizonParams) 
                 let value = format!("{eye:?}");
                 return Err(Error::InvalidParameter { name: "eye", value, expected: "finite" });
             }
-            Ok(scene.skyline_from(eye, params.azimuth_count, -params.turn, &params.earth))
+            control.check()?;
+            let skyline = scene.skyline_from(eye, params.azimuth_count, -params.turn, &params.earth);
+            control.advance(1);
+            Ok(skyline)
         })
         .collect()
 }

@@ -2,11 +2,14 @@
 
 use belvedere_core::ground::Ground;
 use belvedere_core::query::{EarthParams, MedialScene, merged_crossings};
+use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 
 /// How far above and below the line and the ground balls are looked for, metres: higher than any building.
 const REACH: f64 = 500.0;
+/// Rows between two looks at whether the work was cancelled: some milliseconds.
+const CHECKED: u32 = 256;
 /// Most rows of a profile.
 const MOST_ROWS: f64 = 1e6;
 
@@ -30,13 +33,14 @@ pub struct SightProfile {
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for ends that are not finite or stand above each other, and for a step that is not above zero or makes
-/// more than a million rows.
+/// more than a million rows; [`Error::Cancelled`].
 pub fn sight_profile(
     scene: &MedialScene,
     ground: Option<&Ground>,
     [observer, target]: [[f64; 3]; 2],
     earth: &EarthParams,
     step: Option<f64>,
+    control: &Control<'_>,
 ) -> Result<SightProfile> {
     let span = (target[0] - observer[0]).hypot(target[1] - observer[1]);
     if !(span.is_finite() && span > 0.0 && observer[2].is_finite() && target[2].is_finite()) {
@@ -54,6 +58,9 @@ pub fn sight_profile(
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most a million")]
     let count = (span / step).ceil() as u32;
     let row = |i: u32| {
+        if i.is_multiple_of(CHECKED) {
+            control.check()?;
+        }
         let share = if i == count { 1.0 } else { (f64::from(i) * step / span).min(1.0) };
         let place: [f64; 3] = std::array::from_fn(|k| observer[k] + share * (target[k] - observer[k]));
         let line = place[2] - if bends { earth.sag(span, share) } else { 0.0 };
@@ -63,9 +70,9 @@ pub fn sight_profile(
         let up = [[place[0], place[1], low], [place[0], place[1], high]];
         let pieces = merged_crossings(&scene.crossings(up[0], up[1], &EarthParams::flat()));
         let solid: Vec<[f64; 2]> = pieces.into_iter().map(|piece| piece.map(|range| low + range)).collect();
-        (share * span, ground, line, solid)
+        Ok((share * span, ground, line, solid))
     };
-    let rows: Vec<_> = (0..=count).into_par_iter().map(row).collect();
+    let rows: Vec<_> = (0..=count).into_par_iter().map(row).collect::<Result<_>>()?;
     let block = scene.line_of_sight(observer, target, earth).and_then(|sight| sight.first_block);
     let mut profile = SightProfile {
         blocked_at: block.map(|block| (block.place[0] - observer[0]).hypot(block.place[1] - observer[1])),

@@ -1,6 +1,10 @@
 //! Shadow: what of the sun reaches a place, its disc taken as a point or as it is.
 
-use belvedere_core::query::VisibilityMatrix;
+use crate::rows::{Obstacles, check_normals, fold_rows, normals_of};
+use crate::targets::Targets;
+use crate::tree_light::{Season, through_crowns};
+use belvedere_core::query::{Answer, MedialScene, VisibilityMatrix};
+use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, dot, unit};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
@@ -15,6 +19,8 @@ pub const SUN_RADIUS: f64 = 959.63 / 3600.0 * std::f64::consts::PI / 180.0;
 const DISC_POINTS: usize = 64;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
+/// Targets whose lines of sight are proven by a thread at once: a few milliseconds.
+const PROOF_CHUNK: usize = 512;
 
 /// What edges of shadows are like.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,6 +30,108 @@ pub enum Edges {
     Hard,
     /// The sun is a disc of half a degree, of which a place sees a share: edges are as wide as 1/107 of the way to what casts them.
     Soft,
+}
+
+/// A sun that is asked about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShadowSun {
+    /// Unit vector from the scene to the sun: x east, y (grid) north, z up.
+    pub to_sun: [f64; 3],
+    /// The season, by which trees carry leaves; `None` where no date is known.
+    pub season: Option<Season>,
+}
+
+impl ShadowSun {
+    /// The sun at an azimuth clockwise from grid north and an elevation above the horizon, radians, on no date.
+    #[must_use]
+    pub fn at(azimuth: f64, elevation: f64) -> Self {
+        Self { to_sun: belvedere_data::view::to_sun(azimuth, elevation), season: None }
+    }
+
+    /// The sun above `site` at an instant, seconds of UTC since 1970, lifted by the air as usual.
+    ///
+    /// # Errors
+    /// Those of [`crate::sun::sun_position`].
+    pub fn at_time(site: &crate::sun::Site, unix_s: f64) -> Result<Self> {
+        let position = crate::sun::sun_position(site, unix_s)?;
+        let date = crate::sun::Zone::mean_solar(site).date_at(unix_s)?;
+        Ok(Self { to_sun: position.to_sun(site), season: Some(Season::on(date, site)) })
+    }
+}
+
+/// The share of each of `suns` that reaches each of `targets` among `obstacles`, 0 to 1, (suns) rows of (M); NaN for a target that is not asked
+/// about. Progress counts targets, once or twice each.
+///
+/// # Errors
+/// Those of [`fold_rows`] and [`lit_shares`].
+pub fn scene_shadow<'a>(
+    obstacles: impl Into<Obstacles<'a>>,
+    targets: &Targets,
+    suns: &[ShadowSun],
+    edges: Edges,
+    control: &Control<'_>,
+) -> Result<Vec<Vec<f32>>> {
+    let obstacles = obstacles.into();
+    let normals = targets.normals.as_deref();
+    check_normals(normals, targets.len())?;
+    let directions: Vec<Vec<[f64; 3]>> = suns.iter().map(|sun| sun_directions(sun.to_sun, edges)).collect();
+    let mut lit = vec![Vec::with_capacity(targets.len()); suns.len()];
+    fold_rows(obstacles, &targets.positions, &directions.concat(), control, |block| {
+        let normals = normals_of(normals, &block.rows);
+        let mut first = 0;
+        for ((lit, of_sun), sun) in lit.iter_mut().zip(&directions).zip(suns) {
+            let mut shares = lit_shares(&block.matrix, first, of_sun, normals)?;
+            if let (Some(matrix), Some(trees)) = (&block.without_trees, obstacles.trees) {
+                let without = lit_shares(matrix, first, of_sun, normals)?;
+                shares = through_crowns(&shares, &without, trees.share(sun.season))?;
+            }
+            lit.extend(shares);
+            first += of_sun.len();
+        }
+        Ok(())
+    })?;
+    lit.iter_mut().for_each(|shares| targets.clear_unasked(shares));
+    Ok(lit)
+}
+
+/// The same for one sun with hard edges: 1 for a target that is lit, 0 for one in shadow, NaN for one that is not asked about.
+///
+/// # Errors
+/// Those of [`scene_shadow`].
+pub fn shadow(scene: &MedialScene, targets: &Targets, sun: ShadowSun, control: &Control<'_>) -> Result<Vec<f32>> {
+    Ok(scene_shadow(scene, targets, &[sun], Edges::Hard, control)?.pop().unwrap_or_default())
+}
+
+/// 1 for each of `targets` that `lit`, (M), says is lit, but whose line of sight to the sun the pulses of `scene` do not prove; 0 for others.
+/// `None` for a scene that knows no pulses.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] unless there is a share for each target, and [`Error::Cancelled`].
+pub fn unproven_light(
+    scene: &MedialScene,
+    targets: &Targets,
+    sun: ShadowSun,
+    lit: &[f32],
+    control: &Control<'_>,
+) -> Result<Option<Vec<f32>>> {
+    if scene.proof().is_none() {
+        return Ok(None);
+    }
+    let (expected, found) = (targets.len(), lit.len());
+    if expected != found {
+        return Err(Error::LengthMismatch { what: "shares of light", expected, found });
+    }
+    let of_target = |(position, &lit): (&[f32; 3], &f32)| {
+        let is_doubtful =
+            lit > 0.0 && scene.answer_unblocked_towards(position.map(f64::from), sun.to_sun) == Answer::Unproven;
+        f32::from(u8::from(is_doubtful))
+    };
+    let chunk = |(positions, lit): (&[[f32; 3]], &[f32])| {
+        control.check()?;
+        Ok(positions.iter().zip(lit).map(of_target).collect::<Vec<f32>>())
+    };
+    let chunks = targets.positions.par_chunks(PROOF_CHUNK).zip(lit.par_chunks(PROOF_CHUNK));
+    Ok(Some(chunks.map(chunk).collect::<Result<Vec<_>>>()?.concat()))
 }
 
 /// Directions that stand for a sun in the direction of the unit vector `to_sun`: itself, or 64 points of equal shares of its disc.

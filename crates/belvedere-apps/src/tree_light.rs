@@ -3,8 +3,11 @@
 //! Balls are opaque. Two matrices tell what all of them leave free and what those leave free that are not vegetation; every measure that is a
 //! sum over directions lies between its two values, by the share of the light that crowns let through.
 
+use crate::sun::{Date, Site};
 use belvedere_core::medial::MedialBalls;
-use belvedere_core::query::VisibilityMatrix;
+use belvedere_core::model::SceneModel;
+use belvedere_core::query::{BlockRule, MedialScene, VisibilityMatrix};
+use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 
 /// First and last day of the year that deciduous trees of the northern hemisphere are in leaf.
@@ -99,6 +102,73 @@ impl Transmissivity {
             Foliage::InLeaf => self.in_leaf,
             Foliage::Bare => self.bare,
         }
+    }
+}
+
+/// Whether trees carry leaves on a date.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Leaves {
+    /// By the date, as [`Foliage::on_day`] has it; in leaf where a question has no date. Default.
+    #[default]
+    ByDate,
+    /// In leaf, whatever the date.
+    On,
+    /// Bare, whatever the date.
+    Off,
+}
+
+/// A day at a place, as far as trees are concerned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Season {
+    /// Day of the year, 1 to 366.
+    pub day_of_year: u32,
+    /// Latitude, radians.
+    pub latitude: f64,
+}
+
+impl Season {
+    /// That of a date at a site.
+    #[must_use]
+    pub fn on(date: Date, site: &Site) -> Self {
+        Self { day_of_year: date.day_of_year(), latitude: site.latitude }
+    }
+}
+
+/// A scene without its vegetation, and what share of the light its vegetation lets through.
+pub struct TreeLight {
+    /// The balls that are not vegetation.
+    pub opaque: MedialScene,
+    /// What share of the light gets through a crown.
+    pub transmissivity: Transmissivity,
+    /// Whether trees carry leaves.
+    pub leaves: Leaves,
+}
+
+impl TreeLight {
+    /// The trees of a model, whose other balls block as `rule` says.
+    ///
+    /// # Errors
+    /// Those of [`SceneModel::scene_without_vegetation`].
+    pub fn new(
+        model: &SceneModel,
+        rule: &BlockRule,
+        transmissivity: Transmissivity,
+        leaves: Leaves,
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        let opaque = model.scene_without_vegetation(rule, control)?;
+        Ok(Self { opaque, transmissivity, leaves })
+    }
+
+    /// Share of the light that gets through crowns in a season; `None` where a question has no date.
+    #[must_use]
+    pub fn share(&self, season: Option<Season>) -> f64 {
+        let foliage = match (self.leaves, season) {
+            (Leaves::Off, _) => Foliage::Bare,
+            (Leaves::ByDate, Some(Season { day_of_year, latitude })) => Foliage::on_day(day_of_year, latitude),
+            (Leaves::On, _) | (Leaves::ByDate, None) => Foliage::InLeaf,
+        };
+        self.transmissivity.of(foliage)
     }
 }
 

@@ -199,6 +199,24 @@ impl PointCloud {
         }
     }
 
+    /// This cloud with the local coordinates of another frame, whose reference system it takes over.
+    ///
+    /// A cloud that says nothing of its coordinates, neither a system nor a unit, is taken to have those of the frame's file. Set-ups of
+    /// scanners are left out.
+    #[must_use]
+    pub fn moved_to(mut self, frame: &Frame) -> Self {
+        let is_silent = self.frame.crs == Crs::default();
+        let scale = if is_silent { frame.crs.metres_per_unit_xyz() } else { [1.0; 3] };
+        let from = self.frame.origin;
+        for position in &mut self.positions {
+            let metres = std::array::from_fn(|i| (f64::from(position[i]) + from[i]) * scale[i]);
+            *position = to_local(metres, frame.origin);
+        }
+        self.scanner_positions = Vec::new();
+        self.frame = frame.clone();
+        self
+    }
+
     /// Checks that every column has one value per point and every position is finite.
     ///
     /// # Errors

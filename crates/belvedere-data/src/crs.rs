@@ -152,6 +152,13 @@ impl Crs {
         }
     }
 
+    /// Whether both systems are known and differ, so that two files in them cannot be put together.
+    #[must_use]
+    pub fn contradicts(&self, other: &Self) -> bool {
+        let is_known = |crs: &Self| crs.kind != CrsKind::Unknown;
+        is_known(self) && is_known(other) && !self.same_system(other)
+    }
+
     /// Whether two files in these systems can be put together: the same horizontal system in the same units.
     #[must_use]
     pub fn same_system(&self, other: &Self) -> bool {

@@ -61,7 +61,9 @@ pub use observers::{ObserverRow, RowsAre, read_observers};
 pub use outline::{GridPolygon, outlines};
 pub use polygons::MeshReport;
 pub use read_cloud::{CLOUD_EXTENSIONS, FileReport, LeftOut, ReadOptions, ReadReport, read_cloud};
-pub use saved_matrix::{SavedMatrix, read_matrix, write_matrix};
+pub use saved_matrix::{
+    MatrixHead, RowSink, SavedMatrix, read_matrix, read_matrix_head, read_matrix_rows, write_matrix, write_matrix_rows,
+};
 pub use table::{Cells, Table, read_table, write_table};
 pub use trajectory::{TrajectoryReport, read_trajectory};
 pub use weather::read_weather;

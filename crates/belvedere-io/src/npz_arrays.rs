@@ -3,8 +3,9 @@
 use std::io::{self, Read, Seek, Write};
 
 use npyz::npz::{NpzArchive, NpzWriter};
+use npyz::zip::ZipWriter;
 use npyz::zip::write::FileOptions;
-use npyz::{AutoSerialize, Deserialize, Order, WriterBuilder};
+use npyz::{AutoSerialize, Deserialize, NpyWriter, Order, WriterBuilder};
 
 /// Appends an array to an archive.
 pub(crate) fn array<T: AutoSerialize, W: Write + Seek>(
@@ -13,15 +14,24 @@ pub(crate) fn array<T: AutoSerialize, W: Write + Seek>(
     shape: &[u64],
     values: impl Iterator<Item = T>,
 ) -> io::Result<()> {
+    let mut writer = begin_array(archive, name, shape)?;
+    writer.extend(values)?;
+    writer.finish()
+}
+
+/// Begins an array of an archive, whose values follow.
+pub(crate) fn begin_array<'a, T: AutoSerialize, W: Write + Seek>(
+    archive: &'a mut NpzWriter<W>,
+    name: &str,
+    shape: &[u64],
+) -> io::Result<NpyWriter<T, &'a mut ZipWriter<W>>> {
     // stored, as NumPy does: floats hardly shrink, and loading stays a copy; without the time of day, so that the same
     // balls give the same bytes
     let options = FileOptions::default()
         .compression_method(npyz::zip::CompressionMethod::Stored)
         .last_modified_time(npyz::zip::DateTime::default())
         .large_file(true);
-    let mut writer = archive.array(name, options)?.default_dtype().shape(shape).begin_nd()?;
-    writer.extend(values)?;
-    writer.finish()
+    archive.array(name, options)?.default_dtype().shape(shape).begin_nd()
 }
 
 /// The rows of an array of shape (M, N).
@@ -50,22 +60,62 @@ pub(crate) fn values<T: Deserialize, R: Read + Seek>(
     name: &str,
     most: u64,
 ) -> io::Result<(Vec<T>, Vec<u64>)> {
-    let Some(array) = archive.by_name(name)? else {
-        return Err(invalid(format!("there is no array {name}")));
-    };
-    let shape = array.shape().to_vec();
-    let count = shape.iter().try_fold(1_u64, |product, &n| product.checked_mul(n)).unwrap_or(u64::MAX);
-    if count > most {
-        return Err(invalid(format!("the array {name} is too large")));
+    read_array(archive, name, |shape, reader| {
+        let count = shape.iter().try_fold(1_u64, |product, &n| product.checked_mul(n)).unwrap_or(u64::MAX);
+        if count > most {
+            return Err(invalid(format!("the array {name} is too large")));
+        }
+        // the shape is not to be trusted with an allocation: the vector grows with what is really there
+        let mut values = Vec::new();
+        for value in reader {
+            values.push(value?);
+        }
+        Ok((values, shape.to_vec()))
+    })
+}
+
+/// Hands the values of an array to `take`, `most` at a time.
+pub(crate) fn in_blocks<T: Deserialize, R: Read + Seek, E: From<io::Error>>(
+    archive: &mut NpzArchive<R>,
+    name: &str,
+    most: usize,
+    mut take: impl FnMut(&[T]) -> Result<(), E>,
+) -> Result<(), E> {
+    read_array(archive, name, |_, reader| {
+        let mut block = Vec::new();
+        for value in reader {
+            block.push(value?);
+            if block.len() == most {
+                take(&block)?;
+                block.clear();
+            }
+        }
+        if block.is_empty() { Ok(()) } else { take(&block) }
+    })
+}
+
+/// Lets `read` read an array, of which it is given the shape and the values, and checks the sum of the whole.
+fn read_array<T: Deserialize, R: Read + Seek, O, E: From<io::Error>>(
+    archive: &mut NpzArchive<R>,
+    name: &str,
+    read: impl FnOnce(&[u64], &mut dyn Iterator<Item = io::Result<T>>) -> Result<O, E>,
+) -> Result<O, E> {
+    if !has(archive, name) {
+        return Err(invalid(format!("there is no array {name}")).into());
     }
-    if array.order() == Order::Fortran && shape.len() > 1 {
-        return Err(invalid(format!("the array {name} is in Fortran order; save it with numpy.ascontiguousarray")));
+    let file = archive.zip_archive().by_name(&npyz::npz::file_name_from_array_name(name)).map_err(io::Error::from);
+    let mut file = file?;
+    let header = npyz::NpyHeader::from_reader(&mut file)?;
+    let shape = header.shape().to_vec();
+    if header.order() == Order::Fortran && shape.len() > 1 {
+        let what = format!("the array {name} is in Fortran order; save it with numpy.ascontiguousarray");
+        return Err(invalid(what).into());
     }
-    let reader = array.data::<T>().map_err(|e| invalid(format!("array {name}: {e}")))?;
-    // the shape is not to be trusted with an allocation: the vector grows with what is really there
-    let mut values = Vec::new();
-    for value in reader {
-        values.push(value?);
-    }
-    Ok((values, shape))
+    let data = npyz::NpyFile::with_header(header, &mut file).data::<T>();
+    let mut values = data.map_err(|e| invalid(format!("array {name}: {e}")))?;
+    let found = read(&shape, &mut values)?;
+    drop(values);
+    // the checksum of an entry is tested at its end, which the values alone do not reach
+    io::copy(&mut file, &mut io::sink())?;
+    Ok(found)
 }

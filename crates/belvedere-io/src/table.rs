@@ -1,5 +1,6 @@
 //! Tables of numbers with a header row, such as pairs of points and observers.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -116,7 +117,7 @@ pub enum Cells<'a> {
     Real(&'a [f64], usize),
     /// Whole numbers; empty where there is none.
     Whole(&'a [Option<u64>]),
-    /// Words without separators.
+    /// Words, quoted where they hold a separator.
     Words(&'a [&'a str]),
 }
 
@@ -139,9 +140,15 @@ impl Cells<'_> {
                 Some(Some(value)) => write!(text, "{value}"),
                 _ => Ok(()),
             },
-            Self::Words(values) => text.write_all(values.get(row).copied().unwrap_or_default().as_bytes()),
+            Self::Words(values) => text.write_all(quoted(values.get(row).copied().unwrap_or_default()).as_bytes()),
         }
     }
+}
+
+/// A word as a cell of a table.
+fn quoted(word: &str) -> Cow<'_, str> {
+    let is_plain = !word.contains([',', '"', '\n', '\r']);
+    if is_plain { Cow::Borrowed(word) } else { Cow::Owned(format!("\"{}\"", word.replace('"', "\"\""))) }
 }
 
 /// Writes `columns`, each a name and its cells, as a table with a header row, cells parted by commas.

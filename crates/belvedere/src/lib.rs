@@ -56,3 +56,5 @@ pub use belvedere_data::{control, crs, error, frame, mesh, random, raster, repor
 pub use belvedere_figures as figures;
 #[cfg(feature = "io")]
 pub use belvedere_io as io;
+#[cfg(all(feature = "apps", feature = "io"))]
+pub mod results;

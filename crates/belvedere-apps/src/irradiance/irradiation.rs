@@ -1,7 +1,8 @@
 //! The energy that planes get over a period.
 
 use super::period::{PeriodRadiation, Surroundings};
-use belvedere_core::query::{MedialScene, VisibilityMatrix, visibility_matrix};
+use crate::rows::{check_normals, fold_rows, normals_of};
+use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::vector::dot;
 use belvedere_data::{Error, Result};
@@ -11,8 +12,6 @@ use rayon::prelude::*;
 const CHUNK: usize = 64;
 /// Height, as a sine, below which patches of the sky stand for its horizon: Perez et al. 1990 take a band of 6.5 degrees.
 const HORIZON_BAND: f64 = 0.1132;
-/// Bits of visibility held at a time: half a gigabyte, so that a year of suns for millions of targets needs no more.
-const MOST_BITS: usize = 1 << 32;
 
 /// Energy that a plane gets over a period, kWh/m².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,7 +39,7 @@ impl Irradiation {
         if self.unshaded > 0.0 { (1.0 - self.total() / self.unshaded).clamp(0.0, 1.0) } else { 0.0 }
     }
 
-    fn unknown() -> Self {
+    pub(super) fn unknown() -> Self {
         Self { beam: f64::NAN, diffuse: f64::NAN, reflected: f64::NAN, unshaded: f64::NAN }
     }
 
@@ -83,10 +82,10 @@ impl Irradiation {
 }
 
 /// The energy of each of `targets`, (M, 3) local metres, among the balls of `scene`: rows as those of [`irradiation`], NaN for a target that is
-/// not finite. Asks for as many targets at a time as fit into half a gigabyte of bits. Progress counts targets.
+/// not finite. Progress counts targets.
 ///
 /// # Errors
-/// Those of [`visibility_matrix()`] and [`irradiation`].
+/// Those of [`fold_rows`] and [`irradiation`].
 pub fn scene_irradiation(
     scene: &MedialScene,
     targets: &[[f32; 3]],
@@ -94,18 +93,12 @@ pub fn scene_irradiation(
     radiation: &PeriodRadiation,
     control: &Control<'_>,
 ) -> Result<Vec<Irradiation>> {
-    if let Some(found) = normals.map(<[_]>::len).filter(|&found| found != targets.len()) {
-        return Err(Error::LengthMismatch { what: "normals of targets", expected: targets.len(), found });
-    }
-    let directions = radiation.directions();
-    let at_once = (MOST_BITS / directions.len().max(1)).max(1);
+    check_normals(normals, targets.len())?;
     let mut sums = Vec::with_capacity(targets.len() * radiation.group_count());
-    for (chunk, places) in targets.chunks(at_once).enumerate() {
-        let matrix = visibility_matrix(scene, places, &directions, control)?;
-        let first = chunk * at_once;
-        let own = normals.map(|normals| &normals[first..first + places.len()]);
-        sums.extend(irradiation(&matrix, own, radiation)?);
-    }
+    fold_rows(scene.into(), targets, &radiation.directions(), control, |block| {
+        sums.extend(irradiation(&block.matrix, normals_of(normals, &block.rows), radiation)?);
+        Ok(())
+    })?;
     for (sums, target) in sums.chunks_mut(radiation.group_count()).zip(targets) {
         if !target.iter().all(|v| v.is_finite()) {
             sums.fill(Irradiation::unknown());

@@ -8,8 +8,9 @@
 //! | how diffuse radiation falls on a tilted plane | [`diffuse_parts`], [`patch_radiation`] |
 //! | which instants a period has | [`weather_instants`], [`clear_instants`] |
 //! | what a period sends from each direction | [`PeriodRadiation::gather`] |
-//! | what each target gets of it, and what it loses | [`scene_irradiation`], [`irradiation`] |
-//! | what planes of panels in strings get | [`plane_irradiation`] |
+//! | what a period sends, in parts by what trees let through | [`period_seasons`] |
+//! | what each target gets of it, and what it loses | [`season_irradiation`], [`scene_irradiation`], [`irradiation`] |
+//! | what roofs and planes of panels in strings get | [`roof_irradiation`], [`plane_irradiation`] |
 
 mod atmosphere;
 mod clear_sky;
@@ -17,8 +18,11 @@ mod diffuse;
 mod erbs;
 mod instants;
 mod irradiation;
+mod measures;
 mod patch_sky;
 mod period;
+mod roofs;
+mod seasons;
 mod strings;
 
 pub use atmosphere::{SOLAR_CONSTANT, absolute_air_mass, air_mass, extraterrestrial, pressure};
@@ -27,6 +31,9 @@ pub use diffuse::{DiffuseParts, SkyModel, diffuse_parts};
 pub use erbs::{complete, split_global};
 pub use instants::{PARTS, clear_instants, weather_instants};
 pub use irradiation::{Irradiation, irradiation, scene_irradiation};
+pub use measures::{MONTH_COLUMNS, irradiation_measures};
 pub use patch_sky::patch_radiation;
 pub use period::{Grouping, Instant, IrradianceParams, PeriodRadiation, PeriodReport, Surroundings};
+pub use roofs::{PANEL_HEIGHT, RoofIrradiation, RoofsReport, above_roof, roof_irradiation};
+pub use seasons::{RadiationSource, SeasonRadiation, look_count, period_seasons, season_irradiation};
 pub use strings::{PlaneIrradiation, plane_irradiation};

@@ -11,6 +11,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Groups of a period that is parted into months.
 const MONTHS: usize = 12;
+/// Share of direct radiation with the sun below the horizon from which on the times of a file are doubtful.
+const DOUBTFUL: f64 = 0.01;
 /// Sun directions beyond which their bits would fill the memory of a usual machine.
 const MOST_SUN_DIRECTIONS: f64 = 200_000.0;
 
@@ -152,6 +154,25 @@ pub struct PeriodReport {
     pub instant_count: usize,
     /// Distinct directions of the sun.
     pub sun_direction_count: usize,
+}
+
+impl PeriodReport {
+    /// Adds the report of another part of the period.
+    pub fn add(&mut self, other: &Self) {
+        self.ghi += other.ghi;
+        self.dni += other.dni;
+        self.dhi += other.dhi;
+        self.dni_without_sun += other.dni_without_sun;
+        self.instant_count += other.instant_count;
+        self.sun_direction_count += other.sun_direction_count;
+    }
+
+    /// Whether so much direct radiation comes with the sun below the horizon, a hundredth of all, that the place or the time zone of the
+    /// weather is probably wrong.
+    #[must_use]
+    pub fn is_doubtful(&self) -> bool {
+        self.dni_without_sun > DOUBTFUL * self.dni
+    }
 }
 
 impl PeriodRadiation {

@@ -5,11 +5,15 @@ mod plan;
 pub use plan::PlanIsovist;
 
 use belvedere_core::query::MedialScene;
+use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::view::to_sun;
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Rays between two looks at whether the work was cancelled: a few milliseconds.
+const CHECKED: usize = 1024;
 
 /// How isovists are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,13 +92,13 @@ impl RadialStatistics {
 /// What an eye at `eye`, local metres, sees of `scene`. Balls that hold the eye are left out ([`MedialScene::enclosure`] tells of them).
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range.
-pub fn isovist(scene: &MedialScene, eye: [f64; 3], params: &IsovistParams) -> Result<Isovist> {
+/// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range, and [`Error::Cancelled`].
+pub fn isovist(scene: &MedialScene, eye: [f64; 3], params: &IsovistParams, control: &Control<'_>) -> Result<Isovist> {
     if !eye.iter().all(|v| v.is_finite()) {
         return Err(Error::InvalidParameter { name: "eye", value: format!("{eye:?}"), expected: "finite" });
     }
     let range = |direction: [f64; 3]| scene.seen_along(eye, direction, params.max_range).map(|(_, range)| range);
-    isovist_of(&range, params)
+    isovist_of(&range, params, control)
 }
 
 /// The isovist of whatever `range` tells: the range of what blocks along a unit vector, metres, `None` where nothing does. It is asked
@@ -104,12 +108,16 @@ pub fn isovist(scene: &MedialScene, eye: [f64; 3], params: &IsovistParams) -> Re
 /// step.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for parameters outside their range.
+/// [`Error::InvalidParameter`] for parameters outside their range, and [`Error::Cancelled`].
 ///
 /// # Source
 /// Benedikt 1979 (To take hold of space: isovists and isovist fields); in three dimensions Fisher-Gewirtzman & Wagner 2003 (visible
 /// volume). Drift: Conroy Dalton 2001. Openness and occlusivity: Benedikt 1979; Dalton & Dalton 2001.
-pub fn isovist_of(range: &(impl Fn([f64; 3]) -> Option<f64> + Sync), params: &IsovistParams) -> Result<Isovist> {
+pub fn isovist_of(
+    range: &(impl Fn([f64; 3]) -> Option<f64> + Sync),
+    params: &IsovistParams,
+    control: &Control<'_>,
+) -> Result<Isovist> {
     validate(params)?;
     let reach = params.max_range;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "validated: 4 to 62 832")]
@@ -120,8 +128,13 @@ pub fn isovist_of(range: &(impl Fn([f64; 3]) -> Option<f64> + Sync), params: &Is
     let ranges: Vec<Option<f64>> = (0..width * height)
         .into_par_iter()
         .with_min_len(256)
-        .map(|at| within(direction(at % width, at / width, step)))
-        .collect();
+        .map(|at| {
+            if at.is_multiple_of(CHECKED) {
+                control.check()?;
+            }
+            Ok(within(direction(at % width, at / width, step)))
+        })
+        .collect::<Result<_>>()?;
     let weight = |row: usize| {
         let top = FRAC_PI_2 - row as f64 * step;
         step * (top.sin() - (top - step).sin())

@@ -171,7 +171,7 @@ fn measured(
 /// area of 0.
 ///
 /// # Errors
-/// [`Error::NoPoints`] for a landmark without area, [`Error::InvalidParameter`] for parameters outside their range.
+/// [`Error::NoPoints`] for a landmark without area, [`Error::InvalidParameter`] for parameters outside their range, [`Error::Cancelled`].
 pub fn landmark_views(
     scene: &MedialScene,
     landmark: &SurfacePieces,
@@ -193,6 +193,7 @@ pub fn landmark_views(
     }
     let places = Places::new(landmark, params);
     let look = |&eye: &[f64; 3]| {
+        control.check()?;
         let view = if !eye.iter().all(|v| v.is_finite()) {
             LandmarkView::default()
         } else if places.bend(eye, &params.earth) {
@@ -209,6 +210,18 @@ pub fn landmark_views(
         Ok(view)
     };
     eyes.par_iter().map(look).collect()
+}
+
+/// Which of `eyes` are inside a ball of `scene`, (N); an eye that is not finite is not.
+///
+/// # Errors
+/// [`Error::Cancelled`].
+pub fn enclosed_eyes(scene: &MedialScene, eyes: &[[f64; 3]], control: &Control<'_>) -> Result<Vec<bool>> {
+    let is_enclosed = |eye: &[f64; 3]| {
+        control.check()?;
+        Ok(eye[2].is_finite() && scene.enclosure(*eye).ball_count > 0)
+    };
+    eyes.par_iter().map(is_enclosed).collect()
 }
 
 /// Where the pieces of a landmark are asked about, in trees that serve all eyes.

@@ -4,6 +4,8 @@ use super::RoofPlaneParams;
 use super::fit::{PlaneFit, fit};
 use belvedere_core::neighbors::NeighborIndex;
 use belvedere_core::normals::Normals;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
 use belvedere_data::vector::{dot, sub};
 
 /// Points that a plane has at least: fewer make one of anything.
@@ -27,13 +29,15 @@ pub(super) fn regions(
     normals: &Normals,
     params: &RoofPlaneParams,
     is_roof: impl Fn(&[u32], &PlaneFit) -> bool,
-) -> Vec<(Vec<u32>, PlaneFit)> {
+    control: &Control<'_>,
+) -> Result<Vec<(Vec<u32>, PlaneFit)>> {
     let mut owner = vec![FREE; points.len()];
     let mut regions = Vec::new();
     for seed in seeds(normals) {
         if owner[seed as usize] != FREE {
             continue;
         }
+        control.check()?;
         #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
         let number = regions.len() as u32;
         let Some(normal) = upward(normals.vectors[seed as usize]) else { continue };
@@ -48,7 +52,7 @@ pub(super) fn regions(
         }
     }
     absorb(points, index, params, &mut owner, &mut regions);
-    regions
+    Ok(regions)
 }
 
 /// Gives points that were left because their normals bend, as near ridges, to the plane next to them that they lie on: to the nearest, of

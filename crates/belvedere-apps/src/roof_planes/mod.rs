@@ -10,6 +10,7 @@ pub use points::{RoofsFrom, roof_points};
 
 use belvedere_core::neighbors::NeighborIndex;
 use belvedere_core::normals::estimate::{Neighborhood, estimate};
+use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -118,12 +119,12 @@ impl RoofPlane {
 /// as it grows. Its area is that of the cells that hold points, less what cells at its rim reach over it.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for parameters outside their range and points that are not finite.
+/// [`Error::InvalidParameter`] for parameters outside their range and points that are not finite; [`Error::Cancelled`].
 ///
 /// # Source
 /// Region growing with a smoothness constraint: Rabbani, van den Heuvel & Vosselman 2006. The area of a set from the number of squares it
 /// meets and the length of their outline is Steiner's formula.
-pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams) -> Result<Vec<RoofPlane>> {
+pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams, control: &Control<'_>) -> Result<Vec<RoofPlane>> {
     params.validate()?;
     let index = NeighborIndex::new(points)?;
     // near ridges and eaves few neighbours are on one plane
@@ -132,7 +133,7 @@ pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams) -> Result<Vec<
         let is_flat_enough = fit.normal[2].clamp(-1.0, 1.0).acos() <= params.most_tilt;
         is_flat_enough && cells::area(points, rows, fit, params.cell) >= params.least_area
     };
-    let mut planes: Vec<RoofPlane> = grow::regions(points, &index, &normals, params, is_roof)
+    let mut planes: Vec<RoofPlane> = grow::regions(points, &index, &normals, params, is_roof, control)?
         .into_iter()
         .map(|(rows, fit)| {
             let cells = PlaneCells::of(points, &rows, &fit, params.cell);

@@ -4,7 +4,11 @@ mod directions;
 
 pub use directions::SkyDirections;
 
+use crate::rows::{Obstacles, check_normals, fold_rows, normals_of};
+use crate::targets::{Measure, Targets};
+use crate::tree_light::through_crowns;
 use belvedere_core::query::VisibilityMatrix;
+use belvedere_data::control::Control;
 use belvedere_data::vector::dot;
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
@@ -27,6 +31,57 @@ pub struct SkyView {
     /// Share of the hemisphere above the horizon that is seen, 0 to 1, (M): (1/2π) ∫ V dΩ, whatever the normal. A free plane has 1, and a
     /// free wall ½ too.
     pub openness: Vec<f32>,
+}
+
+impl SkyView {
+    /// Both figures as measures.
+    #[must_use]
+    pub fn into_measures(self) -> Vec<Measure> {
+        let measure = |name: &str, description, values| Measure {
+            name: name.to_owned(),
+            description,
+            decimals: 4,
+            range: Some([0.0, 1.0]),
+            values,
+        };
+        vec![
+            measure("sky_view_factor", "sky view factor, cosine", self.factors),
+            measure("sky_openness", "sky openness, solid angle", self.openness),
+        ]
+    }
+}
+
+/// How much of `sky` each of `targets` sees among `obstacles`; NaN for a target that is not asked about. Where trees let light through they are
+/// in leaf, unless they are said to be bare. Progress counts targets, once or twice each.
+///
+/// # Errors
+/// Those of [`fold_rows`] and [`sky_view`].
+pub fn scene_sky_view<'a>(
+    obstacles: impl Into<Obstacles<'a>>,
+    targets: &Targets,
+    sky: &SkyDirections,
+    control: &Control<'_>,
+) -> Result<SkyView> {
+    let obstacles = obstacles.into();
+    let normals = targets.normals.as_deref();
+    check_normals(normals, targets.len())?;
+    let mut seen = SkyView { factors: Vec::with_capacity(targets.len()), openness: Vec::with_capacity(targets.len()) };
+    fold_rows(obstacles, &targets.positions, &sky.directions, control, |block| {
+        let normals = normals_of(normals, &block.rows);
+        let mut own = sky_view(&block.matrix, sky, normals)?;
+        if let (Some(matrix), Some(trees)) = (&block.without_trees, obstacles.trees) {
+            let without = sky_view(matrix, sky, normals)?;
+            let share = trees.share(None);
+            own.factors = through_crowns(&own.factors, &without.factors, share)?;
+            own.openness = through_crowns(&own.openness, &without.openness, share)?;
+        }
+        seen.factors.extend(own.factors);
+        seen.openness.extend(own.openness);
+        Ok(())
+    })?;
+    targets.clear_unasked(&mut seen.factors);
+    targets.clear_unasked(&mut seen.openness);
+    Ok(seen)
 }
 
 /// Sums up which of the directions of `sky` each target of `matrix` sees. `normals`, (M, 3) unit vectors, tilt the target for the sky view

@@ -17,7 +17,8 @@ pub use parcel::{Footprint, Parcel};
 pub use protected::{ProtectedPiece, protected_faces, protected_line};
 
 use belvedere_core::ground::{Ground, MapGrid};
-use belvedere_core::query::VisibilityMatrix;
+use belvedere_core::query::{MedialScene, VisibilityMatrix, visibility_matrix};
+use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{dot, length};
 use belvedere_data::{Error, Result};
@@ -107,7 +108,7 @@ pub struct EnvelopeReport {
 /// # Errors
 /// [`Error::InvalidParameter`] for a sun that is not of unit length, a piece that is not finite, a ceiling that is not above zero, and more
 /// than 200 million pairs; [`Error::LengthMismatch`] where `free` has other rows and columns; [`Error::NoPoints`] where no ground is
-/// known below the parcel.
+/// known below the parcel; [`Error::Cancelled`].
 ///
 /// # Source
 /// Knowles 2003, The solar envelope: its meaning for energy and buildings, Energy and Buildings 35.
@@ -118,6 +119,7 @@ pub fn solar_envelope(
     suns: &[[f64; 3]],
     free: Option<&VisibilityMatrix>,
     params: &EnvelopeParams,
+    control: &Control<'_>,
 ) -> Result<SolarEnvelope> {
     check(protected, suns, free, params)?;
     let grid = ground.grid;
@@ -147,12 +149,44 @@ pub fn solar_envelope(
             strips(protected, direction, |piece| free.is_none_or(|free| free.is_free(piece, sun)), &mut report);
         let mut rows: Vec<&mut [EnvelopeColumn]> =
             columns.chunk_by_mut(|a, b| a.footprint.cell / grid.width == b.footprint.cell / grid.width).collect();
-        rows.par_iter_mut().for_each(|row| bound(row, &grid, &strips, sun));
+        rows.par_iter_mut().try_for_each(|row| {
+            control.check()?;
+            bound(row, &grid, &strips, sun);
+            Ok(())
+        })?;
+        control.advance(1);
     }
     for column in &mut columns {
         column.top = column.top.max(column.ground);
     }
     Ok(SolarEnvelope { grid, columns, report })
+}
+
+/// Which of `suns` each of `protected` sees in `scene`: the shade that is there already, for [`solar_envelope`] to credit. It has at most 200
+/// million bits. Progress counts pieces.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for more than 200 million pairs, and those of [`visibility_matrix()`].
+pub fn existing_shade(
+    scene: &MedialScene,
+    protected: &[ProtectedPiece],
+    suns: &[[f64; 3]],
+    control: &Control<'_>,
+) -> Result<VisibilityMatrix> {
+    check_pairs(protected.len(), suns.len())?;
+    let samples: Vec<[f32; 3]> = protected.iter().map(|piece| piece.sample).collect();
+    visibility_matrix(scene, &samples, suns, control)
+}
+
+fn check_pairs(pieces: usize, suns: usize) -> Result<()> {
+    if pieces.saturating_mul(suns) <= MOST_PAIRS {
+        return Ok(());
+    }
+    Err(Error::InvalidParameter {
+        name: "number of pairs of a protected piece and a sun",
+        value: format!("{pieces} x {suns}"),
+        expected: "at most 200 million; take longer steps of time, or a longer spacing",
+    })
 }
 
 /// The strips of the protected edges that a sun above the horizon lights, each with the row of its piece.
@@ -230,14 +264,7 @@ fn check(
     if let Some(ceiling) = params.ceiling.filter(|ceiling| !(*ceiling > 0.0 && ceiling.is_finite())) {
         return invalid("ceiling", ceiling.to_string(), "above zero metres");
     }
-    let pairs = protected.len().saturating_mul(suns.len());
-    if pairs > MOST_PAIRS {
-        return invalid(
-            "number of pairs of a protected piece and a sun",
-            format!("{} x {}", protected.len(), suns.len()),
-            "at most 200 million; take longer steps of time, or a longer spacing",
-        );
-    }
+    check_pairs(protected.len(), suns.len())?;
     let Some(free) = free else { return Ok(()) };
     let sizes = [
         ("shade of protected pieces", protected.len(), free.target_count()),

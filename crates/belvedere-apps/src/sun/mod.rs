@@ -15,5 +15,5 @@ pub use position::{
     Refraction, SunPosition, SunTimes, declination, sun_distance, sun_position, sun_position_with, sun_times,
 };
 pub use schedule::{Binning, DayOfLight, LightStep, SunSchedule};
-pub use site::Site;
+pub use site::{Site, SiteFrom};
 pub use time::{Date, Zone, parse_instant, zone_of_instant};

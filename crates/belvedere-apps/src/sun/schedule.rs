@@ -3,6 +3,7 @@
 use super::{Date, SunDay, declination};
 use belvedere_data::vector::{dot, unit};
 use belvedere_data::{Error, Result};
+use std::f64::consts::TAU;
 
 /// Most steps for which each has its own direction where that is left to [`SunSchedule::new`].
 const MOST_EXACT: usize = 2000;
@@ -33,6 +34,14 @@ pub struct LightStep {
     pub direction: u32,
     /// Whether it begins where the step before it ended.
     pub continues: bool,
+}
+
+impl LightStep {
+    /// Hours on the clocks halfway, where the sun of the step stands.
+    #[must_use]
+    pub fn middle(&self) -> f64 {
+        f64::from(self.start) + f64::from(self.hours) / 2.0
+    }
 }
 
 /// The light of a day.
@@ -139,6 +148,13 @@ impl SunSchedule {
         }
         schedule.rms_error = if weights > 0.0 { f64::sqrt(squares / weights) } else { 0.0 };
         Ok(schedule)
+    }
+
+    /// Azimuth clockwise from grid north, 0 to 2π, and elevation of a direction, radians; NaN for one that is not there.
+    #[must_use]
+    pub fn grid_azimuth_and_elevation(&self, direction: usize) -> [f64; 2] {
+        let Some(&[east, north, up]) = self.directions.get(direction) else { return [f64::NAN; 2] };
+        [east.atan2(north).rem_euclid(TAU), up.clamp(-1.0, 1.0).asin()]
     }
 
     /// Hours during which the sun is up, over all days.

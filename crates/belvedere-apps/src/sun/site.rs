@@ -1,8 +1,11 @@
 //! Where on earth a scene lies.
 
 use crate::horizon::convergence;
+use belvedere_core::query::earth::EARTH_RADIUS;
 use belvedere_data::crs::Crs;
+use belvedere_data::frame::{Bounds, Frame};
 use belvedere_data::{Error, Result};
+use serde::Serialize;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Heights above the sea that a site may have, metres.
@@ -22,7 +25,57 @@ pub struct Site {
     pub convergence: f64,
 }
 
+/// What a site was taken from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum SiteFrom {
+    /// Latitude and longitude that were given.
+    #[serde(rename = "location given")]
+    Location,
+    /// The reference system of the scene.
+    #[serde(rename = "reference system")]
+    ReferenceSystem,
+    /// A place of which something else is known, such as the weather.
+    #[serde(rename = "weather file")]
+    Elsewhere,
+}
+
 impl Site {
+    /// The site of a scene: the middle of its `bounds`.
+    ///
+    /// Where it lies on earth follows from `location`, latitude and longitude in radians, where given; else from the reference system of
+    /// `frame`; else from `elsewhere`, such as the place of a weather station. The height is that of the middle of the scene, and the
+    /// axes of its grid lie as its reference system says, whatever names the place; along the meridian where that is not known.
+    ///
+    /// # Errors
+    /// Those of [`Site::of`] where nothing says where the scene lies, and of [`Site::validate`].
+    pub fn of_scene(
+        frame: &Frame,
+        bounds: &Bounds,
+        location: Option<[f64; 2]>,
+        elsewhere: Option<[f64; 2]>,
+    ) -> Result<(Self, SiteFrom)> {
+        let (low, high) = bounds.corners();
+        let middle: [f64; 3] = std::array::from_fn(|i| frame.origin[i] + f64::midpoint(low[i], high[i]));
+        let by_crs = Self::of(&frame.crs, [middle[0], middle[1]], middle[2]);
+        let (place, from) = match (location, elsewhere) {
+            (Some(place), _) => (place, SiteFrom::Location),
+            (None, Some(place)) if by_crs.is_err() => (place, SiteFrom::Elsewhere),
+            _ => return Ok((by_crs?, SiteFrom::ReferenceSystem)),
+        };
+        let [latitude, longitude] = place;
+        let convergence = by_crs.map_or(0.0, |site| site.convergence);
+        let site = Self { latitude, longitude, height: middle[2].clamp(LOWEST, HIGHEST), convergence };
+        Ok((site.validate()?, from))
+    }
+
+    /// Distance to a place at `latitude` and `longitude`, radians, metres; meant for places within a few degrees.
+    #[must_use]
+    pub fn distance_to(&self, [latitude, longitude]: [f64; 2]) -> f64 {
+        let north = latitude - self.latitude;
+        let east = (longitude - self.longitude).sin().abs() * self.latitude.cos();
+        EARTH_RADIUS * north.hypot(east)
+    }
+
     /// The site at `position`, (x, y) metres in the system `crs`, with the convergence there, at a height in metres, of which no more than
     /// the range is taken: heights of a cloud may be wild, and matter little.
     ///
@@ -66,5 +119,42 @@ impl Site {
         }
         let turns = if self.longitude.abs() > PI { TAU.copysign(self.longitude) } else { 0.0 };
         Ok(Self { longitude: self.longitude - turns, ..self })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_location_that_is_given_moves_the_site_and_leaves_height_and_grid_alone() {
+        let frame = |text: &str, origin| Frame { origin, crs: Crs::parse(text).unwrap() };
+        let bounds = Bounds { low: [-50.0, -50.0, 10.0], high: [50.0, 50.0, 30.0] };
+        let delft = frame("EPSG:28992", [85_000.0, 447_500.0, 0.0]);
+        let (by_crs, from) = Site::of_scene(&delft, &bounds, None, Some([0.1, 0.1])).unwrap();
+        // the middle of Delft
+        assert!(
+            (by_crs.latitude.to_degrees() - 52.01).abs() < 0.01 && (by_crs.longitude.to_degrees() - 4.37).abs() < 0.02
+        );
+        assert_eq!((from, by_crs.height), (SiteFrom::ReferenceSystem, 20.0));
+        let (given, from) = Site::of_scene(&delft, &bounds, Some([0.5, 0.25]), None).unwrap();
+        assert_eq!(from, SiteFrom::Location);
+        assert_eq!(given, Site { latitude: 0.5, longitude: 0.25, ..by_crs });
+        // nothing is known of the grid: the height is that of the scene all the same
+        let lost = Frame { origin: [0.0, 0.0, 100.0], crs: Crs::default() };
+        let expected = Site { latitude: 0.5, longitude: 0.25, height: 120.0, convergence: 0.0 };
+        assert_eq!(Site::of_scene(&lost, &bounds, Some([0.5, 0.25]), None).unwrap(), (expected, SiteFrom::Location));
+        assert_eq!(Site::of_scene(&lost, &bounds, None, Some([0.5, 0.25])).unwrap(), (expected, SiteFrom::Elsewhere));
+        assert!(matches!(Site::of_scene(&lost, &bounds, None, None), Err(Error::MissingAttribute { .. })));
+        assert!(Site::of_scene(&delft, &bounds, Some([2.0, 0.0]), None).is_err());
+    }
+
+    #[test]
+    fn a_degree_of_latitude_is_111_kilometres() {
+        let site = Site { latitude: 60f64.to_radians(), longitude: 0.0, height: 0.0, convergence: 0.0 };
+        let to = |latitude: f64, longitude: f64| site.distance_to([latitude.to_radians(), longitude.to_radians()]);
+        assert!((to(61.0, 0.0) - 111_200.0).abs() < 300.0, "{}", to(61.0, 0.0));
+        // half of that along the parallel of 60 degrees
+        assert!((to(60.0, 1.0) - 55_600.0).abs() < 200.0, "{}", to(60.0, 1.0));
     }
 }

@@ -161,6 +161,12 @@ impl Date {
         self.0.month()
     }
 
+    /// Day of the year, 1 to 366.
+    #[must_use]
+    pub fn day_of_year(self) -> u32 {
+        u32::from(self.0.day_of_year().unsigned_abs())
+    }
+
     /// Day of the month, 1 to 31.
     #[must_use]
     pub fn day(self) -> i8 {

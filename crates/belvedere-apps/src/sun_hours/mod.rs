@@ -1,10 +1,12 @@
 //! How long the sun reaches a place: hours and share of a day or of many days, first and last light, longest stretch, rules.
 
 mod crowns;
+mod plan;
 mod rules;
 mod stretches;
 
 pub use crowns::sun_hours_through_crowns;
+pub use plan::{PlannedRule, SunPlan, SunSums, scene_sun_hours};
 pub use rules::{RuleDays, SunRule};
 
 use crate::sun::SunSchedule;
@@ -37,6 +39,19 @@ pub struct SunHours {
     pub least: Vec<f32>,
     /// Number of days on which the hours suffice.
     pub days: Vec<u32>,
+}
+
+impl SunHours {
+    /// Adds the targets of `other` after these.
+    pub fn append(&mut self, other: Self) {
+        self.hours.extend(other.hours);
+        self.share.extend(other.share);
+        self.first.extend(other.first);
+        self.last.extend(other.last);
+        self.longest.extend(other.longest);
+        self.least.extend(other.least);
+        self.days.extend(other.days);
+    }
 }
 
 /// What the statistics of a place are taken over.

@@ -171,6 +171,7 @@ impl Asked<'_> {
     fn band(&self, observers: &[Observer], threading: Threading, control: &Control<'_>) -> Result<Band> {
         let mut band = Band { seen: vec![0; self.targets.len()], unproven: Vec::new(), seen_counts: Vec::new() };
         for (number, observer) in observers.iter().enumerate() {
+            control.check()?;
             let mut count = 0;
             let mut note = |row: usize, answer: Answer| match self.params.unproven.settle(answer) {
                 Answer::Visible => {
@@ -182,7 +183,7 @@ impl Asked<'_> {
                 _ => {}
             };
             if self.bends(observer) || threading == Threading::Shared {
-                let answers = self.seen_by(observer)?;
+                let answers = self.seen_by(observer, control)?;
                 answers.into_iter().enumerate().for_each(|(row, answer)| note(row, answer));
             } else {
                 self.scene.visible_among(Viewer::Eye(observer.eye), &self.tree, |place| {
@@ -208,7 +209,7 @@ impl Asked<'_> {
     }
 
     /// What one observer sees, all threads at work: (M), blocked where the observer does not look.
-    fn seen_by(&self, observer: &Observer) -> Result<Vec<Answer>> {
+    fn seen_by(&self, observer: &Observer, control: &Control<'_>) -> Result<Vec<Answer>> {
         let allowed = |target: [f32; 3]| observer.limits.allow(observer.eye, target.map(f64::from));
         if !self.bends(observer) {
             let mut answers = self.scene.answer_among(Viewer::Eye(observer.eye), &self.tree)?;
@@ -224,7 +225,11 @@ impl Asked<'_> {
             }
             self.scene.sight_answer(observer.eye, target.map(f64::from), &self.params.earth)
         };
-        Ok(self.targets.par_iter().with_min_len(CHUNK).map(answer).collect())
+        let chunks = self.targets.par_chunks(CHUNK).map(|targets| {
+            control.check()?;
+            Ok(targets.iter().map(answer).collect::<Vec<Answer>>())
+        });
+        Ok(chunks.collect::<Result<Vec<_>>>()?.concat())
     }
 }
 
@@ -272,7 +277,7 @@ pub fn least_visible_heights(
     let feet = cell_targets(ground, 0.0);
     let mut heights = Raster::filled(ground.grid.width, ground.grid.height, f32::NAN);
     for observer in observers {
-        heights.values_mut().par_iter_mut().with_min_len(CHUNK).zip(&feet).for_each(|(height, foot)| {
+        let lower = |(height, foot): (&mut f32, &[f32; 3])| {
             let foot = foot.map(f64::from);
             if !observer.limits.allow(observer.eye, foot) {
                 return;
@@ -285,7 +290,12 @@ pub fn least_visible_heights(
             if !(*height <= seen) {
                 *height = seen;
             }
-        });
+        };
+        heights.values_mut().par_chunks_mut(CHUNK).zip(feet.par_chunks(CHUNK)).try_for_each(|(heights, feet)| {
+            control.check()?;
+            heights.iter_mut().zip(feet).for_each(lower);
+            Ok(())
+        })?;
         control.advance(1);
     }
     Ok(heights)

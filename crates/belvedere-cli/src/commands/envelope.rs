@@ -2,9 +2,7 @@
 
 use super::mesh_targets::{is_mesh, mesh_of};
 use super::shapes::{TypedAre, shapes, wrong_shape};
-use super::sights::georeference;
 use super::sights::{Proving, blockers, ground, ground_cloud};
-use super::sky_targets::{Measure, map_of};
 use super::{check_distinct, check_output};
 use crate::arguments::{Corners, Envelope, Global, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
@@ -13,16 +11,19 @@ use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::solar_envelope::{
-    EnvelopeParams, Parcel, ProtectedPiece, SolarEnvelope, envelope_suns, protected_faces, protected_line,
-    solar_envelope,
+    EnvelopeParams, Parcel, ProtectedPiece, SolarEnvelope, envelope_suns, existing_shade, protected_faces,
+    protected_line, solar_envelope,
 };
 use belvedere::apps::sun::{Period, Zone};
+use belvedere::apps::targets::Measure;
 use belvedere::apps::viewshed::CELL;
 use belvedere::figures::write_png;
 use belvedere::ground::{Ground, MapGrid, highest_points};
 use belvedere::io::{ReadReport, Shape, is_ball_file, write_mesh, write_npy_f32_2d, write_tif_f32};
 use belvedere::model::{ModelParts, SceneModel};
-use belvedere::query::{MeshTargetParams, SurfacePieces, visibility_matrix};
+use belvedere::query::{MeshTargetParams, SurfacePieces};
+use belvedere::results::georeference;
+use belvedere::results::measure_map;
 use belvedere::view::to_sun;
 use std::path::Path;
 
@@ -54,15 +55,15 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
             let (blockers, _) =
                 blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut stages, &mut section)?;
             summary.add("lines_of_sight", section);
-            let samples: Vec<[f32; 3]> = land.pieces.iter().map(|piece| piece.sample).collect();
-            Some(stages.run("looking for shade", samples.len(), |progress| {
-                visibility_matrix(&blockers, &samples, &suns.directions, progress)
-            })?)
+            let found = stages.run("looking for shade", land.pieces.len(), |control| {
+                existing_shade(&blockers, &land.pieces, &suns.directions, control)
+            });
+            Some(flagged("--spacing, --step", found)?)
         }
     };
     let params = EnvelopeParams { ceiling: arguments.ceiling };
-    let found = stages.run("bounding", 0, |_| {
-        solar_envelope(&parcel, &below, &land.pieces, &suns.directions, free.as_ref(), &params)
+    let found = stages.run("bounding", suns.directions.len(), |control| {
+        solar_envelope(&parcel, &below, &land.pieces, &suns.directions, free.as_ref(), &params, control)
     });
     let found = flagged("--spacing, --time-step-min, --max-height", found)?;
     summary.add("envelope", told(&found, &land, &suns, arguments));
@@ -394,14 +395,8 @@ fn write_one(output: &Path, found: &SolarEnvelope, ground: &Ground, cloud: &Poin
             let mut heights = found.heights();
             heights.values_mut().iter_mut().filter(|h| h.is_infinite()).for_each(|h| *h = f32::NAN);
             let relief = highest_points(&cloud.positions, ground);
-            let measure = Measure {
-                name: "height",
-                description: "metres above the ground",
-                decimals: 2,
-                range: None,
-                values: heights.values(),
-            };
-            Ok(write_png(output, &map_of(&measure, &relief, ground.grid.cell, "Solar envelope")?)?)
+            let measure = Measure::new("height", heights.values().to_vec()).with_description("metres above the ground");
+            Ok(write_png(output, &measure_map(&measure, &relief, ground.grid.cell, "Solar envelope")?)?)
         }
         _ => write_heights(
             output,
@@ -423,6 +418,6 @@ fn write_heights(
     if super::extension(output) == "npy" {
         return Ok(write_npy_f32_2d(output, heights)?);
     }
-    let place = georeference(&found.grid, cloud);
+    let place = georeference(&found.grid, &cloud.frame);
     Ok(write_tif_f32(output, heights, Some(&place), Some(NO_HEIGHT), Some(what))?)
 }

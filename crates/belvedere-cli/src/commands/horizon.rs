@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
     summary.add("lines_of_sight", section);
     note_enclosed(&blockers, &places, &mut summary);
     let params = HorizonParams { azimuth_count, turn: north.of_grid, earth };
-    let found = stages.run("looking around", 0, |_| horizons(&blockers, &places, &params))?;
+    let found = stages.run("looking around", places.len(), |control| horizons(&blockers, &places, &params, control))?;
     let least = if arguments.below == BelowChoice::Zero { 0.0 } else { -90.0 };
     let elevations: Vec<Vec<f64>> = found
         .iter()

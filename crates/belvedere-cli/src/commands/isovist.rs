@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
         places
             .iter()
             .map(|&eye| {
-                let isovist = isovist::isovist(&blockers, eye, &params);
+                let isovist = isovist::isovist(&blockers, eye, &params, progress);
                 progress.advance(1);
                 isovist
             })

@@ -152,8 +152,9 @@ fn write_profile(
     summary: &mut Summary,
 ) -> Result<()> {
     let ground = profile_ground(arguments, scene, stages, summary)?;
-    let made = stages
-        .run("making profile", 0, |_| sight_profile(blockers, ground.as_ref(), pair, earth, arguments.profile_step));
+    let made = stages.run("making profile", 0, |control| {
+        sight_profile(blockers, ground.as_ref(), pair, earth, arguments.profile_step, control)
+    });
     let profile = flagged("--profile-out", made)?;
     let up = scene.cloud.frame.crs.vertical_metres_per_unit;
     let height = |local: f64| (local + scene.cloud.frame.origin[2]) / up;

@@ -7,7 +7,6 @@ use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::Mesh;
-use belvedere::crs::CrsKind;
 use belvedere::io::{Cells, read_mesh, write_mesh_values, write_table};
 use belvedere::query::{
     BackFaces, MeshTargetParams, Scope, SeenArea, SurfacePieces, Viewer, answer_views, seen_faces, seen_in_all,
@@ -48,8 +47,7 @@ pub(super) fn refuse_flags(flags: &MeshTargets) -> Result<()> {
 /// Reads a mesh in the coordinates of a scene, as metres.
 pub(super) fn mesh_of(path: &Path, scene: &Scene, stages: &mut Stages, summary: &mut Summary) -> Result<Mesh> {
     let (mesh, report) = stages.run("reading mesh", 0, |_| read_mesh(path))?;
-    let known = |kind: CrsKind| kind != CrsKind::Unknown;
-    if known(mesh.crs.kind) && known(scene.cloud.frame.crs.kind) && !mesh.crs.same_system(&scene.cloud.frame.crs) {
+    if mesh.crs.contradicts(&scene.cloud.frame.crs) {
         bail!(
             "{}: the mesh is in {}, but the scene is in {}; convert one of them",
             path.display(),
@@ -144,7 +142,7 @@ fn told(faces: &[SeenArea], surface: &SurfacePieces, spacing: f64) -> Summary {
 
 /// A row for each object, without a face, then one for each face.
 fn write_rows(output: &Path, mesh: &Mesh, faces: &[SeenArea]) -> belvedere::Result<()> {
-    let names: Vec<String> = mesh.object_names.iter().map(|name| quoted(name)).collect();
+    let names = &mesh.object_names;
     let mut rows: Vec<(&str, Option<u64>, SeenArea)> = Vec::new();
     if names.is_empty() {
         rows.push(("", None, seen_in_all(faces)));
@@ -175,9 +173,4 @@ fn write_rows(output: &Path, mesh: &Mesh, faces: &[SeenArea]) -> belvedere::Resu
             ("standard_error_m2", Cells::Real(&error, 4)),
         ],
     )
-}
-
-/// A name as a cell of a table.
-pub(super) fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }

@@ -6,8 +6,6 @@ use crate::pipeline::{self, Points, Scene};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
-use belvedere::PointCloud;
-use belvedere::crs::{Crs, CrsKind};
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::{ExtraColumn, ExtraValues, ReadOptions, WriteReport, read_cloud, write_cloud, write_npy_u8};
 use belvedere::model::SceneModel;
@@ -15,6 +13,7 @@ use belvedere::query::{
     Answer, AnswerCounts, BlockRule, CertifiedReport, Scope, UnprovenAs, answer_views, query_points, random_targets,
 };
 use belvedere::view::View;
+use belvedere::{Frame, PointCloud};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
@@ -143,11 +142,6 @@ fn counted(answers: &[Answer], unproven_as: UnprovenAs, how: Summary) -> Summary
     section
 }
 
-/// Whether the file of a cloud says in which reference system it is.
-fn is_known(cloud: &PointCloud) -> bool {
-    cloud.frame.crs.kind != CrsKind::Unknown
-}
-
 /// The targets as a cloud in the frame of the scene.
 fn targets(
     arguments: &Query,
@@ -162,7 +156,7 @@ fn targets(
         return Ok(frame(stages.run("spreading targets", 0, |_| random_targets(low, high, count, seed))));
     }
     if let Some(path) = &arguments.targets.targets {
-        return points_of_file(path, arguments.scene.input.crs.clone(), &scene, stages, summary);
+        return points_of_file(path, arguments.scene.input.crs.clone(), &scene.frame, stages, summary);
     }
     if scene.is_empty() {
         return Err(Usage("--self needs the cloud itself; a ball file holds no points".to_owned()).into());
@@ -174,41 +168,21 @@ fn targets(
 pub(super) fn points_of_file(
     path: &Path,
     crs: Option<String>,
-    scene: &PointCloud,
+    frame: &Frame,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<PointCloud> {
     let options = ReadOptions { crs };
-    let (mut cloud, report) = stages.run("reading targets", 0, |_| read_cloud(&[path.to_owned()], &options))?;
+    let (cloud, report) = stages.run("reading targets", 0, |_| read_cloud(&[path.to_owned()], &options))?;
     pipeline::check_every_row(&report)?;
     summary.add("reading_targets", Summary::of(&report));
-    // a table of targets says nothing of its unit: it is in the coordinates of the scene's file
-    let scale = scene.frame.crs.metres_per_unit_xyz();
-    let given = cloud.frame.crs.metres_per_unit_xyz();
-    // some files tell their unit without naming a system
-    let known = cloud.frame.crs != Crs::default();
-    if is_known(&cloud) && is_known(scene) && !cloud.frame.crs.same_system(&scene.frame.crs) {
+    if cloud.frame.crs.contradicts(&frame.crs) {
         bail!(
             "{}: the targets are in {}, but the scene is in {}; convert one of them",
             path.display(),
             cloud.frame.crs.describe(),
-            scene.frame.crs.describe()
+            frame.crs.describe()
         );
     }
-    let positions = cloud
-        .positions
-        .iter()
-        .map(|p| {
-            let metres: [f64; 3] = std::array::from_fn(|i| {
-                let value = f64::from(p[i]) + cloud.frame.origin[i];
-                if known { value } else { value / given[i] * scale[i] }
-            });
-            belvedere::cloud::to_local(metres, scene.frame.origin)
-        })
-        .collect();
-    cloud.positions = positions;
-    cloud.frame.origin = scene.frame.origin;
-    cloud.frame.crs = scene.frame.crs.clone();
-    cloud.scanner_positions = Vec::new();
-    Ok(cloud)
+    Ok(cloud.moved_to(frame))
 }

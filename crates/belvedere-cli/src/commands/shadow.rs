@@ -1,23 +1,22 @@
 //! `belvedere shadow`.
 
 use super::sights::{Proving, blockers};
-use super::sky_targets::{Measure, SkyTargets};
-use super::tree_light::day_of_year;
+use super::targets::Asked;
 use super::{check_distinct, check_output};
 use crate::arguments::{Global, Shadow, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
-use belvedere::apps::shadow::{Edges, lit_shares, sun_directions};
+use belvedere::apps::rows::Obstacles;
+use belvedere::apps::shadow::{Edges, ShadowSun, scene_shadow, sun_directions, unproven_light};
 use belvedere::apps::sun::{Site, SunPosition, Zone, sun_days, sun_position_with};
-use belvedere::apps::tree_light::through_crowns;
+use belvedere::apps::targets::Measure;
+use belvedere::apps::tree_light::Season;
 use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, write_apng, write_png};
 use belvedere::io::atomic;
-use belvedere::query::{Answer, MedialScene, UnprovenAs, visibility_matrix};
+use belvedere::query::UnprovenAs;
 use belvedere::raster::Raster;
-use belvedere::view::to_sun;
-use rayon::prelude::*;
 
 const SHADE_COLOR: [u8; 3] = [38, 52, 96];
 const HALF_COLOR: [u8; 3] = [140, 140, 160];
@@ -25,8 +24,6 @@ const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
 const LIT_COLOR: [u8; 3] = [235, 235, 235];
 /// Most suns told one by one.
 const MOST_TOLD: usize = 5;
-/// Targets handed to a thread at once.
-const CHUNK: usize = 512;
 
 pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     check(arguments)?;
@@ -35,7 +32,7 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     let points = if arguments.places.needs_points() { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
     let suns = suns(arguments, &scene, &mut summary)?;
-    let targets = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
+    let asked = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
     let edges = if arguments.suns.soft { Edges::Soft } else { Edges::Hard };
     // pulses are asked about one sun that is a point: of many it would take long
     let proving = if suns.len() == 1 && edges == Edges::Hard { Proving::IfItDecides } else { Proving::Never };
@@ -45,59 +42,39 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     let mut section = Summary::default();
     let profile = arguments.scene.profile.into();
     let (blockers, unproven) = blockers(&scene, profile, &arguments.giving_way, proving, &mut stages, &mut section)?;
-    let directions: Vec<Vec<[f64; 3]>> = suns.iter().map(|sun| sun_directions(sun.to_sun, edges)).collect();
-    let all = directions.concat();
-    section.add("directions", all.len());
+    let kinds: Vec<ShadowSun> = suns.iter().map(|sun| sun.sun).collect();
+    section.add("directions", kinds.iter().map(|sun| sun_directions(sun.to_sun, edges).len()).sum::<usize>());
     summary.add("lines_of_sight", section);
-    let look = |scene: &MedialScene, name, stages: &mut Stages| -> Result<Vec<Vec<f32>>> {
-        let matrix = stages.run(name, targets.positions.len(), |progress| {
-            visibility_matrix(scene, &targets.positions, &all, progress)
-        })?;
-        let mut first = 0;
-        let mut shares = Vec::with_capacity(directions.len());
-        for of_sun in &directions {
-            shares.push(lit_shares(&matrix, first, of_sun, targets.normals.as_deref())?);
-            first += of_sun.len();
+    let trees = arguments.trees.of(&scene, blockers.params(), &mut summary)?;
+    let obstacles = Obstacles { scene: &blockers, trees: trees.as_ref() };
+    let looks = asked.targets.len() * obstacles.matrix_count();
+    let lit = stages
+        .run("looking at the sun", looks, |control| scene_shadow(obstacles, &asked.targets, &kinds, edges, control))?;
+    let doubts = match (&kinds[..], &lit[..]) {
+        ([sun], [lit]) if unproven != UnprovenAs::Visible && blockers.proof().is_some() => {
+            stages.run("asking pulses", 0, |control| unproven_light(&blockers, &asked.targets, *sun, lit, control))?
         }
-        Ok(shares)
+        _ => None,
     };
-    let mut lit = look(&blockers, "looking at the sun", &mut stages)?;
-    let doubts = doubts(&blockers, unproven, &suns, &lit, &targets, &mut stages);
-    if let Some(trees) = arguments.trees.of(&scene, blockers.params(), &mut summary)? {
-        let without = look(&trees.opaque, "looking through trees", &mut stages)?;
-        for ((lit, without), sun) in lit.iter_mut().zip(&without).zip(&suns) {
-            *lit = through_crowns(lit, without, trees.share(sun.date))?;
-        }
-    }
-    for shares in &mut lit {
-        for (share, position) in shares.iter_mut().zip(&targets.positions) {
-            if !position.iter().all(|v| v.is_finite()) {
-                *share = f32::NAN;
-            }
-        }
-    }
-    let measure = |name, values| Measure {
-        name,
-        description: "share of the sun, 0 shaded",
-        decimals: if edges == Edges::Soft { 4 } else { 2 },
-        range: Some([0.0, 1.0]),
-        values,
+    let decimals = if edges == Edges::Soft { 4 } else { 2 };
+    let of_sun = |(sun, values): (&Sun, &Vec<f32>)| {
+        let measure = Measure::new(&sun.column, values.clone()).with_description("share of the sun, 0 shaded");
+        measure.with_decimals(decimals).with_range(Some([0.0, 1.0]))
     };
-    let mut measures: Vec<Measure<'_>> =
-        suns.iter().zip(&lit).map(|(sun, values)| measure(sun.column.as_str(), values.as_slice())).collect();
+    let mut measures: Vec<Measure> = suns.iter().zip(&lit).map(of_sun).collect();
     if let Some(doubts) = &doubts {
-        let description = "1: lit, but not proven";
-        measures.push(Measure { name: "unproven", description, decimals: 0, range: Some([0.0, 1.0]), values: doubts });
+        let measure = Measure::new("unproven", doubts.clone()).with_description("1: lit, but not proven");
+        measures.push(measure.with_decimals(0).with_range(Some([0.0, 1.0])));
     }
-    summary.add("shadow", targets.told(&measures[..measures.len().min(MOST_TOLD)]));
+    summary.add("shadow", asked.statistics(&measures[..measures.len().min(MOST_TOLD)]));
     let has_parts = lit.iter().flatten().any(|&share| share > 0.0 && share < 1.0);
     let legend = if has_parts { Legend::WithParts } else { Legend::WithoutParts };
     let picture = |number: usize, relief: &Raster<f32>, cell: f64| {
         frame(&suns[number], &lit[number], doubts.as_deref().filter(|_| number == 0), legend, relief, cell)
     };
     let pictured = |relief: &Raster<f32>, cell: f64| picture(0, relief, cell);
-    targets.write_with(&arguments.outputs, &measures, &pictured, &mut stages, &mut summary)?;
-    films(arguments, &targets, &suns, &picture, &mut stages)?;
+    asked.write_with(&arguments.outputs, &measures, &pictured, &mut stages, &mut summary)?;
+    films(arguments, &asked, &suns, &picture, &mut stages)?;
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
 }
@@ -129,12 +106,10 @@ fn check(arguments: &Shadow) -> Result<()> {
 
 /// A sun that is asked about.
 struct Sun {
-    to_sun: [f64; 3],
+    sun: ShadowSun,
     /// Name of its column.
     column: String,
     title: String,
-    /// Day of the year and latitude, where known.
-    date: Option<(u32, f64)>,
 }
 
 /// The suns that were typed, in their order.
@@ -152,8 +127,11 @@ fn suns(arguments: &Shadow, scene: &Scene, summary: &mut Summary) -> Result<Vec<
         let column = if typed.len() == 1 { "lit".to_owned() } else { format!("lit_{number}") };
         let title = format!("Shadow, sun at azimuth {azimuth}, elevation {elevation} degrees");
         below += usize::from(elevation <= 0.0);
-        let to_sun = to_sun(azimuth.to_radians() - north.of_grid, elevation.to_radians());
-        suns.push(Sun { to_sun, column, title, date: None });
+        suns.push(Sun {
+            sun: ShadowSun::at(azimuth.to_radians() - north.of_grid, elevation.to_radians()),
+            column,
+            title,
+        });
     }
     if typed.is_empty() {
         let site = arguments.sun.site(scene, summary)?;
@@ -169,9 +147,9 @@ fn suns(arguments: &Shadow, scene: &Scene, summary: &mut Summary) -> Result<Vec<
             if instants.len() <= MOST_TOLD {
                 section.add(&zone.display(instant), told(&position));
             }
-            let date = zone.date_at(instant).ok().map(|date| (day_of_year(date), site.latitude));
+            let season = zone.date_at(instant).ok().map(|date| Season::on(date, &site));
             let title = format!("Shadow, {}", zone.display(instant));
-            suns.push(Sun { to_sun: position.to_sun(&site), column, title, date });
+            suns.push(Sun { sun: ShadowSun { to_sun: position.to_sun(&site), season }, column, title });
         }
         section.add("clocks", zone.name());
     }
@@ -217,31 +195,6 @@ fn column_of(zone: &Zone, instant: f64) -> String {
     format!("lit_{digits}")
 }
 
-/// 1 for each place that is lit but whose line of sight is not proven, where pulses are known and wanted.
-fn doubts(
-    blockers: &MedialScene,
-    unproven: UnprovenAs,
-    suns: &[Sun],
-    lit: &[Vec<f32>],
-    targets: &SkyTargets,
-    stages: &mut Stages,
-) -> Option<Vec<f32>> {
-    let ([sun], [lit]) = (suns, lit) else { return None };
-    if blockers.proof().is_none() || unproven == UnprovenAs::Visible {
-        return None;
-    }
-    let doubt = |(position, &lit): (&[f32; 3], &f32)| {
-        let is_doubtful =
-            lit > 0.0 && blockers.answer_unblocked_towards(position.map(f64::from), sun.to_sun) == Answer::Unproven;
-        f32::from(u8::from(is_doubtful))
-    };
-    Some(
-        stages.run("asking pulses", 0, |_| {
-            targets.positions.par_iter().zip(lit).with_min_len(CHUNK).map(doubt).collect()
-        }),
-    )
-}
-
 /// Whether places see parts of the sun: said of all frames alike, so that they are of one size.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Legend {
@@ -285,14 +238,8 @@ fn frame(
 type Drawing<'a> = dyn Fn(usize, &Raster<f32>, f64) -> belvedere::Result<Picture> + 'a;
 
 /// Writes a picture of each sun, after each other or apart.
-fn films(
-    arguments: &Shadow,
-    targets: &SkyTargets,
-    suns: &[Sun],
-    picture: &Drawing<'_>,
-    stages: &mut Stages,
-) -> Result<()> {
-    let (Some(ground), Some(relief)) = (targets.ground(), targets.relief()) else { return Ok(()) };
+fn films(arguments: &Shadow, asked: &Asked, suns: &[Sun], picture: &Drawing<'_>, stages: &mut Stages) -> Result<()> {
+    let (Some(ground), Some(relief)) = (asked.targets.ground(), asked.relief()) else { return Ok(()) };
     if let Some(folder) = &arguments.frames {
         atomic::make_folder(folder)?;
         for (number, sun) in suns.iter().enumerate() {

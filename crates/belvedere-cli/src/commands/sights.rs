@@ -9,7 +9,7 @@ use belvedere::Bounds;
 use belvedere::PointCloud;
 use belvedere::depth::Profile;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
-use belvedere::io::{Georeference, ReadOptions, read_cloud};
+use belvedere::io::{ReadOptions, read_cloud};
 use belvedere::query::{BlockRule, EarthParams, MedialScene, UnprovenAs};
 
 /// Whether pulses are asked about lines of sight that nothing blocks.
@@ -92,32 +92,23 @@ pub(crate) fn ground_cloud(
             Ok((std::mem::replace(&mut scene.cloud, frame), *points))
         }
         GroundChoice::Cloud(path) => {
-            let (mut cloud, _) =
+            let (cloud, _) =
                 stages.run("reading ground", 0, |_| read_cloud(std::slice::from_ref(path), &ReadOptions::default()))?;
-            let known = |crs: &belvedere::crs::Crs| crs.kind != belvedere::crs::CrsKind::Unknown;
-            if known(&cloud.frame.crs)
-                && known(&scene.cloud.frame.crs)
-                && !cloud.frame.crs.same_system(&scene.cloud.frame.crs)
-            {
+            let frame = &scene.cloud.frame;
+            if cloud.frame.crs.contradicts(&frame.crs) {
                 bail!(
                     "{}: the ground is in {}, but the scene is in {}; convert one of them",
                     path.display(),
                     cloud.frame.crs.describe(),
-                    scene.cloud.frame.crs.describe()
+                    frame.crs.describe()
                 );
             }
-            let origin = scene.cloud.frame.origin;
-            // a cloud that says nothing of its coordinates has those of the scene
-            let is_silent = cloud.frame.crs == belvedere::crs::Crs::default();
-            let scale = if is_silent { scene.cloud.frame.crs.metres_per_unit_xyz() } else { [1.0; 3] };
-            if !known(&cloud.frame.crs) {
-                cloud.frame.crs = scene.cloud.frame.crs.clone();
+            // a scene that knows no system takes that of its ground
+            let own = Some(cloud.frame.crs.clone()).filter(|crs| crs.kind != belvedere::crs::CrsKind::Unknown);
+            let mut cloud = cloud.moved_to(frame);
+            if let Some(crs) = own {
+                cloud.frame.crs = crs;
             }
-            for position in &mut cloud.positions {
-                let absolute = std::array::from_fn(|i| (f64::from(position[i]) + cloud.frame.origin[i]) * scale[i]);
-                *position = belvedere::cloud::to_local(absolute, origin);
-            }
-            cloud.frame.origin = origin;
             Ok((cloud, GroundPoints::Auto))
         }
     }
@@ -159,14 +150,6 @@ pub(crate) fn local(cloud: &PointCloud, file: [f64; 3]) -> [f64; 3] {
 pub(crate) fn file(cloud: &PointCloud, local: [f64; 3]) -> [f64; 3] {
     let scale = cloud.frame.crs.metres_per_unit_xyz();
     std::array::from_fn(|i| (local[i] + cloud.frame.origin[i]) / scale[i])
-}
-
-/// Where a grid lies in the system of a cloud.
-pub(crate) fn georeference(grid: &MapGrid, cloud: &PointCloud) -> Georeference {
-    let unit = cloud.frame.crs.metres_per_unit;
-    let upper_left = [0, 1].map(|i| (grid.corner[i] + cloud.frame.origin[i]) / unit);
-    let step = grid.cell / unit;
-    Georeference { upper_left, column_step: [step, 0.0], row_step: [0.0, -step], crs: cloud.frame.crs.clone() }
 }
 
 /// Lowest and highest corner of a scene on the map, local metres.

@@ -4,7 +4,6 @@ use crate::arguments::{ElevationChoice, SunPeriod, SunPlace, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::summary::{Summary, rounded};
 use anyhow::{Context, Result};
-use belvedere::Bounds;
 use belvedere::apps::sun::{
     Date, DayParams, Period, Refraction, Site, Zone, parse_instant, sun_position_with, zone_of_instant,
 };
@@ -13,19 +12,13 @@ use belvedere::apps::sun_hours::RuleDays;
 impl SunPlace {
     /// Where the middle of the scene lies on earth.
     pub(crate) fn site(&self, scene: &Scene, summary: &mut Summary) -> Result<Site> {
-        let Bounds { low, high } = scene.model.bounds();
-        let middle: [f64; 3] =
-            std::array::from_fn(|i| scene.cloud.frame.origin[i] + f64::midpoint(f64::from(low[i]), f64::from(high[i])));
-        let by_crs = Site::of(&scene.cloud.frame.crs, [middle[0], middle[1]], middle[2]);
-        let site = match (&self.location, by_crs) {
-            (None, by_crs) => by_crs.context(
+        let given = self.location.as_ref().map(|location| location.0.map(f64::to_radians));
+        let found = Site::of_scene(&scene.cloud.frame, &scene.model.bounds(), given, None);
+        let (site, _) = match given {
+            Some(_) => flagged("--location", found)?,
+            None => found.context(
                 "the sun needs to know where on earth the scene lies: give --location LAT,LON, or its system with --crs EPSG:CODE",
             )?,
-            (Some(given), by_crs) => {
-                let [latitude, longitude] = given.0.map(f64::to_radians);
-                let grid = by_crs.unwrap_or(Site { latitude, longitude, height: 0.0, convergence: 0.0 });
-                flagged("--location", Site { latitude, longitude, ..grid }.validate())?
-            }
         };
         let mut section = Summary::default();
         section

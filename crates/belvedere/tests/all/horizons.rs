@@ -2,6 +2,7 @@
 #![expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 
 use belvedere::apps::horizon::{HorizonParams, horizons};
+use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
 use belvedere::query::{Answer, BlockRule, Curvature, EarthParams, MedialScene};
 use belvedere::random::uniform;
@@ -114,13 +115,14 @@ fn azimuths_may_count_from_true_north_and_any_number_of_threads_gives_the_same()
         .collect();
     let scene = scene(&list, &BlockRule::default());
     let grid = HorizonParams { azimuth_count: 720, ..HorizonParams::default() };
-    let [all] = horizons(&scene, &[[0.0, 0.0, 12.0]], &grid).unwrap().try_into().unwrap();
+    let [all] = horizons(&scene, &[[0.0, 0.0, 12.0]], &grid, &Control::none()).unwrap().try_into().unwrap();
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let [alone] = one.install(|| horizons(&scene, &[[0.0, 0.0, 12.0]], &grid)).unwrap().try_into().unwrap();
+    let [alone] =
+        one.install(|| horizons(&scene, &[[0.0, 0.0, 12.0]], &grid, &Control::none())).unwrap().try_into().unwrap();
     assert_eq!(all, alone);
     // grid north points 1° east of true north: what is at 10° by the grid is at 11° by the globe
     let turned = HorizonParams { turn: 1f64.to_radians(), ..grid };
-    let [globe] = horizons(&scene, &[[0.0, 0.0, 12.0]], &turned).unwrap().try_into().unwrap();
+    let [globe] = horizons(&scene, &[[0.0, 0.0, 12.0]], &turned, &Control::none()).unwrap().try_into().unwrap();
     for (i, point) in all.iter().enumerate() {
         assert!((globe[(i + 2) % 720].elevation - point.elevation).abs() < 1e-9, "{i}");
     }
@@ -129,7 +131,7 @@ fn azimuths_may_count_from_true_north_and_any_number_of_threads_gives_the_same()
         HorizonParams { azimuth_count: 2_000_000, ..grid },
         HorizonParams { turn: f64::NAN, ..grid },
     ] {
-        assert!(horizons(&scene, &[[0.0; 3]], &params).is_err());
+        assert!(horizons(&scene, &[[0.0; 3]], &params, &Control::none()).is_err());
     }
-    assert!(horizons(&scene, &[[f64::NAN; 3]], &grid).is_err());
+    assert!(horizons(&scene, &[[f64::NAN; 3]], &grid, &Control::none()).is_err());
 }

@@ -1,6 +1,7 @@
 //! Isovists against closed forms, and of balls against what follows from their geometry.
 
 use belvedere::apps::isovist::{Isovist, IsovistParams, isovist, isovist_of};
+use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
 use belvedere::query::{BlockRule, MedialScene};
 use std::f64::consts::{PI, TAU};
@@ -14,7 +15,7 @@ fn walls(low: [f64; 3], high: [f64; 3]) -> impl Fn([f64; 3]) -> Option<f64> + Sy
 }
 
 fn seen(range: impl Fn([f64; 3]) -> Option<f64> + Sync, max_range: f64) -> Isovist {
-    isovist_of(&range, &IsovistParams { max_range, ..IsovistParams::default() }).unwrap()
+    isovist_of(&range, &IsovistParams { max_range, ..IsovistParams::default() }, &Control::none()).unwrap()
 }
 
 fn near(found: f64, expected: f64, share: f64) {
@@ -103,7 +104,7 @@ fn a_ball_takes_its_cap_from_the_openness_and_its_cone_from_the_volume() {
     let (distance, radius, reach): (f64, f64, f64) = (10.0, 4.0, 30.0);
     let scene = scene(&[([0.0, 10.0, 0.0], 4.0)]);
     let params = IsovistParams { step: 0.25f64.to_radians(), max_range: reach, ..IsovistParams::default() };
-    let found = isovist(&scene, [0.0; 3], &params).unwrap();
+    let found = isovist(&scene, [0.0; 3], &params, &Control::none()).unwrap();
     let half = (radius / distance).asin();
     let cap = (1.0 - half.cos()) / 2.0;
     // cells of a quarter degree along a rim of 24°: a few thousandths
@@ -132,7 +133,7 @@ fn a_ball_takes_its_cap_from_the_openness_and_its_cone_from_the_volume() {
 #[test]
 fn an_eye_inside_a_ball_looks_through_it_and_senseless_parameters_are_refused() {
     let scene = scene(&[([0.0, 0.0, 0.0], 2.0)]);
-    let found = isovist(&scene, [0.5, 0.0, 0.0], &IsovistParams::default()).unwrap();
+    let found = isovist(&scene, [0.5, 0.0, 0.0], &IsovistParams::default(), &Control::none()).unwrap();
     assert_eq!(found.openness, 1.0);
     let usual = IsovistParams::default();
     for params in [
@@ -142,7 +143,7 @@ fn an_eye_inside_a_ball_looks_through_it_and_senseless_parameters_are_refused() 
         IsovistParams { max_range: f64::INFINITY, ..usual },
         IsovistParams { jump: 0.0, ..usual },
     ] {
-        assert!(isovist(&scene, [9.0; 3], &params).is_err(), "{params:?}");
+        assert!(isovist(&scene, [9.0; 3], &params, &Control::none()).is_err(), "{params:?}");
     }
-    assert!(isovist(&scene, [f64::NAN, 0.0, 0.0], &usual).is_err());
+    assert!(isovist(&scene, [f64::NAN, 0.0, 0.0], &usual, &Control::none()).is_err());
 }

@@ -39,6 +39,7 @@ mod pulses;
 mod reading;
 mod relief;
 mod roof_planes;
+mod rows;
 mod scanner_location;
 mod simulated_surveys;
 mod slender;

@@ -1,6 +1,7 @@
 //! Roofs as planes, against roofs whose tilt, azimuth and area are known.
 
 use belvedere::apps::roof_planes::{RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
+use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::random::uniform;
 use belvedere::{Attributes, PointCloud};
@@ -41,7 +42,7 @@ fn faces(plane: &RoofPlane, azimuth_deg: f64) -> bool {
 #[test]
 fn tilt_azimuth_and_area_of_a_house_are_found() {
     for density in [4.0, 12.0, 40.0] {
-        let planes = roof_planes(&house(density), &RoofPlaneParams::default()).unwrap();
+        let planes = roof_planes(&house(density), &RoofPlaneParams::default(), &Control::none()).unwrap();
         assert_eq!(planes.len(), 3, "{density}: {planes:?}");
         let side = 12.0 * 4.0 / 40f64.to_radians().cos();
         // points end half their distance before the rim, which takes a share off; cells of a metre round the rest
@@ -63,7 +64,7 @@ fn tilt_azimuth_and_area_of_a_house_are_found() {
 
 #[test]
 fn cells_lie_in_their_plane_in_level_rows() {
-    let planes = roof_planes(&house(12.0), &RoofPlaneParams::default()).unwrap();
+    let planes = roof_planes(&house(12.0), &RoofPlaneParams::default(), &Control::none()).unwrap();
     for plane in &planes {
         let cells = plane.cells.middles();
         assert!(cells.windows(2).all(|pair| pair[0].1 <= pair[1].1));
@@ -89,7 +90,7 @@ fn area_is_that_of_a_turned_rectangle() {
                 [x * cos - y * sin, x * sin + y * cos, z].map(|v| v as f32)
             })
             .collect();
-        let planes = roof_planes(&turned, &RoofPlaneParams::default()).unwrap();
+        let planes = roof_planes(&turned, &RoofPlaneParams::default(), &Control::none()).unwrap();
         assert_eq!(planes.len(), 1);
         // cells at the rim are chance: a twentieth of 126 m²
         assert!((planes[0].area - 126.0).abs() < 6.3, "{turn}: {}", planes[0].area);
@@ -101,15 +102,15 @@ fn crowns_and_walls_are_no_roofs() {
     #[expect(clippy::cast_possible_truncation, reason = "local metres")]
     let crown: Vec<[f32; 3]> =
         (0..3000).map(|i| [0, 1, 2].map(|axis| (6.0 * uniform(9, 3 * i + axis)) as f32)).collect();
-    let planes = roof_planes(&crown, &RoofPlaneParams::default()).unwrap();
+    let planes = roof_planes(&crown, &RoofPlaneParams::default(), &Control::none()).unwrap();
     let area: f64 = planes.iter().map(|plane| plane.area).sum();
     // chance makes no plane of 6 m by 6 m
     assert!(area < 10.0, "{area} m² in {} planes", planes.len());
     let wall: Vec<[f32; 3]> =
         sheet(4, 12.0, [0.0, 10.0], [0.0, 6.0], |_, _| 0.0).iter().map(|p| [p[0], p[2], p[1]]).collect();
-    assert!(roof_planes(&wall, &RoofPlaneParams::default()).unwrap().is_empty());
-    assert!(roof_planes(&[], &RoofPlaneParams::default()).unwrap().is_empty());
-    assert!(roof_planes(&[[1.0, 2.0, 3.0]; 50], &RoofPlaneParams::default()).unwrap().is_empty());
+    assert!(roof_planes(&wall, &RoofPlaneParams::default(), &Control::none()).unwrap().is_empty());
+    assert!(roof_planes(&[], &RoofPlaneParams::default(), &Control::none()).unwrap().is_empty());
+    assert!(roof_planes(&[[1.0, 2.0, 3.0]; 50], &RoofPlaneParams::default(), &Control::none()).unwrap().is_empty());
 }
 
 #[test]
@@ -144,6 +145,6 @@ fn parameters_out_of_range_are_refused() {
         RoofPlaneParams { angle: 2.0, ..usual },
         RoofPlaneParams { least_area: f64::NAN, ..usual },
     ] {
-        assert!(roof_planes(&house(4.0), &params).is_err(), "{params:?}");
+        assert!(roof_planes(&house(4.0), &params, &Control::none()).is_err(), "{params:?}");
     }
 }

@@ -38,7 +38,8 @@ fn line(corners: &[[f64; 3]], fence: f64) -> Vec<ProtectedPiece> {
 }
 
 fn envelope(parcel: &Parcel, protected: &[ProtectedPiece], suns: &[[f64; 3]]) -> SolarEnvelope {
-    solar_envelope(parcel, &ground(1.0, 0.0), protected, suns, None, &EnvelopeParams::default()).unwrap()
+    solar_envelope(parcel, &ground(1.0, 0.0), protected, suns, None, &EnvelopeParams::default(), &Control::none())
+        .unwrap()
 }
 
 #[test]
@@ -257,7 +258,8 @@ fn the_mesh_is_closed_and_holds_the_volume_also_over_sloping_ground_and_around_h
     let fence = line(&[[-12.0, 4.0, 0.0], [11.0, 2.0, 0.0]], 0.5);
     let params = EnvelopeParams { ceiling: Some(4.0) };
     for (slope, suns) in [(0.0, vec![sun(180.0, 20.0)]), (0.9, vec![sun(150.0, 25.0), sun(215.0, 18.0)])] {
-        let found = solar_envelope(&parcel, &ground(1.0, slope), &fence, &suns, None, &params).unwrap();
+        let found =
+            solar_envelope(&parcel, &ground(1.0, slope), &fence, &suns, None, &params, &Control::none()).unwrap();
         let mesh = found.to_mesh([0.0; 3]).unwrap();
         assert!(is_closed(&mesh), "slope {slope}");
         // columns below a millimetre are left out: 1e-3 m of 100 m² at most
@@ -266,7 +268,8 @@ fn the_mesh_is_closed_and_holds_the_volume_also_over_sloping_ground_and_around_h
         let moved = found.to_mesh([100_000.0, 400_000.0, 10.0]).unwrap();
         assert_eq!(moved.triangles, mesh.triangles);
     }
-    let open = solar_envelope(&parcel, &ground(1.0, 0.0), &[], &[], None, &EnvelopeParams::default()).unwrap();
+    let open = solar_envelope(&parcel, &ground(1.0, 0.0), &[], &[], None, &EnvelopeParams::default(), &Control::none())
+        .unwrap();
     assert!(open.to_mesh([0.0; 3]).unwrap_err().to_string().contains("ceiling"));
 }
 
@@ -287,8 +290,9 @@ fn where_something_else_shades_already_the_credit_lifts_the_bound() {
     let free = visibility_matrix(&scene, &samples, &suns, &Control::none()).unwrap();
     let parcel = rectangle([-6.0, -8.0], [6.0, 0.0]);
     let params = EnvelopeParams::default();
-    let credited = solar_envelope(&parcel, &ground(1.0, 0.0), &pieces, &suns, Some(&free), &params).unwrap();
-    let plain = solar_envelope(&parcel, &ground(1.0, 0.0), &pieces, &suns, None, &params).unwrap();
+    let credited =
+        solar_envelope(&parcel, &ground(1.0, 0.0), &pieces, &suns, Some(&free), &params, &Control::none()).unwrap();
+    let plain = solar_envelope(&parcel, &ground(1.0, 0.0), &pieces, &suns, None, &params, &Control::none()).unwrap();
     assert_eq!(credited.report.shaded_already_count, 6);
     for (with, without) in credited.columns.iter().zip(&plain.columns) {
         let [x, _] = credited.grid.center(with.footprint.cell % 40, with.footprint.cell / 40);
@@ -301,7 +305,9 @@ fn where_something_else_shades_already_the_credit_lifts_the_bound() {
     }
     // a matrix of something else
     let other = visibility_matrix(&scene, &samples[1..], &suns, &Control::none()).unwrap();
-    assert!(solar_envelope(&parcel, &ground(1.0, 0.0), &pieces, &suns, Some(&other), &params).is_err());
+    assert!(
+        solar_envelope(&parcel, &ground(1.0, 0.0), &pieces, &suns, Some(&other), &params, &Control::none()).is_err()
+    );
 }
 
 #[test]
@@ -321,7 +327,9 @@ fn hostile_input_is_refused_with_what_is_wrong() {
     let parcel = rectangle([-6.0, -8.0], [6.0, 0.0]);
     let ask = |parcel: &Parcel, protected: &[ProtectedPiece], suns: &[[f64; 3]], ceiling: Option<f64>| {
         let params = EnvelopeParams { ceiling };
-        solar_envelope(parcel, &ground(1.0, 0.0), protected, suns, None, &params).unwrap_err().to_string()
+        solar_envelope(parcel, &ground(1.0, 0.0), protected, suns, None, &params, &Control::none())
+            .unwrap_err()
+            .to_string()
     };
     assert!(ask(&parcel, &[], &[[0.0, 0.0, 2.0]], None).contains("direction to the sun"));
     assert!(ask(&parcel, &[], &[[f64::NAN, 0.0, 1.0]], None).contains("direction to the sun"));

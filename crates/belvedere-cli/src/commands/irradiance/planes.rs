@@ -2,7 +2,6 @@
 
 use super::super::sights::{ground, ground_cloud, on_map};
 use super::super::{check_distinct, check_output, check_parent, extension};
-use super::seasons::{Light, PlaneCells};
 use crate::arguments::{GroundChoice, Irradiance};
 use crate::commands::horizon::write_lines;
 use crate::pipeline::{Scene, flagged};
@@ -11,8 +10,11 @@ use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::horizon::{HorizonParams, horizons};
-use belvedere::apps::irradiance::Irradiation;
+use belvedere::apps::irradiance::{
+    MONTH_COLUMNS, RoofIrradiation, RoofsReport, SeasonRadiation, above_roof, roof_irradiation,
+};
 use belvedere::apps::roof_planes::{RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
+use belvedere::apps::rows::Obstacles;
 use belvedere::apps::sun::Site;
 use belvedere::ground::MapGrid;
 use belvedere::io::{Area, Cells, atomic, outlines, write_geojson_areas, write_table};
@@ -20,8 +22,6 @@ use belvedere::query::MedialScene;
 
 /// Cells of the ground that roofs are told from, metres.
 const GROUND_CELL: f64 = 1.0;
-/// Height of panels above their roof, metres: that of usual rails, which balls of a rough roof do not reach.
-const PANEL_HEIGHT: f64 = 0.1;
 /// Azimuths of a horizon: steps of 7.5 degrees, as PVGIS has them.
 const AZIMUTHS: usize = 48;
 
@@ -67,7 +67,7 @@ pub(super) fn find(
     let frame = PointCloud::in_frame(cloud.frame.clone());
     let (rows, from) = roof_points(&cloud, &ground)?;
     let places: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
-    let planes = stages.run("finding planes of roofs", 0, |_| roof_planes(&places, &params));
+    let planes = stages.run("finding planes of roofs", 0, |control| roof_planes(&places, &params, control));
     let planes = flagged("--panel, --min-area", planes)?;
     let mut section = Summary::default();
     let from = match from {
@@ -88,55 +88,25 @@ pub(super) fn find(
     Ok(Some(Roofs { planes, frame }))
 }
 
-/// What is known of a plane.
-struct Row {
-    mean: Irradiation,
-    string_limited: Irradiation,
-    months: Vec<f64>,
-}
-
 /// Asks for the energy of all planes and writes it.
 pub(super) fn measure(
     arguments: &Irradiance,
     roofs: &Roofs,
-    light: &Light<'_>,
+    obstacles: Obstacles<'_>,
+    seasons: &[SeasonRadiation],
     site: &Site,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<()> {
-    let rows = stages.run("looking from roofs", roofs.planes.len(), |progress| -> Result<Vec<Row>> {
-        let mut rows = Vec::with_capacity(roofs.planes.len());
-        // a few at a time: their bits need little memory, and the threads are busy
-        for planes in roofs.planes.chunks(64) {
-            let mut places = Vec::new();
-            let mut strings: Vec<Vec<usize>> = Vec::new();
-            for plane in planes {
-                let cells = plane.cells.middles();
-                places.extend(cells.iter().map(|(place, _)| lifted(*place, plane.normal)));
-                strings.push(cells.iter().map(|(_, string)| *string).collect());
-            }
-            let cells = planes.iter().zip(&strings);
-            let cells: Vec<PlaneCells<'_>> =
-                cells.map(|(plane, strings)| PlaneCells { normal: plane.normal, strings }).collect();
-            rows.extend(light.of_planes(&places, &cells)?.iter().map(|found| Row {
-                mean: Irradiation::sum(&found.mean),
-                string_limited: Irradiation::sum(&found.string_limited),
-                months: found.mean.iter().map(Irradiation::total).collect(),
-            }));
-            progress.advance(planes.len());
-        }
-        Ok(rows)
+    let rows = stages.run("looking from roofs", roofs.planes.len(), |control| {
+        roof_irradiation(obstacles, &roofs.planes, seasons, control)
     })?;
+    let report = RoofsReport::new(&roofs.planes, &rows);
     let mut section = Summary::default();
-    let weighted = |value: &dyn Fn(&Row) -> f64| -> f64 {
-        roofs.planes.iter().zip(&rows).map(|(plane, row)| plane.area * value(row)).sum()
-    };
-    let (energy, unshaded) = (weighted(&|row| row.mean.total()), weighted(&|row| row.mean.unshaded));
-    let limited = weighted(&|row| row.string_limited.total());
     section
-        .add("mwh", rounded(energy / 1000.0, 2))
-        .add("least_loss_percent", rounded(100.0 * (1.0 - energy / unshaded.max(f64::MIN_POSITIVE)), 2))
-        .add("most_loss_percent", rounded(100.0 * (1.0 - limited / unshaded.max(f64::MIN_POSITIVE)), 2));
+        .add("mwh", rounded(report.mwh, 2))
+        .add("least_loss_percent", rounded(report.least_loss_percent, 2))
+        .add("most_loss_percent", rounded(report.most_loss_percent, 2));
     summary.add("planes", section);
     for output in &arguments.planes {
         stages.run("writing", 0, |_| match extension(output).as_str() {
@@ -146,15 +116,10 @@ pub(super) fn measure(
     }
     summary.add("planes_written", arguments.planes.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     if let Some(folder) = &arguments.horizons {
-        write_horizons(folder, roofs, light.blockers, site, stages)?;
+        write_horizons(folder, roofs, obstacles.scene, site, stages)?;
         summary.add("horizons_written", folder.display().to_string());
     }
     Ok(())
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "local positions")]
-fn lifted(place: [f64; 3], normal: [f64; 3]) -> [f32; 3] {
-    [0, 1, 2].map(|i| (place[i] + PANEL_HEIGHT * normal[i]) as f32)
 }
 
 /// Degrees from true north.
@@ -163,14 +128,13 @@ fn azimuth_deg(plane: &RoofPlane, site: &Site) -> f64 {
 }
 
 /// Columns of figures of all planes: name, values, digits.
-fn figures(roofs: &Roofs, rows: &[Row], site: &Site) -> Vec<(&'static str, Vec<f64>, usize)> {
+fn figures(roofs: &Roofs, rows: &[RoofIrradiation], site: &Site) -> Vec<(&'static str, Vec<f64>, usize)> {
     let of_planes = |value: &dyn Fn(&RoofPlane) -> f64| -> Vec<f64> { roofs.planes.iter().map(value).collect() };
-    let of_rows = |value: &dyn Fn(&Row) -> f64| -> Vec<f64> { rows.iter().map(value).collect() };
+    let of_rows = |value: &dyn Fn(&RoofIrradiation) -> f64| -> Vec<f64> { rows.iter().map(value).collect() };
     let middle = |axis: usize| {
         let scale = roofs.frame.frame.crs.metres_per_unit_xyz();
         of_planes(&|plane| (plane.middle[axis] + roofs.frame.frame.origin[axis]) / scale[axis])
     };
-    let lost = |row: &Row| 1.0 - row.string_limited.total() / row.mean.unshaded.max(f64::MIN_POSITIVE);
     let energy = roofs.planes.iter().zip(rows).map(|(plane, row)| plane.area * row.mean.total()).collect();
     let mut columns = vec![
         ("x", middle(0), 3),
@@ -186,18 +150,18 @@ fn figures(roofs: &Roofs, rows: &[Row], site: &Site) -> Vec<(&'static str, Vec<f
         ("ground_kwh_m2", of_rows(&|row| row.mean.reflected), 1),
         ("free_kwh_m2", of_rows(&|row| row.mean.unshaded), 1),
         ("least_loss", of_rows(&|row| row.mean.loss()), 4),
-        ("most_loss", of_rows(&|row| lost(row).clamp(0.0, 1.0)), 4),
+        ("most_loss", of_rows(&RoofIrradiation::greatest_loss), 4),
         ("kwh", energy, 0),
     ];
-    for (month, name) in super::MONTHS.into_iter().enumerate() {
-        if rows.iter().all(|row| row.months.len() > 1) {
-            columns.push((name, of_rows(&|row| row.months.get(month).copied().unwrap_or(f64::NAN)), 2));
+    for (month, name) in MONTH_COLUMNS.into_iter().enumerate() {
+        if rows.iter().all(|row| row.groups.len() > 1) {
+            columns.push((name, of_rows(&|row| row.groups.get(month).copied().unwrap_or(f64::NAN)), 2));
         }
     }
     columns
 }
 
-fn write_rows(output: &std::path::Path, roofs: &Roofs, rows: &[Row], site: &Site) -> Result<()> {
+fn write_rows(output: &std::path::Path, roofs: &Roofs, rows: &[RoofIrradiation], site: &Site) -> Result<()> {
     let numbers: Vec<Option<u64>> = (1..).take(rows.len()).map(Some).collect();
     let cells: Vec<Option<u64>> = roofs.planes.iter().map(|plane| Some(plane.cells.middles().len() as u64)).collect();
     let columns = figures(roofs, rows, site);
@@ -206,7 +170,7 @@ fn write_rows(output: &std::path::Path, roofs: &Roofs, rows: &[Row], site: &Site
     Ok(write_table(output, &table)?)
 }
 
-fn write_outlines(output: &std::path::Path, roofs: &Roofs, rows: &[Row], site: &Site) -> Result<()> {
+fn write_outlines(output: &std::path::Path, roofs: &Roofs, rows: &[RoofIrradiation], site: &Site) -> Result<()> {
     let columns = figures(roofs, rows, site);
     let mut areas = Vec::with_capacity(rows.len());
     for (number, plane) in roofs.planes.iter().enumerate() {
@@ -241,9 +205,9 @@ fn write_horizons(
 ) -> Result<()> {
     atomic::make_folder(folder)?;
     let eyes: Vec<[f64; 3]> =
-        roofs.planes.iter().map(|plane| lifted(plane.middle, plane.normal).map(f64::from)).collect();
+        roofs.planes.iter().map(|plane| above_roof(plane.middle, plane.normal).map(f64::from)).collect();
     let params = HorizonParams { azimuth_count: AZIMUTHS, turn: site.convergence, ..HorizonParams::default() };
-    let found = stages.run("looking around", 0, |_| horizons(blockers, &eyes, &params))?;
+    let found = stages.run("looking around", eyes.len(), |control| horizons(blockers, &eyes, &params, control))?;
     for (number, skyline) in found.iter().enumerate() {
         let path = folder.join(format!("plane_{}.txt", number + 1));
         write_lines(&path, skyline.iter().map(|point| format!("{:.2}", point.elevation.to_degrees().max(0.0))))?;

@@ -1,6 +1,6 @@
 //! Views of a landmark as files.
 
-use crate::commands::sights::{file, georeference};
+use crate::commands::sights::file;
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::landmark::LandmarkView;
@@ -8,6 +8,7 @@ use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp_colors, write_
 use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{Cells, atomic, write_table, write_tif_f32};
 use belvedere::raster::Raster;
+use belvedere::results::georeference;
 use std::path::Path;
 
 /// No measure: there is no ground, or the observer would be inside something solid.
@@ -85,7 +86,7 @@ fn write_measure(
     #[expect(clippy::cast_possible_truncation, reason = "rasters of measures are f32")]
     let values = views.iter().map(|view| standing(view) as f32).collect();
     let raster = Raster::from_values(grid.width, grid.height, values)?;
-    let place = georeference(&grid, cloud);
+    let place = georeference(&grid, &cloud.frame);
     Ok(write_tif_f32(output, &raster, Some(&place), Some(NO_VALUE), Some(what))?)
 }
 

@@ -2,7 +2,6 @@
 
 use crate::arguments::Usage;
 use crate::commands::extension;
-use crate::commands::sights::georeference;
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::viewshed::Viewshed;
@@ -14,6 +13,7 @@ use belvedere::io::{
 };
 use belvedere::query::Answer;
 use belvedere::raster::Raster;
+use belvedere::results::georeference;
 use std::path::Path;
 
 /// Cells without an answer in a raster of answers.
@@ -56,7 +56,7 @@ pub(super) fn on_cells(
             let values = seen.answers.iter().map(code).collect();
             let raster = Raster::from_values(grid.width, grid.height, values)?;
             let what = "1 visible, 0 blocked, 2 unproven, 255 nodata";
-            Ok(write_tif_u8(output, &raster, Some(&georeference(&grid, cloud)), Some(NODATA), Some(what))?)
+            Ok(write_tif_u8(output, &raster, Some(&georeference(&grid, &cloud.frame)), Some(NODATA), Some(what))?)
         }
         _ => {
             let count = |(answer, &count): (&Answer, &u32)| match answer {
@@ -66,7 +66,7 @@ pub(super) fn on_cells(
             let values = seen.answers.iter().zip(&seen.counts).map(count).collect();
             let raster = Raster::from_values(grid.width, grid.height, values)?;
             let what = "number of observers that see the cell, 65535 nodata";
-            Ok(write_tif_u16(output, &raster, Some(&georeference(&grid, cloud)), Some(NO_COUNT), Some(what))?)
+            Ok(write_tif_u16(output, &raster, Some(&georeference(&grid, &cloud.frame)), Some(NO_COUNT), Some(what))?)
         }
     }
 }
@@ -83,7 +83,7 @@ pub(super) fn write_masks(output: &Path, seen: &Viewshed, ground: &Ground, cloud
     };
     let raster = Raster::from_values(grid.width, grid.height, band.clone())?;
     let what = "bit i: observer i sees the cell";
-    Ok(write_tif_u32(output, &raster, Some(&georeference(&grid, cloud)), None, Some(what))?)
+    Ok(write_tif_u32(output, &raster, Some(&georeference(&grid, &cloud.frame)), None, Some(what))?)
 }
 
 /// Writes how high a thing must reach to be seen.
@@ -92,7 +92,7 @@ pub(super) fn write_heights(output: &Path, heights: &Raster<f32>, ground: &Groun
         return Ok(write_npy_f32_2d(output, heights)?);
     }
     let what = "least height above the ground in metres that is seen; -9999: none, or nodata";
-    let place = georeference(&ground.grid, cloud);
+    let place = georeference(&ground.grid, &cloud.frame);
     Ok(write_tif_f32(output, heights, Some(&place), Some(NO_HEIGHT), Some(what))?)
 }
 

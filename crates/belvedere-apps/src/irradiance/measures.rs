@@ -1,0 +1,63 @@
+//! Energies of targets as measures.
+
+use super::irradiation::Irradiation;
+use crate::targets::Measure;
+
+/// Columns of the months, January first.
+pub const MONTH_COLUMNS: [&str; 12] = [
+    "kwh_m2_01",
+    "kwh_m2_02",
+    "kwh_m2_03",
+    "kwh_m2_04",
+    "kwh_m2_05",
+    "kwh_m2_06",
+    "kwh_m2_07",
+    "kwh_m2_08",
+    "kwh_m2_09",
+    "kwh_m2_10",
+    "kwh_m2_11",
+    "kwh_m2_12",
+];
+/// Digits of energies, kWh/m², and of shares.
+const ENERGY_DECIMALS: usize = 2;
+const SHARE_DECIMALS: usize = 4;
+
+/// The energies of targets, whose rows of `group_count` sums are `sums`, as measures: the whole, the share lost, the parts, what an open plane
+/// gets, and the months where groups are months.
+#[must_use]
+pub fn irradiation_measures(sums: &[Irradiation], group_count: usize) -> Vec<Measure> {
+    let group_count = group_count.max(1);
+    let whole: Vec<Irradiation> = sums.chunks(group_count).map(Irradiation::sum).collect();
+    #[expect(clippy::cast_possible_truncation, reason = "energies for people")]
+    let column =
+        |value: &dyn Fn(&Irradiation) -> f64| -> Vec<f32> { whole.iter().map(|sum| value(sum) as f32).collect() };
+    let energy = |name: &str, description, values| Measure {
+        name: name.to_owned(),
+        description,
+        decimals: ENERGY_DECIMALS,
+        range: None,
+        values,
+    };
+    let mut measures = vec![
+        energy("kwh_m2", "energy of the period, kWh/m2", column(&Irradiation::total)),
+        Measure {
+            name: "loss".to_owned(),
+            description: "share lost by shading",
+            decimals: SHARE_DECIMALS,
+            range: Some([0.0, 1.0]),
+            values: column(&Irradiation::loss),
+        },
+        energy("beam_kwh_m2", "straight from the sun, kWh/m2", column(&|sum| sum.beam)),
+        energy("sky_kwh_m2", "diffuse, from the sky, kWh/m2", column(&|sum| sum.diffuse)),
+        energy("ground_kwh_m2", "reflected, kWh/m2", column(&|sum| sum.reflected)),
+        energy("free_kwh_m2", "without obstacles, kWh/m2", column(&|sum| sum.unshaded)),
+    ];
+    if group_count == MONTH_COLUMNS.len() {
+        for (month, name) in MONTH_COLUMNS.into_iter().enumerate() {
+            #[expect(clippy::cast_possible_truncation, reason = "energies for people")]
+            let values = sums.iter().skip(month).step_by(group_count).map(|sum| sum.total() as f32).collect();
+            measures.push(energy(name, "energy of a month, kWh/m2", values));
+        }
+    }
+    measures
+}

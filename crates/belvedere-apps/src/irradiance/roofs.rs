@@ -1,0 +1,174 @@
+//! The energy of planes of roofs, cell by cell.
+
+use super::irradiation::Irradiation;
+use super::seasons::{SeasonRadiation, add, group_count, mix};
+use super::strings::{PlaneIrradiation, plane_irradiation};
+use crate::roof_planes::RoofPlane;
+use crate::rows::{BLOCK_BITS, Obstacles, RowBlock, fold_blocks};
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use serde::Serialize;
+
+/// Height of panels above their roof, metres: that of usual rails, which balls of a rough roof do not reach.
+pub const PANEL_HEIGHT: f64 = 0.1;
+
+/// Energy of a plane over a period.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoofIrradiation {
+    /// Mean of its cells over the whole period, kWh/m²: panels that each work for themselves.
+    pub mean: Irradiation,
+    /// The same where a row of cells gets what all of its cells get at once: strings without bypass diodes.
+    pub string_limited: Irradiation,
+    /// What arrives in each group of the period, kWh/m²: 12 months, or the whole.
+    pub groups: Vec<f64>,
+}
+
+impl RoofIrradiation {
+    /// The greatest share lost by shading, that of strings, 0 to 1.
+    #[must_use]
+    pub fn greatest_loss(&self) -> f64 {
+        (1.0 - self.string_limited.total() / self.mean.unshaded.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+    }
+}
+
+/// Energy of all planes together.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RoofsReport {
+    /// Energy over the period, MWh.
+    pub mwh: f64,
+    /// Share lost by shading where each panel works for itself, percent.
+    pub least_loss_percent: f64,
+    /// Share lost by shading where rows of panels are strings, percent.
+    pub most_loss_percent: f64,
+}
+
+impl RoofsReport {
+    /// Sums over `planes`, each with its energy, by their area.
+    #[must_use]
+    pub fn new(planes: &[RoofPlane], energies: &[RoofIrradiation]) -> Self {
+        let weighted = |value: &dyn Fn(&RoofIrradiation) -> f64| -> f64 {
+            planes.iter().zip(energies).map(|(plane, energy)| plane.area * value(energy)).sum()
+        };
+        let unshaded = weighted(&|energy| energy.mean.unshaded).max(f64::MIN_POSITIVE);
+        let energy = weighted(&|energy| energy.mean.total());
+        let limited = weighted(&|energy| energy.string_limited.total());
+        Self {
+            mwh: energy / 1000.0,
+            least_loss_percent: 100.0 * (1.0 - energy / unshaded),
+            most_loss_percent: 100.0 * (1.0 - limited / unshaded),
+        }
+    }
+}
+
+/// A place above a roof at the height of its panels, local metres.
+#[must_use]
+pub fn above_roof(place: [f64; 3], normal: [f64; 3]) -> [f32; 3] {
+    crate::targets::to_f32([0, 1, 2].map(|i| place[i] + PANEL_HEIGHT * normal[i]))
+}
+
+/// The energy of each of `planes` over all of `seasons` among `obstacles`. Progress counts planes.
+///
+/// # Errors
+/// Those of [`crate::rows::fold_rows`] and [`plane_irradiation`]; [`belvedere_data::Error::NoPoints`] without any season.
+pub fn roof_irradiation<'a>(
+    obstacles: impl Into<Obstacles<'a>>,
+    planes: &[RoofPlane],
+    seasons: &[SeasonRadiation],
+    control: &Control<'_>,
+) -> Result<Vec<RoofIrradiation>> {
+    let obstacles = obstacles.into();
+    group_count(seasons)?;
+    let directions = seasons.iter().map(|season| season.radiation.directions().len()).max().unwrap_or(1).max(1);
+    let most_cells = BLOCK_BITS / (directions * obstacles.matrix_count());
+    let mut found = Vec::with_capacity(planes.len());
+    let mut rest = planes;
+    while !rest.is_empty() {
+        let (some, others) = rest.split_at(planes_at_once(rest, most_cells));
+        found.extend(of_planes(obstacles, some, seasons, control)?);
+        control.advance(some.len());
+        rest = others;
+    }
+    Ok(found)
+}
+
+/// How many of the first planes have at most so many cells together, at least one.
+fn planes_at_once(planes: &[RoofPlane], most_cells: usize) -> usize {
+    let mut cells = 0;
+    let fits = |plane: &&RoofPlane| {
+        cells += plane.cells.filled.values().iter().filter(|&&filled| filled).count();
+        cells <= most_cells
+    };
+    planes.iter().take_while(fits).count().max(1)
+}
+
+fn of_planes(
+    obstacles: Obstacles<'_>,
+    planes: &[RoofPlane],
+    seasons: &[SeasonRadiation],
+    control: &Control<'_>,
+) -> Result<Vec<RoofIrradiation>> {
+    let mut places = Vec::new();
+    let mut strings: Vec<Vec<usize>> = Vec::new();
+    for plane in planes {
+        let cells = plane.cells.middles();
+        places.extend(cells.iter().map(|(place, _)| above_roof(*place, plane.normal)));
+        strings.push(cells.iter().map(|(_, string)| *string).collect());
+    }
+    let mut sums: Vec<PlaneIrradiation> = Vec::new();
+    // progress counts planes, so that the rows of their cells count nothing
+    let quiet = Quiet(control);
+    for season in seasons {
+        let directions = season.radiation.directions();
+        fold_blocks(obstacles, &places, &directions, places.len().max(1), &Control::new(&quiet), |block| {
+            let own = of_season(&block, planes, &strings, season)?;
+            if sums.is_empty() {
+                sums = own;
+            } else {
+                for (sum, own) in sums.iter_mut().zip(&own) {
+                    add(&mut sum.mean, &own.mean);
+                    add(&mut sum.string_limited, &own.string_limited);
+                }
+            }
+            Ok(())
+        })?;
+    }
+    Ok(sums
+        .iter()
+        .map(|sum| RoofIrradiation {
+            mean: Irradiation::sum(&sum.mean),
+            string_limited: Irradiation::sum(&sum.string_limited),
+            groups: sum.mean.iter().map(Irradiation::total).collect(),
+        })
+        .collect())
+}
+
+fn of_season(
+    block: &RowBlock,
+    planes: &[RoofPlane],
+    strings: &[Vec<usize>],
+    season: &SeasonRadiation,
+) -> Result<Vec<PlaneIrradiation>> {
+    let mut first = 0;
+    let mut found = Vec::with_capacity(planes.len());
+    for (plane, strings) in planes.iter().zip(strings) {
+        let of = |matrix| plane_irradiation(matrix, first, strings, plane.normal, &season.radiation);
+        let mut own = of(&block.matrix)?;
+        if let Some(without_trees) = &block.without_trees {
+            let without = of(without_trees)?;
+            mix(&mut own.mean, &without.mean, season.share);
+            mix(&mut own.string_limited, &without.string_limited, season.share);
+        }
+        found.push(own);
+        first += strings.len();
+    }
+    Ok(found)
+}
+
+/// Passes cancellation on, but no progress.
+struct Quiet<'a>(&'a Control<'a>);
+
+impl belvedere_data::control::Watcher for Quiet<'_> {
+    fn is_cancelled(&self) -> bool {
+        self.0.is_cancelled()
+    }
+}

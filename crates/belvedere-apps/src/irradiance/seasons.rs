@@ -1,0 +1,193 @@
+//! A period in parts by what crowns of trees let through, and the energy of places and planes over all of them.
+
+use super::instants::{clear_instants, weather_instants};
+use super::irradiation::{Irradiation, irradiation};
+use super::period::{Instant, IrradianceParams, PeriodRadiation, PeriodReport};
+use super::{ClearSky, PARTS};
+use crate::rows::{Obstacles, check_normals, fold_rows, normals_of};
+use crate::sun::{Date, Site, Zone};
+use crate::targets::Targets;
+use crate::tree_light::{Season, TreeLight};
+use belvedere_data::control::Control;
+use belvedere_data::weather::Weather;
+use belvedere_data::{Error, Result};
+
+/// Steps of a clear sky, seconds.
+const CLEAR_STEP: f64 = 600.0;
+
+/// Where the radiation of a period comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum RadiationSource<'a> {
+    /// Rows of weather, each cut into parts.
+    Weather {
+        /// The rows.
+        weather: &'a Weather,
+        /// Parts of each row; [`PARTS`] is usual.
+        parts: usize,
+    },
+    /// A year without clouds.
+    ClearSky {
+        /// What it sends.
+        clear_sky: ClearSky,
+        /// The year.
+        year: i16,
+    },
+}
+
+impl<'a> RadiationSource<'a> {
+    /// Rows of weather, each cut into the usual number of parts.
+    #[must_use]
+    pub fn of_weather(weather: &'a Weather) -> Self {
+        Self::Weather { weather, parts: PARTS }
+    }
+}
+
+/// What the days send on which crowns let the same share through.
+#[derive(Clone, Debug)]
+pub struct SeasonRadiation {
+    /// What they send.
+    pub radiation: PeriodRadiation,
+    /// Share of the light that gets through crowns; 0 where trees are opaque.
+    pub share: f64,
+}
+
+/// A period in parts by what crowns let through; one part where they let nothing through. The report is that of all parts.
+///
+/// # Errors
+/// Those of [`weather_instants`], [`clear_instants`] and [`PeriodRadiation::gather`], and [`Error::Cancelled`].
+pub fn period_seasons(
+    source: &RadiationSource<'_>,
+    site: &Site,
+    trees: Option<&TreeLight>,
+    params: &IrradianceParams,
+    control: &Control<'_>,
+) -> Result<(Vec<SeasonRadiation>, PeriodReport)> {
+    let zone = Zone::mean_solar(site);
+    let share = |date: Date| trees.map_or(0.0, |trees| trees.share(Some(Season::on(date, site))));
+    let mut parts: Vec<(f64, Vec<Instant>)> = Vec::new();
+    let mut put = |share: f64, instants: Vec<Instant>| match parts.iter_mut().find(|(own, _)| *own == share) {
+        Some((_, part)) => part.extend(instants),
+        None => parts.push((share, instants)),
+    };
+    match *source {
+        RadiationSource::Weather { weather, parts } => {
+            let by_share = match trees {
+                None => vec![(0.0, weather.clone())],
+                Some(_) => split_weather(weather, |instant| Ok(share(zone.date_at(instant)?)))?,
+            };
+            for (share, weather) in by_share {
+                control.check()?;
+                put(share, weather_instants(&weather, site, parts)?);
+            }
+        }
+        RadiationSource::ClearSky { clear_sky, year } => {
+            for (share, span) in split_year(year, &zone, share)? {
+                control.check()?;
+                put(share, clear_instants(&clear_sky, site, span, CLEAR_STEP, &zone)?);
+            }
+        }
+    }
+    let mut seasons = Vec::new();
+    let mut report = PeriodReport::default();
+    for (share, instants) in &parts {
+        control.check()?;
+        let radiation = PeriodRadiation::gather(instants, params)?;
+        report.add(&radiation.report);
+        seasons.push(SeasonRadiation { radiation, share: *share });
+    }
+    Ok((seasons, report))
+}
+
+/// The rows of `weather`, those together whose instants have the same share; in the order in which shares come first.
+fn split_weather(weather: &Weather, share: impl Fn(f64) -> Result<f64>) -> Result<Vec<(f64, Weather)>> {
+    let mut parts: Vec<(f64, Weather)> = Vec::new();
+    for step in &weather.steps {
+        let share = share(step.instant)?;
+        match parts.iter_mut().find(|(own, _)| *own == share) {
+            Some((_, part)) => part.steps.push(*step),
+            None => parts.push((share, Weather { steps: vec![*step], ..weather.clone() })),
+        }
+    }
+    Ok(parts)
+}
+
+/// The days of a year from one change of their share to the next: share, begin and end.
+fn split_year(year: i16, zone: &Zone, share: impl Fn(Date) -> f64) -> Result<Vec<(f64, [f64; 2])>> {
+    let (first, last) = (Date::new(year, 1, 1)?, Date::new(year, 12, 31)?);
+    let end = zone.instant_of(Date::new(year.saturating_add(1), 1, 1)?, 0.0)?;
+    let mut spans: Vec<(f64, [f64; 2])> = Vec::new();
+    for date in first.to(last) {
+        let share = share(date);
+        if spans.last().is_none_or(|(own, _)| *own != share) {
+            let start = zone.instant_of(date, 0.0)?;
+            if let Some((_, span)) = spans.last_mut() {
+                span[1] = start;
+            }
+            spans.push((share, [start, end]));
+        }
+    }
+    Ok(spans)
+}
+
+/// The energy of `targets` over all of `seasons` among `obstacles`: (M) rows of as many sums as the seasons have groups, NaN for a target that is
+/// not asked about. Progress counts targets, [`look_count`] times each.
+///
+/// # Errors
+/// Those of [`fold_rows`] and [`irradiation`]; [`Error::NoPoints`] without any season.
+pub fn season_irradiation<'a>(
+    obstacles: impl Into<Obstacles<'a>>,
+    targets: &Targets,
+    seasons: &[SeasonRadiation],
+    control: &Control<'_>,
+) -> Result<Vec<Irradiation>> {
+    let obstacles = obstacles.into();
+    let normals = targets.normals.as_deref();
+    check_normals(normals, targets.len())?;
+    let group_count = group_count(seasons)?;
+    let mut sums = vec![Irradiation::default(); targets.len() * group_count];
+    for season in seasons {
+        fold_rows(obstacles, &targets.positions, &season.radiation.directions(), control, |block| {
+            let mut own = irradiation(&block.matrix, normals_of(normals, &block.rows), &season.radiation)?;
+            if let Some(opaque) = &block.without_trees {
+                let without = irradiation(opaque, normals_of(normals, &block.rows), &season.radiation)?;
+                mix(&mut own, &without, season.share);
+            }
+            let rows = block.rows.start * group_count..block.rows.end * group_count;
+            add(sums.get_mut(rows).unwrap_or_default(), &own);
+            Ok(())
+        })?;
+    }
+    for (_, sums) in sums.chunks_mut(group_count).enumerate().filter(|(row, _)| !targets.is_asked(*row)) {
+        sums.fill(Irradiation::unknown());
+    }
+    Ok(sums)
+}
+
+/// How often each target is asked about: once for each of `seasons`, or twice where trees let light through.
+#[must_use]
+pub fn look_count(obstacles: &Obstacles<'_>, seasons: &[SeasonRadiation]) -> usize {
+    seasons.len() * obstacles.matrix_count()
+}
+
+/// Sums kept of each target.
+///
+/// # Errors
+/// [`Error::NoPoints`] without any season.
+pub(super) fn group_count(seasons: &[SeasonRadiation]) -> Result<usize> {
+    let first = seasons.first().ok_or_else(|| Error::NoPoints { what: "the period has no season".to_owned() })?;
+    Ok(first.radiation.group_count())
+}
+
+/// Mixes what arrives with what would without trees.
+pub(super) fn mix(all: &mut [Irradiation], without_trees: &[Irradiation], share: f64) {
+    for (all, without) in all.iter_mut().zip(without_trees) {
+        *all = all.through_crowns(without, share);
+    }
+}
+
+/// Adds the sums of a season to those of the others.
+pub(super) fn add(sums: &mut [Irradiation], own: &[Irradiation]) {
+    for (sum, own) in sums.iter_mut().zip(own) {
+        *sum = Irradiation::sum(&[*sum, *own]);
+    }
+}

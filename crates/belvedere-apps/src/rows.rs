@@ -1,0 +1,105 @@
+//! Rows of the visibility matrix as a stream: which directions each target sees, a block of targets at a time.
+//!
+//! Sun hours, sky views, shadows, irradiance and exposure are sums over the directions that a target sees. A sum needs the row of one target
+//! only, so that no application holds the matrix of all targets: memory stays bounded however many targets and directions there are. Rows do
+//! not depend on each other, and no result depends on how targets are cut into blocks.
+
+use crate::tree_light::TreeLight;
+use belvedere_core::query::{MedialScene, VisibilityMatrix, visibility_matrix};
+use belvedere_data::control::Control;
+use belvedere_data::{Error, Result};
+use std::ops::Range;
+
+/// Bits of all rows that are held at a time: 64 MiB. Fewer would sweep the scene more often, more would not be faster.
+pub const BLOCK_BITS: usize = 1 << 29;
+
+/// What light meets on its way to a target.
+#[derive(Clone, Copy)]
+pub struct Obstacles<'a> {
+    /// All that blocks.
+    pub scene: &'a MedialScene,
+    /// The trees of the scene, where they let a share of the light through; `None` where they are opaque.
+    pub trees: Option<&'a TreeLight>,
+}
+
+impl<'a> From<&'a MedialScene> for Obstacles<'a> {
+    fn from(scene: &'a MedialScene) -> Self {
+        Self { scene, trees: None }
+    }
+}
+
+impl Obstacles<'_> {
+    /// How many matrices are asked for: one, or two where trees let light through.
+    #[must_use]
+    pub fn matrix_count(&self) -> usize {
+        1 + usize::from(self.trees.is_some())
+    }
+}
+
+/// The rows of some targets.
+#[derive(Clone, Debug)]
+pub struct RowBlock {
+    /// Which of the targets these are.
+    pub rows: Range<usize>,
+    /// What each of them sees; row 0 is that of the first target of the block.
+    pub matrix: VisibilityMatrix,
+    /// What each of them would see without trees; `None` where trees are opaque.
+    pub without_trees: Option<VisibilityMatrix>,
+}
+
+/// Asks which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and hands the rows to `fold`, block after
+/// block in the order of the targets. A target that is not finite sees nothing. Progress counts targets,
+/// [`Obstacles::matrix_count`] times each.
+///
+/// # Errors
+/// Those of [`visibility_matrix()`] and of `fold`, and [`Error::Cancelled`].
+pub fn fold_rows(
+    obstacles: Obstacles<'_>,
+    targets: &[[f32; 3]],
+    directions: &[[f64; 3]],
+    control: &Control<'_>,
+    fold: impl FnMut(RowBlock) -> Result<()>,
+) -> Result<()> {
+    let of_target = directions.len().max(1) * obstacles.matrix_count();
+    fold_blocks(obstacles, targets, directions, (BLOCK_BITS / of_target).max(1), control, fold)
+}
+
+/// As [`fold_rows`], with blocks of `block` targets.
+///
+/// # Errors
+/// Those of [`fold_rows`], and [`Error::InvalidParameter`] for blocks without a target.
+pub fn fold_blocks(
+    obstacles: Obstacles<'_>,
+    targets: &[[f32; 3]],
+    directions: &[[f64; 3]],
+    block: usize,
+    control: &Control<'_>,
+    mut fold: impl FnMut(RowBlock) -> Result<()>,
+) -> Result<()> {
+    if block == 0 {
+        let value = "0".to_owned();
+        return Err(Error::InvalidParameter { name: "number of targets in a block", value, expected: "1 or more" });
+    }
+    for (number, of_block) in targets.chunks(block).enumerate() {
+        control.check()?;
+        let matrix = visibility_matrix(obstacles.scene, of_block, directions, control)?;
+        let without_trees =
+            obstacles.trees.map(|trees| visibility_matrix(&trees.opaque, of_block, directions, control)).transpose()?;
+        let first = number * block;
+        fold(RowBlock { rows: first..first + of_block.len(), matrix, without_trees })?;
+    }
+    Ok(())
+}
+
+/// The normals of the targets of a block.
+pub(crate) fn normals_of<'a>(normals: Option<&'a [[f32; 3]]>, rows: &Range<usize>) -> Option<&'a [[f32; 3]]> {
+    normals.map(|normals| normals.get(rows.clone()).unwrap_or_default())
+}
+
+/// Checks that there is a normal for each target.
+pub(crate) fn check_normals(normals: Option<&[[f32; 3]]>, expected: usize) -> Result<()> {
+    match normals.map(<[_]>::len).filter(|&found| found != expected) {
+        Some(found) => Err(Error::LengthMismatch { what: "normals of targets", expected, found }),
+        None => Ok(()),
+    }
+}

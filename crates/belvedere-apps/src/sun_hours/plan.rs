@@ -1,0 +1,183 @@
+//! Suns of a period and of rules, asked about together, and the measures that follow.
+
+use super::{SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
+use crate::rows::{Obstacles, RowBlock, check_normals, fold_rows, normals_of};
+use crate::sun::{Site, SunSchedule};
+use crate::targets::{Measure, Targets};
+use crate::tree_light::{Season, TreeLight};
+use belvedere_data::control::Control;
+use belvedere_data::{Error, Result};
+
+/// A rule with its own suns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedRule {
+    /// Name of its column.
+    pub column: String,
+    /// The rule.
+    pub rule: SunRule,
+    /// The suns of its days.
+    pub schedule: SunSchedule,
+    first_direction: usize,
+}
+
+/// What is asked about the sun: hours over a period, and rules.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SunPlan {
+    period: SunSchedule,
+    rules: Vec<PlannedRule>,
+    directions: Vec<[f64; 3]>,
+}
+
+impl SunPlan {
+    /// A plan for the suns of `period` and of `rules`, each with the name of its column and its suns. Rules whose directions are those of the
+    /// period share them.
+    #[must_use]
+    pub fn new(period: SunSchedule, rules: Vec<(String, SunRule, SunSchedule)>) -> Self {
+        let mut directions = period.directions.clone();
+        let rules = rules
+            .into_iter()
+            .map(|(column, rule, schedule)| {
+                let is_shared = schedule.directions == period.directions;
+                let first_direction = if is_shared { 0 } else { directions.len() };
+                if !is_shared {
+                    directions.extend(&schedule.directions);
+                }
+                PlannedRule { column, rule, schedule, first_direction }
+            })
+            .collect();
+        Self { period, rules, directions }
+    }
+
+    /// The suns of the period.
+    #[must_use]
+    pub fn period(&self) -> &SunSchedule {
+        &self.period
+    }
+
+    /// The rules.
+    #[must_use]
+    pub fn rules(&self) -> &[PlannedRule] {
+        &self.rules
+    }
+
+    /// Directions that targets must be asked about, unit vectors, (D, 3): those of the period first.
+    #[must_use]
+    pub fn directions(&self) -> &[[f64; 3]] {
+        &self.directions
+    }
+}
+
+/// The sun of a plan at targets, summed up block after block.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SunSums {
+    /// Over the days of the period.
+    pub period: SunHours,
+    /// Over the days of each rule.
+    pub rules: Vec<SunHours>,
+}
+
+impl SunSums {
+    /// Adds the targets of `block`, whose columns are the directions of `plan` and which follow those added before. `normals`, (M, 3), are
+    /// those of all targets. Where `block` says what is seen without trees, `trees` with the site says what share of the light of each
+    /// day these let through.
+    ///
+    /// # Errors
+    /// Those of [`sun_hours`] and [`sun_hours_through_crowns`].
+    pub fn add(
+        &mut self,
+        plan: &SunPlan,
+        block: &RowBlock,
+        normals: Option<&[[f32; 3]]>,
+        trees: Option<(&TreeLight, &Site)>,
+    ) -> Result<()> {
+        let normals = normals_of(normals, &block.rows);
+        let of = |schedule: &SunSchedule, params: &SunHoursParams| match (&block.without_trees, trees) {
+            (Some(opaque), Some((trees, site))) => {
+                let shares: Vec<f64> =
+                    schedule.days.iter().map(|day| trees.share(Some(Season::on(day.date, site)))).collect();
+                sun_hours_through_crowns(&block.matrix, opaque, schedule, normals, params, &shares)
+            }
+            _ => sun_hours(&block.matrix, schedule, normals, params),
+        };
+        self.period.append(of(&plan.period, &SunHoursParams::default())?);
+        self.rules.resize_with(plan.rules.len(), SunHours::default);
+        for (sums, planned) in self.rules.iter_mut().zip(&plan.rules) {
+            let params =
+                SunHoursParams { first_direction: planned.first_direction, sufficient_hours: planned.rule.hours };
+            sums.append(of(&planned.schedule, &params)?);
+        }
+        Ok(())
+    }
+
+    /// All figures as measures of `targets`: `sun_hours`, `sun_share`, `first_light`, `last_light`, `longest`; of several days also
+    /// `least_day` and `total_hours`; and for each rule whether it is met on all of its days, 1 or 0.
+    #[must_use]
+    pub fn into_measures(self, plan: &SunPlan, targets: &Targets) -> Vec<Measure> {
+        let most = plan.period.days.iter().map(|day| day.possible_hours).fold(0.0, f64::max);
+        let hours = Some([0.0, most.max(0.1)]);
+        let (clock, share) = (Some([0.0, 24.0]), Some([0.0, 1.0]));
+        let measure = |name: &str, description, range, values| Measure {
+            name: name.to_owned(),
+            description,
+            decimals: 3,
+            range,
+            values,
+        };
+        let day_count = plan.period.days.len();
+        #[expect(clippy::cast_precision_loss, reason = "a few thousand days at most")]
+        let of_all_days = |hours: &f32| hours * day_count as f32;
+        let total: Vec<f32> =
+            if day_count > 1 { self.period.hours.iter().map(of_all_days).collect() } else { Vec::new() };
+        let mut measures = vec![
+            measure("sun_hours", "hours of sun a day", hours, self.period.hours),
+            measure("sun_share", "share of possible sun", share, self.period.share),
+            measure("first_light", "first sun, hour of the day", clock, self.period.first),
+            measure("last_light", "last sun, hour of the day", clock, self.period.last),
+            measure("longest", "longest sun on end, hours", hours, self.period.longest),
+        ];
+        if day_count > 1 {
+            measures.push(measure("least_day", "hours on the darkest day", hours, self.period.least));
+            measures.push(measure("total_hours", "hours of sun in all", None, total));
+        }
+        for (planned, found) in plan.rules.iter().zip(self.rules) {
+            let days = planned.schedule.days.len();
+            let is_met = found.days.iter().map(|&met| if met as usize == days { 1.0 } else { 0.0 }).collect();
+            measures.push(measure(&planned.column, "rule is met", share, is_met));
+        }
+        measures.iter_mut().for_each(|measure| targets.clear_unasked(&mut measure.values));
+        measures
+    }
+}
+
+/// The sun of `plan` at each of `targets` among `obstacles`. Where trees let light through, `site` says when they carry leaves. Progress counts
+/// targets, once or twice each.
+///
+/// # Errors
+/// Those of [`fold_rows`] and [`SunSums::add`], and [`Error::MissingAttribute`] for trees without a site.
+pub fn scene_sun_hours<'a>(
+    obstacles: impl Into<Obstacles<'a>>,
+    targets: &Targets,
+    plan: &SunPlan,
+    site: Option<&Site>,
+    control: &Control<'_>,
+) -> Result<SunSums> {
+    let obstacles = obstacles.into();
+    let trees = match (obstacles.trees, site) {
+        (Some(trees), Some(site)) => Some((trees, site)),
+        (None, _) => None,
+        (Some(_), None) => {
+            return Err(Error::MissingAttribute {
+                attribute: "site",
+                needed_for: "the season of trees",
+                advice: "give the place on earth",
+            });
+        }
+    };
+    let normals = targets.normals.as_deref();
+    check_normals(normals, targets.len())?;
+    let mut sums = SunSums::default();
+    fold_rows(obstacles, &targets.positions, plan.directions(), control, |block| {
+        sums.add(plan, &block, normals, trees)
+    })?;
+    Ok(sums)
+}

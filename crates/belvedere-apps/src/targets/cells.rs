@@ -1,0 +1,133 @@
+//! Cells of a grid on the ground, or on top of what stands on it.
+
+use super::{Layout, Targets};
+use crate::sky_view::SKY_TARGET_HEIGHT;
+use crate::viewshed::cell_targets;
+use belvedere_core::ground::{Ground, GroundParams, MapGrid, SurfaceParams, hidden_ground, top_surface};
+use belvedere_data::control::Control;
+use belvedere_data::{Error, PointCloud, Result};
+use serde::Serialize;
+
+/// What cells stand on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CellLevel {
+    /// The ground. Default.
+    #[default]
+    Ground,
+    /// The top of what stands there: roofs, crowns, and the ground between.
+    Surface,
+}
+
+/// What becomes of cells on the ground that lie under a roof or another cover.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CoveredCells {
+    /// They are not asked about. Default.
+    #[default]
+    LeftOut,
+    /// They are asked about like the others.
+    Kept,
+}
+
+/// How cells become targets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CellParams {
+    /// What cells stand on.
+    pub level: CellLevel,
+    /// Height of the target above that, metres. Default 0.1.
+    pub height: f64,
+    /// What becomes of cells under a cover; those on a surface have none.
+    pub covered: CoveredCells,
+}
+
+impl Default for CellParams {
+    fn default() -> Self {
+        Self { level: CellLevel::Ground, height: SKY_TARGET_HEIGHT, covered: CoveredCells::LeftOut }
+    }
+}
+
+impl CellParams {
+    /// These with another level.
+    #[must_use]
+    pub fn with_level(self, level: CellLevel) -> Self {
+        Self { level, ..self }
+    }
+
+    /// These with another height, metres.
+    #[must_use]
+    pub fn with_height(self, height: f64) -> Self {
+        Self { height, ..self }
+    }
+
+    /// These with another treatment of cells under a cover.
+    #[must_use]
+    pub fn with_covered(self, covered: CoveredCells) -> Self {
+        Self { covered, ..self }
+    }
+}
+
+/// What was left out of cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct CellReport {
+    /// Cells under a cover that are not asked about.
+    pub covered_cells_left_out: usize,
+}
+
+impl Targets {
+    /// Cells of `cell` metres on the ground of `cloud`, over all of it, those under a cover left out.
+    ///
+    /// # Errors
+    /// Those of [`MapGrid::covering`] and [`Ground::of_cloud`].
+    pub fn ground_cells(cloud: &PointCloud, cell: f64) -> Result<Self> {
+        Self::cells(cloud, cell, &CellParams::default())
+    }
+
+    /// Cells of `cell` metres on top of what stands on the ground of `cloud`.
+    ///
+    /// # Errors
+    /// Those of [`Targets::ground_cells`].
+    pub fn surface_cells(cloud: &PointCloud, cell: f64) -> Result<Self> {
+        Self::cells(cloud, cell, &CellParams::default().with_level(CellLevel::Surface))
+    }
+
+    fn cells(cloud: &PointCloud, cell: f64, params: &CellParams) -> Result<Self> {
+        let bounds =
+            cloud.bounds().ok_or_else(|| Error::NoPoints { what: "cells need a cloud with points".to_owned() })?;
+        let (low, high) = bounds.on_map();
+        let [x, y, _] = cloud.frame.origin;
+        let grid = MapGrid::covering(low, high, cell, [x, y])?;
+        let (ground, _) = Ground::of_cloud(cloud, grid, &GroundParams::default())?;
+        Ok(Self::of_cells(cloud, ground, params, &Control::none())?.0)
+    }
+
+    /// The cells of `ground`, whose heights come from `cloud`, in the frame of that cloud.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a height that is not finite, those of [`top_surface`], and [`Error::Cancelled`].
+    pub fn of_cells(
+        cloud: &PointCloud,
+        mut ground: Ground,
+        params: &CellParams,
+        control: &Control<'_>,
+    ) -> Result<(Self, CellReport)> {
+        if !params.height.is_finite() {
+            let value = params.height.to_string();
+            return Err(Error::InvalidParameter { name: "height above the ground", value, expected: "finite" });
+        }
+        if params.level == CellLevel::Surface {
+            ground.heights = control.stage("finding the surface", 0, || {
+                top_surface(&cloud.positions, &ground, &SurfaceParams::default())
+            })?;
+        }
+        let mut positions = cell_targets(&ground, params.height);
+        let mut report = CellReport::default();
+        if params.level == CellLevel::Ground && params.covered == CoveredCells::LeftOut {
+            let hidden = hidden_ground(&cloud.positions, &ground);
+            for (position, _) in positions.iter_mut().zip(hidden).filter(|(_, is_hidden)| *is_hidden) {
+                *position = [f32::NAN; 3];
+                report.covered_cells_left_out += 1;
+            }
+        }
+        Ok((Self::at(cloud.frame.clone(), positions, None, Layout::Cells(Box::new(ground))), report))
+    }
+}

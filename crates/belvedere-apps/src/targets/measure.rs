@@ -1,0 +1,106 @@
+//! Values of targets, with what is needed to write and draw them.
+
+use serde::Serialize;
+
+/// One figure for each target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// Name of its column and of its raster, of 15 letters at most.
+    pub name: String,
+    /// What it is and its unit, of 31 letters at most.
+    pub description: &'static str,
+    /// Digits after the point in tables.
+    pub decimals: usize,
+    /// What a legend spans; `None` for the span of the values.
+    pub range: Option<[f64; 2]>,
+    /// (M), NaN where there is none.
+    pub values: Vec<f32>,
+}
+
+/// How the values of a measure are spread.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MeasureStatistics {
+    /// Mean of the values, all counting alike.
+    pub mean: f64,
+    /// Least value.
+    pub least: f64,
+    /// Greatest value.
+    pub most: f64,
+}
+
+impl Measure {
+    /// Values with the name of their column; four digits in tables, and a legend that spans the values.
+    #[must_use]
+    pub fn new(name: &str, values: Vec<f32>) -> Self {
+        Self { name: name.to_owned(), description: "", decimals: 4, range: None, values }
+    }
+
+    /// This with another description.
+    #[must_use]
+    pub fn with_description(self, description: &'static str) -> Self {
+        Self { description, ..self }
+    }
+
+    /// This with another number of digits after the point.
+    #[must_use]
+    pub fn with_decimals(self, decimals: usize) -> Self {
+        Self { decimals, ..self }
+    }
+
+    /// This with another span of its legend.
+    #[must_use]
+    pub fn with_range(self, range: Option<[f64; 2]>) -> Self {
+        Self { range, ..self }
+    }
+
+    /// The same measure of no target.
+    #[must_use]
+    pub fn without_values(&self) -> Self {
+        Self { name: self.name.clone(), values: Vec::new(), ..*self }
+    }
+
+    /// How the known values are spread; `None` where no target has a value.
+    #[must_use]
+    pub fn statistics(&self) -> Option<MeasureStatistics> {
+        let known = || self.values.iter().filter(|v| v.is_finite()).map(|&v| f64::from(v));
+        let count = known().count();
+        (count > 0).then(|| MeasureStatistics {
+            mean: known().sum::<f64>() / count as f64,
+            least: known().fold(f64::INFINITY, f64::min),
+            most: known().fold(f64::NEG_INFINITY, f64::max),
+        })
+    }
+
+    /// What a legend spans for `values` of this measure: its range, or their span.
+    #[must_use]
+    pub fn span(&self, values: &[f64]) -> [f64; 2] {
+        self.range.unwrap_or_else(|| {
+            let known = || values.iter().copied().filter(|v| v.is_finite());
+            let (low, high) = (known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max));
+            if low < high { [low, high] } else { [low.min(0.0), low.max(0.0) + 1.0] }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn measure(values: &[f32]) -> Measure {
+        Measure { name: "m".to_owned(), description: "", decimals: 1, range: None, values: values.to_vec() }
+    }
+
+    #[test]
+    fn statistics_are_those_of_known_values() {
+        let found = measure(&[1.0, f32::NAN, 4.0, f32::INFINITY]).statistics().unwrap();
+        assert_eq!((found.mean, found.least, found.most), (2.5, 1.0, 4.0));
+        assert_eq!(measure(&[f32::NAN]).statistics(), None);
+    }
+
+    #[test]
+    fn a_legend_of_equal_values_still_spans_something() {
+        assert_eq!(measure(&[]).span(&[2.0, 5.0, f64::NAN]), [2.0, 5.0]);
+        assert_eq!(measure(&[]).span(&[3.0, 3.0]), [0.0, 4.0]);
+        assert_eq!(Measure { range: Some([0.0, 1.0]), ..measure(&[]) }.span(&[3.0]), [0.0, 1.0]);
+    }
+}

@@ -1,0 +1,222 @@
+//! What is asked about: cells of a grid, points, pieces of a surface, places along routes and on windows, all as one type.
+//!
+//! | targets | made by |
+//! |---|---|
+//! | cells on the ground or on what stands on it | [`Targets::ground_cells`], [`Targets::surface_cells`], [`Targets::of_cells`] |
+//! | points of a cloud or of a file | [`Targets::of_points`] |
+//! | faces of a mesh, in pieces | [`Targets::of_mesh`] |
+//! | places along routes | [`Targets::along_routes`] |
+//! | windows with a size, faces as windows | [`Targets::of_windows`], [`Targets::of_window_faces`] |
+//!
+//! Results are [`Measure`]s with a value for each target. A target without a position (NaN: no ground is known, or it lies inside an obstacle)
+//! has no value.
+
+mod cells;
+mod measure;
+mod on_ground;
+mod routes;
+mod surfaces;
+mod windows;
+
+pub use cells::{CellLevel, CellParams, CellReport, CoveredCells};
+pub use measure::{Measure, MeasureStatistics};
+pub use on_ground::{grid_around, set_on_ground};
+pub use routes::Route;
+pub use surfaces::{FaceMeans, Facing, MeshParams, object_areas};
+pub use windows::Window;
+
+use belvedere_core::ground::Ground;
+use belvedere_core::query::{MedialScene, SurfacePieces};
+use belvedere_data::PointCloud;
+use belvedere_data::frame::Frame;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Targets handed to a thread at once.
+const CHUNK: usize = 1024;
+
+/// Places that are asked about, and how they belong together.
+#[derive(Clone, Debug)]
+pub struct Targets {
+    /// Where local coordinates lie.
+    pub frame: Frame,
+    /// Local metres, (M, 3); NaN for a target that is not asked about.
+    pub positions: Vec<[f32; 3]>,
+    /// Outward unit normals, (M, 3); `None` where targets are level.
+    pub normals: Option<Vec<[f32; 3]>>,
+    /// How much each target counts, (M): metres of a route, square metres of a surface; empty where all count alike.
+    pub weights: Vec<f64>,
+    /// Rows of the targets of each route, window or object; empty where each target is on its own.
+    pub groups: Vec<Range<usize>>,
+    /// What targets are.
+    pub layout: Layout,
+}
+
+/// What targets are, with what is needed to write their values.
+#[derive(Clone, Debug)]
+pub enum Layout {
+    /// Cells of a grid, row by row from the north, and the heights that they stand on.
+    Cells(Box<Ground>),
+    /// Points.
+    Points,
+    /// Pieces of a surface.
+    Surface(SurfacePieces),
+}
+
+impl Targets {
+    /// The points of `cloud`, all of them and in their order. They are turned as `normals`, (M, 3), say; level without.
+    #[must_use]
+    pub fn of_points(cloud: &PointCloud, normals: Option<Vec<[f32; 3]>>) -> Self {
+        Self::at(cloud.frame.clone(), cloud.positions.clone(), normals, Layout::Points)
+    }
+
+    fn at(frame: Frame, positions: Vec<[f32; 3]>, normals: Option<Vec<[f32; 3]>>, layout: Layout) -> Self {
+        Self { frame, positions, normals, weights: Vec::new(), groups: Vec::new(), layout }
+    }
+
+    /// Number of targets, those that are not asked about among them.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether there is no target.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    /// Whether a target is asked about: it has a position.
+    #[must_use]
+    pub fn is_asked(&self, row: usize) -> bool {
+        self.positions.get(row).is_some_and(|position| position.iter().all(|v| v.is_finite()))
+    }
+
+    /// Number of targets that are asked about.
+    #[must_use]
+    pub fn asked_count(&self) -> usize {
+        (0..self.len()).filter(|&row| self.is_asked(row)).count()
+    }
+
+    /// The ground below cells; `None` where targets are no cells.
+    #[must_use]
+    pub fn ground(&self) -> Option<&Ground> {
+        match &self.layout {
+            Layout::Cells(ground) => Some(ground),
+            _ => None,
+        }
+    }
+
+    /// Makes the values of targets that are not asked about NaN.
+    pub fn clear_unasked(&self, values: &mut [f32]) {
+        values.par_iter_mut().zip(&self.positions).with_min_len(CHUNK).for_each(|(value, position)| {
+            if !position.iter().all(|v| v.is_finite()) {
+                *value = f32::NAN;
+            }
+        });
+    }
+
+    /// Leaves out targets that lie inside a ball of `scene`; returns how many.
+    pub fn leave_out_enclosed(&mut self, scene: &MedialScene) -> usize {
+        let is_enclosed = |position: &[f32; 3]| {
+            position.iter().all(|v| v.is_finite()) && scene.enclosure(position.map(f64::from)).ball_count > 0
+        };
+        let enclosed: Vec<bool> = self.positions.par_iter().with_min_len(CHUNK).map(is_enclosed).collect();
+        for (position, _) in self.positions.iter_mut().zip(&enclosed).filter(|(_, is_enclosed)| **is_enclosed) {
+            *position = [f32::NAN; 3];
+        }
+        enclosed.into_iter().filter(|&is_enclosed| is_enclosed).count()
+    }
+
+    /// How much a target counts.
+    #[must_use]
+    pub fn weight(&self, row: usize) -> f64 {
+        if self.weights.is_empty() { 1.0 } else { self.weights.get(row).copied().unwrap_or(0.0) }
+    }
+
+    /// How much each group counts.
+    #[must_use]
+    pub fn group_weights(&self) -> Vec<f64> {
+        self.groups.iter().map(|group| group.clone().map(|row| self.weight(row)).sum()).collect()
+    }
+
+    /// Mean of `values`, (M), over each group, by the weights of its targets; targets without a value do not count, and a group without any
+    /// value has NaN.
+    #[must_use]
+    pub fn group_means(&self, values: &[f32]) -> Vec<f64> {
+        let mean = |group: &Range<usize>| {
+            let known = || self.known(group, values);
+            known().map(|(value, weight)| value * weight).sum::<f64>() / known().map(|(_, weight)| weight).sum::<f64>()
+        };
+        self.groups.iter().map(mean).collect()
+    }
+
+    /// Least of `values`, (M), in each group; NaN for a group without any value.
+    #[must_use]
+    pub fn group_minima(&self, values: &[f32]) -> Vec<f64> {
+        self.group_extremes(values, f64::min)
+    }
+
+    /// Greatest of `values`, (M), in each group; NaN for a group without any value.
+    #[must_use]
+    pub fn group_maxima(&self, values: &[f32]) -> Vec<f64> {
+        self.group_extremes(values, f64::max)
+    }
+
+    fn group_extremes(&self, values: &[f32], pick: fn(f64, f64) -> f64) -> Vec<f64> {
+        let of_group =
+            |group: &Range<usize>| self.known(group, values).map(|(v, _)| v).reduce(pick).unwrap_or(f64::NAN);
+        self.groups.iter().map(of_group).collect()
+    }
+
+    fn known<'a>(&'a self, group: &Range<usize>, values: &'a [f32]) -> impl Iterator<Item = (f64, f64)> + 'a {
+        let value = move |row: usize| Some((f64::from(*values.get(row)?), self.weight(row)));
+        group.clone().filter_map(value).filter(|(value, _)| value.is_finite())
+    }
+}
+
+/// Mean of `values` by `weights`; values that are not finite do not count. `None` where nothing counts.
+#[must_use]
+pub fn weighted_mean(values: &[f64], weights: &[f64]) -> Option<f64> {
+    let known = || values.iter().zip(weights).filter(|(value, _)| value.is_finite());
+    let whole: f64 = known().map(|(_, weight)| weight).sum();
+    (whole > 0.0).then(|| known().map(|(value, weight)| value * weight).sum::<f64>() / whole)
+}
+
+/// A local position as targets hold it.
+#[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+pub(crate) fn to_f32(place: [f64; 3]) -> [f32; 3] {
+    place.map(|v| v as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_weigh_their_known_targets_and_keep_their_extremes() {
+        let mut targets = Targets::at(Frame::default(), vec![[0.0; 3]; 6], None, Layout::Points);
+        targets.groups = vec![0..3, 3..5, 5..6];
+        let values = [1.0, 4.0, f32::NAN, 2.0, 6.0, f32::NAN];
+        // without weights all count alike
+        assert_eq!(targets.group_means(&values)[..2], [2.5, 4.0]);
+        targets.weights = vec![3.0, 1.0, 50.0, 1.0, 3.0, 1.0];
+        assert_eq!(targets.group_means(&values)[..2], [7.0 / 4.0, 5.0]);
+        assert_eq!(targets.group_minima(&values)[..2], [1.0, 2.0]);
+        assert_eq!(targets.group_maxima(&values)[..2], [4.0, 6.0]);
+        assert!(targets.group_means(&values)[2].is_nan() && targets.group_minima(&values)[2].is_nan());
+        assert_eq!(targets.group_weights(), [54.0, 4.0, 1.0]);
+        assert_eq!(weighted_mean(&[1.0, f64::NAN, 4.0], &[1.0, 9.0, 2.0]), Some(3.0));
+        assert_eq!(weighted_mean(&[f64::NAN], &[1.0]), None);
+    }
+
+    #[test]
+    fn targets_without_a_position_have_no_value() {
+        let positions = vec![[0.0; 3], [f32::NAN, 0.0, 0.0], [1.0, 2.0, f32::INFINITY]];
+        let targets = Targets::at(Frame::default(), positions, None, Layout::Points);
+        let mut values = [1.0, 2.0, 3.0];
+        targets.clear_unasked(&mut values);
+        assert!(values[0] == 1.0 && values[1].is_nan() && values[2].is_nan());
+        assert_eq!((targets.len(), targets.asked_count()), (3, 1));
+    }
+}

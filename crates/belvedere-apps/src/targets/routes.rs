@@ -1,0 +1,67 @@
+//! Places along routes.
+
+use super::{Layout, Targets, to_f32};
+use crate::exposure::route_lengths;
+use belvedere_data::frame::Frame;
+
+/// Places along a line, in its order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route {
+    /// Local metres, (N, 3), as [`crate::viewshed::places_along`] makes them; a height that is NaN is not known.
+    pub places: Vec<[f64; 3]>,
+}
+
+impl Route {
+    /// Way from the first place to each, on the map, metres, (N).
+    #[must_use]
+    pub fn distances(&self) -> Vec<f64> {
+        let mut along = 0.0;
+        let mut distances = Vec::with_capacity(self.places.len());
+        for (i, place) in self.places.iter().enumerate() {
+            if let Some(before) = i.checked_sub(1).and_then(|before| self.places.get(before)) {
+                along += (place[0] - before[0]).hypot(place[1] - before[1]);
+            }
+            distances.push(along);
+        }
+        distances
+    }
+
+    /// Its length on the map, metres.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.distances().last().copied().unwrap_or(0.0)
+    }
+}
+
+impl Targets {
+    /// The places of `routes`, one group each, weighted by the length of route that they stand for; a place without a height has no
+    /// weight.
+    #[must_use]
+    pub fn along_routes(routes: &[Route], frame: Frame) -> Self {
+        let (mut positions, mut weights, mut groups) = (Vec::new(), Vec::new(), Vec::new());
+        for route in routes {
+            groups.push(positions.len()..positions.len() + route.places.len());
+            for (place, length) in route.places.iter().zip(route_lengths(&route.places)) {
+                weights.push(if place[2].is_finite() { length } else { 0.0 });
+                positions.push(to_f32(*place));
+            }
+        }
+        Self { weights, groups, ..Self::at(frame, positions, None, Layout::Points) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_of_a_route_weigh_the_length_they_stand_for() {
+        let route = Route { places: vec![[0.0, 0.0, 1.0], [3.0, 4.0, 1.0], [3.0, 14.0, f64::NAN]] };
+        assert_eq!((route.distances(), route.length()), (vec![0.0, 5.0, 15.0], 15.0));
+        let single = Route { places: vec![[5.0, 5.0, 0.0]] };
+        let targets = Targets::along_routes(&[route, single], Frame::default());
+        assert_eq!(targets.weights, [2.5, 7.5, 0.0, 1.0]);
+        assert_eq!(targets.groups, [0..3, 3..4]);
+        assert_eq!(targets.asked_count(), 3);
+    }
+}

@@ -1,0 +1,119 @@
+//! Results of applications as files: measures of targets as rasters, columns of points, tables and meshes.
+//!
+//! | targets | `.tif` | `.laz` `.las` `.ply` `.csv` |
+//! |---|---|---|
+//! | cells of a grid | the first measure as raster | a point for each cell that is asked about, all measures as columns |
+//! | points | | the points with their attributes, all measures as columns |
+//! | faces of a mesh | | `.csv`: a row for each object and face; `.ply`: the mesh coloured by the first measure |
+
+mod faces;
+#[cfg(feature = "figures")]
+mod map;
+
+#[cfg(feature = "figures")]
+pub use map::measure_map;
+
+use crate::apps::targets::{Layout, Measure, Targets};
+use crate::ground::{Ground, MapGrid};
+use crate::io::{ExtraColumn, ExtraValues, Georeference, WriteReport, write_cloud, write_tif_f32};
+use crate::raster::Raster;
+use crate::{Error, Frame, Mesh, PointCloud, Result};
+use std::path::Path;
+
+/// Value of a raster of measures where there is none.
+pub const NO_VALUE: f32 = -9999.0;
+
+/// What targets were taken from, where it is written along with their measures.
+#[derive(Clone, Copy)]
+pub enum TakenFrom<'a> {
+    /// Nothing but the targets is written: cells.
+    Nothing,
+    /// The points of a cloud, with their attributes.
+    Cloud(&'a PointCloud),
+    /// The faces of a mesh.
+    Mesh(&'a Mesh),
+}
+
+/// Where a grid lies in the reference system of a frame.
+#[must_use]
+pub fn georeference(grid: &MapGrid, frame: &Frame) -> Georeference {
+    let unit = frame.crs.metres_per_unit;
+    let upper_left = [0, 1].map(|i| (grid.corner[i] + frame.origin[i]) / unit);
+    let step = grid.cell / unit;
+    Georeference { upper_left, column_step: [step, 0.0], row_step: [0.0, -step], crs: frame.crs.clone() }
+}
+
+/// Writes the measures of `targets` in the format that the extension of `path` names.
+///
+/// # Errors
+/// [`Error::UnsupportedTargets`] where such targets do not fit the format, [`Error::LengthMismatch`] where a measure has not a value for each
+/// target, [`Error::NoPoints`] without a measure, and those of the writers.
+pub fn write_measures(
+    path: &Path,
+    targets: &Targets,
+    from: TakenFrom<'_>,
+    measures: &[Measure],
+) -> Result<WriteReport> {
+    let Some(first) = measures.first() else {
+        return Err(Error::NoPoints { what: "there is no measure to write".to_owned() });
+    };
+    let expected = targets.len();
+    if let Some(found) = measures.iter().map(|measure| measure.values.len()).find(|&found| found != expected) {
+        return Err(Error::LengthMismatch { what: "values of a measure", expected, found });
+    }
+    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let is_tiff = matches!(extension.as_str(), "tif" | "tiff");
+    match (&targets.layout, from) {
+        (Layout::Cells(_), _) if is_tiff => write_raster(path, targets, first).map(|()| WriteReport::default()),
+        (Layout::Surface(surface), TakenFrom::Mesh(mesh)) => {
+            match extension.as_str() {
+                "ply" => faces::write_colored(path, mesh, surface, &targets.frame, first),
+                _ => faces::write_table(path, mesh, surface, measures),
+            }?;
+            Ok(WriteReport::default())
+        }
+        (_, TakenFrom::Cloud(cloud)) if !is_tiff => write_points(path, cloud, measures),
+        (Layout::Cells(_) | Layout::Points, TakenFrom::Nothing) if !is_tiff => {
+            let rows: Vec<usize> = (0..expected).filter(|&row| targets.is_asked(row)).collect();
+            let positions = rows.iter().map(|&row| targets.positions[row]).collect();
+            let cloud = PointCloud { frame: targets.frame.clone(), positions, ..PointCloud::default() };
+            let pick = |measure: &Measure| Measure {
+                values: rows.iter().map(|&row| measure.values[row]).collect(),
+                ..measure.without_values()
+            };
+            write_points(path, &cloud, &measures.iter().map(pick).collect::<Vec<_>>())
+        }
+        _ => Err(Error::UnsupportedTargets {
+            method: "this format",
+            what: "rasters hold cells of a grid, tables and point formats all targets, meshes their faces",
+        }),
+    }
+}
+
+/// Writes a measure of the cells of a grid as a raster of 32-bit floats, with the reference system of their frame and [`NO_VALUE`] where there
+/// is no value.
+///
+/// # Errors
+/// [`Error::UnsupportedTargets`] for targets that are no cells, [`Error::LengthMismatch`] unless there is a value for each cell, and those of
+/// [`write_tif_f32`].
+pub fn write_raster(path: &Path, targets: &Targets, measure: &Measure) -> Result<()> {
+    let grid = cells(targets)?.grid;
+    let raster = Raster::from_values(grid.width, grid.height, measure.values.clone())?;
+    let place = georeference(&grid, &targets.frame);
+    let description = (!measure.description.is_empty()).then_some(measure.description);
+    write_tif_f32(path, &raster, Some(&place), Some(NO_VALUE), description)
+}
+
+fn cells(targets: &Targets) -> Result<&Ground> {
+    targets
+        .ground()
+        .ok_or(Error::UnsupportedTargets { method: "a raster", what: "its targets are the cells of a grid" })
+}
+
+fn write_points(path: &Path, cloud: &PointCloud, measures: &[Measure]) -> Result<WriteReport> {
+    let column = |measure| {
+        let measure: &Measure = measure;
+        ExtraColumn { name: &measure.name, description: measure.description, values: ExtraValues::F32(&measure.values) }
+    };
+    write_cloud(path, cloud, &measures.iter().map(column).collect::<Vec<_>>())
+}
