@@ -14,7 +14,6 @@ use clap::FromArgMatches;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    keep_decoders_quiet();
     interrupt::listen();
     let matches = match scene_config::matches(&help::command(), std::env::args_os().collect()) {
         Ok(matches) => matches,
@@ -40,17 +39,6 @@ fn failure(error: &anyhow::Error) -> ExitCode {
     }
     summary::print_error(error);
     if error.downcast_ref::<arguments::Usage>().is_some() { ExitCode::from(2) } else { ExitCode::FAILURE }
-}
-
-/// Says nothing of panics in the decoders of damaged files: the readers catch them and name the file instead.
-fn keep_decoders_quiet() {
-    let report = std::panic::take_hook();
-    std::panic::set_hook(Box::new(move |panic| {
-        let file = panic.location().map(|place| place.file().replace('\\', "/")).unwrap_or_default();
-        if !["/laz-", "/las-", "/e57-", "/npyz-", "/zip-", "/ply-rs"].iter().any(|name| file.contains(name)) {
-            report(panic);
-        }
-    }));
 }
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {

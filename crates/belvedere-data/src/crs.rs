@@ -1,5 +1,13 @@
 //! Coordinate reference systems as far as visibility needs them: which unit, degrees or not, where on the globe.
+//!
+//! The cargo feature `crs` (on by default) brings the database of systems. Without it a [`Crs`] can be carried, written and
+//! read from well-known text; codes alone are kept, but their names, units and projections are not known.
 
+#[cfg(not(feature = "crs"))]
+#[path = "crs/no_registry.rs"]
+mod registry;
+#[cfg(feature = "crs")]
+mod registry;
 pub mod text;
 mod wkt;
 
@@ -76,14 +84,13 @@ impl Crs {
         if text.contains(['[', '(']) && text.starts_with(|c: char| c.is_ascii_alphabetic()) {
             return wkt::read(text).ok_or_else(|| invalid(text));
         }
-        let definition = proj_wkt::parse_crs(text).map_err(|_| invalid(text))?;
-        Ok(Self::from_definition(&definition))
+        registry::system(text).ok_or_else(|| invalid(text))
     }
 
     /// The system with an EPSG code, or `None` where the embedded registry lacks it.
     #[must_use]
     pub fn from_epsg(code: u32) -> Option<Self> {
-        proj_core::lookup_epsg(code).map(|definition| Self::from_definition(&definition))
+        registry::system_of_code(code)
     }
 
     /// The system that a GeoTIFF key directory (the bytes of LAS record 34735, little-endian u16) names, or `None`
@@ -117,7 +124,7 @@ impl Crs {
         }
         crs.vertical_metres_per_unit = value(4099)
             .and_then(unit_of_code)
-            .or_else(|| Some(proj_core::lookup_vertical_epsg(vertical?)?.linear_unit_to_meter()))
+            .or_else(|| registry::vertical_metres_of_code(vertical?))
             .unwrap_or(crs.metres_per_unit);
         crs.vertical_epsg = vertical;
         Some(crs)
@@ -131,7 +138,7 @@ impl Crs {
             .wkt
             .as_deref()
             .and_then(wkt::name)
-            .or_else(|| Some(proj_core::lookup_epsg(self.epsg?)?.name().to_owned()))
+            .or_else(|| registry::name_of_code(self.epsg?))
             .filter(|name| !name.is_empty());
         let system = match (code, name) {
             (Some(code), Some(name)) => format!("{code} ({name})"),
@@ -201,33 +208,10 @@ impl Crs {
         ))
     }
 
-    fn from_definition(definition: &proj_core::CrsDef) -> Self {
-        let horizontal = definition.as_projected().map_or(1.0, proj_core::ProjectedCrsDef::linear_unit_to_meter);
-        let vertical = definition.vertical_crs();
-        Self {
-            wkt: None,
-            epsg: Some(definition.epsg()).filter(|&code| code != 0).or_else(|| horizontal_code(definition)),
-            vertical_epsg: vertical.map(proj_core::VerticalCrsDef::epsg).filter(|&code| code != 0),
-            metres_per_unit: horizontal,
-            vertical_metres_per_unit: vertical.map_or(horizontal, proj_core::VerticalCrsDef::linear_unit_to_meter),
-            kind: if definition.is_geocentric() {
-                CrsKind::Geocentric
-            } else if definition.is_geographic() {
-                CrsKind::Geographic
-            } else {
-                CrsKind::Projected
-            },
-        }
-    }
-
     fn horizontal_epsg(&self) -> Option<u32> {
         let code = self.epsg?;
-        Some(proj_core::lookup_epsg(code).and_then(|definition| horizontal_code(&definition)).unwrap_or(code))
+        Some(registry::horizontal_code_of(code).unwrap_or(code))
     }
-}
-
-fn horizontal_code(definition: &proj_core::CrsDef) -> Option<u32> {
-    definition.horizontal_crs().map(|horizontal| horizontal.epsg()).filter(|&code| code != 0)
 }
 
 fn invalid(text: &str) -> Error {
@@ -238,7 +222,11 @@ fn invalid(text: &str) -> Error {
     Error::InvalidParameter {
         name: "crs",
         value,
-        expected: "a known EPSG code such as EPSG:28992, well-known text or a PROJ string",
+        expected: if cfg!(feature = "crs") {
+            "a known EPSG code such as EPSG:28992, well-known text or a PROJ string"
+        } else {
+            "well-known text; this program was built without the cargo feature `crs`, which codes and PROJ strings need"
+        },
     }
 }
 
@@ -273,8 +261,7 @@ fn utm_zone(longitude: f64, latitude: f64) -> u32 {
 
 /// Turns latitude and longitude (WGS 84) into the metres of one reference system, and back.
 pub struct GeographicProjection {
-    transform: proj_core::Transform,
-    inverse: Option<proj_core::Transform>,
+    projection: registry::Projection,
     metres_per_unit: f64,
 }
 
@@ -288,12 +275,11 @@ impl Crs {
         let by_code = self.epsg.map(|code| format!("EPSG:{code}"));
         let mut failure = None;
         for definition in [by_code.as_deref(), self.wkt.as_deref()].into_iter().flatten() {
-            match proj_wkt::transform_from_crs_strings_horizontal("EPSG:4326", definition) {
-                Ok(transform) => {
-                    let inverse = transform.inverse().ok();
-                    return Ok(GeographicProjection { transform, inverse, metres_per_unit: self.metres_per_unit });
+            match registry::Projection::new(definition) {
+                Ok(projection) => {
+                    return Ok(GeographicProjection { projection, metres_per_unit: self.metres_per_unit });
                 }
-                Err(e) => failure = Some(e.to_string()),
+                Err(reason) => failure = Some(reason),
             }
         }
         Err(match failure {
@@ -327,9 +313,9 @@ impl GeographicProjection {
             return Err(invalid(String::new()));
         }
         let (x, y) = self
-            .transform
-            .convert((longitude.to_degrees(), latitude.to_degrees()))
-            .map_err(|e| invalid(format!(" ({e})")))?;
+            .projection
+            .forward(longitude.to_degrees(), latitude.to_degrees())
+            .map_err(|reason| invalid(format!(" ({reason})")))?;
         if !(x.is_finite() && y.is_finite()) {
             return Err(invalid(String::new()));
         }
@@ -347,11 +333,11 @@ impl GeographicProjection {
             value: format!("{}, {} m{why}", position[0], position[1]),
             expected: "within the area of the reference system",
         };
-        let inverse = self.inverse.as_ref().ok_or_else(|| invalid(" (the system has no inverse)".to_owned()))?;
         let back = |[x, y]: [f64; 2]| {
-            let (longitude, latitude) = inverse
-                .convert((x / self.metres_per_unit, y / self.metres_per_unit))
-                .map_err(|e| invalid(format!(" ({e})")))?;
+            let (longitude, latitude) = self
+                .projection
+                .back(x / self.metres_per_unit, y / self.metres_per_unit)
+                .map_err(|reason| invalid(format!(" ({reason})")))?;
             Ok([latitude.to_radians(), longitude.to_radians()])
         };
         // Inverses of datum shifts are approximate; correcting by what projecting forward says removes the rest.
@@ -374,7 +360,7 @@ const MAX_CORRECTIONS: u32 = 8;
 /// Distance that an inverse may miss, metres: far below a millimetre, above the rounding of degrees in f64 (2 nm).
 const UNPROJECT_TOLERANCE: f64 = 1e-6;
 
-#[cfg(test)]
+#[cfg(all(test, feature = "crs"))]
 mod geographic_projection_tests {
     use super::Crs;
 

@@ -35,6 +35,14 @@ pub enum Error {
         /// The extensions that would do.
         supported: &'static str,
     },
+    /// The format of a file, or a reference system, needs a part of the library that was not built in.
+    #[error("{}: this program was built without the cargo feature `{feature}`, which this needs", path.display())]
+    MissingFeature {
+        /// The file.
+        path: PathBuf,
+        /// The feature of the crates `belvedere` and `belvedere-io`.
+        feature: &'static str,
+    },
     /// Coordinates in degrees, earth-centred coordinates, or two files whose reference systems differ.
     #[error("{}: {what}", path.display())]
     UnusableCrs {
@@ -104,6 +112,12 @@ impl Error {
     /// Turns an error of the operating system into an [`Error::Io`] about `path`, for use in `map_err`.
     pub fn io(path: &Path) -> impl FnOnce(std::io::Error) -> Self + '_ {
         move |source| Self::Io { path: path.to_owned(), source }
+    }
+
+    /// An [`Error::MissingFeature`] about `path`.
+    #[must_use]
+    pub fn missing_feature(path: &Path, feature: &'static str) -> Self {
+        Self::MissingFeature { path: path.to_owned(), feature }
     }
 
     /// An [`Error::Malformed`] about `path`.

@@ -110,6 +110,7 @@ mod tests {
         assert_eq!(Bounds::around([]), None);
     }
 
+    #[cfg(feature = "crs")]
     #[test]
     fn feet_come_back_through_a_frame() {
         let crs = Crs::parse("EPSG:2992").unwrap();

@@ -2,17 +2,18 @@
 
 use rayon::prelude::*;
 
-use super::part::{Coordinates, Part};
+use super::part::{Coordinates, Part, unquantise};
 use super::read_cloud::ReadReport;
+use super::read_options::{ReadOptions, RowNumbers};
 use belvedere_data::Frame;
 use belvedere_data::cloud::{PointCloud, centre_rounded, to_local};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
 
-/// Points further than this from the median along an axis are no part of any scene, in metres.
+/// Points further than this from the median (or from a fixed origin) along an axis are no part of any scene, in metres.
 const FARTHEST: f64 = 1e6;
 
-/// Only points this near to the median move the origin, in metres: f32 keeps a millimetre up to 16 km, and one stray
+/// Only points this near to the median influence the origin, in metres: f32 keeps a millimetre up to 16 km, and one stray
 /// point must not coarsen all others.
 const NEAR: f64 = 1e4;
 
@@ -24,22 +25,25 @@ pub(super) fn any_position(part: &Part) -> [f64; 3] {
     middle(std::slice::from_ref(part), |_| [1.0; 3])
 }
 
-/// Joins `parts`, in order.
-pub(super) fn assemble(mut parts: Vec<Part>) -> Result<(PointCloud, ReadReport)> {
+/// Joins `parts`, in order, in the frame of `options` where that is given.
+pub(super) fn assemble(mut parts: Vec<Part>, options: &ReadOptions) -> Result<(PointCloud, ReadReport)> {
     let mut report = ReadReport::default();
-    adopt_common_crs(&mut parts, &mut report);
-    let median = middle(&parts, |part| part.crs.metres_per_unit_xyz());
+    let fixed = options.frame.as_ref();
+    adopt_common_crs(&mut parts, fixed, &mut report);
+    // Whether a point is far away must not depend on which other points were read with it where the frame is fixed.
+    let middle = fixed.map_or_else(|| middle(&parts, |part| part.crs.metres_per_unit_xyz()), |frame| frame.origin);
 
-    let mut bounds = Extent::default();
-    let found: Vec<Found> = parts.iter().map(|part| look(part, median)).collect();
-    for one in &found {
-        bounds = bounds.join(one.bounds);
-    }
+    let found: Vec<Found> = parts.iter().map(|part| look(part, middle)).collect();
+    let bounds = found.iter().fold(Extent::default(), |bounds, one| bounds.join(one.bounds));
     // Adding zero turns −0 into 0, which prints better.
-    let origin = centre_rounded([bounds.low, bounds.high].into_iter()).map(|middle| middle + 0.0);
+    let chosen = || centre_rounded([bounds.low, bounds.high].into_iter()).map(|middle| middle + 0.0);
+    let origin = fixed.map_or_else(chosen, |frame| frame.origin);
 
-    let mut cloud = PointCloud { frame: Frame { origin, ..Frame::default() }, ..PointCloud::default() };
-    if let Some(part) = parts.iter().find(|part| part.crs.kind != CrsKind::Unknown) {
+    let mut cloud = PointCloud::in_frame(Frame { origin, ..Frame::default() });
+    if let Some(frame) = fixed.filter(|frame| frame.crs.kind != CrsKind::Unknown) {
+        cloud.frame = frame.clone();
+        report.crs_source = "frame".to_owned();
+    } else if let Some(part) = parts.iter().find(|part| part.crs.kind != CrsKind::Unknown) {
         cloud.frame.crs = part.crs.clone();
         report.crs_source = part.report.crs_source.clone();
     } else if let Some(part) = parts.first() {
@@ -66,14 +70,14 @@ pub(super) fn assemble(mut parts: Vec<Part>) -> Result<(PointCloud, ReadReport)>
             join_scanners(&mut cloud, &mut part);
         }
         let scale = part.crs.metres_per_unit_xyz();
-        let (positions, attributes) = if found.not_finite + found.far == 0 {
-            (localise(part.coordinates, scale, origin), part.attributes)
-        } else {
-            let kept = kept_indices(&part, median);
-            let all = localise(part.coordinates, scale, origin);
-            let positions = kept.iter().filter_map(|&i| all.get(i as usize).copied()).collect();
-            (positions, part.attributes.select(&kept))
-        };
+        if found.not_finite + found.far > 0 {
+            let kept = kept_indices(&part, middle);
+            part.keep(&kept);
+        }
+        if options.row_numbers == RowNumbers::Kept {
+            report.rows.extend(part.rows.take().unwrap_or_else(|| (0..part.coordinates.len() as u64).collect()));
+        }
+        let (positions, attributes) = (localise(part.coordinates, scale, origin), part.attributes);
         part.report.points = positions.len();
         let dropped = cloud.attributes.append(cloud.positions.len(), attributes, positions.len());
         report.dropped_attributes.extend(dropped);
@@ -103,11 +107,11 @@ pub(super) fn assemble(mut parts: Vec<Part>) -> Result<(PointCloud, ReadReport)>
     Ok((cloud, report))
 }
 
-/// Gives the files without a system that of the others.
-fn adopt_common_crs(parts: &mut [Part], report: &mut ReadReport) {
-    let Some(known) = parts.iter().find(|part| part.crs.kind != CrsKind::Unknown).map(|part| part.crs.clone()) else {
-        return;
-    };
+/// Gives the files without a system that of the frame, or else of the other files.
+fn adopt_common_crs(parts: &mut [Part], fixed: Option<&Frame>, report: &mut ReadReport) {
+    let of_frame = fixed.map(|frame| &frame.crs).filter(|crs| crs.kind != CrsKind::Unknown);
+    let of_files = || parts.iter().map(|part| &part.crs).find(|crs| crs.kind != CrsKind::Unknown);
+    let Some(known) = of_frame.or_else(of_files).cloned() else { return };
     for part in parts.iter_mut().filter(|part| part.crs == Crs::default() && part.coordinates.len() > 0) {
         report.notes.push(format!(
             "{} names no reference system and is taken to be in {}",
@@ -135,17 +139,11 @@ fn middle(parts: &[Part], scale: impl Fn(&Part) -> [f64; 3]) -> [f64; 3] {
     for part in parts {
         let scale = scale(part);
         let metres = |p: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| p[i] * scale[i]) };
-        let mut push = |p: [f64; 3]| {
+        for p in part.coordinates.positions().step_by(step).map(metres) {
             if p.iter().all(|v| v.is_finite()) {
                 for (column, v) in sample.iter_mut().zip(p) {
                     column.push(v);
                 }
-            }
-        };
-        match &part.coordinates {
-            Coordinates::Real(values) => values.iter().step_by(step).for_each(|&p| push(metres(p))),
-            Coordinates::Quantised { values, scale, offset } => {
-                values.iter().step_by(step).for_each(|&q| push(metres(unquantise(q, *scale, *offset))));
             }
         }
     }
@@ -201,11 +199,11 @@ enum Fate {
     NotFinite,
 }
 
-fn fate(p: [f64; 3], median: [f64; 3]) -> Fate {
+fn fate(p: [f64; 3], middle: [f64; 3]) -> Fate {
     if !p.iter().all(|v| v.is_finite()) {
         return Fate::NotFinite;
     }
-    let distance = (0..3).map(|i| (p[i] - median[i]).abs()).fold(0.0, f64::max);
+    let distance = (0..3).map(|i| (p[i] - middle[i]).abs()).fold(0.0, f64::max);
     if distance > FARTHEST {
         Fate::Far
     } else if distance > NEAR {
@@ -215,11 +213,11 @@ fn fate(p: [f64; 3], median: [f64; 3]) -> Fate {
     }
 }
 
-fn look(part: &Part, median: [f64; 3]) -> Found {
+fn look(part: &Part, middle: [f64; 3]) -> Found {
     let units = part.crs.metres_per_unit_xyz();
     let add = |mut found: Found, p: [f64; 3]| {
         let p: [f64; 3] = std::array::from_fn(|i| p[i] * units[i]);
-        match fate(p, median) {
+        match fate(p, middle) {
             Fate::NotFinite => found.not_finite += 1,
             Fate::Far => found.far += 1,
             Fate::Coarse => found.coarse += 1,
@@ -246,18 +244,13 @@ fn look(part: &Part, median: [f64; 3]) -> Found {
     }
 }
 
-fn kept_indices(part: &Part, median: [f64; 3]) -> Vec<u32> {
+fn kept_indices(part: &Part, middle: [f64; 3]) -> Vec<u32> {
     let units = part.crs.metres_per_unit_xyz();
     let kept = |p: [f64; 3]| {
         let p: [f64; 3] = std::array::from_fn(|i| p[i] * units[i]);
-        matches!(fate(p, median), Fate::Near | Fate::Coarse)
+        matches!(fate(p, middle), Fate::Near | Fate::Coarse)
     };
-    match &part.coordinates {
-        Coordinates::Real(values) => (0..).zip(values).filter(|&(_, &p)| kept(p)).map(|(i, _)| i).collect(),
-        Coordinates::Quantised { values, scale, offset } => {
-            (0..).zip(values).filter(|&(_, &q)| kept(unquantise(q, *scale, *offset))).map(|(i, _)| i).collect()
-        }
-    }
+    (0..).zip(part.coordinates.positions()).filter(|&(_, p)| kept(p)).map(|(index, _)| index).collect()
 }
 
 fn localise(coordinates: Coordinates, units: [f64; 3], origin: [f64; 3]) -> Vec<[f32; 3]> {
@@ -269,10 +262,6 @@ fn localise(coordinates: Coordinates, units: [f64; 3], origin: [f64; 3]) -> Vec<
         }
         Coordinates::Real(values) => values.par_iter().with_min_len(1 << 14).map(|&p| local(p)).collect(),
     }
-}
-
-fn unquantise(q: [i32; 3], scale: [f64; 3], offset: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| f64::from(q[i]) * scale[i] + offset[i])
 }
 
 /// Moves the scanner positions of `part` into `cloud` and lets its indices point there.

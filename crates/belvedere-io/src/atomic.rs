@@ -10,6 +10,9 @@ use belvedere_data::{Error, Result};
 /// How many names are tried for the temporary file; leftovers of killed runs may occupy some.
 const MAX_NAME_ATTEMPTS: u32 = 1000;
 
+/// Bytes gathered before they are handed to the operating system.
+const BUFFER_BYTES: usize = 1 << 18;
+
 /// A file that is removed again unless it was renamed to its final place.
 struct Temporary {
     path: PathBuf,
@@ -72,7 +75,7 @@ pub fn write<T>(path: &Path, body: impl FnOnce(&mut BufWriter<File>) -> Result<T
     }
     let target = if existing.is_some() { fs::canonicalize(path).map_err(Error::io(path))? } else { path.to_owned() };
     let (file, mut temporary) = create_beside(&target)?;
-    let mut writer = BufWriter::with_capacity(1 << 18, file);
+    let mut writer = BufWriter::with_capacity(BUFFER_BYTES, file);
     let value = body(&mut writer)?;
     writer.flush().map_err(Error::io(path))?;
     let file = writer.into_inner().map_err(|e| Error::io(path)(e.into_error()))?;
@@ -80,11 +83,25 @@ pub fn write<T>(path: &Path, body: impl FnOnce(&mut BufWriter<File>) -> Result<T
         // a refusal leaves the permissions of a new file, which is no reason to lose the result
         let _ = file.set_permissions(metadata.permissions());
     }
+    file.sync_all().map_err(Error::io(path))?;
     drop(file);
     fs::rename(&temporary.path, &target).map_err(Error::io(path))?;
     temporary.kept = true;
+    sync_folder(&target);
     Ok(value)
 }
+
+/// Brings the new name of a file to the disk.
+#[cfg(unix)]
+fn sync_folder(file: &Path) {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    // the file is complete under its name; a file system that cannot synchronise folders is no reason to report a failure
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
+}
+
+/// Other systems cannot open folders as files; they record names by themselves.
+#[cfg(not(unix))]
+fn sync_folder(_file: &Path) {}
 
 /// The folder at `path`, made if it is missing but its parent is there.
 ///
@@ -116,7 +133,8 @@ fn create_beside(target: &Path) -> Result<(File, Temporary)> {
     for attempt in 0..MAX_NAME_ATTEMPTS {
         let mut hidden = std::ffi::OsString::from(".");
         hidden.push(name);
-        hidden.push(format!(".{attempt}.part"));
+        // the process is part of the name, so that two programs never write to one file
+        hidden.push(format!(".{}-{attempt}.part", std::process::id()));
         let path = target.with_file_name(hidden);
         let mut unfinished = unfinished();
         if unfinished.is_abandoned {

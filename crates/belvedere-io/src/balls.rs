@@ -1,9 +1,8 @@
 //! Ball files: scene models saved for later runs and for other programs.
 
-use std::path::Path;
-
 use crate::ball_formats;
-use crate::write_cloud::extension;
+use crate::output::Output;
+use crate::source::{Source, unusable};
 use belvedere_data::model::ModelParts;
 use belvedere_data::{Error, Result};
 
@@ -25,50 +24,65 @@ pub(crate) const SUPPORTED: &str = ".npz .ply .laz .las";
 /// pulses.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`] for other extensions, those of [`ModelParts::validate`], and [`Error::Io`]. An existing file
-/// is replaced only by a complete one.
-pub fn write_balls(path: &Path, balls: &ModelParts) -> Result<()> {
+/// [`Error::UnknownFormat`] for other extensions, [`Error::MissingFeature`], those of [`ModelParts::validate`], and
+/// [`Error::Io`]. An existing file is replaced only by a complete one.
+pub fn write_balls<'a>(output: impl Into<Output<'a>>, balls: &ModelParts) -> Result<()> {
     balls.validate()?;
-    match extension(path).as_str() {
-        "npz" => ball_formats::write_npz(path, balls),
-        "ply" => ball_formats::write_ply(path, balls),
-        "las" | "laz" => ball_formats::write_las(path, balls),
-        _ => unknown(path),
+    let output = output.into();
+    match output.extension().as_str() {
+        #[cfg(feature = "npy")]
+        "npz" => ball_formats::write_npz(output, balls),
+        "ply" => ball_formats::write_ply(output, balls),
+        #[cfg(feature = "las")]
+        "las" | "laz" => ball_formats::write_las(output, balls),
+        _ => Err(unusable(output.name(), "ball", SUPPORTED)),
     }
 }
 
-/// The balls that [`write_balls`] wrote to `path`.
+/// The balls that [`write_balls`] wrote.
 ///
 /// Bit for bit from `.npz`; rounded as the format demands from the others, which other programs may have filtered or
 /// extended by columns since. Without a saved origin it is chosen near the middle of the centres.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`], [`Error::Io`], and [`Error::Malformed`] for a file that is damaged or holds no balls.
-pub fn read_balls(path: &Path) -> Result<ModelParts> {
-    let balls = match extension(path).as_str() {
-        "npz" => ball_formats::read_npz(path),
-        "ply" => ball_formats::read_ply(path),
-        "las" | "laz" => ball_formats::read_las(path),
-        _ => unknown(path),
+/// [`Error::UnknownFormat`], [`Error::MissingFeature`], [`Error::Io`], and [`Error::Malformed`] for a file that is damaged
+/// or holds no balls.
+pub fn read_balls<'a>(source: impl Into<Source<'a>>) -> Result<ModelParts> {
+    let source = source.into();
+    let path = source.name().to_owned();
+    let balls: ModelParts = match source.extension().as_str() {
+        #[cfg(feature = "npy")]
+        "npz" => ball_formats::read_npz(source.open()?),
+        #[cfg(feature = "ply")]
+        "ply" => ball_formats::read_ply(source.open()?),
+        #[cfg(feature = "las")]
+        "las" | "laz" => ball_formats::read_las(source.open()?),
+        _ => Err(unusable(&path, "ball", SUPPORTED)),
     }?;
-    balls.validate().map_err(|e| Error::malformed(path, e.to_string()))?;
+    balls.validate().map_err(|e| Error::malformed(&path, e.to_string()))?;
     Ok(balls)
 }
 
-/// Whether `path` holds balls rather than a cloud, judged by its header; `false` also for what cannot be understood.
+/// Whether a source holds balls rather than a cloud, judged by its header; `false` also for what cannot be understood.
 ///
 /// # Errors
 /// [`Error::Io`] when the file cannot be opened.
-pub fn is_ball_file(path: &Path) -> Result<bool> {
-    std::fs::File::open(path).map_err(Error::io(path))?;
-    Ok(match extension(path).as_str() {
-        "npz" => ball_formats::npz_has_balls(path),
-        "ply" => ball_formats::ply_has_balls(path),
-        "las" | "laz" => ball_formats::las_has_balls(path),
-        _ => false,
+pub fn is_ball_file<'a>(source: impl Into<Source<'a>>) -> Result<bool> {
+    let source = source.into();
+    if let Some(folder) = source.folder() {
+        folder.read_dir().map_err(Error::io(folder))?;
+        return Ok(false);
+    }
+    Ok(match source.extension().as_str() {
+        #[cfg(feature = "npy")]
+        "npz" => ball_formats::npz_has_balls(source.open()?),
+        #[cfg(feature = "ply")]
+        "ply" => ball_formats::ply_has_balls(source.open()?),
+        #[cfg(feature = "las")]
+        "las" | "laz" => ball_formats::las_has_balls(source.open()?),
+        _ => {
+            source.open()?;
+            false
+        }
     })
-}
-
-fn unknown<T>(path: &Path) -> Result<T> {
-    Err(Error::UnknownFormat { path: path.to_owned(), kind: "ball", supported: SUPPORTED })
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::polygons::{MeshBuilder, MeshReport};
+use super::source::Source;
 use belvedere_data::{Error, Mesh, Result};
 
 /// Which of the levels of detail of each city object to read.
@@ -31,8 +32,9 @@ pub enum LevelOfDetail {
 ///
 /// # Source
 /// CityJSON 2.0.1 specification, sections 2 to 5 and "Geometry templates".
-pub fn read_cityjson(path: &Path, level_of_detail: &LevelOfDetail) -> Result<(Mesh, MeshReport)> {
-    let bytes = std::fs::read(path).map_err(Error::io(path))?;
+pub fn read_cityjson<'a>(source: impl Into<Source<'a>>, level_of_detail: &LevelOfDetail) -> Result<(Mesh, MeshReport)> {
+    let (name, bytes) = source.into().read_all()?;
+    let path = name.as_path();
     let root: Value =
         serde_json::from_slice(&bytes).map_err(|e| Error::malformed(path, format!("not readable JSON: {e}")))?;
     drop(bytes);

@@ -20,6 +20,7 @@ pub(crate) enum Values<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct Column<'a> {
     pub(crate) name: Cow<'a, str>,
+    #[cfg_attr(not(feature = "las"), expect(dead_code, reason = "only LAS files describe their columns"))]
     pub(crate) description: Cow<'a, str>,
     pub(crate) values: Values<'a>,
 }

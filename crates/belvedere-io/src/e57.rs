@@ -5,56 +5,63 @@ use std::path::Path;
 
 use ::e57::{E57Reader, PointCloud as Scan, Quaternion, Record, RecordDataType, RecordName, RecordValue};
 
-use super::part::{Part, guarded, open};
+use super::part::Part;
+use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
+use super::source::Input;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
 
-/// The valid points of all scans of the file at `path`.
+/// The valid points of all scans of the source.
 ///
-/// Poses are applied to points and normals. The scanner stands where the pose puts it; without a pose at (0, 0, 0) if
+/// Poses are applied to points and normals. The scanner is where the pose puts it; without a pose at (0, 0, 0) if
 /// the scan is a grid or spherical, and is unknown otherwise, as in clouds that only passed through E57.
-pub(super) fn read(path: &Path) -> Result<Part> {
-    let (file, size) = open(path)?;
-    guarded(path, || {
-        let damaged = |e: ::e57::Error| Error::malformed(path, format!("is not a readable E57 file: {e}"));
-        let mut reader = E57Reader::new(file).map_err(damaged)?;
-        let scans = reader.pointclouds();
-        let mut part = Part::new(path, format!("E57, {} scan{}", scans.len(), if scans.len() == 1 { "" } else { "s" }));
-        if let Some(text) = reader.coordinate_metadata().map(str::trim).filter(|text| !text.is_empty()) {
-            match Crs::parse(text) {
-                Ok(crs) => part.set_crs(crs, "coordinate metadata"),
-                Err(_) => part.note("its coordinate metadata are not understood as a reference system"),
-            }
+pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
+    let Input { name, reader, size } = input;
+    let path = name.as_path();
+    let damaged = |e: ::e57::Error| Error::malformed(path, format!("is not a readable E57 file: {e}"));
+    let mut reader = E57Reader::new(reader).map_err(damaged)?;
+    let scans = reader.pointclouds();
+    let mut part = Part::new(path, format!("E57, {} scan{}", scans.len(), if scans.len() == 1 { "" } else { "s" }));
+    if let Some(text) = reader.coordinate_metadata().map(str::trim).filter(|text| !text.is_empty()) {
+        match Crs::parse(text) {
+            Ok(crs) => part.set_crs(crs, "coordinate metadata"),
+            Err(_) => part.note("its coordinate metadata are not understood as a reference system"),
         }
-        let plans: Vec<Plan> = scans.iter().map(Plan::new).collect();
-        let common = common_roles(&mut part, &plans, &scans);
-        let mut rows = Rows::new(common);
-        let mut scanner_index: Vec<u16> = Vec::new();
-        let mut invalid = 0;
-        for (i, (scan, plan)) in scans.iter().zip(&plans).enumerate() {
-            if scan.records == 0 {
-                part.note(format!("scan {} has no points", i + 1));
-                continue;
-            }
-            plan.check(path, scan, i, size)?;
-            let index = plan.scanner.map_or(u16::MAX, |position| {
-                part.scanners.push(position);
-                u16::try_from(part.scanners.len() - 1).unwrap_or(u16::MAX)
-            });
-            invalid += read_scan(path, &mut reader, scan, plan, |row| {
-                rows.push(row);
-                scanner_index.push(index);
-            })?;
-            part.single_precision |= plan.single_precision;
+    }
+    let plans: Vec<Plan> = scans.iter().map(Plan::new).collect();
+    let common = common_roles(&mut part, &plans, &scans);
+    let mut points = Points {
+        rows: Rows::new(common).with_numbers(reading.options.row_numbers),
+        scanner_index: Vec::new(),
+        invalid: 0,
+    };
+    for (i, (scan, plan)) in scans.iter().zip(&plans).enumerate() {
+        if scan.records == 0 {
+            part.note(format!("scan {} has no points", i + 1));
+            continue;
         }
-        rows.finish(&mut part);
-        if !part.scanners.is_empty() {
-            part.attributes.scanner_index = Some(scanner_index);
-        }
-        part.leave_out(invalid, "marked as invalid in the file");
-        Ok(part)
-    })
+        plan.check(path, scan, i, size)?;
+        let index = plan.scanner.map_or(u16::MAX, |position| {
+            part.scanners.push(position);
+            u16::try_from(part.scanners.len() - 1).unwrap_or(u16::MAX)
+        });
+        read_scan(path, &mut reader, scan, plan, index, &mut points, reading)?;
+        part.single_precision |= plan.single_precision;
+    }
+    points.rows.finish(&mut part);
+    if !part.scanners.is_empty() {
+        part.attributes.scanner_index = Some(points.scanner_index);
+    }
+    part.leave_out(points.invalid, "marked as invalid in the file");
+    Ok(part)
+}
+
+/// The points of all scans as they are read.
+struct Points {
+    rows: Rows,
+    scanner_index: Vec<u16>,
+    invalid: usize,
 }
 
 /// How to read the records of one scan.
@@ -224,19 +231,21 @@ fn common_roles(part: &mut Part, plans: &[Plan], scans: &[Scan]) -> Vec<Role> {
     common
 }
 
-/// Reads one scan; gives the number of invalid points.
+/// Reads one scan into `points`, all with the scanner `index`.
 fn read_scan<R: Read + Seek>(
     path: &Path,
     reader: &mut E57Reader<R>,
     scan: &Scan,
     plan: &Plan,
-    mut take: impl FnMut(&Row),
-) -> Result<usize> {
+    index: u16,
+    points: &mut Points,
+    reading: &Reading<'_>,
+) -> Result<()> {
     let damaged = |e: ::e57::Error| Error::malformed(path, format!("has points that cannot be read: {e}"));
     let spherical = plan.is_spherical();
-    let mut invalid = 0;
     for record in reader.pointcloud_raw(scan).map_err(damaged)? {
         let record = record.map_err(damaged)?;
+        reading.check(points.rows.count())?;
         let mut row = Row::default();
         let mut valid = true;
         let [mut range, mut azimuth, mut elevation] = [0.0; 3];
@@ -252,7 +261,8 @@ fn read_scan<R: Read + Seek>(
             }
         }
         if !valid {
-            invalid += 1;
+            points.invalid += 1;
+            points.rows.pass_over();
             continue;
         }
         if spherical {
@@ -262,9 +272,10 @@ fn read_scan<R: Read + Seek>(
             row.set(Role::Z, range * elevation.sin());
         }
         plan.pose.apply(&mut row);
-        take(&row);
+        points.rows.push(&row);
+        points.scanner_index.push(index);
     }
-    Ok(invalid)
+    Ok(())
 }
 
 /// A rigid motion from scan to file coordinates.

@@ -1,11 +1,10 @@
 //! Areas as GeoJSON.
 
-use std::io::Write;
 use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use crate::atomic;
+use crate::output::Output;
 use belvedere_data::crs::{Crs, GeographicProjection};
 use belvedere_data::{Error, Result};
 
@@ -40,15 +39,18 @@ pub enum GeojsonCoordinates {
 ///
 /// # Source
 /// RFC 7946, sections 3.1.7, 3.3 and 4.
-pub fn write_geojson_areas(path: &Path, areas: &[Area], crs: &Crs) -> Result<GeojsonCoordinates> {
+pub fn write_geojson_areas<'a>(output: impl Into<Output<'a>>, areas: &[Area], crs: &Crs) -> Result<GeojsonCoordinates> {
+    let output = output.into();
     let projection = crs.geographic_projection().ok();
     let coordinates = if projection.is_some() { GeojsonCoordinates::Wgs84 } else { GeojsonCoordinates::OfTheFile };
     let mut features = Vec::with_capacity(areas.len());
     for area in areas {
         let mut polygons = Vec::with_capacity(area.polygons.len());
         for polygon in &area.polygons {
-            let rings: Vec<Value> =
-                polygon.iter().map(|ring| written_ring(ring, projection.as_ref(), crs, path)).collect::<Result<_>>()?;
+            let rings: Vec<Value> = polygon
+                .iter()
+                .map(|ring| written_ring(ring, projection.as_ref(), crs, output.name()))
+                .collect::<Result<_>>()?;
             polygons.push(Value::Array(rings));
         }
         features.push(json!({
@@ -64,7 +66,7 @@ pub fn write_geojson_areas(path: &Path, areas: &[Area], crs: &Crs) -> Result<Geo
         let note = format!("coordinates are not WGS 84 but those of the cloud: {}", crs.describe());
         members.insert("crs_note".to_owned(), note.into());
     }
-    atomic::write(path, |output| {
+    output.write(|path, output| {
         serde_json::to_writer(&mut *output, &file).map_err(|e| Error::io(path)(e.into()))?;
         writeln!(output).map_err(Error::io(path))
     })?;

@@ -4,6 +4,8 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
+use super::source::Source;
+
 use belvedere_data::crs::{Crs, CrsKind, GeographicProjection};
 use belvedere_data::{Error, Result};
 
@@ -39,8 +41,9 @@ pub struct GeojsonFeature {
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for what is no GeoJSON and for coordinates that are not finite; [`Error::UnusableCrs`] where the
 /// file names another system than the cloud's.
-pub fn read_geojson(path: &Path, crs: &Crs) -> Result<Vec<GeojsonFeature>> {
-    let bytes = std::fs::read(path).map_err(Error::io(path))?;
+pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<GeojsonFeature>> {
+    let (name, bytes) = source.into().read_all()?;
+    let path = name.as_path();
     let file: Value = serde_json::from_slice(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes))
         .map_err(|e| Error::malformed(path, format!("is no JSON: {e}")))?;
     let mut raw = Vec::new();

@@ -1,12 +1,10 @@
 //! GeoTIFF rasters.
 
-use std::path::Path;
-
 use tiff::encoder::colortype::{ColorType, Gray8, Gray16, Gray32, Gray32Float};
 use tiff::encoder::{Compression, DeflateLevel, TiffEncoder, TiffKind, TiffValue};
 use tiff::tags::Tag;
 
-use crate::atomic;
+use crate::output::Output;
 use belvedere_data::crs::{Crs, text};
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
@@ -35,8 +33,8 @@ pub struct Georeference {
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a raster without pixels or with a side of more than `u32` pixels, [`Error::Io`].
-pub fn write_f32(
-    path: &Path,
+pub fn write_f32<'a>(
+    output: impl Into<Output<'a>>,
     raster: &Raster<f32>,
     georeference: Option<&Georeference>,
     nodata: Option<f32>,
@@ -47,9 +45,9 @@ pub fn write_f32(
         Some(nodata) if raster.values().iter().any(|v| !v.is_finite()) => {
             let values = raster.values().iter().map(|&v| if v.is_finite() { v } else { nodata }).collect();
             let finite = Raster::from_values(raster.width(), raster.height(), values)?;
-            write::<Gray32Float>(path, &finite, &marks)
+            write::<Gray32Float>(output.into(), &finite, &marks)
         }
-        _ => write::<Gray32Float>(path, raster, &marks),
+        _ => write::<Gray32Float>(output.into(), raster, &marks),
     }
 }
 
@@ -58,42 +56,42 @@ pub fn write_f32(
 ///
 /// # Errors
 /// As [`write_f32`].
-pub fn write_u32(
-    path: &Path,
+pub fn write_u32<'a>(
+    output: impl Into<Output<'a>>,
     raster: &Raster<u32>,
     georeference: Option<&Georeference>,
     nodata: Option<u32>,
     description: Option<&str>,
 ) -> Result<()> {
-    write::<Gray32>(path, raster, &Marks { georeference, nodata: nodata.map(|v| v.to_string()), description })
+    write::<Gray32>(output.into(), raster, &Marks { georeference, nodata: nodata.map(|v| v.to_string()), description })
 }
 
 /// Writes `raster` as bytes, compressed without loss; `nodata` marks the value that stands for nothing.
 ///
 /// # Errors
 /// As [`write_f32`].
-pub fn write_u8(
-    path: &Path,
+pub fn write_u8<'a>(
+    output: impl Into<Output<'a>>,
     raster: &Raster<u8>,
     georeference: Option<&Georeference>,
     nodata: Option<u8>,
     description: Option<&str>,
 ) -> Result<()> {
-    write::<Gray8>(path, raster, &Marks { georeference, nodata: nodata.map(|v| v.to_string()), description })
+    write::<Gray8>(output.into(), raster, &Marks { georeference, nodata: nodata.map(|v| v.to_string()), description })
 }
 
 /// Writes `raster` as unsigned 16-bit integers, compressed without loss; `nodata` marks the value that stands for nothing.
 ///
 /// # Errors
 /// As [`write_f32`].
-pub fn write_u16(
-    path: &Path,
+pub fn write_u16<'a>(
+    output: impl Into<Output<'a>>,
     raster: &Raster<u16>,
     georeference: Option<&Georeference>,
     nodata: Option<u16>,
     description: Option<&str>,
 ) -> Result<()> {
-    write::<Gray16>(path, raster, &Marks { georeference, nodata: nodata.map(|v| v.to_string()), description })
+    write::<Gray16>(output.into(), raster, &Marks { georeference, nodata: nodata.map(|v| v.to_string()), description })
 }
 
 struct Marks<'a> {
@@ -102,7 +100,7 @@ struct Marks<'a> {
     description: Option<&'a str>,
 }
 
-fn write<C: ColorType>(path: &Path, raster: &Raster<C::Inner>, marks: &Marks<'_>) -> Result<()>
+fn write<C: ColorType>(output: Output<'_>, raster: &Raster<C::Inner>, marks: &Marks<'_>) -> Result<()>
 where
     C::Inner: Copy,
     [C::Inner]: TiffValue,
@@ -113,7 +111,7 @@ where
     if width == 0 || height == 0 {
         return invalid_size(raster.width(), raster.height());
     }
-    atomic::write(path, |output| {
+    output.write(|path, output| {
         let result = if size_of_val(raster.values()) < BIG_FILE_BYTES {
             TiffEncoder::new(output).and_then(|e| encode::<C, _, _>(e, width, height, raster.values(), marks))
         } else {

@@ -1,21 +1,23 @@
 //! LAS 1.0 to 1.4 and LAZ (also COPC, whose points are read in file order), all point formats.
 
-use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
 
 use ::las::point::Format;
 use ::las::{PointData, PointDataBuilder, Transform, Vector};
 
 use super::las_columns::Columns;
-use super::las_extra::{ExtraField, find_columns, find_extra_normals};
+use super::las_extra::{ExtraField, ExtraNormals, find_columns, find_extra_normals};
 use super::las_header::{LasHeader, read_header};
 use super::laz::{ExtraBytes, LazReader, is_chunked};
-use super::part::{Part, guarded, open};
+use super::part::{Coordinates, Part};
+use super::read_options::{PassedOver, Reading, RowNumbers, Selection};
+use super::source::{Input, Reader};
+use belvedere_data::cloud::Attributes;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
 
-/// Raw records of about this many points lie in memory beside the decoded columns.
+/// Points decoded at a time: some LAZ chunks of 50 000 for each of two dozen threads, and a tenth of a second of work.
 const BATCH: u64 = 1_000_000;
 
 /// Scales this fine are used for degrees, not for metres.
@@ -23,19 +25,19 @@ const DEGREE_SCALE: f64 = 1.000_001e-6;
 
 /// A LAS or LAZ file whose header has been checked.
 pub(super) struct LasFile<'a> {
-    path: &'a Path,
-    file: BufReader<File>,
+    name: PathBuf,
+    reader: Reader<'a>,
     size: u64,
     pub(super) header: LasHeader,
     format: Format,
 }
 
 impl<'a> LasFile<'a> {
-    pub(super) fn open(path: &'a Path) -> Result<Self> {
-        let (mut file, size) = open(path)?;
-        let header = read_header(path, &mut file, size)?;
-        let format = point_format(path, &header)?;
-        Ok(Self { path, file, size, header, format })
+    pub(super) fn open(input: Input<'a>) -> Result<Self> {
+        let Input { name, mut reader, size } = input;
+        let header = read_header(&name, &mut reader, size)?;
+        let format = point_format(&name, &header)?;
+        Ok(Self { name, reader, size, header, format })
     }
 
     /// The extra columns of these names, `None` for those the file lacks.
@@ -52,54 +54,108 @@ impl<'a> LasFile<'a> {
         self.header.points.min(room)
     }
 
-    /// Decodes the points in file order and hands them to `take`, many at a time.
-    pub(super) fn for_each_batch(self, extra: ExtraBytes, mut take: impl FnMut(&PointData)) -> Result<()> {
-        let points = self.points_in_file();
-        let Self { path, mut file, size, header, format } = self;
+    /// The points in file order, many at a time.
+    pub(super) fn batches(self, extra: ExtraBytes) -> Result<Batches<'a>> {
+        let left = self.points_in_file();
+        let Self { name, mut reader, size, header, format } = self;
         let transform = |i: usize| Transform { scale: header.scale[i], offset: header.offset[i] };
         let transforms = Vector { x: transform(0), y: transform(1), z: transform(2) };
-        let mut batch = PointDataBuilder::new().with_format(format).with_transforms(transforms).build();
+        let batch = PointDataBuilder::new().with_format(format).with_transforms(transforms).build();
         // Without points there need be no chunk table either.
-        if header.compressed && points > 0 {
-            let mut reader = LazReader::new(path, file, &header, size, extra)?;
-            while reader.next_batch(BATCH, |points| batch.resize_for(points))? > 0 {
-                take(&batch);
-            }
-        } else if !header.compressed {
-            file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
-            let mut left = points;
-            while left > 0 {
-                let points = left.min(BATCH);
-                let room = batch.resize_for(usize::try_from(points).unwrap_or(0));
-                file.read_exact(room).map_err(Error::io(path))?;
-                take(&batch);
-                left -= points;
-            }
-        }
-        Ok(())
+        let records = if header.compressed && left > 0 {
+            Records::Laz(Box::new(LazReader::new(&name, reader, &header, size, extra)?))
+        } else {
+            reader.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(&name))?;
+            Records::Plain { reader, left }
+        };
+        Ok(Batches { name, batch, records })
     }
 }
 
-/// The points of the file at `path`; `forced` stands in for the system the file names.
-pub(super) fn read(path: &Path, forced: Option<&Crs>) -> Result<Part> {
-    let mut source = LasFile::open(path)?;
+/// The points of a file, decoded many at a time.
+pub(super) struct Batches<'a> {
+    name: PathBuf,
+    batch: PointData,
+    records: Records<'a>,
+}
+
+enum Records<'a> {
+    Plain { reader: Reader<'a>, left: u64 },
+    Laz(Box<LazReader<Reader<'a>>>),
+}
+
+impl Batches<'_> {
+    /// The next points, or `None` after the last.
+    pub(super) fn next(&mut self) -> Result<Option<&PointData>> {
+        let Self { name, batch, records } = self;
+        match records {
+            Records::Laz(reader) => {
+                if reader.next_batch(name, BATCH, |points| batch.resize_for(points))? == 0 {
+                    return Ok(None);
+                }
+            }
+            Records::Plain { left: 0, .. } => return Ok(None),
+            Records::Plain { reader, left } => {
+                let points = BATCH.min(*left);
+                let room = batch.resize_for(usize::try_from(points).unwrap_or(0));
+                reader.read_exact(room).map_err(Error::io(name))?;
+                *left -= points;
+            }
+        }
+        Ok(Some(batch))
+    }
+}
+
+/// The points of the source that `reading` asks for.
+pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
+    let (mut part, mut points) = open(input, reading)?;
+    // No more is reserved than the size of the file makes likely; columns grow where that is too little.
+    let capacity = if points.selection.is_some() { 0 } else { usize::try_from(points.likely).unwrap_or(0) };
+    let mut columns = points.columns(capacity);
+    if points.selection.is_none() {
+        while let Some(batch) = points.batches.next()? {
+            columns.append(batch);
+            reading.control.advance(batch.len());
+            reading.control.check()?;
+        }
+        (part.coordinates, part.attributes) = columns.finish();
+        return Ok(part);
+    }
+    (part.coordinates, part.attributes) = columns.finish();
+    part.rows = (reading.options.row_numbers == RowNumbers::Kept).then(Vec::new);
+    while let Some(batch) = points.next(reading)? {
+        let count = part.coordinates.len();
+        let added = batch.coordinates.len();
+        part.attributes.append(count, batch.attributes, added);
+        part.coordinates.append(batch.coordinates);
+        if let Some(rows) = &mut part.rows {
+            rows.extend(batch.rows);
+        }
+    }
+    points.passed_over.report(&mut part);
+    Ok(part)
+}
+
+/// The points of a source, batch by batch, and what is known of all of them.
+pub(super) fn open<'a>(input: Input<'a>, reading: &Reading<'_>) -> Result<(Part, LasPoints<'a>)> {
+    let mut source = LasFile::open(input)?;
+    let path = source.name.clone();
     let header = &source.header;
-    let mut part = Part::new(path, describe(path, header));
+    let mut part = Part::new(&path, describe(&path, header));
     if header.counts_differ {
         part.note(format!("the two point counts of the header differ; {} is used", header.points));
     }
     if header.broken_records > 0 {
         part.note("a variable-length record is cut off; it and those after it are passed over");
     }
-    if forced.is_none() {
+    if reading.forced.is_none() {
         find_crs(&mut part, header);
     }
-    let crs = forced.unwrap_or(&part.crs);
-    let somewhere = header.first_point(path, &mut source.file)?;
+    let crs = reading.forced.unwrap_or(&part.crs);
+    let somewhere = header.first_point(&path, &mut source.reader)?;
     if let Some(what) = crs.refusal(somewhere).or_else(|| unnamed_degrees(crs, header, somewhere)) {
-        return Err(Error::UnusableCrs { path: path.to_owned(), what });
+        return Err(Error::UnusableCrs { path, what });
     }
-
     let normals = find_extra_normals(&mut part, header, &source.format);
     let extra = if normals.is_some() { ExtraBytes::Decompress } else { ExtraBytes::Skip };
     let (announced, present) = (header.points, source.points_in_file());
@@ -108,12 +164,70 @@ pub(super) fn read(path: &Path, forced: Option<&Crs>) -> Result<Part> {
         let missing = usize::try_from(announced - present).unwrap_or(usize::MAX);
         part.leave_out(missing, "announced by the header but not in the file");
     }
-    // No more is reserved than the size of the file makes likely; columns grow where that is too little.
-    let capacity = usize::try_from(announced.min(source.size)).unwrap_or(0);
-    let mut columns = Columns::new(&source.format, header, normals, capacity);
-    source.for_each_batch(extra, |batch| columns.append(batch))?;
-    (part.coordinates, part.attributes) = columns.finish();
-    Ok(part)
+    let points = LasPoints {
+        likely: announced.min(source.size),
+        format: source.format,
+        scale: header.scale,
+        offset: header.offset,
+        adjusted_gps_time: header.adjusted_gps_time,
+        normals,
+        selection: reading.selection(&part.crs),
+        passed_over: PassedOver::default(),
+        next_row: 0,
+        batches: source.batches(extra)?,
+    };
+    Ok((part, points))
+}
+
+/// The points of one source, batch by batch.
+pub(super) struct LasPoints<'a> {
+    batches: Batches<'a>,
+    format: Format,
+    scale: [f64; 3],
+    offset: [f64; 3],
+    adjusted_gps_time: bool,
+    normals: Option<ExtraNormals>,
+    selection: Option<Selection>,
+    /// Number of points that the header and the size of the file make likely.
+    likely: u64,
+    passed_over: PassedOver,
+    next_row: u64,
+}
+
+/// Some points of a source.
+pub(super) struct SomePoints {
+    pub(super) coordinates: Coordinates,
+    pub(super) attributes: Attributes,
+    /// Row of each point in the file.
+    pub(super) rows: Vec<u64>,
+}
+
+impl LasPoints<'_> {
+    fn columns(&self, capacity: usize) -> Columns {
+        Columns::new(&self.format, self.scale, self.offset, self.adjusted_gps_time, self.normals, capacity)
+    }
+
+    /// The next points that `reading` asks for, possibly none of a batch, or `None` at the end.
+    pub(super) fn next(&mut self, reading: &Reading<'_>) -> Result<Option<SomePoints>> {
+        reading.control.check()?;
+        let mut columns = self.columns(0);
+        let Some(batch) = self.batches.next()? else { return Ok(None) };
+        columns.append(batch);
+        let count = batch.len();
+        reading.control.advance(count);
+        let first_row = self.next_row;
+        self.next_row += count as u64;
+        let (coordinates, attributes) = columns.finish();
+        let Some(selection) = &self.selection else {
+            return Ok(Some(SomePoints { coordinates, attributes, rows: (first_row..self.next_row).collect() }));
+        };
+        let kept = selection.kept(&coordinates, &attributes, &mut self.passed_over)?;
+        Ok(Some(SomePoints {
+            coordinates: coordinates.select(&kept),
+            attributes: attributes.select(&kept),
+            rows: kept.iter().map(|&index| first_row + u64::from(index)).collect(),
+        }))
+    }
 }
 
 fn describe(path: &Path, header: &LasHeader) -> String {
@@ -159,8 +273,7 @@ fn find_crs(part: &mut Part, header: &LasHeader) {
         for record in header.records(user, 2112) {
             let text = String::from_utf8_lossy(record);
             let text = text.trim_matches(|c: char| c == '\0' || c.is_whitespace());
-            // The text is the file's; parsing it must not bring the reader down.
-            match guarded(&part.report.path, || Crs::parse(text)) {
+            match Crs::parse(text) {
                 Ok(crs) => return part.set_crs(crs, source),
                 Err(_) => unread |= !text.is_empty(),
             }

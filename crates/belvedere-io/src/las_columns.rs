@@ -4,7 +4,6 @@ use ::las::PointData;
 use ::las::point::Format;
 
 use super::las_extra::{ExtraField, ExtraNormals};
-use super::las_header::LasHeader;
 use super::part::{Coordinates, narrow};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 
@@ -24,7 +23,9 @@ pub(super) struct Columns {
 impl Columns {
     pub(super) fn new(
         format: &Format,
-        header: &LasHeader,
+        scale: [f64; 3],
+        offset: [f64; 3],
+        adjusted_gps_time: bool,
         extra_normals: Option<ExtraNormals>,
         capacity: usize,
     ) -> Self {
@@ -33,11 +34,7 @@ impl Columns {
             normals: extra_normals.map(|_| Vec::with_capacity(capacity)),
             classification: Some(Vec::with_capacity(capacity)),
             gps_time: format.has_gps_time.then(|| Vec::with_capacity(capacity)),
-            gps_time_kind: if header.adjusted_gps_time {
-                GpsTimeKind::AdjustedStandard
-            } else {
-                GpsTimeKind::SecondsOfWeek
-            },
+            gps_time_kind: if adjusted_gps_time { GpsTimeKind::AdjustedStandard } else { GpsTimeKind::SecondsOfWeek },
             return_number: Some(Vec::with_capacity(capacity)),
             return_count: Some(Vec::with_capacity(capacity)),
             scan_angle: Some(Vec::with_capacity(capacity)),
@@ -48,14 +45,7 @@ impl Columns {
             color: format.has_color.then(|| Vec::with_capacity(capacity)),
             scanner_index: None,
         };
-        Self {
-            positions: Vec::with_capacity(capacity),
-            scale: header.scale,
-            offset: header.offset,
-            attributes,
-            extended,
-            extra_normals,
-        }
+        Self { positions: Vec::with_capacity(capacity), scale, offset, attributes, extended, extra_normals }
     }
 
     /// Decodes a batch, one task per column.

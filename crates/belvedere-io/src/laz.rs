@@ -1,4 +1,6 @@
 //! LAZ chunks, checked before they are decompressed: the laz crate trusts sizes in the file and would allocate them.
+//!
+//! What is checked, and why, is listed in `docs/upstream.md`.
 
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -7,11 +9,15 @@ use ::laz::laszip::{ChunkTable, ChunkTableEntry, CompressorType, LazItemType};
 use ::laz::{DecompressionSelection, LazVlr};
 
 use super::las_header::LasHeader;
-use super::part::guarded;
 use belvedere_data::{Error, Result};
 
 /// A chunk that would decompress to more bytes than this is no chunk that any writer makes (50 000 points are usual).
 const MAX_CHUNK_BYTES: u64 = 1 << 30;
+
+/// A chunk that decompresses to more than [`FREE_CHUNK_BYTES`] must not be shrunk more than this: points that are worth storing are
+/// shrunk 3 to 20 times, and what a file makes its reader allocate must depend on the size of the file.
+const MAX_RATIO: u64 = 256;
+const FREE_CHUNK_BYTES: u64 = 1 << 26;
 
 /// Whether extra bytes are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,8 +27,7 @@ pub(super) enum ExtraBytes {
 }
 
 /// Decompresses the points of a file batch by batch.
-pub(super) struct LazReader<'a, R> {
-    path: &'a Path,
+pub(super) struct LazReader<R> {
     file: R,
     vlr: LazVlr,
     chunks: std::vec::IntoIter<ChunkTableEntry>,
@@ -32,16 +37,14 @@ pub(super) struct LazReader<'a, R> {
     compressed: Vec<u8>,
 }
 
-impl<'a, R: Read + Seek + Send> LazReader<'a, R> {
+impl<R: Read + Seek + Send> LazReader<R> {
     /// A reader of the points that `header` announces in a file of `size` bytes.
-    pub(super) fn new(path: &'a Path, mut file: R, header: &LasHeader, size: u64, extra: ExtraBytes) -> Result<Self> {
+    pub(super) fn new(path: &Path, mut file: R, header: &LasHeader, size: u64, extra: ExtraBytes) -> Result<Self> {
         let damaged = |what: String| Error::malformed(path, what);
         let record = header.record(LazVlr::USER_ID, LazVlr::RECORD_ID);
         let record =
             record.ok_or_else(|| damaged("lacks the LAZ record that tells how it is compressed".to_owned()))?;
-        let vlr = guarded(path, || {
-            LazVlr::from_buffer(record).map_err(|e| damaged(format!("has an unreadable LAZ record: {e}")))
-        })?;
+        let vlr = LazVlr::from_buffer(record).map_err(|e| damaged(format!("has an unreadable LAZ record: {e}")))?;
         let items_match = vlr.items().iter().all(|item| item.size() == nominal_size(item.item_type()));
         let item_bytes: u64 = vlr.items().iter().map(|item| u64::from(item.size())).sum();
         if !items_match || item_bytes != u64::from(header.record_length) {
@@ -53,14 +56,12 @@ impl<'a, R: Read + Seek + Send> LazReader<'a, R> {
         let layers = layer_count(&vlr);
         file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
         check_chunk_count(path, &mut file, header, size)?;
-        let table = guarded(path, || {
-            ChunkTable::read_from(&mut file, &vlr).map_err(|e| damaged(format!("has no readable LAZ chunk table: {e}")))
-        })?;
+        let table = ChunkTable::read_from(&mut file, &vlr)
+            .map_err(|e| damaged(format!("has no readable LAZ chunk table: {e}")))?;
         let chunks = checked_chunks(path, &table, &vlr, header, size)?;
         let selection = DecompressionSelection::all().skip_user_data().skip_nir().skip_wavepacket();
         let selection = if extra == ExtraBytes::Skip { selection.skip_extra_bytes() } else { selection };
         Ok(Self {
-            path,
             file,
             vlr,
             chunks: chunks.into_iter(),
@@ -73,7 +74,13 @@ impl<'a, R: Read + Seek + Send> LazReader<'a, R> {
 
     /// Decompresses whole chunks until `wanted` points are reached; `room` makes a slice for a number of points.
     /// Returns the number of points, zero at the end.
-    pub(super) fn next_batch<'b>(&mut self, wanted: u64, room: impl FnOnce(usize) -> &'b mut [u8]) -> Result<usize> {
+    pub(super) fn next_batch<'b>(
+        &mut self,
+        path: &Path,
+        wanted: u64,
+        room: impl FnOnce(usize) -> &'b mut [u8],
+    ) -> Result<usize> {
+        let damaged = |what: &str| Error::malformed(path, what);
         let mut batch: Vec<ChunkTableEntry> = Vec::new();
         let (mut points, mut bytes) = (0, 0);
         while points < wanted {
@@ -82,40 +89,37 @@ impl<'a, R: Read + Seek + Send> LazReader<'a, R> {
             bytes += chunk.byte_count;
             batch.push(chunk);
         }
-        let points = usize::try_from(points).map_err(|_| self.damaged("has more points than memory can address"))?;
+        let points = usize::try_from(points).map_err(|_| damaged("has more points than memory can address"))?;
         if points == 0 {
             return Ok(0);
         }
         self.compressed.clear();
-        (&mut self.file).take(bytes).read_to_end(&mut self.compressed).map_err(Error::io(self.path))?;
+        (&mut self.file).take(bytes).read_to_end(&mut self.compressed).map_err(Error::io(path))?;
         if self.compressed.len() as u64 != bytes {
-            return Err(self.damaged("ends within its points"));
+            return Err(damaged("ends within its points"));
         }
-        self.check_streams(&batch)?;
+        if !self.streams_are_sound(&batch) {
+            return Err(damaged("has a LAZ chunk whose sizes or streams are damaged"));
+        }
         let (compressed, vlr) = (&self.compressed, &self.vlr);
-        guarded(self.path, || {
-            ::laz::laszip::parallel::par_decompress_selective(compressed, room(points), vlr, &batch, self.selection)
-                .map_err(|e| Error::malformed(self.path, format!("has points that cannot be decompressed: {e}")))
-        })?;
+        ::laz::laszip::parallel::par_decompress_selective(compressed, room(points), vlr, &batch, self.selection)
+            .map_err(|e| damaged(&format!("has points that cannot be decompressed: {e}")))?;
         Ok(points)
     }
 
-    /// Holds what precedes the compressed streams of each chunk against the size of the chunk.
-    fn check_streams(&self, batch: &[ChunkTableEntry]) -> Result<()> {
+    /// Whether what precedes the compressed streams of each chunk fits the size of the chunk.
+    fn streams_are_sound(&self, batch: &[ChunkTableEntry]) -> bool {
         let mut rest = self.compressed.as_slice();
-        for chunk in batch {
+        batch.iter().all(|chunk| {
             let length = usize::try_from(chunk.byte_count).unwrap_or(usize::MAX).min(rest.len());
             let (bytes, after) = rest.split_at(length);
             rest = after;
-            if chunk.point_count > 0 && !self.streams_are_sound(bytes) {
-                return Err(self.damaged("has a LAZ chunk whose sizes or streams are damaged"));
-            }
-        }
-        Ok(())
+            chunk.point_count == 0 || self.chunk_is_sound(bytes)
+        })
     }
 
     /// Whether the streams after the first point, which is not compressed, fit in the chunk and begin as they must.
-    fn streams_are_sound(&self, chunk: &[u8]) -> bool {
+    fn chunk_is_sound(&self, chunk: &[u8]) -> bool {
         let Some((_, streams)) = chunk.split_at_checked(self.record_length) else { return false };
         let Some(layers) = self.layers else { return begins_soundly(streams) };
         // The number of points comes first, then the size of each layer, then the layers.
@@ -129,10 +133,6 @@ impl<'a, R: Read + Seek + Send> LazReader<'a, R> {
             content = after;
         }
         true
-    }
-
-    fn damaged(&self, what: &str) -> Error {
-        Error::malformed(self.path, what)
     }
 }
 
@@ -217,7 +217,8 @@ fn checked_chunks(
         }
         bytes = bytes.saturating_add(chunk.byte_count);
         let decompressed = chunk.point_count.saturating_mul(u64::from(header.record_length));
-        if bytes > size || chunk.point_count > left || decompressed > MAX_CHUNK_BYTES {
+        let most = FREE_CHUNK_BYTES.max(chunk.byte_count.saturating_mul(MAX_RATIO)).min(MAX_CHUNK_BYTES);
+        if bytes > size || chunk.point_count > left || decompressed > most {
             let what = format!(
                 "has a LAZ chunk of {} points in {} bytes, which does not fit the {} points of its header",
                 chunk.point_count, chunk.byte_count, header.points

@@ -1,46 +1,79 @@
-//! Files in and out; the extension tells the format. Every output appears only when it is complete.
+//! Files in and out of Belvedere.
+//!
+//! Readers take a [`Source`]: a path, bytes in memory, or any `Read + Seek` with a name. Writers take an [`Output`]: a path or any
+//! `Write + Seek` with a name. The extension of the name selects the format. A file appears under its name only when it is
+//! complete ([`atomic`]).
+//!
+//! # Features
+//! Formats that need crates of their own are features, all on by default: `las` (LAS, LAZ, COPC), `e57`, `ply` (reading), `npy`
+//! (NPY, NPZ ball files, masbcpp's folders), `tiff` (GeoTIFF), `obj` (reading). `crs` (from `belvedere-data`) is the database of
+//! reference systems. Text, PCD, PTX, GeoJSON, CityJSON, tables, weather files and trajectories are always there. A format that
+//! was not built in gives [`belvedere_data::Error::MissingFeature`].
 
 mod assemble;
 pub mod atomic;
 mod ball_formats;
 mod balls;
 mod cityjson;
+mod cloud_batches;
 pub mod colors;
 mod columns;
+#[cfg(feature = "e57")]
 mod e57;
 mod geojson;
 mod geojson_read;
+#[cfg(feature = "tiff")]
 mod geotiff;
+#[cfg(feature = "las")]
 mod las;
+#[cfg(feature = "las")]
 mod las_columns;
+#[cfg(feature = "las")]
 mod las_extra;
+#[cfg(feature = "las")]
 mod las_header;
+#[cfg(feature = "las")]
 mod laz;
+#[cfg(feature = "npy")]
 mod masbcpp;
 mod mesh;
+#[cfg(feature = "ply")]
 mod mesh_ply;
+#[cfg(feature = "npy")]
 mod npy;
+#[cfg(feature = "npy")]
+mod npy_header;
+#[cfg(feature = "npy")]
 mod npz_arrays;
+#[cfg(feature = "obj")]
 mod obj;
 mod observers;
 mod outline;
+mod output;
 mod part;
 mod pcd;
+#[cfg(feature = "ply")]
 mod ply;
 mod polygons;
 mod ptx;
 mod read_cloud;
+mod read_options;
 mod read_report;
 mod rows;
+#[cfg(feature = "npy")]
 mod saved_matrix;
+mod source;
 mod table;
 mod trajectory;
 mod weather;
 mod write_cloud;
 mod write_faces;
+#[cfg(feature = "las")]
 mod write_las;
+#[cfg(feature = "npy")]
 mod write_masbcpp;
 mod write_mesh;
+#[cfg(feature = "npy")]
 mod write_npy;
 mod write_ply;
 mod write_table;
@@ -49,9 +82,11 @@ mod xyz;
 
 pub use balls::{is_ball_file, read_balls, write_balls};
 pub use cityjson::{LevelOfDetail, read_cityjson};
+pub use cloud_batches::{CloudBatch, CloudBatches, read_batches};
 pub use colors::{class_color, in_shadow, ramp_colors};
 pub use geojson::{Area, GeojsonCoordinates, write_geojson_areas};
 pub use geojson_read::{GeojsonFeature, Shape, read_geojson};
+#[cfg(feature = "tiff")]
 pub use geotiff::{
     Georeference, write_f32 as write_tif_f32, write_u8 as write_tif_u8, write_u16 as write_tif_u16,
     write_u32 as write_tif_u32,
@@ -59,17 +94,23 @@ pub use geotiff::{
 pub use mesh::read_mesh;
 pub use observers::{ObserverRow, RowsAre, read_observers};
 pub use outline::{GridPolygon, outlines};
+pub use output::{Output, WriteSeek};
 pub use polygons::MeshReport;
-pub use read_cloud::{CLOUD_EXTENSIONS, FileReport, LeftOut, ReadOptions, ReadReport, read_cloud};
+pub use read_cloud::{CLOUD_EXTENSIONS, FileReport, LeftOut, ReadReport, read_cloud};
+pub use read_options::{ReadOptions, RowNumbers, Within};
+#[cfg(feature = "npy")]
 pub use saved_matrix::{
     MatrixHead, RowSink, SavedMatrix, read_matrix, read_matrix_head, read_matrix_rows, write_matrix, write_matrix_rows,
 };
+pub use source::{ReadSeek, Source};
 pub use table::{Cells, Table, read_table, write_table};
 pub use trajectory::{TrajectoryReport, read_trajectory};
 pub use weather::read_weather;
 pub use write_cloud::{ExtraColumn, ExtraValues, WriteReport, write_cloud};
 pub use write_faces::write_mesh;
+#[cfg(feature = "npy")]
 pub use write_masbcpp::{MasbcppFolder, write_masbcpp};
 pub use write_mesh::write_mesh_values;
+#[cfg(feature = "npy")]
 pub use write_npy::{write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_npy_u32_bands};
 pub use write_trajectory::{Heading, write_found_trajectory, write_trajectory};

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::npy;
 use super::part::{Part, narrow};
+use super::source::Source;
 use belvedere_data::{Error, Result};
 
 /// The file that makes a folder a masbcpp folder.
@@ -12,11 +13,11 @@ const NORMALS: &str = "normals.npy";
 
 /// The points, and normals if present, of the folder at `path`.
 pub(super) fn read(folder: &Path) -> Result<Part> {
-    let mut part = npy::read(&folder.join(COORDINATES))?;
+    let mut part = npy::read(Source::path(folder.join(COORDINATES)).open()?)?;
     part.report.format = format!("masbcpp folder, {}", part.report.format);
     let path = folder.join(NORMALS);
     if path.is_file() {
-        let (normals, _) = npy::read_rows(&path)?;
+        let (normals, _) = npy::read_rows(Source::path(&path).open()?)?;
         if normals.rows.len() != part.coordinates.len() {
             let what =
                 format!("holds {} normals for {} points of {COORDINATES}", normals.rows.len(), part.coordinates.len());

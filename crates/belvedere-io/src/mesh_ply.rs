@@ -1,13 +1,13 @@
 //! PLY files with faces.
 
 use std::io::Cursor;
-use std::path::Path;
 
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
 use super::ply::scalar;
 use super::polygons::{MeshBuilder, MeshReport};
+use super::source::Source;
 use belvedere_data::{Error, Mesh, Result};
 
 /// A vertex or a face, whichever the element being read is.
@@ -61,8 +61,9 @@ fn list(property: Property) -> Option<Vec<i64>> {
 /// # Errors
 /// [`Error::Io`] where the file cannot be read, [`Error::Malformed`] for syntax errors, a file without faces, indices
 /// without a vertex, and coordinates that are not finite.
-pub(crate) fn read_mesh_ply(path: &Path) -> Result<(Mesh, MeshReport)> {
-    let bytes = std::fs::read(path).map_err(Error::io(path))?;
+pub(super) fn read(source: Source<'_>) -> Result<(Mesh, MeshReport)> {
+    let (name, bytes) = source.read_all()?;
+    let path = name.as_path();
     let malformed = |e| Error::malformed(path, format!("not a readable PLY file: {e}"));
     let parser = Parser::<Element>::new();
     let mut reader = Reader::new(Cursor::new(bytes.as_slice()));

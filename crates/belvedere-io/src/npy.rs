@@ -1,21 +1,19 @@
 //! NumPy arrays of coordinates, (N, 3) or wider, f32 or f64, either order and byte order.
 
-use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use npyz::{NpyFile, Order};
 
-use super::part::{Coordinates, Part, guarded, open};
+use super::npy_header::read_header;
+use super::part::{Coordinates, Part};
+use super::source::Input;
 use belvedere_data::{Error, Result};
 
-/// Headers that NumPy writes have some hundred bytes.
-const MAX_HEADER: u32 = 1 << 16;
-
-/// The first three columns of the array at `path` as coordinates.
-pub(super) fn read(path: &Path) -> Result<Part> {
-    let (rows, kind) = read_rows(path)?;
-    let mut part = Part::new(path, format!("NPY, {} columns of {}", rows.width, kind));
+/// The first three columns of the array as coordinates.
+pub(super) fn read(input: Input<'_>) -> Result<Part> {
+    let path = input.name.clone();
+    let (rows, kind) = read_rows(input)?;
+    let mut part = Part::new(&path, format!("NPY, {} columns of {}", rows.width, kind));
     if rows.width > 3 {
         part.note(format!("columns dropped: all after the third of {}", rows.width));
     }
@@ -31,36 +29,36 @@ pub(super) struct Table {
 }
 
 /// Reads an (N, 3) or wider array of f32 or f64; gives its type too.
-pub(super) fn read_rows(path: &Path) -> Result<(Table, &'static str)> {
-    let (mut file, size) = open(path)?;
-    check_header_length(path, &mut file)?;
-    guarded(path, || {
-        let array = NpyFile::new(file).map_err(|e| Error::malformed(path, format!("is not a NumPy array: {e}")))?;
-        let shape = array.shape().to_vec();
-        let (Some(&count), Some(&width), 2) = (shape.first(), shape.get(1), shape.len()) else {
-            return Err(Error::malformed(path, format!("has shape {shape:?}, but (N, 3) is needed")));
-        };
-        // One byte per number is the least an array can take.
-        if width < 3 || count.checked_mul(width).is_none_or(|numbers| numbers > size) {
-            let what = format!("has shape {shape:?}, which is no (N, 3) array that fits in its {size} bytes");
-            return Err(Error::malformed(path, what));
-        }
-        let layout = Layout {
-            count: usize::try_from(count).unwrap_or(0),
-            width: usize::try_from(width).unwrap_or(0),
-            order: array.order(),
-        };
-        match array.try_data::<f64>() {
-            Ok(numbers) => Ok((layout.collect(path, numbers)?, "f64")),
-            Err(array) => match array.try_data::<f32>() {
-                Ok(numbers) => Ok((layout.collect(path, numbers.map(|v| v.map(f64::from)))?, "f32")),
-                Err(array) => {
-                    let what = format!("holds numbers of type {}, but f32 or f64 are needed", array.dtype().descr());
-                    Err(Error::malformed(path, what))
-                }
-            },
-        }
-    })
+pub(super) fn read_rows(input: Input<'_>) -> Result<(Table, &'static str)> {
+    let Input { name, mut reader, size } = input;
+    let path = name.as_path();
+    let header = read_header(&mut reader).map_err(|e| Error::malformed(path, format!("is not a NumPy array: {e}")))?;
+    let array = NpyFile::with_header(header, reader);
+    let shape = array.shape().to_vec();
+    let (Some(&count), Some(&width), 2) = (shape.first(), shape.get(1), shape.len()) else {
+        return Err(Error::malformed(path, format!("has shape {shape:?}, but (N, 3) is needed")));
+    };
+    // Four bytes a number is the least that is read.
+    if width < 3 || count.checked_mul(width).and_then(|numbers| numbers.checked_mul(4)).is_none_or(|least| least > size)
+    {
+        let what = format!("has shape {shape:?}, which is no (N, 3) array that fits in its {size} bytes");
+        return Err(Error::malformed(path, what));
+    }
+    let layout = Layout {
+        count: usize::try_from(count).unwrap_or(0),
+        width: usize::try_from(width).unwrap_or(0),
+        order: array.order(),
+    };
+    match array.try_data::<f64>() {
+        Ok(numbers) => Ok((layout.collect(path, numbers)?, "f64")),
+        Err(array) => match array.try_data::<f32>() {
+            Ok(numbers) => Ok((layout.collect(path, numbers.map(|v| v.map(f64::from)))?, "f32")),
+            Err(array) => {
+                let what = format!("holds numbers of type {}, but f32 or f64 are needed", array.dtype().descr());
+                Err(Error::malformed(path, what))
+            }
+        },
+    }
 }
 
 struct Layout {
@@ -85,17 +83,4 @@ impl Layout {
         }
         Ok(Table { rows, width: self.width })
     }
-}
-
-/// The npyz crate allocates the length of the header as written.
-fn check_header_length(path: &Path, file: &mut BufReader<File>) -> Result<()> {
-    let mut start = Vec::new();
-    file.take(12).read_to_end(&mut start).map_err(Error::io(path))?;
-    let long = start.get(6).is_some_and(|&version| version >= 2);
-    let length = start.get(8..).and_then(|rest| rest.first_chunk()).map(|&bytes| u32::from_le_bytes(bytes));
-    if !start.starts_with(b"\x93NUMPY") || (long && length.is_none_or(|length| length > MAX_HEADER)) {
-        return Err(Error::malformed(path, "is not a NumPy array: its header is damaged"));
-    }
-    file.seek(SeekFrom::Start(0)).map_err(Error::io(path))?;
-    Ok(())
 }

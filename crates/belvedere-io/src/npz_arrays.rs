@@ -7,6 +7,8 @@ use npyz::zip::ZipWriter;
 use npyz::zip::write::FileOptions;
 use npyz::{AutoSerialize, Deserialize, NpyWriter, Order, WriterBuilder};
 
+use crate::npy_header::read_header;
+
 /// Appends an array to an archive.
 pub(crate) fn array<T: AutoSerialize, W: Write + Seek>(
     archive: &mut NpzWriter<W>,
@@ -105,7 +107,7 @@ fn read_array<T: Deserialize, R: Read + Seek, O, E: From<io::Error>>(
     }
     let file = archive.zip_archive().by_name(&npyz::npz::file_name_from_array_name(name)).map_err(io::Error::from);
     let mut file = file?;
-    let header = npyz::NpyHeader::from_reader(&mut file)?;
+    let header = read_header(&mut file).map_err(|e| invalid(format!("array {name}: {e}")))?;
     let shape = header.shape().to_vec();
     if header.order() == Order::Fortran && shape.len() > 1 {
         let what = format!("the array {name} is in Fortran order; save it with numpy.ascontiguousarray");

@@ -1,10 +1,7 @@
 //! Wavefront OBJ meshes.
 
-use std::fs::File;
-use std::io::BufReader;
-use std::path::Path;
-
 use super::polygons::{MeshBuilder, MeshReport};
+use super::source::Input;
 use belvedere_data::{Error, Mesh, Result};
 
 /// Name the parser gives to faces that come before any `o` or `g` line.
@@ -18,8 +15,9 @@ const UNNAMED: &str = "unnamed_object";
 /// # Errors
 /// [`Error::Io`] where the file cannot be opened, [`Error::Malformed`] for syntax errors, indices without a vertex,
 /// coordinates that are not finite, and files without a triangle.
-pub(crate) fn read_obj(path: &Path) -> Result<(Mesh, MeshReport)> {
-    let mut reader = BufReader::new(File::open(path).map_err(Error::io(path))?);
+pub(super) fn read(input: Input<'_>) -> Result<(Mesh, MeshReport)> {
+    let Input { name, mut reader, .. } = input;
+    let path = name.as_path();
     // the parser would cut polygons into fans, which is wrong for concave ones
     let options =
         tobj::LoadOptions { triangulate: false, ignore_points: true, ignore_lines: true, ..Default::default() };

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde_json::{Map, Value};
 
 use crate::geojson_read::{Shape, read_geojson};
+use crate::source::Source;
 use crate::table::read_table;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
@@ -47,11 +48,13 @@ pub enum RowsAre {
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, text in place of numbers and files without observers, and
 /// what [`read_table`] and [`read_geojson`] refuse.
-pub fn read_observers(path: &Path, crs: &Crs, rows_are: RowsAre) -> Result<Vec<ObserverRow>> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    let rows = match extension.as_str() {
-        "csv" | "txt" => of_table(path, crs, rows_are)?,
-        "geojson" | "json" => of_geojson(path, crs)?,
+pub fn read_observers<'a>(source: impl Into<Source<'a>>, crs: &Crs, rows_are: RowsAre) -> Result<Vec<ObserverRow>> {
+    let source = source.into();
+    let name = source.name().to_owned();
+    let path = name.as_path();
+    let rows = match source.extension().as_str() {
+        "csv" | "txt" => of_table(source, path, crs, rows_are)?,
+        "geojson" | "json" => of_geojson(source, path, crs)?,
         _ => {
             let supported = ".csv .txt .geojson .json";
             return Err(Error::UnknownFormat { path: path.to_owned(), kind: "observers", supported });
@@ -63,8 +66,8 @@ pub fn read_observers(path: &Path, crs: &Crs, rows_are: RowsAre) -> Result<Vec<O
     Ok(rows)
 }
 
-fn of_table(path: &Path, crs: &Crs, rows_are: RowsAre) -> Result<Vec<ObserverRow>> {
-    let table = read_table(path)?;
+fn of_table(source: Source<'_>, path: &Path, crs: &Crs, rows_are: RowsAre) -> Result<Vec<ObserverRow>> {
+    let table = read_table(source)?;
     let scale = crs.metres_per_unit_xyz();
     let (x, y) = (table.full_column(path, "x")?, table.full_column(path, "y")?);
     let z = table.column(path, "z")?;
@@ -86,9 +89,9 @@ fn of_table(path: &Path, crs: &Crs, rows_are: RowsAre) -> Result<Vec<ObserverRow
     Ok(rows)
 }
 
-fn of_geojson(path: &Path, crs: &Crs) -> Result<Vec<ObserverRow>> {
+fn of_geojson(source: Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<ObserverRow>> {
     let mut rows = Vec::new();
-    for feature in read_geojson(path, crs)? {
+    for feature in read_geojson(source, crs)? {
         let corners = match feature.shape {
             Shape::Point(place) => vec![place],
             Shape::Line(corners) => corners,

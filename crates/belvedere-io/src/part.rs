@@ -1,14 +1,12 @@
 //! What one file gave, before all files of a cloud get a common origin.
 
-use std::fs::File;
-use std::io::BufReader;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use super::read_cloud::{FileReport, LeftOut};
+use super::read_options::{PassedOver, Reading};
+use belvedere_data::Result;
 use belvedere_data::cloud::Attributes;
 use belvedere_data::crs::Crs;
-use belvedere_data::{Error, Result};
 
 /// GPS times are of no use to order pulses when a file of more points than this has only [`FEW_TIMES`] of them.
 const MANY_POINTS: usize = 1000;
@@ -25,6 +23,8 @@ pub(super) struct Part {
     /// Scanner positions that `attributes.scanner_index` refers to.
     pub(super) scanners: Vec<[f64; 3]>,
     pub(super) crs: Crs,
+    /// Row of each point in the file where they are wanted and differ from 0, 1, 2 …
+    pub(super) rows: Option<Vec<u64>>,
     /// Whether the file keeps its coordinates as f32.
     pub(super) single_precision: bool,
     pub(super) report: FileReport,
@@ -52,6 +52,47 @@ impl Coordinates {
             Self::Real(values) => values.len(),
         }
     }
+
+    /// Position by position, in the unit of the file.
+    pub(super) fn positions(&self) -> impl Iterator<Item = [f64; 3]> {
+        let (quantised, scale, offset, real) = match self {
+            Self::Quantised { values, scale, offset } => (values.as_slice(), *scale, *offset, [].as_slice()),
+            Self::Real(values) => ([].as_slice(), [0.0; 3], [0.0; 3], values.as_slice()),
+        };
+        quantised.iter().map(move |&q| unquantise(q, scale, offset)).chain(real.iter().copied())
+    }
+
+    /// Appends coordinates that are kept in the same way.
+    #[cfg(feature = "las")]
+    pub(super) fn append(&mut self, other: Self) {
+        match (self, other) {
+            (Self::Quantised { values, .. }, Self::Quantised { values: more, .. }) => values.extend(more),
+            (Self::Real(values), Self::Real(more)) => values.extend(more),
+            (Self::Real(values), other @ Self::Quantised { .. }) => values.extend(other.positions()),
+            (mine @ Self::Quantised { .. }, other) => {
+                let all = mine.positions().chain(other.positions()).collect();
+                *mine = Self::Real(all);
+            }
+        }
+    }
+
+    /// The coordinates at `indices`, in that order.
+    pub(super) fn select(&self, indices: &[u32]) -> Self {
+        fn of<T: Copy>(values: &[T], indices: &[u32]) -> Vec<T> {
+            indices.iter().filter_map(|&i| values.get(i as usize).copied()).collect()
+        }
+        match self {
+            Self::Quantised { values, scale, offset } => {
+                Self::Quantised { values: of(values, indices), scale: *scale, offset: *offset }
+            }
+            Self::Real(values) => Self::Real(of(values, indices)),
+        }
+    }
+}
+
+/// The coordinate that a LAS file keeps as an integer.
+pub(super) fn unquantise(q: [i32; 3], scale: [f64; 3], offset: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| f64::from(q[i]) * scale[i] + offset[i])
 }
 
 impl Part {
@@ -76,6 +117,32 @@ impl Part {
         self.report.crs = crs.describe();
         self.report.crs_source = source.into();
         self.crs = crs;
+    }
+
+    /// Drops the points that `reading` does not ask for.
+    ///
+    /// # Errors
+    /// [`belvedere_data::Error::MissingAttribute`] where classes are asked for but the file has none.
+    pub(super) fn keep_selected(&mut self, reading: &Reading<'_>) -> Result<()> {
+        let Some(selection) = reading.selection(&self.crs) else { return Ok(()) };
+        let mut passed_over = PassedOver::default();
+        let kept = selection.kept(&self.coordinates, &self.attributes, &mut passed_over)?;
+        self.keep(&kept);
+        passed_over.report(self);
+        Ok(())
+    }
+
+    /// Keeps the points at `indices` only.
+    pub(super) fn keep(&mut self, indices: &[u32]) {
+        if indices.len() == self.coordinates.len() {
+            return;
+        }
+        self.rows = Some(match &self.rows {
+            Some(rows) => indices.iter().filter_map(|&i| rows.get(i as usize).copied()).collect(),
+            None => indices.iter().copied().map(u64::from).collect(),
+        });
+        self.coordinates = self.coordinates.select(indices);
+        self.attributes = self.attributes.select(indices);
     }
 
     /// Looks over the attributes for what would mislead later stages: drops GPS times that are all zero, makes normals
@@ -203,21 +270,4 @@ pub(super) fn to_u8(value: f64) -> u8 {
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "float casts saturate, which is meant")]
 pub(super) fn to_u16(value: f64) -> u16 {
     value.round() as u16
-}
-
-/// Opens a file; gives its size too.
-pub(super) fn open(path: &Path) -> Result<(BufReader<File>, u64)> {
-    let file = File::open(path).map_err(Error::io(path))?;
-    let metadata = file.metadata().map_err(Error::io(path))?;
-    if !metadata.is_file() {
-        return Err(Error::malformed(path, "is not a file"));
-    }
-    Ok((BufReader::with_capacity(1 << 16, file), metadata.len()))
-}
-
-/// Runs `read`, a call into a crate that can panic on damaged bytes, and makes such a panic an error about `path`.
-pub(super) fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T>) -> Result<T> {
-    // What `read` borrows is dropped with the error, so nothing half-changed is seen afterwards.
-    catch_unwind(AssertUnwindSafe(read))
-        .unwrap_or_else(|_| Err(Error::malformed(path, "the content is damaged: it cannot be decoded")))
 }

@@ -3,8 +3,10 @@
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-use super::part::{Part, open};
+use super::part::Part;
+use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
+use super::source::Input;
 use belvedere_data::{Error, Result};
 
 /// Lines of a header; a file without DATA among these is none.
@@ -33,9 +35,10 @@ struct Field {
     count: usize,
 }
 
-/// The points of the file at `path`.
-pub(super) fn read(path: &Path) -> Result<Part> {
-    let (mut file, size) = open(path)?;
+/// The points of the source.
+pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
+    let Input { name, reader: mut file, size } = input;
+    let path = name.as_path();
     let mut part = Part::new(path, "PCD");
     let header = read_header(path, &mut file, &mut part)?;
     part.report.format = format!("PCD, {}", header.data);
@@ -50,7 +53,7 @@ pub(super) fn read(path: &Path) -> Result<Part> {
         return Err(Error::malformed(path, what));
     }
     let roles: Vec<Role> = header.fields.iter().flat_map(Field::roles).collect();
-    let mut rows = Rows::new(roles);
+    let mut rows = Rows::new(roles).with_numbers(reading.options.row_numbers);
     if !rows.has_position() {
         return Err(Error::malformed(path, "has no fields x, y and z"));
     }
@@ -65,9 +68,9 @@ pub(super) fn read(path: &Path) -> Result<Part> {
     }
     part.single_precision = header.fields.iter().any(|f| f.kind == 'F' && f.size == 4 && f.roles() == [Role::X]);
     match header.data.as_str() {
-        "ascii" => read_ascii(path, &mut file, &header, &mut rows, &mut part)?,
-        "binary" => read_binary(path, &mut file, &header, &mut rows)?,
-        "binary_compressed" => read_compressed(path, &mut file, &header, body, &mut rows)?,
+        "ascii" => read_ascii(path, &mut file, &header, &mut rows, &mut part, reading)?,
+        "binary" => read_binary(path, &mut file, &header, &mut rows, reading)?,
+        "binary_compressed" => read_compressed(path, &mut file, &header, body, &mut rows, reading)?,
         other => return Err(Error::malformed(path, format!("has data of the unknown kind {other}"))),
     }
     rows.finish(&mut part);
@@ -176,10 +179,18 @@ fn put_color(row: &mut Row, [red, green, blue]: [u8; 3]) {
     row.set(Role::Blue, f64::from(blue));
 }
 
-fn read_ascii(path: &Path, file: &mut impl BufRead, header: &Header, rows: &mut Rows, part: &mut Part) -> Result<()> {
+fn read_ascii(
+    path: &Path,
+    file: &mut impl BufRead,
+    header: &Header,
+    rows: &mut Rows,
+    part: &mut Part,
+    reading: &Reading<'_>,
+) -> Result<()> {
     let (mut bad, mut good) = (0_usize, 0_usize);
     let mut bytes = Vec::new();
     while (good + bad) as u64 != header.points {
+        reading.check(rows.count())?;
         bytes.clear();
         if file.take(MAX_LINE).read_until(b'\n', &mut bytes).map_err(Error::io(path))? == 0 {
             break;
@@ -193,7 +204,10 @@ fn read_ascii(path: &Path, file: &mut impl BufRead, header: &Header, rows: &mut 
                 rows.push(&row);
                 good += 1;
             }
-            None => bad += 1,
+            None => {
+                rows.pass_over();
+                bad += 1;
+            }
         }
     }
     if bad > good || (good == 0 && header.points > 0) {
@@ -228,11 +242,18 @@ fn to_bits(value: f64) -> u32 {
     value as u32
 }
 
-fn read_binary(path: &Path, file: &mut impl Read, header: &Header, rows: &mut Rows) -> Result<()> {
+fn read_binary(
+    path: &Path,
+    file: &mut impl Read,
+    header: &Header,
+    rows: &mut Rows,
+    reading: &Reading<'_>,
+) -> Result<()> {
     let stride = header.fields.iter().map(|field| field.size * field.count).sum();
     let mut record = vec![0_u8; stride];
     let cut = |index: u64| Error::malformed(path, format!("ends after {index} of {} points", header.points));
     for index in 0..header.points {
+        reading.check(index)?;
         file.read_exact(&mut record).map_err(|_| cut(index))?;
         let mut row = Row::default();
         let mut rest = record.as_slice();
@@ -246,7 +267,14 @@ fn read_binary(path: &Path, file: &mut impl Read, header: &Header, rows: &mut Ro
     Ok(())
 }
 
-fn read_compressed(path: &Path, file: &mut impl Read, header: &Header, body: u64, rows: &mut Rows) -> Result<()> {
+fn read_compressed(
+    path: &Path,
+    file: &mut impl Read,
+    header: &Header,
+    body: u64,
+    rows: &mut Rows,
+    reading: &Reading<'_>,
+) -> Result<()> {
     let damaged = || Error::malformed(path, "has compressed data that cannot be unpacked; it is cut off or damaged");
     let mut sizes = [0_u8; 8];
     file.read_exact(&mut sizes).map_err(|_| damaged())?;
@@ -270,6 +298,7 @@ fn read_compressed(path: &Path, file: &mut impl Read, header: &Header, body: u64
         rest = after;
     }
     for i in 0..points {
+        reading.check(i as u64)?;
         let mut row = Row::default();
         for (field, column) in &columns {
             let value = column.get(i * field.size * field.count..).ok_or_else(damaged)?;

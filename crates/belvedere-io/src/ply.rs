@@ -1,21 +1,25 @@
 //! PLY: the vertices of ascii and binary files; faces and other elements are passed over.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
-use std::path::Path;
+use std::io::{BufRead, Read};
+use std::path::{Path, PathBuf};
 
-use ply_rs_bw::parser::{Parser, Reader};
+use ply_rs_bw::parser::{Parser, Reader as HeaderReader};
 use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
-use super::part::{Part, guarded, open};
+use super::part::Part;
+use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
+use super::source::{Input, Reader};
 use belvedere_data::crs::text::crs_from_comments;
 use belvedere_data::{Error, Result};
 
 /// A header longer than this is no header.
 const MAX_HEADER: u64 = 1 << 20;
+
+/// A line of a text file longer than this describes no vertex or face.
+const MAX_LINE: u64 = 1 << 24;
 
 /// The element that holds the points.
 const VERTEX: &str = "vertex";
@@ -43,25 +47,27 @@ impl PropertyAccess for Vertex {
 
 /// A PLY file whose header has been checked against its size.
 pub(super) struct PlyFile<'a> {
-    path: &'a Path,
-    file: BufReader<File>,
+    name: PathBuf,
+    reader: Reader<'a>,
     header: Header,
 }
 
 impl<'a> PlyFile<'a> {
-    pub(super) fn open(path: &'a Path) -> Result<Self> {
-        let (mut file, size) = open(path)?;
-        guarded(path, || {
-            let bytes = header_bytes(path, &mut file)?;
-            let header = Parser::<Vertex>::new()
-                .read_header(&mut Reader::new(bytes.as_slice()))
-                .map_err(|e| Error::malformed(path, format!("is not a readable PLY file: {e}")))?;
-            let body = size.saturating_sub(bytes.len() as u64);
-            for element in header.elements.values() {
-                check_count(path, element, header.encoding, body)?;
-            }
-            Ok(Self { path, file, header })
-        })
+    pub(super) fn open(input: Input<'a>) -> Result<Self> {
+        let Input { name, mut reader, size } = input;
+        let bytes = header_bytes(&name, &mut reader)?;
+        let header = Parser::<Vertex>::new()
+            .read_header(&mut HeaderReader::new(bytes.as_slice()))
+            .map_err(|e| Error::malformed(&name, format!("is not a readable PLY file: {e}")))?;
+        let body = size.saturating_sub(bytes.len() as u64);
+        for element in header.elements.values() {
+            check_count(&name, element, header.encoding, body)?;
+        }
+        Ok(Self { name, reader, header })
+    }
+
+    pub(super) fn name(&self) -> &Path {
+        &self.name
     }
 
     pub(super) fn vertex(&self) -> Option<&ElementDef> {
@@ -73,37 +79,39 @@ impl<'a> PlyFile<'a> {
     }
 
     /// Hands every vertex to `take`; what follows the vertices is not looked at.
-    pub(super) fn for_each_vertex<V: PropertyAccess>(&mut self, take: impl FnMut(V)) -> Result<()> {
-        let Self { path, file, header } = self;
-        guarded(path, || {
-            for (name, element) in &header.elements {
-                if name == VERTEX {
-                    return for_each(&Parser::<V>::new(), path, file, element, header.encoding, take);
-                }
-                for_each(&Parser::<Vertex>::new(), path, file, element, header.encoding, |_| {})?;
+    pub(super) fn for_each_vertex<V: PropertyAccess>(&mut self, take: impl FnMut(V) -> Result<()>) -> Result<()> {
+        let Self { name, reader, header } = self;
+        for (element_name, element) in &header.elements {
+            if element_name == VERTEX {
+                return for_each(&Parser::<V>::new(), name, reader, element, header.encoding, take);
             }
-            Err(Error::malformed(path, "has no vertices"))
-        })
+            for_each(&Parser::<Vertex>::new(), name, reader, element, header.encoding, |_| Ok(()))?;
+        }
+        Err(Error::malformed(name, "has no vertices"))
     }
 }
 
-/// The vertices of the file at `path`.
-pub(super) fn read(path: &Path) -> Result<Part> {
-    let mut file = PlyFile::open(path)?;
-    let mut part = Part::new(path, format!("PLY, {}", file.header.encoding));
+/// The vertices of the source.
+pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
+    let mut file = PlyFile::open(input)?;
+    let mut part = Part::new(file.name(), format!("PLY, {}", file.header.encoding));
     if let Some(crs) = crs_from_comments(file.comments()) {
         part.set_crs(crs, "comments in the header");
     }
-    let vertex = file.vertex().ok_or_else(|| Error::malformed(path, "has no vertices"))?;
+    let vertex = file.vertex().ok_or_else(|| Error::malformed(file.name(), "has no vertices"))?;
     let mut rows = Rows::new(vertex.properties.keys().filter_map(|property| role_of(property)));
     if !rows.has_position() {
-        return Err(Error::malformed(path, "has vertices without x, y and z"));
+        return Err(Error::malformed(file.name(), "has vertices without x, y and z"));
     }
     note_unknown(&mut part, vertex);
     part.single_precision = vertex.properties.iter().any(|(property, definition)| {
         role_of(property) == Some(Role::X) && definition.data_type == PropertyType::Scalar(ScalarType::Float)
     });
-    file.for_each_vertex(|vertex: Vertex| rows.push(&vertex.0))?;
+    file.for_each_vertex(|vertex: Vertex| {
+        reading.check(rows.count())?;
+        rows.push(&vertex.0);
+        Ok(())
+    })?;
     rows.finish(&mut part);
     Ok(part)
 }
@@ -186,14 +194,14 @@ fn for_each<V: PropertyAccess>(
     file: &mut impl BufRead,
     element: &ElementDef,
     encoding: Encoding,
-    mut take: impl FnMut(V),
+    mut take: impl FnMut(V) -> Result<()>,
 ) -> Result<()> {
     let mut line = Vec::new();
     for index in 0..element.count {
         let vertex = match encoding {
             Encoding::Ascii => {
                 line.clear();
-                file.read_until(b'\n', &mut line).map_err(Error::io(path))?;
+                file.take(MAX_LINE).read_until(b'\n', &mut line).map_err(Error::io(path))?;
                 parser.read_ascii_element(&String::from_utf8_lossy(&line), element)
             }
             Encoding::BinaryBigEndian => parser.read_big_endian_element(file, element),
@@ -201,7 +209,7 @@ fn for_each<V: PropertyAccess>(
         };
         take(vertex.map_err(|e| {
             Error::malformed(path, format!("{} {} of {} is unreadable: {e}", element.name, index + 1, element.count))
-        })?);
+        })?)?;
     }
     Ok(())
 }

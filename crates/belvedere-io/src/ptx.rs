@@ -3,8 +3,10 @@
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-use super::part::{Part, open};
+use super::part::Part;
+use super::read_options::Reading;
 use super::rows::{POSITION, Role, Row, Rows};
+use super::source::Input;
 use belvedere_data::{Error, Result};
 
 /// A line longer than this is no point.
@@ -13,12 +15,13 @@ const MAX_LINE: u64 = 1 << 12;
 /// Lines of a scan's header: two sizes, scanner position and axes, a 4 x 4 matrix.
 const HEADER_LINES: usize = 10;
 
-/// The points of all scans of the file at `path`; grid cells at (0, 0, 0), where nothing came back, are left out.
+/// The points of all scans of the source; grid cells at (0, 0, 0), where nothing came back, are left out.
 ///
 /// # Errors
 /// [`Error::Malformed`] for a header that is no scan's, an unreadable line, or a scan that is cut off.
-pub(super) fn read(path: &Path) -> Result<Part> {
-    let (file, size) = open(path)?;
+pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
+    let Input { name, reader: file, size } = input;
+    let path = name.as_path();
     let mut lines = Lines { path, file, number: 0, bytes: Vec::new() };
     let mut part = Part::new(path, "PTX");
     let mut rows: Option<(usize, Rows)> = None;
@@ -34,18 +37,21 @@ pub(super) fn read(path: &Path) -> Result<Part> {
         let index = u16::try_from(part.scanners.len() - 1).unwrap_or(u16::MAX);
         for _ in 0..header.cells {
             let values = lines.next()?.ok_or_else(|| lines.malformed("ends within a scan"))?;
-            let width = rows.get_or_insert_with(|| (values.len(), Rows::new(roles(values.len())))).0;
-            if values.len() != width || width < 3 {
+            let (width, rows) = rows.get_or_insert_with(|| {
+                let rows = Rows::new(roles(values.len())).with_numbers(reading.options.row_numbers);
+                (values.len(), rows)
+            });
+            reading.check(rows.count())?;
+            if values.len() != *width || *width < 3 {
                 return Err(lines.malformed("does not have as many numbers as the first point"));
             }
             if values.starts_with(&[0.0; 3]) {
                 empty += 1;
+                rows.pass_over();
                 continue;
             }
-            if let Some((_, rows)) = &mut rows {
-                rows.push(&row(&header, &values));
-                scanner_index.push(index);
-            }
+            rows.push(&row(&header, &values));
+            scanner_index.push(index);
         }
     }
     let scans = part.scanners.len();

@@ -1,23 +1,29 @@
-//! Reading one cloud from one or several files.
+//! Reading one cloud from one or several sources.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+#[cfg(feature = "e57")]
+use super::e57;
+#[cfg(feature = "las")]
+use super::las;
 use super::part::Part;
-use super::write_cloud::extension;
-use super::{assemble, e57, las, masbcpp, npy, pcd, ply, ptx, xyz};
+#[cfg(feature = "ply")]
+use super::ply;
+use super::read_options::{ReadOptions, Reading};
+use super::source::{Source, extension, unusable};
+use super::{assemble, pcd, ptx, xyz};
+#[cfg(feature = "npy")]
+use super::{masbcpp, npy};
 use belvedere_data::cloud::PointCloud;
+use belvedere_data::control::Control;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
 
 /// File extensions [`read_cloud`] knows, in lower case.
 pub const CLOUD_EXTENSIONS: &[&str] = &["las", "laz", "ply", "xyz", "txt", "csv", "pcd", "e57", "npy", "ptx"];
 
-/// How to read.
-#[derive(Clone, Debug, Default)]
-pub struct ReadOptions {
-    /// Reference system as for [`Crs::parse`], in place of what the files say. Default: none, the files are believed.
-    pub crs: Option<String>,
-}
+/// The same for messages.
+const SUPPORTED: &str = ".las, .laz, .ply, .xyz, .txt, .csv, .pcd, .e57, .npy, .ptx";
 
 /// What reading a cloud found.
 #[derive(Clone, Debug, Default)]
@@ -32,12 +38,15 @@ pub struct ReadReport {
     pub dropped_attributes: Vec<&'static str>,
     /// What should be known before the cloud is used.
     pub notes: Vec<String>,
+    /// Row of each point among the points of its file, from 0, where [`ReadOptions::row_numbers`] asks for it; empty otherwise.
+    /// The points of the files follow each other as in `files`.
+    pub rows: Vec<u64>,
 }
 
 /// What reading one file found.
 #[derive(Clone, Debug, Default)]
 pub struct FileReport {
-    /// The file.
+    /// The path, or the name of the source.
     pub path: PathBuf,
     /// Its format, such as "LAS 1.2, point format 1, LAZ".
     pub format: String,
@@ -72,105 +81,147 @@ impl ReadReport {
     }
 }
 
-/// One cloud from the files at `paths`, in that order and the order of their points, with a report.
+/// One cloud from `sources`, in that order and the order of their points, with a report.
 ///
-/// A folder stands for all files in it with one of [`CLOUD_EXTENSIONS`], sorted by name; a folder with `coords.npy`
-/// is masbcpp's layout and stands for one cloud with its normals. Formats are told by extension, in any case.
+/// A path to a folder means all files in it with one of [`CLOUD_EXTENSIONS`], sorted by name; a folder with `coords.npy`
+/// has the layout of masbcpp and is one cloud with its normals. The extension selects the format, in upper or lower case.
 ///
-/// Coordinates become metres by the unit of the reference system and f32 relative to a near origin: the middle, in
-/// whole metres, of the points within 10 km of the median point of all files. Points more than 1000 km from the
-/// median along an axis, and points that are not finite, are left out and counted. An attribute that one of the files
-/// lacks is dropped; files without any point count for nothing. The result does not depend on the number of threads.
+/// Coordinates become metres by the unit of the reference system and f32 relative to a near origin: that of
+/// [`ReadOptions::frame`], or else the middle, in whole metres, of the points within 10 km of the median point of all files.
+/// Points more than 1000 km from the median (or from the given origin) along an axis, and points that are not finite, are left out
+/// and counted. An attribute that one of the files lacks is dropped; files without any point are ignored. The result does not
+/// depend on the number of threads. The items of progress are points.
 ///
 /// # Errors
-/// [`Error::Io`], [`Error::UnknownFormat`] and [`Error::Malformed`] about the file at fault; [`Error::UnusableCrs`] for
-/// degrees, earth-centred coordinates and files whose systems differ; [`Error::NoPoints`] where no file has a point;
-/// [`Error::InvalidParameter`] for a reference system in `options` that is not understood.
-pub fn read_cloud(paths: &[PathBuf], options: &ReadOptions) -> Result<(PointCloud, ReadReport)> {
-    let forced = options.crs.as_deref().map(Crs::parse).transpose()?;
+/// [`Error::Io`], [`Error::UnknownFormat`], [`Error::MissingFeature`] and [`Error::Malformed`] about the source at fault;
+/// [`Error::UnusableCrs`] for degrees, earth-centred coordinates and files whose systems differ from each other or from that of the
+/// frame; [`Error::NoPoints`] where no file has a point; [`Error::InvalidParameter`] for options that cannot be followed;
+/// [`Error::MissingAttribute`] where classes are asked for but a file has none; [`Error::Cancelled`].
+pub fn read_cloud<'a, S: Into<Source<'a>>>(
+    sources: impl IntoIterator<Item = S>,
+    options: &ReadOptions,
+    control: &Control<'_>,
+) -> Result<(PointCloud, ReadReport)> {
+    let forced = options.forced_crs()?;
+    let reading = Reading { options, forced: forced.as_ref(), control };
+    let mut systems = Systems::new(options);
     let mut parts: Vec<Part> = Vec::new();
-    for source in sources(paths)? {
-        let mut part = read_one(&source, forced.as_ref())?;
-        if let Some(crs) = &forced {
-            part.set_crs(crs.clone(), "option");
-        }
-        if let Some(why) = part.crs.refusal(assemble::any_position(&part)) {
-            return Err(Error::UnusableCrs { path: part.report.path, what: why });
-        }
+    for source in files_of(sources.into_iter().map(Into::into))? {
+        control.check()?;
+        let mut part = read_one(source, &reading)?;
+        systems.accept(&mut part, &reading)?;
         part.check_attributes();
         part.check_precision();
-        let known = parts.iter().find(|earlier| earlier.crs.kind != CrsKind::Unknown);
-        if let (Some(first), true) = (known, part.crs.kind != CrsKind::Unknown)
-            && !first.crs.same_system(&part.crs)
-        {
-            return Err(Error::UnusableCrs {
-                what: format!(
-                    "is in {}, but {} is in {}; convert one of them, or say which holds for all",
-                    part.crs.describe(),
-                    first.report.path.display(),
-                    first.crs.describe()
-                ),
-                path: part.report.path,
-            });
-        }
         parts.push(part);
     }
-    assemble::assemble(parts)
+    control.check()?;
+    assemble::assemble(parts, options)
 }
 
-/// A file, or a folder in masbcpp's layout.
-enum Source {
-    File(PathBuf),
-    Masbcpp(PathBuf),
+/// The reference system that all files must share.
+pub(super) struct Systems {
+    /// The first that is known, and what names it.
+    known: Option<(Crs, String)>,
 }
 
-fn sources(paths: &[PathBuf]) -> Result<Vec<Source>> {
-    let mut sources = Vec::new();
-    for path in paths {
-        if !path.is_dir() {
-            sources.push(Source::File(path.clone()));
-            continue;
-        }
-        if path.join(masbcpp::COORDINATES).is_file() {
-            sources.push(Source::Masbcpp(path.clone()));
-            continue;
-        }
-        let entries =
-            path.read_dir().and_then(Iterator::collect::<std::io::Result<Vec<_>>>).map_err(Error::io(path))?;
-        let mut files: Vec<PathBuf> = entries
-            .into_iter()
-            .map(|entry| entry.path())
-            .filter(|file| file.is_file() && CLOUD_EXTENSIONS.contains(&extension(file).as_str()))
-            .collect();
-        if files.is_empty() {
-            return Err(Error::malformed(path, "the folder holds no point cloud file"));
-        }
-        files.sort();
-        sources.extend(files.into_iter().map(Source::File));
+impl Systems {
+    pub(super) fn new(options: &ReadOptions) -> Self {
+        let frame = options.frame.as_ref().filter(|frame| frame.crs.kind != CrsKind::Unknown);
+        Self { known: frame.map(|frame| (frame.crs.clone(), "the frame to read into".to_owned())) }
     }
-    if sources.is_empty() {
+
+    /// Gives `part` the system of the option, and refuses one that cannot be used together with the others.
+    pub(super) fn accept(&mut self, part: &mut Part, reading: &Reading<'_>) -> Result<()> {
+        if let Some(crs) = reading.forced {
+            part.set_crs(crs.clone(), "option");
+        }
+        let path = &part.report.path;
+        if let Some(what) = part.crs.refusal(assemble::any_position(part)) {
+            return Err(Error::UnusableCrs { path: path.clone(), what });
+        }
+        if part.crs.kind == CrsKind::Unknown {
+            return Ok(());
+        }
+        match &self.known {
+            None => self.known = Some((part.crs.clone(), path.display().to_string())),
+            Some((crs, name)) if !crs.same_system(&part.crs) => {
+                let what = format!(
+                    "is in {}, but {name} is in {}; convert one of them, or say which holds for all",
+                    part.crs.describe(),
+                    crs.describe()
+                );
+                return Err(Error::UnusableCrs { path: path.clone(), what });
+            }
+            Some(_) => {}
+        }
+        Ok(())
+    }
+}
+
+/// The sources with folders replaced by their files.
+pub(super) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>) -> Result<Vec<Source<'a>>> {
+    let mut found = Vec::new();
+    for source in sources {
+        match source.folder() {
+            Some(folder) if !is_masbcpp(folder) => found.extend(files_in(folder)?.into_iter().map(Source::path)),
+            _ => found.push(source),
+        }
+    }
+    if found.is_empty() {
         return Err(Error::NoPoints { what: "no file was given".to_owned() });
     }
-    Ok(sources)
+    Ok(found)
 }
 
-fn read_one(source: &Source, forced: Option<&Crs>) -> Result<Part> {
-    let path = match source {
-        Source::Masbcpp(folder) => return masbcpp::read(folder),
-        Source::File(path) => path,
-    };
-    match extension(path).as_str() {
-        "las" | "laz" => las::read(path, forced),
-        "ply" => ply::read(path),
-        "xyz" | "txt" | "csv" => xyz::read(path),
-        "pcd" => pcd::read(path),
-        "e57" => e57::read(path),
-        "npy" => npy::read(path),
-        "ptx" => ptx::read(path),
-        _ => Err(Error::UnknownFormat {
-            path: path.clone(),
-            kind: "point cloud",
-            supported: ".las, .laz, .ply, .xyz, .txt, .csv, .pcd, .e57, .npy, .ptx",
-        }),
+fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries =
+        folder.read_dir().and_then(Iterator::collect::<std::io::Result<Vec<_>>>).map_err(Error::io(folder))?;
+    let mut files: Vec<PathBuf> = entries
+        .into_iter()
+        .map(|entry| entry.path())
+        .filter(|file| file.is_file() && CLOUD_EXTENSIONS.contains(&extension(file).as_str()))
+        .collect();
+    if files.is_empty() {
+        return Err(Error::malformed(folder, "the folder holds no point cloud file"));
     }
+    files.sort();
+    Ok(files)
+}
+
+/// Whether a folder has the layout of masbcpp.
+fn is_masbcpp(folder: &Path) -> bool {
+    folder.join("coords.npy").is_file()
+}
+
+/// The points of one source, of which those that are not asked for are dropped.
+pub(super) fn read_one(source: Source<'_>, reading: &Reading<'_>) -> Result<Part> {
+    if let Some(folder) = source.folder() {
+        #[cfg(feature = "npy")]
+        let part = masbcpp::read(folder);
+        #[cfg(not(feature = "npy"))]
+        let part = Err(Error::missing_feature(folder, "npy"));
+        return selected(part?, reading);
+    }
+    let part = match source.extension().as_str() {
+        // the points of these files are selected batch by batch
+        #[cfg(feature = "las")]
+        "las" | "laz" => return las::read(source.open()?, reading),
+        #[cfg(feature = "ply")]
+        "ply" => ply::read(source.open()?, reading),
+        "xyz" | "txt" | "csv" => xyz::read(source.open()?, reading),
+        "pcd" => pcd::read(source.open()?, reading),
+        #[cfg(feature = "e57")]
+        "e57" => e57::read(source.open()?, reading),
+        #[cfg(feature = "npy")]
+        "npy" => npy::read(source.open()?),
+        "ptx" => ptx::read(source.open()?, reading),
+        _ => Err(unusable(source.name(), "point cloud", SUPPORTED)),
+    };
+    selected(part?, reading)
+}
+
+fn selected(mut part: Part, reading: &Reading<'_>) -> Result<Part> {
+    reading.control.advance(part.coordinates.len());
+    part.keep_selected(reading)?;
+    Ok(part)
 }

@@ -1,6 +1,7 @@
 //! Points that come one by one with named numbers, as in text, PLY, PCD and E57 files.
 
 use super::part::{Coordinates, Part, narrow, to_u8, to_u16};
+use super::read_options::RowNumbers;
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 
 /// What a number of a point means.
@@ -97,6 +98,10 @@ pub(super) fn role_of(name: &str) -> Option<Role> {
 #[derive(Debug, Default)]
 pub(super) struct Rows {
     has: [bool; ROLES],
+    wanted_numbers: RowNumbers,
+    /// Row of each point, from the first one that was passed over on, where they are wanted.
+    numbers: Option<Vec<u64>>,
+    passed_over: u64,
     coordinates: Vec<[f64; 3]>,
     normals: Vec<[f32; 3]>,
     colors: Vec<[f32; 3]>,
@@ -121,6 +126,25 @@ impl Rows {
         rows
     }
 
+    /// The same, which remembers the rows of points.
+    pub(super) fn with_numbers(mut self, wanted: RowNumbers) -> Self {
+        self.wanted_numbers = wanted;
+        self
+    }
+
+    /// Number of rows that were read or passed over.
+    pub(super) fn count(&self) -> u64 {
+        self.coordinates.len() as u64 + self.passed_over
+    }
+
+    /// A row that gives no point.
+    pub(super) fn pass_over(&mut self) {
+        if self.wanted_numbers == RowNumbers::Kept && self.numbers.is_none() {
+            self.numbers = Some((0..self.count()).collect());
+        }
+        self.passed_over += 1;
+    }
+
     fn has(&self, roles: &[Role]) -> bool {
         roles.iter().all(|&role| self.has[role as usize])
     }
@@ -131,6 +155,10 @@ impl Rows {
     }
 
     pub(super) fn push(&mut self, row: &Row) {
+        let number = self.count();
+        if let Some(numbers) = &mut self.numbers {
+            numbers.push(number);
+        }
         self.coordinates.push(row.three(POSITION));
         if self.has(&NORMAL) {
             self.normals.push(row.three(NORMAL).map(narrow));
@@ -199,6 +227,7 @@ impl Rows {
             ..Attributes::default()
         };
         part.coordinates = Coordinates::Real(self.coordinates);
+        part.rows = self.numbers;
     }
 }
 

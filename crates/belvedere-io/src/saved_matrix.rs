@@ -1,13 +1,13 @@
 //! Files of what places see of directions, kept for later questions about the same places.
 
-use std::fs::File;
-use std::io::{self, BufReader, Seek, Write};
+use std::io::{self, Seek, Write};
 use std::path::Path;
 
 use npyz::npz::{NpzArchive, NpzWriter};
 
-use crate::atomic;
 use crate::npz_arrays::{array, begin_array, in_blocks, rows, values};
+use crate::output::Output;
+use crate::source::{Input, Reader, Source};
 use belvedere_data::{Error, Result};
 
 /// Bits in a word.
@@ -94,9 +94,9 @@ pub type RowSink<'a> = dyn FnMut(&[u64]) -> Result<()> + 'a;
 ///
 /// # Errors
 /// [`Error::Io`], and those of [`SavedMatrix::validate`].
-pub fn write_matrix(path: &Path, matrix: &SavedMatrix) -> Result<()> {
+pub fn write_matrix<'a>(output: impl Into<Output<'a>>, matrix: &SavedMatrix) -> Result<()> {
     matrix.validate()?;
-    write_matrix_rows(path, &matrix.head, |sink| sink(&matrix.words))
+    write_matrix_rows(output, &matrix.head, |sink| sink(&matrix.words))
 }
 
 /// Writes the same with rows that `rows` hands to a sink as it makes them, so that the bits are never held all at once. The file appears
@@ -105,14 +105,14 @@ pub fn write_matrix(path: &Path, matrix: &SavedMatrix) -> Result<()> {
 /// # Errors
 /// [`Error::Io`], those of `rows`, [`Error::LengthMismatch`] unless there is a row for each target, and
 /// [`Error::InvalidParameter`] for directions that are not of unit length and for bits beyond the last.
-pub fn write_matrix_rows(
-    path: &Path,
+pub fn write_matrix_rows<'a>(
+    output: impl Into<Output<'a>>,
     head: &MatrixHead,
     rows: impl FnOnce(&mut RowSink<'_>) -> Result<()>,
 ) -> Result<()> {
     head.check_directions()?;
     let [m, d] = [head.targets.len(), head.directions.len()].map(|n| n as u64);
-    atomic::write(path, |output| {
+    output.into().write(|path, output| {
         let mut archive = NpzWriter::new(output);
         let mut bits = begin_array(&mut archive, "bits", &[m, d.div_ceil(WORD as u64)]).map_err(Error::io(path))?;
         let mut count = 0;
@@ -148,18 +148,22 @@ fn damaged(path: &Path) -> impl Fn(Error) -> Error + '_ {
 ///
 /// # Errors
 /// [`Error::Io`] where the file cannot be read, [`Error::Malformed`] for files that are damaged or hold something else.
-pub fn read_matrix_head(path: &Path) -> Result<MatrixHead> {
-    let file = BufReader::new(File::open(path).map_err(Error::io(path))?);
-    let read = || -> io::Result<MatrixHead> {
-        let mut archive = NpzArchive::new(file)?;
+pub fn read_matrix_head<'a>(source: impl Into<Source<'a>>) -> Result<MatrixHead> {
+    let Input { name, reader, .. } = source.into().open()?;
+    let mut archive = NpzArchive::new(reader).map_err(unreadable(&name))?;
+    head_of(&name, &mut archive)
+}
+
+fn head_of(path: &Path, archive: &mut NpzArchive<Reader<'_>>) -> Result<MatrixHead> {
+    let mut read = || -> io::Result<MatrixHead> {
         let one = |values: Vec<u64>| values.first().copied().unwrap_or(0);
-        let origin = values::<f64, _>(&mut archive, "origin", 3)?.0;
+        let origin = values::<f64, _>(archive, "origin", 3)?.0;
         let origin = <[f64; 3]>::try_from(origin).map_err(|_| io::Error::other("origin must have 3 numbers"))?;
         Ok(MatrixHead {
             origin,
-            targets: rows::<f32, 3, _>(&mut archive, "targets")?,
-            directions: rows::<f64, 3, _>(&mut archive, "directions")?,
-            scene: one(values(&mut archive, "scene", 1)?.0),
+            targets: rows::<f32, 3, _>(archive, "targets")?,
+            directions: rows::<f64, 3, _>(archive, "directions")?,
+            scene: one(values(archive, "scene", 1)?.0),
         })
     };
     let head = read().map_err(unreadable(path))?;
@@ -189,12 +193,25 @@ impl From<Error> for Stopped {
 ///
 /// # Errors
 /// Those of [`read_matrix_head`] and of `sink`.
-pub fn read_matrix_rows(path: &Path, head: &MatrixHead, mut sink: impl FnMut(&[u64]) -> Result<()>) -> Result<()> {
-    let file = BufReader::new(File::open(path).map_err(Error::io(path))?);
-    let mut archive = NpzArchive::new(file).map_err(unreadable(path))?;
+pub fn read_matrix_rows<'a>(
+    source: impl Into<Source<'a>>,
+    head: &MatrixHead,
+    sink: impl FnMut(&[u64]) -> Result<()>,
+) -> Result<()> {
+    let Input { name, reader, .. } = source.into().open()?;
+    let mut archive = NpzArchive::new(reader).map_err(unreadable(&name))?;
+    rows_of(&name, &mut archive, head, sink)
+}
+
+fn rows_of(
+    path: &Path,
+    archive: &mut NpzArchive<Reader<'_>>,
+    head: &MatrixHead,
+    mut sink: impl FnMut(&[u64]) -> Result<()>,
+) -> Result<()> {
     let most = ROWS * head.words_of_row().max(1);
     let mut count = 0;
-    let read = in_blocks(&mut archive, "bits", most, |words: &[u64]| {
+    let read = in_blocks(archive, "bits", most, |words: &[u64]| {
         count += words.len();
         if count > head.targets.len().saturating_mul(head.words_of_row()) {
             head.check_count(count).map_err(damaged(path))?;
@@ -214,10 +231,12 @@ pub fn read_matrix_rows(path: &Path, head: &MatrixHead, mut sink: impl FnMut(&[u
 ///
 /// # Errors
 /// Those of [`read_matrix_head`].
-pub fn read_matrix(path: &Path) -> Result<SavedMatrix> {
-    let head = read_matrix_head(path)?;
+pub fn read_matrix<'a>(source: impl Into<Source<'a>>) -> Result<SavedMatrix> {
+    let Input { name, reader, .. } = source.into().open()?;
+    let mut archive = NpzArchive::new(reader).map_err(unreadable(&name))?;
+    let head = head_of(&name, &mut archive)?;
     let mut words = Vec::new();
-    read_matrix_rows(path, &head, |rows| {
+    rows_of(&name, &mut archive, &head, |rows| {
         words.extend_from_slice(rows);
         Ok(())
     })?;

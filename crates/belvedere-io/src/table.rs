@@ -1,13 +1,13 @@
 //! Tables of numbers with a header row, such as pairs of points and observers.
 
 use std::borrow::Cow;
-use std::fs::File;
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use rayon::prelude::*;
 
-use crate::atomic;
+use crate::output::Output;
+use crate::source::{Input, Source};
 use belvedere_data::{Error, Result};
 
 /// Rows printed by one task.
@@ -71,12 +71,14 @@ impl Table {
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::Malformed`] for rows of different lengths and for text that is no UTF-8.
-pub fn read_table(path: &Path) -> Result<Table> {
+pub fn read_table<'a>(source: impl Into<Source<'a>>) -> Result<Table> {
+    let Input { name, reader: mut file, .. } = source.into().open()?;
+    let path = name.as_path();
     let mut header = String::new();
-    let open = || File::open(path).map_err(Error::io(path));
     // a file without line breaks must not fill the memory
-    let mut start = std::io::Read::take(BufReader::new(open()?), 1 << 16);
+    let mut start = std::io::Read::take(&mut file, 1 << 16);
     start.read_line(&mut header).map_err(Error::io(path))?;
+    file.seek(SeekFrom::Start(0)).map_err(Error::io(path))?;
     let count = |separator: char| header.matches(separator).count();
     let separator = [';', '\t'].into_iter().find(|&s| count(s) > count(',')).unwrap_or(',');
     let failed = |error: csv::Error| match error.into_kind() {
@@ -91,7 +93,7 @@ pub fn read_table(path: &Path) -> Result<Table> {
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(u8::try_from(separator).unwrap_or(b','))
         .trim(csv::Trim::All)
-        .from_reader(BufReader::with_capacity(1 << 18, open()?));
+        .from_reader(file);
     let names: Vec<String> =
         reader.headers().map_err(failed)?.iter().map(|name| name.trim_start_matches('\u{feff}').to_owned()).collect();
     let mut table =
@@ -155,7 +157,7 @@ fn quoted(word: &str) -> Cow<'_, str> {
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] unless all columns are equally long, [`Error::Io`].
-pub fn write_table(path: &Path, columns: &[(&str, Cells<'_>)]) -> Result<()> {
+pub fn write_table<'a>(output: impl Into<Output<'a>>, columns: &[(&str, Cells<'_>)]) -> Result<()> {
     let expected = columns.first().map_or(0, |(_, cells)| cells.len());
     if let Some((_, cells)) = columns.iter().find(|(_, cells)| cells.len() != expected) {
         return Err(Error::LengthMismatch { what: "cells of a column", expected, found: cells.len() });
@@ -173,7 +175,7 @@ pub fn write_table(path: &Path, columns: &[(&str, Cells<'_>)]) -> Result<()> {
         }
         Ok(text)
     };
-    atomic::write(path, |output| {
+    output.into().write(|path, output| {
         let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
         writeln!(output, "{}", names.join(",")).map_err(Error::io(path))?;
         let starts: Vec<usize> = (0..expected).step_by(ROWS_PER_TASK).collect();

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::source::Source;
 use belvedere_data::crs::Crs;
 use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{Error, Result};
@@ -33,11 +34,13 @@ pub struct TrajectoryReport {
 ///
 /// # Source
 /// Field order of SBET: PDAL, `io/SbetCommon.hpp`.
-pub fn read_trajectory(path: &Path, cloud_crs: &Crs) -> Result<(Trajectory, TrajectoryReport)> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
-    let records = match extension.as_str() {
-        "sbet" | "out" => sbet_records(path, cloud_crs)?,
-        "csv" | "txt" => table_records(path, cloud_crs)?,
+pub fn read_trajectory<'a>(source: impl Into<Source<'a>>, cloud_crs: &Crs) -> Result<(Trajectory, TrajectoryReport)> {
+    let source = source.into();
+    let name = source.name().to_owned();
+    let path = name.as_path();
+    let records = match source.extension().as_str() {
+        "sbet" | "out" => sbet_records(path, &source.read_all()?.1, cloud_crs)?,
+        "csv" | "txt" => table_records(path, &source.read_all()?.1, cloud_crs)?,
         _ => {
             let supported = ".sbet, .out, .csv or .txt";
             return Err(Error::UnknownFormat { path: path.to_owned(), kind: "trajectory", supported });
@@ -55,9 +58,8 @@ pub fn read_trajectory(path: &Path, cloud_crs: &Crs) -> Result<(Trajectory, Traj
     Ok((trajectory, TrajectoryReport { record_count, duplicate_count }))
 }
 
-fn sbet_records(path: &Path, cloud_crs: &Crs) -> Result<Vec<(f64, [f64; 3])>> {
-    let bytes = std::fs::read(path).map_err(Error::io(path))?;
-    if bytes.is_empty() || bytes.len() % SBET_RECORD_BYTES != 0 {
+fn sbet_records(path: &Path, bytes: &[u8], cloud_crs: &Crs) -> Result<Vec<(f64, [f64; 3])>> {
+    if bytes.is_empty() || !bytes.len().is_multiple_of(SBET_RECORD_BYTES) {
         let what = format!("{} bytes, which is no multiple of the 136 bytes of an SBET record", bytes.len());
         return Err(Error::malformed(path, what));
     }
@@ -83,9 +85,8 @@ fn sbet_records(path: &Path, cloud_crs: &Crs) -> Result<Vec<(f64, [f64; 3])>> {
 /// Which column holds time, x, y and z.
 type Columns = [usize; 4];
 
-fn table_records(path: &Path, cloud_crs: &Crs) -> Result<Vec<(f64, [f64; 3])>> {
-    let bytes = std::fs::read(path).map_err(Error::io(path))?;
-    let text = String::from_utf8_lossy(&bytes);
+fn table_records(path: &Path, bytes: &[u8], cloud_crs: &Crs) -> Result<Vec<(f64, [f64; 3])>> {
+    let text = String::from_utf8_lossy(bytes);
     let scale = cloud_crs.metres_per_unit_xyz();
     let mut columns: Option<Columns> = None;
     let mut records = Vec::new();

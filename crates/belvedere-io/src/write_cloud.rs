@@ -1,10 +1,15 @@
 //! Point clouds with columns of results.
 
 use std::borrow::Cow;
-use std::path::Path;
 
 use crate::columns::{Column, Values, check_lengths};
-use crate::{write_las, write_npy, write_ply, write_table};
+use crate::output::Output;
+use crate::source::unusable;
+#[cfg(feature = "las")]
+use crate::write_las;
+#[cfg(feature = "npy")]
+use crate::write_npy;
+use crate::{write_ply, write_table};
 use belvedere_data::{Error, PointCloud, Result};
 
 /// Extensions a cloud can be written to.
@@ -43,7 +48,7 @@ pub struct WriteReport {
     pub clamped_count: usize,
 }
 
-/// The report of writing `cloud` to `path`, with its attributes and the `extra` columns, in a format that follows from
+/// The report of writing `cloud` to `output`, with its attributes and the `extra` columns, in a format that follows from
 /// the extension (.las .laz .ply .csv .xyz .txt .npy). Coordinates are those of the reference system and unit of the cloud's file.
 ///
 /// LAS and LAZ files hold every attribute but normals, which go in as extra columns `NormalX`, `NormalY` and `NormalZ`
@@ -52,32 +57,33 @@ pub struct WriteReport {
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] for other extensions, [`Error::LengthMismatch`] when a column does not have one value per
-/// point, [`Error::InvalidParameter`] when the format has no place for extra columns or a column's name is unusable, and
-/// [`Error::Io`]. An existing file is replaced only by a complete one.
-pub fn write_cloud(path: &Path, cloud: &PointCloud, extra: &[ExtraColumn<'_>]) -> Result<WriteReport> {
+/// point, [`Error::InvalidParameter`] when the format has no place for extra columns or a column's name is unusable,
+/// [`Error::MissingFeature`] and [`Error::Io`]. An existing file is replaced only by a complete one.
+pub fn write_cloud<'a>(
+    output: impl Into<Output<'a>>,
+    cloud: &PointCloud,
+    extra: &[ExtraColumn<'_>],
+) -> Result<WriteReport> {
+    let output = output.into();
     cloud.validate()?;
     let columns: Vec<Column<'_>> = extra.iter().map(to_column).collect();
     check_lengths(&columns, cloud.len())?;
     check_names(&columns)?;
-    match extension(path).as_str() {
-        "las" => write_las::write(path, cloud, &columns, write_las::Compression::None, &[]),
-        "laz" => write_las::write(path, cloud, &columns, write_las::Compression::Laz, &[]),
-        "ply" => write_ply::write(path, cloud, &columns, &[]),
-        "csv" => write_table::write(path, cloud, &columns, ','),
-        "xyz" | "txt" => write_table::write(path, cloud, &columns, ' '),
+    match output.extension().as_str() {
+        #[cfg(feature = "las")]
+        "las" | "laz" => write_las::write(output, cloud, &columns, &[]),
+        "ply" => write_ply::write(output, cloud, &columns, &[]),
+        "csv" => write_table::write(output, cloud, &columns, ','),
+        "xyz" | "txt" => write_table::write(output, cloud, &columns, ' '),
         "npy" if !columns.is_empty() => Err(Error::InvalidParameter {
             name: "output format of a cloud with result columns",
             value: ".npy".to_owned(),
             expected: "one of .las .laz .ply .csv .xyz .txt",
         }),
-        "npy" => write_npy::write_coordinates(path, cloud),
-        _ => Err(Error::UnknownFormat { path: path.to_owned(), kind: "point cloud output", supported: SUPPORTED }),
+        #[cfg(feature = "npy")]
+        "npy" => write_npy::write_coordinates(output, cloud),
+        _ => Err(unusable(output.name(), "point cloud output", SUPPORTED)),
     }
-}
-
-/// Extension in lower case, empty where there is none.
-pub(crate) fn extension(path: &Path) -> String {
-    path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
 fn to_column<'a>(extra: &ExtraColumn<'a>) -> Column<'a> {

@@ -1,9 +1,6 @@
 //! Bare meshes: vertices that faces share.
 
-use std::io::Write;
-use std::path::Path;
-
-use crate::atomic;
+use crate::output::Output;
 use belvedere_data::crs::text::comment_lines;
 use belvedere_data::{Error, Mesh, Result};
 
@@ -15,16 +12,16 @@ const DECIMALS: usize = 4;
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] for another extension, [`Error::Io`].
-pub fn write_mesh(path: &Path, mesh: &Mesh, metres_per_unit: [f64; 3]) -> Result<()> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+pub fn write_mesh<'a>(output: impl Into<Output<'a>>, mesh: &Mesh, metres_per_unit: [f64; 3]) -> Result<()> {
+    let output = output.into();
     let place = |vertex: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|i| vertex[i] / metres_per_unit[i]) };
     // text of other programs may hold what a header must not
     let plain = |line: String| -> String {
         line.chars().map(|c| if c.is_ascii() && !c.is_ascii_control() { c } else { '?' }).collect()
     };
     let comments: Vec<String> = comment_lines(&mesh.crs).into_iter().map(plain).collect();
-    match extension.as_str() {
-        "obj" => atomic::write(path, |output| {
+    match output.extension().as_str() {
+        "obj" => output.write(|path, output| {
             let mut text = String::from("# written by belvedere\n");
             comments.iter().for_each(|line| text.push_str(&format!("# {line}\n")));
             output.write_all(text.as_bytes()).map_err(Error::io(path))?;
@@ -39,7 +36,7 @@ pub fn write_mesh(path: &Path, mesh: &Mesh, metres_per_unit: [f64; 3]) -> Result
             }
             Ok(())
         }),
-        "ply" => atomic::write(path, |output| {
+        "ply" => output.write(|path, output| {
             let mut header = String::from("ply\nformat binary_little_endian 1.0\ncomment written by belvedere\n");
             comments.iter().for_each(|line| header.push_str(&format!("comment {line}\n")));
             header.push_str(&format!(
@@ -61,6 +58,6 @@ pub fn write_mesh(path: &Path, mesh: &Mesh, metres_per_unit: [f64; 3]) -> Result
             }
             Ok(())
         }),
-        _ => Err(Error::UnknownFormat { path: path.to_owned(), kind: "mesh", supported: ".obj .ply" }),
+        _ => Err(Error::UnknownFormat { path: output.name().to_owned(), kind: "mesh", supported: ".obj .ply" }),
     }
 }

@@ -1,7 +1,6 @@
 //! LAS 1.4 and LAZ point clouds.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, BufWriter, Cursor, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::atomic;
 use crate::columns::{Column, Values};
+use crate::output::{Output, WriteSeek};
 use crate::write_cloud::WriteReport;
 use belvedere_data::Bounds;
 use belvedere_data::cloud::GpsTimeKind;
@@ -24,25 +24,19 @@ const DEGREES_PER_SCAN_STEP: f64 = 0.006;
 /// Coarsest step between coordinates, metres.
 const MAX_STEP: f64 = 0.001;
 
-/// Whether points are compressed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Compression {
-    None,
-    Laz,
-}
-
-/// Writes `cloud` with its attributes, `extra` columns as extra bytes, and `records` as further variable length records.
+/// Writes `cloud` with its attributes, `extra` columns as extra bytes, and `records` as further variable length records;
+/// compressed where the extension is `laz`.
 ///
 /// Attributes beyond the standard fields (scanner index) become extra bytes too. Where the cloud has no return numbers,
 /// each point is the only return of its pulse and the file says that these numbers are synthetic.
 pub(crate) fn write(
-    path: &Path,
+    output: Output<'_>,
     cloud: &PointCloud,
     extra: &[Column<'_>],
-    compression: Compression,
     records: &[Vlr],
 ) -> Result<WriteReport> {
-    let las_error = |e: las::Error| Error::malformed(path, format!("cannot be written: {e}"));
+    let name = output.name().to_owned();
+    let las_error = |e: las::Error| Error::malformed(&name, format!("cannot be written: {e}"));
     let mut columns = extra.to_vec();
     if let Some(index) = &cloud.attributes.scanner_index {
         columns.push(Column {
@@ -54,7 +48,7 @@ pub(crate) fn write(
     let mut builder = Builder::from((1, 4));
     builder.point_format =
         las::point::Format::new(if cloud.attributes.color.is_some() { 7 } else { 6 }).map_err(las_error)?;
-    builder.point_format.is_compressed = compression == Compression::Laz;
+    builder.point_format.is_compressed = output.extension() == "laz";
     let extra_bytes: usize = columns.iter().map(|c| c.values.width()).sum();
     builder.point_format.extra_bytes = u16::try_from(extra_bytes).unwrap_or(u16::MAX);
     if usize::from(builder.point_format.extra_bytes) != extra_bytes {
@@ -84,47 +78,70 @@ pub(crate) fn write(
     builder.vlrs.extend_from_slice(records);
     let header = builder.into_header().map_err(las_error)?;
 
-    atomic::write(path, |output| {
-        let failure = Arc::new(Mutex::new(None));
-        let file = output.get_ref().try_clone().map_err(Error::io(path))?;
-        let latched = Latched { inner: BufWriter::with_capacity(1 << 18, file), failure: Arc::clone(&failure) };
-        let mut writer = las::Writer::new(latched, header).map_err(las_error)?;
-        let encoder = Encoder { cloud, columns: &columns, transforms: *writer.header().transforms() };
-        let clamped = AtomicUsize::new(0);
-        for start in (0..cloud.len()).step_by(POINTS_PER_SLAB) {
-            let mut slab = PointDataBuilder::new().for_header(writer.header()).build();
-            let record_bytes = slab.record_len();
-            slab.resize_for(POINTS_PER_SLAB.min(cloud.len() - start))
-                .par_chunks_mut(record_bytes)
-                .enumerate()
-                .for_each(|(i, record)| {
-                    let count = encoder.encode(record, start + i);
-                    if count > 0 {
-                        clamped.fetch_add(count, Ordering::Relaxed);
-                    }
-                });
-            writer.write_points(&slab).map_err(las_error)?;
-        }
-        writer.close().map_err(las_error)?;
-        writer.into_inner().map_err(las_error)?.flush().map_err(Error::io(path))?;
-        if let Some(error) = failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
-            return Err(Error::io(path)(error));
-        }
-        let normals_asked = extra.iter().any(|c| c.name.eq_ignore_ascii_case("NormalX"));
-        let left_out = if cloud.attributes.normals.is_some() && !normals_asked { vec!["normals"] } else { Vec::new() };
-        Ok(WriteReport { point_count: cloud.len(), left_out, clamped_count: clamped.into_inner() })
-    })
+    let clamped_count = if output.is_path() {
+        atomic::write(&name, |file| {
+            let file = file.get_ref().try_clone().map_err(Error::io(&name))?;
+            Ok(encode(&name, file, header, cloud, &columns)?.1)
+        })?
+    } else {
+        // The LAS writer wants to own what it writes to; a borrowed writer gets the finished file.
+        output.write(|name, output| {
+            let (bytes, clamped) = encode(name, Cursor::new(Vec::new()), header, cloud, &columns)?;
+            output.write_all(bytes.get_ref()).map_err(Error::io(name))?;
+            Ok(clamped)
+        })?
+    };
+    let normals_asked = extra.iter().any(|c| c.name.eq_ignore_ascii_case("NormalX"));
+    let left_out = if cloud.attributes.normals.is_some() && !normals_asked { vec!["normals"] } else { Vec::new() };
+    Ok(WriteReport { point_count: cloud.len(), left_out, clamped_count })
+}
+
+/// Writes header and points to `output`; gives it back, with the number of values that were cut to their field.
+fn encode<W: WriteSeek + Send + Sync + 'static>(
+    name: &Path,
+    output: W,
+    header: las::Header,
+    cloud: &PointCloud,
+    columns: &[Column<'_>],
+) -> Result<(W, usize)> {
+    let las_error = |e: las::Error| Error::malformed(name, format!("cannot be written: {e}"));
+    let failure = Arc::new(Mutex::new(None));
+    let latched = Latched { inner: BufWriter::with_capacity(1 << 18, output), failure: Arc::clone(&failure) };
+    let mut writer = las::Writer::new(latched, header).map_err(las_error)?;
+    let encoder = Encoder { cloud, columns, transforms: *writer.header().transforms() };
+    let clamped = AtomicUsize::new(0);
+    for start in (0..cloud.len()).step_by(POINTS_PER_SLAB) {
+        let mut slab = PointDataBuilder::new().for_header(writer.header()).build();
+        let record_bytes = slab.record_len();
+        slab.resize_for(POINTS_PER_SLAB.min(cloud.len() - start)).par_chunks_mut(record_bytes).enumerate().for_each(
+            |(i, record)| {
+                let count = encoder.encode(record, start + i);
+                if count > 0 {
+                    clamped.fetch_add(count, Ordering::Relaxed);
+                }
+            },
+        );
+        writer.write_points(&slab).map_err(las_error)?;
+    }
+    writer.close().map_err(las_error)?;
+    let mut latched = writer.into_inner().map_err(las_error)?;
+    latched.flush().map_err(Error::io(name))?;
+    if let Some(error) = failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        return Err(Error::io(name)(error));
+    }
+    let output = latched.inner.into_inner().map_err(|e| Error::io(name)(e.into_error()))?;
+    Ok((output, clamped.into_inner()))
 }
 
 /// A writer that keeps its first error and swallows what follows: the LAS writer closes itself when it is dropped and
 /// panics when that fails, as it would on a full disk.
-struct Latched {
-    inner: BufWriter<File>,
+struct Latched<W: Write> {
+    inner: BufWriter<W>,
     failure: Arc<Mutex<Option<io::Error>>>,
 }
 
-impl Latched {
-    fn attempt<T>(&mut self, otherwise: T, action: impl FnOnce(&mut BufWriter<File>) -> io::Result<T>) -> T {
+impl<W: WriteSeek> Latched<W> {
+    fn attempt<T>(&mut self, otherwise: T, action: impl FnOnce(&mut BufWriter<W>) -> io::Result<T>) -> T {
         let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
         if failure.is_some() {
             return otherwise;
@@ -139,7 +156,7 @@ impl Latched {
     }
 }
 
-impl Write for Latched {
+impl<W: WriteSeek> Write for Latched<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         Ok(self.attempt(bytes.len(), |w| w.write_all(bytes).map(|()| bytes.len())))
     }
@@ -150,7 +167,7 @@ impl Write for Latched {
     }
 }
 
-impl Seek for Latched {
+impl<W: WriteSeek> Seek for Latched<W> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         let otherwise = if let SeekFrom::Start(position) = to { position } else { 0 };
         Ok(self.attempt(otherwise, |w| w.seek(to)))

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::atomic;
+use crate::output::Output;
 use crate::write_npy::write_array;
 use belvedere_data::{Error, Result};
 
@@ -66,19 +67,19 @@ pub fn write_masbcpp(path: &Path, folder: &MasbcppFolder<'_>) -> Result<()> {
     ];
     for (name, values) in triples {
         if let Some(values) = values {
-            write_array(&path.join(name), &[values.len(), 3], values.iter().flatten().copied())?;
+            write_array(Output::path(path.join(name)), &[values.len(), 3], values.iter().flatten().copied())?;
         }
     }
     for (name, values) in [("ma_qidx_in.npy", folder.ma_qidx_in), ("ma_qidx_out.npy", folder.ma_qidx_out)] {
         if let Some(values) = values {
-            write_array(&path.join(name), &[values.len()], values.iter().copied())?;
+            write_array(Output::path(path.join(name)), &[values.len()], values.iter().copied())?;
         }
     }
     if let Some(values) = folder.lfs {
-        write_array(&path.join("lfs.npy"), &[values.len()], values.iter().copied())?;
+        write_array(Output::path(path.join("lfs.npy")), &[values.len()], values.iter().copied())?;
     }
     if let Some(values) = folder.decimate_lfs {
-        write_array(&path.join("decimate_lfs.npy"), &[values.len()], values.iter().map(|&v| v != 0))?;
+        write_array(Output::path(path.join("decimate_lfs.npy")), &[values.len()], values.iter().map(|&v| v != 0))?;
     }
     Ok(())
 }

@@ -1,10 +1,7 @@
 //! Meshes with a value and a colour for each face.
 
-use std::io::Write;
-use std::path::Path;
-
-use crate::atomic;
 use crate::colors::ramp;
+use crate::output::Output;
 use belvedere_data::crs::text::comment_lines;
 use belvedere_data::{Error, Mesh, Result};
 
@@ -20,8 +17,8 @@ const NO_VALUE: [u8; 3] = [128; 3];
 /// # Errors
 /// [`Error::LengthMismatch`] unless there is a value for each triangle, [`Error::InvalidParameter`] for more than a billion triangles,
 /// [`Error::Io`].
-pub fn write_mesh_values(
-    path: &Path,
+pub fn write_mesh_values<'a>(
+    output: impl Into<Output<'a>>,
     mesh: &Mesh,
     metres_per_unit: [f64; 3],
     name: &str,
@@ -57,7 +54,7 @@ pub fn write_mesh_values(
         "property float {name}\nelement face {}\nproperty list uchar uint vertex_indices\nend_header\n",
         faces.len()
     ));
-    atomic::write(path, |output| {
+    output.into().write(|path, output| {
         let mut write = |bytes: &[u8]| output.write_all(bytes).map_err(Error::io(path));
         write(header.as_bytes())?;
         for &(corners, value) in &faces {

@@ -1,12 +1,9 @@
 //! Binary little-endian PLY point clouds.
 
-use std::io::Write;
-use std::path::Path;
-
 use rayon::prelude::*;
 
-use crate::atomic;
 use crate::columns::{Column, Values, attribute_columns};
+use crate::output::Output;
 use crate::write_cloud::WriteReport;
 use belvedere_data::crs::text::comment_lines;
 use belvedere_data::{Error, PointCloud, Result};
@@ -16,11 +13,16 @@ const POINTS_PER_BLOCK: usize = 1 << 18;
 
 /// Writes `cloud` with its attributes and `extra` columns. Each of `comments` becomes a comment of the header, beside
 /// those about the reference system. Coordinates are f64 in the unit of the cloud's file.
-pub(crate) fn write(path: &Path, cloud: &PointCloud, extra: &[Column<'_>], comments: &[String]) -> Result<WriteReport> {
+pub(crate) fn write(
+    output: Output<'_>,
+    cloud: &PointCloud,
+    extra: &[Column<'_>],
+    comments: &[String],
+) -> Result<WriteReport> {
     let mut columns = attribute_columns(cloud);
     columns.extend(extra.iter().cloned());
     let row_bytes = 24 + columns.iter().map(|c| c.values.width()).sum::<usize>();
-    atomic::write(path, |output| {
+    output.write(|path, output| {
         output.write_all(header(cloud, &columns, comments).as_bytes()).map_err(Error::io(path))?;
         let mut block = Vec::new();
         for start in (0..cloud.len()).step_by(POINTS_PER_BLOCK) {

@@ -1,12 +1,11 @@
 //! Point clouds as text tables with a header row.
 
 use std::io::Write;
-use std::path::Path;
 
 use rayon::prelude::*;
 
-use crate::atomic;
 use crate::columns::{Column, attribute_columns};
+use crate::output::Output;
 use crate::write_cloud::WriteReport;
 use belvedere_data::{Error, PointCloud, Result};
 
@@ -17,12 +16,17 @@ const TASKS_PER_BLOCK: usize = 32;
 
 /// Writes `cloud` with its attributes and `extra` columns, one row per point, cells parted by `separator`. Coordinates
 /// have decimals down to a tenth of a millimetre.
-pub(crate) fn write(path: &Path, cloud: &PointCloud, extra: &[Column<'_>], separator: char) -> Result<WriteReport> {
+pub(crate) fn write(
+    output: Output<'_>,
+    cloud: &PointCloud,
+    extra: &[Column<'_>],
+    separator: char,
+) -> Result<WriteReport> {
     let mut columns = attribute_columns(cloud);
     columns.extend(extra.iter().cloned());
     let decimals = cloud.frame.crs.metres_per_unit_xyz().map(decimals_for);
     let separator = separator.to_string();
-    atomic::write(path, |output| {
+    output.write(|path, output| {
         let names: Vec<&str> = ["x", "y", "z"].into_iter().chain(columns.iter().map(|c| &*c.name)).collect();
         writeln!(output, "{}", names.join(&separator)).map_err(Error::io(path))?;
         let tasks: Vec<usize> = (0..cloud.len()).step_by(POINTS_PER_TASK).collect();

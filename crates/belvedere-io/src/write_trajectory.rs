@@ -1,10 +1,8 @@
 //! Trajectories as SBET and text tables.
 
 use std::f64::consts::{PI, TAU};
-use std::io::Write;
-use std::path::Path;
 
-use crate::atomic;
+use crate::output::Output;
 use belvedere_data::crs::{Crs, GeographicProjection};
 use belvedere_data::trajectory::{ADJUSTED_STANDARD_S, MAX_GAP_S, Trajectory, TrajectorySample, WEEK_S};
 use belvedere_data::{Error, GpsTimeKind, Result};
@@ -39,8 +37,8 @@ pub enum Heading<'a> {
 ///
 /// # Source
 /// Field order of SBET: PDAL, `io/SbetCommon.hpp`.
-pub fn write_trajectory(
-    path: &Path,
+pub fn write_trajectory<'a>(
+    output: impl Into<Output<'a>>,
     trajectory: &Trajectory,
     kind: GpsTimeKind,
     crs: &Crs,
@@ -53,20 +51,20 @@ pub fn write_trajectory(
             return Err(Error::LengthMismatch { what, expected: count, found });
         }
     }
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
-    match extension.as_str() {
-        "csv" | "txt" => write_table(path, trajectory, crs),
-        "sbet" | "out" => write_sbet(path, trajectory, kind, crs, heading),
+    let output = output.into();
+    match output.extension().as_str() {
+        "csv" | "txt" => write_table(output, trajectory, crs),
+        "sbet" | "out" => write_sbet(output, trajectory, kind, crs, heading),
         _ => {
             let supported = ".csv, .txt, .sbet or .out";
-            Err(Error::UnknownFormat { path: path.to_owned(), kind: "trajectory", supported })
+            Err(Error::UnknownFormat { path: output.name().to_owned(), kind: "trajectory", supported })
         }
     }
 }
 
-fn write_table(path: &Path, trajectory: &Trajectory, crs: &Crs) -> Result<()> {
+fn write_table(output: Output<'_>, trajectory: &Trajectory, crs: &Crs) -> Result<()> {
     let scale = crs.metres_per_unit_xyz();
-    atomic::write(path, |file| {
+    output.write(|path, file| {
         writeln!(file, "time,x,y,z").map_err(Error::io(path))?;
         for (time, position) in trajectory.times.iter().zip(&trajectory.positions) {
             let [x, y, z]: [f64; 3] = std::array::from_fn(|i| position[i] / scale[i]);
@@ -82,16 +80,21 @@ fn write_table(path: &Path, trajectory: &Trajectory, crs: &Crs) -> Result<()> {
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] for other extensions, and [`Error::Io`]. An existing file is replaced only by a complete one.
-pub fn write_found_trajectory(path: &Path, samples: &[TrajectorySample], crs: &Crs) -> Result<()> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+pub fn write_found_trajectory<'a>(
+    output: impl Into<Output<'a>>,
+    samples: &[TrajectorySample],
+    crs: &Crs,
+) -> Result<()> {
+    let output = output.into();
+    let extension = output.extension();
     if !["csv", "txt"].contains(&extension.as_str()) {
         let supported = ".csv or .txt";
-        return Err(Error::UnknownFormat { path: path.to_owned(), kind: "found trajectory", supported });
+        return Err(Error::UnknownFormat { path: output.name().to_owned(), kind: "found trajectory", supported });
     }
     let scale = crs.metres_per_unit_xyz();
     let in_unit = |values: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| values[i] / scale[i]) };
     let known = |value: f64, digits: usize| if value.is_finite() { format!("{value:.digits$}") } else { String::new() };
-    atomic::write(path, |file| {
+    output.write(|path, file| {
         writeln!(file, "time,x,y,z,sd_x,sd_y,sd_z,residual_deg,line").map_err(Error::io(path))?;
         for TrajectorySample { time, position, quality } in samples {
             let [x, y, z] = in_unit(*position);
@@ -104,9 +107,16 @@ pub fn write_found_trajectory(path: &Path, samples: &[TrajectorySample], crs: &C
     })
 }
 
-fn write_sbet(path: &Path, trajectory: &Trajectory, kind: GpsTimeKind, crs: &Crs, heading: Heading<'_>) -> Result<()> {
+fn write_sbet(
+    output: Output<'_>,
+    trajectory: &Trajectory,
+    kind: GpsTimeKind,
+    crs: &Crs,
+    heading: Heading<'_>,
+) -> Result<()> {
+    let name = output.name().to_owned();
     let unusable = |e: Error| Error::UnusableCrs {
-        path: path.to_owned(),
+        path: name.clone(),
         what: format!("positions cannot be turned into latitude and longitude: {e}"),
     };
     let projection = crs.geographic_projection().map_err(unusable)?;
@@ -122,7 +132,7 @@ fn write_sbet(path: &Path, trajectory: &Trajectory, kind: GpsTimeKind, crs: &Crs
         }
         _ => 0.0,
     };
-    atomic::write(path, |file| {
+    output.write(|path, file| {
         for (i, (time, place)) in trajectory.times.iter().zip(&places).enumerate() {
             let [north, east, up] = velocity(&trajectory.times, &places, i);
             let pointing = match heading {

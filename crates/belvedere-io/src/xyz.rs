@@ -3,8 +3,10 @@
 use std::io::BufRead;
 use std::path::Path;
 
-use super::part::{Part, open};
+use super::part::Part;
+use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
+use super::source::Input;
 use belvedere_data::{Error, Result};
 
 /// A line longer than this is no point.
@@ -32,13 +34,14 @@ impl Separator {
     }
 }
 
-/// The points of the file at `path`.
+/// The points of the source.
 ///
 /// # Errors
 /// [`Error::Malformed`] for decimal commas, for a header without x, y and z, and where more than half of the lines
 /// cannot be read.
-pub(super) fn read(path: &Path) -> Result<Part> {
-    let (mut file, size) = open(path)?;
+pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
+    let Input { name, reader: mut file, size } = input;
+    let path = name.as_path();
     let mut part = Part::new(path, "text");
     let mut lines = Lines { path, file: &mut file, number: 0, bytes: Vec::new() };
     let Some(start) = find_start(path, &mut part, &mut lines)? else {
@@ -47,19 +50,23 @@ pub(super) fn read(path: &Path) -> Result<Part> {
     };
     let Start { separator, columns, ahead } = start;
     part.report.format = format!("text, {}", columns_in_words(separator, &columns));
-    let mut rows = Rows::new(columns.iter().copied().flatten());
+    let mut rows = Rows::new(columns.iter().copied().flatten()).with_numbers(reading.options.row_numbers);
     let mut bad = Bad::default();
     let mut take = |number: usize, line: &str| match parse(line, separator, &columns) {
         Some(row) => {
             rows.push(&row);
             bad.good += 1;
         }
-        None => bad.add(number),
+        None => {
+            rows.pass_over();
+            bad.add(number);
+        }
     };
     for (number, line) in &ahead {
         take(*number, line);
     }
     while let Some((number, line)) = lines.next_data()? {
+        reading.check(number as u64)?;
         take(number, &line);
     }
     bad.judge(&mut part, path)?;

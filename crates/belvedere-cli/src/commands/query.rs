@@ -172,8 +172,9 @@ pub(super) fn points_of_file(
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<PointCloud> {
-    let options = ReadOptions { crs };
-    let (cloud, report) = stages.run("reading targets", 0, |_| read_cloud(&[path.to_owned()], &options))?;
+    let options = ReadOptions::new().with_crs(crs);
+    let (cloud, report) =
+        stages.run("reading targets", 0, |control| read_cloud(&[path.to_owned()], &options, control))?;
     pipeline::check_every_row(&report)?;
     summary.add("reading_targets", Summary::of(&report));
     if cloud.frame.crs.contradicts(&frame.crs) {

@@ -92,8 +92,9 @@ pub(crate) fn ground_cloud(
             Ok((std::mem::replace(&mut scene.cloud, frame), *points))
         }
         GroundChoice::Cloud(path) => {
-            let (cloud, _) =
-                stages.run("reading ground", 0, |_| read_cloud(std::slice::from_ref(path), &ReadOptions::default()))?;
+            let (cloud, _) = stages.run("reading ground", 0, |control| {
+                read_cloud(std::slice::from_ref(path), &ReadOptions::default(), control)
+            })?;
             let frame = &scene.cloud.frame;
             if cloud.frame.crs.contradicts(&frame.crs) {
                 bail!(

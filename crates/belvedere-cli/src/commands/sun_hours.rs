@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
             stages.run("reading what is seen", targets.len(), |control| {
                 let mut sums = SunSums::default();
                 let mut first = 0;
-                read_matrix_rows(path, head, |words| {
+                read_matrix_rows(path.as_path(), head, |words| {
                     control.check()?;
                     let count = words.len() / head.words_of_row().max(1);
                     let matrix = VisibilityMatrix::from_words(count, head.directions.len(), words.to_vec())?;

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use crate::common::Workplace;
+use belvedere::control::Control;
 use belvedere::io::{LevelOfDetail, ReadOptions, read_cityjson, read_cloud, read_mesh, read_trajectory};
 use belvedere::view::to_sun;
 use belvedere::{GpsTimeKind, PointCloud};
@@ -11,7 +12,7 @@ use belvedere_scenes::{AirborneParams, Preset, Truth, scan_airborne, town};
 use las::Reader;
 
 fn cloud(place: &Workplace, name: &str) -> PointCloud {
-    read_cloud(&[place.path(name)], &ReadOptions::default()).unwrap().0
+    read_cloud(&[place.path(name)], &ReadOptions::default(), &Control::none()).unwrap().0
 }
 
 /// The three columns of light of each point.

@@ -1,6 +1,6 @@
 //! How a reference system is written into files: well-known text, EPSG codes and GeoTIFF keys.
 
-use super::{Crs, CrsKind, UNIT_CODES};
+use super::{Crs, CrsKind, UNIT_CODES, registry};
 
 /// GeoTIFF's value for "described elsewhere".
 const USER_DEFINED: u16 = 32767;
@@ -38,10 +38,7 @@ fn looked_up(crs: &Crs) -> Option<Crs> {
 pub fn wkt_line(crs: &Crs) -> Option<String> {
     let text = match &crs.wkt {
         Some(wkt) => wkt.clone(),
-        None => {
-            let definition = codes(crs).find_map(|text| proj_wkt::parse_crs(&text).ok())?;
-            proj_wkt::to_wkt(&definition).ok()?
-        }
+        None => codes(crs).find_map(|text| registry::wkt(&text))?,
     };
     let line = text.trim_end_matches('\0').lines().map(str::trim).collect::<Vec<_>>().join(" ");
     (!line.is_empty()).then_some(line)

@@ -1,15 +1,14 @@
 //! Balls as LAS and LAZ point clouds with extra bytes.
 
-use std::path::Path;
-
 use ::las::Vlr;
 
 use super::{FileBall, as_cloud, index, metadata};
 use crate::las::LasFile;
 use crate::las_extra::ExtraField;
 use crate::laz::ExtraBytes;
+use crate::output::Output;
 use crate::part::narrow;
-use crate::write_cloud::extension;
+use crate::source::Input;
 use crate::write_las;
 use belvedere_data::model::ModelParts;
 use belvedere_data::{Error, Result};
@@ -18,7 +17,7 @@ use belvedere_data::{Error, Result};
 const RECORD_USER: &str = "belvedere";
 const RECORD_ID: u16 = 1;
 
-pub(crate) fn write_las(path: &Path, parts: &ModelParts) -> Result<()> {
+pub(crate) fn write_las(output: Output<'_>, parts: &ModelParts) -> Result<()> {
     let (cloud, columns) = as_cloud(parts);
     let record = Vlr {
         user_id: RECORD_USER.to_owned(),
@@ -26,12 +25,13 @@ pub(crate) fn write_las(path: &Path, parts: &ModelParts) -> Result<()> {
         description: "medial balls".to_owned(),
         data: metadata::to_json(parts, metadata::FILE_UNITS).into_bytes(),
     };
-    let compression = if extension(path) == "laz" { write_las::Compression::Laz } else { write_las::Compression::None };
-    write_las::write(path, &cloud, &columns, compression, &[record]).map(|_| ())
+    write_las::write(output, &cloud, &columns, &[record]).map(|_| ())
 }
 
-pub(crate) fn read_las(path: &Path) -> Result<ModelParts> {
-    let file = LasFile::open(path)?;
+pub(crate) fn read_las(input: Input<'_>) -> Result<ModelParts> {
+    let name = input.name.clone();
+    let path = name.as_path();
+    let file = LasFile::open(input)?;
     let Some(fields) = Fields::of(&file) else {
         return Err(Error::malformed(path, "holds no balls; it needs the extra bytes radius and touch"));
     };
@@ -42,16 +42,17 @@ pub(crate) fn read_las(path: &Path) -> Result<ModelParts> {
         return Err(Error::malformed(path, format!("ends after {present} of {announced} balls")));
     }
     let mut rows = Vec::new();
-    file.for_each_batch(ExtraBytes::Decompress, |batch| {
+    let mut batches = file.batches(ExtraBytes::Decompress)?;
+    while let Some(batch) = batches.next()? {
         let records = batch.raw_bytes().chunks_exact(batch.record_len().max(1));
         let centers = batch.x().zip(batch.y()).zip(batch.z());
         rows.extend(centers.zip(records).map(|(((x, y), z), record)| fields.ball([x, y, z], record)));
-    })?;
+    }
     Ok(metadata.fill(&rows))
 }
 
-pub(crate) fn las_has_balls(path: &Path) -> bool {
-    LasFile::open(path).is_ok_and(|file| Fields::of(&file).is_some())
+pub(crate) fn las_has_balls(input: Input<'_>) -> bool {
+    LasFile::open(input).is_ok_and(|file| Fields::of(&file).is_some())
 }
 
 /// The extra columns of a ball file.

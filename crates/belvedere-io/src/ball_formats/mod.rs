@@ -1,13 +1,25 @@
 //! The formats of ball files.
 
+#[cfg(feature = "las")]
 mod las;
+#[cfg_attr(
+    not(all(feature = "las", feature = "ply", feature = "npy")),
+    allow(dead_code, reason = "a build without some formats uses a part of it")
+)]
 mod metadata;
+#[cfg(feature = "npy")]
 mod npz;
+#[cfg(feature = "ply")]
 mod ply;
+mod write_ply;
 
+#[cfg(feature = "las")]
 pub(crate) use las::{las_has_balls, read_las, write_las};
+#[cfg(feature = "npy")]
 pub(crate) use npz::{npz_has_balls, read_npz, write_npz};
-pub(crate) use ply::{ply_has_balls, read_ply, write_ply};
+#[cfg(feature = "ply")]
+pub(crate) use ply::{ply_has_balls, read_ply};
+pub(crate) use write_ply::write_ply;
 
 use crate::columns::{Column, Values};
 use belvedere_data::PointCloud;
@@ -40,6 +52,10 @@ fn as_cloud(parts: &ModelParts) -> (PointCloud, Vec<Column<'_>>) {
 }
 
 /// A ball as the formats that hold points give it.
+#[cfg_attr(
+    not(all(feature = "las", feature = "ply", feature = "npy")),
+    allow(dead_code, reason = "a build without some formats uses a part of it")
+)]
 #[derive(Clone, Copy, Debug, Default)]
 struct FileBall {
     /// In the system and unit of the file.
@@ -53,6 +69,10 @@ struct FileBall {
     transmission: f32,
 }
 
+#[cfg_attr(
+    not(all(feature = "las", feature = "ply", feature = "npy")),
+    allow(dead_code, reason = "a build without some formats uses a part of it")
+)]
 /// An index that was stored as a signed number: what is negative in 32 bits stands above 2³¹.
 #[expect(
     clippy::cast_possible_truncation,

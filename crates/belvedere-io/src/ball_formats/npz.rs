@@ -1,14 +1,13 @@
 //! Balls in NumPy's archive format, without loss.
 
-use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, Write};
-use std::path::Path;
+use std::io::{self, Read, Seek, Write};
 
 use npyz::npz::{NpzArchive, NpzWriter};
 
 use super::metadata;
-use crate::atomic;
 use crate::npz_arrays::{array, has, invalid, rows, values};
+use crate::output::Output;
+use crate::source::Input;
 use belvedere_data::model::ModelParts;
 use belvedere_data::needles::NeedleColumns;
 use belvedere_data::{Error, Result};
@@ -20,8 +19,8 @@ const PULSE_ARRAYS: [&str; 3] = ["pulse_starts", "pulse_slopes", "pulse_top"];
 /// Metadata longer than this is not ours.
 const MAX_METADATA_BYTES: u64 = 1 << 24;
 
-pub(crate) fn write_npz(path: &Path, parts: &ModelParts) -> Result<()> {
-    atomic::write(path, |output| {
+pub(crate) fn write_npz(output: Output<'_>, parts: &ModelParts) -> Result<()> {
+    output.write(|path, output| {
         let mut archive = NpzWriter::new(output);
         write_arrays(&mut archive, parts).map_err(Error::io(path))
     })
@@ -52,10 +51,11 @@ fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, parts: &ModelParts)
     archive.zip_writer().finish()?.flush()
 }
 
-pub(crate) fn read_npz(path: &Path) -> Result<ModelParts> {
+pub(crate) fn read_npz(input: Input<'_>) -> Result<ModelParts> {
+    let Input { name, reader, .. } = input;
+    let path = name.as_path();
     let malformed = |e: io::Error| Error::malformed(path, format!("not a ball file: {e}"));
-    let file = BufReader::new(File::open(path).map_err(Error::io(path))?);
-    let mut archive = NpzArchive::new(file).map_err(malformed)?;
+    let mut archive = NpzArchive::new(reader).map_err(malformed)?;
     let text = match values::<u8, _>(&mut archive, "metadata", MAX_METADATA_BYTES) {
         Ok((text, _)) => String::from_utf8_lossy(&text).into_owned(),
         Err(_) => String::new(),
@@ -91,8 +91,7 @@ fn pulses<R: Read + Seek>(archive: &mut NpzArchive<R>) -> io::Result<NeedleColum
     })
 }
 
-pub(crate) fn npz_has_balls(path: &Path) -> bool {
-    let Ok(file) = File::open(path) else { return false };
-    let Ok(archive) = NpzArchive::new(BufReader::new(file)) else { return false };
+pub(crate) fn npz_has_balls(input: Input<'_>) -> bool {
+    let Ok(archive) = NpzArchive::new(input.reader) else { return false };
     ["centers", "radii", "origin"].iter().all(|name| has(&archive, name))
 }

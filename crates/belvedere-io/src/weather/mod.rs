@@ -14,10 +14,11 @@ mod nsrdb;
 mod pvgis;
 mod tmy3;
 
+use crate::source::{Input, Source};
 use belvedere_data::weather::Weather;
 use belvedere_data::{Error, Result};
 use lines::Lines;
-use std::path::Path;
+use std::io::Read;
 
 /// Larger files are no weather: a year in steps of a minute has 50 MB.
 const MOST_BYTES: u64 = 500_000_000;
@@ -34,12 +35,14 @@ const MOST_BYTES: u64 = 500_000_000;
 /// # Source
 /// EnergyPlus, Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary"; Wilcox & Marion 2008, User's manual for TMY3 data sets;
 /// PVGIS user manual, sections 4 and 6; NSRDB, "PSM v3 and v4 CSV".
-pub fn read_weather(path: &Path) -> Result<Weather> {
-    let size = std::fs::metadata(path).map_err(Error::io(path))?.len();
+pub fn read_weather<'a>(source: impl Into<Source<'a>>) -> Result<Weather> {
+    let Input { name, mut reader, size } = source.into().open()?;
+    let path = name.as_path();
     if size > MOST_BYTES {
         return Err(Error::malformed(path, format!("{size} bytes are too many for a weather file")));
     }
-    let bytes = std::fs::read(path).map_err(Error::io(path))?;
+    let mut bytes = Vec::new();
+    reader.read_to_end(&mut bytes).map_err(Error::io(path))?;
     // station names are in any encoding; figures are not
     let text = String::from_utf8_lossy(&bytes);
     let text = text.trim_start_matches('\u{feff}');

@@ -12,6 +12,7 @@ mod findings;
 mod model;
 
 use belvedere::Result;
+use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud, read_mesh};
 use belvedere::medial::ShrinkParams;
 use experiment::{Look, compare_profiles, oblique, top_down};
@@ -72,10 +73,10 @@ fn main() -> Result<()> {
 /// The paper's first data set.
 fn artificial(folder: &Path, tables: &mut Tables) -> Result<()> {
     let Some(path) = data("data/house_dyke_tree/house_dyke_tree.points.ply") else { return Ok(()) };
-    let (cloud, _) = read_cloud(&[path], &ReadOptions::default())?;
+    let (cloud, _) = read_cloud(&[path], &ReadOptions::default(), &Control::none())?;
     tables.line("\n## House, dyke and tree\n");
     if let Some(path) = data("reference/house_dyke_tree") {
-        let (reference, _) = read_cloud(&[path], &ReadOptions::default())?;
+        let (reference, _) = read_cloud(&[path], &ReadOptions::default(), &Control::none())?;
         if let (Some(a), Some(b)) = (&cloud.attributes.normals, &reference.attributes.normals) {
             let agree = a.iter().zip(b).filter(|(a, b)| (0..3).map(|i| a[i] * b[i]).sum::<f32>() > 0.99).count();
             tables.line(&format!("normals of the PLY that equal those given to masbcpp: {agree} of {}", a.len()));
@@ -91,7 +92,7 @@ fn artificial(folder: &Path, tables: &mut Tables) -> Result<()> {
 /// A tile whose balls and shares were measured with masbcpp.
 fn amsterdam(tables: &mut Tables) -> Result<()> {
     let Some(path) = data("reference/amsterdam") else { return Ok(()) };
-    let (cloud, _) = read_cloud(&[path], &ReadOptions::default())?;
+    let (cloud, _) = read_cloud(&[path], &ReadOptions::default(), &Control::none())?;
     tables.line("\n## Amsterdam\n");
     let model = Model::of_given_normals(cloud, ShrinkParams::angles())?;
     model.report(tables);
@@ -106,8 +107,8 @@ fn delft(folder: &Path, tables: &mut Tables) -> Result<()> {
     else {
         return Ok(());
     };
-    let options = ReadOptions { crs: Some("EPSG:7415".to_owned()) };
-    let (cloud, _) = read_cloud(&[tile], &options)?;
+    let options = ReadOptions::new().with_crs("EPSG:7415".to_owned());
+    let (cloud, _) = read_cloud(&[tile], &options, &Control::none())?;
     let (mesh, _) = read_mesh(&city)?;
     let block = within_window(&cloud, BLOCK);
     let way = Way { neighbors: PAPER_K, mesh: &mesh };

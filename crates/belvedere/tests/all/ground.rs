@@ -2,6 +2,7 @@
 
 use crate::common::simulated::cloud_of;
 use belvedere::Bounds;
+use belvedere::control::Control;
 use belvedere::ground::{
     FinderParams, Ground, GroundParams, GroundPoints, MapGrid, find_ground, ground_points, hidden_ground,
 };
@@ -64,7 +65,7 @@ fn ground_found_without_classes_lies_on_the_exact_ground() {
 #[test]
 fn ground_of_delft_is_found_as_its_makers_classed_it() {
     let Some(path) = crate::common::data("ground_of_delft", "data/delft_ahn3/ahn3_cropped_1.laz") else { return };
-    let (cloud, _) = read_cloud(&[path], &ReadOptions::default()).unwrap();
+    let (cloud, _) = read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap();
     let (truth, from) = ground_points(&cloud, &GroundParams::default()).unwrap();
     assert_eq!(from, GroundPoints::Classed);
     let unclassed = PointCloud { attributes: Attributes::default(), ..cloud.clone() };

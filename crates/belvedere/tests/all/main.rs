@@ -17,7 +17,6 @@ mod depth_map;
 mod exposure;
 mod ground;
 mod horizons;
-mod hostile_input;
 mod irradiance_models;
 mod irradiation;
 mod isovists;

@@ -40,7 +40,7 @@ struct Prepared {
 }
 
 fn prepare(path: &Path, by: &Orientation<'_>) -> Result<Prepared> {
-    let (cloud, _) = read_cloud(&[path.to_owned()], &ReadOptions::default())?;
+    let (cloud, _) = read_cloud(&[path.to_owned()], &ReadOptions::default(), &Control::none())?;
     let (kept, _) = clean(&cloud, &CleanParams::default())?;
     let cloud = cloud.select(&kept);
     let index = NeighborIndex::new(&cloud.positions)?;

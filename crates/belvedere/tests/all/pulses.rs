@@ -1,5 +1,6 @@
 //! Pulses and scanner positions: simulated flights whose path is known, clouds with damaged columns, real towns.
 
+use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud};
 use belvedere::pulses::{Pulses, SensorEstimateParams, SensorPositions, SensorReport, Verdict, group};
 use belvedere::random::uniform;
@@ -207,7 +208,7 @@ fn lines_without_multiple_returns_are_refused_and_said_so() {
 
 fn estimated(test: &str, file: &str) -> Option<(PointCloud, Pulses, SensorPositions, SensorReport)> {
     let path = crate::common::data(test, file)?;
-    let (cloud, _) = read_cloud(&[path], &ReadOptions::default()).unwrap();
+    let (cloud, _) = read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap();
     let (pulses, grouping) = group(&cloud).unwrap();
     // every point is somewhere
     let left_out = grouping.duplicate_count + grouping.ambiguous_count + grouping.without_time_count;
@@ -249,7 +250,7 @@ fn real_flights_are_found() {
 fn a_cloud_with_rounded_times_has_no_pulses() {
     let file = "data/tudelft_ahn4_small/small.laz";
     let Some(path) = crate::common::data("a_cloud_with_rounded_times_has_no_pulses", file) else { return };
-    let (cloud, _) = read_cloud(&[path], &ReadOptions::default()).unwrap();
+    let (cloud, _) = read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap();
     assert!(matches!(group(&cloud), Err(Error::MissingAttribute { .. })));
 }
 

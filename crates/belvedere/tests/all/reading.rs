@@ -6,16 +6,17 @@
 use std::path::{Path, PathBuf};
 
 use belvedere::Bounds;
+use belvedere::control::Control;
 use belvedere::crs::{Crs, CrsKind, US_SURVEY_FOOT};
 use belvedere::io::{ReadOptions, ReadReport, read_cloud};
 use belvedere::{Error, GpsTimeKind, PointCloud};
 
 fn read(paths: &[PathBuf]) -> belvedere::Result<(PointCloud, ReadReport)> {
-    read_cloud(paths, &ReadOptions::default())
+    read_cloud(paths, &ReadOptions::default(), &Control::none())
 }
 
 fn read_as(path: &Path, crs: &str) -> belvedere::Result<(PointCloud, ReadReport)> {
-    read_cloud(&[path.to_owned()], &ReadOptions { crs: Some(crs.to_owned()) })
+    read_cloud(&[path.to_owned()], &ReadOptions::new().with_crs(crs.to_owned()), &Control::none())
 }
 
 /// What an outside reader says about a LAS file.

@@ -7,6 +7,7 @@
 )]
 
 use crate::common::simulated::cloud_of;
+use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud, read_trajectory, write_found_trajectory};
 use belvedere::pulses::{
     AngleVerdict, FoundBy, LocateParams, Means, ScannerReport, SensorEstimateParams, Verdict, locate, path_samples,
@@ -280,7 +281,7 @@ fn means_that_are_not_there_are_refused_with_advice() {
 fn real_clouds_are_served_by_what_they_have() {
     let read = |file: &str| {
         let path = crate::common::data("real_clouds_are_served_by_what_they_have", file)?;
-        Some(read_cloud(&[path], &ReadOptions::default()).unwrap().0)
+        Some(read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap().0)
     };
     // scanners that look across the flight: angles alone put them where pulses with several returns do
     // (one block in Amsterdam is too narrow for two of its three lines)
@@ -322,7 +323,7 @@ fn real_clouds_are_served_by_what_they_have() {
         if path.extension().is_none_or(|e| e != "laz") {
             continue;
         }
-        let (cloud, _) = read_cloud(&[path], &ReadOptions::default()).unwrap();
+        let (cloud, _) = read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap();
         let (_, report) = found(&cloud);
         assert!(!report.found.contains_key(&FoundBy::ScanAngle), "{:?}", report.remarks);
     }

@@ -9,6 +9,7 @@
 use crate::common::simulated::cloud_of;
 use std::path::Path;
 
+use belvedere::control::Control;
 use belvedere::io::{
     Heading, LevelOfDetail, ReadOptions, read_cityjson, read_cloud, read_mesh, read_trajectory, write_cloud,
     write_trajectory,
@@ -38,7 +39,7 @@ fn delivered(scan: &Scan, folder: &Path, trajectory_name: &str) -> Delivered {
     let heading = Heading::Given(&path.headings);
     write_trajectory(&path_file, &trajectory, GpsTimeKind::AdjustedStandard, &cloud.frame.crs, heading).unwrap();
 
-    let (cloud, _) = read_cloud(&[cloud_file], &ReadOptions::default()).unwrap();
+    let (cloud, _) = read_cloud(&[cloud_file], &ReadOptions::default(), &Control::none()).unwrap();
     let (trajectory, _) = read_trajectory(&path_file, &cloud.frame.crs).unwrap();
     let times = cloud.attributes.gps_time.clone().unwrap();
     let clock = trajectory.clock_offset_for(&times, cloud.attributes.gps_time_kind);

@@ -9,6 +9,7 @@ use std::fs;
 use std::io::{BufReader, Write};
 
 use belvedere::cloud::GpsTimeKind;
+use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{
     ExtraColumn, ExtraValues, Georeference, MasbcppFolder, ReadOptions, atomic, read_cloud, write_cloud, write_masbcpp,
@@ -339,7 +340,8 @@ fn written_clouds_read_back_the_same() {
             // a table says nothing of its unit
             continue;
         }
-        let (found, report) = read_cloud(std::slice::from_ref(&path), &ReadOptions { crs: code }).unwrap();
+        let (found, report) =
+            read_cloud(std::slice::from_ref(&path), &ReadOptions::new().with_crs(code), &Control::none()).unwrap();
         let about = format!("{} {crs:?} {:?}", case.name, report.files);
         assert_eq!(found.frame.crs.epsg, crs.epsg, "{about}");
         assert!((found.frame.crs.metres_per_unit - crs.metres_per_unit).abs() < 1e-12, "{about}");

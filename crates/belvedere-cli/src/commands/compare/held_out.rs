@@ -19,7 +19,8 @@ pub(super) fn judge_all(
     global: &Global,
     stages: &mut Stages,
 ) -> Result<Vec<HeldOutResult>> {
-    let (cloud, _) = stages.run("reading", 0, |_| read_cloud(&[path.to_owned()], &ReadOptions::default()))?;
+    let (cloud, _) =
+        stages.run("reading", 0, |control| read_cloud(&[path.to_owned()], &ReadOptions::default(), control))?;
     let named = || path.display().to_string();
     let (pulses, _) = group(&cloud).with_context(named)?;
     let (scanner, report) = stages.run("finding the scanner", 0, |_| match &arguments.trajectory {

@@ -5,6 +5,7 @@ use crate::arguments::Compare;
 use crate::simulated::cloud_of;
 use anyhow::Result;
 use belvedere::Mesh;
+use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud, read_mesh, read_trajectory};
 use belvedere::trajectory::Trajectory;
 use belvedere_baselines::Model;
@@ -80,7 +81,7 @@ impl Place {
                 Ok(Ingredients { cloud, scanner, models, scene })
             }
             Self::Given { clouds, mesh, trajectory, models } => {
-                let (cloud, _) = read_cloud(clouds, &ReadOptions::default())?;
+                let (cloud, _) = read_cloud(clouds, &ReadOptions::default(), &Control::none())?;
                 let in_metres =
                     |path: &Path| -> Result<Mesh> { Ok(read_mesh(path)?.0.scaled_to_metres(&cloud.frame.crs)) };
                 let mesh = in_metres(mesh)?;

@@ -1,13 +1,11 @@
 //! Damaged and malicious files: every reader must answer with an error or a report, never panic, hang or allocate what
 //! the file cannot hold.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at the first surprise")]
-
 use std::io::Cursor;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
-use belvedere::io::{ReadOptions, read_cloud};
+use belvedere_data::control::Control;
+use belvedere_io::{ReadOptions, read_cloud};
 
 /// Points of each small valid file.
 const POINTS: u32 = 60;
@@ -195,10 +193,7 @@ impl Random {
 /// Reads what is at `path`; a message where the reader misbehaves.
 fn misbehaviour(path: &Path, size: usize) -> Option<String> {
     let paths = [path.to_owned()];
-    let Ok(result) = catch_unwind(AssertUnwindSafe(|| read_cloud(&paths, &ReadOptions::default()))) else {
-        return Some("panicked".to_owned());
-    };
-    match result {
+    match read_cloud(&paths, &ReadOptions::default(), &Control::none()) {
         Err(error) if error.to_string().is_empty() => Some("gives an empty error".to_owned()),
         Err(_) => None,
         Ok((cloud, report)) => {
@@ -246,7 +241,8 @@ fn undamaged_files_read() {
     for file in valid_files() {
         let path = folder.path().join(file.name);
         std::fs::write(&path, &file.bytes).unwrap();
-        let (cloud, report) = read_cloud(&[path], &ReadOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+        let (cloud, report) =
+            read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(cloud.len() + report.left_out_count(), POINTS as usize, "{}", file.name);
         let p = cloud.frame.to_file_coordinates(cloud.positions[1]);
         let expected = coordinates(if file.name == "scan.e57" { 2 } else { 1 });
@@ -488,9 +484,12 @@ fn files_without_points_are_an_error_only_where_no_file_has_any() {
     let full = folder.path().join("full.xyz");
     std::fs::write(&empty, "# no points\n").unwrap();
     std::fs::write(&full, xyz()).unwrap();
-    let error = read_cloud(std::slice::from_ref(&empty), &ReadOptions::default()).unwrap_err();
-    assert!(matches!(error, belvedere::Error::NoPoints { .. }) && error.to_string().contains("empty.xyz"), "{error}");
-    let (cloud, report) = read_cloud(&[empty, full], &ReadOptions::default()).unwrap();
+    let error = read_cloud(std::slice::from_ref(&empty), &ReadOptions::default(), &Control::none()).unwrap_err();
+    assert!(
+        matches!(error, belvedere_data::Error::NoPoints { .. }) && error.to_string().contains("empty.xyz"),
+        "{error}"
+    );
+    let (cloud, report) = read_cloud(&[empty, full], &ReadOptions::default(), &Control::none()).unwrap();
     assert_eq!((cloud.len(), report.files.len()), (POINTS as usize, 2));
 }
 
@@ -500,7 +499,7 @@ fn wrong_las_counts_are_reported() {
     let path = folder.path().join("short.las");
     let bytes = las(3, false);
     std::fs::write(&path, &bytes[..bytes.len() - 34 * 10 - 5]).unwrap();
-    let (cloud, report) = read_cloud(&[path], &ReadOptions::default()).unwrap();
+    let (cloud, report) = read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap();
     assert_eq!((cloud.len(), report.left_out_count()), (49, 11));
     assert!(report.files[0].notes.iter().any(|note| note.contains("holds only 49")), "{:?}", report.files[0]);
 }

@@ -1,0 +1,228 @@
+//! What to read of a cloud, and where to put it.
+
+use belvedere_data::cloud::{Attributes, to_local};
+use belvedere_data::control::Control;
+use belvedere_data::crs::Crs;
+use belvedere_data::{Bounds, Error, Frame, Result};
+
+use super::part::{Coordinates, Part};
+
+/// How often readers that go point by point look whether the work was cancelled: a few milliseconds of points.
+const POINTS_PER_CHECK: u64 = 1 << 14;
+
+/// How to read.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct ReadOptions {
+    /// Reference system as for [`Crs::parse`], in place of what the files say. Default: none, the files are believed.
+    pub crs: Option<String>,
+    /// Frame of the cloud, so that clouds that are read separately have comparable local positions. A frame without a
+    /// reference system takes that of the files. Default: none, the origin is chosen near the middle of the points.
+    pub frame: Option<Frame>,
+    /// Only points in this box are read. Default: all.
+    pub within: Option<Within>,
+    /// Only points of these ASPRS classes are read. Default: all.
+    pub classes: Option<Vec<u8>>,
+    /// Whether the report gives the row of each point in its file. Default: not.
+    pub row_numbers: RowNumbers,
+}
+
+/// A box that points must lie in, or on the faces of, to be read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Within {
+    /// Lowest and highest corner in the coordinates and unit of the file.
+    File {
+        /// Lowest corner.
+        low: [f64; 3],
+        /// Highest corner.
+        high: [f64; 3],
+    },
+    /// A box in the local metres of [`ReadOptions::frame`], which must be given.
+    Local(Bounds),
+}
+
+/// Whether the rows of points are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RowNumbers {
+    /// [`crate::ReadReport::rows`] stays empty.
+    #[default]
+    Dropped,
+    /// [`crate::ReadReport::rows`] has a row for each point.
+    Kept,
+}
+
+impl ReadOptions {
+    /// Every point, in the reference system that the files name.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The same with a reference system in place of what the files say; `None` believes the files.
+    #[must_use]
+    pub fn with_crs(mut self, crs: impl Into<Option<String>>) -> Self {
+        self.crs = crs.into();
+        self
+    }
+
+    /// The same with a fixed frame.
+    #[must_use]
+    pub fn with_frame(mut self, frame: Frame) -> Self {
+        self.frame = Some(frame);
+        self
+    }
+
+    /// The same for the points in a box only.
+    #[must_use]
+    pub fn with_points_within(mut self, within: Within) -> Self {
+        self.within = Some(within);
+        self
+    }
+
+    /// The same for the points of some ASPRS classes only.
+    #[must_use]
+    pub fn with_classes(mut self, classes: impl Into<Vec<u8>>) -> Self {
+        self.classes = Some(classes.into());
+        self
+    }
+
+    /// The same with the row of each point in the report.
+    #[must_use]
+    pub fn with_row_numbers(mut self) -> Self {
+        self.row_numbers = RowNumbers::Kept;
+        self
+    }
+
+    /// Checks what no file is needed for, and gives the reference system of the option.
+    pub(super) fn forced_crs(&self) -> Result<Option<Crs>> {
+        let invalid = |name, value, expected| Err(Error::InvalidParameter { name, value, expected });
+        if let Some(frame) = &self.frame
+            && !frame.origin.iter().all(|v| v.is_finite())
+        {
+            return invalid("origin of the frame", format!("{:?}", frame.origin), "finite");
+        }
+        match self.within {
+            Some(Within::File { low, high }) if !(0..3).all(|i| low[i] <= high[i]) => {
+                return invalid("box to read", format!("{low:?} to {high:?}"), "from the lowest to the highest corner");
+            }
+            Some(Within::Local(bounds)) if !(0..3).all(|i| bounds.low[i] <= bounds.high[i]) => {
+                let value = format!("{:?} to {:?}", bounds.low, bounds.high);
+                return invalid("box to read", value, "from the lowest to the highest corner");
+            }
+            Some(Within::Local(_)) if self.frame.is_none() => {
+                return invalid("box to read", "in local coordinates".to_owned(), "given together with a frame");
+            }
+            _ => {}
+        }
+        self.crs.as_deref().map(Crs::parse).transpose()
+    }
+}
+
+/// What the reader of one format needs besides its source.
+#[derive(Clone, Copy)]
+pub(super) struct Reading<'r> {
+    pub(super) options: &'r ReadOptions,
+    /// The reference system of the option.
+    pub(super) forced: Option<&'r Crs>,
+    pub(super) control: &'r Control<'r>,
+}
+
+impl Reading<'_> {
+    /// Called for every point by readers that go point by point; `done` points were read before.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub(super) fn check(&self, done: u64) -> Result<()> {
+        if done.is_multiple_of(POINTS_PER_CHECK) { self.control.check() } else { Ok(()) }
+    }
+
+    /// Which points of a file in the system `crs` are read, or `None` for all.
+    pub(super) fn selection(&self, crs: &Crs) -> Option<Selection> {
+        let crs = self.forced.unwrap_or(crs);
+        let place = match (self.options.within, &self.options.frame) {
+            (Some(Within::File { low, high }), _) => Some(Place::File { low, high }),
+            (Some(Within::Local(bounds)), Some(frame)) => {
+                let known = if *crs == Crs::default() { &frame.crs } else { crs };
+                Some(Place::Local { bounds, origin: frame.origin, units: known.metres_per_unit_xyz() })
+            }
+            _ => None,
+        };
+        let classes = self.options.classes.as_ref().map(|classes| {
+            let mut kept = [false; 256];
+            classes.iter().for_each(|&class| kept[usize::from(class)] = true);
+            kept
+        });
+        (place.is_some() || classes.is_some()).then_some(Selection { place, classes })
+    }
+}
+
+/// Which points of a file are read.
+pub(super) struct Selection {
+    place: Option<Place>,
+    classes: Option<[bool; 256]>,
+}
+
+enum Place {
+    File { low: [f64; 3], high: [f64; 3] },
+    Local { bounds: Bounds, origin: [f64; 3], units: [f64; 3] },
+}
+
+/// Points that a selection passed over.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PassedOver {
+    outside: usize,
+    other_class: usize,
+}
+
+impl PassedOver {
+    /// Counts them in the report of `part`.
+    pub(super) fn report(self, part: &mut Part) {
+        part.leave_out(self.outside, "outside the box to read");
+        part.leave_out(self.other_class, "of a class that is not read");
+    }
+}
+
+impl Selection {
+    fn holds(&self, p: [f64; 3]) -> bool {
+        match &self.place {
+            None => true,
+            Some(Place::File { low, high }) => (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i]),
+            Some(Place::Local { bounds, origin, units }) => {
+                bounds.contains(to_local(std::array::from_fn(|i| p[i] * units[i]), *origin))
+            }
+        }
+    }
+
+    /// Indices of the points that are read; the others are counted in `passed_over`.
+    ///
+    /// # Errors
+    /// [`Error::MissingAttribute`] where classes are asked for but the points have none.
+    pub(super) fn kept(
+        &self,
+        coordinates: &Coordinates,
+        attributes: &Attributes,
+        passed_over: &mut PassedOver,
+    ) -> Result<Vec<u32>> {
+        if self.classes.is_some() && attributes.classification.is_none() && coordinates.len() > 0 {
+            return Err(Error::MissingAttribute {
+                attribute: "classification",
+                needed_for: "reading some classes only",
+                advice: "read all points, or classify them first",
+            });
+        }
+        let mut kept = Vec::new();
+        for (index, position) in (0_u32..).zip(coordinates.positions()) {
+            let class = attributes.classification.as_ref().and_then(|classes| classes.get(index as usize));
+            if !self.holds(position) {
+                passed_over.outside += 1;
+            } else if let (Some(classes), Some(&class)) = (&self.classes, class)
+                && !classes[usize::from(class)]
+            {
+                passed_over.other_class += 1;
+            } else {
+                kept.push(index);
+            }
+        }
+        Ok(kept)
+    }
+}

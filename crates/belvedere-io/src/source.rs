@@ -1,0 +1,164 @@
+//! Where input comes from: a file, bytes in memory, or any reader.
+
+use std::fs::File;
+use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use belvedere_data::{Error, Result};
+
+/// What a [`Source`] can read from. Implemented for everything that reads, seeks and may move to another thread.
+pub trait ReadSeek: Read + Seek + Send {}
+impl<T: Read + Seek + Send> ReadSeek for T {}
+
+/// Bytes read ahead of the parser.
+const BUFFER_BYTES: usize = 1 << 16;
+
+/// One input with a name. The extension of the name selects the format; messages about the input begin with the name.
+///
+/// Paths become sources by themselves: wherever a source is expected, a path will do.
+///
+/// ```
+/// use belvedere_io::{ReadOptions, Source, read_cloud};
+/// use belvedere_data::control::Control;
+///
+/// # fn main() -> belvedere_data::Result<()> {
+/// let text = b"x y z\n1 2 3\n4 5 6\n";
+/// let (cloud, _report) = read_cloud([Source::bytes("points.xyz", text)], &ReadOptions::default(), &Control::none())?;
+/// assert_eq!(cloud.len(), 2);
+/// # Ok(())
+/// # }
+/// ```
+pub struct Source<'a> {
+    name: PathBuf,
+    content: Content<'a>,
+}
+
+enum Content<'a> {
+    /// The file or folder that the source is named after.
+    Path,
+    Reader(Box<dyn ReadSeek + 'a>),
+}
+
+impl<'a> Source<'a> {
+    /// The file or folder at `path`.
+    #[must_use]
+    pub fn path(path: impl Into<PathBuf>) -> Self {
+        Self { name: path.into(), content: Content::Path }
+    }
+
+    /// Bytes in memory, such as a download. `name` needs an extension, such as `tile.laz`.
+    #[must_use]
+    pub fn bytes(name: impl Into<PathBuf>, bytes: &'a (impl AsRef<[u8]> + ?Sized)) -> Self {
+        Self::reader(name, Cursor::new(bytes.as_ref()))
+    }
+
+    /// Anything that reads and seeks, from its first byte to its last. `name` needs an extension, such as `tile.laz`.
+    #[must_use]
+    pub fn reader(name: impl Into<PathBuf>, reader: impl Read + Seek + Send + 'a) -> Self {
+        Self { name: name.into(), content: Content::Reader(Box::new(reader)) }
+    }
+
+    /// The path, or the name that was given.
+    #[must_use]
+    pub fn name(&self) -> &Path {
+        &self.name
+    }
+
+    /// The extension of the name in lower case; empty where there is none.
+    #[must_use]
+    pub fn extension(&self) -> String {
+        extension(&self.name)
+    }
+
+    /// The folder at the path, where the source is one.
+    pub(crate) fn folder(&self) -> Option<&Path> {
+        (matches!(self.content, Content::Path) && self.name.is_dir()).then_some(self.name.as_path())
+    }
+
+    /// Opens the source at its first byte.
+    pub(crate) fn open(self) -> Result<Input<'a>> {
+        let Self { name, content } = self;
+        let (reader, size): (Box<dyn ReadSeek + 'a>, u64) = match content {
+            Content::Path => {
+                let file = File::open(&name).map_err(Error::io(&name))?;
+                let metadata = file.metadata().map_err(Error::io(&name))?;
+                if !metadata.is_file() {
+                    return Err(Error::malformed(&name, "is not a file"));
+                }
+                (Box::new(file), metadata.len())
+            }
+            Content::Reader(mut reader) => {
+                let size = reader.seek(SeekFrom::End(0)).map_err(Error::io(&name))?;
+                reader.seek(SeekFrom::Start(0)).map_err(Error::io(&name))?;
+                (reader, size)
+            }
+        };
+        Ok(Input { name, reader: BufReader::with_capacity(BUFFER_BYTES, reader), size })
+    }
+
+    /// The name and all bytes of the source.
+    pub(crate) fn read_all(self) -> Result<(PathBuf, Vec<u8>)> {
+        let Input { name, mut reader, size } = self.open()?;
+        let mut bytes = Vec::with_capacity(usize::try_from(size).unwrap_or(0));
+        reader.read_to_end(&mut bytes).map_err(Error::io(&name))?;
+        Ok((name, bytes))
+    }
+}
+
+/// An open source.
+pub(crate) struct Input<'a> {
+    /// For messages.
+    pub(crate) name: PathBuf,
+    pub(crate) reader: Reader<'a>,
+    /// Number of bytes.
+    pub(crate) size: u64,
+}
+
+/// Reader of an open source.
+pub(crate) type Reader<'a> = BufReader<Box<dyn ReadSeek + 'a>>;
+
+/// Extension in lower case, empty where there is none.
+pub(crate) fn extension(path: &Path) -> String {
+    path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
+}
+
+/// Why a name is of no use: its format was not built in, or is none of `supported`, the extensions that would do.
+pub(crate) fn unusable(name: &Path, kind: &'static str, supported: &'static str) -> Error {
+    let extension = extension(name);
+    let feature = match extension.as_str() {
+        "las" | "laz" if !cfg!(feature = "las") => Some("las"),
+        "ply" if !cfg!(feature = "ply") => Some("ply"),
+        "e57" if !cfg!(feature = "e57") => Some("e57"),
+        "npy" | "npz" if !cfg!(feature = "npy") => Some("npy"),
+        "obj" if !cfg!(feature = "obj") => Some("obj"),
+        _ => None,
+    };
+    match feature.filter(|_| supported.contains(&format!(".{extension}"))) {
+        Some(feature) => Error::missing_feature(name, feature),
+        None => Error::UnknownFormat { path: name.to_owned(), kind, supported },
+    }
+}
+
+impl From<PathBuf> for Source<'_> {
+    fn from(path: PathBuf) -> Self {
+        Self::path(path)
+    }
+}
+
+impl From<&PathBuf> for Source<'_> {
+    fn from(path: &PathBuf) -> Self {
+        Self::path(path)
+    }
+}
+
+impl From<&Path> for Source<'_> {
+    fn from(path: &Path) -> Self {
+        Self::path(path)
+    }
+}
+
+impl From<&str> for Source<'_> {
+    fn from(path: &str) -> Self {
+        Self::path(path)
+    }
+}

@@ -1,0 +1,9 @@
+//! The tests of reading and writing that need no other part of the library, in one program.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+mod hostile_archives;
+mod hostile_input;
+mod hostile_laz;
+mod outputs;
+mod sources;

@@ -1,0 +1,73 @@
+//! Files appear whole or not at all, and writers get the same bytes as files.
+
+use std::io::{Cursor, Write};
+use std::path::Path;
+
+use belvedere_data::crs::Crs;
+use belvedere_data::raster::Raster;
+use belvedere_data::{Error, Mesh, PointCloud};
+use belvedere_io::{
+    Cells, Georeference, Output, atomic, write_cloud, write_mesh, write_npy_f32_2d, write_table, write_tif_f32,
+};
+
+fn names_in(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        folder.read_dir().unwrap().map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+/// What `write` gives to a writer, after checking that a file of the same name gets the same bytes.
+fn written(name: &str, write: impl Fn(Output<'_>) -> belvedere_data::Result<()>) -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    write(Output::path(&path)).unwrap();
+    let mut cursor = Cursor::new(Vec::new());
+    write(Output::writer(name, &mut cursor)).unwrap();
+    assert_eq!(cursor.get_ref(), &std::fs::read(&path).unwrap(), "{name}");
+    assert_eq!(names_in(folder.path()), [name], "nothing else is left in the folder");
+    cursor.into_inner()
+}
+
+#[test]
+fn writers_get_the_bytes_of_files() {
+    let (cloud, _) = PointCloud::from_coordinates(&[[1.0, 2.0, 3.0], [4.0, 5.5, 6.0], [7.0, 8.0, 9.0]]);
+    for name in ["a.las", "a.laz", "a.ply", "a.csv", "a.xyz", "a.npy"] {
+        assert!(!written(name, |output| write_cloud(output, &cloud, &[]).map(|_| ())).is_empty());
+    }
+    let mesh = Mesh { vertices: cloud.positions.iter().map(|p| p.map(f64::from)).collect(), ..Mesh::default() };
+    let mesh = Mesh { triangles: vec![[0, 1, 2]], ..mesh };
+    for name in ["a.obj", "b.ply"] {
+        written(name, |output| write_mesh(output, &mesh, [1.0; 3]));
+    }
+    let raster = Raster::from_values(3, 2, vec![1.0, 2.0, 3.0, 4.0, 5.0, f32::NAN]).unwrap();
+    let place = Georeference {
+        upper_left: [155_000.0, 463_002.0],
+        column_step: [1.0, 0.0],
+        row_step: [0.0, -1.0],
+        crs: Crs::parse("EPSG:28992").unwrap(),
+    };
+    written("a.tif", |output| write_tif_f32(output, &raster, Some(&place), Some(-9999.0), None));
+    written("r.npy", |output| write_npy_f32_2d(output, &raster));
+    let table = written("t.csv", |output| write_table(output, &[("x", Cells::Real(&[1.25, f64::NAN], 2))]));
+    assert_eq!(table, b"x\n1.25\n\n");
+}
+
+#[test]
+fn a_cancelled_output_leaves_what_was_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("result.csv");
+    std::fs::write(&path, "before").unwrap();
+    let cancelled = atomic::write(&path, |file| {
+        file.write_all(&[0; 1 << 20]).map_err(Error::io(&path))?;
+        // the process is part of the name: another program that writes the same result is not disturbed
+        let own = format!("{}", std::process::id());
+        assert!(names_in(folder.path()).iter().any(|name| name.contains(&own)), "{:?}", names_in(folder.path()));
+        Err::<(), Error>(Error::Cancelled)
+    });
+    assert!(matches!(cancelled, Err(Error::Cancelled)));
+    assert_eq!(
+        (names_in(folder.path()), std::fs::read(&path).unwrap()),
+        (vec!["result.csv".to_owned()], b"before".into())
+    );
+}
