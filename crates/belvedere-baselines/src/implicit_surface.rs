@@ -7,6 +7,7 @@ use crate::lines_of_sight::{check_clearance, check_least, check_positive, sight}
 use crate::sampling::{capped_spacing, check_neighbor};
 use along_ray::Crossings;
 use belvedere::Result;
+use belvedere::control::Control;
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Normals, Orientation, orient};
@@ -113,8 +114,9 @@ impl ImplicitSurface {
         check_least("step along a ray", params.step, 0.01, "0.01 to 1")?;
         check_clearance(params.clearance)?;
         let positions = &survey.cloud.positions;
-        let neighbors = NeighborIndex::new(positions)?;
-        let normals = estimate(positions, &neighbors, Neighborhood::Fixed { k: params.normal_neighbors })?;
+        let neighbors = NeighborIndex::new(positions, &Control::none())?;
+        let normals =
+            estimate(positions, &neighbors, Neighborhood::Fixed { k: params.normal_neighbors }, &Control::none())?;
         let normals = match params.signs {
             NormalSigns::Agreeing => normals.vectors,
             NormalSigns::Outward => outward(survey, normals)?,
@@ -152,7 +154,7 @@ impl ImplicitSurface {
 
 /// Normals with signs as [`NormalSigns::Outward`] has them.
 fn outward(survey: &Survey<'_>, normals: Normals) -> Result<Vec<[f32; 3]>> {
-    let (oriented, _report) = orient(survey.cloud, normals, &Orientation::Up)?;
+    let (oriented, _report) = orient(survey.cloud, normals, &Orientation::Up, &Control::none())?;
     let positions = &survey.cloud.positions;
     let mut vectors = oriented.normals().to_vec();
     for ((normal, position), scanner) in vectors.iter_mut().zip(positions).zip(survey.scanner) {

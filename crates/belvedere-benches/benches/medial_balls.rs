@@ -40,10 +40,12 @@ fn real_tile(c: &mut Criterion) {
     let Some(delft) = common::delft() else { return };
     let mut group = c.benchmark_group("Delft");
     group.sample_size(10).throughput(Throughput::Elements(delft.0.len() as u64));
-    group.bench_function("index", |b| b.iter(|| NeighborIndex::new(&delft.0).unwrap().len()));
+    group.bench_function("index", |b| b.iter(|| NeighborIndex::new(&delft.0, &Control::none()).unwrap().len()));
     let (cloud, index) = common::indexed(delft);
     group.bench_function("normals of 16 neighbours", |b| {
-        b.iter(|| estimate(cloud.positions(), &index, Neighborhood::default()).unwrap().quality.len());
+        b.iter(|| {
+            estimate(cloud.positions(), &index, Neighborhood::default(), &Control::none()).unwrap().quality.len()
+        });
     });
     group.bench_function("both sides, angles, initial radius 200 m", |b| {
         b.iter(|| both_sides(&cloud, &index, &ShrinkParams::angles()));

@@ -5,13 +5,14 @@
 
 mod common;
 
+use belvedere::control::Control;
 use belvedere::neighbors::{Instructions, NeighborIndex};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 fn searches(c: &mut Criterion) {
     let (points, _) = common::aerial_city(500_000);
-    let index = NeighborIndex::new(&points).unwrap();
-    let scalar = NeighborIndex::with_instructions(&points, Instructions::Scalar).unwrap();
+    let index = NeighborIndex::new(&points, &Control::none()).unwrap();
+    let scalar = NeighborIndex::with_instructions(&points, Instructions::Scalar, &Control::none()).unwrap();
     let other = kiddo::ImmutableKdTree::<f32, 3>::new_from_slice(&points).unwrap();
     let some: Vec<[f32; 3]> = index.tree_order().iter().step_by(25).map(|&i| points[i as usize]).collect();
     for (name, depth) in [("on the surface", 0.0), ("5 m below", 5.0), ("200 m below", 200.0)] {

@@ -3,7 +3,9 @@
 mod facades;
 
 use belvedere_data::Bounds;
+use belvedere_data::Result;
 use belvedere_data::cloud::PointCloud;
+use belvedere_data::control::Control;
 use std::collections::BTreeMap;
 
 pub use facades::FacadeSummary;
@@ -87,8 +89,10 @@ impl GpsTimes {
 
 impl CloudSummary {
     /// Counts `cloud`.
-    #[must_use]
-    pub fn of(cloud: &PointCloud) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub fn of(cloud: &PointCloud, control: &Control<'_>) -> Result<Self> {
         let attributes = &cloud.attributes;
         let count_by = |classes: &Option<Vec<u8>>| {
             let mut counts = [0usize; 256];
@@ -112,7 +116,10 @@ impl CloudSummary {
         });
         let cell_size = cell_size_for(cloud);
         let occupied_area = occupied_cell_count(cloud, cell_size) as f64 * cell_size * cell_size;
-        Self {
+        control.check()?;
+        let gps_time = attributes.gps_time.as_deref().and_then(gps_times);
+        control.check()?;
+        Ok(Self {
             bounds: cloud.bounds().map(|Bounds { low, high }| {
                 (cloud.frame.to_file_coordinates(low), cloud.frame.to_file_coordinates(high))
             }),
@@ -123,10 +130,10 @@ impl CloudSummary {
             flight_lines,
             multi_return_share,
             pulses: attributes.return_count.as_deref().and_then(PulseCounts::of),
-            gps_time: attributes.gps_time.as_deref().and_then(gps_times),
+            gps_time,
             scan_angle_deg,
             duplicate_count: duplicate_count(cloud),
-        }
+        })
     }
 }
 
@@ -181,7 +188,7 @@ mod tests {
             },
             ..PointCloud::default()
         };
-        let summary = CloudSummary::of(&cloud);
+        let summary = CloudSummary::of(&cloud, &Control::none()).unwrap();
         assert_eq!(summary.classes, BTreeMap::from([(2, 3), (6, 1)]));
         assert_eq!(summary.flight_lines, BTreeMap::from([(1, 2), (9, 2)]));
         assert_eq!(summary.multi_return_share, Some(0.5));
@@ -200,7 +207,7 @@ mod tests {
 
     #[test]
     fn an_empty_cloud_has_an_empty_summary() {
-        let summary = CloudSummary::of(&PointCloud::default());
+        let summary = CloudSummary::of(&PointCloud::default(), &Control::none()).unwrap();
         assert!(summary.bounds.is_none() && summary.density == 0.0 && summary.gps_time.is_none());
     }
 }

@@ -1,8 +1,9 @@
-//! How long work reports its control, and how it is cancelled.
+//! How long work reports its progress, and how it is cancelled.
 
 use crate::{Error, Result};
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What the owner of long work provides: a control bar, a notebook, a page, a signal handler. Every method may be called from any
+/// What the owner of long work provides: a progress bar, a notebook, a page, a signal handler. Every method may be called from any
 /// thread and should return at once.
 pub trait Watcher: Sync {
     /// A stage begins that has `total` items; 0 where the number is not known. Stages do not nest.
@@ -11,7 +12,7 @@ pub trait Watcher: Sync {
     fn advance(&self, _count: usize) {}
     /// The stage is over, finished or not.
     fn end(&self, _stage: &'static str) {}
-    /// Whether the work should stop.
+    /// Whether the work should stop. It is asked often, and should return at once.
     fn is_cancelled(&self) -> bool {
         false
     }
@@ -66,6 +67,52 @@ impl<'a> Control<'a> {
     /// [`Error::Cancelled`].
     pub fn check(&self) -> Result<()> {
         if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
+    }
+}
+
+/// A place to leave a parallel loop whose results are gathered as values: once the work is cancelled its pieces are passed over,
+/// and what was gathered must be thrown away.
+///
+/// ```
+/// use belvedere_data::control::{Control, Stop};
+///
+/// let control = Control::none();
+/// let stop = Stop::new(&control);
+/// let squares: Vec<u32> = (0..10).map(|i| if stop.is_set() { 0 } else { i * i }).collect();
+/// stop.check()?;
+/// # assert_eq!(squares[9], 81);
+/// # Ok::<(), belvedere_data::Error>(())
+/// ```
+pub struct Stop<'a> {
+    control: Control<'a>,
+    is_set: AtomicBool,
+}
+
+impl<'a> Stop<'a> {
+    /// One that is set when `control` is cancelled, and stays so.
+    #[must_use]
+    pub fn new(control: &Control<'a>) -> Self {
+        Self { control: *control, is_set: AtomicBool::new(false) }
+    }
+
+    /// Whether the rest of the work is to be passed over.
+    pub fn is_set(&self) -> bool {
+        if self.is_set.load(Ordering::Relaxed) {
+            return true;
+        }
+        let is_cancelled = self.control.is_cancelled();
+        if is_cancelled {
+            self.is_set.store(true, Ordering::Relaxed);
+        }
+        is_cancelled
+    }
+
+    /// Fails if any piece of the work was passed over.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn check(&self) -> Result<()> {
+        if self.is_set.load(Ordering::Relaxed) { Err(Error::Cancelled) } else { self.control.check() }
     }
 }
 

@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (cloud, _) = PointCloud::from_coordinates(&positions);
         let ones = vec![1.0; normals.len()];
         let oriented = OrientedCloud::new(cloud.positions.clone(), normals, ones.clone(), ones)?;
-        let index = NeighborIndex::new(&cloud.positions)?;
+        let index = NeighborIndex::new(&cloud.positions, &Control::none())?;
         #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
         let method = ShrinkMethod::Tau { penetration: (0.05 * spacing) as f32 };
         let params = ShrinkParams { method, initial_radius: 5.0, max_radius: 5.0 };

@@ -22,11 +22,11 @@
 //! let ground = (0..3600).map(|i| { let [x, y] = at(i, 40.0); [x, y, 0.02 * x] });
 //! let (cloud, _left_out) = PointCloud::from_coordinates(&roof.chain(ground).collect::<Vec<_>>());
 //!
-//! let (kept, _report) = clean(&cloud, &CleanParams::default())?;
+//! let (kept, _report) = clean(&cloud, &CleanParams::default(), &Control::none())?;
 //! let cloud = cloud.select(&kept);
-//! let index = NeighborIndex::new(&cloud.positions)?;
-//! let normals = estimate(&cloud.positions, &index, Neighborhood::default())?;
-//! let (oriented, _report) = orient(&cloud, normals, &Orientation::Up)?;
+//! let index = NeighborIndex::new(&cloud.positions, &Control::none())?;
+//! let normals = estimate(&cloud.positions, &index, Neighborhood::default(), &Control::none())?;
+//! let (oriented, _report) = orient(&cloud, normals, &Orientation::Up, &Control::none())?;
 //! let (balls, _report) = shrink(&oriented, &index, Side::Interior, &ShrinkParams::tau(), &Control::none())?;
 //!
 //! let sun = to_sun(180f64.to_radians(), 60f64.to_radians());

@@ -4,6 +4,7 @@ use belvedere_core::ground::{GroundParams, ground_points};
 use belvedere_core::neighbors::NeighborIndex;
 use belvedere_core::normals::estimate::{Neighborhood, estimate};
 use belvedere_core::query::SurfacePieces;
+use belvedere_data::control::Control;
 use belvedere_data::{Error, PointCloud, Result};
 
 /// Greatest radius of the surface that a point stands for, metres: walls that few pulses reach have points a metre apart.
@@ -37,7 +38,7 @@ pub fn landmark_points(cloud: &PointCloud, which: &LandmarkPoints<'_>) -> Result
             (0_u32..).zip(classes).filter(|(_, own)| *own == class).map(|(row, _)| row).collect()
         }
         LandmarkPoints::Inside(polygons) => {
-            let (ground, _) = ground_points(cloud, &GroundParams::default())?;
+            let (ground, _) = ground_points(cloud, &GroundParams::default(), &Control::none())?;
             let mut is_ground = vec![false; cloud.len()];
             ground.iter().filter_map(|&row| is_ground.get_mut(row as usize).map(|own| *own = true)).count();
             let inside = |p: &[f32; 3]| {
@@ -62,9 +63,9 @@ pub fn landmark_points(cloud: &PointCloud, which: &LandmarkPoints<'_>) -> Result
         return Err(Error::NoPoints { what });
     }
     let points: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
-    let index = NeighborIndex::new(&points)?;
-    let normals = estimate(&points, &index, Neighborhood::default())?;
-    let surface = SurfacePieces::of_points(&points, &normals.vectors, MOST_RADIUS)?;
+    let index = NeighborIndex::new(&points, &Control::none())?;
+    let normals = estimate(&points, &index, Neighborhood::default(), &Control::none())?;
+    let surface = SurfacePieces::of_points(&points, &normals.vectors, MOST_RADIUS, &Control::none())?;
     Ok((rows, surface))
 }
 

@@ -126,9 +126,9 @@ impl RoofPlane {
 /// meets and the length of their outline is Steiner's formula.
 pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams, control: &Control<'_>) -> Result<Vec<RoofPlane>> {
     params.validate()?;
-    let index = NeighborIndex::new(points)?;
+    let index = NeighborIndex::new(points, &Control::none())?;
     // near ridges and eaves few neighbours are on one plane
-    let normals = estimate(points, &index, Neighborhood::adaptive())?;
+    let normals = estimate(points, &index, Neighborhood::adaptive(), &Control::none())?;
     let is_roof = |rows: &[u32], fit: &fit::PlaneFit| {
         let is_flat_enough = fit.normal[2].clamp(-1.0, 1.0).acos() <= params.most_tilt;
         is_flat_enough && cells::area(points, rows, fit, params.cell) >= params.least_area

@@ -96,7 +96,7 @@ impl Targets {
         let (low, high) = bounds.on_map();
         let [x, y, _] = cloud.frame.origin;
         let grid = MapGrid::covering(low, high, cell, [x, y])?;
-        let (ground, _) = Ground::of_cloud(cloud, grid, &GroundParams::default())?;
+        let (ground, _) = Ground::of_cloud(cloud, grid, &GroundParams::default(), &Control::none())?;
         Ok(Self::of_cells(cloud, ground, params, &Control::none())?.0)
     }
 
@@ -116,7 +116,7 @@ impl Targets {
         }
         if params.level == CellLevel::Surface {
             ground.heights = control.stage("finding the surface", 0, || {
-                top_surface(&cloud.positions, &ground, &SurfaceParams::default())
+                top_surface(&cloud.positions, &ground, &SurfaceParams::default(), control)
             })?;
         }
         let mut positions = cell_targets(&ground, params.height);

@@ -70,7 +70,7 @@ impl Town {
         let Bounds { low, high } = cloud.bounds().unwrap_or_default();
         let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];
         let grid = MapGrid::covering(on_map(low), on_map(high), cell, [cloud.frame.origin[0], cloud.frame.origin[1]])?;
-        let (ground, _) = Ground::of_cloud(&cloud, grid, &GroundParams::default())?;
+        let (ground, _) = Ground::of_cloud(&cloud, grid, &GroundParams::default(), &Control::none())?;
         let mut town = Self { scene, truth, cloud, scanner, balls, ground, bare: Vec::new() };
         let site = town.site();
         let bare = (0..grid.len()).filter_map(|i| {
@@ -118,7 +118,9 @@ impl Town {
         let grid = self.ground.grid;
         let tops = match tops {
             Tops::Highest => highest_points(&self.cloud.positions, &self.ground),
-            Tops::Surface => top_surface(&self.cloud.positions, &self.ground, &SurfaceParams::default())?,
+            Tops::Surface => {
+                top_surface(&self.cloud.positions, &self.ground, &SurfaceParams::default(), &Control::none())?
+            }
         };
         let above = self.site().bounds[1][2] + 100.0;
         let (mut exact, mut asked) = (Vec::new(), Vec::new());

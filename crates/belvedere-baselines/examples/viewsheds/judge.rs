@@ -75,7 +75,7 @@ impl Town {
         let site = QuerySite { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
         let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];
         let grid = MapGrid::covering(on_map(low), on_map(high), cell, [origin[0], origin[1]])?;
-        let (ground, _) = Ground::of_cloud(&cloud, grid, &GroundParams::default())?;
+        let (ground, _) = Ground::of_cloud(&cloud, grid, &GroundParams::default(), &Control::none())?;
         let exact_ground = (0..grid.len())
             .map(|i| {
                 let [x, y] = grid.center(i % grid.width, i / grid.width);
@@ -93,7 +93,7 @@ impl Town {
     /// What people in the streets see of targets `height` metres above the ground.
     pub(crate) fn judge(&self, height: f64) -> Result<Score> {
         let scene = MedialScene::new(&self.balls, &BlockRule::carved())?;
-        let (needles, _) = Needles::of_cloud(&self.cloud, &self.scanner, &NeedleParams::default())?;
+        let (needles, _) = Needles::of_cloud(&self.cloud, &self.scanner, &NeedleParams::default(), &Control::none())?;
         let scene = scene.with_pulses(Proof::new(needles, &ProofParams::default())?);
         let targets = cell_targets(&self.ground, height);
         let origin = self.cloud.frame.origin;

@@ -4,6 +4,7 @@ use super::{SplatParams, SplatShape};
 use crate::lines_of_sight::box_corner;
 use crate::sampling::{capped_spacing, for_neighborhoods};
 use belvedere::Result;
+use belvedere::control::Control;
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::ray_index::Ray;
@@ -57,8 +58,8 @@ impl Splat {
 /// [`Error::InvalidParameter`](belvedere::Error::InvalidParameter) for a number of neighbours out of its range or a position
 /// that is not finite.
 pub(super) fn make(positions: &[[f32; 3]], params: &SplatParams) -> Result<Vec<Splat>> {
-    let index = NeighborIndex::new(positions)?;
-    let normals = estimate(positions, &index, Neighborhood::Fixed { k: params.normal_neighbors })?;
+    let index = NeighborIndex::new(positions, &Control::none())?;
+    let normals = estimate(positions, &index, Neighborhood::Fixed { k: params.normal_neighbors }, &Control::none())?;
     let spacing = capped_spacing(positions, &index, params.radius_neighbor, params.max_radius_in_medians);
     Ok(for_neighborhoods(positions, &index, params.normal_neighbors, |point, neighbors, _| {
         let center = positions[point];

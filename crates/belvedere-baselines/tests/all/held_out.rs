@@ -1,5 +1,6 @@
 //! Pulses held out, against methods whose faults are known: exact rays, and answers that are always the same.
 
+use belvedere::control::Control;
 use belvedere::pulses::{Pulses, SensorPositions, group};
 use belvedere::query::{Answer, Sight, Viewer, Visibility};
 use belvedere::trajectory::Trajectory;
@@ -38,7 +39,7 @@ fn flown(keeps: impl Fn(Material) -> bool) -> Flown {
     };
     let path = scan.sensor_path;
     let (trajectory, _) = Trajectory::from_records(path.times.into_iter().zip(path.positions).collect());
-    let (pulses, _) = group(&cloud).unwrap();
+    let (pulses, _) = group(&cloud, &Control::none()).unwrap();
     let (scanner, _) = SensorPositions::from_trajectory(&cloud, &pulses, &trajectory).unwrap();
     Flown { scene, cloud, pulses, scanner }
 }

@@ -53,11 +53,12 @@ impl Place {
         before: impl Fn([f32; 3]) -> [f32; 3],
         turn: impl Fn(OrientedCloud, &NeighborIndex, &Needles) -> OrientedCloud,
     ) -> f64 {
-        let index = NeighborIndex::new(&self.cloud.positions).unwrap();
-        let mut normals = estimate(&self.cloud.positions, &index, Neighborhood::Fixed { k: 16 }).unwrap();
+        let index = NeighborIndex::new(&self.cloud.positions, &Control::none()).unwrap();
+        let mut normals =
+            estimate(&self.cloud.positions, &index, Neighborhood::Fixed { k: 16 }, &Control::none()).unwrap();
         normals.vectors.iter_mut().for_each(|normal| *normal = before(*normal));
-        let (oriented, _) = orient(&self.cloud, normals, &Orientation::Pulses(scanner)).unwrap();
-        let (needles, _) = Needles::of_cloud(&self.cloud, scanner, &NeedleParams::default()).unwrap();
+        let (oriented, _) = orient(&self.cloud, normals, &Orientation::Pulses(scanner), &Control::none()).unwrap();
+        let (needles, _) = Needles::of_cloud(&self.cloud, scanner, &NeedleParams::default(), &Control::none()).unwrap();
         let oriented = turn(oriented, &index, &needles);
         let attributes = &self.cloud.attributes;
         let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses: None };
@@ -102,7 +103,7 @@ fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
     // and what pulses leave of balls on either side turns them without that
     let params = OrientByCarvingParams { least_confidence: 1.0, ..OrientByCarvingParams::default() };
     let turn = |oriented: OrientedCloud, index: &NeighborIndex, needles: &Needles| {
-        orient_by_carving(&all_flipped(&oriented), index, needles, &params).unwrap().0
+        orient_by_carving(&all_flipped(&oriented), index, needles, &params, &Control::none()).unwrap().0
     };
     let carved = place.score(&place.scanner, same, turn);
     let wrong = place.score(&place.scanner, same, |oriented, _, _| all_flipped(&oriented));
@@ -116,7 +117,7 @@ fn pulses_that_are_merely_assumed_to_be_vertical_are_worth_carving_with() {
     let place = Place::new();
     let same = |normal: [f32; 3]| normal;
     let exact = place.score(&place.scanner, same, as_it_is);
-    let assumed = vertical_pulses(&place.cloud.positions, &VerticalParams::default()).unwrap();
+    let assumed = vertical_pulses(&place.cloud.positions, &VerticalParams::default(), &Control::none()).unwrap();
     let vertical = place.score(&assumed, same, as_it_is);
     // on the towns of the rules' table they cost streets nothing; one town is not their mean
     assert!(vertical > exact - 2.0, "{vertical} of {exact}");

@@ -3,6 +3,7 @@
 #![allow(clippy::cast_possible_truncation, reason = "local coordinates")]
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 
+use belvedere::control::Control;
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::OrientedCloud;
 use std::path::PathBuf;
@@ -57,6 +58,6 @@ pub(crate) fn delft() -> Option<Oriented> {
 }
 
 pub(crate) fn indexed((positions, normals): Oriented) -> (OrientedCloud, NeighborIndex) {
-    let index = NeighborIndex::new(&positions).unwrap();
+    let index = NeighborIndex::new(&positions, &Control::none()).unwrap();
     (OrientedCloud::with_known_normals(positions, normals).unwrap(), index)
 }

@@ -123,8 +123,8 @@ fn write_folder(
     folder.ma_qidx_out = Some(&outer_touch);
     let (sizes, keep);
     if let Some(spacing) = arguments.simplify {
-        sizes = stages.run("feature size", 0, |_| {
-            local_feature_size(&cloud.positions, &[&interior, &exterior], &FeatureSizeParams::default())
+        sizes = stages.run("feature size", 0, |control| {
+            local_feature_size(&cloud.positions, &[&interior, &exterior], &FeatureSizeParams::default(), control)
         })?;
         let params =
             SimplifyParams { spacing, cell_size: arguments.cell_size, seed: global.seed, ..SimplifyParams::default() };

@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     });
     summary.add("file", files.collect::<Vec<_>>());
     summary.add("points", cloud.len());
-    let facts = stages.run("counting", 0, |_| CloudSummary::of(&cloud));
+    let facts = stages.run("counting", 0, |control| CloudSummary::of(&cloud, control))?;
     if let Some((low, high)) = facts.bounds {
         summary.add("lowest_corner", low.map(|v| rounded(v, 3)).to_vec());
         summary.add("highest_corner", high.map(|v| rounded(v, 3)).to_vec());
@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     }
     summary.add("covered_ground_m2", rounded(facts.occupied_area, 1));
     summary.add("points_per_m2_of_covered_ground", rounded(facts.density, 2));
-    if let Some(facades) = stages.run("measuring facades", 0, |_| FacadeSummary::of(&cloud)) {
+    if let Some(facades) = stages.run("measuring facades", 0, |control| FacadeSummary::of(&cloud, control))? {
         let mut section = Summary::default();
         section
             .add("steep_points", facades.steep_point_count)
@@ -54,14 +54,15 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
             summary.add("pulses_per_m2_of_covered_ground", rounded(pulses.count / facts.occupied_area, 2));
         }
     }
-    let scanner =
-        match stages.run("finding the scanner", 0, |_| locate(&cloud, &Means::Automatic, &LocateParams::default())) {
-            Ok((_, report)) => report,
-            Err(error @ Error::MissingAttribute { .. }) => {
-                ScannerReport { point_count: cloud.len(), remarks: vec![error.to_string()], ..ScannerReport::default() }
-            }
-            Err(error) => return Err(error.into()),
-        };
+    let scanner = match stages
+        .run("finding the scanner", 0, |control| locate(&cloud, &Means::Automatic, &LocateParams::default(), control))
+    {
+        Ok((_, report)) => report,
+        Err(error @ Error::MissingAttribute { .. }) => {
+            ScannerReport { point_count: cloud.len(), remarks: vec![error.to_string()], ..ScannerReport::default() }
+        }
+        Err(error) => return Err(error.into()),
+    };
     summary.add("scanner", Summary::of(&scanner));
     summary.add("scanner_by_line", sections(&scanner.lines()));
     summary.add("reading", Summary::of(&report));

@@ -124,7 +124,7 @@ pub(crate) fn ground(
     summary: &mut Summary,
 ) -> Result<Ground> {
     let params = GroundParams { points, ..GroundParams::default() };
-    let (ground, report) = stages.run("making ground", 0, |_| Ground::of_cloud(cloud, grid, &params))?;
+    let (ground, report) = stages.run("making ground", 0, |control| Ground::of_cloud(cloud, grid, &params, control))?;
     let mut section = Summary::default();
     let from = match report.from {
         GroundPoints::Found => "points found among all (no class 2)",

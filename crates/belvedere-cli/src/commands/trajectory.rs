@@ -20,8 +20,8 @@ pub(crate) fn run(arguments: &Trajectory, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let cloud = pipeline::read(&arguments.input, &mut stages, &mut summary)?;
-    let (_, report) =
-        stages.run("finding the scanner", 0, |_| locate(&cloud, &Means::Pulses, &LocateParams::default()))?;
+    let (_, report) = stages
+        .run("finding the scanner", 0, |control| locate(&cloud, &Means::Pulses, &LocateParams::default(), control))?;
     summary.add("scanner", Summary::of(&report));
     summary.add("scanner_by_line", sections(&report.lines()));
     let samples = path_samples(&report.paths, cloud.frame.origin, arguments.step)?;

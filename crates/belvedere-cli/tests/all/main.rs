@@ -11,6 +11,7 @@ mod determinism;
 mod envelopes;
 mod help_examples;
 mod info;
+mod interrupts;
 mod irradiance;
 mod masbcpp_folder;
 mod odd_clouds;

@@ -5,10 +5,14 @@ use std::ops::ControlFlow;
 use rayon::prelude::*;
 
 use super::grid::{SortedGrid, squared_distance};
+use belvedere_data::Result;
+use belvedere_data::control::{Control, Stop};
 
 /// Cells this many times the distance: a point then mostly has to look into its own cell only, and even a heap of points
 /// in one cell keeps no more than some hundreds of them.
 const CELL_PER_DISTANCE: f64 = 8.0;
+/// Points looked at between two looks at whether to go on.
+const CHUNK: usize = 4096;
 
 /// Leaves out of `kept` (ascending) every point at the position of an earlier one; returns how many. Positive and
 /// negative zero are the same.
@@ -25,26 +29,42 @@ pub(super) fn drop_exact(positions: &[[f32; 3]], kept: &mut Vec<u32>) -> usize {
 }
 
 /// Leaves out of `kept` (ascending) every point within `distance` metres of an earlier one that stays; returns how many.
-pub(super) fn drop_near(positions: &[[f32; 3]], kept: &mut Vec<u32>, distance: f64) -> usize {
+///
+/// # Errors
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+pub(super) fn drop_near(
+    positions: &[[f32; 3]],
+    kept: &mut Vec<u32>,
+    distance: f64,
+    control: &Control<'_>,
+) -> Result<usize> {
     let (cell_size, limit) = (distance * CELL_PER_DISTANCE, distance * distance);
     let close = |a: u32, b: u32| squared_distance(positions[a as usize], positions[b as usize]) <= limit;
     // which point stays depends on the ones before, but only points with another close by are concerned: few
     let grid = SortedGrid::new(positions, kept, cell_size);
+    control.check()?;
+    let stop = Stop::new(control);
     let concerned: Vec<u32> = kept
         .par_iter()
         .copied()
         .filter(|&i| {
-            grid.visit_near(positions[i as usize], distance, |other| {
-                if other != i && close(i, other) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            })
-            .is_break()
+            !stop.is_set()
+                && grid
+                    .visit_near(positions[i as usize], distance, |other| {
+                        if other != i && close(i, other) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                    })
+                    .is_break()
         })
         .collect();
+    stop.check()?;
     drop(grid);
     let mut staying = StayingPoints::new(positions, &concerned, cell_size);
-    let repeated: Vec<u32> =
-        concerned.iter().copied().filter(|&i| !staying.admit(positions, i, distance, &close)).collect();
-    remove_sorted(kept, &repeated)
+    let mut repeated: Vec<u32> = Vec::new();
+    for some in concerned.chunks(CHUNK) {
+        control.check()?;
+        repeated.extend(some.iter().copied().filter(|&i| !staying.admit(positions, i, distance, &close)));
+    }
+    Ok(remove_sorted(kept, &repeated))
 }
 
 /// The points found to stay so far, by cell: each cell has room for all its points and a count of those that stay.

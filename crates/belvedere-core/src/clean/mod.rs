@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 pub use outliers::{IsolatedPoints, IsolationRadius};
 
+use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use belvedere_data::{Error, PointCloud, Result};
 use serde::{Serialize, Serializer};
@@ -112,8 +113,8 @@ fn in_centimetres<S: Serializer>(radius: &Option<f64>, serializer: S) -> std::re
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where an attribute has another length than the cloud, [`Error::InvalidParameter`] for a
-/// distance, radius or multiple that is not positive and finite or that is too large, and for more points than u32 counts.
-pub fn clean(cloud: &PointCloud, params: &CleanParams) -> Result<(Vec<u32>, CleanReport)> {
+/// distance, radius or multiple that is not positive and finite or that is too large, and for more points than u32 counts; [`Error::Cancelled`].
+pub fn clean(cloud: &PointCloud, params: &CleanParams, control: &Control<'_>) -> Result<(Vec<u32>, CleanReport)> {
     let expected = cloud.len();
     if let Some((what, found)) = cloud.attributes.columns().into_iter().find(|&(_, length)| length != expected) {
         return Err(Error::LengthMismatch { what, expected, found });
@@ -141,15 +142,17 @@ pub fn clean(cloud: &PointCloud, params: &CleanParams) -> Result<(Vec<u32>, Clea
     }
     if params.exact_duplicates == Treatment::Drop {
         report.exact_duplicate_count = duplicates::drop_exact(positions, &mut kept);
+        control.check()?;
     }
     if let Some(distance) = params.near_duplicate_distance {
-        report.near_duplicate_count = duplicates::drop_near(positions, &mut kept, distance);
+        report.near_duplicate_count = duplicates::drop_near(positions, &mut kept, distance, control)?;
     }
     if let Some(isolated) = &params.isolated {
-        let radius = isolated.radius_for(positions, &kept);
+        let radius = isolated.radius_for(positions, &kept, control)?;
         report.isolation_radius = radius;
         if let Some(radius) = radius {
-            report.isolated_count = outliers::drop_isolated(positions, &mut kept, radius, isolated.min_neighbors);
+            let min_neighbors = isolated.min_neighbors;
+            report.isolated_count = outliers::drop_isolated(positions, &mut kept, radius, min_neighbors, control)?;
         }
     }
     report.kept_count = kept.len();

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::check_length;
 use super::duplicates::remove_sorted;
 use super::grid::{SortedGrid, squared_distance};
+use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Error, Result};
 
 /// Points whose nearest neighbour is looked for to learn the spacing: their median is known to a few per cent.
@@ -65,24 +66,43 @@ impl IsolatedPoints {
     }
 
     /// The radius in metres, or `None` where the cloud has no spacing to derive it from.
-    pub(super) fn radius_for(&self, positions: &[[f32; 3]], kept: &[u32]) -> Option<f64> {
-        match self.radius {
+    pub(super) fn radius_for(
+        &self,
+        positions: &[[f32; 3]],
+        kept: &[u32],
+        control: &Control<'_>,
+    ) -> Result<Option<f64>> {
+        Ok(match self.radius {
             IsolationRadius::Metres(metres) => Some(metres),
             IsolationRadius::SpacingMultiple(multiple) => {
-                median_spacing(positions, kept).map(|spacing| (multiple * spacing).max(MIN_RADIUS_M))
+                median_spacing(positions, kept, control)?.map(|spacing| (multiple * spacing).max(MIN_RADIUS_M))
             }
-        }
+        })
     }
 }
 
 /// Leaves out of `kept` (ascending) the points with fewer than `min_neighbors` others within `radius` metres; returns
 /// how many. Neighbours are counted among all that were kept before, so that the order does not matter.
-pub(super) fn drop_isolated(positions: &[[f32; 3]], kept: &mut Vec<u32>, radius: f64, min_neighbors: usize) -> usize {
+///
+/// # Errors
+/// [`Error::Cancelled`].
+pub(super) fn drop_isolated(
+    positions: &[[f32; 3]],
+    kept: &mut Vec<u32>,
+    radius: f64,
+    min_neighbors: usize,
+    control: &Control<'_>,
+) -> Result<usize> {
     let grid = SortedGrid::new(positions, kept, radius);
+    control.check()?;
+    let stop = Stop::new(control);
     let alone: Vec<u32> = kept
         .par_iter()
         .copied()
         .filter(|&i| {
+            if stop.is_set() {
+                return false;
+            }
             let mut found = 0;
             let p = positions[i as usize];
             grid.visit_near(p, radius, |other| {
@@ -94,28 +114,30 @@ pub(super) fn drop_isolated(positions: &[[f32; 3]], kept: &mut Vec<u32>, radius:
             .is_continue()
         })
         .collect();
-    remove_sorted(kept, &alone)
+    stop.check()?;
+    Ok(remove_sorted(kept, &alone))
 }
 
 /// Median distance in metres from a sample of points to their nearest neighbours, or `None` for fewer than two points or
 /// where half of them are farther apart than any guess.
-fn median_spacing(positions: &[[f32; 3]], kept: &[u32]) -> Option<f64> {
+fn median_spacing(positions: &[[f32; 3]], kept: &[u32], control: &Control<'_>) -> Result<Option<f64>> {
     if kept.len() < 2 {
-        return None;
+        return Ok(None);
     }
     let sample: Vec<u32> = kept.iter().copied().step_by(kept.len().div_ceil(SPACING_SAMPLE_COUNT)).collect();
     let mut guess = spacing_guess(positions, kept, &sample);
     for _ in 0..6 {
+        control.check()?;
         let grid = SortedGrid::new(positions, kept, guess);
         let mut nearest: Vec<f64> = sample.par_iter().map(|&i| nearest_distance(&grid, positions, i, guess)).collect();
         nearest.par_sort_unstable_by(f64::total_cmp);
         let median = nearest.get(nearest.len() / 2).copied().filter(|median| median.is_finite());
         if median.is_some() {
-            return median;
+            return Ok(median);
         }
         guess *= 2.0_f64.powi(SPACING_DOUBLINGS);
     }
-    None
+    Ok(None)
 }
 
 /// Spacing if the points lay evenly on the map, judged by the middle nine tenths so that a stray point does not count.

@@ -2,6 +2,7 @@
 
 use super::*;
 use belvedere_data::Attributes;
+use belvedere_data::control::Control;
 
 /// A flat grid of points a metre apart.
 fn meadow(side: u16) -> Vec<[f32; 3]> {
@@ -13,7 +14,7 @@ fn cloud(positions: Vec<[f32; 3]>) -> PointCloud {
 }
 
 fn cleaned(cloud: &PointCloud, params: &CleanParams) -> (Vec<u32>, CleanReport) {
-    let (kept, report) = clean(cloud, params).unwrap();
+    let (kept, report) = clean(cloud, params, &Control::none()).unwrap();
     assert!(kept.windows(2).all(|pair| pair[0] < pair[1]));
     assert_eq!(kept.len(), report.kept_count);
     let removed = report.not_finite_count
@@ -137,15 +138,15 @@ fn parameters_out_of_range_are_errors() {
     let field = cloud(meadow(3));
     for distance in [0.0, -1.0, f64::NAN, f64::INFINITY, 1001.0] {
         let near = CleanParams { near_duplicate_distance: Some(distance), ..CleanParams::default() };
-        assert!(clean(&field, &near).is_err());
+        assert!(clean(&field, &near, &Control::none()).is_err());
         let radius = IsolationRadius::Metres(distance);
         let alone =
             CleanParams { isolated: Some(IsolatedPoints { radius, min_neighbors: 2 }), ..CleanParams::default() };
-        assert!(clean(&field, &alone).is_err());
+        assert!(clean(&field, &alone, &Control::none()).is_err());
     }
     let mut broken = field.clone();
     broken.attributes.flags = Some(vec![0]);
-    assert!(clean(&broken, &CleanParams::default()).is_err());
+    assert!(clean(&broken, &CleanParams::default(), &Control::none()).is_err());
 }
 
 #[test]

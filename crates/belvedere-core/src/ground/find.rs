@@ -3,6 +3,7 @@
 use super::morphology::opened;
 use super::{Ground, MapGrid};
 use belvedere_data::Bounds;
+use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, PointCloud, Result};
 
@@ -12,6 +13,9 @@ const NOISE: [u8; 2] = [7, 18];
 const WITHHELD: u8 = 4;
 /// How far below its surroundings a cell is taken for an error, metres (Pingel et al.: a slope of 500 % from cell to cell).
 const PIT: f32 = 5.0;
+
+/// Points between two looks at whether to go on.
+const CHUNK: usize = 65_536;
 
 /// How ground is found among all points.
 ///
@@ -76,8 +80,8 @@ impl FinderParams {
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a parameter outside its range or a cloud too wide for its cells, [`Error::NoPoints`] where no point
-/// is left to be ground.
-pub fn find_ground(cloud: &PointCloud, params: &FinderParams) -> Result<Vec<u32>> {
+/// is left to be ground, [`Error::Cancelled`].
+pub fn find_ground(cloud: &PointCloud, params: &FinderParams, control: &Control<'_>) -> Result<Vec<u32>> {
     params.validate()?;
     let classes = cloud.attributes.classification.as_deref();
     let flags = cloud.attributes.flags.as_deref();
@@ -93,7 +97,7 @@ pub fn find_ground(cloud: &PointCloud, params: &FinderParams) -> Result<Vec<u32>
     let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];
     let grid = MapGrid::covering(on_map(low), on_map(high), params.cell, [0.0; 2])?;
     let lowest = lowest_points(&positions, &grid);
-    let standing = standing_cells(&positions, &lowest, &grid, params);
+    let standing = standing_cells(&positions, &lowest, &grid, params, control)?;
     let bare: Vec<[f32; 3]> = lowest
         .values()
         .iter()
@@ -101,15 +105,19 @@ pub fn find_ground(cloud: &PointCloud, params: &FinderParams) -> Result<Vec<u32>
         .filter(|(point, standing)| **point != NO_POINT && !**standing)
         .filter_map(|(&point, _)| positions.get(point as usize).copied())
         .collect();
-    let surface = Ground::of_points(&bare, grid, f64::INFINITY)?;
+    let surface = Ground::of_points(&bare, grid, f64::INFINITY, control)?;
     let near = |&(_, position): &(&usize, &[f32; 3])| {
         let place = on_map(*position);
         let Some(height) = surface.height_at(place) else { return false };
         let allowed = params.tolerance + params.slope_tolerance * slope_at(&surface, place);
         (f64::from(position[2]) - height).abs() <= allowed
     };
-    #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
-    let found: Vec<u32> = rows.iter().zip(&positions).filter(near).map(|(&row, _)| row as u32).collect();
+    let mut found: Vec<u32> = Vec::new();
+    for (rows, positions) in rows.chunks(CHUNK).zip(positions.chunks(CHUNK)) {
+        control.check()?;
+        #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
+        found.extend(rows.iter().zip(positions).filter(near).map(|(&row, _)| row as u32));
+    }
     if found.is_empty() {
         return Err(Error::NoPoints { what: "no ground was found; class it first".to_owned() });
     }
@@ -135,7 +143,13 @@ fn lowest_points(positions: &[[f32; 3]], grid: &MapGrid) -> Raster<u32> {
 }
 
 /// Which cells hold something that stands on the ground, or a pit that no ground has.
-fn standing_cells(positions: &[[f32; 3]], lowest: &Raster<u32>, grid: &MapGrid, params: &FinderParams) -> Vec<bool> {
+fn standing_cells(
+    positions: &[[f32; 3]],
+    lowest: &Raster<u32>,
+    grid: &MapGrid,
+    params: &FinderParams,
+    control: &Control<'_>,
+) -> Result<Vec<bool>> {
     let mut heights = lowest
         .clone()
         .values()
@@ -155,8 +169,9 @@ fn standing_cells(positions: &[[f32; 3]], lowest: &Raster<u32>, grid: &MapGrid, 
             }
         }
     }
-    let Ok(mut surface) = Raster::from_values(grid.width, grid.height, heights) else { return standing };
+    let Ok(mut surface) = Raster::from_values(grid.width, grid.height, heights) else { return Ok(standing) };
     for radius in windows(params) {
+        control.check()?;
         let lower = opened(&surface, radius);
         #[expect(clippy::cast_possible_truncation, reason = "metres")]
         let threshold = (params.slope * radius as f64 * params.cell) as f32;
@@ -165,7 +180,7 @@ fn standing_cells(positions: &[[f32; 3]], lowest: &Raster<u32>, grid: &MapGrid, 
         }
         surface = lower;
     }
-    standing
+    Ok(standing)
 }
 
 /// Radii in cells: each up to 18, as in the source, then a fifth more each.

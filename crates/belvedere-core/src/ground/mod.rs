@@ -13,6 +13,7 @@ pub use relief::{hidden_ground, highest_points};
 pub use surface::{SurfaceParams, top_surface};
 
 use crate::neighbors::NeighborIndex;
+use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, PointCloud, Result};
 use rayon::prelude::*;
@@ -78,7 +79,11 @@ pub struct Ground {
 ///
 /// # Errors
 /// [`Error::NoPoints`] for an empty cloud, and for [`GroundPoints::Classed`] without class 2; otherwise those of [`find_ground`].
-pub fn ground_points(cloud: &PointCloud, params: &GroundParams) -> Result<(Vec<u32>, GroundPoints)> {
+pub fn ground_points(
+    cloud: &PointCloud,
+    params: &GroundParams,
+    control: &Control<'_>,
+) -> Result<(Vec<u32>, GroundPoints)> {
     if cloud.is_empty() {
         return Err(Error::NoPoints { what: "the ground needs a cloud".to_owned() });
     }
@@ -87,7 +92,7 @@ pub fn ground_points(cloud: &PointCloud, params: &GroundParams) -> Result<(Vec<u
         (0_u32..).zip(classes).filter(|(_, class)| **class == GROUND).map(|(row, _)| row).collect()
     };
     match params.points {
-        GroundPoints::Found => Ok((find_ground(cloud, &params.finder)?, GroundPoints::Found)),
+        GroundPoints::Found => Ok((find_ground(cloud, &params.finder, control)?, GroundPoints::Found)),
         GroundPoints::Classed => {
             let rows = classed();
             if rows.is_empty() {
@@ -101,7 +106,7 @@ pub fn ground_points(cloud: &PointCloud, params: &GroundParams) -> Result<(Vec<u
             if rows.len() * 1000 >= cloud.len() {
                 return Ok((rows, GroundPoints::Classed));
             }
-            Ok((find_ground(cloud, &params.finder)?, GroundPoints::Found))
+            Ok((find_ground(cloud, &params.finder, control)?, GroundPoints::Found))
         }
     }
 }
@@ -112,7 +117,12 @@ impl Ground {
     ///
     /// # Errors
     /// Those of [`ground_points`], and [`Error::InvalidParameter`] for a parameter outside its range.
-    pub fn of_cloud(cloud: &PointCloud, grid: MapGrid, params: &GroundParams) -> Result<(Self, GroundReport)> {
+    pub fn of_cloud(
+        cloud: &PointCloud,
+        grid: MapGrid,
+        params: &GroundParams,
+        control: &Control<'_>,
+    ) -> Result<(Self, GroundReport)> {
         if !(params.reach > 0.0) {
             return Err(Error::InvalidParameter {
                 name: "reach of the ground",
@@ -120,9 +130,9 @@ impl Ground {
                 expected: "above zero metres",
             });
         }
-        let (rows, from) = ground_points(cloud, params)?;
+        let (rows, from) = ground_points(cloud, params, control)?;
         let points: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
-        let ground = Self::of_points(&points, grid, params.reach)?;
+        let ground = Self::of_points(&points, grid, params.reach, control)?;
         let cell_count = ground.heights.values().iter().filter(|h| h.is_finite()).count();
         Ok((ground, GroundReport { from, point_count: points.len(), cell_count }))
     }
@@ -130,18 +140,24 @@ impl Ground {
     /// The ground through `points`, (N, 3) local metres, on `grid`, given as far as `reach` metres from the next of them.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a point that is not finite.
-    pub fn of_points(points: &[[f32; 3]], grid: MapGrid, reach: f64) -> Result<Self> {
+    /// [`Error::InvalidParameter`] for a point that is not finite, [`Error::Cancelled`].
+    pub fn of_points(points: &[[f32; 3]], grid: MapGrid, reach: f64, control: &Control<'_>) -> Result<Self> {
         let mut heights = triangulate::heights(points, &grid)?;
+        control.check()?;
         // the plane: distances and neighbours on the map
         let flat: Vec<[f32; 3]> = points.iter().map(|p| [p[0], p[1], 0.0]).collect();
-        let index = NeighborIndex::new(&flat)?;
+        let index = NeighborIndex::new(&flat, control)?;
         let mut gaps = Raster::filled(grid.width, grid.height, f32::INFINITY);
         #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
         let reach = reach.min(1e6) as f32;
         let width = grid.width.max(1);
-        heights.values_mut().par_chunks_mut(width).zip(gaps.values_mut().par_chunks_mut(width)).enumerate().for_each(
-            |(row, (heights, gaps))| {
+        heights
+            .values_mut()
+            .par_chunks_mut(width)
+            .zip(gaps.values_mut().par_chunks_mut(width))
+            .enumerate()
+            .try_for_each(|(row, (heights, gaps))| {
+                control.check()?;
                 for (column, (height, gap)) in heights.iter_mut().zip(gaps).enumerate() {
                     let [x, y] = grid.center(column, row);
                     #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
@@ -154,8 +170,8 @@ impl Ground {
                         *height = points.get(near.index as usize).map_or(f32::NAN, |p| p[2]);
                     }
                 }
-            },
-        );
+                Ok(())
+            })?;
         Ok(Self { grid, heights, gaps })
     }
 

@@ -2,6 +2,7 @@
 
 use super::{Ground, highest_points};
 use crate::neighbors::{Neighbor, NeighborIndex};
+use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
@@ -61,17 +62,23 @@ impl SurfaceParams {
 /// point of the cell, so that a place above it is outside. Cells far from any point are as in [`highest_points`].
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a parameter outside its range or a point that is not finite.
-pub fn top_surface(positions: &[[f32; 3]], ground: &Ground, params: &SurfaceParams) -> Result<Raster<f32>> {
+/// [`Error::InvalidParameter`] for a parameter outside its range or a point that is not finite, [`Error::Cancelled`].
+pub fn top_surface(
+    positions: &[[f32; 3]],
+    ground: &Ground,
+    params: &SurfaceParams,
+    control: &Control<'_>,
+) -> Result<Raster<f32>> {
     params.validate()?;
     let mut heights = highest_points(positions, ground);
     let grid = ground.grid;
     let flat: Vec<[f32; 3]> = positions.iter().map(|p| [p[0], p[1], 0.0]).collect();
-    let index = NeighborIndex::new(&flat)?;
+    let index = NeighborIndex::new(&flat, control)?;
     let (near, reach) = (NEAR.min(0.5 * grid.cell), REACH.max(grid.cell));
-    heights.values_mut().par_chunks_mut(grid.width.max(1)).enumerate().for_each_init(
+    heights.values_mut().par_chunks_mut(grid.width.max(1)).enumerate().try_for_each_init(
         || (Vec::new(), Vec::new()),
         |(found, around), (row, heights)| {
+            control.check()?;
             for (column, height) in heights.iter_mut().enumerate() {
                 let middle = grid.center(column, row);
                 #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
@@ -85,8 +92,9 @@ pub fn top_surface(positions: &[[f32; 3]], ground: &Ground, params: &SurfacePara
                     *height = surface;
                 }
             }
+            Ok(())
         },
-    );
+    )?;
     Ok(heights)
 }
 

@@ -5,6 +5,7 @@ use crate::neighbors::Tangent;
 use crate::normals::OrientedCloud;
 use crate::pulses::Needles;
 use belvedere_data::balls::{MedialBalls, NO_TOUCH, PULSE_TOUCH};
+use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -34,7 +35,7 @@ pub struct CarveReport {
 /// limited. The result depends on neither order nor number of threads.
 ///
 /// # Errors
-/// [`Error::LengthMismatch`] where they differ in length.
+/// [`Error::LengthMismatch`] where they differ in length, [`Error::Cancelled`].
 ///
 /// # Source
 /// This project's own; cutting free space by lines of sight has relatives in space carving (Kutulakos & Seitz 2000) and
@@ -45,6 +46,7 @@ pub fn carve(
     needles: &Needles,
     penetration: f32,
     bounds: &RadiusBounds,
+    control: &Control<'_>,
 ) -> Result<CarveReport> {
     let expected = oriented.positions().len();
     for (what, found) in
@@ -61,13 +63,15 @@ pub fn carve(
         empty.map(|empty| empty + penetration)
     };
     // what is larger than its limit is cut to that first: the search is shorter
-    let carved: Vec<Option<f32>> = balls
-        .radii
-        .par_iter()
-        .enumerate()
-        .with_min_len(CHUNK)
-        .map(|(row, &radius)| ball(row, radius.min(bounds.most[row])))
-        .collect();
+    let mut carved: Vec<Option<f32>> = vec![None; expected];
+    carved.par_chunks_mut(CHUNK).enumerate().try_for_each(|(chunk, carved)| {
+        control.check()?;
+        for (row, carved) in (chunk * CHUNK..).zip(carved.iter_mut()) {
+            *carved = ball(row, balls.radii[row].min(bounds.most[row]));
+        }
+        control.advance(carved.len());
+        Ok(())
+    })?;
     let mut report = CarveReport::default();
     for (row, carved) in carved.into_iter().enumerate() {
         if !(balls.radii[row] > 0.0) {

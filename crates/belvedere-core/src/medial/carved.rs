@@ -215,19 +215,23 @@ pub struct CarvedBalls {
 /// The interior balls of a survey as far as its pulses leave them, and those that rules add.
 ///
 /// # Errors
-/// Those of [`shrink`] and [`carve`].
+/// Those of [`shrink`] and [`carve`]. Each rule is a stage of `control`.
 pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Control<'_>) -> Result<CarvedBalls> {
     let CarvedInput { oriented, index, attributes, needles, pulses } = *input;
     let positions = oriented.positions();
     let mut report = CarvedReport::default();
     let mut kinds = kinds(attributes, oriented.len());
     if let Some(vegetation) = &params.vegetation {
-        report.told_vegetation = tell_vegetation(&mut kinds, oriented, index, attributes, vegetation)?;
+        report.told_vegetation = control.stage("finding vegetation", oriented.len(), || {
+            tell_vegetation(&mut kinds, oriented, index, attributes, vegetation, control)
+        })?;
     }
     let mut bounds = RadiusBounds::by_kind(&kinds, attributes, &params.kind_bounds);
     let lowest = lowest_near(positions);
     let through = match (&params.crowns, pulses) {
-        (Some(crowns), Some(pulses)) => crowns::transmission(positions, &kinds, &lowest, pulses, crowns),
+        (Some(crowns), Some(pulses)) => control.stage("measuring crowns", 0, || {
+            crowns::transmission(positions, &kinds, &lowest, pulses, crowns, control)
+        })?,
         _ => Vec::new(),
     };
     let crowns = params.crowns.as_ref().map(|params| Crowns {
@@ -237,13 +241,19 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
         transmission: &through,
         params,
     });
-    let slender =
-        params.slender.as_ref().map(|params| Slender::find(positions, &kinds, attributes, &lowest, needles, params));
+    let find_slender = |params| {
+        control.stage("finding thin objects", oriented.len(), || {
+            Slender::find(positions, &kinds, attributes, &lowest, needles, params, control)
+        })
+    };
+    let slender = params.slender.as_ref().map(find_slender).transpose()?;
     report.in_crowns_with_gaps = crowns.as_ref().map_or(0, |crowns| crowns.limit(&mut bounds));
     report.slender = slender.as_ref().map_or(0, |slender| slender.limit(&mut bounds));
     let mut thin = Vec::new();
     if let Some(params) = &params.thin_surfaces {
-        thin = on_thin_surfaces(positions, &kinds, index, needles, params);
+        thin = control.stage("finding thin surfaces", 0, || {
+            on_thin_surfaces(positions, &kinds, index, needles, params, control)
+        })?;
         for row in (0..thin.len()).filter(|&row| thin[row]) {
             bounds.limit(row, params.radius);
             report.thin += 1;
@@ -251,17 +261,24 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
     }
 
     let mut balls;
-    (balls, report.shrinking) = shrink(oriented, index, Side::Interior, &params.shrinking(), control)?;
-    report.carving = carve(&mut balls, oriented, needles, params.penetration, &bounds)?;
+    (balls, report.shrinking) = control.stage("shrinking balls", oriented.len(), || {
+        shrink(oriented, index, Side::Interior, &params.shrinking(), control)
+    })?;
+    report.carving = control.stage("carving balls", oriented.len(), || {
+        carve(&mut balls, oriented, needles, params.penetration, &bounds, control)
+    })?;
     if let Some(params) = &params.roof_edges {
-        let edges = RoofEdges::find(oriented, &kinds, index, &lowest, params)?;
-        report.cut_at_edges = edges.cut(&mut balls, oriented, params);
+        report.cut_at_edges = control.stage("cutting at roof edges", 0, || {
+            let edges = RoofEdges::find(oriented, &kinds, index, &lowest, params, control)?;
+            edges.cut(&mut balls, oriented, params, control)
+        })?;
     }
     if let Some(pruning) = &params.pruning {
-        report.pruned = prune(&mut balls, oriented, index, pruning)?;
+        report.pruned =
+            control.stage("pruning balls", oriented.len(), || prune(&mut balls, oriented, index, pruning, control))?;
     }
     // before anything is added: the ball of a point is still in its row
-    let relief = params.relief.as_ref().map(|params| {
+    let find_relief = |params| {
         // below thin surfaces is air, what is slender is filled by its own rule, and balls hung on the face of a wall would stand
         // out of it where no pulse says how far
         let is_left_out = |row: usize| {
@@ -269,15 +286,25 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
                 || slender.as_ref().is_some_and(|slender| slender.stands(row))
                 || oriented.normals()[row][2].abs() < FACE_NORMAL_Z
         };
-        Relief::find(positions, &kinds, is_left_out, &balls, index, params)
-    });
+        control.stage("finding thin relief", oriented.len(), || {
+            Relief::find(positions, &kinds, is_left_out, &balls, index, params, control)
+        })
+    };
+    let relief = params.relief.as_ref().map(find_relief).transpose()?;
     report.relief = relief.as_ref().map_or(0, Relief::len);
-    // what is only told to be vegetation may be anything that is not flat, and is better not filled
-    if report.told_vegetation == 0 {
-        report.crown_fills = crowns.as_ref().map_or(0, |crowns| crowns.fill(&mut balls, needles));
-    }
-    report.relief_fills = relief.as_ref().map_or(0, |relief| relief.fill(&mut balls, needles));
-    report.slender_fills = slender.as_ref().map_or(0, |slender| slender.fill(&mut balls, index, needles));
+    control.stage("filling", 0, || {
+        // what is only found to be vegetation may be anything that is not flat, and is better not filled
+        if let Some(crowns) = crowns.as_ref().filter(|_| report.told_vegetation == 0) {
+            report.crown_fills = crowns.fill(&mut balls, needles, control)?;
+        }
+        if let Some(relief) = &relief {
+            report.relief_fills = relief.fill(&mut balls, needles, control)?;
+        }
+        if let Some(slender) = &slender {
+            report.slender_fills = slender.fill(&mut balls, index, needles, control)?;
+        }
+        Ok(())
+    })?;
 
     let balls = balls.shrunk();
     let of = |&source: &u32| through.get(source as usize).copied();

@@ -4,8 +4,9 @@ use super::bounds::{Kind, RadiusBounds};
 use super::cells::{Cell, Cells, cell};
 use crate::neighbors::Tangent;
 use crate::pulses::{Needles, Pulses};
-use belvedere_data::Attributes;
 use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
+use belvedere_data::control::{Control, Stop};
+use belvedere_data::{Attributes, Result};
 use rayon::prelude::*;
 
 /// What crowns are taken for.
@@ -84,7 +85,9 @@ pub(super) fn transmission(
     lowest: &Cells<f32>,
     pulses: &Pulses,
     params: &CrownParams,
-) -> Vec<f32> {
+    control: &Control<'_>,
+) -> Result<Vec<f32>> {
+    let stop = Stop::new(control);
     let place = |row: u32| positions.get(row as usize).copied();
     let has_ground = kinds.contains(&Kind::Ground);
     let is_below = |top: [f32; 3], row: u32| {
@@ -94,6 +97,9 @@ pub(super) fn transmission(
         may_be_below && place(row).is_some_and(|p| p[2] < top[2] - params.through_depth && is_low(p))
     };
     let met = |pulse: usize| -> Option<(Cell, [u32; 2])> {
+        if stop.is_set() {
+            return None;
+        }
         let first = pulses.first_return(pulse)?;
         if kinds.get(first as usize) != Some(&Kind::Vegetation) {
             return None;
@@ -104,12 +110,13 @@ pub(super) fn transmission(
     };
     let add = |a: [u32; 2], b: [u32; 2]| [a[0] + b[0], a[1] + b[1]];
     let cells = Cells::new((0..pulses.len()).into_par_iter().filter_map(met).collect(), add);
+    stop.check()?;
     let [all, through] = cells.all(add).unwrap_or_default().map(f64::from);
     let whole = if all > 0.0 { through / all } else { 0.0 };
     let near = cells.with_neighbors(add);
     let prior = f64::from(params.prior_pulses);
     let of = |(&p, kind): (&[f32; 3], &Kind)| {
-        if *kind != Kind::Vegetation {
+        if *kind != Kind::Vegetation || stop.is_set() {
             return f32::NAN;
         }
         let [met, through] = near.get(cell(p)).unwrap_or_default().map(f64::from);
@@ -117,7 +124,9 @@ pub(super) fn transmission(
         let share = ((through + prior * whole) / (met + prior)) as f32;
         share
     };
-    positions.par_iter().zip(kinds).map(of).collect()
+    let transmission = positions.par_iter().zip(kinds).map(of).collect();
+    stop.check()?;
+    Ok(transmission)
 }
 
 /// What is known of the crowns of a cloud.
@@ -164,9 +173,13 @@ impl Crowns<'_> {
     /// A crown returns pulses from all through its outer metre or two, which leaves the balls between these points small and its
     /// inside hollow. Here a ball hangs straight down from each first return, as large as the lowest vegetation within a metre
     /// or two and the pulses leave it, if that is more than the ball at that point.
-    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &Needles) -> usize {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &Needles, control: &Control<'_>) -> Result<usize> {
+        let stop = Stop::new(control);
         if self.params.trees == Trees::Measured && self.transmission.is_empty() {
-            return 0;
+            return Ok(0);
         }
         let solid: Vec<usize> = (0..self.positions.len())
             .filter(|&row| self.kinds[row] == Kind::Vegetation && self.most_radius(row).is_none())
@@ -179,7 +192,7 @@ impl Crowns<'_> {
         let ball = |&row: &usize| {
             let p = self.positions[row];
             let most = ((p[2] - base.get(cell(p))?) / 2.0).min(self.params.fill_radius);
-            if !is_first(row) || most <= balls.radii[row] {
+            if !is_first(row) || most <= balls.radii[row] || stop.is_set() {
                 return None;
             }
             let hanging = Tangent { point: p, inward: [0.0, 0.0, -1.0], margin };
@@ -188,9 +201,10 @@ impl Crowns<'_> {
             (radius > balls.radii[row]).then_some((row, [p[0], p[1], p[2] - radius], radius))
         };
         let found: Vec<_> = solid.par_iter().filter_map(ball).collect();
+        stop.check()?;
         for &(row, center, radius) in &found {
             balls.push(row, center, radius, PULSE_TOUCH);
         }
-        found.len()
+        Ok(found.len())
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::neighbors::NeighborIndex;
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
+use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Error, Result, random};
 use rayon::prelude::*;
 
@@ -27,7 +28,8 @@ impl Default for FeatureSizeParams {
 /// Balls that never shrank are left out; masbcpp compares with them, and reads bisectors for them that it never wrote.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for parameters out of range, or if a ball refers to a point that does not exist.
+/// [`Error::InvalidParameter`] for parameters out of range, or if a ball refers to a point that does not exist;
+/// [`Error::Cancelled`].
 ///
 /// # Source
 /// Amenta & Bern 1998 (local feature size); the reliability test by bisectors is masbcpp's.
@@ -35,7 +37,9 @@ pub fn local_feature_size(
     positions: &[[f32; 3]],
     sides: &[&MedialBalls],
     params: &FeatureSizeParams,
+    control: &Control<'_>,
 ) -> Result<Vec<f32>> {
+    let stop = Stop::new(control);
     if !(params.most_bisector_angle > 0.0) {
         return Err(Error::InvalidParameter {
             name: "bisector angle",
@@ -52,16 +56,25 @@ pub fn local_feature_size(
     }
     let mut reliable = Vec::new();
     for balls in sides {
-        reliable.extend(reliable_centers(positions, balls, params)?);
+        reliable.extend(reliable_centers(positions, balls, params, control)?);
     }
-    let index = NeighborIndex::new(&reliable)?;
-    Ok(positions
-        .par_iter()
-        .map(|&p| index.nearest_within(p, f32::INFINITY).map_or(f32::INFINITY, |n| n.distance_squared.sqrt()))
-        .collect())
+    let index = NeighborIndex::new(&reliable, control)?;
+    let size = |&p: &[f32; 3]| {
+        let nearest = if stop.is_set() { None } else { index.nearest_within(p, f32::INFINITY) };
+        nearest.map_or(f32::INFINITY, |n| n.distance_squared.sqrt())
+    };
+    let sizes = positions.par_iter().map(size).collect();
+    stop.check()?;
+    Ok(sizes)
 }
 
-fn reliable_centers(positions: &[[f32; 3]], balls: &MedialBalls, params: &FeatureSizeParams) -> Result<Vec<[f32; 3]>> {
+fn reliable_centers(
+    positions: &[[f32; 3]],
+    balls: &MedialBalls,
+    params: &FeatureSizeParams,
+    control: &Control<'_>,
+) -> Result<Vec<[f32; 3]>> {
+    let stop = Stop::new(control);
     let missing = |i: u32| Error::InvalidParameter {
         name: "point of a ball",
         value: i.to_string(),
@@ -81,11 +94,14 @@ fn reliable_centers(positions: &[[f32; 3]], balls: &MedialBalls, params: &Featur
         // p and q opposite each other have no bisector; NaN agrees with nothing
         bisectors.push(sum.map(|v| v / length));
     }
-    let index = NeighborIndex::new(&centers)?;
+    let index = NeighborIndex::new(&centers, control)?;
     let least_cosine = params.most_bisector_angle.cos();
     let agrees: Vec<bool> = (0..centers.len())
         .into_par_iter()
         .map_init(Vec::new, |found, i| {
+            if stop.is_set() {
+                return false;
+            }
             index.k_nearest(centers[i], params.neighbor_count + 1, found);
             let others = found.iter().filter(|n| n.index as usize != i).take(params.neighbor_count);
             others.into_iter().all(|n| {
@@ -94,6 +110,7 @@ fn reliable_centers(positions: &[[f32; 3]], balls: &MedialBalls, params: &Featur
             })
         })
         .collect();
+    stop.check()?;
     Ok(centers.into_iter().zip(agrees).filter_map(|(center, agrees)| agrees.then_some(center)).collect())
 }
 

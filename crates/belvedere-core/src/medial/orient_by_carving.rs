@@ -3,6 +3,7 @@
 use crate::neighbors::{NeighborIndex, Tangent};
 use crate::normals::OrientedCloud;
 use crate::pulses::Needles;
+use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 
@@ -46,7 +47,7 @@ pub struct OrientByCarvingReport {
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters out of range, [`Error::LengthMismatch`] where the index holds another number of
-/// points, and what [`OrientedCloud::new`] refuses.
+/// points, what [`OrientedCloud::new`] refuses, and [`Error::Cancelled`].
 ///
 /// # Source
 /// This project's own.
@@ -55,6 +56,7 @@ pub fn orient_by_carving(
     index: &NeighborIndex,
     needles: &Needles,
     params: &OrientByCarvingParams,
+    control: &Control<'_>,
 ) -> Result<(OrientedCloud, OrientByCarvingReport)> {
     if !(params.penetration > 0.0 && params.penetration < params.initial_radius && params.initial_radius <= 1e5) {
         let value = format!("{} of {}", params.penetration, params.initial_radius);
@@ -84,15 +86,20 @@ pub fn orient_by_carving(
         let by_points = index.smallest_tangent_ball(&tangent, most).map_or(most, |(radius, _)| radius);
         needles.smallest_tangent_ball(&tangent, by_points).unwrap_or(by_points)
     };
+    let stop = Stop::new(control);
     let flipped: Vec<u32> = asked
         .par_iter()
         .copied()
         .filter(|&row| {
+            if stop.is_set() {
+                return false;
+            }
             let (point, normal) = (positions[row as usize], oriented.normals()[row as usize]);
             let [inside, outside] = [normal.map(|v| -v), normal].map(|inward| radius(point, inward));
             outside > inside * params.least_ratio
         })
         .collect();
+    stop.check()?;
     let mut normals = oriented.normals().to_vec();
     for &row in &flipped {
         normals[row as usize] = normals[row as usize].map(|v| -v);

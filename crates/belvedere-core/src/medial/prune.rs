@@ -3,6 +3,7 @@
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
+use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
@@ -38,7 +39,7 @@ impl Default for PruneParams {
 /// on their own: the result depends on neither order nor number of threads, and not on the tile but for its rim.
 ///
 /// # Errors
-/// [`Error::LengthMismatch`] where they differ in length.
+/// [`Error::LengthMismatch`] where they differ in length, [`Error::Cancelled`].
 ///
 /// # Source
 /// This project's own greedy rule; medial balls chosen as a set cover of the surface are in Dou et al. 2022 (Coverage Axis).
@@ -47,7 +48,9 @@ pub fn prune(
     oriented: &OrientedCloud,
     index: &NeighborIndex,
     params: &PruneParams,
+    control: &Control<'_>,
 ) -> Result<usize> {
+    let stop = Stop::new(control);
     let expected = oriented.len();
     for (what, found) in [("balls", balls.len()), ("neighbour index", index.len())] {
         if found != expected {
@@ -81,6 +84,9 @@ pub fn prune(
         .flat_map_iter(|rows| {
             let mut kept = Vec::new();
             for &(of_block, row) in rows {
+                if stop.is_set() {
+                    break;
+                }
                 if covered[row as usize].load(Memory::Relaxed) {
                     continue;
                 }
@@ -98,9 +104,11 @@ pub fn prune(
                     }
                 });
             }
+            control.advance(rows.len());
             kept
         })
         .collect();
+    stop.check()?;
     let mut is_kept = vec![false; expected];
     for &row in &kept {
         is_kept[row as usize] = true;

@@ -8,7 +8,9 @@ use super::bounds::Kind;
 use super::chains::Chain;
 use crate::neighbors::NeighborIndex;
 use crate::pulses::Needles;
+use belvedere_data::Result;
 use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
+use belvedere_data::control::{Control, Stop};
 use rayon::prelude::*;
 
 /// How thin relief is told and filled.
@@ -62,7 +64,9 @@ impl<'a> Relief<'a> {
         balls: &MedialBalls,
         index: &NeighborIndex,
         params: &'a ReliefParams,
-    ) -> Self {
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        let stop = Stop::new(control);
         let [least, most] = params.heights;
         let is_wanted = |row: usize| {
             matches!(kinds.get(row), Some(Kind::Other | Kind::Later))
@@ -81,8 +85,10 @@ impl<'a> Relief<'a> {
             (p[2] - level >= least).then_some((row, level))
         };
         let rows = (0..positions.len()).into_par_iter().with_min_len(CHUNK);
-        let points = rows.filter(|&row| is_wanted(row)).filter_map(point).collect();
-        Self { positions, params, points }
+        let points = rows.filter(|&row| !stop.is_set() && is_wanted(row)).filter_map(point).collect();
+        stop.check()?;
+        control.advance(positions.len());
+        Ok(Self { positions, params, points })
     }
 
     /// Number of its points.
@@ -91,16 +97,21 @@ impl<'a> Relief<'a> {
     }
 
     /// Adds balls below its points down to the next lower level, as large as the pulses leave them, and says how many.
-    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &Needles) -> usize {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &Needles, control: &Control<'_>) -> Result<usize> {
+        let stop = Stop::new(control);
         let chain = Chain { radius: self.params.radius, spacing: self.params.spacing };
         let points = self.points.par_iter().with_min_len(CHUNK);
         let below = |&(row, level): &(usize, f32)| {
             chain.below(self.positions[row], level, needles).map(move |ball| (row, ball))
         };
-        let found: Vec<_> = points.flat_map_iter(below).collect();
+        let found: Vec<_> = points.filter(|_| !stop.is_set()).flat_map_iter(below).collect();
+        stop.check()?;
         for &(row, (center, radius)) in &found {
             balls.push(row, center, radius, PULSE_TOUCH);
         }
-        found.len()
+        Ok(found.len())
     }
 }

@@ -10,6 +10,7 @@ use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use belvedere_data::Result;
 use belvedere_data::balls::{MedialBalls, NO_TOUCH, PULSE_TOUCH};
+use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{dot, sub};
 use rayon::prelude::*;
 
@@ -83,12 +84,16 @@ impl RoofEdges {
         index: &NeighborIndex,
         lowest: &Cells<f32>,
         params: &RoofEdgeParams,
+        control: &Control<'_>,
     ) -> Result<Self> {
+        let stop = Stop::new(control);
         let positions = oriented.positions();
         let below = |row: usize| -> Vec<([f32; 3], [f32; 2])> {
             let p = positions[row];
             let is_roof = kinds.get(row) == Some(&Kind::Other) && oriented.normals()[row][2] >= LEAST_UP;
-            let Some(low) = lowest.get(cell(p)).filter(|low| is_roof && p[2] - low >= params.least_height) else {
+            let Some(low) =
+                lowest.get(cell(p)).filter(|low| is_roof && p[2] - low >= params.least_height && !stop.is_set())
+            else {
                 return Vec::new();
             };
             let is_beside = |other: usize| {
@@ -106,24 +111,36 @@ impl RoofEdges {
             heights.take_while(|&z| z > low + ENDS).map(|z| ([x, y, z], outward)).collect()
         };
         let (places, outward): (Vec<_>, Vec<_>) = (0..positions.len()).into_par_iter().flat_map_iter(below).unzip();
-        Ok(Self { index: NeighborIndex::new(&places)?, places, outward })
+        stop.check()?;
+        Ok(Self { index: NeighborIndex::new(&places, control)?, places, outward })
     }
 
     /// Cuts `balls`, row i of which is the interior ball of point i of `oriented`, where they come from within and reach out
     /// of a wall; returns how many. The result depends on neither the order of points nor the number of threads.
-    pub(super) fn cut(&self, balls: &mut MedialBalls, oriented: &OrientedCloud, params: &RoofEdgeParams) -> usize {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub(super) fn cut(
+        &self,
+        balls: &mut MedialBalls,
+        oriented: &OrientedCloud,
+        params: &RoofEdgeParams,
+        control: &Control<'_>,
+    ) -> Result<usize> {
+        let stop = Stop::new(control);
         let (positions, normals) = (oriented.positions(), oriented.normals());
         let radii: Vec<f32> = (0..balls.len())
             .into_par_iter()
             .map(|row| {
                 let is_usable = balls.touch[row] != NO_TOUCH && balls.radii[row] > params.least_radius;
-                if is_usable {
+                if is_usable && !stop.is_set() {
                     self.radius(positions[row], normals[row], balls.radii[row], params)
                 } else {
                     balls.radii[row]
                 }
             })
             .collect();
+        stop.check()?;
         let mut count = 0;
         for (row, radius) in radii.into_iter().enumerate() {
             if !(radius < balls.radii[row]) {
@@ -135,7 +152,7 @@ impl RoofEdges {
             balls.touch[row] = PULSE_TOUCH;
             balls.separation_angles[row] = f32::NAN;
         }
-        count
+        Ok(count)
     }
 
     /// What is left of the radius of the ball at a point with this outward normal.
@@ -188,9 +205,9 @@ mod tests {
     }
 
     fn edges(oriented: &OrientedCloud, kinds: &[Kind]) -> RoofEdges {
-        let index = NeighborIndex::new(oriented.positions()).unwrap();
+        let index = NeighborIndex::new(oriented.positions(), &Control::none()).unwrap();
         let lowest = lowest_near(oriented.positions());
-        RoofEdges::find(oriented, kinds, &index, &lowest, &RoofEdgeParams::default()).unwrap()
+        RoofEdges::find(oriented, kinds, &index, &lowest, &RoofEdgeParams::default(), &Control::none()).unwrap()
     }
 
     /// One ball at the first point, of this radius.
@@ -219,7 +236,7 @@ mod tests {
         let (oriented, kinds) = house();
         let params = RoofEdgeParams::default();
         let mut balls = ball(&oriented, 5.0);
-        assert_eq!(edges(&oriented, &kinds).cut(&mut balls, &oriented, &params), 1);
+        assert_eq!(edges(&oriented, &kinds).cut(&mut balls, &oriented, &params, &Control::none()).unwrap(), 1);
         // places every 0.25 m by 0.5 m leave bulges below a centimetre
         let reach = -HALF + 2.0 * balls.radii[0];
         assert!((reach - HALF).abs() < 0.025 + params.penetration + 0.01, "it reaches to {reach}");
@@ -231,10 +248,10 @@ mod tests {
         let (oriented, kinds) = house();
         let edges = edges(&oriented, &kinds);
         let mut within = ball(&oriented, 3.0);
-        assert_eq!(edges.cut(&mut within, &oriented, &RoofEdgeParams::default()), 0);
+        assert_eq!(edges.cut(&mut within, &oriented, &RoofEdgeParams::default(), &Control::none()).unwrap(), 0);
         // a lean-to against the east wall: its ball comes through that wall from outside
         let lean_to = OrientedCloud::with_known_normals(vec![[HALF + 2.0, 0.0, 2.0]], vec![[1.0, 0.0, 0.0]]).unwrap();
         let mut outside = ball(&lean_to, 2.0);
-        assert_eq!(edges.cut(&mut outside, &lean_to, &RoofEdgeParams::default()), 0);
+        assert_eq!(edges.cut(&mut outside, &lean_to, &RoofEdgeParams::default(), &Control::none()).unwrap(), 0);
     }
 }

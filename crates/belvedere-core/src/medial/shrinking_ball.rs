@@ -124,7 +124,7 @@ const CHUNK: usize = 512;
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters out of range, [`Error::LengthMismatch`] where `index` holds another number
-/// of points.
+/// of points, [`Error::Cancelled`].
 ///
 /// # Source
 /// Ma, Bae & Choi 2012 (shrinking ball); Peters, Ledoux & Biljecki 2015, section 3.1 (angle thresholds). The order of
@@ -146,7 +146,8 @@ pub fn shrink(
     }
     let order = index.tree_order();
     let mut in_tree_order = vec![Ball { center: [0.0; 3], radius: 0.0, touch: NO_TOUCH }; count];
-    in_tree_order.par_chunks_mut(CHUNK).zip(order.par_chunks(CHUNK)).for_each(|(balls, points)| {
+    in_tree_order.par_chunks_mut(CHUNK).zip(order.par_chunks(CHUNK)).try_for_each(|(balls, points)| {
+        control.check()?;
         for (ball, &i) in balls.iter_mut().zip(points) {
             let (p, n) = (positions[i as usize], normals[i as usize]);
             let inward = match side {
@@ -165,7 +166,8 @@ pub fn shrink(
             };
         }
         control.advance(points.len());
-    });
+        Ok(())
+    })?;
 
     let mut balls = MedialBalls {
         centers: vec![[0.0; 3]; count],

@@ -7,8 +7,9 @@ use super::cells::{Cells, cell};
 use super::chains::Chain;
 use crate::neighbors::{NeighborIndex, Tangent};
 use crate::pulses::Needles;
-use belvedere_data::Attributes;
 use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
+use belvedere_data::control::{Control, Stop};
+use belvedere_data::{Attributes, Result};
 use rayon::prelude::*;
 use std::f32::consts::FRAC_1_SQRT_2;
 
@@ -79,7 +80,9 @@ impl<'a> Slender<'a> {
         lowest: &Cells<f32>,
         needles: &Needles,
         params: &'a SlenderParams,
-    ) -> Self {
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        let stop = Stop::new(control);
         let classes = attributes.classification.as_deref();
         let class = |row: usize| classes.and_then(|classes| classes.get(row)).copied();
         let passed = |p: [f32; 3], [x, y]: [f32; 2]| {
@@ -94,7 +97,7 @@ impl<'a> Slender<'a> {
                 None | Some(0) => height > params.standing_height,
                 Some(_) => false,
             };
-            if !matches!(kind, Kind::Other | Kind::Later) || may_be_building {
+            if !matches!(kind, Kind::Other | Kind::Later) || may_be_building || stop.is_set() {
                 return f32::NAN;
             }
             let below = [p[0], p[1], p[2] - params.lowering.min(height / 2.0)];
@@ -103,7 +106,9 @@ impl<'a> Slender<'a> {
             if is_slender { height } else { f32::NAN }
         };
         let heights = positions.par_iter().zip(kinds).enumerate().with_min_len(CHUNK).map(height).collect();
-        Self { positions, params, heights }
+        stop.check()?;
+        control.advance(positions.len());
+        Ok(Self { positions, params, heights })
     }
 
     /// Cuts the radii at slender things, and says of how many balls.
@@ -116,14 +121,25 @@ impl<'a> Slender<'a> {
     ///
     /// Balls hang below each other, at each point from the highest point of the thing close by down to the ground, and midway
     /// between points that have no other between them; each as large as the pulses leave it.
-    pub(super) fn fill(&self, balls: &mut MedialBalls, index: &NeighborIndex, needles: &Needles) -> usize {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub(super) fn fill(
+        &self,
+        balls: &mut MedialBalls,
+        index: &NeighborIndex,
+        needles: &Needles,
+        control: &Control<'_>,
+    ) -> Result<usize> {
+        let stop = Stop::new(control);
         let fills = |row: usize| self.fills(row, index, needles).into_iter().map(move |ball| (row, ball));
         let rows = (0..self.heights.len()).into_par_iter().with_min_len(CHUNK);
-        let found: Vec<_> = rows.filter(|&row| self.stands(row)).flat_map_iter(fills).collect();
+        let found: Vec<_> = rows.filter(|&row| !stop.is_set() && self.stands(row)).flat_map_iter(fills).collect();
+        stop.check()?;
         for &(row, (center, radius)) in &found {
             balls.push(row, center, radius, PULSE_TOUCH);
         }
-        found.len()
+        Ok(found.len())
     }
 
     /// Whether point `row` is part of what [`Slender::fill`] fills.

@@ -4,6 +4,8 @@ use super::bounds::Kind;
 use super::layers::Layers;
 use crate::neighbors::NeighborIndex;
 use crate::pulses::Needles;
+use belvedere_data::Result;
+use belvedere_data::control::{Control, Stop};
 use rayon::prelude::*;
 use std::f32::consts::TAU;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,6 +20,8 @@ const SAME_SURFACE: f32 = 0.6;
 const OF_THE_SURFACE: f32 = 0.5;
 /// Needles handed to a thread at once.
 const CHUNK: usize = 1024;
+/// Needles between two looks at whether to go on.
+const CHECK_EACH: usize = 64;
 
 /// How thin surfaces are found, and how large balls may be at them.
 ///
@@ -64,17 +68,26 @@ impl Default for ThinSurfaceParams {
 /// Whether each of `positions`, (N, 3) local metres, lies on a thin surface. `kinds`, (N), leave out ground and vegetation:
 /// crowns would read as decks. `index` must have been built from the positions. The result depends on neither the order of
 /// points and needles nor the number of threads.
-#[must_use]
+///
+/// # Errors
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
 pub fn on_thin_surfaces(
     positions: &[[f32; 3]],
     kinds: &[Kind],
     index: &NeighborIndex,
     needles: &Needles,
     params: &ThinSurfaceParams,
-) -> Vec<bool> {
+    control: &Control<'_>,
+) -> Result<Vec<bool>> {
+    let stop = Stop::new(control);
     let solid = |row: usize| matches!(kinds.get(row), Some(Kind::Other | Kind::Later));
-    let Some(layers) = Layers::new(positions, solid) else { return vec![false; positions.len()] };
-    let beside: Vec<usize> = (0..layers.len()).into_par_iter().map(|voxel| layers.count_beside(voxel)).collect();
+    let Some(layers) = Layers::new(positions, solid) else { return Ok(vec![false; positions.len()]) };
+    control.check()?;
+    let beside: Vec<usize> = (0..layers.len())
+        .into_par_iter()
+        .map(|voxel| if stop.is_set() { 0 } else { layers.count_beside(voxel) })
+        .collect();
+    stop.check()?;
     let is_roof = |at: [f32; 3]| {
         let near = |row: usize| solid(row) && (positions[row][2] - at[2]).abs() < SAME_SURFACE;
         widest_gap(positions, index, at, params.around, near).0 < params.widest_gap
@@ -87,12 +100,13 @@ pub fn on_thin_surfaces(
         });
         walls <= params.most_below
     };
-    let proven = run_below(&layers, &beside, needles, params.depths, is_roof, is_open);
+    let proven = run_below(&layers, &beside, needles, params.depths, is_roof, is_open, control)?;
     let thin = surfaces(&layers, &beside, &proven, params.least_proof);
-    (0..positions.len())
+    control.check()?;
+    Ok((0..positions.len())
         .into_par_iter()
         .map(|row| solid(row) && layers.voxel_of(positions[row]).is_some_and(|voxel| thin[voxel]))
-        .collect()
+        .collect())
 }
 
 /// Which voxels a needle runs below at these `depths`, where `is_roof` says that points lie around the place straight
@@ -104,11 +118,15 @@ fn run_below(
     depths: [f32; 2],
     is_roof: impl Fn([f32; 3]) -> bool + Sync,
     is_open: impl Fn([f32; 3], f32) -> bool + Sync,
-) -> Vec<bool> {
+    control: &Control<'_>,
+) -> Result<Vec<bool>> {
     let proven: Vec<AtomicBool> = beside.iter().map(|_| AtomicBool::new(false)).collect();
     let top = layers.top();
-    (0..needles.len()).into_par_iter().with_min_len(CHUNK).for_each(|number| {
-        let Some((start, up, length)) = needles.segment(number) else { return };
+    (0..needles.len()).into_par_iter().with_min_len(CHUNK).try_for_each(|number| {
+        if number % CHECK_EACH == 0 {
+            control.check()?;
+        }
+        let Some((start, up, length)) = needles.segment(number) else { return Ok(()) };
         layers.walk(start, up, length, |column, [from, to]| {
             let low: [f32; 3] = std::array::from_fn(|axis| start[axis] + from * up[axis]);
             let high = start[2] + to * up[2];
@@ -127,8 +145,9 @@ fn run_below(
             }
             low[2] < top
         });
-    });
-    proven.into_iter().map(AtomicBool::into_inner).collect()
+        Ok(())
+    })?;
+    Ok(proven.into_iter().map(AtomicBool::into_inner).collect())
 }
 
 /// Widest angle seen from above, radians, between neighbours among those points within `radius` of `at` whose row is `wanted`,

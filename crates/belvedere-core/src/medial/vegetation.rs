@@ -3,6 +3,7 @@
 use super::bounds::Kind;
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
+use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Attributes, Error, Result};
 use rayon::prelude::*;
 
@@ -39,7 +40,9 @@ pub(super) fn tell_vegetation(
     index: &NeighborIndex,
     attributes: &Attributes,
     params: &VegetationParams,
+    control: &Control<'_>,
 ) -> Result<usize> {
+    let stop = Stop::new(control);
     if !(1..=256).contains(&params.neighbors) {
         let value = params.neighbors.to_string();
         return Err(Error::InvalidParameter { name: "neighbours that tell vegetation", value, expected: "1 to 256" });
@@ -59,6 +62,9 @@ pub(super) fn tell_vegetation(
         .flat_map_iter(|rows| {
             let mut found = Vec::with_capacity(params.neighbors + 1);
             let mut told = Vec::new();
+            if stop.is_set() {
+                return told;
+            }
             for &row in rows.iter().filter(|row| open(**row as usize)) {
                 index.k_nearest(positions[row as usize], params.neighbors, &mut found);
                 let (mut split, mut flat) = (0.0, 0.0);
@@ -71,9 +77,11 @@ pub(super) fn tell_vegetation(
                     told.push(row);
                 }
             }
+            control.advance(rows.len());
             told
         })
         .collect();
+    stop.check()?;
     for &row in &told {
         kinds[row as usize] = Kind::Vegetation;
     }

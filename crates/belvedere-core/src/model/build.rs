@@ -59,9 +59,7 @@ fn of_survey(
             let (attributes, needles, pulses) = (&input.attributes, &input.needles, input.pulses.as_ref());
             let input = CarvedInput { oriented: &survey.oriented, index: &survey.index, attributes, needles, pulses };
             let found;
-            let count = survey.oriented.len();
-            CarvedBalls { balls, transmission, report: found } =
-                control.stage("making balls", count, || carved_balls(&input, params, control))?;
+            CarvedBalls { balls, transmission, report: found } = carved_balls(&input, params, control)?;
             report.interior_balls = Some(BallsReport::Carved(found));
         }
         (BallParams::Shrunk(params), _) => {

@@ -85,7 +85,7 @@ pub(super) fn prepare(
 ) -> Result<(OrientedSurvey, BuildReport)> {
     let mut report = BuildReport::default();
     let read_count = cloud.len();
-    let (kept, cleaned) = control.stage("cleaning", read_count, || clean(&cloud, &params.clean))?;
+    let (kept, cleaned) = control.stage("cleaning", read_count, || clean(&cloud, &params.clean, control))?;
     report.removed_by_cleaning = cleaned;
     if kept.is_empty() {
         return Err(Error::NoPoints { what: format!("{read_count} were read and cleaning removed all") });
@@ -121,14 +121,16 @@ pub(super) fn prepare(
             ..Attributes::default()
         };
     }
-    let index = control.stage("indexing points", cloud.len(), || NeighborIndex::new(&cloud.positions))?;
+    let index = control.stage("indexing points", cloud.len(), || NeighborIndex::new(&cloud.positions, control))?;
     let by = orientation(&cloud, params, &scanner, wants_scanner, carving.is_some());
     let normals = match by {
         Orientation::Given => Normals::default(),
-        _ => control
-            .stage("estimating normals", cloud.len(), || estimate(&cloud.positions, &index, params.neighborhood))?,
+        _ => control.stage("estimating normals", cloud.len(), || {
+            estimate(&cloud.positions, &index, params.neighborhood, control)
+        })?,
     };
-    let (oriented, orientation) = control.stage("orienting normals", cloud.len(), || orient(&cloud, normals, &by))?;
+    let (oriented, orientation) =
+        control.stage("orienting normals", cloud.len(), || orient(&cloud, normals, &by, control))?;
     report.normals = NormalsReport::new(&by, orientation);
     let bounds = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?;
     Ok((OrientedSurvey { oriented, index, kept, bounds, classification, carving }, report))
@@ -187,7 +189,8 @@ fn find_scanner(
         OrientBy::Pulses => Means::Pulses,
         _ => Means::Automatic,
     };
-    let (positions, report) = control.stage("finding the scanner", 0, || locate(cloud, &means, &params.locate))?;
+    let (positions, report) =
+        control.stage("finding the scanner", 0, || locate(cloud, &means, &params.locate, control))?;
     let is_assumed = report.is_assumed();
     Ok((Scanner { positions, is_assumed }, report))
 }
@@ -200,8 +203,9 @@ fn carving_input(
     params: &ModelParams,
     control: &Control<'_>,
 ) -> Result<(Option<CarvingInput>, PulsesReport)> {
-    let (needles, report) = control
-        .stage("indexing pulses", cloud.len(), || Needles::of_cloud(cloud, &scanner.positions, &params.needles))?;
+    let (needles, report) = control.stage("indexing pulses", cloud.len(), || {
+        Needles::of_cloud(cloud, &scanner.positions, &params.needles, control)
+    })?;
     let mut report = PulsesReport { needles: report, ..PulsesReport::default() };
     if report.needles.used <= report.needles.too_flat && carving == Carving::IfPossible {
         report.remark = Some(
@@ -216,7 +220,7 @@ fn carving_input(
         return_count: cloud.attributes.return_count.clone(),
         ..Attributes::default()
     };
-    let pulses = match group(cloud) {
+    let pulses = match control.stage("grouping pulses", 0, || group(cloud, control)) {
         Ok((pulses, _)) => Some(pulses),
         // without pulses nothing is known of what gets through crowns, and all else is
         Err(error @ Error::MissingAttribute { .. }) => {

@@ -1,6 +1,8 @@
 //! Building the tree: split at the median of the longest extent down to full leaves, then box what came out.
 
 use super::lanes::{Block, Child, LANES, Node};
+use belvedere_data::Result;
+use belvedere_data::control::{Control, Stop};
 
 /// Points in a full leaf: four blocks, the most a [`Child`] names.
 const LEAF_POINTS: usize = 32;
@@ -16,9 +18,11 @@ struct Item {
 type Bounds = ([f32; 3], [f32; 3]);
 
 /// Nodes (the root first), blocks of points in tree order, and the index of the point in each slot.
-pub(super) fn build(points: &[[f32; 3]]) -> (Vec<Node>, Vec<Block>, Vec<u32>) {
+pub(super) fn build(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<Node>, Vec<Block>, Vec<u32>)> {
+    let stop = Stop::new(control);
     let mut items: Vec<Item> = points.iter().zip(0..).map(|(&point, index)| Item { point, index }).collect();
-    sort_to_leaves(&mut items);
+    sort_to_leaves(&mut items, &stop, control);
+    stop.check()?;
     let blocks = items
         .chunks(LANES)
         .map(|chunk| {
@@ -30,7 +34,8 @@ pub(super) fn build(points: &[[f32; 3]]) -> (Vec<Node>, Vec<Block>, Vec<u32>) {
         .collect();
     let mut nodes = Vec::with_capacity(items.len() / (LEAF_POINTS * 4) + 1);
     add_node(&items, 0, &mut nodes);
-    (nodes, blocks, items.iter().map(|item| item.index).collect())
+    control.check()?;
+    Ok((nodes, blocks, items.iter().map(|item| item.index).collect()))
 }
 
 /// Where a run of points is cut: into two runs of whole leaves, as equal as can be.
@@ -38,8 +43,9 @@ fn cut(count: usize) -> usize {
     count.div_ceil(LEAF_POINTS) / 2 * LEAF_POINTS
 }
 
-fn sort_to_leaves(items: &mut [Item]) {
-    if items.len() <= LEAF_POINTS {
+/// What is left when the work is cancelled is in no order.
+fn sort_to_leaves(items: &mut [Item], stop: &Stop<'_>, control: &Control<'_>) {
+    if items.len() <= LEAF_POINTS || (items.len() > PARALLEL_POINTS && stop.is_set()) {
         return;
     }
     let (low, high) = bounds(items);
@@ -52,10 +58,13 @@ fn sort_to_leaves(items: &mut [Item]) {
     });
     let (left, right) = items.split_at_mut(middle);
     if left.len() + right.len() > PARALLEL_POINTS {
-        rayon::join(|| sort_to_leaves(left), || sort_to_leaves(right));
+        rayon::join(|| sort_to_leaves(left, stop, control), || sort_to_leaves(right, stop, control));
     } else {
-        sort_to_leaves(left);
-        sort_to_leaves(right);
+        sort_to_leaves(left, stop, control);
+        sort_to_leaves(right, stop, control);
+        if left.len() + right.len() > PARALLEL_POINTS / 2 {
+            control.advance(left.len() + right.len());
+        }
     }
 }
 

@@ -23,6 +23,7 @@ mod tangent_ball;
 
 pub use tangent_ball::Tangent;
 
+use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 use lanes::{Block, Node};
 
@@ -72,9 +73,10 @@ impl NeighborIndex {
     /// Builds the index over `points`, (N, 3), metres; N may be zero.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a coordinate that is not finite or beyond 1e18, and for 2³² points or more.
-    pub fn new(points: &[[f32; 3]]) -> Result<Self> {
-        Self::with_instructions(points, Instructions::detect())
+    /// [`Error::InvalidParameter`] for a coordinate that is not finite or beyond 1e18, and for 2³² points or more;
+    /// [`Error::Cancelled`].
+    pub fn new(points: &[[f32; 3]], control: &Control<'_>) -> Result<Self> {
+        Self::with_instructions(points, Instructions::detect(), control)
     }
 
     /// As [`NeighborIndex::new`], searched with the given instructions. Asking for a set this machine lacks gives scalar
@@ -82,7 +84,7 @@ impl NeighborIndex {
     ///
     /// # Errors
     /// As [`NeighborIndex::new`].
-    pub fn with_instructions(points: &[[f32; 3]], instructions: Instructions) -> Result<Self> {
+    pub fn with_instructions(points: &[[f32; 3]], instructions: Instructions, control: &Control<'_>) -> Result<Self> {
         if u32::try_from(points.len()).is_err() {
             return Err(Error::InvalidParameter {
                 name: "number of points",
@@ -95,7 +97,7 @@ impl NeighborIndex {
             return Err(Error::InvalidParameter { name: "position", value: format!("{p:?}"), expected: "finite" });
         }
         let instructions = if instructions == Instructions::detect() { instructions } else { Instructions::Scalar };
-        let (nodes, blocks, order) = build::build(points);
+        let (nodes, blocks, order) = build::build(points, control)?;
         Ok(Self { nodes, blocks, order, instructions })
     }
 

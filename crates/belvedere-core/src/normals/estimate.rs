@@ -2,6 +2,7 @@
 
 use super::Normals;
 use crate::neighbors::{Neighbor, NeighborIndex};
+use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 
@@ -67,20 +68,26 @@ const CHUNK: usize = 1024;
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for fewer than 3 or more than 256 neighbours or a flatness that is not above zero;
-/// [`Error::LengthMismatch`] where `index` holds another number of points.
+/// [`Error::LengthMismatch`] where `index` holds another number of points; [`Error::Cancelled`].
 ///
 /// # Source
 /// Principal components: Hoppe et al. 1992, section 3.1. Choice of size by eigenentropy: Weinmann, Jutzi, Hinz & Mallet
 /// 2015, equation 8; the flatness rule before it is ours, because entropy alone favours large neighbourhoods that bend
 /// around eaves.
-pub fn estimate(positions: &[[f32; 3]], index: &NeighborIndex, neighborhood: Neighborhood) -> Result<Normals> {
+pub fn estimate(
+    positions: &[[f32; 3]],
+    index: &NeighborIndex,
+    neighborhood: Neighborhood,
+    control: &Control<'_>,
+) -> Result<Normals> {
     if index.len() != positions.len() {
         return Err(Error::LengthMismatch { what: "neighbour index", expected: positions.len(), found: index.len() });
     }
     let k = neighborhood.largest()?;
     let order = index.tree_order();
     let mut in_tree_order = vec![([0.0; 3], 0.0); positions.len()];
-    in_tree_order.par_chunks_mut(CHUNK).zip(order.par_chunks(CHUNK)).for_each(|(normals, points)| {
+    in_tree_order.par_chunks_mut(CHUNK).zip(order.par_chunks(CHUNK)).try_for_each(|(normals, points)| {
+        control.check()?;
         let mut found = Vec::with_capacity(k + 2);
         for (normal, &i) in normals.iter_mut().zip(points) {
             // the point itself is its own nearest neighbour, or a duplicate of it stands in
@@ -90,7 +97,9 @@ pub fn estimate(positions: &[[f32; 3]], index: &NeighborIndex, neighborhood: Nei
                 Neighborhood::Adaptive { flatness } => adaptive_normal_of(positions, &found, flatness),
             };
         }
-    });
+        control.advance(points.len());
+        Ok(())
+    })?;
     let mut normals = Normals { vectors: vec![[0.0; 3]; positions.len()], quality: vec![0.0; positions.len()] };
     for (&i, (vector, quality)) in order.iter().zip(in_tree_order) {
         normals.vectors[i as usize] = vector;
@@ -298,11 +307,11 @@ mod tests {
                 [0.8 * u, v, -0.6 * u]
             })
             .collect();
-        let index = NeighborIndex::new(&points).unwrap();
+        let index = NeighborIndex::new(&points, &Control::none()).unwrap();
         for neighborhood in
             [Neighborhood::Fixed { k: 6 }, Neighborhood::default(), Neighborhood::Adaptive { flatness: 0.01 }]
         {
-            let normals = estimate(&points, &index, neighborhood).unwrap();
+            let normals = estimate(&points, &index, neighborhood, &Control::none()).unwrap();
             for (n, q) in normals.vectors.iter().zip(&normals.quality) {
                 let along: f32 = (0..3).map(|i| n[i] * normal[i]).sum();
                 assert!(along.abs() > 0.999_99 && *q > 0.999, "{n:?} {q}");
@@ -315,8 +324,8 @@ mod tests {
         let spot = vec![[1.0f32, 2.0, 3.0]; 40];
         let line: Vec<[f32; 3]> = (0..40).map(|i| [i as f32, 2.0 * i as f32, 0.0]).collect();
         for points in [spot, line, vec![[0.0; 3]], vec![[0.0; 3], [1.0; 3]]] {
-            let index = NeighborIndex::new(&points).unwrap();
-            let normals = estimate(&points, &index, Neighborhood::Fixed { k: 6 }).unwrap();
+            let index = NeighborIndex::new(&points, &Control::none()).unwrap();
+            let normals = estimate(&points, &index, Neighborhood::Fixed { k: 6 }, &Control::none()).unwrap();
             assert!(normals.vectors.iter().all(|n| *n == [0.0; 3]), "{:?}", normals.vectors);
             assert!(normals.quality.iter().all(|q| *q == 0.0));
         }
@@ -333,9 +342,9 @@ mod tests {
                 points.push([u, 0.0, v]);
             }
         }
-        let index = NeighborIndex::new(&points).unwrap();
+        let index = NeighborIndex::new(&points, &Control::none()).unwrap();
         let off = |neighborhood| {
-            let normals = estimate(&points, &index, neighborhood).unwrap();
+            let normals = estimate(&points, &index, neighborhood, &Control::none()).unwrap();
             normals
                 .vectors
                 .iter()
@@ -349,10 +358,10 @@ mod tests {
 
     #[test]
     fn absurd_parameters_are_refused() {
-        let index = NeighborIndex::new(&[]).unwrap();
-        assert!(estimate(&[], &index, Neighborhood::Fixed { k: 2 }).is_err());
-        assert!(estimate(&[], &index, Neighborhood::Fixed { k: 1000 }).is_err());
-        assert!(estimate(&[], &index, Neighborhood::Adaptive { flatness: f32::NAN }).is_err());
-        assert!(estimate(&[[0.0; 3]], &index, Neighborhood::default()).is_err());
+        let index = NeighborIndex::new(&[], &Control::none()).unwrap();
+        assert!(estimate(&[], &index, Neighborhood::Fixed { k: 2 }, &Control::none()).is_err());
+        assert!(estimate(&[], &index, Neighborhood::Fixed { k: 1000 }, &Control::none()).is_err());
+        assert!(estimate(&[], &index, Neighborhood::Adaptive { flatness: f32::NAN }, &Control::none()).is_err());
+        assert!(estimate(&[[0.0; 3]], &index, Neighborhood::default(), &Control::none()).is_err());
     }
 }

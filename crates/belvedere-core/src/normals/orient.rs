@@ -7,6 +7,7 @@ use super::Normals;
 use super::oriented::{OrientedCloud, unit_or_zero};
 use super::reference_mesh::{MeshVerdict, ReferenceMesh};
 use super::surroundings::Surroundings;
+use belvedere_data::control::{Control, Stop};
 use belvedere_data::report::percent;
 use belvedere_data::trajectory::{ClockOffset, Trajectory};
 use belvedere_data::vector::dot;
@@ -153,12 +154,17 @@ impl Verdict {
 /// # Errors
 /// [`Error::LengthMismatch`] where lengths differ, [`Error::MissingAttribute`] where the cloud lacks scanner positions,
 /// GPS times or normals that the way needs, [`Error::InvalidParameter`] for positions or scanners that are not finite, no
-/// scanner at all, a mesh without a face, and a trajectory that knows a position at none of the cloud's times.
+/// scanner at all, a mesh without a face, and a trajectory that knows a position at none of the cloud's times; [`Error::Cancelled`].
 ///
 /// # Source
 /// By scanner position and by city model: Peters, Ledoux & Biljecki 2015, section 4. The vote, the probing of faces and
 /// the thresholds are this project's own.
-pub fn orient(cloud: &PointCloud, normals: Normals, by: &Orientation<'_>) -> Result<(OrientedCloud, OrientReport)> {
+pub fn orient(
+    cloud: &PointCloud,
+    normals: Normals,
+    by: &Orientation<'_>,
+    control: &Control<'_>,
+) -> Result<(OrientedCloud, OrientReport)> {
     cloud.validate()?;
     let Normals { mut vectors, mut quality } = match by {
         Orientation::Given => given_normals(cloud, normals)?,
@@ -172,20 +178,20 @@ pub fn orient(cloud: &PointCloud, normals: Normals, by: &Orientation<'_>) -> Res
     vectors.par_iter_mut().for_each(|normal| *normal = unit_or_zero(*normal));
     let mut clock = None;
     let verdicts = match by {
-        Orientation::Given => each(cloud, &vectors, |_, _, _| Some(Verdict::new(Way::File, 1.0))),
-        Orientation::Up => each(cloud, &vectors, |_, _, _| None),
-        Orientation::Scanner => by_own_scanner(cloud, &vectors)?,
-        Orientation::ScannerAt(scanners) => by_nearest_scanner(cloud, &vectors, scanners)?,
+        Orientation::Given => each(cloud, &vectors, control, |_, _, _| Some(Verdict::new(Way::File, 1.0)))?,
+        Orientation::Up => each(cloud, &vectors, control, |_, _, _| None)?,
+        Orientation::Scanner => by_own_scanner(cloud, &vectors, control)?,
+        Orientation::ScannerAt(scanners) => by_nearest_scanner(cloud, &vectors, scanners, control)?,
         Orientation::Trajectory(trajectory) => {
             let (scanner, offset) = trajectory.scanner_positions(cloud)?;
             clock = Some(offset);
-            by_pulses(cloud, &vectors, &scanner, 0.0)?
+            by_pulses(cloud, &vectors, &scanner, 0.0, control)?
         }
-        Orientation::Pulses(scanner) => by_pulses(cloud, &vectors, scanner, GRAZING)?,
-        Orientation::Mesh(mesh) => by_mesh(cloud, &vectors, mesh)?,
+        Orientation::Pulses(scanner) => by_pulses(cloud, &vectors, scanner, GRAZING, control)?,
+        Orientation::Mesh(mesh) => by_mesh(cloud, &vectors, mesh, control)?,
     };
     let mut report = OrientReport { point_count: cloud.len(), clock, ..OrientReport::default() };
-    let verdicts = fall_back(cloud, &vectors, verdicts, by);
+    let verdicts = fall_back(cloud, &vectors, verdicts, by, control)?;
     for ((verdict, normal), quality) in verdicts.iter().zip(&mut vectors).zip(&mut quality) {
         let count = match verdict.way {
             Way::Nothing => &mut report.without_normal_count,
@@ -218,15 +224,20 @@ pub fn orient(cloud: &PointCloud, normals: Normals, by: &Orientation<'_>) -> Res
 fn each(
     cloud: &PointCloud,
     vectors: &[[f32; 3]],
+    control: &Control<'_>,
     decide: impl Fn(usize, [f64; 3], [f64; 3]) -> Option<Verdict> + Sync,
-) -> Vec<Option<Verdict>> {
+) -> Result<Vec<Option<Verdict>>> {
+    let stop = Stop::new(control);
     let decide_one = |(index, (p, n)): (usize, (&[f32; 3], &[f32; 3]))| {
-        if *n == [0.0; 3] {
+        if *n == [0.0; 3] || stop.is_set() {
             return Some(Verdict::new(Way::Nothing, 0.0));
         }
         decide(index, p.map(f64::from), n.map(f64::from))
     };
-    cloud.positions.par_iter().zip(vectors).enumerate().map(decide_one).collect()
+    let verdicts = cloud.positions.par_iter().zip(vectors).enumerate().map(decide_one).collect();
+    stop.check()?;
+    control.advance(cloud.len());
+    Ok(verdicts)
 }
 
 /// Fills in what no verdict was found for: by the vote where the surface is steep, else by up.
@@ -235,13 +246,18 @@ fn fall_back(
     vectors: &[[f32; 3]],
     verdicts: Vec<Option<Verdict>>,
     by: &Orientation<'_>,
-) -> Vec<Verdict> {
+    control: &Control<'_>,
+) -> Result<Vec<Verdict>> {
+    let stop = Stop::new(control);
     let weight = if matches!(by, Orientation::Up) { 1.0 } else { FALLBACK_WEIGHT };
     let is_steep = |n: &[f32; 3]| f64::from(n[2]).abs() < STEEP_NZ;
     let vote_needed = verdicts.iter().zip(vectors).any(|(verdict, n)| verdict.is_none() && is_steep(n));
     let surroundings = vote_needed.then(|| Surroundings::new(&cloud.positions));
     let decide = |((verdict, p), n): ((Option<Verdict>, &[f32; 3]), &[f32; 3])| {
         verdict.unwrap_or_else(|| {
+            if stop.is_set() {
+                return Verdict::new(Way::Nothing, 0.0);
+            }
             let downhill = surroundings.as_ref().filter(|_| is_steep(n)).and_then(|around| around.downhill(*p));
             match downhill {
                 Some([x, y]) => {
@@ -252,7 +268,9 @@ fn fall_back(
             }
         })
     };
-    verdicts.into_par_iter().zip(&cloud.positions).zip(vectors).map(decide).collect()
+    let verdicts = verdicts.into_par_iter().zip(&cloud.positions).zip(vectors).map(decide).collect();
+    stop.check()?;
+    Ok(verdicts)
 }
 
 fn given_normals(cloud: &PointCloud, estimated: Normals) -> Result<Normals> {
@@ -279,7 +297,7 @@ fn nearest(scanners: &[[f64; 3]], position: [f64; 3]) -> Option<[f64; 3]> {
     scanners.iter().copied().min_by(|a, b| squared(a).total_cmp(&squared(b)))
 }
 
-fn by_own_scanner(cloud: &PointCloud, vectors: &[[f32; 3]]) -> Result<Vec<Option<Verdict>>> {
+fn by_own_scanner(cloud: &PointCloud, vectors: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<Option<Verdict>>> {
     if cloud.scanner_positions.is_empty() {
         return Err(Error::MissingAttribute {
             attribute: "scanner position",
@@ -290,16 +308,21 @@ fn by_own_scanner(cloud: &PointCloud, vectors: &[[f32; 3]]) -> Result<Vec<Option
     let scanners: Vec<[f64; 3]> = cloud.scanner_positions.iter().map(|s| s.map(f64::from)).collect();
     check_finite(&scanners)?;
     let own = cloud.attributes.scanner_index.as_deref();
-    Ok(each(cloud, vectors, |index, position, normal| {
+    each(cloud, vectors, control, |index, position, normal| {
         let named = own.and_then(|own| scanners.get(usize::from(*own.get(index)?)).copied());
         towards(named.or_else(|| nearest(&scanners, position))?, position, normal)
-    }))
+    })
 }
 
-fn by_nearest_scanner(cloud: &PointCloud, vectors: &[[f32; 3]], scanners: &[[f64; 3]]) -> Result<Vec<Option<Verdict>>> {
+fn by_nearest_scanner(
+    cloud: &PointCloud,
+    vectors: &[[f32; 3]],
+    scanners: &[[f64; 3]],
+    control: &Control<'_>,
+) -> Result<Vec<Option<Verdict>>> {
     check_finite(scanners)?;
     let local: Vec<[f64; 3]> = scanners.iter().map(|s| std::array::from_fn(|i| s[i] - cloud.frame.origin[i])).collect();
-    Ok(each(cloud, vectors, |_, position, normal| towards(nearest(&local, position)?, position, normal)))
+    each(cloud, vectors, control, |_, position, normal| towards(nearest(&local, position)?, position, normal))
 }
 
 fn check_finite(scanners: &[[f64; 3]]) -> Result<()> {
@@ -316,26 +339,32 @@ fn by_pulses(
     vectors: &[[f32; 3]],
     scanner: &[[f32; 3]],
     least: f32,
+    control: &Control<'_>,
 ) -> Result<Vec<Option<Verdict>>> {
     if scanner.len() != cloud.len() {
         return Err(Error::LengthMismatch { what: "scanner positions", expected: cloud.len(), found: scanner.len() });
     }
-    Ok(each(cloud, vectors, |index, position, normal| {
+    each(cloud, vectors, control, |index, position, normal| {
         let scanner = scanner.get(index)?.map(f64::from);
         let verdict = scanner.iter().all(|v| v.is_finite()).then(|| towards(scanner, position, normal))??;
         (verdict.outward.abs() >= least).then_some(verdict)
-    }))
+    })
 }
 
-fn by_mesh(cloud: &PointCloud, vectors: &[[f32; 3]], mesh: &Mesh) -> Result<Vec<Option<Verdict>>> {
-    let reference = ReferenceMesh::new(mesh, cloud.frame.origin).ok_or_else(|| Error::InvalidParameter {
+fn by_mesh(
+    cloud: &PointCloud,
+    vectors: &[[f32; 3]],
+    mesh: &Mesh,
+    control: &Control<'_>,
+) -> Result<Vec<Option<Verdict>>> {
+    let reference = ReferenceMesh::new(mesh, cloud.frame.origin, control)?.ok_or_else(|| Error::InvalidParameter {
         name: "mesh",
         value: format!("{} triangles without area", mesh.triangles.len()),
         expected: "at least one triangle with an area",
     })?;
-    Ok(each(cloud, vectors, |_, position, normal| match reference.verdict(position, normal) {
+    each(cloud, vectors, control, |_, position, normal| match reference.verdict(position, normal) {
         MeshVerdict::Face(outward) => Some(Verdict::new(Way::Face, outward)),
         MeshVerdict::Parity(outward) => Some(Verdict::new(Way::Parity, outward)),
         MeshVerdict::Silent => None,
-    }))
+    })
 }

@@ -3,8 +3,9 @@
 use rayon::prelude::*;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
-use belvedere_data::Mesh;
+use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{cross, dot, sub};
+use belvedere_data::{Mesh, Result};
 
 /// Farthest a face may be for its normal to say something about a point: generalised models leave out dormers and
 /// terraces of that size.
@@ -72,7 +73,11 @@ impl ReferenceMesh {
     ///
     /// The turning sense of a face is believed only where nothing better is known: each face is probed on both sides,
     /// and turned so that its normal points to the open one.
-    pub(super) fn new(mesh: &Mesh, origin: [f64; 3]) -> Option<Self> {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub(super) fn new(mesh: &Mesh, origin: [f64; 3], control: &Control<'_>) -> Result<Option<Self>> {
+        let stop = Stop::new(control);
         let faces: Vec<Face> = (0..mesh.triangles.len())
             .filter_map(|index| {
                 let corners = mesh.corners(index)?.map(|corner| sub(corner, origin));
@@ -87,8 +92,9 @@ impl ReferenceMesh {
             .collect();
         let top = faces.iter().flat_map(|face| face.corners).map(|corner| corner[2]).fold(f64::NEG_INFINITY, f64::max);
         if faces.is_empty() {
-            return None;
+            return Ok(None);
         }
+        control.check()?;
         let mut reference = Self { faces: RTree::bulk_load(faces), top };
         let probed: Vec<Option<bool>> = reference
             .faces
@@ -96,11 +102,15 @@ impl ReferenceMesh {
             .collect::<Vec<_>>()
             .par_iter()
             .map(|face| {
+                if stop.is_set() {
+                    return None;
+                }
                 let [a, b, c] = face.corners;
                 let middle = std::array::from_fn(|i| (a[i] + b[i] + c[i]) / 3.0);
                 reference.open_side(middle, face.normal, FACE_PROBE_M)
             })
             .collect();
+        stop.check()?;
         for (face, open_along_normal) in reference.faces.iter_mut().zip(probed) {
             if let Some(along) = open_along_normal {
                 face.verified = true;
@@ -109,7 +119,7 @@ impl ReferenceMesh {
                 }
             }
         }
-        Some(reference)
+        Ok(Some(reference))
     }
 
     /// What the mesh says about the unit `normal` of a local `position`.

@@ -4,10 +4,13 @@ use std::cmp::Ordering;
 
 use rayon::prelude::*;
 
+use belvedere_data::control::Control;
 use belvedere_data::{Error, PointCloud, Result};
 
 /// Most points of one time, line and channel: LAS counts returns to 15, and two full pulses in one tick of a clock do not occur.
 const MOST_PER_TIME: usize = 15;
+/// Times between two looks at whether to go on.
+const CHECK_EACH: usize = 4096;
 
 /// Returns grouped by pulse. Pulses are ordered by flight line, channel and time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,7 +58,8 @@ pub struct PulseReport {
 /// # Errors
 /// [`Error::MissingAttribute`] without GPS times or return numbers, or where no pulse at all can be told from another
 /// because times are missing or too coarse. [`Error::LengthMismatch`] for a column of another length than the positions.
-pub fn group(cloud: &PointCloud) -> Result<(Pulses, PulseReport)> {
+/// [`Error::Cancelled`].
+pub fn group(cloud: &PointCloud, control: &Control<'_>) -> Result<(Pulses, PulseReport)> {
     cloud.validate()?;
     let attributes = &cloud.attributes;
     let missing = |attribute| Error::MissingAttribute {
@@ -84,10 +88,14 @@ pub fn group(cloud: &PointCloud) -> Result<(Pulses, PulseReport)> {
         })
         .collect();
     report.without_time_count = cloud.len() - keys.len();
+    control.check()?;
     keys.par_sort_unstable_by(Key::compare);
 
     let mut pulses = Pulses { offsets: vec![0], ..Pulses::default() };
-    for mut same_time in keys.chunk_by(Key::same_time).map(<[Key]>::to_vec) {
+    for (number, mut same_time) in keys.chunk_by(Key::same_time).map(<[Key]>::to_vec).enumerate() {
+        if number % CHECK_EACH == 0 {
+            control.check()?;
+        }
         let place = |key: &Key| cloud.positions.get(key.row as usize);
         let count = same_time.len();
         same_time.dedup_by(|later, earlier| later.same_return(earlier) && place(later) == place(earlier));

@@ -11,6 +11,7 @@ use super::scanner_report::{FoundBy, ScannerReport};
 use super::sensor_estimate::{SensorEstimateParams, SensorPositions, Verdict, paths_from_returns};
 use super::vertical::{VerticalParams, vertical_pulses};
 use belvedere_data::cloud::to_local;
+use belvedere_data::control::Control;
 use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{Error, PointCloud, Result};
 
@@ -51,8 +52,13 @@ pub struct LocateParams {
 /// # Errors
 /// [`Error::MissingAttribute`] where the means asked for find the scanner of no point; [`Means::Automatic`] finds it for at least one of every cloud
 /// but those with poses that no point refers to: a scanner on the ground does not look straight down. [`Error::LengthMismatch`] for a column of another length than the positions, [`Error::InvalidParameter`] for
-/// parameters out of range and a trajectory that covers no time of the cloud.
-pub fn locate(cloud: &PointCloud, means: &Means<'_>, params: &LocateParams) -> Result<(Vec<[f32; 3]>, ScannerReport)> {
+/// parameters out of range and a trajectory that covers no time of the cloud, [`Error::Cancelled`].
+pub fn locate(
+    cloud: &PointCloud,
+    means: &Means<'_>,
+    params: &LocateParams,
+    control: &Control<'_>,
+) -> Result<(Vec<[f32; 3]>, ScannerReport)> {
     cloud.validate()?;
     let mut report = ScannerReport { point_count: cloud.len(), ..ScannerReport::default() };
     let positions = match means {
@@ -61,23 +67,23 @@ pub fn locate(cloud: &PointCloud, means: &Means<'_>, params: &LocateParams) -> R
             vec![*position; cloud.len()]
         }
         Means::Poses => by_poses(cloud, &mut report),
-        Means::Trajectory(trajectory) => by_trajectory(cloud, trajectory, &mut report)?,
+        Means::Trajectory(trajectory) => by_trajectory(cloud, trajectory, &mut report, control)?,
         Means::Automatic if !cloud.scanner_positions.is_empty() => by_poses(cloud, &mut report),
-        Means::Automatic | Means::Pulses => by_pulses(cloud, params, &mut report)?,
+        Means::Automatic | Means::Pulses => by_pulses(cloud, params, &mut report, control)?,
     };
     if report.known_count() > 0 || cloud.is_empty() {
         return Ok((positions, report));
     }
     match means {
         Means::Automatic if cloud.scanner_positions.is_empty() => {
-            let positions = vertical_pulses(&cloud.positions, &params.vertical)?;
+            let positions = vertical_pulses(&cloud.positions, &params.vertical, control)?;
             report.count(FoundBy::Assumed, positions.iter().filter(|p| is_known(p)).count());
             report.remarks.push("pulses are assumed to fall straight down onto what nothing stands above".to_owned());
             Ok((positions, report))
         }
         Means::Pulses => {
             // what grouping found missing says it best
-            group(cloud)?;
+            group(cloud, control)?;
             Err(Error::MissingAttribute {
                 attribute: "pulses with several returns far enough apart, nor scan angles that can be trusted",
                 needed_for: "finding the scanner",
@@ -113,11 +119,17 @@ fn by_poses(cloud: &PointCloud, report: &mut ScannerReport) -> Vec<[f32; 3]> {
     positions
 }
 
-fn by_trajectory(cloud: &PointCloud, trajectory: &Trajectory, report: &mut ScannerReport) -> Result<Vec<[f32; 3]>> {
+fn by_trajectory(
+    cloud: &PointCloud,
+    trajectory: &Trajectory,
+    report: &mut ScannerReport,
+    control: &Control<'_>,
+) -> Result<Vec<[f32; 3]>> {
     let (mut positions, clock) = trajectory.scanner_positions(cloud)?;
     report.clock = Some(clock);
     report.count(FoundBy::Trajectory, positions.iter().filter(|p| is_known(p)).count());
-    match pulses_of(cloud, report) {
+    control.check()?;
+    match pulses_of(cloud, report, control)? {
         Some(pulses) => {
             let per_pulse = SensorPositions::from_trajectory(cloud, &pulses, trajectory)?.0.per_pulse;
             report.height_offset = height_offset(cloud, &pulses, &per_pulse);
@@ -139,8 +151,8 @@ fn by_trajectory(cloud: &PointCloud, trajectory: &Trajectory, report: &mut Scann
 }
 
 /// The pulses of the cloud, or `None` after a remark.
-fn pulses_of(cloud: &PointCloud, report: &mut ScannerReport) -> Option<Pulses> {
-    match group(cloud) {
+fn pulses_of(cloud: &PointCloud, report: &mut ScannerReport, control: &Control<'_>) -> Result<Option<Pulses>> {
+    match group(cloud, control) {
         Ok((pulses, grouping)) => {
             report.grouping = Some(grouping);
             let mut remark = |count: usize, what: &str| {
@@ -151,20 +163,26 @@ fn pulses_of(cloud: &PointCloud, report: &mut ScannerReport) -> Option<Pulses> {
             remark(grouping.without_time_count, "have no time: a program wrote them, not a scanner");
             remark(grouping.ambiguous_count, "share their time with others and belong to no pulse that can be told");
             remark(grouping.duplicate_count, "are there twice");
-            Some(pulses)
+            Ok(Some(pulses))
         }
+        Err(Error::Cancelled) => Err(Error::Cancelled),
         Err(error) => {
             report.remarks.push(error.to_string());
-            None
+            Ok(None)
         }
     }
 }
 
-fn by_pulses(cloud: &PointCloud, params: &LocateParams, report: &mut ScannerReport) -> Result<Vec<[f32; 3]>> {
+fn by_pulses(
+    cloud: &PointCloud,
+    params: &LocateParams,
+    report: &mut ScannerReport,
+    control: &Control<'_>,
+) -> Result<Vec<[f32; 3]>> {
     let unknown = [f32::NAN; 3];
-    let pulses = pulses_of(cloud, report);
+    let pulses = pulses_of(cloud, report, control)?;
     if let Some(pulses) = &pulses {
-        (report.paths, report.parts) = paths_from_returns(cloud, pulses, &params.returns)?;
+        (report.paths, report.parts) = paths_from_returns(cloud, pulses, &params.returns, control)?;
     }
     let Some(times) = &cloud.attributes.gps_time else { return Ok(vec![unknown; cloud.len()]) };
     let line = |row: usize| {
@@ -176,12 +194,13 @@ fn by_pulses(cloud: &PointCloud, params: &LocateParams, report: &mut ScannerRepo
         times.par_iter().enumerate().all(is_on_path)
     };
     if !is_known_everywhere(report) {
-        let (by_angle, parts) = paths_from_angles(cloud, pulses.as_ref(), &params.angles)?;
+        let (by_angle, parts) = paths_from_angles(cloud, pulses.as_ref(), &params.angles, control)?;
         report.paths.extend(by_angle);
         // by line; the sort keeps those by returns first
         report.paths.sort_by_key(|path| path.source_id);
         report.angle_parts = parts;
     }
+    control.check()?;
     let found: Vec<Option<(FoundBy, [f32; 3])>> = times
         .par_iter()
         .enumerate()

@@ -6,6 +6,7 @@ mod proximity;
 pub use belvedere_data::needles::NeedleColumns;
 
 use crate::neighbors::Tangent;
+use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, PointCloud, Result};
 use serde::Serialize;
@@ -14,6 +15,8 @@ use serde::Serialize;
 const LEAF: usize = 8;
 /// Below this many needles a thread goes on alone.
 const PARALLEL: usize = 8192;
+/// Pulses between two looks at whether to go on.
+const CHECK_EACH: usize = 4096;
 /// A needle that rises less than this per metre of its length is left out: its line leaves the scene before it reaches the
 /// two planes that the index measures at.
 const LEAST_RISE: f64 = 0.3;
@@ -83,8 +86,13 @@ impl Needles {
     /// local metres, NaN where unknown.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] unless there is a scanner position for each point.
-    pub fn of_cloud(cloud: &PointCloud, scanner: &[[f32; 3]], params: &NeedleParams) -> Result<(Self, NeedleReport)> {
+    /// [`Error::LengthMismatch`] unless there is a scanner position for each point; [`Error::Cancelled`].
+    pub fn of_cloud(
+        cloud: &PointCloud,
+        scanner: &[[f32; 3]],
+        params: &NeedleParams,
+        control: &Control<'_>,
+    ) -> Result<(Self, NeedleReport)> {
         cloud.validate()?;
         if scanner.len() != cloud.len() {
             return Err(Error::LengthMismatch {
@@ -98,17 +106,18 @@ impl Needles {
         let rows = || (0..cloud.len()).filter(is_first);
         let returns: Vec<[f32; 3]> = rows().map(|row| cloud.positions[row]).collect();
         let scanner: Vec<[f32; 3]> = rows().map(|row| scanner[row]).collect();
-        Self::new(&returns, &scanner, params)
+        Self::new(&returns, &scanner, params, control)
     }
 
     /// Needles from `first_returns`, (N, 3) local metres, towards `scanner`, (N, 3) local metres, NaN where unknown.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] where the two differ in length.
+    /// [`Error::LengthMismatch`] where the two differ in length; [`Error::Cancelled`].
     pub fn new(
         first_returns: &[[f32; 3]],
         scanner: &[[f32; 3]],
         params: &NeedleParams,
+        control: &Control<'_>,
     ) -> Result<(Self, NeedleReport)> {
         if scanner.len() != first_returns.len() {
             return Err(Error::LengthMismatch {
@@ -122,7 +131,10 @@ impl Needles {
         let planes = [low, high + params.headroom];
         let mut report = NeedleReport::default();
         let mut items: Vec<Item> = Vec::with_capacity(first_returns.len());
-        for (p, s) in first_returns.iter().zip(scanner) {
+        for (number, (p, s)) in first_returns.iter().zip(scanner).enumerate() {
+            if number % CHECK_EACH == 0 {
+                control.check()?;
+            }
             if !s.iter().chain(p).all(|v| v.is_finite()) {
                 report.without_scanner += 1;
                 continue;
@@ -142,13 +154,15 @@ impl Needles {
             }
         }
         report.used = items.len();
-        Ok((Self::index(items, planes), report))
+        Ok((Self::index(items, planes, control)?, report))
     }
 
-    fn index(mut items: Vec<Item>, planes: [f32; 2]) -> Self {
+    fn index(mut items: Vec<Item>, planes: [f32; 2], control: &Control<'_>) -> Result<Self> {
+        let stop = Stop::new(control);
         let mut nodes = vec![Node::EMPTY; node_count(items.len())];
-        build(&mut items, 0, &mut nodes, 0);
-        Self { needles: items.into_iter().map(|item| item.needle).collect(), nodes, planes }
+        build(&mut items, 0, &mut nodes, 0, &stop, control);
+        stop.check()?;
+        Ok(Self { needles: items.into_iter().map(|item| item.needle).collect(), nodes, planes })
     }
 
     /// Where needle `number` begins, local metres; the unit vector along it, upward; and its length, metres. `None` from
@@ -293,7 +307,11 @@ fn cut(count: usize) -> usize {
 }
 
 /// Builds the node over `items`, whose first needle is number `first`, into `nodes[0]`, and what is below it behind.
-fn build(items: &mut [Item], first: usize, nodes: &mut [Node], index: usize) {
+/// What is left when the work is cancelled is no tree.
+fn build(items: &mut [Item], first: usize, nodes: &mut [Node], index: usize, stop: &Stop<'_>, control: &Control<'_>) {
+    if items.len() > PARALLEL && stop.is_set() {
+        return;
+    }
     let mut node = Node::EMPTY;
     (node.below, node.above) = ([f32::INFINITY; 4], [f32::INFINITY; 4]);
     for side in 2..4 {
@@ -332,9 +350,15 @@ fn build(items: &mut [Item], first: usize, nodes: &mut [Node], index: usize) {
     let (near, far) = below.split_at_mut(left_nodes);
     let far_index = index + 1 + left_nodes;
     if left.len() + right.len() > PARALLEL {
-        rayon::join(|| build(left, first, near, index + 1), || build(right, first + middle, far, far_index));
+        rayon::join(
+            || build(left, first, near, index + 1, stop, control),
+            || build(right, first + middle, far, far_index, stop, control),
+        );
     } else {
-        build(left, first, near, index + 1);
-        build(right, first + middle, far, far_index);
+        build(left, first, near, index + 1, stop, control);
+        build(right, first + middle, far, far_index, stop, control);
+        if left.len() + right.len() > PARALLEL / 2 {
+            control.advance(left.len() + right.len());
+        }
     }
 }

@@ -7,6 +7,7 @@ use super::Pulses;
 use super::line_path::{Knot, LinePath, Stretch};
 use super::scanner_report::FoundBy;
 use super::sensor_fit::median;
+use belvedere_data::control::Control;
 use belvedere_data::trajectory::MAX_GAP_S;
 use belvedere_data::vector::length;
 use belvedere_data::{Error, PointCloud, Result};
@@ -130,6 +131,7 @@ pub(super) fn paths_from_angles(
     cloud: &PointCloud,
     pulses: Option<&Pulses>,
     params: &ScanAngleParams,
+    control: &Control<'_>,
 ) -> Result<(Vec<LinePath>, Vec<ScanAnglePart>)> {
     if !(0.5..=60.0).contains(&params.part_s) {
         let value = params.part_s.to_string();
@@ -160,8 +162,10 @@ pub(super) fn paths_from_angles(
     let pairs = pulses.map(|pulses| pairs(cloud, pulses)).unwrap_or_default();
     let passes = samples.chunk_by(|a, b| a.line == b.line && b.time - a.time <= MAX_GAP_S);
     let parts: Vec<&[Sample]> = passes.flat_map(|pass| cut(pass, params.part_s)).collect();
-    let found: Vec<(ScanAnglePart, Option<LinePath>)> =
-        parts.into_par_iter().map(|part| estimate(part, &pairs, params)).collect();
+    let found: Vec<(ScanAnglePart, Option<LinePath>)> = parts
+        .into_par_iter()
+        .map(|part| control.check().map(|()| estimate(part, &pairs, params)))
+        .collect::<Result<_>>()?;
     let (parts, paths): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     Ok((paths.into_iter().flatten().collect(), parts))
 }

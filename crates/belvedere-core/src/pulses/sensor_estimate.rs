@@ -7,6 +7,7 @@ use super::Pulses;
 use super::line_path::{Knot, LinePath, Stretch, position_on, smoothed};
 use super::scanner_report::FoundBy;
 use super::sensor_fit::{Fit, Pair, fit, median};
+use belvedere_data::control::Control;
 use belvedere_data::trajectory::{ClockOffset, MAX_GAP_S, Trajectory};
 use belvedere_data::vector::length;
 use belvedere_data::{Error, PointCloud, Result};
@@ -157,8 +158,9 @@ impl SensorPositions {
         cloud: &PointCloud,
         pulses: &Pulses,
         params: &SensorEstimateParams,
+        control: &Control<'_>,
     ) -> Result<(Self, SensorReport)> {
-        let (paths, parts) = paths_from_returns(cloud, pulses, params)?;
+        let (paths, parts) = paths_from_returns(cloud, pulses, params, control)?;
         let position = |(&line, &time): (&u16, &f64)| match position_on(&paths, line, time) {
             Some((_, place)) => belvedere_data::cloud::to_local(place, [0.0; 3]),
             None => [f32::NAN; 3],
@@ -312,10 +314,13 @@ pub(super) fn paths_from_returns(
     cloud: &PointCloud,
     pulses: &Pulses,
     params: &SensorEstimateParams,
+    control: &Control<'_>,
 ) -> Result<(Vec<LinePath>, Vec<SensorPart>)> {
     params.validate()?;
-    let mut estimates: Vec<Estimate> =
-        parts(pulses, params.part_s).into_par_iter().map(|members| estimate(cloud, pulses, &members, params)).collect();
+    let mut estimates: Vec<Estimate> = parts(pulses, params.part_s)
+        .into_par_iter()
+        .map(|members| control.check().map(|()| estimate(cloud, pulses, &members, params)))
+        .collect::<Result<_>>()?;
     let lines = estimates.chunk_by_mut(|a, b| a.part.source_id == b.part.source_id);
     let paths = lines.filter_map(|line| join(line, params)).collect();
     Ok((paths, estimates.into_iter().map(|estimate| estimate.part).collect()))

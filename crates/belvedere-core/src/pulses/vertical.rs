@@ -1,5 +1,6 @@
 //! Pulses that are assumed to fall straight down, where nothing tells where the scanner was.
 
+use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 
@@ -28,8 +29,13 @@ impl Default for VerticalParams {
 /// the rest.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for parameters outside their ranges.
-pub fn vertical_pulses(positions: &[[f32; 3]], params: &VerticalParams) -> Result<Vec<[f32; 3]>> {
+/// [`Error::InvalidParameter`] for parameters outside their ranges, [`Error::Cancelled`].
+pub fn vertical_pulses(
+    positions: &[[f32; 3]],
+    params: &VerticalParams,
+    control: &Control<'_>,
+) -> Result<Vec<[f32; 3]>> {
+    let stop = Stop::new(control);
     let check = |name, value: f32, range: std::ops::RangeInclusive<f32>, expected| {
         let wrong = || Error::InvalidParameter { name, value: value.to_string(), expected };
         range.contains(&value).then_some(()).ok_or_else(wrong)
@@ -64,8 +70,10 @@ pub fn vertical_pulses(positions: &[[f32; 3]], params: &VerticalParams) -> Resul
             false
         })
     };
-    let above = |p: &[f32; 3]| if is_hidden(p) { [f32::NAN; 3] } else { [p[0], p[1], p[2] + HEIGHT] };
-    Ok(positions.par_iter().map(above).collect())
+    let above = |p: &[f32; 3]| if stop.is_set() || is_hidden(p) { [f32::NAN; 3] } else { [p[0], p[1], p[2] + HEIGHT] };
+    let scanner = positions.par_iter().map(above).collect();
+    stop.check()?;
+    Ok(scanner)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "a float to integer cast saturates, which is what far points need")]
@@ -89,7 +97,7 @@ mod tests {
         };
         let points: Vec<[f32; 3]> = (0..2000).map(|_| [next(20.0) - 10.0, next(20.0) - 10.0, next(5.0)]).collect();
         let params = VerticalParams::default();
-        let found = vertical_pulses(&points, &params).unwrap();
+        let found = vertical_pulses(&points, &params, &Control::none()).unwrap();
         let mut hidden_count = 0;
         for (p, scanner) in points.iter().zip(&found) {
             let hidden = points.iter().any(|q| {
@@ -106,7 +114,7 @@ mod tests {
     #[test]
     fn parameters_out_of_range_are_refused() {
         for params in [VerticalParams { reach: 0.0, rise: 0.5 }, VerticalParams { reach: 0.5, rise: f32::NAN }] {
-            assert!(matches!(vertical_pulses(&[], &params), Err(Error::InvalidParameter { .. })));
+            assert!(matches!(vertical_pulses(&[], &params, &Control::none()), Err(Error::InvalidParameter { .. })));
         }
     }
 }

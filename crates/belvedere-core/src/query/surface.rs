@@ -1,6 +1,7 @@
 //! Surfaces as small pieces that stand for what is seen of them: strata with a place drawn in each.
 
 use crate::neighbors::NeighborIndex;
+use belvedere_data::control::Control;
 use belvedere_data::random::uniform;
 use belvedere_data::vector::{cross, dot, length, sub, unit};
 use belvedere_data::{Error, Mesh, Result};
@@ -105,14 +106,19 @@ impl SurfacePieces {
     /// # Errors
     /// [`Error::LengthMismatch`] unless there is a normal for each point, [`Error::InvalidParameter`] for a point that is not finite and
     /// a radius that is not above zero.
-    pub fn of_points(points: &[[f32; 3]], normals: &[[f32; 3]], most_radius: f64) -> Result<Self> {
+    pub fn of_points(
+        points: &[[f32; 3]],
+        normals: &[[f32; 3]],
+        most_radius: f64,
+        control: &Control<'_>,
+    ) -> Result<Self> {
         if normals.len() != points.len() {
             return Err(Error::LengthMismatch { what: "normals", expected: points.len(), found: normals.len() });
         }
         if !(most_radius.is_finite() && most_radius > 0.0) {
             return invalid("greatest radius of a point", most_radius.to_string(), "above zero metres");
         }
-        let index = NeighborIndex::new(points)?;
+        let index = NeighborIndex::new(points, control)?;
         let most_area = std::f64::consts::PI * most_radius * most_radius;
         let piece = |(face, (&point, normal)): (usize, (&[f32; 3], &[f32; 3]))| {
             let mut found = Vec::new();

@@ -6,7 +6,9 @@ use rayon::prelude::*;
 
 use crate::neighbors::NeighborIndex;
 use crate::normals::estimate::{Neighborhood, estimate};
+use belvedere_data::Result;
 use belvedere_data::cloud::PointCloud;
+use belvedere_data::control::{Control, Stop};
 
 /// Class of points on buildings (ASPRS LAS 1.4, table 17).
 const BUILDING: u8 = 6;
@@ -40,11 +42,13 @@ impl FacadeSummary {
     /// points, near eaves and corners, is taken for roof, and the density comes out within a quarter of that of the walls above
     /// ground. Walls without any points do not count; roofs steeper than 73° do. Clouds of more than two million building
     /// points are judged by a part of their area.
-    #[must_use]
-    pub fn of(cloud: &PointCloud) -> Option<Self> {
-        let classes = cloud.attributes.classification.as_ref()?;
+    ///
+    /// # Errors
+    /// Those of [`NeighborIndex::new`] and [`estimate`].
+    pub fn of(cloud: &PointCloud, control: &Control<'_>) -> Result<Option<Self>> {
+        let Some(classes) = cloud.attributes.classification.as_ref() else { return Ok(None) };
         let building_count = classes.iter().filter(|&&class| class == BUILDING).count();
-        let stride = i64::try_from(building_count.div_ceil(MOST_POINTS)).ok()?.max(1);
+        let stride = i64::try_from(building_count.div_ceil(MOST_POINTS)).unwrap_or(i64::MAX).max(1);
         #[expect(clippy::cast_possible_truncation, reason = "saturates; clouds are not 2^63 squares wide")]
         let square = |v: f32| (v / SQUARE).floor() as i64;
         // Neighbouring squares of a row and of a column fall into different parts.
@@ -56,8 +60,8 @@ impl FacadeSummary {
             .filter(|&(p, &class)| class == BUILDING && is_chosen(p))
             .map(|(&p, _)| p)
             .collect();
-        let index = NeighborIndex::new(&buildings).ok()?;
-        let normals = estimate(&buildings, &index, Neighborhood::default()).ok()?;
+        let index = NeighborIndex::new(&buildings, control)?;
+        let normals = estimate(&buildings, &index, Neighborhood::default(), control)?;
         drop(index);
         let steep: Vec<[f32; 3]> = buildings
             .iter()
@@ -65,34 +69,39 @@ impl FacadeSummary {
             .filter(|(_, normal)| normal[2].abs() < STEEPEST_NORMAL && **normal != [0.0; 3])
             .map(|(&p, _)| p)
             .collect();
-        let area = area_of(&steep)?;
-        Some(Self {
+        let Some(area) = area_of(&steep, control)? else { return Ok(None) };
+        Ok(Some(Self {
             building_point_count: buildings.len(),
             steep_point_count: steep.len(),
             area,
             density: steep.len() as f64 / area,
-        })
+        }))
     }
 }
 
 /// Area of the surface that `points` lie on, m², or `None` for too few of them or all in one spot.
-fn area_of(points: &[[f32; 3]]) -> Option<f64> {
+fn area_of(points: &[[f32; 3]], control: &Control<'_>) -> Result<Option<f64>> {
+    let stop = Stop::new(control);
     let count = usize::from(NEIGHBORS);
     if points.len() <= count {
-        return None;
+        return Ok(None);
     }
-    let index = NeighborIndex::new(points).ok()?;
+    let index = NeighborIndex::new(points, control)?;
     let discs: Vec<f64> = points
         .par_iter()
         .map_init(Vec::new, |found, &point| {
+            if stop.is_set() {
+                return 0.0;
+            }
             // the point itself comes first
             index.k_nearest(point, count + 1, found);
             found.last().map_or(0.0, |farthest| PI * f64::from(farthest.distance_squared))
         })
         .collect();
+    stop.check()?;
     // in order, so that the sum is the same for any number of threads
     let area = discs.iter().sum::<f64>() / f64::from(NEIGHBORS);
-    (area > 0.0).then_some(area)
+    Ok((area > 0.0).then_some(area))
 }
 
 #[cfg(test)]
@@ -134,7 +143,7 @@ mod tests {
     #[test]
     fn a_box_has_the_wall_area_of_a_box() {
         for density in [1, 3] {
-            let facades = FacadeSummary::of(&box_cloud(density, 6)).unwrap();
+            let facades = FacadeSummary::of(&box_cloud(density, 6), &Control::none()).unwrap().unwrap();
             // Points near the eaves have mixed neighbours: a strip as wide as these reach, up to a fifth of a wall of 20 m at
             // the lower density. The area loses those points, but discs at the rim reach beyond it.
             assert!((0.8..1.1).contains(&(facades.area / 2800.0)), "{facades:?}");
@@ -145,11 +154,11 @@ mod tests {
 
     #[test]
     fn clouds_without_walls_or_buildings_have_no_facades() {
-        assert_eq!(FacadeSummary::of(&PointCloud::default()), None);
-        assert_eq!(FacadeSummary::of(&box_cloud(1, 2)), None);
-        assert_eq!(FacadeSummary::of(&box_cloud(0, 6)), None);
+        assert_eq!(FacadeSummary::of(&PointCloud::default(), &Control::none()).unwrap(), None);
+        assert_eq!(FacadeSummary::of(&box_cloud(1, 2), &Control::none()).unwrap(), None);
+        assert_eq!(FacadeSummary::of(&box_cloud(0, 6), &Control::none()).unwrap(), None);
         let mut spot = box_cloud(1, 6);
         spot.positions.iter_mut().for_each(|p| *p = [1.0, 2.0, 3.0]);
-        assert_eq!(FacadeSummary::of(&spot), None);
+        assert_eq!(FacadeSummary::of(&spot, &Control::none()).unwrap(), None);
     }
 }

@@ -4,6 +4,7 @@ use crate::Tables;
 use crate::experiment::parallel_to;
 use crate::model::{Model, Way, unlimited_tau};
 use belvedere::cloud::to_local;
+use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::medial::{NO_TOUCH, ShrinkParams};
 use belvedere::neighbors::NeighborIndex;
@@ -187,7 +188,7 @@ struct Inside {
 impl Inside {
     /// Every ball against every point and person it may hold: exact.
     fn of(model: &Model, people: &[[f32; 3]]) -> Result<Self> {
-        let people_index = NeighborIndex::new(people)?;
+        let people_index = NeighborIndex::new(people, &Control::none())?;
         let mut inside = Self {
             bulging_count: 0,
             huge_count: 0,

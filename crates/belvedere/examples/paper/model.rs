@@ -62,8 +62,10 @@ impl Model {
     pub(crate) fn of_given_normals(cloud: PointCloud, params: ShrinkParams) -> Result<Self> {
         let mut times = Vec::new();
         let given_count = cloud.len();
-        let index = timed(&mut times, "index", || NeighborIndex::new(&cloud.positions))?;
-        let oriented = timed(&mut times, "orientation", || orient(&cloud, Normals::default(), &Orientation::Given))?;
+        let index = timed(&mut times, "index", || NeighborIndex::new(&cloud.positions, &Control::none()))?;
+        let oriented = timed(&mut times, "orientation", || {
+            orient(&cloud, Normals::default(), &Orientation::Given, &Control::none())
+        })?;
         Self::shrunk(cloud, oriented, index, params, given_count, times)
     }
 
@@ -81,12 +83,13 @@ impl Model {
     ) -> Result<Self> {
         let mut times = Vec::new();
         let given_count = cloud.len();
-        let (kept, _) = timed(&mut times, "cleaning", || clean(cloud, &CleanParams::default()))?;
+        let (kept, _) = timed(&mut times, "cleaning", || clean(cloud, &CleanParams::default(), &Control::none()))?;
         let cloud = cloud.select(&kept);
-        let index = timed(&mut times, "index", || NeighborIndex::new(&cloud.positions))?;
+        let index = timed(&mut times, "index", || NeighborIndex::new(&cloud.positions, &Control::none()))?;
         let neighborhood = Neighborhood::Fixed { k: neighbors };
-        let normals = timed(&mut times, "normals", || estimate(&cloud.positions, &index, neighborhood))?;
-        let oriented = timed(&mut times, "orientation", || orient(&cloud, normals, by))?;
+        let normals =
+            timed(&mut times, "normals", || estimate(&cloud.positions, &index, neighborhood, &Control::none()))?;
+        let oriented = timed(&mut times, "orientation", || orient(&cloud, normals, by, &Control::none()))?;
         Self::shrunk(cloud, oriented, index, params, given_count, times)
     }
 

@@ -1,6 +1,7 @@
 //! Pulses as needles and balls cut by them, against every pulse tried in turn at dense samples, and against closed forms.
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
+use belvedere::control::Control;
 use belvedere::medial::{KindBounds, MedialBalls, NO_TOUCH, PULSE_TOUCH, RadiusBounds, carve, kinds};
 use belvedere::neighbors::Tangent;
 use belvedere::normals::{Normals, Orientation, orient};
@@ -81,7 +82,7 @@ fn brute_force(tangent: &Tangent, returns: &[[f32; 3]], scanner: &[[f32; 3]], pa
 fn the_ball_that_no_pulse_enters_is_that_of_all_pulses_tried_in_turn() {
     let (returns, scanner) = survey(3000);
     let params = NeedleParams::default();
-    let (needles, report) = Needles::new(&returns, &scanner, &params).unwrap();
+    let (needles, report) = Needles::new(&returns, &scanner, &params, &Control::none()).unwrap();
     assert_eq!((report.used, report.without_scanner, report.too_flat), (3000, 0, 0));
     let mut cut_count = 0;
     for i in 0..120 {
@@ -108,7 +109,7 @@ fn a_ball_beside_a_curtain_of_pulses_shrinks_to_the_closed_form() {
     // one return high up, so that needles reach past the balls
     let (returns, scanner) =
         ([returns, vec![[50.0, 50.0, 30.0]]].concat(), [scanner, vec![[50.0, 50.0, 500.0]]].concat());
-    let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default()).unwrap();
+    let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
     let tangent = Tangent { point: [0.0; 3], inward: [1.0, 0.0, 0.0], margin: 0.0 };
     let radius = needles.smallest_tangent_ball(&tangent, 10.0).unwrap();
     assert!((radius - 1.5).abs() < 1e-5, "{radius}");
@@ -122,10 +123,10 @@ fn a_ball_beside_a_curtain_of_pulses_shrinks_to_the_closed_form() {
 fn pulses_without_scanner_or_too_flat_are_counted_and_cut_nothing() {
     let returns = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
     let scanner = [[f32::NAN; 3], [500.0, 0.0, 20.0], [2.0, 0.0, 300.0]];
-    let (_, report) = Needles::new(&returns, &scanner, &NeedleParams::default()).unwrap();
+    let (_, report) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
     assert_eq!((report.used, report.without_scanner, report.too_flat), (1, 1, 1));
-    assert!(Needles::new(&returns, &scanner[..2], &NeedleParams::default()).is_err());
-    let (none, _) = Needles::new(&[], &[], &NeedleParams::default()).unwrap();
+    assert!(Needles::new(&returns, &scanner[..2], &NeedleParams::default(), &Control::none()).is_err());
+    let (none, _) = Needles::new(&[], &[], &NeedleParams::default(), &Control::none()).unwrap();
     let tangent = Tangent { point: [0.0; 3], inward: [0.0, 0.0, 1.0], margin: 0.0 };
     assert_eq!(none.smallest_tangent_ball(&tangent, 5.0), None);
 }
@@ -135,7 +136,7 @@ fn balls_below(positions: Vec<[f32; 3]>) -> (PointCloud, belvedere::normals::Ori
     let count = positions.len();
     let cloud = PointCloud { positions, ..PointCloud::default() };
     let normals = Normals { vectors: vec![[0.0, 0.0, 1.0]; count], quality: vec![1.0; count] };
-    let (oriented, _) = orient(&cloud, normals, &Orientation::Up).unwrap();
+    let (oriented, _) = orient(&cloud, normals, &Orientation::Up, &Control::none()).unwrap();
     let balls = MedialBalls {
         centers: cloud.positions.iter().map(|p| [p[0], p[1], p[2] - 5.0]).collect(),
         radii: vec![5.0; count],
@@ -154,8 +155,10 @@ fn a_deck_is_cut_to_what_slanted_pulses_leave_below_it() {
     let scanner: Vec<[f32; 3]> = returns.iter().map(|p| [p[0] + 400.0, p[1], 400.0]).collect();
     let returns = [returns, vec![[60.0, 0.0, 20.0]]].concat();
     let scanner = [scanner, vec![[60.0, 0.0, 400.0]]].concat();
-    let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default()).unwrap();
-    let report = carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, cloud.len())).unwrap();
+    let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
+    let report =
+        carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, cloud.len()), &Control::none())
+            .unwrap();
     // the line x − z = −2 passes the axis of the balls at z = 2: the ball below (0, 0, 6 − τ) of empty radius r has its
     // centre 5.98 − r high, (3.98 − r)/√2 from the line; that equals r for r = 3.98/(1 + √2)
     let expected = 3.98 / (1.0 + 2f32.sqrt()) + 0.02;
@@ -169,15 +172,20 @@ fn kinds_of_points_bound_their_balls_and_carving_twice_changes_nothing() {
     let (mut cloud, oriented, mut balls) = balls_below((0..5).map(|i| [10.0 * i as f32, 0.0, 0.0]).collect());
     cloud.attributes.classification = Some(vec![6, 5, 2, 6, 6]);
     cloud.attributes.return_number = Some(vec![1, 1, 1, 2, 1]);
-    let (needles, _) = Needles::new(&[], &[], &NeedleParams::default()).unwrap();
-    let report = carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, cloud.len())).unwrap();
+    let (needles, _) = Needles::new(&[], &[], &NeedleParams::default(), &Control::none()).unwrap();
+    let report =
+        carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, cloud.len()), &Control::none())
+            .unwrap();
     assert_eq!(balls.radii, [5.0, 1.0, 2.0, 0.3, 5.0]);
     assert_eq!((report.carved, report.limited, report.grown), (0, 3, 0));
     assert_eq!(balls.touch, [NO_TOUCH, PULSE_TOUCH, PULSE_TOUCH, PULSE_TOUCH, NO_TOUCH]);
     let once = balls.clone();
-    carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, cloud.len())).unwrap();
+    carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, cloud.len()), &Control::none())
+        .unwrap();
     assert_eq!(balls.radii, once.radii);
-    assert!(carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, 1)).is_err());
+    assert!(
+        carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, 1), &Control::none()).is_err()
+    );
 }
 
 #[test]
@@ -191,11 +199,18 @@ fn carving_gives_the_same_bits_for_any_number_of_threads_and_order_of_pulses() {
                 returns.reverse();
                 scanner.reverse();
             }
-            let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default()).unwrap();
+            let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
             let points: Vec<[f32; 3]> = (0..3000).map(|i| pencil(i).point).collect();
             let (cloud, oriented, mut balls) = balls_below(points);
-            let report =
-                carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, cloud.len())).unwrap();
+            let report = carve(
+                &mut balls,
+                &oriented,
+                &needles,
+                PENETRATION,
+                &bounds(&cloud.attributes, cloud.len()),
+                &Control::none(),
+            )
+            .unwrap();
             (balls.radii, balls.centers, report)
         })
     };

@@ -1,6 +1,7 @@
 //! Cleaning of real clouds.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use belvedere::control::Control;
 use std::path::Path;
 
 use belvedere::PointCloud;
@@ -21,7 +22,7 @@ fn the_point_a_degree_away_goes() {
         .map(|&[x, y, z]| [x * 111_320.0 * 44.05_f64.to_radians().cos(), y * 111_320.0, z])
         .collect();
     let (cloud, _) = PointCloud::from_coordinates(&metres);
-    let (kept, report) = clean(&cloud, &CleanParams::default()).unwrap();
+    let (kept, report) = clean(&cloud, &CleanParams::default(), &Control::none()).unwrap();
     println!("spurious: {report:?}");
     let west = metres.iter().enumerate().min_by(|a, b| a.1[0].total_cmp(&b.1[0])).unwrap().0;
     assert!(!kept.contains(&u32::try_from(west).unwrap()));
@@ -36,7 +37,7 @@ fn a_town_keeps_its_facades_and_wires() {
     };
     let (cloud, _) = PointCloud::from_coordinates(&coordinates(&path));
     let start = std::time::Instant::now();
-    let (_, report) = clean(&cloud, &CleanParams::default()).unwrap();
+    let (_, report) = clean(&cloud, &CleanParams::default(), &Control::none()).unwrap();
     println!("delft 2: {report:?} in {:?}", start.elapsed());
     assert!(report.isolated_count < cloud.len() / 2000, "{report:?}");
 }

@@ -35,10 +35,10 @@ fn sampled(corner: [f64; 3], sides: [[f64; 3]; 2], spacing: f64, seed: u64, clou
 /// Interior balls of points as the pipeline makes them without pulses, turned outward by the exact mesh.
 fn balls_of(points: Vec<[f32; 3]>, model: &Scene, neighbors: usize) -> MedialBalls {
     let cloud = PointCloud { positions: points, ..PointCloud::default() };
-    let index = NeighborIndex::new(&cloud.positions).unwrap();
-    let normals = estimate(&cloud.positions, &index, Neighborhood::Fixed { k: neighbors }).unwrap();
+    let index = NeighborIndex::new(&cloud.positions, &Control::none()).unwrap();
+    let normals = estimate(&cloud.positions, &index, Neighborhood::Fixed { k: neighbors }, &Control::none()).unwrap();
     let mesh = Mesh { vertices: model.vertices.clone(), triangles: model.triangles.clone(), ..Mesh::default() };
-    let (oriented, _) = orient(&cloud, normals, &Orientation::Mesh(&mesh)).unwrap();
+    let (oriented, _) = orient(&cloud, normals, &Orientation::Mesh(&mesh), &Control::none()).unwrap();
     // points without noise: a centimetre
     let params = ShrinkParams { method: ShrinkMethod::Tau { penetration: 0.01 }, ..ShrinkParams::tau() };
     shrink(&oriented, &index, Side::Interior, &params, &Control::none()).unwrap().0.shrunk()

@@ -47,11 +47,11 @@ fn tree(nth: usize, base: f32) -> PointCloud {
 
 fn carved(cloud: &PointCloud, params: &CarvedParams) -> CarvedBalls {
     let scanner: Vec<[f32; 3]> = cloud.positions.iter().map(|p| [p[0], p[1], 400.0]).collect();
-    let index = NeighborIndex::new(&cloud.positions).unwrap();
-    let normals = estimate(&cloud.positions, &index, Neighborhood::default()).unwrap();
-    let (oriented, _) = orient(cloud, normals, &Orientation::Pulses(&scanner)).unwrap();
-    let (needles, _) = Needles::of_cloud(cloud, &scanner, &NeedleParams::default()).unwrap();
-    let (pulses, _) = group(cloud).unwrap();
+    let index = NeighborIndex::new(&cloud.positions, &Control::none()).unwrap();
+    let normals = estimate(&cloud.positions, &index, Neighborhood::default(), &Control::none()).unwrap();
+    let (oriented, _) = orient(cloud, normals, &Orientation::Pulses(&scanner), &Control::none()).unwrap();
+    let (needles, _) = Needles::of_cloud(cloud, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
+    let (pulses, _) = group(cloud, &Control::none()).unwrap();
     let input = CarvedInput {
         oriented: &oriented,
         index: &index,

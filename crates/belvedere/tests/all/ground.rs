@@ -40,7 +40,8 @@ fn ground_found_without_classes_lies_on_the_exact_ground() {
         for (cloud, from, least) in
             [(&cloud, GroundPoints::Classed, least[0]), (&unclassed, GroundPoints::Found, least[1])]
         {
-            let (ground, report) = Ground::of_cloud(cloud, grid_of(cloud, 1.0), &GroundParams::default()).unwrap();
+            let (ground, report) =
+                Ground::of_cloud(cloud, grid_of(cloud, 1.0), &GroundParams::default(), &Control::none()).unwrap();
             assert_eq!(report.from, from);
             let mut errors = vec![];
             for row in 0..ground.grid.height {
@@ -66,10 +67,10 @@ fn ground_found_without_classes_lies_on_the_exact_ground() {
 fn ground_of_delft_is_found_as_its_makers_classed_it() {
     let Some(path) = crate::common::data("ground_of_delft", "data/delft_ahn3/ahn3_cropped_1.laz") else { return };
     let (cloud, _) = read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap();
-    let (truth, from) = ground_points(&cloud, &GroundParams::default()).unwrap();
+    let (truth, from) = ground_points(&cloud, &GroundParams::default(), &Control::none()).unwrap();
     assert_eq!(from, GroundPoints::Classed);
     let unclassed = PointCloud { attributes: Attributes::default(), ..cloud.clone() };
-    let found = find_ground(&unclassed, &FinderParams::default()).unwrap();
+    let found = find_ground(&unclassed, &FinderParams::default(), &Control::none()).unwrap();
     let [recall, precision] = recall_and_precision(&found, &truth);
     println!("Delft: recall {recall:.3}, precision {precision:.3}");
     assert!(recall > 0.98 && precision > 0.92, "{recall} {precision}");
@@ -87,7 +88,7 @@ fn heights_say_how_far_the_next_ground_point_is() {
         }
     }
     let grid = MapGrid::covering([-20.0; 2], [80.0; 2], 1.0, [0.0; 2]).unwrap();
-    let ground = Ground::of_points(&points, grid, 8.0).unwrap();
+    let ground = Ground::of_points(&points, grid, 8.0, &Control::none()).unwrap();
     let at =
         |p: [f64; 2]| grid.cell_of(p).map(|[c, r]| (ground.heights.get(c, r).unwrap(), ground.gaps.get(c, r).unwrap()));
     let (height, gap) = at([25.0, 30.0]).unwrap();
@@ -105,17 +106,20 @@ fn heights_say_how_far_the_next_ground_point_is() {
 fn a_cloud_without_ground_is_refused_with_advice() {
     let (cloud, _) = PointCloud::from_coordinates(&[[0.0; 3], [1.0, 1.0, 0.0], [2.0, 0.0, 1.0]]);
     let classed = GroundParams { points: GroundPoints::Classed, ..GroundParams::default() };
-    assert!(ground_points(&cloud, &classed).unwrap_err().to_string().contains("class 2"));
-    assert!(ground_points(&PointCloud::default(), &GroundParams::default()).is_err());
+    assert!(ground_points(&cloud, &classed, &Control::none()).unwrap_err().to_string().contains("class 2"));
+    assert!(ground_points(&PointCloud::default(), &GroundParams::default(), &Control::none()).is_err());
     let noise = Attributes { classification: Some(vec![7; 3]), ..Attributes::default() };
-    assert!(find_ground(&PointCloud { attributes: noise, ..cloud.clone() }, &FinderParams::default()).is_err());
+    assert!(
+        find_ground(&PointCloud { attributes: noise, ..cloud.clone() }, &FinderParams::default(), &Control::none())
+            .is_err()
+    );
     for params in [
         FinderParams { cell: 0.0, ..FinderParams::default() },
         FinderParams { slope: f64::NAN, ..FinderParams::default() },
         FinderParams { window: 1e9, ..FinderParams::default() },
         FinderParams { tolerance: -1.0, ..FinderParams::default() },
     ] {
-        assert!(find_ground(&cloud, &params).is_err());
+        assert!(find_ground(&cloud, &params, &Control::none()).is_err());
     }
 }
 
@@ -129,7 +133,7 @@ fn ground_is_hidden_under_buildings_and_not_under_cars() {
     let top = |[x, y]: [f32; 2]| [x, y, if under(x, y, 10.0, 20.0) { 5.0 } else { 1.5 }];
     let all: Vec<[f32; 3]> = ground.iter().copied().chain(places().filter(|p| covered(*p)).map(top)).collect();
     let grid = MapGrid::covering([0.0, 0.0], [39.9, 39.9], 1.0, [0.0, 0.0]).unwrap();
-    let hidden = hidden_ground(&all, &Ground::of_points(&ground, grid, 60.0).unwrap());
+    let hidden = hidden_ground(&all, &Ground::of_points(&ground, grid, 60.0, &Control::none()).unwrap());
     for (cell, is_hidden) in hidden.into_iter().enumerate() {
         let [x, y] = grid.center(cell % grid.width, cell / grid.width);
         let inside = |margin: f64| [x, y].iter().all(|v| (10.0 + margin..20.0 - margin).contains(v));

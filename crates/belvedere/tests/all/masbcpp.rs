@@ -51,7 +51,7 @@ fn params(setting: &str) -> ShrinkParams {
 }
 
 fn both_sides(coords: Vec<[f32; 3]>, normals: Vec<[f32; 3]>, params: &ShrinkParams) -> [MedialBalls; 2] {
-    let index = NeighborIndex::new(&coords).unwrap();
+    let index = NeighborIndex::new(&coords, &Control::none()).unwrap();
     let cloud = OrientedCloud::with_known_normals(coords, normals).unwrap();
     [Side::Interior, Side::Exterior].map(|side| shrink(&cloud, &index, side, params, &Control::none()).unwrap().0)
 }
@@ -183,7 +183,9 @@ fn local_feature_sizes_agree_with_masbcpp() {
         let Some(case) = crate::common::data("local feature size", &format!("reference/{name}")) else { continue };
         let (coords, normals) = (read_triples(&case.join("coords.npy")), read_triples(&case.join("normals.npy")));
         let [interior, exterior] = both_sides(coords.clone(), normals, &params("default"));
-        let sizes = local_feature_size(&coords, &[&interior, &exterior], &FeatureSizeParams::default()).unwrap();
+        let sizes =
+            local_feature_size(&coords, &[&interior, &exterior], &FeatureSizeParams::default(), &Control::none())
+                .unwrap();
         let theirs = read_f32(&case.join("default/lfs.npy"));
         let near = sizes.iter().zip(&theirs).filter(|(a, b)| (*a - *b).abs() < 0.01).count() as f64;
         let share = near / theirs.len() as f64;

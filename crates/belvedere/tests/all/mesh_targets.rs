@@ -1,5 +1,6 @@
 //! Faces of meshes: areas seen against closed forms.
 
+use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
 use belvedere::query::{
     Answer, BackFaces, BlockRule, MedialScene, MeshTargetParams, SeenArea, Sides, SurfacePieces, Viewer, Visibility,
@@ -170,7 +171,7 @@ fn points_stand_for_the_surface_between_them() {
     let points: Vec<[f32; 3]> = (0..1024)
         .map(|i| [0.25 * (i % 32) as f64 + shift(1, i), 0.0, 0.25 * (i / 32) as f64 + shift(2, i)].map(|v| v as f32))
         .collect();
-    let surface = SurfacePieces::of_points(&points, &vec![[0.0, 1.0, 0.0]; 1024], 1.0).unwrap();
+    let surface = SurfacePieces::of_points(&points, &vec![[0.0, 1.0, 0.0]; 1024], 1.0, &Control::none()).unwrap();
     assert_eq!((surface.sides, surface.pieces.len()), (Sides::Both, 1024));
     // 1024 cells of 0.0625 m²; at the rim neighbours lie farther, and those of a grid nearer than by chance
     assert!((surface.area() / 64.0 - 1.0).abs() < 0.2, "{}", surface.area());
@@ -182,8 +183,8 @@ fn points_stand_for_the_surface_between_them() {
         )) / 2.0;
         assert!((area - f64::from(piece.area)).abs() < 1e-4 && a[1].abs() < 1e-6);
     }
-    assert!(SurfacePieces::of_points(&points, &[], 1.0).is_err());
-    assert!(SurfacePieces::of_points(&points, &vec![[0.0; 3]; 1024], 0.0).is_err());
-    let alone = SurfacePieces::of_points(&[[1.0, 2.0, 3.0]], &[[0.0; 3]], 1.0).unwrap();
+    assert!(SurfacePieces::of_points(&points, &[], 1.0, &Control::none()).is_err());
+    assert!(SurfacePieces::of_points(&points, &vec![[0.0; 3]; 1024], 0.0, &Control::none()).is_err());
+    let alone = SurfacePieces::of_points(&[[1.0, 2.0, 3.0]], &[[0.0; 3]], 1.0, &Control::none()).unwrap();
     assert!((alone.area() - PI).abs() < 1e-6);
 }

@@ -1,6 +1,7 @@
 //! Every kind of search against brute force and against another kd-tree, query by query, on kind and unkind clouds, with
 //! and without AVX2.
 
+use belvedere::control::Control;
 use belvedere::neighbors::{Instructions, Neighbor, NeighborIndex, Tangent};
 use proptest::prelude::*;
 
@@ -79,7 +80,7 @@ fn both(points: &[[f32; 3]]) -> Vec<NeighborIndex> {
     } else {
         crate::common::skipped("the AVX2 half of the neighbour tests: this machine has none");
     }
-    kinds.into_iter().map(|kind| NeighborIndex::with_instructions(points, kind).unwrap()).collect()
+    kinds.into_iter().map(|kind| NeighborIndex::with_instructions(points, kind, &Control::none()).unwrap()).collect()
 }
 
 #[test]
@@ -191,7 +192,7 @@ fn both_kinds_of_instructions_give_the_same_bits() {
 
 #[test]
 fn an_empty_index_finds_nothing() {
-    let index = NeighborIndex::new(&[]).unwrap();
+    let index = NeighborIndex::new(&[], &Control::none()).unwrap();
     let mut found = Vec::new();
     index.k_nearest([0.0; 3], 5, &mut found);
     assert!(found.is_empty());
@@ -203,7 +204,7 @@ fn an_empty_index_finds_nothing() {
 #[test]
 fn positions_that_are_not_finite_are_refused() {
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-        let error = NeighborIndex::new(&[[0.0; 3], [0.0, bad, 0.0]]).unwrap_err().to_string();
+        let error = NeighborIndex::new(&[[0.0; 3], [0.0, bad, 0.0]], &Control::none()).unwrap_err().to_string();
         assert!(error.contains("position"), "{error}");
     }
 }

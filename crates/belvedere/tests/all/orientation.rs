@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![expect(clippy::cast_possible_truncation, reason = "test solids of a few metres in f32")]
 
+use belvedere::control::Control;
 use std::path::Path;
 
 use belvedere::io::read_mesh;
@@ -32,7 +33,7 @@ fn agreement(found: &[[f32; 3]], truth: &[[f32; 3]], counts: impl Fn(usize) -> b
 }
 
 fn oriented(cloud: &PointCloud, truth: &[[f32; 3]], by: &Orientation<'_>) -> (OrientedCloud, OrientReport) {
-    let (result, report) = orient(cloud, scrambled(truth), by).unwrap();
+    let (result, report) = orient(cloud, scrambled(truth), by, &Control::none()).unwrap();
     let counted = report.without_normal_count
         + report.by_file_count
         + report.by_scanner_count
@@ -229,7 +230,8 @@ fn a_trajectory_gives_every_point_its_own_sensor() {
         *time += 1000.0;
     }
     let mut cloud = cloud_of(positions);
-    let no_times = orient(&cloud, scrambled(&truth), &Orientation::Trajectory(&trajectory)).unwrap_err();
+    let no_times =
+        orient(&cloud, scrambled(&truth), &Orientation::Trajectory(&trajectory), &Control::none()).unwrap_err();
     assert!(no_times.to_string().contains("GPS time"));
     cloud.attributes =
         Attributes { gps_time: Some(times), gps_time_kind: GpsTimeKind::AdjustedStandard, ..Attributes::default() };
@@ -238,7 +240,7 @@ fn a_trajectory_gives_every_point_its_own_sensor() {
     assert_eq!((report.by_scanner_count, report.by_up_count + report.by_vote_count), (1490, 10));
     assert_eq!(report.clock.unwrap().known_count, 1490);
     let elsewhere = Trajectory { times: vec![0.0, 1.0], positions: vec![[0.0; 3]; 2] };
-    assert!(orient(&cloud, scrambled(&truth), &Orientation::Trajectory(&elsewhere)).is_err());
+    assert!(orient(&cloud, scrambled(&truth), &Orientation::Trajectory(&elsewhere), &Control::none()).is_err());
 }
 
 #[test]
@@ -252,17 +254,17 @@ fn positions_of_the_scanner_for_each_point_give_its_sign_and_the_rest_turns_up()
     assert!((agreement(result.normals(), &truth, |i| i % 5 != 0) - 1.0).abs() < 1e-12);
     let upward = |i: usize| i.is_multiple_of(5) && truth[i][2] > 0.4;
     assert!((agreement(result.normals(), &truth, upward) - 1.0).abs() < 1e-12);
-    assert!(orient(&cloud, scrambled(&truth), &Orientation::Pulses(&scanner[1..])).is_err());
+    assert!(orient(&cloud, scrambled(&truth), &Orientation::Pulses(&scanner[1..]), &Control::none()).is_err());
 }
 
 #[test]
 fn given_normals_replace_the_estimated() {
     let (mut cloud, truth) = sphere(10.0, 100);
-    assert!(orient(&cloud, scrambled(&truth), &Orientation::Given).is_err());
+    assert!(orient(&cloud, scrambled(&truth), &Orientation::Given, &Control::none()).is_err());
     let mut given: Vec<[f32; 3]> = truth.iter().map(|n| n.map(|v| 3.0 * v)).collect();
     given[0] = [f32::NAN, 0.0, 0.0];
     cloud.attributes.normals = Some(given);
-    let (result, report) = orient(&cloud, Normals::default(), &Orientation::Given).unwrap();
+    let (result, report) = orient(&cloud, Normals::default(), &Orientation::Given, &Control::none()).unwrap();
     assert!(agreement(result.normals(), &truth, |i| i > 0) == 1.0);
     assert!(result.normals().iter().skip(1).all(|n| (dot(*n, *n) - 1.0).abs() < 1e-5));
     assert_eq!((report.by_file_count, report.without_normal_count), (99, 1));
@@ -273,11 +275,11 @@ fn given_normals_replace_the_estimated() {
 fn wrong_lengths_and_empty_meshes_are_errors() {
     let (cloud, truth) = sphere(10.0, 100);
     let short = Normals { vectors: truth[1..].to_vec(), quality: vec![1.0; 100] };
-    assert!(orient(&cloud, short, &Orientation::Up).is_err());
+    assert!(orient(&cloud, short, &Orientation::Up, &Control::none()).is_err());
     for by in [Orientation::Mesh(&Mesh::default()), Orientation::Scanner, Orientation::ScannerAt(Vec::new())] {
-        assert!(orient(&cloud, scrambled(&truth), &by).is_err());
+        assert!(orient(&cloud, scrambled(&truth), &by, &Control::none()).is_err());
     }
-    let empty = orient(&PointCloud::default(), Normals::default(), &Orientation::Up).unwrap();
+    let empty = orient(&PointCloud::default(), Normals::default(), &Orientation::Up, &Control::none()).unwrap();
     assert!(empty.0.is_empty());
 }
 

@@ -41,11 +41,11 @@ struct Prepared {
 
 fn prepare(path: &Path, by: &Orientation<'_>) -> Result<Prepared> {
     let (cloud, _) = read_cloud(&[path.to_owned()], &ReadOptions::default(), &Control::none())?;
-    let (kept, _) = clean(&cloud, &CleanParams::default())?;
+    let (kept, _) = clean(&cloud, &CleanParams::default(), &Control::none())?;
     let cloud = cloud.select(&kept);
-    let index = NeighborIndex::new(&cloud.positions)?;
-    let normals = estimate(&cloud.positions, &index, Neighborhood::default())?;
-    let (oriented, _) = orient(&cloud, normals, by)?;
+    let index = NeighborIndex::new(&cloud.positions, &Control::none())?;
+    let normals = estimate(&cloud.positions, &index, Neighborhood::default(), &Control::none())?;
+    let (oriented, _) = orient(&cloud, normals, by, &Control::none())?;
     Ok(Prepared { cloud, index, oriented })
 }
 

@@ -2,6 +2,7 @@
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::Error;
+use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
 use belvedere::pulses::{NeedleColumns, NeedleParams, Needles};
 use belvedere::query::{
@@ -24,7 +25,7 @@ fn survey(count: u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
 }
 
 fn needles(returns: &[[f32; 3]], scanner: &[[f32; 3]]) -> Needles {
-    Needles::new(returns, scanner, &NEEDLES).unwrap().0
+    Needles::new(returns, scanner, &NEEDLES, &Control::none()).unwrap().0
 }
 
 /// Ends of the pieces of lines that count as empty, in f64.
@@ -139,7 +140,11 @@ fn a_line_beside_one_pulse_is_seen_along_a_chord_of_its_cylinder() {
     let returns = [[0.0, 0.0, 0.0], [-40.0, -40.0, 0.0], [40.0, 40.0, 0.0]];
     let scanner = returns.map(|p: [f32; 3]| [p[0], p[1], 500.0]);
     let single = |beside| {
-        proof(Needles::new(&returns, &scanner, &NeedleParams { headroom: 20.0, ..NEEDLES }).unwrap().0, 0.7, beside)
+        proof(
+            Needles::new(&returns, &scanner, &NeedleParams { headroom: 20.0, ..NEEDLES }, &Control::none()).unwrap().0,
+            0.7,
+            beside,
+        )
     };
     let proof = single(Beside::NotAsked);
     for beside in [0.0, 0.3, 0.69, 0.71] {
@@ -256,7 +261,7 @@ fn pulses_as_columns_come_back_within_millimetres_and_then_the_same() {
         let first = needles(&returns, &scanner);
         let columns = first.to_columns();
         assert_eq!(columns.lengths.is_empty(), !low);
-        let again = Needles::from_columns(&columns).unwrap();
+        let again = Needles::from_columns(&columns, &Control::none()).unwrap();
         assert_eq!((again.len(), again.top()), (first.len(), first.top()));
         for i in 0..500 {
             let point = random_point(30, i);
@@ -277,7 +282,7 @@ fn pulses_as_columns_come_back_within_millimetres_and_then_the_same() {
     let broken = |change: fn(&mut NeedleColumns)| {
         let mut columns = needles(&returns, &scanner).to_columns();
         change(&mut columns);
-        Needles::from_columns(&columns).map(|_| ())
+        Needles::from_columns(&columns, &Control::none()).map(|_| ())
     };
     assert!(matches!(
         broken(|c| {

@@ -20,7 +20,7 @@ fn direction(index: u64) -> [f32; 3] {
 }
 
 fn balls_of(cloud: &OrientedCloud, initial_radius: f32) -> (MedialBalls, NeighborIndex) {
-    let index = NeighborIndex::new(cloud.positions()).unwrap();
+    let index = NeighborIndex::new(cloud.positions(), &Control::none()).unwrap();
     let method = ShrinkMethod::Tau { penetration: 1e-3 };
     let params = ShrinkParams { method, initial_radius, max_radius: f32::INFINITY };
     let (balls, _) = shrink(cloud, &index, Side::Interior, &params, &Control::none()).unwrap();
@@ -55,7 +55,7 @@ fn of_the_balls_of_a_sphere_one_is_left() {
     let sphere = OrientedCloud::with_known_normals(positions, normals).unwrap();
     let (mut balls, index) = balls_of(&sphere, 10.0);
     let count = kept(&balls).len();
-    let pruned = prune(&mut balls, &sphere, &index, &PruneParams::default()).unwrap();
+    let pruned = prune(&mut balls, &sphere, &index, &PruneParams::default(), &Control::none()).unwrap();
     assert_eq!((kept(&balls).len(), pruned), (1, count - 1));
     assert!(count > 2900, "{count}");
 }
@@ -66,7 +66,7 @@ fn every_ball_left_out_has_one_that_stands_in_for_it_and_no_ball_kept_has() {
     let (mut balls, index) = balls_of(&cloud, 5.0);
     let before = kept(&balls);
     let params = PruneParams::default();
-    prune(&mut balls, &cloud, &index, &params).unwrap();
+    prune(&mut balls, &cloud, &index, &params, &Control::none()).unwrap();
     let after = kept(&balls);
     assert!(after.len() * 2 < before.len(), "{} of {}", after.len(), before.len());
     let in_block = |row: usize| cloud.positions()[row][0] < 64.0;
@@ -102,7 +102,7 @@ fn order_of_points_and_number_of_threads_do_not_matter() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let (mut balls, index) = balls_of(cloud, 5.0);
-            prune(&mut balls, cloud, &index, &PruneParams::default()).unwrap();
+            prune(&mut balls, cloud, &index, &PruneParams::default(), &Control::none()).unwrap();
             let mut rows: Vec<[u32; 3]> =
                 kept(&balls).into_iter().map(|row| cloud.positions()[row].map(f32::to_bits)).collect();
             rows.sort_unstable();
@@ -118,5 +118,5 @@ fn order_of_points_and_number_of_threads_do_not_matter() {
 fn columns_of_another_length_are_refused() {
     let cloud = plate(100);
     let (balls, index) = balls_of(&cloud, 5.0);
-    assert!(prune(&mut balls.shrunk(), &plate(101), &index, &PruneParams::default()).is_err());
+    assert!(prune(&mut balls.shrunk(), &plate(101), &index, &PruneParams::default(), &Control::none()).is_err());
 }

@@ -59,7 +59,7 @@ fn spread(mut values: Vec<f64>) -> [f64; 2] {
 fn pulses_are_those_the_simulator_sent() {
     let scan = flown(&AirborneParams { pulses_per_m2: 1.0, ..AirborneParams::default() });
     let mut cloud = cloud_of(&scan);
-    let (pulses, report) = group(&cloud).unwrap();
+    let (pulses, report) = group(&cloud, &Control::none()).unwrap();
     let sent = scan.return_number.iter().filter(|&&number| number == 1).count();
     assert_eq!((report.pulse_count, pulses.len(), pulses.returns.len()), (sent, sent, cloud.len()));
     assert_eq!((report.incomplete_count, report.ambiguous_count, report.duplicate_count), (0, 0, 0));
@@ -74,7 +74,7 @@ fn pulses_are_those_the_simulator_sent() {
     // the order of the points does not matter
     let reversed: Vec<u32> = (0..u32::try_from(cloud.len()).unwrap()).rev().collect();
     cloud = cloud.select(&reversed);
-    let (again, report_again) = group(&cloud).unwrap();
+    let (again, report_again) = group(&cloud, &Control::none()).unwrap();
     assert_eq!(report_again, report);
     let rows: Vec<u32> = again.returns.iter().map(|&row| reversed[row as usize]).collect();
     assert_eq!((rows, again.offsets), (pulses.returns, pulses.offsets));
@@ -102,7 +102,7 @@ fn what_is_no_pulse_is_counted_and_left_out() {
         (1, 0.0, 1, 1, 6.0),
         (1, f64::NAN, 1, 1, 7.0),
     ]);
-    let (pulses, report) = group(&cloud).unwrap();
+    let (pulses, report) = group(&cloud, &Control::none()).unwrap();
     assert_eq!(pulses.returns, [0, 1, 4, 8, 7, 9, 3]);
     assert_eq!(pulses.offsets, [0, 2, 3, 4, 6, 7]);
     assert_eq!(pulses.source_ids, [1, 1, 1, 1, 2]);
@@ -119,17 +119,17 @@ fn what_is_no_pulse_is_counted_and_left_out() {
 #[test]
 fn times_that_tell_nothing_are_an_error() {
     let mut cloud = cloud_of_rows(&[(1, 5.0, 1, 2, 0.0), (1, 5.0, 1, 2, 1.0), (1, 0.0, 1, 1, 2.0)]);
-    assert!(matches!(group(&cloud), Err(Error::MissingAttribute { .. })));
+    assert!(matches!(group(&cloud, &Control::none()), Err(Error::MissingAttribute { .. })));
     cloud.attributes.gps_time = None;
-    assert!(matches!(group(&cloud), Err(Error::MissingAttribute { attribute: "GPS time", .. })));
-    assert_eq!(group(&cloud_of_rows(&[])).unwrap().0.len(), 0);
+    assert!(matches!(group(&cloud, &Control::none()), Err(Error::MissingAttribute { attribute: "GPS time", .. })));
+    assert_eq!(group(&cloud_of_rows(&[]), &Control::none()).unwrap().0.len(), 0);
 }
 
 #[test]
 fn a_trajectory_gives_the_simulated_path() {
     let scan = flown(&AirborneParams { pulses_per_m2: 0.5, ..AirborneParams::default() });
     let cloud = cloud_of(&scan);
-    let (pulses, _) = group(&cloud).unwrap();
+    let (pulses, _) = group(&cloud, &Control::none()).unwrap();
     let (sensor, report) = SensorPositions::from_trajectory(&cloud, &pulses, &trajectory(&scan)).unwrap();
     assert_eq!((report.known_count, report.pulse_count), (pulses.len(), pulses.len()));
     let per_point = sensor.per_point(&pulses, cloud.len());
@@ -172,10 +172,10 @@ fn returns_alone_give_the_simulated_path_to_metres() {
     ] {
         let scan = flown(&params);
         let cloud = cloud_of(&scan);
-        let (pulses, _) = group(&cloud).unwrap();
+        let (pulses, _) = group(&cloud, &Control::none()).unwrap();
         let truth = SensorPositions::from_trajectory(&cloud, &pulses, &trajectory(&scan)).unwrap().0;
         let estimate = SensorEstimateParams::default();
-        let (sensor, report) = SensorPositions::from_returns(&cloud, &pulses, &estimate).unwrap();
+        let (sensor, report) = SensorPositions::from_returns(&cloud, &pulses, &estimate, &Control::none()).unwrap();
         assert_eq!(report.known_count, pulses.len(), "{:#?}", report.parts);
         let [distances, angles] = errors(&cloud, &pulses, &sensor, &truth);
         let ([distance, far], [angle, wide]) = (spread(distances), spread(angles));
@@ -197,23 +197,28 @@ fn lines_without_multiple_returns_are_refused_and_said_so() {
     let cloud = cloud_of(&scan);
     let singles: Vec<u32> = (0_u32..).zip(&scan.return_count).filter(|(_, n)| **n == 1).map(|(row, _)| row).collect();
     let cloud = cloud.select(&singles);
-    let (pulses, _) = group(&cloud).unwrap();
-    let (sensor, report) = SensorPositions::from_returns(&cloud, &pulses, &SensorEstimateParams::default()).unwrap();
+    let (pulses, _) = group(&cloud, &Control::none()).unwrap();
+    let (sensor, report) =
+        SensorPositions::from_returns(&cloud, &pulses, &SensorEstimateParams::default(), &Control::none()).unwrap();
     assert_eq!(report.known_count, 0);
     assert!(!report.parts.is_empty() && report.parts.iter().all(|part| part.verdict == Verdict::TooFewPairs));
     assert!(sensor.per_point(&pulses, cloud.len()).iter().flatten().all(|v| v.is_nan()));
     let wrong = SensorEstimateParams { part_s: f64::NAN, ..SensorEstimateParams::default() };
-    assert!(matches!(SensorPositions::from_returns(&cloud, &pulses, &wrong), Err(Error::InvalidParameter { .. })));
+    assert!(matches!(
+        SensorPositions::from_returns(&cloud, &pulses, &wrong, &Control::none()),
+        Err(Error::InvalidParameter { .. })
+    ));
 }
 
 fn estimated(test: &str, file: &str) -> Option<(PointCloud, Pulses, SensorPositions, SensorReport)> {
     let path = crate::common::data(test, file)?;
     let (cloud, _) = read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap();
-    let (pulses, grouping) = group(&cloud).unwrap();
+    let (pulses, grouping) = group(&cloud, &Control::none()).unwrap();
     // every point is somewhere
     let left_out = grouping.duplicate_count + grouping.ambiguous_count + grouping.without_time_count;
     assert_eq!(pulses.returns.len() + left_out, cloud.len());
-    let (sensor, report) = SensorPositions::from_returns(&cloud, &pulses, &SensorEstimateParams::default()).unwrap();
+    let (sensor, report) =
+        SensorPositions::from_returns(&cloud, &pulses, &SensorEstimateParams::default(), &Control::none()).unwrap();
     Some((cloud, pulses, sensor, report))
 }
 
@@ -251,7 +256,7 @@ fn a_cloud_with_rounded_times_has_no_pulses() {
     let file = "data/tudelft_ahn4_small/small.laz";
     let Some(path) = crate::common::data("a_cloud_with_rounded_times_has_no_pulses", file) else { return };
     let (cloud, _) = read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap();
-    assert!(matches!(group(&cloud), Err(Error::MissingAttribute { .. })));
+    assert!(matches!(group(&cloud, &Control::none()), Err(Error::MissingAttribute { .. })));
 }
 
 /// A line flown 1 km up at 60 m/s with a swing of a metre to the side and half a metre up and down, whose pulses of two returns
@@ -288,12 +293,12 @@ fn sparse_line() -> (PointCloud, Vec<[f64; 3]>) {
 #[test]
 fn fifty_pulses_half_a_second_give_the_path_to_a_metre() {
     let (cloud, truth) = sparse_line();
-    let (pulses, _) = group(&cloud).unwrap();
+    let (pulses, _) = group(&cloud, &Control::none()).unwrap();
     let params = SensorEstimateParams { part_s: 0.5, ..SensorEstimateParams::default() };
     // parts on their own, and joined
     for (acceleration_sd, bar) in [(100.0, 1.0), (1.0, 0.6)] {
         let params = SensorEstimateParams { acceleration_sd, ..params };
-        let (sensor, report) = SensorPositions::from_returns(&cloud, &pulses, &params).unwrap();
+        let (sensor, report) = SensorPositions::from_returns(&cloud, &pulses, &params, &Control::none()).unwrap();
         assert_eq!((report.known_count, report.parts.len()), (1000, 20));
         assert!(report.parts.iter().all(|part| part.pair_count.abs_diff(50) <= 1));
         let errors = (0..1000).map(|i| length(sub(sensor.per_pulse[i].map(f64::from), truth[i]))).collect();

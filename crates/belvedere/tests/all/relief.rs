@@ -45,14 +45,14 @@ fn survey(wall_height: f64) -> Survey {
 }
 
 fn needles(survey: &Survey) -> Needles {
-    Needles::new(&survey.points, &survey.scanner, &NeedleParams::default()).unwrap().0
+    Needles::new(&survey.points, &survey.scanner, &NeedleParams::default(), &Control::none()).unwrap().0
 }
 
 fn balls(survey: &Survey, relief: Option<ReliefParams>) -> CarvedBalls {
     // upward everywhere, as neighbours on the roof make them
     let normals = vec![[0.0, 0.0, 1.0]; survey.points.len()];
     let oriented = OrientedCloud::with_known_normals(survey.points.clone(), normals).unwrap();
-    let index = NeighborIndex::new(&survey.points).unwrap();
+    let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
     let attributes = Attributes { classification: Some(vec![6; survey.points.len()]), ..Attributes::default() };
     let needles = needles(survey);
     let input =

@@ -119,7 +119,7 @@ fn roofs_are_told_by_class_or_by_height() {
     let ground_count = positions.len();
     positions.extend(house(4.0));
     let grid = MapGrid::covering([-10.0, -10.0], [40.0, 20.0], 1.0, [0.0, 0.0]).unwrap();
-    let ground = Ground::of_points(&positions[..ground_count], grid, 60.0).unwrap();
+    let ground = Ground::of_points(&positions[..ground_count], grid, 60.0, &Control::none()).unwrap();
     let classed = |class: u8| {
         let of_point = |i: usize| if i < ground_count { 2 } else { class };
         let classification = Some((0..positions.len()).map(of_point).collect());

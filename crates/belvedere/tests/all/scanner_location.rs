@@ -35,7 +35,7 @@ fn singles(cloud: &PointCloud) -> PointCloud {
 }
 
 fn found(cloud: &PointCloud) -> (Vec<[f32; 3]>, ScannerReport) {
-    locate(cloud, &Means::Automatic, &LocateParams::default()).unwrap()
+    locate(cloud, &Means::Automatic, &LocateParams::default(), &Control::none()).unwrap()
 }
 
 /// Median distance between two sets of positions in metres, and median angle between the directions to them in degrees, where
@@ -99,7 +99,7 @@ fn scan_angles_of_a_cone_are_refused() {
         assert!(report.is_assumed(), "{reach}: {report:?}");
         assert!(!report.angle_parts.is_empty());
         assert!(report.remarks.iter().any(|remark| remark.contains("cone")), "{:?}", report.remarks);
-        let refused = locate(&cloud, &Means::Pulses, &LocateParams::default());
+        let refused = locate(&cloud, &Means::Pulses, &LocateParams::default(), &Control::none());
         assert!(matches!(refused, Err(Error::MissingAttribute { .. })));
     }
 }
@@ -114,7 +114,7 @@ fn what_angles_do_not_tell_is_told_by_pulses_with_several_returns() {
         returns: SensorEstimateParams { least_pair_count: 100_000, ..SensorEstimateParams::default() },
         ..LocateParams::default()
     };
-    let locate = |cloud: &PointCloud| locate(cloud, &Means::Automatic, &params).unwrap();
+    let locate = |cloud: &PointCloud| locate(cloud, &Means::Automatic, &params, &Control::none()).unwrap();
     // a scanner that looks 4° ahead: every point lies 30 m farther along the flight for 450 m that it is below
     let mut late = cloud.clone();
     let (flight, times) = (trajectory(&scan, 0.0), cloud.attributes.gps_time.as_ref().unwrap());
@@ -158,7 +158,8 @@ fn the_height_of_a_trajectory_is_checked_by_pulses() {
     let (truth, _) = trajectory(&scan, 0.0).scanner_positions(&cloud).unwrap();
     for (raised, applied) in [(43.0, true), (0.0, false)] {
         let means = trajectory(&scan, raised);
-        let (positions, report) = locate(&cloud, &Means::Trajectory(&means), &LocateParams::default()).unwrap();
+        let (positions, report) =
+            locate(&cloud, &Means::Trajectory(&means), &LocateParams::default(), &Control::none()).unwrap();
         let offset = report.height_offset.unwrap();
         assert!((offset.offset + raised).abs() < 2.0, "{offset:?}");
         assert_eq!(offset.is_applied, applied);
@@ -168,7 +169,7 @@ fn the_height_of_a_trajectory_is_checked_by_pulses() {
     // without pulses of several returns nothing can be said, and that is said
     let singles = singles(&cloud);
     let means = trajectory(&scan, 43.0);
-    let (_, report) = locate(&singles, &Means::Trajectory(&means), &LocateParams::default()).unwrap();
+    let (_, report) = locate(&singles, &Means::Trajectory(&means), &LocateParams::default(), &Control::none()).unwrap();
     assert!(report.height_offset.is_none());
     assert!(report.remarks.iter().any(|remark| remark.contains("heights")), "{:?}", report.remarks);
 }
@@ -223,7 +224,7 @@ fn parts_without_pulses_of_several_returns_follow_from_their_neighbours() {
         returns: SensorEstimateParams { part_s: 0.5, ..SensorEstimateParams::default() },
         ..LocateParams::default()
     };
-    let (positions, report) = locate(&cloud, &Means::Automatic, &params).unwrap();
+    let (positions, report) = locate(&cloud, &Means::Automatic, &params, &Control::none()).unwrap();
     assert!(report.parts.iter().any(|part| part.verdict == Verdict::Bridged), "{:?}", report.parts);
     assert_eq!(report.found.get(&FoundBy::Returns), Some(&cloud.len()));
     let [_, degrees] = apart(&cloud, &positions, &truth);
@@ -269,10 +270,11 @@ fn order_of_points_changes_nothing() {
 fn means_that_are_not_there_are_refused_with_advice() {
     let (bare, _) = PointCloud::from_coordinates(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 5.0]]);
     for means in [Means::Pulses, Means::Poses] {
-        let error = locate(&bare, &means, &LocateParams::default()).unwrap_err().to_string();
+        let error = locate(&bare, &means, &LocateParams::default(), &Control::none()).unwrap_err().to_string();
         assert!(error.contains("trajectory") || error.contains("GPS time"), "{error}");
     }
-    let (positions, report) = locate(&bare, &Means::Position([0.0, 0.0, 9.0]), &LocateParams::default()).unwrap();
+    let (positions, report) =
+        locate(&bare, &Means::Position([0.0, 0.0, 9.0]), &LocateParams::default(), &Control::none()).unwrap();
     assert_eq!((positions, report.known_count()), (vec![[0.0, 0.0, 9.0]; 3], 3));
     assert!(found(&PointCloud::default()).0.is_empty());
 }

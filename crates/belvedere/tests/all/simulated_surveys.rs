@@ -7,6 +7,7 @@
 )]
 
 use crate::common::simulated::cloud_of;
+use belvedere::control::Control;
 use std::path::Path;
 
 use belvedere::control::Control;
@@ -218,7 +219,7 @@ fn info_tells_density_multi_returns_and_facade_density_as_the_simulation_knows_t
         let params = AirborneParams { pattern, ..AirborneParams::covering(&scene, 10.0) };
         let scan = scan_airborne(&scene, &params.spread_over(&scene, None, density));
         let cloud = cloud_of(&scan);
-        let facts = CloudSummary::of(&cloud);
+        let facts = CloudSummary::of(&cloud, &Control::none()).unwrap();
         // Cells on the rim count as a whole; they are a metre wide.
         assert!((facts.occupied_area / 4e4 - 1.0).abs() < 0.03, "{}", facts.occupied_area);
         assert!((facts.density * facts.occupied_area / scan.len() as f64 - 1.0).abs() < 1e-9);
@@ -228,7 +229,7 @@ fn info_tells_density_multi_returns_and_facade_density_as_the_simulation_knows_t
         assert!((pulses.count - firsts().count() as f64).abs() < 1e-6);
         assert!((pulses.multi_return_count - several).abs() < 1e-6);
 
-        let facades = FacadeSummary::of(&cloud).unwrap();
+        let facades = FacadeSummary::of(&cloud, &Control::none()).unwrap().unwrap();
         let is_wall =
             |t: u32| scene.materials[t as usize] == Material::Facade && normal(&scene, t as usize)[2].abs() < 0.3;
         let on_walls = scan.triangle.iter().filter(|&&t| is_wall(t)).count() as f64;

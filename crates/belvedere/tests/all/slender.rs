@@ -42,10 +42,10 @@ fn survey(bottom: f64, top: f64, width: f64) -> (PointCloud, Vec<[f32; 3]>) {
 }
 
 fn carved(cloud: &PointCloud, scanner: &[[f32; 3]], slender: Option<SlenderParams>) -> (CarvedBalls, Needles) {
-    let index = NeighborIndex::new(&cloud.positions).unwrap();
-    let normals = estimate(&cloud.positions, &index, Neighborhood::default()).unwrap();
-    let (oriented, _) = orient(cloud, normals, &Orientation::Pulses(scanner)).unwrap();
-    let (needles, _) = Needles::of_cloud(cloud, scanner, &NeedleParams::default()).unwrap();
+    let index = NeighborIndex::new(&cloud.positions, &Control::none()).unwrap();
+    let normals = estimate(&cloud.positions, &index, Neighborhood::default(), &Control::none()).unwrap();
+    let (oriented, _) = orient(cloud, normals, &Orientation::Pulses(scanner), &Control::none()).unwrap();
+    let (needles, _) = Needles::of_cloud(cloud, scanner, &NeedleParams::default(), &Control::none()).unwrap();
     let attributes = &cloud.attributes;
     let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses: None };
     let params = CarvedParams { slender, ..CarvedParams::default() };
@@ -127,7 +127,7 @@ fn the_order_of_points_does_not_matter() {
 fn the_clearance_is_the_distance_to_the_nearest_of_all_needles() {
     let (cloud, scanner) = survey(0.0, 1.5, 0.06);
     let params = NeedleParams::default();
-    let (needles, _) = Needles::of_cloud(&cloud, &scanner, &params).unwrap();
+    let (needles, _) = Needles::of_cloud(&cloud, &scanner, &params, &Control::none()).unwrap();
     let top = cloud.positions.iter().map(|p| p[2]).fold(f32::NEG_INFINITY, f32::max) + params.headroom;
     for i in 0..300 {
         let at = |k: u64, low: f64, high: f64| low + (high - low) * uniform(7, 3 * i + k);

@@ -19,7 +19,7 @@ fn balls_of(
     side: Side,
     params: &ShrinkParams,
 ) -> (MedialBalls, ShrinkReport) {
-    let index = NeighborIndex::new(points).unwrap();
+    let index = NeighborIndex::new(points, &Control::none()).unwrap();
     shrink(
         &OrientedCloud::with_known_normals(points.to_vec(), normals.to_vec()).unwrap(),
         &index,
@@ -177,7 +177,7 @@ fn duplicates_neither_stop_nor_enlarge_balls() {
 #[test]
 fn parameters_out_of_range_are_refused() {
     let (points, normals) = house(1);
-    let index = NeighborIndex::new(&points).unwrap();
+    let index = NeighborIndex::new(&points, &Control::none()).unwrap();
     let cloud = OrientedCloud::with_known_normals(points, normals).unwrap();
     let angles = |first: f64| ShrinkParams {
         method: ShrinkMethod::Angles { first_separation_angle: first, next_separation_angle: 0.3 },

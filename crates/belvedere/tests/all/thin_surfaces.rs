@@ -1,6 +1,7 @@
 //! Thin surfaces told from solid ones by pulses below them, on a canopy on posts and a block of the same size.
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
+use belvedere::control::Control;
 use belvedere::medial::{Kind, ThinSurfaceParams, on_thin_surfaces};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::pulses::{NeedleParams, Needles};
@@ -62,9 +63,11 @@ fn found(survey: &Survey) -> [f64; 2] {
 }
 
 fn thin(survey: &Survey) -> Vec<bool> {
-    let index = NeighborIndex::new(&survey.points).unwrap();
-    let (needles, _) = Needles::new(&survey.points, &survey.scanner, &NeedleParams::default()).unwrap();
-    on_thin_surfaces(&survey.points, &survey.kinds, &index, &needles, &ThinSurfaceParams::default())
+    let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
+    let (needles, _) =
+        Needles::new(&survey.points, &survey.scanner, &NeedleParams::default(), &Control::none()).unwrap();
+    on_thin_surfaces(&survey.points, &survey.kinds, &index, &needles, &ThinSurfaceParams::default(), &Control::none())
+        .unwrap()
 }
 
 /// Ten pulses a square metre.
@@ -118,12 +121,12 @@ fn neither_order_of_points_nor_number_of_threads_matters() {
 
 #[test]
 fn no_points_and_no_needles_are_no_thin_surfaces() {
-    let nothing = NeighborIndex::new(&[]).unwrap();
-    let (needles, _) = Needles::new(&[], &[], &NeedleParams::default()).unwrap();
+    let nothing = NeighborIndex::new(&[], &Control::none()).unwrap();
+    let (needles, _) = Needles::new(&[], &[], &NeedleParams::default(), &Control::none()).unwrap();
     let params = ThinSurfaceParams::default();
-    assert!(on_thin_surfaces(&[], &[], &nothing, &needles, &params).is_empty());
+    assert!(on_thin_surfaces(&[], &[], &nothing, &needles, &params, &Control::none()).unwrap().is_empty());
     let survey = survey(Built::Canopy, PULSES);
-    let index = NeighborIndex::new(&survey.points).unwrap();
-    let thin = on_thin_surfaces(&survey.points, &survey.kinds, &index, &needles, &params);
+    let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
+    let thin = on_thin_surfaces(&survey.points, &survey.kinds, &index, &needles, &params, &Control::none()).unwrap();
     assert!(thin.len() == survey.points.len() && !thin.contains(&true));
 }

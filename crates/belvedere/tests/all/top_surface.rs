@@ -1,6 +1,7 @@
 //! The surface at the middle of cells, on roofs whose heights are formulas.
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
+use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid, SurfaceParams, highest_points, top_surface};
 use belvedere::random::uniform;
 use belvedere::raster::Raster;
@@ -57,7 +58,7 @@ fn on_roofs_and_streets_the_surface_is_that_at_the_middle() {
     let points = returns(gable);
     for cell in [0.25, 0.5, 1.0, 3.0] {
         let ground = ground(cell);
-        let found = top_surface(&points, &ground, &SurfaceParams::default()).unwrap();
+        let found = top_surface(&points, &ground, &SurfaceParams::default(), &Control::none()).unwrap();
         let errors = errors(&found, &ground, 0.75);
         let absolute: Vec<f64> = errors.iter().map(|v| v.abs()).collect();
         // twelve points with noise of 2 cm; at the ridge their plane cuts the corner by a few cm
@@ -73,7 +74,7 @@ fn on_roofs_and_streets_the_surface_is_that_at_the_middle() {
 fn at_eaves_cells_are_of_the_roof_or_of_the_ground_never_between() {
     let points = returns(|[x, _]| if x < 0.0 { 6.0 } else { 0.0 });
     let ground = ground(0.5);
-    let found = top_surface(&points, &ground, &SurfaceParams::default()).unwrap();
+    let found = top_surface(&points, &ground, &SurfaceParams::default(), &Control::none()).unwrap();
     for (cell, &height) in found.values().iter().enumerate() {
         let [x, _] = ground.grid.center(cell % ground.grid.width, cell / ground.grid.width);
         assert!(height.abs() < 0.1 || (height - 6.0).abs() < 0.1, "{height} at {x}");
@@ -86,7 +87,7 @@ fn at_eaves_cells_are_of_the_roof_or_of_the_ground_never_between() {
 fn a_crown_keeps_its_highest_points() {
     let points = returns(|[x, y]| 8.0 + 3.0 * uniform(9, (1e6 * (x + 20.0) + y) as u64));
     let ground = ground(1.0);
-    let found = top_surface(&points, &ground, &SurfaceParams::default()).unwrap();
+    let found = top_surface(&points, &ground, &SurfaceParams::default(), &Control::none()).unwrap();
     let highest = highest_points(&points, &ground);
     let same = found.values().iter().zip(highest.values()).filter(|(a, b)| a == b).count();
     // points of a few cells lie on a plane by chance
@@ -99,14 +100,17 @@ fn a_crown_keeps_its_highest_points() {
 #[test]
 fn far_from_points_and_without_them_the_ground_is_kept_and_nonsense_refused() {
     let ground = ground(0.5);
-    let lone = top_surface(&[[0.0, 0.0, 7.0]], &ground, &SurfaceParams::default()).unwrap();
+    let lone = top_surface(&[[0.0, 0.0, 7.0]], &ground, &SurfaceParams::default(), &Control::none()).unwrap();
     let at = |[x, y]: [f64; 2]| {
         let [column, row] = ground.grid.cell_of([x, y]).unwrap();
         lone.get(column, row).unwrap()
     };
     assert_eq!((at([0.1, 0.1]), at([10.0, 10.0])), (7.0, 0.0));
-    assert_eq!(top_surface(&[], &ground, &SurfaceParams::default()).unwrap().values(), ground.heights.values());
-    assert!(top_surface(&[[0.0, f32::NAN, 1.0]], &ground, &SurfaceParams::default()).is_err());
+    assert_eq!(
+        top_surface(&[], &ground, &SurfaceParams::default(), &Control::none()).unwrap().values(),
+        ground.heights.values()
+    );
+    assert!(top_surface(&[[0.0, f32::NAN, 1.0]], &ground, &SurfaceParams::default(), &Control::none()).is_err());
     let usual = SurfaceParams::default();
     for params in [
         SurfaceParams { neighbors: 2, ..usual },
@@ -116,7 +120,7 @@ fn far_from_points_and_without_them_the_ground_is_kept_and_nonsense_refused() {
         SurfaceParams { roughness: -0.1, ..usual },
         SurfaceParams { roughness: f64::INFINITY, ..usual },
     ] {
-        assert!(top_surface(&[[0.0; 3]], &ground, &params).is_err(), "{params:?}");
+        assert!(top_surface(&[[0.0; 3]], &ground, &params, &Control::none()).is_err(), "{params:?}");
     }
 }
 
@@ -126,7 +130,8 @@ fn the_number_of_threads_does_not_matter() {
     let ground = ground(0.5);
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let found = pool.install(|| top_surface(&points, &ground, &SurfaceParams::default()).unwrap());
+        let found =
+            pool.install(|| top_surface(&points, &ground, &SurfaceParams::default(), &Control::none()).unwrap());
         found.values().iter().map(|v| v.to_bits()).collect::<Vec<u32>>()
     };
     assert!(on(1) == on(4));

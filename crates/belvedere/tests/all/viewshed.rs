@@ -26,7 +26,7 @@ fn plain(size: f64, cell: f64) -> Ground {
     let grid = MapGrid::covering([0.0; 2], [size - cell / 2.0; 2], cell, [0.0; 2]).unwrap();
     let far = size as f32 + 10.0;
     let corners = [[-10.0, -10.0, 0.0], [far, -10.0, 0.0], [-10.0, far, 0.0], [far, far, 0.0]];
-    Ground::of_points(&corners, grid, 1e6).unwrap()
+    Ground::of_points(&corners, grid, 1e6, &Control::none()).unwrap()
 }
 
 fn random_balls(count: u64, size: f64) -> Vec<([f32; 3], f32)> {

@@ -22,13 +22,13 @@ pub(super) fn judge_all(
     let (cloud, _) =
         stages.run("reading", 0, |control| read_cloud(&[path.to_owned()], &ReadOptions::default(), control))?;
     let named = || path.display().to_string();
-    let (pulses, _) = group(&cloud).with_context(named)?;
-    let (scanner, report) = stages.run("finding the scanner", 0, |_| match &arguments.trajectory {
+    let (pulses, _) = group(&cloud, &stages.control()).with_context(named)?;
+    let (scanner, report) = stages.run("finding the scanner", 0, |control| match &arguments.trajectory {
         Some(file) => {
             let (trajectory, _) = read_trajectory(file, &cloud.frame.crs)?;
             SensorPositions::from_trajectory(&cloud, &pulses, &trajectory)
         }
-        None => SensorPositions::from_returns(&cloud, &pulses, &SensorEstimateParams::default()),
+        None => SensorPositions::from_returns(&cloud, &pulses, &SensorEstimateParams::default(), control),
     })?;
     let held_params = HeldOutParams { seed: global.seed, ..HeldOutParams::default() };
     let held_out = split(&cloud, &pulses, &scanner, &held_params).with_context(named)?;

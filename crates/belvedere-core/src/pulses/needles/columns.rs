@@ -2,6 +2,7 @@
 
 use super::{Item, Needle, Needles};
 use belvedere_data::Result;
+use belvedere_data::control::Control;
 use belvedere_data::needles::NeedleColumns;
 
 /// Steps of a slope, metres of shift per metre of height: a needle 60 m long is off by 3 mm at its far end.
@@ -36,8 +37,8 @@ impl Needles {
     /// The needles of `columns`, indexed. What begins above the top, or has no length, is left out.
     ///
     /// # Errors
-    /// Those of [`NeedleColumns::validate`].
-    pub fn from_columns(columns: &NeedleColumns) -> Result<Self> {
+    /// Those of [`NeedleColumns::validate`], and [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub fn from_columns(columns: &NeedleColumns, control: &Control<'_>) -> Result<Self> {
         columns.validate()?;
         let low = columns.starts.iter().map(|start| start[2]).fold(columns.top, f32::min);
         let planes = [low, columns.top];
@@ -51,6 +52,8 @@ impl Needles {
             let length = columns.lengths.get(row).map_or(to_top, |&length| f64::from(length).min(to_top));
             (length > 0.0).then(|| Item::new(start, up, length, planes))
         });
-        Ok(Self::index(items.collect(), planes))
+        let items = items.collect();
+        control.check()?;
+        Self::index(items, planes, control)
     }
 }
