@@ -162,7 +162,7 @@ impl Found {
     fn balanced(&self) -> Table {
         let headings = COLUMNS.map(|(_, _, heading)| heading);
         let mut table = Table::new(
-            "Balanced accuracy and IoU of the blocked, %",
+            "Balanced accuracy and IoU of blocked targets, %",
             "Mean over suns (sun), over two observers (eye) or over people in streets (street), then over places. The second number is the IoU.",
             [&["method"], headings.as_slice()].concat(),
         );
@@ -233,12 +233,12 @@ impl Found {
     /// What each answer of carved balls is worth.
     fn worth_of_answers(&self) -> Table {
         let mut table = Table::new(
-            "What each answer of carved balls is worth, %",
+            "Reliability of each answer of carved balls, %",
             "Visible: nothing blocks the line of sight, and pulses came near to all of it but half a metre. Unproven: nothing \
              blocks it, but more than that was never seen. In each pair the share of the targets that get the answer, and how \
              many of these are right (for unproven: visible in truth). All places together. Pulses that passed are evidence \
              and no proof: they get into crowns that the truth calls opaque, and half a metre may hide a trunk.",
-            vec!["targets, view", "visible", "right", "unproven", "right", "blocked", "right"],
+            vec!["targets, view", "visible", "correct", "unproven", "correct", "blocked", "correct"],
         );
         let mut sums: Vec<AnswerRow> = Vec::new();
         for row in self.places.iter().flat_map(|place| &place.answers) {
@@ -300,7 +300,7 @@ impl Found {
     }
 
     fn place_table(&self) -> Table {
-        let headings = vec!["place", "points", "points/m²", "triangles of the truth"];
+        let headings = vec!["place", "points", "points/m²", "triangles of the ground truth"];
         let mut table = Table::new("Places", "", headings);
         for place in &self.places {
             let density = place.points as f64 / place.area_m2.max(1e-9);
@@ -311,8 +311,8 @@ impl Found {
 
     fn base_rates(&self) -> Table {
         let mut table = Table::new(
-            "What is blocked in truth, %",
-            "A method that calls everything blocked is right this often.",
+            "Targets that are blocked by ground truth, %",
+            "The share of correct answers of a method that calls everything blocked.",
             [vec!["place"], COLUMNS.map(|(_, _, heading)| heading).to_vec()].concat(),
         );
         for place in &self.places {
@@ -327,7 +327,7 @@ impl Found {
 
     fn audit(&self) -> Table {
         let mut table = Table::new(
-            "Which balls of the published method are wrong, and why",
+            "Wrong balls of the published method, and causes",
             "A ball is wrong if its centre lies in free air. Flipped: its normal points into the solid. Tilted: the normal is off \
              by 30° to 90°. Bulging: the normal is good, but the ball grew out through surface that no point marks. Shares of \
              the balls of that surface; all places together.",
@@ -359,8 +359,8 @@ impl Found {
 
     fn ablation(&self) -> Table {
         let mut table = Table::new(
-            "The published balls with some of them left out: pedestrians under the suns, %",
-            "As spheres, cut exactly; means over places.",
+            "The published balls with some of them removed: pedestrians under the suns, %",
+            "As spheres, with exact lines of sight; means over places.",
             vec!["balls", "number", "false-blocked", "false-visible"],
         );
         let Some(first) = self.places.first() else { return table };
@@ -393,8 +393,8 @@ impl Found {
             let mut table = Table::new(
                 &format!("Held-out pulses of {cloud}, %"),
                 &format!(
-                    "Built from nine tenths of the pulses, asked for the rest ({pulses}; the scanner is known for {known} % of \
-                     all). False-blocked: paths from 30 m before to 0.3 m before the first return, by its class. False-visible: \
+                    "Built from nine tenths of the pulses, tested with the others ({pulses}; the scanner is known for {known} % of \
+                     all). False-blocked: paths from 30 m to 0.3 m in front of the first return, by its class. False-visible: \
                      points behind the last return of a pulse that are called visible from the scanner."
                 ),
                 [vec!["method"], names.unwrap_or_default()].concat(),
