@@ -171,7 +171,7 @@ pub fn scene_exposure(
     push("sun_share", "share of possible sun", 4, sun.share, WholeIs::Mean);
     push("first_light", "first sun, hour of the day", 3, sun.first, WholeIs::Least);
     push("last_light", "last sun, hour of the day", 3, sun.last, WholeIs::Most);
-    push("longest", "longest sun on end, hours", 3, sun.longest, WholeIs::Mean);
+    push("longest", "longest uninterrupted sun, hours", 3, sun.longest, WholeIs::Mean);
     Ok(Exposure { measures, shaded_shares: shaded.map(|shaded| shaded.shares(targets)).unwrap_or_default() })
 }
 

@@ -75,7 +75,7 @@ pub fn azimuth_count(step: f64) -> Result<usize> {
         return Err(Error::InvalidParameter {
             name: "step of azimuths",
             value: format!("{}", step.to_degrees()),
-            expected: "a part of 360 degrees, such as 1, 2.5 or 7.5",
+            expected: "a divisor of 360 degrees, such as 1, 2.5 or 7.5",
         });
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to a million")]

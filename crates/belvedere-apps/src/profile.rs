@@ -45,7 +45,7 @@ pub fn sight_profile(
     let span = (target[0] - observer[0]).hypot(target[1] - observer[1]);
     if !(span.is_finite() && span > 0.0 && observer[2].is_finite() && target[2].is_finite()) {
         let value = format!("{observer:?} to {target:?}");
-        let expected = "finite, and apart from each other on the map";
+        let expected = "finite, and at different positions on the map";
         return Err(Error::InvalidParameter { name: "line of a profile", value, expected });
     }
     let step = step.unwrap_or((span / 1000.0).max(0.1));

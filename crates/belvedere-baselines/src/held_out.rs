@@ -197,7 +197,7 @@ pub fn split(
     }
     if held_out.pulse_count == 0 {
         return Err(Error::MissingAttribute {
-            attribute: "known scanner position of any held-out pulse",
+            attribute: "scanner position of a held-out pulse",
             needed_for: "the test by held-out pulses",
             advice: "give a trajectory",
         });

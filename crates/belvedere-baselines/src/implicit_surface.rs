@@ -108,8 +108,8 @@ impl ImplicitSurface {
     pub fn new(survey: &Survey<'_>, params: &ImplicitSurfaceParams) -> Result<Self> {
         check_neighbor("neighbour that gives the support", params.support_neighbor)?;
         check_positive("support as a multiple of the spacing", params.support_scale)?;
-        check_least("greatest support in medians", params.max_support_in_medians, 1.0, "finite and at least 1")?;
-        check_least("rim as a share of the support", params.rim, 0.1, "0.1 to 1")?;
+        check_least("maximum support in medians", params.max_support_in_medians, 1.0, "finite and at least 1")?;
+        check_least("edge as a share of the support", params.rim, 0.1, "0.1 to 1")?;
         check_least("1 / step along a ray", 1.0 / params.step, 1.0, "1 to 100")?;
         check_least("step along a ray", params.step, 0.01, "0.01 to 1")?;
         check_clearance(params.clearance)?;

@@ -164,7 +164,7 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
             Dsm::from_mesh(mesh, origin, &DsmParams::default())
         }));
     }
-    methods.push(medial("tau", "balls cut to half a metre", MedialParams::cut_to_half_a_metre()));
+    methods.push(medial("tau", "balls limited to half a metre", MedialParams::cut_to_half_a_metre()));
     methods.push(medial("carved", "Belvedere: carved balls", MedialParams::carved()));
     let winter = medial("carved-porous", "the same, --trees porous --shell 0", carved_for_winter());
     methods.push(winter.on_held_out_pulses());

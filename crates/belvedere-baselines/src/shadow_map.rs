@@ -53,7 +53,7 @@ impl ShadowMap {
         check_positive("pixel size", params.pixel_size)?;
         check_clearance(params.depth_bias)?;
         check_least("slope bias", params.slope_bias, 0.0, "finite and not negative")?;
-        check_least("most slope bias", params.max_slope_bias, 0.0, "finite and not negative, metres")?;
+        check_least("maximum slope bias", params.max_slope_bias, 0.0, "finite and not negative, metres")?;
         if !(1..=16_384).contains(&params.face_px) {
             return Err(Error::InvalidParameter {
                 name: "pixels along a face",
@@ -154,7 +154,7 @@ impl Visibility for ShadowMap {
             Viewer::Eye(eye) => Ok(self.seen_by_eye(eye)),
             Viewer::Each(_) => Err(Error::UnsupportedViewer {
                 method: "shadow mapping",
-                what: "from one direction or one eye; a map for every target would cost more than its ray",
+                what: "from one direction or one eye; a map for every target would cost more than a ray",
             }),
         }
     }

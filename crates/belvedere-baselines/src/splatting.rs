@@ -109,8 +109,8 @@ impl Splats {
     pub fn new(cloud: &PointCloud, params: &SplatParams) -> Result<Self> {
         check_neighbor("neighbour that gives the radius", params.radius_neighbor)?;
         check_positive("radius of a splat as a multiple of its spacing", params.radius_scale)?;
-        check_least("greatest radius in medians", params.max_radius_in_medians, 1.0, "finite and at least 1")?;
-        check_least("greatest aspect of a splat", params.max_aspect, 1.0, "finite and at least 1")?;
+        check_least("maximum radius in medians", params.max_radius_in_medians, 1.0, "finite and at least 1")?;
+        check_least("maximum aspect ratio of a splat", params.max_aspect, 1.0, "finite and at least 1")?;
         check_clearance(params.clearance)?;
         let splats = splats::make(&cloud.positions, params)?;
         let boxes: Vec<_> = splats.iter().map(Splat::bounding_box).collect();

@@ -30,7 +30,7 @@ pub(crate) fn listen() {
         std::process::exit(i32::from(STATUS));
     });
     if let Err(error) = listening {
-        note(&format!("Ctrl-C may leave unfinished files behind: {error}"));
+        note(&format!("Ctrl-C may leave unfinished files: {error}"));
     }
 }
 

@@ -49,7 +49,7 @@ pub(crate) fn check_every_row(report: &ReadReport) -> Result<()> {
         return Ok(());
     };
     bail!(
-        "{}: {} rows cannot be used ({}), so that results would not match the rows of the file; repair or remove them",
+        "{}: {} rows cannot be used ({}), so results would not match the rows of the file; repair or remove these rows",
         file.path.display(),
         report.left_out_count(),
         left_out.reason
@@ -112,7 +112,7 @@ pub(crate) fn scene(
         let parts = stages.run("reading balls", 0, |_| read_balls(path))?;
         if parts.provenance.get("side").is_some_and(|side| side == "exterior") {
             bail!(
-                "{}: these balls lie in free space (--side exterior) and block nothing; give the interior ones",
+                "{}: these are exterior balls (--side exterior), which block nothing; use interior balls",
                 path.display()
             );
         }
@@ -158,7 +158,7 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, path: &Path) -> Result<()> {
     match given.into_iter().find(|(_, given)| *given) {
         Some((flag, _)) => {
             let path = path.display();
-            Err(Usage(format!("{flag} says how to make balls from a cloud, but {path} holds balls already")).into())
+            Err(Usage(format!("{flag} is for building balls from a cloud, but {path} is a ball file")).into())
         }
         None => Ok(()),
     }
@@ -206,10 +206,10 @@ impl ViewChoice {
             } else {
                 section.add("pixel_m_at_100_m", rounded(view.pixel_width(100.0), 4));
             }
-            section.add("looks_along", view.frame.forward.map(|v| rounded(v, 4)).to_vec());
+            section.add("view_direction", view.frame.forward.map(|v| rounded(v, 4)).to_vec());
         } else {
             let width = self.panorama_width()?.next_multiple_of(2);
-            section.add("width_px", width).add("height_px", width / 2).add("looks_along", "all around");
+            section.add("width_px", width).add("height_px", width / 2).add("view_direction", "all around");
         }
         summary.add("view", section);
         Ok(views)
@@ -222,7 +222,7 @@ impl ViewChoice {
             Some(SizeChoice::Width(width)) => Ok(width),
             Some(SizeChoice::WidthAndHeight([width, height])) if height * 2 == width => Ok(width),
             Some(SizeChoice::WidthAndHeight(_)) => {
-                Err(Usage("--size: a panorama is twice as wide as high; give its width alone".to_owned()).into())
+                Err(Usage("--size: a panorama is twice as wide as high; give only its width".to_owned()).into())
             }
         }
     }
@@ -270,9 +270,10 @@ impl ViewChoice {
         } else if let Some(eye) = &self.kind.eye {
             self.camera(eye.0, scene)?
         } else {
-            return Err(
-                Usage("say what to look at: --viewport, --sun, --direction, --eye or --panorama".to_owned()).into()
-            );
+            return Err(Usage(
+                "a view is missing: give --viewport, --sun, --direction, --eye or --panorama".to_owned(),
+            )
+            .into());
         };
         Ok(view)
     }

@@ -44,7 +44,7 @@ impl Summary {
         let mut section = Self::default();
         let total: f64 = seconds.iter().map(|(_, s)| s).sum();
         for (name, s) in seconds {
-            section.add(name, rounded(s, 3));
+            section.add(&name.replace(' ', "_"), rounded(s, 3));
         }
         section.add("total", rounded(total, 3));
         self.add("seconds", section)
@@ -56,7 +56,7 @@ impl Summary {
             self.add("attributes_not_written", report.left_out.clone());
         }
         if report.clamped_count > 0 {
-            self.add("values_cut_to_the_range_of_their_field", report.clamped_count);
+            self.add("values_clamped", report.clamped_count);
         }
         self
     }

@@ -153,7 +153,7 @@ mod tests {
             watcher.cancelled.store(true, Ordering::Relaxed);
             control.check()
         };
-        assert!(matches!(control.stage("counting", 5, work), Err(Error::Cancelled)));
+        assert!(matches!(control.stage("counting points", 5, work), Err(Error::Cancelled)));
         assert!(matches!(control.stage("never run", 7, || Ok(())), Err(Error::Cancelled)));
         let counts = [&watcher.begun, &watcher.done, &watcher.ended].map(|count| count.load(Ordering::Relaxed));
         assert_eq!(counts, [5, 3, 1]);

@@ -99,7 +99,7 @@ pub enum Error {
         what: &'static str,
     },
     /// A method knows no viewer of this kind.
-    #[error("{method} cannot look from there: {what}")]
+    #[error("{method} does not support this viewer: {what}")]
     UnsupportedViewer {
         /// The method.
         method: &'static str,

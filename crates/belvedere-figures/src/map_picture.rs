@@ -114,7 +114,7 @@ fn draw_mark(picture: &mut Picture, [x, y]: [f64; 2], radius: f64) {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "`as` saturates, pixels are cut at the rim"
+            reason = "`as` saturates, pixels are clamped at the edge"
         )]
         let pixels = |v: f64| (v - radius).max(0.0) as usize..(v + radius + 1.0).max(0.0) as usize;
         for row in pixels(y) {

@@ -53,8 +53,7 @@ pub(super) fn assemble(mut parts: Vec<Part>, options: &ReadOptions) -> Result<(P
     report.crs = cloud.frame.crs.describe();
     if cloud.frame.crs.kind == CrsKind::Unknown && bounds.looks_like_degrees() {
         report.notes.push(
-            "no reference system is known and the coordinates look like degrees, but are taken as metres; convert \
-             them to a projected system if they are degrees"
+            "the reference system is unknown; the coordinates are taken as metres, but look like degrees; if they are degrees, convert them to a projected system"
                 .to_owned(),
         );
     }
@@ -114,7 +113,7 @@ fn adopt_common_crs(parts: &mut [Part], fixed: Option<&Frame>, report: &mut Read
     let Some(known) = of_frame.or_else(of_files).cloned() else { return };
     for part in parts.iter_mut().filter(|part| part.crs == Crs::default() && part.coordinates.len() > 0) {
         report.notes.push(format!(
-            "{} names no reference system and is taken to be in {}",
+            "{} names no reference system; {} is used",
             part.report.path.display(),
             known.describe()
         ));

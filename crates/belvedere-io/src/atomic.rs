@@ -149,6 +149,6 @@ fn create_beside(target: &Path) -> Result<(File, Temporary)> {
             Err(e) => return Err(Error::io(target)(e)),
         }
     }
-    let reason = "too many unfinished outputs (.part files) beside it; remove them";
+    let reason = "too many unfinished outputs (.part files) in this folder; remove them";
     Err(Error::io(target)(std::io::Error::new(ErrorKind::AlreadyExists, reason)))
 }

@@ -124,7 +124,7 @@ impl<'a> CityFile<'a> {
         }
         let index = geometry.get("template").and_then(Value::as_u64).and_then(|i| usize::try_from(i).ok());
         let template = self.templates.and_then(|(templates, _)| templates.get(index?));
-        template.map(Some).ok_or_else(|| self.bad(name, "refers to a geometry template that is not there"))
+        template.map(Some).ok_or_else(|| self.bad(name, "refers to a missing geometry template"))
     }
 
     fn push_geometry(&mut self, name: &str, geometry: &'a Value, object: u32) -> Result<()> {
@@ -190,12 +190,13 @@ impl<'a> CityFile<'a> {
         for _ in 1..depth {
             let mut next = Vec::new();
             for value in level {
-                next.extend(value.as_array().ok_or_else(|| self.bad(name, "has boundaries nested too little"))?);
+                next.extend(value.as_array().ok_or_else(|| self.bad(name, "has boundaries with too few levels"))?);
             }
             level = next;
         }
         for surface in level {
-            let rings = surface.as_array().ok_or_else(|| self.bad(name, "has a surface that is no list of rings"))?;
+            let rings =
+                surface.as_array().ok_or_else(|| self.bad(name, "has a surface that is not a list of rings"))?;
             let rings = rings.iter().map(|ring| self.ring(name, ring, vertex)).collect::<Result<Vec<_>>>()?;
             if !rings.is_empty() {
                 surfaces.push(rings);
@@ -205,13 +206,13 @@ impl<'a> CityFile<'a> {
     }
 
     fn ring(&self, name: &str, ring: &Value, vertex: &mut impl FnMut(usize) -> Option<usize>) -> Result<Vec<u32>> {
-        let ring = ring.as_array().ok_or_else(|| self.bad(name, "has a ring that is no list of vertices"))?;
+        let ring = ring.as_array().ok_or_else(|| self.bad(name, "has a ring that is not a list of vertices"))?;
         ring.iter()
             .map(|index| {
                 let place = index.as_u64().and_then(|i| usize::try_from(i).ok()).and_then(&mut *vertex);
                 place
                     .and_then(|i| u32::try_from(i).ok())
-                    .ok_or_else(|| self.bad(name, &format!("refers to vertex {index}, which is not there")))
+                    .ok_or_else(|| self.bad(name, &format!("refers to the missing vertex {index}")))
             })
             .collect()
     }
@@ -249,7 +250,7 @@ fn epsg_code(reference_system: &str) -> Option<u32> {
 
 fn array<'v>(path: &Path, value: Option<&'v Value>, name: &str) -> Result<&'v [Value]> {
     let list = value.and_then(Value::as_array).map(Vec::as_slice);
-    list.ok_or_else(|| Error::malformed(path, format!("{name} is missing or no list")))
+    list.ok_or_else(|| Error::malformed(path, format!("{name} is missing or not a list")))
 }
 
 fn triple(path: &Path, value: Option<&Value>, name: &str) -> Result<[f64; 3]> {

@@ -26,7 +26,7 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
     if let Some(text) = reader.coordinate_metadata().map(str::trim).filter(|text| !text.is_empty()) {
         match Crs::parse(text) {
             Ok(crs) => part.set_crs(crs, "coordinate metadata"),
-            Err(_) => part.note("its coordinate metadata are not understood as a reference system"),
+            Err(_) => part.note("its coordinate metadata do not define a known reference system"),
         }
     }
     let plans: Vec<Plan> = scans.iter().map(Plan::new).collect();

@@ -57,7 +57,7 @@ pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<
         }
         Some("Feature") => of_feature(&file, path, &mut raw)?,
         Some(_) => of_geometry(&file, &no_properties, path, 0, &mut raw)?,
-        None => return Err(Error::malformed(path, "is no GeoJSON: it has no member `type`")),
+        None => return Err(Error::malformed(path, "is not GeoJSON: it has no member `type`")),
     }
     let placing = Placing::new(&file, &raw, path, crs)?;
     for feature in &mut raw {
@@ -156,12 +156,14 @@ impl Placing {
             let code = name.rsplit(':').next().unwrap_or(name);
             let given = Crs::parse(&format!("EPSG:{code}")).map_err(|_| Error::UnusableCrs {
                 path: path.to_owned(),
-                what: format!("its system \"{name}\" is not known; write it in WGS 84, as RFC 7946 wants"),
+                what: format!(
+                    "its reference system \"{name}\" is unknown; write the file in WGS 84, as RFC 7946 requires"
+                ),
             })?;
             if given.kind != CrsKind::Geographic {
                 if crs.kind != CrsKind::Unknown && !given.same_system(crs) {
                     let what = format!(
-                        "is in {}, but the cloud is in {}; write it in WGS 84, as RFC 7946 wants",
+                        "is in {}, but the cloud is in {}; write the file in WGS 84, as RFC 7946 requires",
                         given.describe(),
                         crs.describe()
                     );

@@ -146,7 +146,7 @@ pub(super) fn open<'a>(input: Input<'a>, reading: &Reading<'_>) -> Result<(Part,
         part.note(format!("the two point counts of the header differ; {} is used", header.points));
     }
     if header.broken_records > 0 {
-        part.note("a variable-length record is cut off; it and those after it are passed over");
+        part.note("a variable-length record is cut off; it and the following records are ignored");
     }
     if reading.forced.is_none() {
         find_crs(&mut part, header);
@@ -258,8 +258,7 @@ fn point_format(path: &Path, header: &LasHeader) -> Result<Format> {
     if header.compressed && !header.record("laszip encoded", 22204).is_none_or(is_chunked) {
         return Err(Error::malformed(
             path,
-            "is compressed as one single chunk, as only the first LAZ writers did; rewrite it, for example with: \
-             pdal translate IN.laz OUT.laz",
+            "is compressed as a single chunk, an old variant of LAZ; rewrite it, for example with: pdal translate IN.laz OUT.laz",
         ));
     }
     Ok(format)
@@ -283,9 +282,9 @@ fn find_crs(part: &mut Part, header: &LasHeader) {
         }
     }
     part.note(if unread {
-        "its WKT record is not understood: coordinates are taken as metres"
+        "its WKT record is not readable; coordinates are taken as metres"
     } else {
-        "it names no reference system: coordinates are taken as metres"
+        "it names no reference system; coordinates are taken as metres"
     });
 }
 

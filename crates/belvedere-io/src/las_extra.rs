@@ -86,13 +86,13 @@ pub(super) fn find_extra_normals(part: &mut Part, header: &LasHeader, format: &F
         .collect();
     if let [Some(x), Some(y), Some(z)] = normals {
         if !others.is_empty() {
-            part.note(format!("extra bytes dropped: {}", others.join(", ")));
+            part.note(format!("extra bytes ignored: {}", others.join(", ")));
         }
         return Some([x, y, z]);
     }
     if format.extra_bytes > 0 {
         let names = if others.is_empty() { "not described".to_owned() } else { others.join(", ") };
-        part.note(format!("{} extra bytes per point dropped: {names}", format.extra_bytes));
+        part.note(format!("{} extra bytes per point ignored: {names}", format.extra_bytes));
     }
     None
 }

@@ -90,7 +90,7 @@ pub(super) fn read_header(path: &Path, file: &mut (impl Read + Seek), size: u64)
         return Err(Error::malformed(path, what));
     }
     if header_size < 227 || points_start < header_size || points_start > size {
-        let what = format!("says that points start at byte {points_start} of {size}; the file is cut off or damaged");
+        let what = format!("has its points at byte {points_start} of {size}; the file is cut off or damaged");
         return Err(Error::malformed(path, what));
     }
     read_records(path, file, &mut header, Length::Short, header_size..points_start, record_count)?;

@@ -42,8 +42,7 @@ impl<R: Read + Seek + Send> LazReader<R> {
     pub(super) fn new(path: &Path, mut file: R, header: &LasHeader, size: u64, extra: ExtraBytes) -> Result<Self> {
         let damaged = |what: String| Error::malformed(path, what);
         let record = header.record(LazVlr::USER_ID, LazVlr::RECORD_ID);
-        let record =
-            record.ok_or_else(|| damaged("lacks the LAZ record that tells how it is compressed".to_owned()))?;
+        let record = record.ok_or_else(|| damaged("lacks the LAZ record that describes its compression".to_owned()))?;
         let vlr = LazVlr::from_buffer(record).map_err(|e| damaged(format!("has an unreadable LAZ record: {e}")))?;
         let items_match = vlr.items().iter().all(|item| item.size() == nominal_size(item.item_type()));
         let item_bytes: u64 = vlr.items().iter().map(|item| u64::from(item.size())).sum();

@@ -15,7 +15,7 @@ pub(super) fn read(input: Input<'_>) -> Result<Part> {
     let (rows, kind) = read_rows(input)?;
     let mut part = Part::new(&path, format!("NPY, {} columns of {}", rows.width, kind));
     if rows.width > 3 {
-        part.note(format!("columns dropped: all after the third of {}", rows.width));
+        part.note(format!("columns ignored: all after the third of {}", rows.width));
     }
     part.single_precision = kind == "f32";
     part.coordinates = Coordinates::Real(rows.rows);
@@ -41,7 +41,7 @@ pub(super) fn read_rows(input: Input<'_>) -> Result<(Table, &'static str)> {
     // Four bytes a number is the least that is read.
     if width < 3 || count.checked_mul(width).and_then(|numbers| numbers.checked_mul(4)).is_none_or(|least| least > size)
     {
-        let what = format!("has shape {shape:?}, which is no (N, 3) array that fits in its {size} bytes");
+        let what = format!("has shape {shape:?}, which is not an (N, 3) array that fits in its {size} bytes");
         return Err(Error::malformed(path, what));
     }
     let layout = Layout {

@@ -61,7 +61,7 @@ pub fn read_observers<'a>(source: impl Into<Source<'a>>, crs: &Crs, rows_are: Ro
         }
     };
     if rows.is_empty() {
-        return Err(Error::malformed(path, "there is no observer in it"));
+        return Err(Error::malformed(path, "the file has no observer"));
     }
     Ok(rows)
 }
@@ -116,15 +116,15 @@ fn number(properties: &Map<String, Value>, name: &str, path: &Path) -> Result<Op
         Some(Value::String(text)) if text.trim().is_empty() => Ok(None),
         Some(Value::String(text)) => match text.trim().parse() {
             Ok(value) => Ok(Some(value)),
-            Err(_) => Err(Error::malformed(path, format!("property {name} is \"{text}\", which is no number"))),
+            Err(_) => Err(Error::malformed(path, format!("property {name} is \"{text}\", which is not a number"))),
         },
-        Some(other) => Err(Error::malformed(path, format!("property {name} is {other}, which is no number"))),
+        Some(other) => Err(Error::malformed(path, format!("property {name} is {other}, which is not a number"))),
     }
 }
 
 fn from_values(corners: Vec<[f64; 3]>, values: [Option<f64>; 7], path: &Path) -> Result<ObserverRow> {
     if let Some(corner) = corners.iter().find(|c| !(c[0].is_finite() && c[1].is_finite())) {
-        return Err(Error::malformed(path, format!("an observer stands at {corner:?}")));
+        return Err(Error::malformed(path, format!("an observer has the position {corner:?}")));
     }
     let [height, least, most, azimuth_from, azimuth_to, elevation_from, elevation_to] =
         values.map(|value| value.filter(|v| !v.is_nan()));

@@ -164,7 +164,7 @@ impl Part {
         if let Some(normals) = &mut attributes.normals {
             let absent = make_unit(normals);
             if absent > 0 {
-                notes.push(format!("{absent} points have no usable normal; theirs is (0, 0, 0)"));
+                notes.push(format!("{absent} points have no usable normal; it is set to (0, 0, 0)"));
             }
         }
         if let Some(colors) = &mut attributes.color {
@@ -184,7 +184,7 @@ impl Part {
         if zero == count {
             self.attributes.gps_time = None;
             if count > 0 {
-                self.note("every GPS time is zero: the file has none");
+                self.note("all GPS times are zero, so the file has none");
             }
             return;
         }
@@ -205,7 +205,7 @@ impl Part {
             self.note(format!("{not_finite} GPS times are not finite"));
         }
         if count > MANY_POINTS && distinct.len() <= FEW_TIMES {
-            self.note(format!("GPS times take only {} values: pulses cannot be told apart by them", distinct.len()));
+            self.note(format!("GPS times have only {} different values, which cannot separate pulses", distinct.len()));
         }
     }
 
@@ -232,8 +232,7 @@ impl Part {
         bits.dedup();
         let repeated = values.len() - bits.len();
         self.note(format!(
-            "coordinates are kept in single precision, which steps by up to {step} m here; {repeated} points fall on \
-             another one. Export again with an offset or in double precision"
+            "coordinates have single precision, with steps of up to {step} m here; {repeated} points coincide with another point. Export again with an offset or in double precision"
         ));
     }
 }

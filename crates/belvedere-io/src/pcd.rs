@@ -71,7 +71,7 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
         "ascii" => read_ascii(path, &mut file, &header, &mut rows, &mut part, reading)?,
         "binary" => read_binary(path, &mut file, &header, &mut rows, reading)?,
         "binary_compressed" => read_compressed(path, &mut file, &header, body, &mut rows, reading)?,
-        other => return Err(Error::malformed(path, format!("has data of the unknown kind {other}"))),
+        other => return Err(Error::malformed(path, format!("has data of the unknown type {other}"))),
     }
     rows.finish(&mut part);
     Ok(part)
@@ -211,7 +211,7 @@ fn read_ascii(
         }
     }
     if bad > good || (good == 0 && header.points > 0) {
-        return Err(Error::malformed(path, format!("{bad} of {} lines are no points", bad + good)));
+        return Err(Error::malformed(path, format!("{bad} of {} lines are not points", bad + good)));
     }
     part.leave_out(bad, "unreadable lines");
     let missing = header.points - (good + bad) as u64;

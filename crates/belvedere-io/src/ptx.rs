@@ -60,7 +60,7 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
         rows.finish(&mut part);
         part.attributes.scanner_index = Some(scanner_index);
     }
-    part.leave_out(empty, "grid cells where nothing came back");
+    part.leave_out(empty, "grid cells without a return");
     Ok(part)
 }
 
@@ -80,12 +80,12 @@ fn read_header<R: BufRead>(lines: &mut Lines<'_, R>) -> Result<Option<Header>> {
     }
     let lengths: Vec<usize> = all.iter().map(Vec::len).collect();
     if lengths != [1, 1, 3, 3, 3, 3, 4, 4, 4, 4] {
-        return Err(lines.malformed("ends what is not the header of a PTX scan"));
+        return Err(lines.malformed("ends before a complete header of a PTX scan"));
     }
     let value = |line: usize, i: usize| all.get(line).and_then(|v| v.get(i)).copied().unwrap_or(0.0);
     let (columns, rows) = (value(0, 0), value(1, 0));
     if ![columns, rows].iter().all(|n| n.fract() == 0.0 && (0.0..1e9).contains(n)) {
-        return Err(lines.malformed("follows a grid size that is no whole number"));
+        return Err(lines.malformed("follows a grid size that is not a whole number"));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and below 1e18, as just seen")]
     let cells = (columns * rows) as u64;
@@ -137,7 +137,7 @@ impl<R: BufRead> Lines<'_, R> {
                 continue;
             }
             let numbers: Option<Vec<f64>> = line.split_ascii_whitespace().map(|word| word.parse().ok()).collect();
-            return numbers.map(Some).ok_or_else(|| self.malformed("holds something that is no number"));
+            return numbers.map(Some).ok_or_else(|| self.malformed("holds something that is not a number"));
         }
     }
 

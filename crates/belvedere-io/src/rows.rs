@@ -241,7 +241,7 @@ fn to_16_bit(part: &mut Part, what: &str, values: &[f32]) -> Vec<u16> {
         part.note(format!("{what} from 0 to 1 were scaled to 0 to 65535"));
     }
     if outside > 0 {
-        part.note(format!("{outside} {what} lie outside 0 to 65535 and were cut off there"));
+        part.note(format!("{outside} {what} lie outside 0 to 65535 and were clamped"));
     }
     values.iter().map(|&v| to_u16(f64::from(v) * scale)).collect()
 }

@@ -137,7 +137,7 @@ fn write_head<W: Write + Seek>(archive: &mut NpzWriter<W>, head: &MatrixHead) ->
 }
 
 fn unreadable(path: &Path) -> impl Fn(io::Error) -> Error + '_ {
-    move |e| Error::malformed(path, format!("not a file of what places see: {e}"))
+    move |e| Error::malformed(path, format!("not a visibility matrix: {e}"))
 }
 
 fn damaged(path: &Path) -> impl Fn(Error) -> Error + '_ {

@@ -46,7 +46,7 @@ impl Table {
         let Some(index) = self.names.iter().position(|own| own.eq_ignore_ascii_case(name)) else { return Ok(None) };
         if let Some(Some((row, text))) = self.not_numbers.get(index) {
             let text: String = text.chars().take(40).collect();
-            return Err(Error::malformed(path, format!("row {row}: \"{text}\" in column {name} is no number")));
+            return Err(Error::malformed(path, format!("row {row}: \"{text}\" in column {name} is not a number")));
         }
         Ok(self.columns.get(index).map(Vec::as_slice))
     }

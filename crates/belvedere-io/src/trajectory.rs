@@ -52,7 +52,7 @@ pub fn read_trajectory<'a>(source: impl Into<Source<'a>>, cloud_crs: &Crs) -> Re
     }
     let (trajectory, duplicate_count) = Trajectory::from_records(records);
     if trajectory.times.len() < 2 {
-        let what = format!("a trajectory needs two different times, this has {}", trajectory.times.len());
+        let what = format!("a trajectory needs two different times, but this one has {}", trajectory.times.len());
         return Err(Error::malformed(path, what));
     }
     Ok((trajectory, TrajectoryReport { record_count, duplicate_count }))
@@ -60,12 +60,12 @@ pub fn read_trajectory<'a>(source: impl Into<Source<'a>>, cloud_crs: &Crs) -> Re
 
 fn sbet_records(path: &Path, bytes: &[u8], cloud_crs: &Crs) -> Result<Vec<(f64, [f64; 3])>> {
     if bytes.is_empty() || !bytes.len().is_multiple_of(SBET_RECORD_BYTES) {
-        let what = format!("{} bytes, which is no multiple of the 136 bytes of an SBET record", bytes.len());
+        let what = format!("{} bytes, which is not a multiple of the 136 bytes of an SBET record", bytes.len());
         return Err(Error::malformed(path, what));
     }
     let projection = cloud_crs.geographic_projection().map_err(|e| Error::UnusableCrs {
         path: path.to_owned(),
-        what: format!("latitude and longitude cannot be brought into the cloud's reference system: {e}"),
+        what: format!("latitude and longitude cannot be converted to the reference system of the cloud: {e}"),
     })?;
     let mut records = Vec::with_capacity(bytes.len() / SBET_RECORD_BYTES);
     for (row, record) in bytes.chunks_exact(SBET_RECORD_BYTES).enumerate() {
@@ -104,7 +104,7 @@ fn table_records(path: &Path, bytes: &[u8], cloud_crs: &Crs) -> Result<Vec<(f64,
                 None if commented => {}
                 None => {
                     let what =
-                        format!("line {} names no columns time, x, y and z, and is no number: \"{bare}\"", row + 1);
+                        format!("line {} names no columns time, x, y and z, and is not a number: \"{bare}\"", row + 1);
                     return Err(Error::malformed(path, what));
                 }
             }

@@ -117,7 +117,7 @@ fn write_sbet(
     let name = output.name().to_owned();
     let unusable = |e: Error| Error::UnusableCrs {
         path: name.clone(),
-        what: format!("positions cannot be turned into latitude and longitude: {e}"),
+        what: format!("positions cannot be converted to latitude and longitude: {e}"),
     };
     let projection = crs.geographic_projection().map_err(unusable)?;
     let places = trajectory

@@ -138,7 +138,7 @@ fn find_start<R: BufRead>(path: &Path, part: &mut Part, lines: &mut Lines<'_, R>
             header_seen = true;
             names = header(&line);
             if names.is_none() {
-                let what = format!("has a header line ({number}) that names no columns x, y and z: {}", shorten(&line));
+                let what = format!("has a header line ({number}) without columns x, y and z: {}", shorten(&line));
                 return Err(Error::malformed(path, what));
             }
             continue;
@@ -155,7 +155,7 @@ fn find_start<R: BufRead>(path: &Path, part: &mut Part, lines: &mut Lines<'_, R>
     refuse_decimal_comma(path, *number, first, separator)?;
     let columns = names.unwrap_or_else(|| guess_columns(part, separator, &ahead));
     if separator.split(first).count() > columns.len() {
-        part.note(format!("columns dropped: all after number {}", columns.len()));
+        part.note(format!("columns ignored: all after number {}", columns.len()));
     }
     Ok(Some(Start { separator, columns, ahead }))
 }
@@ -218,7 +218,7 @@ fn guess_columns(part: &mut Part, separator: Separator, ahead: &[(usize, String)
     };
     if width > 3 {
         let taken = if more.is_empty() { "nothing".to_owned() } else { format!("{more:?}") };
-        part.note(format!("the columns have no names; those after x, y, z are taken as {taken}"));
+        part.note(format!("the columns have no names; those after x, y, z are read as {taken}"));
     }
     position.iter().chain(more).map(|&role| Some(role)).collect()
 }
@@ -256,7 +256,7 @@ impl Bad {
         let lines = format!("lines {}{}", lines.join(", "), if self.count > NAMED_LINES { ", …" } else { "" });
         if self.count > self.good {
             let total = self.count + self.good;
-            let what = format!("{} of {total} lines are no points ({lines}); is this a point cloud?", self.count);
+            let what = format!("{} of {total} lines are not points ({lines}); is this a point cloud?", self.count);
             return Err(Error::malformed(path, what));
         }
         part.leave_out(self.count, format!("unreadable: {lines}"));

@@ -47,7 +47,7 @@ pub fn irradiation_measures(sums: &[Irradiation], group_count: usize) -> Vec<Mea
             range: Some([0.0, 1.0]),
             values: column(&Irradiation::loss),
         },
-        energy("beam_kwh_m2", "straight from the sun, kWh/m2", column(&|sum| sum.beam)),
+        energy("beam_kwh_m2", "direct, from the sun, kWh/m2", column(&|sum| sum.beam)),
         energy("sky_kwh_m2", "diffuse, from the sky, kWh/m2", column(&|sum| sum.diffuse)),
         energy("ground_kwh_m2", "reflected, kWh/m2", column(&|sum| sum.reflected)),
         energy("free_kwh_m2", "without obstacles, kWh/m2", column(&|sum| sum.unshaded)),

@@ -55,10 +55,11 @@ pub fn landmark_points(cloud: &PointCloud, which: &LandmarkPoints<'_>) -> Result
     };
     if rows.is_empty() {
         let what = match which {
-            LandmarkPoints::Class(class) => format!("none has class {class}, which was to be the landmark"),
-            LandmarkPoints::Inside(_) => "none but ground lies in the polygon of the landmark; is it in the \
-                                          coordinates of the cloud?"
-                .to_owned(),
+            LandmarkPoints::Class(class) => format!("no point has class {class}, which is the class of the landmark"),
+            LandmarkPoints::Inside(_) => {
+                "only ground points lie in the polygon of the landmark; is it in the coordinates of the cloud?"
+                    .to_owned()
+            }
         };
         return Err(Error::NoPoints { what });
     }

@@ -43,7 +43,7 @@ pub fn roof_points(cloud: &PointCloud, ground: &Ground) -> Result<(Vec<u32>, Roo
         .map(|(row, _)| row)
         .collect();
     if high.is_empty() {
-        let what = "no point has class 6 (building) or is 2 m above the ground, so that there are no roofs".to_owned();
+        let what = "there are no roofs: no point has class 6 (building) or is 2 m above the ground".to_owned();
         return Err(Error::NoPoints { what });
     }
     Ok((high, RoofsFrom::Height))

@@ -96,8 +96,8 @@ impl SolarEnvelope {
         if let Some(count) = Some(self.unbounded_count()).filter(|count| *count > 0) {
             return Err(Error::InvalidParameter {
                 name: "envelope",
-                value: format!("infinitely high in {count} columns, which no sun bounds"),
-                expected: "bounded to be a solid: give a ceiling",
+                value: format!("infinitely high in {count} columns, which no sun limits"),
+                expected: "limited, to be a solid; give a maximum height",
             });
         }
         let mut builder = Builder::default();

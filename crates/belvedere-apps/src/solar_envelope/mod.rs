@@ -136,7 +136,7 @@ pub fn solar_envelope(
         }
     }
     if columns.is_empty() {
-        let what = "there is no ground known below the parcel; is it in the coordinates of the cloud, and within it?";
+        let what = "the ground below the parcel is unknown; is the parcel in the coordinates of the cloud, and inside the cloud?";
         return Err(Error::NoPoints { what: what.to_owned() });
     }
     for (sun, &direction) in suns.iter().enumerate() {
@@ -185,7 +185,7 @@ fn check_pairs(pieces: usize, suns: usize) -> Result<()> {
     Err(Error::InvalidParameter {
         name: "number of pairs of a protected piece and a sun",
         value: format!("{pieces} x {suns}"),
-        expected: "at most 200 million; take longer steps of time, or a longer spacing",
+        expected: "at most 200 million; use longer time steps, or a larger spacing",
     })
 }
 

@@ -73,7 +73,7 @@ impl Parcel {
                         "crossing itself: the side from {:.2?} to {:.2?} crosses that from {:.2?} to {:.2?} (local metres)",
                         a[0], a[1], b[0], b[1]
                     ),
-                    "free of crossings; repair it, as with a buffer of 0 in a GIS",
+                    "free of crossings; repair it, for example with a buffer of 0 in a GIS",
                 );
             }
         }

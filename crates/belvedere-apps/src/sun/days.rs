@@ -133,11 +133,11 @@ pub fn sun_days(site: &Site, zone: &Zone, period: &Period, params: &DayParams) -
             (first.to(last).collect(), Some([*from, *to]))
         }
         Period::Between([from, to]) => {
-            return invalid(format!("{} to {}", zone.display(*from), zone.display(*to)), "forward, ten years at most");
+            return invalid(format!("{} to {}", zone.display(*from), zone.display(*to)), "forward, at most ten years");
         }
     };
     if !(1..=MOST_DAYS).contains(&dates.len()) {
-        return invalid(format!("{} days", dates.len()), "1 to 3700 days, the last not before the first");
+        return invalid(format!("{} days", dates.len()), "1 to 3700 days, and the last day not before the first");
     }
     let days: Result<Vec<SunDay>> =
         dates.into_par_iter().map(|date| sun_day(site, zone, date, within, params)).collect();
@@ -157,7 +157,7 @@ impl DayParams {
             return invalid("step of time", self.step, "10 to 3600 seconds");
         }
         if !(0.0..1.57).contains(&self.least_elevation) {
-            return invalid("least elevation of the sun", self.least_elevation.to_degrees(), "0 to below 90 degrees");
+            return invalid("minimum elevation of the sun", self.least_elevation.to_degrees(), "0 to below 90 degrees");
         }
         Ok(())
     }

@@ -126,7 +126,7 @@ pub fn sun_times(site: &Site, from: f64, to: f64) -> Result<SunTimes> {
         return Err(Error::InvalidParameter {
             name: "span of time",
             value: format!("{from} to {to} s"),
-            expected: "forward, 400 days at most",
+            expected: "forward, at most 400 days",
         });
     }
     let [start, end] = [julian(from)?, julian(to)?];

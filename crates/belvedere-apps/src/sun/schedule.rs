@@ -90,7 +90,7 @@ impl SunSchedule {
             return Err(Error::InvalidParameter {
                 name: "number of days",
                 value: "0".to_owned(),
-                expected: "at least one; the last day may not come before the first",
+                expected: "at least one day, and the last day not before the first",
             });
         }
         let step_count: usize = days.iter().map(|day| day.steps.len()).sum();
@@ -266,7 +266,7 @@ fn too_far(date: Date, error: f64) -> Error {
     Error::InvalidParameter {
         name: "angle between a sun and the next direction",
         value: format!("{:.2} degrees on {date}", error.to_degrees()),
-        expected: "within the angle told: take days among those that the directions were made for, or a wider angle",
+        expected: "within the given angle: choose days of the saved matrix, or a larger angle",
     }
 }
 

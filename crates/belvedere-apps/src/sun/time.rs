@@ -220,7 +220,7 @@ pub fn parse_instant(text: &str, zone: Option<&Zone>) -> Result<f64> {
     let given = |zone: &TimeZone| match zone.to_ambiguous_timestamp(shown).offset() {
         AmbiguousOffset::Unambiguous { offset } => Ok(offset),
         AmbiguousOffset::Gap { .. } => Err(invalid(
-            "a time that exists: clocks skip this one when summer time begins; give an offset such as +02:00",
+            "a time that exists: clocks skip this time when summer time begins; give an offset such as +02:00",
         )),
         AmbiguousOffset::Fold { .. } => Err(invalid(
             "unambiguous: clocks show this time twice when summer time ends; give an offset such as +02:00",
@@ -231,7 +231,7 @@ pub fn parse_instant(text: &str, zone: Option<&Zone>) -> Result<f64> {
         (Some(offset), Some(named), _) => {
             let instant = offset.to_timestamp(shown).map_err(|_| invalid(WRITING))?;
             if named.to_offset(instant) != offset && pieces.offset() != Some(PiecesOffset::Zulu) {
-                return Err(invalid("with an offset that its zone has then"));
+                return Err(invalid("with the offset that its time zone has at that time"));
             }
             offset
         }

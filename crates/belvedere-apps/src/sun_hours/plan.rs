@@ -133,10 +133,10 @@ impl SunSums {
             measure("sun_share", "share of possible sun", share, self.period.share),
             measure("first_light", "first sun, hour of the day", clock, self.period.first),
             measure("last_light", "last sun, hour of the day", clock, self.period.last),
-            measure("longest", "longest sun on end, hours", hours, self.period.longest),
+            measure("longest", "longest uninterrupted sun, hours", hours, self.period.longest),
         ];
         if day_count > 1 {
-            measures.push(measure("least_day", "hours on the darkest day", hours, self.period.least));
+            measures.push(measure("least_day", "hours of the day with the least sun", hours, self.period.least));
             measures.push(measure("total_hours", "hours of sun in all", None, total));
         }
         for (planned, found) in plan.rules.iter().zip(self.rules) {

@@ -90,8 +90,7 @@ impl SunRule {
         Self::of_text(text).ok_or_else(|| Error::InvalidParameter {
             name: "rule",
             value: text.chars().take(80).collect(),
-            expected: "nl-light, nl-strict, the-hague, bre-equinox, or one's own such as 1.5@03-21, 1@shortest-day or \
-                       2@02-19..10-21>10",
+            expected: "nl-light, nl-strict, the-hague, bre-equinox, or your own rule such as 1.5@03-21, 1@shortest-day or 2@02-19..10-21>10",
         })
     }
 

@@ -115,7 +115,7 @@ impl Targets {
             return Err(Error::InvalidParameter { name: "height above the ground", value, expected: "finite" });
         }
         if params.level == CellLevel::Surface {
-            ground.heights = control.stage("finding the surface", 0, || {
+            ground.heights = control.stage("computing top surface", 0, || {
                 top_surface(&cloud.positions, &ground, &SurfaceParams::default(), control)
             })?;
         }

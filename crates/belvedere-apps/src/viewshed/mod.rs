@@ -269,7 +269,7 @@ pub fn least_visible_heights(
     check(observers, earth)?;
     if !(ceiling >= 0.0) {
         return Err(Error::InvalidParameter {
-            name: "greatest height to look at",
+            name: "maximum height",
             value: ceiling.to_string(),
             expected: "0 metres or more",
         });

@@ -47,11 +47,11 @@ impl SightLimits {
         if let Some(elevation) = self.elevation
             && !(elevation[0] < elevation[1] && elevation[0] >= -right && elevation[1] <= right)
         {
-            return invalid("elevation", elevation, "rising, from -90 to 90 degrees");
+            return invalid("elevation", elevation, "in ascending order, from -90 to 90 degrees");
         }
         let [least, most] = self.distance;
         if !(least >= 0.0 && least.is_finite() && most > least) {
-            return invalid("distance", self.distance, "rising, from 0 metres on");
+            return invalid("distance", self.distance, "in ascending order, from 0 metres");
         }
         Ok(())
     }

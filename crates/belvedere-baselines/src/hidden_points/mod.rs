@@ -174,7 +174,7 @@ impl Visibility for HiddenPoints<'_> {
             if !foreign.is_empty() && self.params.foreign_targets == ForeignTargets::Refuse {
                 return Err(Error::UnsupportedTargets {
                     method: "hidden point removal",
-                    what: "points of the cloud itself; let it insert others one by one",
+                    what: "points of the cloud itself; use ForeignTargets::Insert for others",
                 });
             }
             let answer = |visible: bool| if visible { Answer::Visible } else { Answer::Blocked };

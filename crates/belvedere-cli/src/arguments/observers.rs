@@ -93,7 +93,7 @@ pub(crate) struct Shell {
 }
 
 impl Shell {
-    /// The same as flags that know of pulses, none of which is asked.
+    /// The same for functions that can report unproven targets.
     pub(crate) fn giving_way(&self) -> GivingWay {
         GivingWay { shell: self.shell, unproven: None }
     }

@@ -162,7 +162,7 @@ pub(crate) struct Compare {
 }
 
 impl Compare {
-    /// Whether a method was asked for: by a beginning of its key, or, if it runs when named only, by all of it.
+    /// Whether a method is selected: by the start of its key, or by its whole key if it runs only when named.
     pub(crate) fn wants(&self, key: &str, listing: Listing) -> bool {
         match listing {
             Listing::Always => {

@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
     let is_carved = matches!(balls, BallParams::Carved(_));
     if is_carved && (is_folder || arguments.side == SideChoice::Exterior) {
         let what =
-            "--method carved makes interior balls in a ball file; a folder and --side exterior need tau or angles";
+            "--method carved builds interior balls in a ball file; a folder and --side exterior need tau or angles";
         return Err(Usage(what.to_owned()).into());
     }
     let mut stages = Stages::new(global);
@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
             let program = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
             let model = model.with_provenance("program", program).with_provenance("input", inputs.join(" "));
             if model.pulses.is_some() && extension(&arguments.output) != "npz" {
-                summary.add("not_written", "pulses: only .npz keeps what tells visible from unproven");
+                summary.add("not_written", "pulses: only .npz keeps them, which unproven answers need");
             }
             stages.run("writing", 0, |_| write_balls(&arguments.output, &model))?;
         }
@@ -133,7 +133,7 @@ fn write_folder(
             .map(u8::from)
             .collect::<Vec<u8>>();
         let kept = keep.iter().filter(|&&k| k == 1).count();
-        summary.add("kept_by_thinning_percent", percent(kept, keep.len()));
+        summary.add("thinning_kept_percent", percent(kept, keep.len()));
         folder.lfs = Some(&sizes);
         folder.decimate_lfs = Some(&keep);
     }

@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
         }
     }
     if !arguments.when.is_given() {
-        return Err(Usage("say when: --date DAY, or --from and --to".to_owned()).into());
+        return Err(Usage("a period is missing: give --date DAY, or --from and --to".to_owned()).into());
     }
     let sky = match arguments.patches {
         Some(PatchesChoice::Tregenza) => SkyDirections::patches(1)?,
@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     let zone = arguments.place.zone(&site, &arguments.when.times())?;
     let params = arguments.when.params(&arguments.place)?;
     let Some(period) = arguments.when.period(&arguments.place, &site, &zone)? else {
-        return Err(Usage("say when: --date DAY, or --from and --to".to_owned()).into());
+        return Err(Usage("a period is missing: give --date DAY, or --from and --to".to_owned()).into());
     };
     let days = flagged("--time-step-min, --min-sun-elevation or --from", sun_days(&site, &zone, &period, &params))?;
     // each row of --times is about a sun of its own
@@ -52,11 +52,11 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     let mut section = Summary::default();
     section
         .add("days", schedule.days.len())
-        .add("clocks", zone.name())
+        .add("time_zone", zone.name())
         .add("suns", schedule.days.iter().map(|day| day.steps.len()).sum::<usize>())
         .add("directions", schedule.directions.len())
-        .add("possible_hours_a_day", rounded(schedule.possible_hours() / schedule.days.len().max(1) as f64, 3));
-    summary.add("when", section);
+        .add("possible_hours_per_day", rounded(schedule.possible_hours() / schedule.days.len().max(1) as f64, 3));
+    summary.add("period", section);
     let north = arguments.north.of_scene(&scene);
     if arguments.places.windows.is_some() || arguments.times.is_some() {
         north.report(&mut summary);
@@ -66,13 +66,13 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
         (None, Some(path)) => {
             windows(arguments, path, (&scene, north.of_grid), global.seed, &mut stages, &mut summary)?
         }
-        (None, None) => return Err(Usage("say where: --route or --windows".to_owned()).into()),
+        (None, None) => return Err(Usage("targets are missing: give --route or --windows".to_owned()).into()),
     };
     let mut section = Summary::default();
     let profile = arguments.scene.profile.into();
     let (blockers, _) =
         blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut stages, &mut section)?;
-    section.add("directions_of_the_sky", sky.directions.len());
+    section.add("sky_directions", sky.directions.len());
     summary.add("lines_of_sight", section);
     let targets = &places.targets;
     let shade = if arguments.times.is_some() { ShadeAtEachSun::Kept } else { ShadeAtEachSun::NotKept };
@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     })?;
     write_rows(&arguments.output, &places, &found)?;
     let mut section = Summary::default();
-    section.add(places.kind, targets.groups.len()).add("places", targets.len());
+    section.add(places.kind, targets.groups.len()).add("targets", targets.len());
     for (measure, mean) in found.means(targets) {
         section.add(&format!("mean_{}", measure.name), rounded(mean, digits(measure)));
     }

@@ -59,11 +59,11 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     let blockers = model.scene(&model.rule(), UnprovenAs::Visible, &stages.control())?;
     let answers = stages.run("querying", 0, |_| blockers.visible(Viewer::Direction(sun), &cloud.positions))?;
     let shadowed = answers.iter().filter(|&&a| a == Answer::Blocked).count();
-    summary.add("own_points_in_shadow_percent", percent(shadowed, answers.len()));
+    summary.add("points_in_shadow_percent", percent(shadowed, answers.len()));
 
     let agreement = stages.run("comparing with the mesh", 0, |_| agreement(&scene, &scan, &cloud, &blockers, sun))?;
-    summary.add("sun_azimuth_elevation_degrees", SUN_DEG.to_vec());
-    summary.add("against_the_exact_mesh", agreement);
+    summary.add("sun_azimuth_elevation_deg", SUN_DEG.to_vec());
+    summary.add("errors_by_ground_truth", agreement);
 
     stages.run("writing pictures", 0, |_| write_pictures(folder, &cloud, balls, &map, &answers, (low, high)))?;
     stages.run("writing results", 0, |_| -> Result<()> {
@@ -91,7 +91,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     atomic::write(&folder.join("numbers.json"), |file| {
         writeln!(file, "{report:#}").map_err(belvedere::Error::io(&folder.join("numbers.json")))
     })?;
-    summary.add("look_at", folder.join("shadows.png").display().to_string());
+    summary.add("open", folder.join("shadows.png").display().to_string());
     summary.add("total_seconds", rounded(total, 2));
     Ok(summary)
 }
@@ -99,8 +99,8 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
 fn town_section(scene: &Scene, scan: &Scan) -> Summary {
     let mut section = Summary::default();
     section
-        .add("triangles_of_the_exact_mesh", scene.triangles.len())
-        .add("points_scanned", scan.len())
+        .add("ground_truth_triangles", scene.triangles.len())
+        .add("points", scan.len())
         .add("pulses", scan.report.pulses);
     section
 }
@@ -119,7 +119,7 @@ fn agreement(scene: &Scene, scan: &Scan, cloud: &PointCloud, blockers: &MedialSc
     let ground = scan.exact_positions.iter().zip(&scan.classification).filter(|(_, class)| **class == 2);
     let pedestrians: Vec<[f64; 3]> = ground.map(|(p, _)| [p[0], p[1], p[2] + PEDESTRIAN]).collect();
     let mut section = Summary::default();
-    for (name, exact) in [("pedestrians", &pedestrians), ("own_points", &scan.exact_positions)] {
+    for (name, exact) in [("pedestrians", &pedestrians), ("cloud_points", &scan.exact_positions)] {
         let shadowed = truth.occluded_towards_each(exact, sun);
         let asked: Vec<[f32; 3]> = exact.iter().map(|&p| to_local(p, cloud.frame.origin)).collect();
         let answers = blockers.visible(Viewer::Direction(sun), &asked)?;
@@ -130,12 +130,9 @@ fn agreement(scene: &Scene, scan: &Scan, cloud: &PointCloud, blockers: &MedialSc
         let mut scores = Summary::default();
         scores
             .add("targets", asked.len())
-            .add("truly_in_shadow_percent", percent(asked.len() - lit_count, asked.len()))
-            .add("false_blocked_percent_of_the_lit", percent(wrong(Answer::Blocked, false), lit_count))
-            .add(
-                "false_visible_percent_of_the_shadowed",
-                percent(wrong(Answer::Visible, true), asked.len() - lit_count),
-            );
+            .add("ground_truth_in_shadow_percent", percent(asked.len() - lit_count, asked.len()))
+            .add("false_blocked_percent", percent(wrong(Answer::Blocked, false), lit_count))
+            .add("false_visible_percent", percent(wrong(Answer::Visible, true), asked.len() - lit_count));
         section.add(name, scores);
     }
     Ok(section)
@@ -162,7 +159,7 @@ fn write_pictures(
     let mut shadows = Canvas::new(&from_above, [255; 3]);
     // half a metre wide, so that the ground closes between returns 0.3 m apart
     shadows.draw_points(&cloud.positions, Colors::Each(&colors), 4)?;
-    let caption = "The town from above, sun in the south-west, 30 degrees high: what lies in shadow";
+    let caption = "The town from above, with the shadows of a sun in the south-west at an elevation of 30 degrees";
     write_png(&folder.join("shadows.png"), &side_by_side(&[shadows.into_picture()], &[caption]))?;
 
     let depth = depth_picture(&map.depth, "Seen from the sun: depth in metres");
@@ -176,7 +173,7 @@ fn write_pictures(
         let colors = ramp_colors(&heights);
         union.draw_seen_balls((&seen.depth, items), (&balls.centers, &balls.radii), Colors::Each(&colors))?;
     }
-    let caption = "The medial balls that block, coloured by height, seen from the south-west";
+    let caption = "The medial balls, coloured by height, seen from the south-west";
     write_png(&folder.join("balls.png"), &side_by_side(&[union.into_picture()], &[caption]))?;
     Ok(())
 }

@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     if let Some(path) = &arguments.balls_id {
         check_output("--ball-ids", path, &["tif", "tiff", "npy"])?;
         if is_same(path, &arguments.output) {
-            return Err(Usage(format!("--ball-ids {}: -o writes there too", path.display())).into());
+            return Err(Usage(format!("--ball-ids {}: the same file as -o", path.display())).into());
         }
     }
     let mut stages = Stages::new(global);
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     let hit = map.depth.values().iter().filter(|d| d.is_finite()).count();
     summary.add("pixels_hit_percent", percent(hit, map.depth.values().len()));
     if views.iter().any(View::is_central) {
-        summary.add("balls_around_the_eye_left_out", map.around_eye_count);
+        summary.add("balls_around_eye_ignored", map.around_eye_count);
     }
     let output = &arguments.output;
     let place = views.first().and_then(|view| georeference(&scene.cloud, view));
@@ -75,7 +75,7 @@ impl Drawn {
         match self.look {
             Look::Parallel => "depth in metres along the line of sight",
             Look::Camera(_) => "depth in metres along the axis of the camera",
-            Look::Panorama => "range in metres from the eye",
+            Look::Panorama => "range in metres from the camera",
         }
     }
 

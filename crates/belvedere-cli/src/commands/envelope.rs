@@ -55,14 +55,14 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
             let (blockers, _) =
                 blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut stages, &mut section)?;
             summary.add("lines_of_sight", section);
-            let found = stages.run("looking for shade", land.pieces.len(), |control| {
+            let found = stages.run("testing existing shadow", land.pieces.len(), |control| {
                 existing_shade(&blockers, &land.pieces, &suns.directions, control)
             });
             Some(flagged("--spacing, --step", found)?)
         }
     };
     let params = EnvelopeParams { ceiling: arguments.ceiling };
-    let found = stages.run("bounding", suns.directions.len(), |control| {
+    let found = stages.run("computing envelope", suns.directions.len(), |control| {
         solar_envelope(&parcel, &below, &land.pieces, &suns.directions, free.as_ref(), &params, control)
     });
     let found = flagged("--spacing, --time-step-min, --max-height", found)?;
@@ -102,11 +102,11 @@ fn check_outputs(arguments: &Envelope) -> Result<()> {
     check_distinct(all)?;
     if arguments.sun.is_empty() && !arguments.when.is_given() {
         return Err(
-            Usage("say when the sun is to be kept: --date DAY, --from and --to, or --sun AZ,EL".to_owned()).into()
+            Usage("protected suns are missing: give --date DAY, --from and --to, or --sun AZ,EL".to_owned()).into()
         );
     }
     if !arguments.credit_shade && arguments.shell.shell.is_some() {
-        return Err(Usage("--shell belongs to --credit-shade".to_owned()).into());
+        return Err(Usage("--shell needs --credit-shade".to_owned()).into());
     }
     Ok(())
 }
@@ -149,7 +149,7 @@ impl Suns {
         let site = arguments.place.site(scene, summary)?;
         let zone: Zone = arguments.place.zone(&site, &arguments.when.times())?;
         let Some(Period::Days(dates)) = arguments.when.period(&arguments.place, &site, &zone)? else {
-            let what = "--from and --to: give days; --between says which hours of them count";
+            let what = "--from and --to must be days; --between limits their hours";
             return Err(Usage(what.to_owned()).into());
         };
         let params = arguments.when.params(&arguments.place)?;
@@ -158,11 +158,11 @@ impl Suns {
         let mut section = Summary::default();
         section
             .add("days", dates.len())
-            .add("clocks", zone.name())
+            .add("time_zone", zone.name())
             .add("suns", suns.len())
-            .add("instants_without_sun", low)
-            .add("step_min", rounded(params.step / 60.0, 3));
-        summary.add("when", section);
+            .add("suns_below_horizon", low)
+            .add("time_step_min", rounded(params.step / 60.0, 3));
+        summary.add("period", section);
         Ok(Self {
             directions: suns.iter().map(|sun| sun.direction).collect(),
             names: suns.iter().map(|sun| zone.display(sun.unix_s)).collect(),
@@ -181,7 +181,7 @@ fn parcel(arguments: &Envelope, cloud: &PointCloud) -> Result<Parcel> {
                 return wrong_shape(
                     "--parcel",
                     &arguments.parcel,
-                    "a parcel is a polygon, this holds a line or a point",
+                    "a parcel is a polygon, but this file has a line or a point",
                 );
             }
         }
@@ -282,12 +282,11 @@ impl Land {
             }
         }
         if unknown > 0 {
-            let note = format!("{unknown} pieces of what is protected lie where no ground is known, and were left out");
+            let note = format!("{unknown} protected parts have no known ground, and were ignored");
             summary.add("notes", vec![note]);
         }
         if self.pieces.is_empty() {
-            let what =
-                "nothing is protected: there is no ground known below it; is it in the coordinates of the cloud?";
+            let what = "nothing is protected, because the ground is unknown there; is the protected geometry in the coordinates of the cloud?";
             return Err(Usage(format!("--protect: {what}")).into());
         }
         Ok(())
@@ -349,30 +348,29 @@ fn told(found: &SolarEnvelope, land: &Land, suns: &Suns, arguments: &Envelope) -
         section
             .add("volume_m3", rounded(found.volume(), 1))
             .add("mean_height_m", rounded(found.volume() / found.area(), 2))
-            .add("greatest_height_m", rounded(found.greatest_height(), 2));
+            .add("max_height_m", rounded(found.greatest_height(), 2));
     } else {
-        section.add("columns_that_nothing_bounds", unbounded);
-        section
-            .add("notes", vec!["volume and solids need --max-height: some columns are bounded by nothing".to_owned()]);
+        section.add("columns_unlimited", unbounded);
+        section.add("notes", vec!["volume and solids need --max-height: some columns have no limit".to_owned()]);
     }
     let no_room = found.columns.iter().filter(|column| column.height() <= 0.0).count();
     let at_ceiling = found.columns.iter().filter(|column| column.binding.is_none()).count();
-    section.add("columns_without_room", no_room);
+    section.add("columns_of_zero_height", no_room);
     if arguments.ceiling.is_some() {
-        section.add("columns_at_the_ceiling", at_ceiling);
+        section.add("columns_at_max_height", at_ceiling);
     }
     section.add("cells_without_ground", report.without_ground_count).add("protected_pieces", land.pieces.len());
     if report.turned_away_count > 0 {
-        section.add("pairs_turned_away_percent", percent(report.turned_away_count, report.pair_count));
+        section.add("facing_away_percent", percent(report.turned_away_count, report.pair_count));
     }
     if arguments.credit_shade {
-        section.add("pairs_in_shade_already_percent", percent(report.shaded_already_count, report.pair_count));
+        section.add("existing_shadow_percent", percent(report.shaded_already_count, report.pair_count));
     }
     let by_sun = found.bound_areas(suns.names.len(), |binding| binding.sun);
-    section.add("suns_that_bind_most", ranked(&by_sun, &suns.names));
+    section.add("limiting_suns", ranked(&by_sun, &suns.names));
     let source = |piece: usize| land.pieces.get(piece).map_or(usize::MAX, |piece| piece.source as usize);
     let by_source = found.bound_areas(land.names.len(), |binding| source(binding.piece));
-    section.add("places_that_bind_most", ranked(&by_source, &land.names));
+    section.add("limiting_places", ranked(&by_source, &land.names));
     section
 }
 

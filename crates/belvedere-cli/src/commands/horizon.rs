@@ -31,7 +31,11 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
     let places = eyes(&arguments.eyes, &mut scene, &mut stages, &mut summary)?;
     let only_one = |output: &&std::path::PathBuf| extension(output) != "csv" && places.len() > 1;
     if let Some(output) = arguments.output.iter().find(only_one) {
-        let what = format!("{}: it holds a single eye, these are {}; use .csv", output.display(), places.len());
+        let what = format!(
+            "{}: the format holds a single observer, but there are {}; use .csv",
+            output.display(),
+            places.len()
+        );
         return Err(Usage(what).into());
     }
     let north = match places.first() {
@@ -46,7 +50,8 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
     summary.add("lines_of_sight", section);
     note_enclosed(&blockers, &places, &mut summary);
     let params = HorizonParams { azimuth_count, turn: north.of_grid, earth };
-    let found = stages.run("looking around", places.len(), |control| horizons(&blockers, &places, &params, control))?;
+    let found =
+        stages.run("computing ranges", places.len(), |control| horizons(&blockers, &places, &params, control))?;
     let least = if arguments.below == BelowChoice::Zero { 0.0 } else { -90.0 };
     let elevations: Vec<Vec<f64>> = found
         .iter()
@@ -55,7 +60,7 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
     summary.add("horizons", told(&elevations));
     for output in &arguments.output {
         stages.run("writing", 0, |_| match (extension(output).as_str(), elevations.first()) {
-            ("png", Some(one)) => write_png(output, &horizon_picture(one, "Horizon, degrees")),
+            ("png", Some(one)) => write_png(output, &horizon_picture(one, "Horizon elevation, degrees")),
             ("txt", Some(one)) => write_lines(output, one.iter().map(|v| format!("{v:.2}"))),
             _ => write_columns(output, &elevations, azimuth_count),
         })?;
@@ -70,10 +75,10 @@ fn told(elevations: &[Vec<f64>]) -> Summary {
     let all = || elevations.iter().flatten().copied();
     let count = elevations.iter().map(Vec::len).sum::<usize>().max(1);
     section
-        .add("eyes", elevations.len())
+        .add("observers", elevations.len())
         .add("azimuths", elevations.first().map_or(0, Vec::len))
         .add("mean_elevation_deg", rounded(all().sum::<f64>() / count as f64, 3))
-        .add("highest_elevation_deg", rounded(all().fold(-90.0, f64::max), 3));
+        .add("max_elevation_deg", rounded(all().fold(-90.0, f64::max), 3));
     section
 }
 

@@ -27,10 +27,10 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     });
     summary.add("file", files.collect::<Vec<_>>());
     summary.add("points", cloud.len());
-    let facts = stages.run("counting", 0, |control| CloudSummary::of(&cloud, control))?;
+    let facts = stages.run("counting points", 0, |control| CloudSummary::of(&cloud, control))?;
     if let Some((low, high)) = facts.bounds {
-        summary.add("lowest_corner", low.map(|v| rounded(v, 3)).to_vec());
-        summary.add("highest_corner", high.map(|v| rounded(v, 3)).to_vec());
+        summary.add("min_corner", low.map(|v| rounded(v, 3)).to_vec());
+        summary.add("max_corner", high.map(|v| rounded(v, 3)).to_vec());
     }
     summary.add("metres_per_unit", cloud.frame.crs.metres_per_unit);
     if cloud.frame.crs.vertical_metres_per_unit != cloud.frame.crs.metres_per_unit {
@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
         let mut section = Summary::default();
         section
             .add("steep_points", facades.steep_point_count)
-            .add("of_building_points", facades.building_point_count)
+            .add("building_points", facades.building_point_count)
             .add("estimated_wall_area_m2", whole(facades.area))
             .add("points_per_m2_of_wall", rounded(facades.density, 2));
         summary.add("facades", section);
@@ -54,9 +54,9 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
             summary.add("pulses_per_m2_of_covered_ground", rounded(pulses.count / facts.occupied_area, 2));
         }
     }
-    let scanner = match stages
-        .run("finding the scanner", 0, |control| locate(&cloud, &Means::Automatic, &LocateParams::default(), control))
-    {
+    let scanner = match stages.run("estimating scanner positions", 0, |control| {
+        locate(&cloud, &Means::Automatic, &LocateParams::default(), control)
+    }) {
         Ok((_, report)) => report,
         Err(error @ Error::MissingAttribute { .. }) => {
             ScannerReport { point_count: cloud.len(), remarks: vec![error.to_string()], ..ScannerReport::default() }
@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     summary.add("reading", Summary::of(&report));
     summary.add("attributes", attributes(&cloud, &facts));
     summary.add("missing", missing(&cloud, &facts));
-    summary.add("can_serve", can_serve(&cloud, &facts, &scanner));
+    summary.add("usable_for", can_serve(&cloud, &facts, &scanner));
     summary.add("duplicate_points", facts.duplicate_count);
     Ok(summary)
 }
@@ -102,12 +102,12 @@ fn attributes(cloud: &PointCloud, facts: &CloudSummary) -> Summary {
         section.add("scan_angle", format!("{least:.1} to {most:.1} degrees"));
     }
     if let Some(times) = facts.gps_time {
-        let mut text = format!("{:.3} to {:.3} s, {} different", times.first, times.last, times.distinct_count);
+        let mut text = format!("{:.3} to {:.3} s, {} different values", times.first, times.last, times.distinct_count);
         if times.missing_count > 0 {
             text.push_str(&format!(", {} missing", times.missing_count));
         }
         if !times.can_tell_pulses_apart(cloud.len()) {
-            text.push_str(": too few to tell pulses apart");
+            text.push_str(": too few to separate pulses");
         }
         section.add("gps_time", text);
     }
@@ -124,7 +124,7 @@ fn missing(cloud: &PointCloud, facts: &CloudSummary) -> Vec<&'static str> {
     let classes_say_nothing = facts.classes.keys().all(|&class| class <= 1);
     let lines_say_nothing = facts.flight_lines.keys().all(|&line| line == 0);
     let wanted = [
-        (a.classification.is_none() || classes_say_nothing, "classes (noise cannot be told from its class)"),
+        (a.classification.is_none() || classes_say_nothing, "classes (noise cannot be detected by its class)"),
         (a.gps_time.is_none(), "GPS time (a trajectory cannot orient normals)"),
         (a.return_number.is_none(), "return numbers"),
         (a.scan_angle.is_none(), "scan angles"),
@@ -149,12 +149,12 @@ fn can_serve(cloud: &PointCloud, facts: &CloudSummary, scanner: &ScannerReport) 
     let times = facts.gps_time.is_some_and(|t| t.can_tell_pulses_apart(cloud.len()));
     section.add("--orient trajectory=FILE", yes_if(times, "the file has no usable GPS times"));
     let by_pulses = [FoundBy::Returns, FoundBy::ScanAngle].iter().any(|means| scanner.found.contains_key(means));
-    section.add("--orient pulses", yes_if(by_pulses, "the pulses do not tell where the scanner was"));
+    section.add("--orient pulses", yes_if(by_pulses, "the pulses do not determine the scanner positions"));
     section.add("--orient mesh=FILE", "yes");
     let carved = if !enough {
         "no: fewer than 4 points"
     } else if scanner.found.is_empty() {
-        "no: nothing tells where the scanner was"
+        "no: the scanner positions are unknown"
     } else if scanner.is_assumed() {
         "yes, with pulses assumed to be vertical"
     } else {

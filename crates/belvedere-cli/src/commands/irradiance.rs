@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
     summary.add("lines_of_sight", section);
     if let Some(asked) = &asked {
         let looks = asked.targets.len() * look_count(&obstacles, &seasons);
-        let sums = stages.run("looking at sun and sky", looks, |control| {
+        let sums = stages.run("testing sun and sky", looks, |control| {
             season_irradiation(obstacles, &asked.targets, &seasons, control)
         })?;
         let group_count = seasons.first().map_or(1, |season| season.radiation.group_count());

@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
     if places.len() > 1
         && let Some(output) = arguments.output.iter().find(|output| extension(output) == "png")
     {
-        let what = format!("{}: a picture shows a single eye, these are {}", output.display(), places.len());
+        let what = format!("{}: a picture shows a single observer, but there are {}", output.display(), places.len());
         return Err(Usage(what).into());
     }
     let north = arguments.north.of_scene(&scene);
@@ -44,7 +44,7 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
         jump: arguments.jump.unwrap_or(usual.jump),
     };
     note_enclosed(&blockers, &places, &mut summary);
-    let isovists = stages.run("looking around", places.len(), |progress| {
+    let isovists = stages.run("computing ranges", places.len(), |progress| {
         places
             .iter()
             .map(|&eye| {
@@ -64,14 +64,14 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
         }
         summary.add("isovist", section);
     } else {
-        summary.add("eyes", rows.len());
+        summary.add("observers", rows.len());
     }
     for output in &arguments.output {
         stages.run("writing", 0, |_| match extension(output).as_str() {
             "json" => write_json(output, &rows, &isovists, north.of_grid),
             "png" => {
                 let Some(isovist) = isovists.first() else { return Ok(()) };
-                write_png(output, &panorama_picture(&isovist.panorama, "Ranges around the eye"))
+                write_png(output, &panorama_picture(&isovist.panorama, "Ranges around the observer"))
             }
             _ => write_rows(output, &rows),
         })?;

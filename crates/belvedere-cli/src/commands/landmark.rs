@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
         Some(rows) => standing(rows, height, &ground, &cloud)?,
         None => cell_targets(&ground, height).iter().map(|eye| eye.map(f64::from)).collect(),
     };
-    let enclosed = stages.run("finding who is inside", 0, |_| shut_out(&mut eyes, rows.is_none(), &blockers));
+    let enclosed = stages.run("testing observers", 0, |_| shut_out(&mut eyes, rows.is_none(), &blockers));
     let usual = LandmarkParams::default().faces;
     let params = LandmarkParams {
         faces: MeshTargetParams { back_faces: arguments.back_faces.map_or(usual.back_faces, BackFaces::from), ..usual },
@@ -53,9 +53,8 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
         earth,
         max_range: arguments.max_distance.unwrap_or(f64::INFINITY),
     };
-    let views = stages.run("looking at the landmark", eyes.len(), |progress| {
-        landmark_views(&blockers, &surface, &eyes, &params, progress)
-    });
+    let views = stages
+        .run("testing landmark", eyes.len(), |progress| landmark_views(&blockers, &surface, &eyes, &params, progress));
     let views = flagged("--max-distance", views)?;
     summary.add("observers", told(&views, &eyes, enclosed));
     for output in &arguments.output {
@@ -120,8 +119,7 @@ fn standing(rows: &[Row], height: f64, ground: &Ground, cloud: &PointCloud) -> R
             let Some(level) = ground.height_at([eye[0], eye[1]]) else {
                 let [x, y, _] = sights::file(cloud, eye);
                 bail!(
-                    "observer {} at {x:.3},{y:.3}: there is no ground known below it; is it in the coordinates of the cloud? Else give a \
-                     column z",
+                    "observer {} at {x:.3},{y:.3}: the ground below is unknown; is the position in the coordinates of the cloud? If so, add a column z",
                     number + 1
                 );
             };
@@ -152,15 +150,15 @@ fn told(views: &[LandmarkView], eyes: &[[f64; 3]], enclosed: usize) -> Summary {
     let mut section = Summary::default();
     section
         .add("count", standing)
-        .add("inside_something_solid", enclosed)
-        .add("see_some_of_it", seeing)
-        .add("see_some_of_it_percent", percent(seeing, standing));
+        .add("observers_inside_obstacles", enclosed)
+        .add("observers_with_view", seeing)
+        .add("observers_with_view_percent", percent(seeing, standing));
     let best = views.iter().enumerate().filter(|(_, view)| view.visible_area > 0.0);
     if let Some((row, view)) = best.max_by(|a, b| a.1.visible_share().total_cmp(&b.1.visible_share())) {
         section
-            .add("greatest_share_seen", rounded(view.visible_share(), 4))
-            .add("seen_by_observer", row + 1)
-            .add("its_solid_angle_sr", rounded(view.solid_angle, 5));
+            .add("max_visible_share", rounded(view.visible_share(), 4))
+            .add("max_visible_share_observer", row + 1)
+            .add("max_visible_share_solid_angle_sr", rounded(view.solid_angle, 5));
     }
     section
 }

@@ -24,7 +24,7 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     if let Some(profile) = &arguments.profile_out {
         check_output("--profile-out", profile, &["csv", "png"])?;
         if arguments.output.as_ref().is_some_and(|output| is_same(profile, output)) {
-            return Err(Usage(format!("--profile-out {}: -o writes there too", profile.display())).into());
+            return Err(Usage(format!("--profile-out {}: the same file as -o", profile.display())).into());
         }
     }
     let earth = arguments.earth.params()?;
@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
         // nothing then says how much of a line no pulse came near to
         scene.model = scene.model.without_pulses();
     }
-    let sights = stages.run("answering", 0, |_| blockers.lines_of_sight(&pairs, &earth));
+    let sights = stages.run("answering queries", 0, |_| blockers.lines_of_sight(&pairs, &earth));
     let settled = |sight: &Option<belvedere::query::LineOfSight>| {
         sight.map_or(Answer::OutsideView, |sight| unproven_as.settle(sight.answer))
     };
@@ -58,9 +58,9 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
             one.add("answer", name(unproven_as.settle(sight.answer)));
             if let Some(block) = sight.first_block {
                 one.add("first_block_range_m", rounded(block.range, 3))
-                    .add("block_at", file(&scene.cloud, block.place).map(|v| rounded(v, 3)).to_vec())
+                    .add("block_position", file(&scene.cloud, block.place).map(|v| rounded(v, 3)).to_vec())
                     .add("block_ball", block.ball)
-                    .add("block_source_point", scene.model.balls().source.get(block.ball).copied().unwrap_or_default());
+                    .add("block_source", scene.model.balls().source.get(block.ball).copied().unwrap_or_default());
             }
             if scene.model.pulses().is_some() {
                 one.add("unproven_m", rounded(sight.unproven_length, 3));
@@ -90,7 +90,9 @@ fn pairs(arguments: &LineOfSight, scene: &Scene, seed: u64, stages: &mut Stages)
         return Ok(random_pairs(scene.model.bounds().low, scene.model.bounds().high, count, seed));
     }
     let Some(path) = &lines.pairs else {
-        return Err(Usage("say which lines: --pairs, --random, or --observer and --target".to_owned()).into());
+        return Err(
+            Usage("lines of sight are missing: give --pairs, --random, or --observer and --target".to_owned()).into()
+        );
     };
     let table = stages.run("reading pairs", 0, |_| read_table(path))?;
     let mut columns: [&[f64]; 6] = [&[]; 6];
@@ -152,7 +154,7 @@ fn write_profile(
     summary: &mut Summary,
 ) -> Result<()> {
     let ground = profile_ground(arguments, scene, stages, summary)?;
-    let made = stages.run("making profile", 0, |control| {
+    let made = stages.run("computing profile", 0, |control| {
         sight_profile(blockers, ground.as_ref(), pair, earth, arguments.profile_step, control)
     });
     let profile = flagged("--profile-out", made)?;

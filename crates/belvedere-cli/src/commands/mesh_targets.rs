@@ -39,7 +39,7 @@ pub(crate) fn is_mesh(path: &Path) -> bool {
 pub(super) fn refuse_flags(flags: &MeshTargets) -> Result<()> {
     let given = [("--spacing", flags.spacing.is_some()), ("--back-faces", flags.back_faces.is_some())];
     match given.into_iter().find(|(_, given)| *given) {
-        Some((flag, _)) => Err(Usage(format!("{flag} belongs to targets that are a mesh")).into()),
+        Some((flag, _)) => Err(Usage(format!("{flag} applies only to mesh targets")).into()),
         None => Ok(()),
     }
 }
@@ -68,10 +68,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     let output = &arguments.output;
     check_output("-o", output, &["csv", "ply"])?;
     if arguments.bias.is_some() {
-        return Err(Usage(
-            "--bias is for targets that are points; --shell says how balls give way to a mesh".to_owned(),
-        )
-        .into());
+        return Err(Usage("--bias applies only to point targets; for a mesh use --shell".to_owned()).into());
     }
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
@@ -131,7 +128,7 @@ fn told(faces: &[SeenArea], surface: &SurfacePieces, spacing: f64) -> Summary {
     section
         .add("count", faces.len())
         .add("spacing_m", rounded(spacing, 4))
-        .add("samples", surface.pieces.len())
+        .add("sample_points", surface.pieces.len())
         .add("area_m2", rounded(all.area, 2))
         .add("visible_m2", rounded(all.visible, 2))
         .add("standard_error_m2", rounded(all.standard_error(), 2))

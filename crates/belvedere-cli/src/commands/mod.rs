@@ -143,7 +143,7 @@ fn check_distinct<'a>(outputs: impl IntoIterator<Item = &'a PathBuf>) -> Result<
     let outputs: Vec<&PathBuf> = outputs.into_iter().collect();
     for (i, a) in outputs.iter().enumerate() {
         if let Some(b) = outputs.iter().skip(i + 1).find(|b| is_same(a, b)) {
-            return Err(Usage(format!("{}: two results would be written there", b.display())).into());
+            return Err(Usage(format!("{}: given for two results", b.display())).into());
         }
     }
     Ok(())

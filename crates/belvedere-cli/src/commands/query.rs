@@ -28,12 +28,11 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     let points = if arguments.targets.own { Points::Keep } else { Points::LetGo };
     let scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
     if arguments.unproven.is_some() && scene.model.pulses().is_none() {
-        let what = "--unproven needs to know the pulses: a cloud of which the scanner can be found (see `belvedere info`), or an \
-                    .npz that `belvedere balls` made of one";
+        let what = "--unproven needs pulses: a cloud with known scanner positions (see `belvedere info`), or an .npz file from such a cloud";
         return Err(Usage(what.to_owned()).into());
     }
     if arguments.shell.is_some() && !scene.model.is_carved() {
-        return Err(Usage("--shell belongs to carved balls, which these are not".to_owned()).into());
+        return Err(Usage("--shell applies only to carved balls, and these are not carved".to_owned()).into());
     }
     let mut views = arguments.view.views(&scene, &mut summary)?;
     let is_central = views.iter().any(View::is_central);
@@ -58,7 +57,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
             depth_map(model.balls(), view, arguments.scene.profile.into(), ItemBuffer::Without)
         })?;
         let bias = arguments.bias.unwrap_or_else(|| map.default_depth_bias());
-        section.add("answered_by", "depth map").add("depth_bias_m", rounded(f64::from(bias), 4));
+        section.add("method", "depth map").add("depth_bias_m", rounded(f64::from(bias), 4));
         stages.run("querying", 0, |_| query_points(&map, &targets.positions, bias))
     };
     let unproven_as = arguments.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
@@ -104,7 +103,7 @@ fn by_lines_of_sight(
     let scene = model.scene(&rule, UnprovenAs::Reported, &stages.control())?;
     section.add("depth_bias_m", rounded(depth_bias, 4)).add("shell_m", rounded(shell, 4));
     if let Some(view) = views.iter().find(|view| view.is_central()) {
-        section.add("balls_around_the_eye_left_out", scene.around_eye_count(view.frame.eye));
+        section.add("balls_around_eye_ignored", scene.around_eye_count(view.frame.eye));
     }
     sights::add_proof(&scene, section);
     // the sun, a direction and a panorama only say from where: without a picture there is nothing beside it
@@ -112,10 +111,10 @@ fn by_lines_of_sight(
     let scope = if has_picture { Scope::View } else { Scope::Viewer };
     let (answers, report) = stages.run("querying", 0, |_| answer_views(&scene, views, scope, targets))?;
     match report {
-        None => section.add("answered_by", "lines of sight"),
+        None => section.add("method", "lines of sight"),
         Some(CertifiedReport { target_count, settled_count }) => section
-            .add("answered_by", "certified depth map and lines of sight")
-            .add("settled_by_the_map_percent", percent(settled_count, target_count)),
+            .add("method", "certified depth map and lines of sight")
+            .add("decided_by_map_percent", percent(settled_count, target_count)),
     };
     Ok(answers)
 }
@@ -128,15 +127,15 @@ fn counted(answers: &[Answer], unproven_as: UnprovenAs, how: Summary) -> Summary
     section.add("targets", answers.len()).add("visible", counts.visible);
     match unproven_as {
         UnprovenAs::Reported => section.add("unproven", raw.unproven),
-        UnprovenAs::Visible => section.add("of_these_unproven", raw.unproven),
+        UnprovenAs::Visible => section.add("unproven_within", raw.unproven),
         UnprovenAs::Blocked => &mut section,
     };
     section.add("blocked", counts.blocked);
     if unproven_as == UnprovenAs::Blocked {
-        section.add("of_these_unproven", raw.unproven);
+        section.add("unproven_within", raw.unproven);
     }
     section
-        .add("outside_the_view", counts.outside_view)
+        .add("outside_view", counts.outside_view)
         .add("visible_percent", percent(counts.visible, answers.len()))
         .add_all(how);
     section
@@ -153,13 +152,13 @@ fn targets(
 ) -> Result<PointCloud> {
     let frame = |positions| PointCloud { positions, ..PointCloud::in_frame(scene.frame.clone()) };
     if let Some(count) = arguments.targets.random {
-        return Ok(frame(stages.run("spreading targets", 0, |_| random_targets(low, high, count, seed))));
+        return Ok(frame(stages.run("choosing random targets", 0, |_| random_targets(low, high, count, seed))));
     }
     if let Some(path) = &arguments.targets.targets {
         return points_of_file(path, arguments.scene.input.crs.clone(), &scene.frame, stages, summary);
     }
     if scene.is_empty() {
-        return Err(Usage("--self needs the cloud itself; a ball file holds no points".to_owned()).into());
+        return Err(Usage("--self needs a cloud; a ball file has no points".to_owned()).into());
     }
     Ok(scene)
 }

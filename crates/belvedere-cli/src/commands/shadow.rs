@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     // pulses are asked about one sun that is a point: of many it would take long
     let proving = if suns.len() == 1 && edges == Edges::Hard { Proving::IfItDecides } else { Proving::Never };
     if proving == Proving::Never && arguments.giving_way.unproven.is_some() {
-        return Err(Usage("--unproven belongs to one sun with hard edges".to_owned()).into());
+        return Err(Usage("--unproven applies only to one sun with hard edges".to_owned()).into());
     }
     let mut section = Summary::default();
     let profile = arguments.scene.profile.into();
@@ -48,22 +48,22 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     let trees = arguments.trees.of(&scene, blockers.params(), &mut summary)?;
     let obstacles = Obstacles { scene: &blockers, trees: trees.as_ref() };
     let looks = asked.targets.len() * obstacles.matrix_count();
-    let lit = stages
-        .run("looking at the sun", looks, |control| scene_shadow(obstacles, &asked.targets, &kinds, edges, control))?;
+    let lit =
+        stages.run("testing sun", looks, |control| scene_shadow(obstacles, &asked.targets, &kinds, edges, control))?;
     let doubts = match (&kinds[..], &lit[..]) {
         ([sun], [lit]) if unproven != UnprovenAs::Visible && blockers.proof().is_some() => {
-            stages.run("asking pulses", 0, |control| unproven_light(&blockers, &asked.targets, *sun, lit, control))?
+            stages.run("testing pulses", 0, |control| unproven_light(&blockers, &asked.targets, *sun, lit, control))?
         }
         _ => None,
     };
     let decimals = if edges == Edges::Soft { 4 } else { 2 };
     let of_sun = |(sun, values): (&Sun, &Vec<f32>)| {
-        let measure = Measure::new(&sun.column, values.clone()).with_description("share of the sun, 0 shaded");
+        let measure = Measure::new(&sun.column, values.clone()).with_description("share of the sun, 0 in shadow");
         measure.with_decimals(decimals).with_range(Some([0.0, 1.0]))
     };
     let mut measures: Vec<Measure> = suns.iter().zip(&lit).map(of_sun).collect();
     if let Some(doubts) = &doubts {
-        let measure = Measure::new("unproven", doubts.clone()).with_description("1: lit, but not proven");
+        let measure = Measure::new("unproven", doubts.clone()).with_description("1: lit, but unproven");
         measures.push(measure.with_decimals(0).with_range(Some([0.0, 1.0])));
     }
     summary.add("shadow", asked.statistics(&measures[..measures.len().min(MOST_TOLD)]));
@@ -83,7 +83,10 @@ fn check(arguments: &Shadow) -> Result<()> {
     arguments.places.check(&arguments.outputs)?;
     let is_given = !arguments.suns.time.is_empty() || !arguments.suns.direction.is_empty() || arguments.when.is_given();
     if !is_given {
-        return Err(Usage("say when: --time TIME, --date DAY, --from and --to, or --sun AZ,EL".to_owned()).into());
+        return Err(Usage(
+            "suns are missing: give --time TIME, --date DAY, --from and --to, or --sun AZ,EL".to_owned(),
+        )
+        .into());
     }
     arguments.when.check(&arguments.sun)?;
     for time in &arguments.suns.time {
@@ -99,7 +102,7 @@ fn check(arguments: &Shadow) -> Result<()> {
         check_distinct(arguments.outputs.output.iter().chain([film]))?;
     }
     if (arguments.film.is_some() || arguments.frames.is_some()) && !arguments.places.is_grid() {
-        return Err(Usage("--film and --frames belong to places on a grid".to_owned()).into());
+        return Err(Usage("--film and --frames apply only to a grid".to_owned()).into());
     }
     Ok(())
 }
@@ -151,11 +154,11 @@ fn suns(arguments: &Shadow, scene: &Scene, summary: &mut Summary) -> Result<Vec<
             let title = format!("Shadow, {}", zone.display(instant));
             suns.push(Sun { sun: ShadowSun { to_sun: position.to_sun(&site), season }, column, title });
         }
-        section.add("clocks", zone.name());
+        section.add("time_zone", zone.name());
     }
     section.add("suns", suns.len());
     if below > 0 {
-        section.add("suns_below_the_horizon", below);
+        section.add("suns_below_horizon", below);
     }
     summary.add("sun", section);
     Ok(suns)
@@ -167,14 +170,14 @@ fn instants(arguments: &Shadow, site: &Site, zone: &Zone) -> Result<Vec<f64>> {
         return arguments.suns.time.iter().map(|time| arguments.sun.instant("--time", time)).collect();
     }
     let Some(period) = arguments.when.period(&arguments.sun, site, zone)? else {
-        return Err(Usage("say when: --time, --date, --from and --to, or --sun".to_owned()).into());
+        return Err(Usage("suns are missing: give --time, --date, --from and --to, or --sun".to_owned()).into());
     };
     let params = arguments.when.params(&arguments.sun)?;
     let days = flagged("--time-step-min, --min-sun-elevation or --from", sun_days(site, zone, &period, &params))?;
     let steps: Vec<f64> =
         days.iter().flat_map(|day| &day.steps).map(|step| f64::midpoint(step.start, step.end)).collect();
     if steps.is_empty() {
-        return Err(Usage("the sun does not rise there in that time: nothing is lit".to_owned()).into());
+        return Err(Usage("the sun does not rise there in this period".to_owned()).into());
     }
     Ok(steps)
 }
@@ -228,7 +231,7 @@ fn frame(
         meanings.insert(1, (HALF_COLOR, "in part"));
     }
     if doubts.is_some() {
-        meanings.push((UNPROVEN_COLOR, "lit, not proven"));
+        meanings.push((UNPROVEN_COLOR, "lit, unproven"));
     }
     let (title, legend) = (sun.title.as_str(), MapLegend::Colors(&meanings));
     map_picture(&MapPicture { relief, cell, colors: &colors, marks: &[], title, legend })

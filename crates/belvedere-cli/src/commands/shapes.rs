@@ -58,7 +58,7 @@ pub(super) fn shapes(flag: &str, corners: &Corners, typed_are: TypedAre, cloud: 
             .collect(),
     };
     if found.is_empty() {
-        bail!("{}: there is no geometry in it", path.display());
+        bail!("{}: the file has no geometry", path.display());
     }
     Ok(found)
 }

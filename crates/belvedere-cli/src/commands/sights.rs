@@ -37,12 +37,11 @@ pub(crate) fn blockers(
     section: &mut Summary,
 ) -> Result<(MedialScene, UnprovenAs)> {
     if flags.unproven.is_some() && scene.model.pulses().is_none() {
-        let what = "--unproven needs to know the pulses: a cloud of which the scanner can be found (see `belvedere info`), or an \
-                    .npz that `belvedere balls` made of one";
+        let what = "--unproven needs pulses: a cloud with known scanner positions (see `belvedere info`), or an .npz file from such a cloud";
         return Err(Usage(what.to_owned()).into());
     }
     if flags.shell.is_some() && !scene.model.is_carved() {
-        return Err(Usage("--shell belongs to carved balls, which these are not".to_owned()).into());
+        return Err(Usage("--shell applies only to carved balls, and these are not carved".to_owned()).into());
     }
     let params = scene_params(scene, profile, flags);
     let unproven_as = flags.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
@@ -60,8 +59,8 @@ pub(crate) fn blockers(
 pub(crate) fn add_proof(scene: &MedialScene, section: &mut Summary) {
     if let Some(proof) = scene.proof() {
         section
-            .add("seen_within_m", rounded(proof.nearness(), 3))
-            .add("unseen_length_tolerated_m", rounded(proof.tolerance(), 3));
+            .add("proof_distance_m", rounded(proof.nearness(), 3))
+            .add("max_unproven_length_m", rounded(proof.tolerance(), 3));
     }
 }
 
@@ -85,7 +84,8 @@ pub(crate) fn ground_cloud(
     match choice {
         GroundChoice::OfScene(points) => {
             if scene.cloud.is_empty() {
-                let what = "a ball file holds no points, so that its ground is not known: name the cloud, as in --ground cloud=FILE";
+                let what =
+                    "a ball file has no points, so the ground is unknown: give the cloud with --ground cloud=FILE";
                 return Err(Usage(what.to_owned()).into());
             }
             let frame = PointCloud::in_frame(scene.cloud.frame.clone());
@@ -124,17 +124,18 @@ pub(crate) fn ground(
     summary: &mut Summary,
 ) -> Result<Ground> {
     let params = GroundParams { points, ..GroundParams::default() };
-    let (ground, report) = stages.run("making ground", 0, |control| Ground::of_cloud(cloud, grid, &params, control))?;
+    let (ground, report) =
+        stages.run("computing ground", 0, |control| Ground::of_cloud(cloud, grid, &params, control))?;
     let mut section = Summary::default();
     let from = match report.from {
-        GroundPoints::Found => "points found among all (no class 2)",
+        GroundPoints::Found => "detected points (no class 2)",
         _ => "class 2",
     };
     section
-        .add("from", from)
+        .add("source", from)
         .add("points", report.point_count)
-        .add("columns", grid.width)
-        .add("rows", grid.height)
+        .add("grid_columns", grid.width)
+        .add("grid_rows", grid.height)
         .add("cell_m", rounded(grid.cell, 4))
         .add("cells_without_ground", grid.len() - report.cell_count);
     summary.add("ground", section);
@@ -163,7 +164,7 @@ pub(crate) fn enclosure_note(blockers: &MedialScene, eye: [f64; 3], who: &str) -
     let enclosure = blockers.enclosure(eye);
     (enclosure.ball_count > 0).then(|| {
         format!(
-            "{who} is inside what the cloud takes for solid: {} balls, up to {:.2} m deep; these are left out",
+            "{who} is inside an obstacle: {} balls, up to {:.2} m deep; these balls are ignored",
             enclosure.ball_count, enclosure.depth
         )
     })

@@ -43,10 +43,10 @@ pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
         }
     };
     if scan.is_empty() {
-        bail!("no pulse came back from the town; lower --dropout, or give --stations room or --max-range");
+        bail!("no pulse returned from the town; use a lower --dropout, more --stations or a larger --max-range");
     }
     atomic::make_folder(folder)?;
-    let lit = stages.run("asking what is lit", 0, |_| {
+    let lit = stages.run("testing shadow", 0, |_| {
         let truth = Truth::new(&scene);
         SUNS_DEG.map(|sun| {
             let [azimuth, elevation] = sun.map(f64::to_radians);
@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
 
     summary.add("scene", arguments.scene.name());
     summary.add("objects", scene.object_names.len());
-    summary.add("triangles_of_the_exact_mesh", scene.triangles.len());
+    summary.add("ground_truth_triangles", scene.triangles.len());
     summary.add("points", scan.len());
     summary.add("pulses", pulses_section(&scan));
     for (name, lit) in SUN_NAMES.iter().zip(&lit) {
@@ -104,12 +104,12 @@ fn check_pulses(arguments: &Simulate) -> Result<()> {
     let (count, advice) = match arguments.scanner {
         ScannerChoice::Airborne => {
             let density = arguments.airborne.density.unwrap_or(DENSITY);
-            (density * arguments.extent.powi(2), "lower --density or --extent")
+            (density * arguments.extent.powi(2), "use a use a use a lower --density or --extent")
         }
         ScannerChoice::Terrestrial => {
             let params = terrestrial(arguments, 0);
             let stations = if let Stations::Chosen(count) = params.stations { f64::from(count) } else { 0.0 };
-            (stations * params.pulses_per_station() as f64, "raise --angle-step-deg or lower --stations")
+            (stations * params.pulses_per_station() as f64, "use a larger --angle-step-deg or fewer --stations")
         }
     };
     if count <= MOST_PULSES {
@@ -192,7 +192,7 @@ fn terrestrial_section(params: &TerrestrialParams, scan: &Scan) -> Summary {
     section
         .add("stations", scan.stations.len())
         .add("pulses_per_station", params.pulses_per_station())
-        .add("angular_step_deg", rounded(params.angular_step.to_degrees(), 4));
+        .add("angle_step_deg", rounded(params.angular_step.to_degrees(), 4));
     section
 }
 
@@ -202,11 +202,11 @@ fn pulses_section(scan: &Scan) -> Summary {
         firsts.fold((0, 0), |(all, several), (_, &count)| (all + 1, several + usize::from(count > 1)));
     let mut section = Summary::default();
     section
-        .add("sent", scan.report.pulses)
-        .add("beside_the_town", scan.report.missed_pulses)
-        .add("lost", scan.report.dropped_pulses)
-        .add("recorded", recorded)
-        .add("with_several_returns_percent", percent(several, recorded));
+        .add("pulses_sent", scan.report.pulses)
+        .add("pulses_outside_town", scan.report.missed_pulses)
+        .add("pulses_lost", scan.report.dropped_pulses)
+        .add("pulses_recorded", recorded)
+        .add("pulses_with_several_returns_percent", percent(several, recorded));
     section
 }
 

@@ -30,8 +30,7 @@ pub(crate) fn run(arguments: &SkyView, global: &Global) -> Result<Summary> {
     let trees = arguments.trees.of(&scene, blockers.params(), &mut summary)?;
     let obstacles = Obstacles { scene: &blockers, trees: trees.as_ref() };
     let looks = asked.targets.len() * obstacles.matrix_count();
-    let seen =
-        stages.run("looking at the sky", looks, |control| scene_sky_view(obstacles, &asked.targets, &sky, control))?;
+    let seen = stages.run("testing sky", looks, |control| scene_sky_view(obstacles, &asked.targets, &sky, control))?;
     let measures = seen.into_measures();
     summary.add("sky", asked.statistics(&measures));
     asked.write(&arguments.outputs, &measures, "Sky view factor (cosine-weighted)", &mut stages, &mut summary)?;

@@ -17,15 +17,15 @@ impl SunPlace {
         let (site, _) = match given {
             Some(_) => flagged("--location", found)?,
             None => found.context(
-                "the sun needs to know where on earth the scene lies: give --location LAT,LON, or its system with --crs EPSG:CODE",
+                "the position of the sun needs the location of the scene: give --location LAT,LON, or its reference system with --crs EPSG:CODE",
             )?,
         };
         let mut section = Summary::default();
         section
             .add("latitude_deg", rounded(site.latitude.to_degrees(), 5))
             .add("longitude_deg", rounded(site.longitude.to_degrees(), 5))
-            .add("grid_north_from_true_north_deg", rounded(site.convergence.to_degrees(), 4));
-        summary.add("site", section);
+            .add("meridian_convergence_deg", rounded(site.convergence.to_degrees(), 4));
+        summary.add("location", section);
         Ok(site)
     }
 
@@ -47,7 +47,7 @@ impl SunPlace {
     pub(crate) fn refraction(&self) -> Result<Refraction> {
         match (self.elevation, &self.air) {
             (ElevationChoice::Geometric, Some(_)) => {
-                Err(Usage("--air belongs to --sun-elevation apparent".to_owned()).into())
+                Err(Usage("--air needs --sun-elevation apparent".to_owned()).into())
             }
             (ElevationChoice::Geometric, None) => Ok(Refraction::Without),
             (ElevationChoice::Apparent, None) => Ok(Refraction::Standard),

@@ -22,7 +22,7 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
     arguments.places.check(&arguments.outputs)?;
     let rules = rules(&arguments.rule)?;
     if !arguments.when.is_given() && rules.is_empty() {
-        return Err(Usage("say when: --date DAY, --from and --to, or --rule NAME".to_owned()).into());
+        return Err(Usage("a period is missing: give --date DAY, --from and --to, or --rule NAME".to_owned()).into());
     }
     arguments.when.check(&arguments.sun)?;
     let params = arguments.when.params(&arguments.sun)?;
@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
         check_distinct(arguments.outputs.output.iter().chain([keep]))?;
     }
     if arguments.trees.is_given() && (arguments.keep.is_some() || arguments.from_matrix.is_some()) {
-        let what = "--through-trees: a matrix keeps what all balls hide, trees with the rest; leave out --save-matrix and --load-matrix";
+        let what = "--through-trees does not work with --save-matrix and --load-matrix: a matrix does not separate trees from other obstacles";
         return Err(Usage(what.to_owned()).into());
     }
     let kept = match &arguments.from_matrix {
@@ -106,8 +106,8 @@ fn look(
     let obstacles = Obstacles { scene: &blockers, trees };
     let looks = targets.len() * obstacles.matrix_count();
     let Some(keep) = &arguments.keep else {
-        let sums = stages
-            .run("looking at the sun", looks, |control| scene_sun_hours(obstacles, targets, plan, Some(site), control));
+        let sums =
+            stages.run("testing sun", looks, |control| scene_sun_hours(obstacles, targets, plan, Some(site), control));
         return Ok(sums?);
     };
     let head = MatrixHead {
@@ -117,7 +117,7 @@ fn look(
         scene: matrix_scene(scene, arguments),
     };
     let mut sums = SunSums::default();
-    stages.run("looking at the sun", looks, |control| {
+    stages.run("testing sun", looks, |control| {
         write_matrix_rows(keep, &head, |sink| {
             fold_rows(obstacles, &targets.positions, plan.directions(), control, |block| {
                 (0..block.matrix.target_count()).try_for_each(|row| sink(block.matrix.row(row)))?;
@@ -125,7 +125,7 @@ fn look(
             })
         })
     })?;
-    summary.add("kept", keep.display().to_string());
+    summary.add("matrix_written", keep.display().to_string());
     Ok(sums)
 }
 
@@ -143,7 +143,7 @@ fn matrix_scene(scene: &Scene, arguments: &SunHours) -> u64 {
 fn check_kept(kept: &MatrixHead, targets: &Targets, scene: u64) -> Result<()> {
     if kept.scene != scene {
         bail!(
-            "--load-matrix: it was made of other balls, or with another --shell or --ball-profile; make it again with --save-matrix"
+            "--load-matrix: the matrix is for other balls, or for another --shell or --ball-profile; make it again with --save-matrix"
         );
     }
     let same = |a: &[f32; 3], b: &[f32; 3]| a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
@@ -152,7 +152,7 @@ fn check_kept(kept: &MatrixHead, targets: &Targets, scene: u64) -> Result<()> {
         && kept.targets.iter().zip(&targets.positions).all(|(a, b)| same(a, b));
     if !is_of_targets {
         bail!(
-            "--load-matrix: it was made for {} other places; ask with the flags of places it was kept with, or make it again with --save-matrix",
+            "--load-matrix: the matrix is for {} other targets; use the same targets, or make it again with --save-matrix",
             kept.targets.len()
         );
     }
@@ -176,7 +176,7 @@ fn rules(typed: &[String]) -> Result<Vec<(&'static str, SunRule)>> {
             None => own.next(),
         };
         let Some(column) = column else {
-            return Err(Usage(format!("--rule: {} rules of one's own at most", OWN_RULES.len())).into());
+            return Err(Usage(format!("--rule: at most {} rules of your own", OWN_RULES.len())).into());
         };
         if rules.iter().any(|(_, other)| other.name == rule.name) {
             return Err(Usage(format!("--rule {text}: given twice")).into());
@@ -217,10 +217,12 @@ fn plan(
     let main = match (when.period(&arguments.sun, site, &zone)?, of_rules.first()) {
         (Some(period), _) => schedule(&period, params)?,
         (None, Some((.., first))) => first.clone(),
-        (None, None) => return Err(Usage("say when: --date, --from and --to, or --rule".to_owned()).into()),
+        (None, None) => {
+            return Err(Usage("a period is missing: give --date, --from and --to, or --rule".to_owned()).into());
+        }
     };
     let plan = SunPlan::new(main, of_rules);
-    summary.add("when", figures(&plan, &zone, params));
+    summary.add("period", figures(&plan, &zone, params));
     Ok((plan, zone))
 }
 
@@ -241,15 +243,15 @@ fn figures(plan: &SunPlan, zone: &Zone, params: &DayParams) -> Summary {
         .add("first_day", first.unwrap_or_default())
         .add("last_day", last.unwrap_or_default())
         .add("days", main.days.len())
-        .add("clocks", zone.name())
-        .add("step_min", rounded(params.step / 60.0, 3))
+        .add("time_zone", zone.name())
+        .add("time_step_min", rounded(params.step / 60.0, 3))
         .add("suns", main.days.iter().map(|day| day.steps.len()).sum::<usize>())
         .add("directions", main.directions.len())
-        .add("possible_hours_a_day", rounded(main.possible_hours() / count, 3));
+        .add("possible_hours_per_day", rounded(main.possible_hours() / count, 3));
     if main.greatest_error > 0.0 {
         section
-            .add("directions_off_at_most_deg", rounded(main.greatest_error.to_degrees(), 3))
-            .add("directions_off_rms_deg", rounded(main.rms_error.to_degrees(), 3));
+            .add("max_direction_error_deg", rounded(main.greatest_error.to_degrees(), 3))
+            .add("rms_direction_error_deg", rounded(main.rms_error.to_degrees(), 3));
     }
     for planned in plan.rules() {
         let text = format!("{} on {} days", planned.rule.description, planned.schedule.days.len());

@@ -51,8 +51,7 @@ pub(super) fn eyes(
             let Some(level) = ground.height_at([place[0], place[1]]) else {
                 let [x, y, _] = sights::file(&cloud, *place);
                 bail!(
-                    "eye {} at {x:.3},{y:.3}: there is no ground known below it; is it in the coordinates of the cloud? Else give its \
-                     height as a third number",
+                    "eye {} at {x:.3},{y:.3}: the ground below is unknown; is the position in the coordinates of the cloud? If so, give its height as a third number",
                     number + 1
                 );
             };
@@ -71,7 +70,7 @@ pub(super) fn note_enclosed(blockers: &MedialScene, eyes: &[[f64; 3]], summary: 
         |(number, &eye): (usize, &[f64; 3])| sights::enclosure_note(blockers, eye, &format!("eye {}", number + 1));
     let mut notes: Vec<String> = eyes.iter().enumerate().filter_map(note).collect();
     if notes.len() > MOST_NOTES {
-        let more = format!("and {} more such notes", notes.len() - MOST_NOTES);
+        let more = format!("and {} more notes of this type", notes.len() - MOST_NOTES);
         notes.truncate(MOST_NOTES);
         notes.push(more);
     }

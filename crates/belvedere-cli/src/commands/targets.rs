@@ -54,10 +54,12 @@ impl SkyPlaces {
             ("--spacing", self.spacing.is_some(), !mesh, "a mesh"),
         ];
         if let Some((flag, .., what)) = refused.into_iter().find(|(_, given, wrong, _)| *given && *wrong) {
-            return Err(Usage(format!("{flag} belongs to places on {what}")).into());
+            return Err(Usage(format!("{flag} applies only to targets on {what}")).into());
         }
         if self.facing == Some(FacingChoice::Normals) && !mesh && !points {
-            return Err(Usage("--facing normals belongs to points and meshes; cells are level".to_owned()).into());
+            return Err(
+                Usage("--facing normals applies only to points and meshes; cells are horizontal".to_owned()).into()
+            );
         }
         Ok(())
     }
@@ -90,7 +92,7 @@ impl SkyPlaces {
         }
         if self.places.own {
             if scene.cloud.is_empty() {
-                return Err(Usage("--self needs the cloud itself; a ball file holds no points".to_owned()).into());
+                return Err(Usage("--self needs a cloud; a ball file has no points".to_owned()).into());
             }
             let frame = scene.cloud.frame.clone();
             let normals = scene.model.take_normals();
@@ -115,7 +117,7 @@ impl SkyPlaces {
         let name = if self.places.surface { "finding the surface" } else { "finding hidden ground" };
         let (targets, report) = stages.run(name, 0, |control| Targets::of_cells(&cloud, ground, &params, control))?;
         if !self.places.surface {
-            summary.add("cells_under_cover_left_out", report.covered_cells_left_out);
+            summary.add("cells_below_objects_excluded", report.covered_cells_left_out);
         }
         Ok(Asked { targets, from: Source::Cells(Box::new(cloud)) })
     }
@@ -221,15 +223,15 @@ impl Asked {
     /// How measures are spread, for people.
     pub(crate) fn statistics(&self, measures: &[Measure]) -> Summary {
         let mut section = Summary::default();
-        section.add("places", self.targets.asked_count());
+        section.add("targets", self.targets.asked_count());
         for measure in measures {
             let digits = i32::try_from(measure.decimals).unwrap_or(3);
             let mut figures = Summary::default();
             if let Some(found) = measure.statistics() {
                 figures
                     .add("mean", rounded(found.mean, digits))
-                    .add("least", rounded(found.least, digits))
-                    .add("most", rounded(found.most, digits));
+                    .add("min", rounded(found.least, digits))
+                    .add("max", rounded(found.most, digits));
             }
             section.add(&measure.name, figures);
         }

@@ -13,15 +13,17 @@ pub(crate) fn run(arguments: &Trajectory, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["csv", "txt"])?;
     if !(0.01..=2.0).contains(&arguments.step) {
         let step = arguments.step;
-        return Err(
-            Usage(format!("--time-step-s is {step}, but must be 0.01 to 2 s: readers do not bridge more")).into()
-        );
+        return Err(Usage(format!(
+            "--time-step-s is {step}, but must be 0.01 to 2 s, because readers do not bridge longer gaps"
+        ))
+        .into());
     }
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let cloud = pipeline::read(&arguments.input, &mut stages, &mut summary)?;
-    let (_, report) = stages
-        .run("finding the scanner", 0, |control| locate(&cloud, &Means::Pulses, &LocateParams::default(), control))?;
+    let (_, report) = stages.run("estimating scanner positions", 0, |control| {
+        locate(&cloud, &Means::Pulses, &LocateParams::default(), control)
+    })?;
     summary.add("scanner", Summary::of(&report));
     summary.add("scanner_by_line", sections(&report.lines()));
     let samples = path_samples(&report.paths, cloud.frame.origin, arguments.step)?;

@@ -12,7 +12,7 @@ impl ThroughTrees {
     /// What was typed, for balls that block as `params`; `None` where trees are opaque.
     pub(crate) fn of(&self, scene: &Scene, params: &BlockRule, summary: &mut Summary) -> Result<Option<TreeLight>> {
         if self.leaves.is_some() && self.through_trees != ThroughTreesChoice::Seasons {
-            return Err(Usage("--leaves belongs to --through-trees seasons".to_owned()).into());
+            return Err(Usage("--leaves needs --through-trees seasons".to_owned()).into());
         }
         let transmissivity = match self.through_trees {
             ThroughTreesChoice::None => return Ok(None),
@@ -20,15 +20,13 @@ impl ThroughTrees {
             ThroughTreesChoice::Share(share) => Transmissivity::constant(share)?,
             ThroughTreesChoice::Pulses => {
                 Transmissivity::measured(scene.model.balls(), scene.model.transmission()).ok_or_else(|| {
-                    let what = "--through-trees pulses: nothing is known of pulses that met vegetation; that takes a cloud with return \
-                                numbers, GPS times and, best, classes, or a ball file made of one";
+                    let what = "--through-trees pulses: the pulses in vegetation are unknown; use a cloud with return numbers, GPS times and preferably classes, or a ball file from such a cloud";
                     Usage(what.to_owned())
                 })?
             }
         };
         if !scene.model.vegetation().contains(&true) {
-            let what = "--through-trees: no ball is known to be vegetation; that takes a cloud with its classes (3 to 5), or with return \
-                        numbers and GPS times, or a ball file made of one";
+            let what = "--through-trees: no ball is known as vegetation; use a cloud with classes 3 to 5, or with return numbers and GPS times, or a ball file from such a cloud";
             return Err(Usage(what.to_owned()).into());
         }
         let leaves = match self.leaves {
@@ -38,13 +36,13 @@ impl ThroughTrees {
         };
         let trees = TreeLight::new(&scene.model, params, transmissivity, leaves, &Control::none())?;
         let mut section = Summary::default();
-        section.add("balls_of_vegetation", scene.model.vegetation().iter().filter(|&&is| is).count());
+        section.add("vegetation_balls", scene.model.vegetation().iter().filter(|&&is| is).count());
         if transmissivity.in_leaf == transmissivity.bare {
             section.add("transmissivity", rounded(transmissivity.in_leaf, 4));
         } else {
             section
                 .add("transmissivity_in_leaf", rounded(transmissivity.in_leaf, 4))
-                .add("transmissivity_bare", rounded(transmissivity.bare, 4));
+                .add("transmissivity_without_leaves", rounded(transmissivity.bare, 4));
         }
         summary.add("trees", section);
         Ok(Some(trees))

@@ -63,7 +63,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     let is_of_points = |path: &Path| OF_POINTS.contains(&super::extension(path).as_str());
     if arguments.masks.is_some() || arguments.output.iter().any(|path| !is_of_points(path)) {
         let targets = cell_targets(&ground, target_height);
-        let seen = stages.run("looking at cells", observers.len(), |progress| {
+        let seen = stages.run("testing cells", observers.len(), |progress| {
             viewshed(&blockers, &observers, &targets, &params, progress)
         })?;
         summary.add("cells", counted(&seen.answers, unproven, Some(grid.cell)));
@@ -77,17 +77,17 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     }
     if arguments.output.iter().any(|path| is_of_points(path)) {
         let params = ViewshedParams { masks: Masks::NotKept, ..params };
-        let seen = stages.run("looking at points", observers.len(), |progress| {
+        let seen = stages.run("testing points", observers.len(), |progress| {
             viewshed(&blockers, &observers, &cloud.positions, &params, progress)
         })?;
-        summary.add("own_points", counted(&seen.answers, unproven, None));
+        summary.add("cloud_points", counted(&seen.answers, unproven, None));
         for output in arguments.output.iter().filter(|path| is_of_points(path)) {
             let report = stages.run("writing", 0, |_| on_points(output, &seen, &cloud))?;
             summary.add_writing(&report);
         }
     }
     if let Some(output) = &arguments.heights {
-        let heights = stages.run("looking for heights", observers.len(), |progress| {
+        let heights = stages.run("computing visible heights", observers.len(), |progress| {
             least_visible_heights(&blockers, &observers, &ground, arguments.ceiling, &earth, progress)
         })?;
         stages.run("writing", 0, |_| write_heights(output, &heights, &ground, &cloud))?;
@@ -157,7 +157,7 @@ fn told(observers: &[Observer], ground: &Ground, blockers: &MedialScene, cloud: 
         notes.extend(enclosure_note(blockers, observer.eye, &who));
     }
     if notes.len() > MOST_NOTES {
-        let more = format!("and {} more such notes", notes.len() - MOST_NOTES);
+        let more = format!("and {} more notes of this type", notes.len() - MOST_NOTES);
         notes.truncate(MOST_NOTES);
         notes.push(more);
     }
@@ -169,13 +169,13 @@ fn counted(answers: &[Answer], unproven: UnprovenAs, cell: Option<f64>) -> Summa
     let counts = AnswerCounts::of(answers);
     let asked = answers.len() - counts.outside_view;
     let mut section = Summary::default();
-    section.add("looked_at", asked).add("visible", counts.visible);
+    section.add("targets", asked).add("visible", counts.visible);
     if unproven == UnprovenAs::Reported {
         section.add("unproven", counts.unproven);
     }
     section
         .add("blocked", counts.blocked)
-        .add("not_looked_at", counts.outside_view)
+        .add("outside_view", counts.outside_view)
         .add("visible_percent", percent(counts.visible, asked));
     if let Some(cell) = cell {
         section.add("visible_m2", rounded(counts.visible as f64 * cell * cell, 1));

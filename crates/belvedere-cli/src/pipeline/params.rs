@@ -85,7 +85,7 @@ impl Shrinking {
             (Some(MethodChoice::Carved), _) => Ok(BallParams::Carved(self.carved()?)),
             (method, default) => {
                 if self.trees.is_some() || !self.without.is_empty() {
-                    return Err(Usage("--trees and --without belong to --method carved".to_owned()).into());
+                    return Err(Usage("--trees and --without need --method carved".to_owned()).into());
                 }
                 Ok(BallParams::Shrunk(self.shrunk(method.unwrap_or(default))?))
             }
@@ -109,7 +109,7 @@ impl Shrinking {
             }
             ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
                 if self.penetration.is_some() {
-                    return Err(Usage("--penetration belongs to --method tau and carved".to_owned()).into());
+                    return Err(Usage("--penetration needs --method tau or carved".to_owned()).into());
                 }
                 let typed = |angle: Option<f64>, default: f64| angle.map_or(default, f64::to_radians);
                 *first_separation_angle = typed(self.first_angle, *first_separation_angle);
@@ -142,7 +142,7 @@ impl Shrinking {
 }
 
 fn angles_only() -> anyhow::Error {
-    Usage("--first-angle and --next-angle belong to --method angles".to_owned()).into()
+    Usage("--first-angle and --next-angle need --method angles".to_owned()).into()
 }
 
 /// Makes a parameter out of range an error about its flag.

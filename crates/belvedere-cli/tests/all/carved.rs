@@ -58,7 +58,7 @@ fn a_carved_ball_file_answers_as_the_cloud_does_and_reports_what_was_cut() {
     let run = place.summary(&format!("query town/cloud.laz --method carved {asked} -o from_cloud.npy"));
     let cloud = place.npy::<u8>("from_cloud.npy").1;
     let answers = &run["answers"];
-    assert_eq!(answers["answered_by"], "lines of sight");
+    assert_eq!(answers["method"], "lines of sight");
     let counts = ["blocked", "visible", "unproven"].map(|name| answers[name].as_u64().unwrap());
     assert_eq!(counts, [0, 1, 2].map(|code| cloud.iter().filter(|&&answer| answer == code).count() as u64));
     assert!(counts.iter().all(|&count| count > 10) && counts.iter().sum::<u64>() == 20_000, "{counts:?}");
@@ -180,6 +180,6 @@ fn without_times_and_angles_carving_goes_on_with_an_assumption_that_is_stated() 
     // the classes are gone as well as the pulses; guessing answers half of the points right
     assert!(mean(assumed) < mean(known) + 0.12, "{assumed:?} {known:?}");
     let facts = place.summary("info bare.csv");
-    assert!(facts["can_serve"]["--method carved"].as_str().unwrap().contains("assumed"), "{facts}");
-    assert!(facts["can_serve"]["--orient pulses"].as_str().unwrap().starts_with("no: "), "{facts}");
+    assert!(facts["usable_for"]["--method carved"].as_str().unwrap().contains("assumed"), "{facts}");
+    assert!(facts["usable_for"]["--orient pulses"].as_str().unwrap().starts_with("no: "), "{facts}");
 }

@@ -46,9 +46,9 @@ fn every_method_gets_scores_costs_and_pictures() {
     let street = |method| rate(results, method, "PED", "suns", "false_blocked");
     assert!(street("paper-sphere") > 0.5 && street("tau") < 0.3);
     let html = fs::read_to_string(place.path("out/report.html")).unwrap();
-    assert!(html.contains("town-100m-1--tau.png") && html.contains("Which balls of the published method"));
+    assert!(html.contains("town-100m-1--tau.png") && html.contains("Wrong balls of the published method"));
     // of the four groups of views one holds the suns; each target of each sun gets one answer of three
-    let answers = results["places"][0]["answers"].as_array().unwrap();
+    let answers = results["targets"][0]["answers"].as_array().unwrap();
     let row = |set: &str, views: &str| {
         let row = answers.iter().find(|row| row["set"] == set && row["views"] == views).unwrap();
         ["visible", "unproven", "blocked"].map(|name| [0, 1].map(|i| row[name][i].as_u64().unwrap()))
@@ -66,7 +66,7 @@ fn every_method_gets_scores_costs_and_pictures() {
     let [visible, unproven, _] = row("PED", "sun at 65°").map(|[given, right]| right as f64 / given as f64);
     assert!(visible > unproven, "what pulses bear out is right more often: {visible} {unproven}");
     assert!(html.contains("What each answer of carved balls is worth") && html.contains("People in streets"));
-    let audit = results["places"][0]["audit"].as_array().unwrap();
+    let audit = results["targets"][0]["audit"].as_array().unwrap();
     assert!(audit.iter().any(|row| row["surface"] == "facade" && row["balls"].as_u64() > row["wrong"].as_u64()));
 }
 
@@ -98,7 +98,7 @@ fn tables_go_between_the_marks_of_a_page() {
     place.summary(&format!("compare {SMALL} -o out --page page.md"));
     let page = fs::read_to_string(place.path("page.md")).unwrap();
     assert!(page.starts_with("# Ours\n<!-- tables -->\n") && page.ends_with("<!-- end of tables -->\nclosing words\n"));
-    assert!(page.contains("| balls cut to half a metre |") && !page.contains("old"));
+    assert!(page.contains("| balls limited to half a metre |") && !page.contains("old"));
     place.refusal(1, &format!("compare {SMALL} -o out --page bare.md"), &["bare.md", "<!-- tables -->"]);
     assert_eq!(fs::read_to_string(place.path("bare.md")).unwrap(), "# Nothing\n");
 }
@@ -146,7 +146,9 @@ fn clouds_are_judged_by_the_pulses_kept_from_the_methods() {
     let refused = results.iter().find(|r| r["method"] == "hidden-points").unwrap();
     assert!(refused["failed"].as_str().unwrap().contains("eye"), "{refused}");
     let markdown = fs::read_to_string(place.path("out/report.md")).unwrap();
-    assert!(markdown.contains("### Held-out pulses of cloud") && markdown.contains("### What has no answer"));
+    assert!(
+        markdown.contains("### Held-out pulses of cloud") && markdown.contains("### Combinations without an answer")
+    );
     let by_path = "compare --held-out town/cloud.laz --trajectory town/trajectory.csv --methods carved -o by_path";
     let known = place.summary(by_path)["results"]["held_out"][0]["scanner_known"].as_f64().unwrap();
     // the trajectory covers every pulse

@@ -14,7 +14,7 @@ fn azimuths_of_the_sun_are_from_true_north_unless_grid_north_is_wanted() {
     let along = |flags: &str| {
         let run = place.summary(&format!("depth-map house.laz {made} {flags}"));
         let axis: Vec<f64> =
-            run["view"]["looks_along"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+            run["view"]["view_direction"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
         // the sun is behind the viewer
         ((-axis[0]).atan2(-axis[1]).to_degrees().rem_euclid(360.0), run)
     };

@@ -59,8 +59,8 @@ fn an_envelope_rises_from_the_fence_at_the_elevation_of_the_sun_and_its_solid_ha
         "envelope house.laz --date 2026-12-21 --between 10:00,14:00 --time-step-min 60 --location 52,5 --zone +01:00 --max-height 40 -o day.tif",
         &with,
     );
-    assert_eq!(told["when"]["suns"].as_u64(), Some(5), "{told}");
-    assert!(told["envelope"]["suns_that_bind_most"][0].as_str().unwrap().starts_with("2026-12-21T1"), "{told}");
+    assert_eq!(told["period"]["suns"].as_u64(), Some(5), "{told}");
+    assert!(told["envelope"]["limiting_suns"][0].as_str().unwrap().starts_with("2026-12-21T1"), "{told}");
 }
 
 #[test]

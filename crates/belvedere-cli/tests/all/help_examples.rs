@@ -1,6 +1,8 @@
 //! Help texts show examples, and the examples work as printed.
 
 use crate::common::{Workplace, house};
+use std::collections::BTreeSet;
+use std::path::Path;
 
 const COMMANDS: [&str; 23] = [
     "demo",
@@ -93,15 +95,32 @@ fn every_example_works_as_printed() {
     let demo = place.run("demo -o demo");
     assert_eq!(demo.status, 0, "{demo:?}");
     place.write_folder("FOLDER", &house());
-    for command in COMMANDS {
-        let help = place.run(&format!("help {command}")).stdout;
-        for example in examples(&help) {
-            // what stands behind > is the shell's
-            let line = example.split(" > ").next().unwrap().to_owned();
-            let words = words(&line);
-            let words: Vec<&str> = words.iter().map(String::as_str).collect();
-            let run = place.run_with("", &words);
-            assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{example}");
+    let mut done = BTreeSet::new();
+    let of_help = COMMANDS.iter().flat_map(|command| examples(&place.run(&format!("help {command}")).stdout));
+    let of_help: Vec<String> = of_help.collect();
+    for example in of_help.into_iter().chain(cookbook()) {
+        // what follows > is for the shell
+        let line = example.split(" > ").next().unwrap().to_owned();
+        if !done.insert(line.clone()) {
+            continue;
         }
+        let words = words(&line);
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let run = place.run_with("", &words);
+        assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{example}");
     }
+}
+
+/// The commands of the cookbook.
+fn cookbook() -> Vec<String> {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/cookbook.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let blocks = page.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let lines: Vec<String> =
+        blocks.flat_map(|block| block.replace(" \\\n   ", "").lines().map(str::to_owned).collect::<Vec<_>>()).collect();
+    let commands = lines.iter().filter_map(|line| line.strip_prefix("belvedere "));
+    let commands: Vec<String> =
+        commands.map(|line| line.split(" #").next().unwrap_or(line).trim().to_owned()).collect();
+    assert!(commands.len() > 30, "{commands:?}");
+    commands
 }

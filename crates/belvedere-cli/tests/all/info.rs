@@ -34,8 +34,8 @@ fn info_tells_counts_bounds_density_and_unit() {
     assert_eq!(facts["file"][0]["points"], n);
     assert!(facts["reading"]["reference_system"].as_str().unwrap().contains("EPSG:28992"));
     assert_eq!(facts["metres_per_unit"], 1.0);
-    assert_eq!(numbers(&facts["lowest_corner"]), [84_985.0, 445_985.0, -0.08]);
-    assert_eq!(numbers(&facts["highest_corner"]), [85_015.0, 446_015.0, 8.813]);
+    assert_eq!(numbers(&facts["min_corner"]), [84_985.0, 445_985.0, -0.08]);
+    assert_eq!(numbers(&facts["max_corner"]), [85_015.0, 446_015.0, 8.813]);
     // 30 m by 30 m; cells of a metre or two on the rim count as a whole
     let area = facts["covered_ground_m2"].as_f64().unwrap();
     assert!((900.0..1100.0).contains(&area), "{area}");
@@ -46,9 +46,9 @@ fn info_tells_counts_bounds_density_and_unit() {
     assert_eq!(facts["attributes"]["classification"]["class 2"], 100);
     assert_eq!(facts["duplicate_points"], 0);
     for command in ["normals", "balls", "depth-map", "query", "--orient trajectory=FILE", "--orient given"] {
-        assert_eq!(facts["can_serve"][command], "yes", "{command}");
+        assert_eq!(facts["usable_for"][command], "yes", "{command}");
     }
-    assert!(facts["can_serve"]["--orient scanner"].as_str().unwrap().starts_with("no: "));
+    assert!(facts["usable_for"]["--orient scanner"].as_str().unwrap().starts_with("no: "));
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn what_info_says_can_be_served_can_be_served() {
     place.write_cloud("house.laz", &house());
     for (name, given) in [("bare.laz", false), ("house.laz", true)] {
         let facts = place.summary(&format!("info {name}"));
-        assert_eq!(facts["can_serve"]["--orient given"] == "yes", given);
+        assert_eq!(facts["usable_for"]["--orient given"] == "yes", given);
         let run = place.run(&format!("balls {name} --orient given -o out.npz"));
         assert_eq!(run.status == 0, given, "{run:?}");
         place.refusal(1, &format!("balls {name} --orient scanner -o out.npz"), &["scanner"]);
@@ -69,7 +69,7 @@ fn what_info_says_can_be_served_can_be_served() {
     assert!(missing.contains("GPS time") && missing.contains("flight lines"), "{missing}");
     // balls need a handful of points
     place.write("three.xyz", "0 0 0\n1 0 0\n0 1 0\n");
-    assert!(place.summary("info three.xyz")["can_serve"]["balls"].as_str().unwrap().starts_with("no: "));
+    assert!(place.summary("info three.xyz")["usable_for"]["balls"].as_str().unwrap().starts_with("no: "));
 }
 
 #[test]
@@ -83,7 +83,7 @@ fn feet_are_told_and_bounds_stay_in_them() {
     let facts = place.summary("info feet.laz");
     assert_eq!(facts["metres_per_unit"], 0.3048);
     assert!(facts["reading"]["reference_system"].as_str().unwrap().contains("international feet"));
-    let low = numbers(&facts["lowest_corner"]);
+    let low = numbers(&facts["min_corner"]);
     // a thousandth of a foot is what is printed
     assert!((low[0] - 199_985.0 / 0.3048).abs() < 2e-3 && (low[1] - 299_985.0 / 0.3048).abs() < 2e-3, "{low:?}");
     // the ground is counted in square metres all the same

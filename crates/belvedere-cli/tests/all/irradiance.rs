@@ -22,7 +22,7 @@ fn the_ground_north_of_a_house_gets_less() {
     let place = place();
     let outputs = "-o energy.tif -o energy.png -o energy.csv --measures measures";
     let summary = place.summary(&format!("irradiance {HOUSE} --clear-sky ineichen --cell 1 --months {outputs}"));
-    assert_eq!(summary["site"]["from"], "reference system");
+    assert_eq!(summary["location"]["from"], "reference system");
     // a clear year at 52° N has about 1630 kWh/m² on a level plane (pvlib: 1631 at a turbidity of 3)
     let global = summary["radiation"]["global_kwh_m2"].as_f64().unwrap();
     assert!((1600.0..1660.0).contains(&global), "{global}");
@@ -55,13 +55,13 @@ fn roofs_are_planes_with_bounds_of_their_loss() {
     let south = azimuth.iter().position(|azimuth| (azimuth - 180.0).abs() < 5.0).unwrap();
     let energy = numbers(&text, "kwh_m2");
     assert!(energy[south] > 1.3 * energy[1 - south], "{energy:?}");
-    for (least, most) in numbers(&text, "least_loss").iter().zip(numbers(&text, "most_loss")) {
+    for (least, most) in numbers(&text, "min_loss").iter().zip(numbers(&text, "max_loss")) {
         // nothing stands before these roofs but their own roughness
         assert!((0.0..=most).contains(least) && *least < 0.1, "{least} {most}");
     }
     let area = numbers(&text, "area_m2");
     assert!(area.iter().all(|area| (area - 50.0).abs() < 8.0), "10 m by 5 m each: {area:?}");
-    assert!(place.text("roofs.geojson").contains("most_loss"));
+    assert!(place.text("roofs.geojson").contains("max_loss"));
     for plane in ["plane_1.txt", "plane_2.txt"] {
         let horizon = place.text(&format!("horizons/{plane}"));
         assert_eq!(horizon.lines().filter(|line| line.parse::<f64>().is_ok()).count(), 48);
@@ -91,10 +91,10 @@ fn weather_comes_from_files() {
         (&summary["radiation"]["rows"], summary["radiation"]["global_kwh_m2"].as_f64()),
         (&12.into(), Some(3.6))
     );
-    assert!(summary["site"]["note"].is_null());
+    assert!(summary["location"]["note"].is_null());
     place.write("elsewhere.csv", weather(40.0, 0.0));
     let summary = place.summary(&format!("irradiance {HOUSE} --weather elsewhere.csv --cell 4 -o out.csv"));
-    assert!(summary["site"]["note"].as_str().unwrap().contains("km off"), "{summary}");
+    assert!(summary["location"]["note"].as_str().unwrap().contains("km away"), "{summary}");
 }
 
 #[test]
@@ -123,5 +123,5 @@ fn what_cannot_be_is_refused_with_advice() {
     let flags = "--method tau --orient given --ground found --sun-cell-deg 4 --clear-sky bird --cell 4 -o out.csv";
     place.refusal(1, &format!("irradiance adrift.ply {flags}"), &["--location", "--crs"]);
     let summary = place.summary(&format!("irradiance adrift.ply {flags} --location 52,4.4"));
-    assert_eq!(summary["site"]["from"], "--location");
+    assert_eq!(summary["location"]["from"], "--location");
 }

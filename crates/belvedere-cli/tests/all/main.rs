@@ -13,6 +13,7 @@ mod help_examples;
 mod info;
 mod interrupts;
 mod irradiance;
+mod language;
 mod masbcpp_folder;
 mod odd_clouds;
 mod queries;

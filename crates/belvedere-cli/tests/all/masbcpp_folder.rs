@@ -111,7 +111,7 @@ fn thinning_depends_on_the_seed_alone() {
     place.write_folder("folder", &house());
     for (seed, out) in [(1, "a"), (2, "b"), (2, "c")] {
         let summary = place.summary(&format!("balls folder --simplify 0.4 --seed {seed} -o {out}"));
-        let kept = summary["kept_by_thinning_percent"].as_f64().unwrap();
+        let kept = summary["thinning_kept_percent"].as_f64().unwrap();
         assert!(kept > 0.0 && kept < 100.0, "{kept}");
     }
     let (shape, sizes) = place.npy::<f32>("a/lfs.npy");

@@ -52,7 +52,7 @@ fn array_targets_get_an_array_of_answers_in_their_order() {
     let arguments = "query house.laz --targets targets.npy -o answers.npy --viewport";
     let summary = place.summary_with(arguments, &[FROM_ABOVE]);
     assert_eq!(place.npy::<u8>("answers.npy"), (vec![targets.len() as u64], expected));
-    assert_eq!(["visible", "blocked", "outside_the_view"].map(|name| count(&summary, name)), [3, 3, 3]);
+    assert_eq!(["visible", "blocked", "outside_view"].map(|name| count(&summary, name)), [3, 3, 3]);
     // the other way round
     let backwards: Vec<[f64; 3]> = targets.iter().rev().copied().collect();
     let before = place.npy::<u8>("answers.npy").1;
@@ -340,8 +340,8 @@ fn a_camera_and_a_panorama_answer_by_exact_lines_of_sight() {
         let summary = place.summary(&format!("query house.laz --targets targets.npy -o answers.npy {view}"));
         let expected: Vec<u8> = targets.iter().map(|t| t.1[i]).collect();
         assert_eq!(place.npy::<u8>("answers.npy").1, expected, "{view}");
-        assert_eq!(summary["answers"]["answered_by"], "lines of sight");
-        assert_eq!(summary["answers"]["balls_around_the_eye_left_out"], 0);
+        assert_eq!(summary["answers"]["method"], "lines of sight");
+        assert_eq!(summary["answers"]["balls_around_eye_ignored"], 0);
     }
     place.refusal(
         2,
@@ -362,8 +362,8 @@ fn many_targets_for_few_pixels_are_settled_by_a_certified_map_with_the_same_answ
     let ask =
         |size: &str, name: &str| place.summary(&format!("query balls.npz --random 30000 -o {name} {}", view(size)));
     let (few, many) = (ask("80x60", "few.npy"), ask("800x600", "many.npy"));
-    assert!(few["answers"]["settled_by_the_map_percent"].as_f64().unwrap() > 50.0, "{few}");
-    assert_eq!(many["answers"]["answered_by"], "lines of sight");
+    assert!(few["answers"]["decided_by_map_percent"].as_f64().unwrap() > 50.0, "{few}");
+    assert_eq!(many["answers"]["method"], "lines of sight");
     let [few, many] = ["few.npy", "many.npy"].map(|name| place.npy::<u8>(name).1);
     assert!(few == many && few.contains(&BLOCKED) && few.contains(&VISIBLE) && few.contains(&OUTSIDE));
 }

@@ -81,7 +81,7 @@ fn a_time_is_the_same_however_it_is_written_and_nothing_is_lit_at_night() {
     assert_eq!(morning[2..], [1.0, 0.0]);
     let (night, run) = lit("--time 2026-06-21T01:00+02:00");
     assert_eq!(night, [0.0; 4]);
-    assert_eq!(run["sun"]["suns_below_the_horizon"], 1);
+    assert_eq!(run["sun"]["suns_below_horizon"], 1);
     let (below, _) = lit("--sun 180,-5");
     assert_eq!(below, [0.0; 4]);
     // several times have a column each, in their order

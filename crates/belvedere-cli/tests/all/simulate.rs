@@ -45,7 +45,7 @@ fn an_airborne_survey_comes_with_all_that_one_delivers() {
     let pulses: f64 = a.return_count.as_ref().unwrap().iter().map(|&count| 1.0 / f64::from(count)).sum();
     // 3 a square metre asked for; some 1 % are lost
     assert!((pulses / 120.0 / 120.0 - 2.97).abs() < 0.15, "{pulses}");
-    assert_eq!(pulses.round(), summary["pulses"]["recorded"].as_f64().unwrap());
+    assert_eq!(pulses.round(), summary["pulses"]["pulses_recorded"].as_f64().unwrap());
 
     // The path is known at all times, from either file.
     let times = a.gps_time.as_ref().unwrap();
@@ -62,7 +62,7 @@ fn an_airborne_survey_comes_with_all_that_one_delivers() {
     assert_eq!(city.crs.epsg, Some(7415));
     // And other commands take it as it is.
     let facts = place.summary("info out/cloud.laz");
-    assert_eq!(facts["pulses"], summary["pulses"]["recorded"]);
+    assert_eq!(facts["pulses"], summary["pulses"]["pulses_recorded"]);
     assert!(facts["pulses_with_several_returns_percent"].as_f64().unwrap() > 1.0);
     assert!(facts["facades"]["points_per_m2_of_wall"].as_f64().unwrap() > 0.05);
     place.summary("normals out/cloud.laz --orient trajectory=out/trajectory.sbet -o normals.laz");
@@ -106,7 +106,10 @@ fn flags_of_the_airborne_scanner_do_what_they_say() {
     let (_, crossed) = with("--strips 3 --cross-strips 2");
     assert_eq!(crossed.attributes.point_source_id.as_ref().unwrap().iter().max(), Some(&5));
     let (summary, lossy) = with("--dropout 0.5");
-    assert!(summary["pulses"]["lost"].as_f64().unwrap() > 0.9 * summary["pulses"]["recorded"].as_f64().unwrap());
+    assert!(
+        summary["pulses"]["pulses_lost"].as_f64().unwrap()
+            > 0.9 * summary["pulses"]["pulses_recorded"].as_f64().unwrap()
+    );
     assert!(lossy.len() < conical.len());
     let (_, hard) = with("--foliage-depth 0 --noise 0");
     let counts = |cloud: &PointCloud| {

@@ -51,19 +51,19 @@ fn hours_are_those_of_the_exact_house() {
         }
     }
     assert!(expected[0][0] < expected[1][0] - 2.0, "the house must shade something: {expected:?}");
-    let when = &run["when"];
+    let when = &run["period"];
     assert_eq!(
-        (&when["first_day"], &when["days"], &when["clocks"]),
+        (&when["first_day"], &when["days"], &when["time_zone"]),
         (&"2026-03-21".into(), &1.into(), &"Europe/Amsterdam".into())
     );
-    let possible = when["possible_hours_a_day"].as_f64().unwrap();
+    let possible = when["possible_hours_per_day"].as_f64().unwrap();
     assert!((possible - day.possible_hours()).abs() < 0.01);
     // pvlib 0.16.1 has the middle of the sun appear in Delft at 05:44:46 UTC, 06:44:46 winter time
     assert!((expected[3][1] - 6.7458).abs() < 2e-3, "{}", expected[3][1]);
     for (hours, share) in found[0].iter().zip(column(&place, "hours.csv", "sun_share")) {
         assert!((hours / possible - share).abs() < 2e-3);
     }
-    assert!((run["site"]["latitude_deg"].as_f64().unwrap() - 51.998).abs() < 0.001, "{}", run["site"]);
+    assert!((run["location"]["latitude_deg"].as_f64().unwrap() - 51.998).abs() < 0.001, "{}", run["location"]);
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn rules_and_periods_have_columns_and_a_kept_matrix_answers_the_same() {
     assert_eq!(met("rules.csv")[0], [1.0; 4]);
     assert_eq!(met("rules.csv")[1], [0.0, 1.0, 0.0, 1.0]);
     assert_eq!(met("rules.csv")[2][3], 1.0);
-    assert!(first["when"]["rule_1"].as_str().unwrap().contains("11 h on 03-21"), "{}", first["when"]);
+    assert!(first["period"]["rule_1"].as_str().unwrap().contains("11 h on 03-21"), "{}", first["period"]);
     let bits: Vec<u64> = place.npz("seen.npz", "bits");
     let directions: Vec<f64> = place.npz("seen.npz", "directions");
     assert_eq!(bits.len(), 4 * (directions.len() / 3).div_ceil(64));
@@ -109,7 +109,8 @@ fn rules_and_periods_have_columns_and_a_kept_matrix_answers_the_same() {
     place.summary(&format!(
         "sun-hours {HOUSE} --from 2026-03-20T12:00+01:00 --to 2026-03-22T12:00+01:00 --time-step-min 30 --cell 4 -o grid.csv -o grid.tif -o grid.png"
     ));
-    let [hours, total, least] = ["sun_hours", "total_hours", "least_day"].map(|name| column(&place, "grid.csv", name));
+    let [hours, total, least] =
+        ["sun_hours", "total_hours", "min_sun_hours"].map(|name| column(&place, "grid.csv", name));
     assert!(hours.iter().zip(&total).all(|(hours, total)| (3.0 * hours - total).abs() < 5e-3));
     assert!(hours.iter().zip(&least).all(|(hours, least)| *least <= hours + 1e-3));
     assert!(!place.names().iter().any(|name| name == "no.csv"));
@@ -156,10 +157,10 @@ fn what_cannot_be_is_refused_with_advice() {
     place.refusal(1, &format!("sun-hours {lost} --date 2026-06-21 -o no.csv"), &["--location LAT,LON", "--crs"]);
     let run = place.summary(&format!("sun-hours {lost} --date 2026-06-21 --location -33.9,151.2 -o south.csv"));
     // the shortest day of Sydney, by the sun's own clock
-    assert!((run["when"]["possible_hours_a_day"].as_f64().unwrap() - 9.85).abs() < 0.1, "{run}");
-    assert_eq!(run["when"]["clocks"], "mean solar time");
+    assert!((run["period"]["possible_hours_per_day"].as_f64().unwrap() - 9.85).abs() < 0.1, "{run}");
+    assert_eq!(run["period"]["time_zone"], "mean solar time");
     // polar night: no hours, and no share
     let run = place.summary(&format!("sun-hours {lost} --date shortest-day --location 80,15 -o night.csv"));
-    assert_eq!(run["when"]["suns"], 0);
+    assert_eq!(run["period"]["suns"], 0);
     assert!(column(&place, "night.csv", "sun_hours").iter().all(|&hours| hours == 0.0));
 }

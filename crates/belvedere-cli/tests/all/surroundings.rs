@@ -96,7 +96,7 @@ fn landmarks_give_tables_rasters_and_maps() {
         "landmark {HOUSE} --ground found --targets wall.obj --cell 3 --measures all -o share.tif -o share.png -o grid.csv"
     ));
     let standing = run["observers"]["count"].as_u64().unwrap();
-    assert!(run["observers"]["inside_something_solid"].as_u64().unwrap() > 0, "{run}");
+    assert!(run["observers"]["observers_inside_obstacles"].as_u64().unwrap() > 0, "{run}");
     assert_eq!(column(&place, "grid.csv", "x").len() as u64, standing);
     let mut tif = tiff::decoder::Decoder::new(std::fs::File::open(place.path("share.tif")).unwrap()).unwrap();
     let tiff::decoder::DecodingResult::F32(shares) = tif.read_image().unwrap() else { unreachable!() };
@@ -178,7 +178,7 @@ fn isovists_and_horizons_of_a_house_are_those_of_its_shape() {
     let heights = column(&place, "two_isovists.csv", "z");
     assert!(heights.len() == 2 && heights.iter().all(|z| (z - 1.7).abs() < 0.1), "{heights:?}");
     place.refusal(2, &format!("horizon {HOUSE} --observers eyes.csv -o two.txt"), &[".csv"]);
-    place.refusal(2, &format!("isovist {HOUSE} --observers eyes.csv -o two.png"), &["single eye"]);
+    place.refusal(2, &format!("isovist {HOUSE} --observers eyes.csv -o two.png"), &["single observer"]);
     place.refusal(
         2,
         &format!("horizon {HOUSE} --observer {eye} --angle-step-deg 7 -o sky.csv"),

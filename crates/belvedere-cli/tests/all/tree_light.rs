@@ -149,7 +149,7 @@ fn planes_of_roofs_get_light_through_crowns() {
     let energy = |flags: &str| {
         let usual = "--clear-sky haurwitz --sun-cell-deg 6 --patch-division 1";
         place.summary(&format!("irradiance tall.laz --orient given --method tau {usual} {flags} --planes roofs.csv"));
-        ["kwh_m2", "free_kwh_m2", "least_loss", "most_loss"].map(|name| column(&place, "roofs.csv", name))
+        ["kwh_m2", "free_kwh_m2", "min_loss", "max_loss"].map(|name| column(&place, "roofs.csv", name))
     };
     let [opaque, .., opaque_loss, opaque_most] = energy("");
     let [quarter, ..] = energy("--through-trees 0.25");
@@ -171,9 +171,9 @@ fn what_cannot_be_is_refused_with_advice() {
             ("--through-trees 1.5", TREES, "0 (opaque) to 1"),
             ("--through-trees -0.1", TREES, "0 (opaque) to 1"),
             ("--through-trees leaves", TREES, "seasons"),
-            ("--through-trees 0.5 --leaves on", TREES, "--leaves belongs to"),
-            ("--leaves off", TREES, "--leaves belongs to"),
-            ("--through-trees pulses", TREES, "pulses that met vegetation"),
+            ("--through-trees 0.5 --leaves on", TREES, "--leaves needs"),
+            ("--leaves off", TREES, "--leaves needs"),
+            ("--through-trees pulses", TREES, "pulses in vegetation"),
             ("--through-trees seasons", "house.laz --orient given --method tau", "vegetation"),
         ] {
             let run = place.run(&format!("{command} {scene} {flags} {trees} --targets places.csv -o no.csv"));

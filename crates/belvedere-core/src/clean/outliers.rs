@@ -52,7 +52,11 @@ impl IsolatedPoints {
     pub(super) fn check(&self) -> Result<()> {
         if self.min_neighbors == 0 {
             let value = self.min_neighbors.to_string();
-            return Err(Error::InvalidParameter { name: "least number of neighbours", value, expected: "at least 1" });
+            return Err(Error::InvalidParameter {
+                name: "minimum number of neighbours",
+                value,
+                expected: "at least 1",
+            });
         }
         match self.radius {
             IsolationRadius::Metres(metres) => check_length("isolation radius", metres),

@@ -46,9 +46,9 @@ impl Default for FinderParams {
 impl FinderParams {
     fn validate(&self) -> Result<()> {
         let above_zero = [
-            ("cell of the ground finder", self.cell),
-            ("slope of the ground finder", self.slope),
-            ("window of the ground finder", self.window),
+            ("cell of the ground detection", self.cell),
+            ("slope of the ground detection", self.slope),
+            ("window of the ground detection", self.window),
         ];
         for (name, value) in above_zero {
             if !(value.is_finite() && value > 0.0) {
@@ -58,14 +58,14 @@ impl FinderParams {
         if self.window / self.cell > 10_000.0 {
             let value = format!("{} m at cells of {} m", self.window, self.cell);
             return Err(Error::InvalidParameter {
-                name: "window of the ground finder",
+                name: "window of the ground detection",
                 value,
                 expected: "at most 10 000 cells",
             });
         }
         for (name, value) in [
-            ("tolerance of the ground finder", self.tolerance),
-            ("slope tolerance of the ground finder", self.slope_tolerance),
+            ("tolerance of the ground detection", self.tolerance),
+            ("slope tolerance of the ground detection", self.slope_tolerance),
         ] {
             if !(value.is_finite() && value >= 0.0) {
                 return Err(Error::InvalidParameter { name, value: value.to_string(), expected: "zero or more" });
@@ -92,7 +92,7 @@ pub fn find_ground(cloud: &PointCloud, params: &FinderParams, control: &Control<
     let rows: Vec<usize> = (0..cloud.len()).filter(|&row| usable(row)).collect();
     let positions: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row).copied()).collect();
     let Some(Bounds { low, high }) = Bounds::around(positions.iter().copied()) else {
-        return Err(Error::NoPoints { what: "all points are noise or withheld, none can be ground".to_owned() });
+        return Err(Error::NoPoints { what: "all points are noise or withheld, so there is no ground".to_owned() });
     };
     let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];
     let grid = MapGrid::covering(on_map(low), on_map(high), params.cell, [0.0; 2])?;
@@ -119,7 +119,7 @@ pub fn find_ground(cloud: &PointCloud, params: &FinderParams, control: &Control<
         found.extend(rows.iter().zip(positions).filter(near).map(|(&row, _)| row as u32));
     }
     if found.is_empty() {
-        return Err(Error::NoPoints { what: "no ground was found; class it first".to_owned() });
+        return Err(Error::NoPoints { what: "no ground was detected; classify it first".to_owned() });
     }
     Ok(found)
 }

@@ -96,7 +96,7 @@ pub fn ground_points(
         GroundPoints::Classed => {
             let rows = classed();
             if rows.is_empty() {
-                let what = "no point has class 2 (ground); let the ground be found from all points".to_owned();
+                let what = "no point has class 2 (ground); detect the ground from all points".to_owned();
                 return Err(Error::NoPoints { what });
             }
             Ok((rows, GroundPoints::Classed))

@@ -45,7 +45,11 @@ pub(super) fn tell_vegetation(
     let stop = Stop::new(control);
     if !(1..=256).contains(&params.neighbors) {
         let value = params.neighbors.to_string();
-        return Err(Error::InvalidParameter { name: "neighbours that tell vegetation", value, expected: "1 to 256" });
+        return Err(Error::InvalidParameter {
+            name: "neighbours for the detection of vegetation",
+            value,
+            expected: "1 to 256",
+        });
     }
     if kinds.contains(&Kind::Vegetation) {
         return Ok(0);

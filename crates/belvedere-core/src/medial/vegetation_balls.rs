@@ -24,7 +24,7 @@ pub fn vegetation_of_classes(balls: &MedialBalls, classification: &[u8]) -> Vec<
 pub fn without_vegetation(balls: &MedialBalls, is_vegetation: &[bool]) -> Result<MedialBalls> {
     let (expected, found) = (balls.len(), is_vegetation.len());
     if expected != found {
-        return Err(Error::LengthMismatch { what: "balls told to be vegetation", expected, found });
+        return Err(Error::LengthMismatch { what: "balls of vegetation", expected, found });
     }
     let rows: Vec<usize> = (0..expected).filter(|&row| !is_vegetation[row]).collect();
     Ok(balls.select(&rows))

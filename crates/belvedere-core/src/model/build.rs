@@ -74,7 +74,7 @@ fn of_survey(
             return Err(Error::MissingAttribute {
                 attribute: "pulses that can carve",
                 needed_for: "carving",
-                advice: "make balls from the points alone",
+                advice: "build balls from the points only",
             });
         }
     }

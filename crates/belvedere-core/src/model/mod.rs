@@ -46,7 +46,7 @@ impl SceneModel {
             return Err(Error::InvalidParameter {
                 name: "side of the balls",
                 value: side.clone(),
-                expected: "interior; exterior balls lie in free space and block nothing",
+                expected: "interior, because exterior balls block nothing",
             });
         }
         let vegetation = vegetation_of_transmission(&parts.transmission);

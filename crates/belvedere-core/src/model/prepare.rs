@@ -88,7 +88,7 @@ pub(super) fn prepare(
     let (kept, cleaned) = control.stage("cleaning", read_count, || clean(&cloud, &params.clean, control))?;
     report.removed_by_cleaning = cleaned;
     if kept.is_empty() {
-        return Err(Error::NoPoints { what: format!("{read_count} were read and cleaning removed all") });
+        return Err(Error::NoPoints { what: format!("{read_count} were read, and cleaning removed all of them") });
     }
     let mut cloud = if kept.len() == read_count { cloud } else { Cow::Owned(cloud.select(&kept)) };
     let carving = params.balls.carving();
@@ -190,7 +190,7 @@ fn find_scanner(
         _ => Means::Automatic,
     };
     let (positions, report) =
-        control.stage("finding the scanner", 0, || locate(cloud, &means, &params.locate, control))?;
+        control.stage("estimating scanner positions", 0, || locate(cloud, &means, &params.locate, control))?;
     let is_assumed = report.is_assumed();
     Ok((Scanner { positions, is_assumed }, report))
 }
@@ -209,7 +209,7 @@ fn carving_input(
     let mut report = PulsesReport { needles: report, ..PulsesReport::default() };
     if report.needles.used <= report.needles.too_flat && carving == Carving::IfPossible {
         report.remark = Some(
-            "pulses cannot carve here: most are too flat, as of a scanner on the ground; balls are cut to half a metre"
+            "pulses cannot carve here: most are too flat, as from a scanner on the ground; balls are limited to half a metre"
                 .to_owned(),
         );
         return Ok((None, report));

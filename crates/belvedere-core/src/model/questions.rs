@@ -26,7 +26,7 @@ impl SceneModel {
         let balls = self.balls();
         let scene = control.stage("indexing balls", balls.len(), || MedialScene::new(balls, rule))?;
         let Some(pulses) = self.pulses().filter(|_| unproven != UnprovenAs::Visible) else { return Ok(scene) };
-        let proof = control.stage("indexing pulses to prove by", pulses.starts.len(), || {
+        let proof = control.stage("indexing pulses for proof", pulses.starts.len(), || {
             Proof::new(Needles::from_columns(pulses, control)?, &ProofParams::default())
         })?;
         Ok(scene.with_pulses(proof))

@@ -301,7 +301,7 @@ fn by_own_scanner(cloud: &PointCloud, vectors: &[[f32; 3]], control: &Control<'_
     if cloud.scanner_positions.is_empty() {
         return Err(Error::MissingAttribute {
             attribute: "scanner position",
-            needed_for: "orientation towards the scanner",
+            needed_for: "orientation toward the scanner",
             advice: "give the position of the scanner, or orient by up",
         });
     }

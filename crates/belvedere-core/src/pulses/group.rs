@@ -114,7 +114,7 @@ pub fn group(cloud: &PointCloud, control: &Control<'_>) -> Result<(Pulses, Pulse
         }
     }
     if pulses.is_empty() && !cloud.is_empty() {
-        return Err(missing("GPS time that tells pulses apart"));
+        return Err(missing("GPS time with enough digits to separate pulses"));
     }
     Ok((pulses, report))
 }

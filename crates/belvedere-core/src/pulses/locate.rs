@@ -78,21 +78,21 @@ pub fn locate(
         Means::Automatic if cloud.scanner_positions.is_empty() => {
             let positions = vertical_pulses(&cloud.positions, &params.vertical, control)?;
             report.count(FoundBy::Assumed, positions.iter().filter(|p| is_known(p)).count());
-            report.remarks.push("pulses are assumed to fall straight down onto what nothing stands above".to_owned());
+            report.remarks.push("pulses are assumed to be vertical, onto points with nothing above them".to_owned());
             Ok((positions, report))
         }
         Means::Pulses => {
             // what grouping found missing says it best
             group(cloud, control)?;
             Err(Error::MissingAttribute {
-                attribute: "pulses with several returns far enough apart, nor scan angles that can be trusted",
+                attribute: "pulses with several returns far enough apart, and no reliable scan angles",
                 needed_for: "finding the scanner",
                 advice: "give a trajectory",
             })
         }
         _ => Err(Error::MissingAttribute {
             attribute: "scanner position",
-            needed_for: "knowing where pulses came from",
+            needed_for: "finding the scanner positions",
             advice: "give the position of the scanner or a trajectory",
         }),
     }
@@ -109,9 +109,7 @@ fn by_poses(cloud: &PointCloud, report: &mut ScannerReport) -> Vec<[f32; 3]> {
         (Some(indices), _) => indices.iter().map(position).collect(),
         (None, [only]) => vec![*only; cloud.len()],
         (None, _) => {
-            report
-                .remarks
-                .push("the file has several scanner positions and does not say whose points are whose".into());
+            report.remarks.push("the file has several scanner positions, but does not assign them to points".into());
             vec![unknown; cloud.len()]
         }
     };
@@ -160,8 +158,8 @@ fn pulses_of(cloud: &PointCloud, report: &mut ScannerReport, control: &Control<'
                     report.remarks.push(format!("{count} points {what}"));
                 }
             };
-            remark(grouping.without_time_count, "have no time: a program wrote them, not a scanner");
-            remark(grouping.ambiguous_count, "share their time with others and belong to no pulse that can be told");
+            remark(grouping.without_time_count, "have no time, so they do not come from a scanner");
+            remark(grouping.ambiguous_count, "share their time with others, so their pulses are unknown");
             remark(grouping.duplicate_count, "are there twice");
             Ok(Some(pulses))
         }
@@ -222,10 +220,12 @@ fn remark_parts(report: &mut ScannerReport) {
     for part in &report.parts {
         let why = match part.verdict {
             Verdict::Accepted => continue,
-            Verdict::Bridged => "parts of flight lines are known by their neighbours",
+            Verdict::Bridged => "parts of flight lines are interpolated from their neighbours",
             Verdict::TooFewPairs => "parts of flight lines have too few pulses with several returns far enough apart",
-            Verdict::Uncertain => "parts of flight lines have pulses that do not fix the scanner well enough",
-            Verdict::Implausible => "parts of flight lines have pulses that put the scanner where no aircraft flies",
+            Verdict::Uncertain => {
+                "parts of flight lines have pulses that do not determine the scanner position well enough"
+            }
+            Verdict::Implausible => "parts of flight lines have pulses that give an impossible scanner position",
         };
         *counts.entry(why).or_default() += 1;
     }
@@ -237,16 +237,16 @@ fn remark_parts(report: &mut ScannerReport) {
         let why = match part.verdict {
             AngleVerdict::Accepted if part.pitch.total_cmp(&0.0).is_ne() => continue,
             AngleVerdict::Accepted => {
-                "parts are known by scan angles alone, which do not tell pitch: directions may be off by a few degrees"
+                "parts use only scan angles, which do not contain pitch: directions may have errors of a few degrees"
             }
-            AngleVerdict::TooFewPoints => "parts have too few points for their scan angles to tell anything",
-            AngleVerdict::TooNarrow => "parts have scan angles that span too little",
+            AngleVerdict::TooFewPoints => "parts have too few points with scan angles",
+            AngleVerdict::TooNarrow => "parts have scan angles with too small a range",
             AngleVerdict::NotAcross => {
-                "parts have scan angles that do not tell the place across the flight: a cone, a tilted scanner or rounded times"
+                "parts have scan angles that do not determine the position across the flight direction: a cone, a tilted scanner or rounded times"
             }
-            AngleVerdict::Bent => "parts have scan lines that are bent as those of a cone, or too short to tell",
-            AngleVerdict::Contradicted => "parts have scan angles that the pulses contradict",
-            AngleVerdict::Implausible => "parts have scan angles that put the scanner where no aircraft flies",
+            AngleVerdict::Bent => "parts have scan lines that are curved like those of a cone, or too short",
+            AngleVerdict::Contradicted => "parts have scan angles that contradict the pulses",
+            AngleVerdict::Implausible => "parts have scan angles that give an impossible scanner position",
         };
         *counts.entry(why).or_default() += 1;
     }

@@ -66,7 +66,7 @@ fn has_better(paths: &[LinePath], own: usize, stretch: &Stretch, time: f64, plac
                 return Err(Error::InvalidParameter {
                     name: "GPS times",
                     value: format!("two lines {apart:.0} m apart at {time} s"),
-                    expected: "of one flight: give the lines of different days one at a time",
+                    expected: "of one flight: process flight lines of different days separately",
                 });
             }
             (sd(there), other) < (sd(stretch), own)

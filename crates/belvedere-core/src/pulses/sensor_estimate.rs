@@ -196,10 +196,10 @@ impl SensorEstimateParams {
             range.contains(&value).then_some(()).ok_or_else(wrong)
         };
         check("part of a flight line", self.part_s, 0.5..=60.0, "0.5 to 60 s")?;
-        check("least length of a pulse", self.least_length, 0.5..=50.0, "0.5 to 50 m")?;
+        check("minimum length of a pulse", self.least_length, 0.5..=50.0, "0.5 to 50 m")?;
         check("deviation of the vertical speed", self.vertical_speed_sd, 0.1..=100.0, "0.1 to 100 m/s")?;
         check("deviation of the acceleration", self.acceleration_sd, 0.01..=100.0, "0.01 to 100 m/s2")?;
-        check("least number of pulses", self.least_pair_count as f64, 6.0..=1e5, "6 to 100000")
+        check("minimum number of pulses", self.least_pair_count as f64, 6.0..=1e5, "6 to 100000")
     }
 }
 

@@ -40,8 +40,8 @@ pub fn vertical_pulses(
         let wrong = || Error::InvalidParameter { name, value: value.to_string(), expected };
         range.contains(&value).then_some(()).ok_or_else(wrong)
     };
-    check("reach of what stands above", params.reach, 0.05..=10.0, "0.05 to 10 m")?;
-    check("rise of what stands above", params.rise, 0.0..=100.0, "0 to 100 m")?;
+    check("search radius of points above", params.reach, 0.05..=10.0, "0.05 to 10 m")?;
+    check("minimum height of points above", params.rise, 0.0..=100.0, "0 to 100 m")?;
     let cell = |p: &[f32; 3]| [p[0], p[1]].map(|v| cell_of(v, params.reach));
     // by cell, the highest of each first
     let mut cells: Vec<([i32; 2], [f32; 3])> = positions.par_iter().map(|p| (cell(p), *p)).collect();

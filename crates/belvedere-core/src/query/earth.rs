@@ -64,7 +64,7 @@ impl EarthParams {
             return Err(Error::InvalidParameter {
                 name: "coefficient of refraction",
                 value: self.refraction.to_string(),
-                expected: "from 0 to below 1 (0.143 as a rule)",
+                expected: "from 0 to below 1 (usually 0.143)",
             });
         }
         if !(self.radius.is_finite() && self.radius > 0.0) {

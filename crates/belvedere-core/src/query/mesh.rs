@@ -42,7 +42,7 @@ impl MeshTargetParams {
     pub fn validate(&self) -> Result<()> {
         if !(self.lift >= 0.0 && self.lift.is_finite()) {
             return Err(Error::InvalidParameter {
-                name: "lift of places before their faces",
+                name: "distance of sample points from their faces",
                 value: self.lift.to_string(),
                 expected: "0 metres or more",
             });

@@ -86,10 +86,10 @@ impl Proof {
             return invalid("nearness of pulses", nearness, "finite and above zero metres");
         }
         if !(params.tolerance >= 0.0) {
-            return invalid("length that may be unseen", params.tolerance, "zero metres or more");
+            return invalid("maximum unproven length", params.tolerance, "zero metres or more");
         }
         if !(params.step.is_finite() && params.step > 0.0) {
-            return invalid("step along unseen space", params.step, "finite and above zero metres");
+            return invalid("step along unproven space", params.step, "finite and above zero metres");
         }
         let mut rim = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         for start in needles.lower_ends() {

@@ -116,7 +116,7 @@ impl SurfacePieces {
             return Err(Error::LengthMismatch { what: "normals", expected: points.len(), found: normals.len() });
         }
         if !(most_radius.is_finite() && most_radius > 0.0) {
-            return invalid("greatest radius of a point", most_radius.to_string(), "above zero metres");
+            return invalid("maximum radius of a point", most_radius.to_string(), "above zero metres");
         }
         let index = NeighborIndex::new(points, control)?;
         let most_area = std::f64::consts::PI * most_radius * most_radius;

@@ -49,7 +49,7 @@ impl View {
             return Err(Error::InvalidParameter {
                 name: "point to look at",
                 value: format!("{look_at:?}"),
-                expected: "finite and not where the eye is",
+                expected: "finite and different from the eye",
             });
         };
         if !(fov > 0.0 && fov <= WIDEST) {
@@ -85,7 +85,7 @@ impl View {
             return Err(Error::InvalidParameter {
                 name: "half-angle of the view",
                 value: format!("{} degrees", half_angle.to_degrees()),
-                expected: "above 0 and at most 170 degrees; two maps show everything",
+                expected: "above 0 and at most 170 degrees; two maps cover all directions",
             });
         }
         let size_px = checked_size([size_px; 2])?;

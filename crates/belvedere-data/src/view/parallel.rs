@@ -25,13 +25,13 @@ impl View {
             return invalid("viewport corner", format!("{p0:?}"), "finite");
         }
         if dot(right, down).abs() > 1e-3 {
-            return invalid("viewport vectors", format!("{vx:?}, {vy:?}"), "at right angles to each other");
+            return invalid("viewport vectors", format!("{vx:?}, {vy:?}"), "perpendicular to each other");
         }
         if !(pixels_per_metre.is_finite() && pixels_per_metre > 0.0) {
             return invalid("pixels per metre", pixels_per_metre.to_string(), "finite and above zero");
         }
         let Some(forward) = unit(cross(right, down)) else {
-            return invalid("viewport vectors", format!("{vx:?}, {vy:?}"), "at right angles to each other");
+            return invalid("viewport vectors", format!("{vx:?}, {vy:?}"), "perpendicular to each other");
         };
         let down = cross(forward, right);
         let size = |v: [f64; 3]| (dot(v, v).sqrt() * pixels_per_metre - 1e-6).ceil().max(1.0);

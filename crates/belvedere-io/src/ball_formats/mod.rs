@@ -44,7 +44,7 @@ fn as_cloud(parts: &ModelParts) -> (PointCloud, Vec<Column<'_>>) {
     if !parts.transmission.is_empty() {
         columns.push(column(
             "transmission".into(),
-            "share of light let through".into(),
+            "share of pulses that passed".into(),
             Values::F32((&parts.transmission).into()),
         ));
     }

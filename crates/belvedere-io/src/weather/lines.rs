@@ -48,7 +48,11 @@ impl<'a> Line<'a> {
     pub(super) fn row_of(&self, names: &[&str]) -> Result<Vec<&'a str>> {
         let cells = self.cells();
         if cells.len() < names.len() {
-            return Err(self.wrong(&format!("has {} cells, but the head of the table {}", cells.len(), names.len())));
+            return Err(self.wrong(&format!(
+                "has {} cells, but the header of the table has {}",
+                cells.len(),
+                names.len()
+            )));
         }
         Ok(cells)
     }
@@ -64,7 +68,7 @@ impl<'a> Line<'a> {
         })?;
         match cell.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(self.wrong(&format!("{name} is \"{}\", which is no number", shortened(cell)))),
+            _ => Err(self.wrong(&format!("{name} is \"{}\", which is not a number", shortened(cell)))),
         }
     }
 
@@ -75,7 +79,7 @@ impl<'a> Line<'a> {
         if value.fract() == 0.0 && value.abs() < 1e6 {
             Ok(value as i32)
         } else {
-            Err(self.wrong(&format!("{name} is {value}, which is no whole number")))
+            Err(self.wrong(&format!("{name} is {value}, which is not a whole number")))
         }
     }
 

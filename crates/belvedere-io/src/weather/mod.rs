@@ -58,7 +58,7 @@ pub fn read_weather<'a>(source: impl Into<Source<'a>>) -> Result<Weather> {
     } else if first.starts_with("Source,") {
         nsrdb::read(&lines)?
     } else {
-        let what = "no weather file that is known: EPW begins with LOCATION, PVGIS (as CSV) with Latitude, NSRDB with Source, and TMY3 has \
+        let what = "not a known weather file: EPW begins with LOCATION, PVGIS (as CSV) with Latitude, NSRDB with Source, and TMY3 has \
                     Date (MM/DD/YYYY) in its second line";
         return Err(Error::malformed(path, what));
     };

@@ -35,7 +35,7 @@ pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
     let Some(names) = lines.all().take(MOST_HEAD_LINES).find(|line| line.text.starts_with("time")) else {
         return Err(lines
             .line(1)?
-            .wrong("no line below begins with \"time\", as the head of the table does; take the CSV of PVGIS"));
+            .wrong("no line below begins with \"time\", as the header of the table does; use the CSV of PVGIS"));
     };
     for line in lines.all().take(names.number - 1) {
         read_head(&line, &mut head)?;
@@ -54,7 +54,7 @@ pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
         Columns::Typical(typical)
     } else if is_series {
         let what = format!(
-            "the series is that of a plane tilted by {} degrees{}; ask PVGIS for one of slope 0, from which any plane follows",
+            "the series is that of a plane tilted by {} degrees{}; get one of slope 0 from PVGIS; it gives the radiation of any plane",
             head.slope_deg,
             if head.is_tracking { " or following the sun" } else { "" }
         );

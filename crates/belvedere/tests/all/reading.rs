@@ -107,7 +107,7 @@ fn report_names_what_is_odd() {
         ("tudelft_ahn4_small/small.laz", "GPS times take only 7 values"),
         ("tudelft_ahn4_small/small.laz", "24 extra bytes per point dropped: Deviation, Reflectance, Amplitude"),
         ("ign_decimated_towns/test_semis_2023_0292_6833_LA93_IGN69.laz", "12 of 289055 GPS times are zero"),
-        ("delft_ahn3/ahn3_cropped_2.laz", "names no reference system: coordinates are taken as metres"),
+        ("delft_ahn3/ahn3_cropped_2.laz", "names no reference system; coordinates are taken as metres"),
         ("quantised/samp11-utm.pcd", "steps by up to 0.5 m"),
     ] {
         let Some(path) = crate::common::data(test, &format!("data/{file}")) else { continue };
@@ -415,7 +415,7 @@ fn text_faults_are_counted_or_refused() {
         ("b.xyz", "1,5 2,5 3,5\n", "decimal comma"),
         ("c.csv", "1,5;2,5;3,5\n", "decimal comma"),
         ("d.xyz", "1 2 3\nfoo\nbar\n1 2\n", "3 of 4 lines"),
-        ("e.csv", "a,b,c\n1,2,3\n", "names no columns x, y and z"),
+        ("e.csv", "a,b,c\n1,2,3\n", "without columns x, y and z"),
     ] {
         let text = read(&[text_file(&folder, name, content)]).unwrap_err().to_string();
         assert!(text.contains(expected) && text.contains(name), "{text}");

@@ -200,7 +200,7 @@ fn times_that_tell_little_are_counted_and_lead_to_a_stated_assumption() {
     cloud.attributes.gps_time = Some(times.iter().map(coarse).collect());
     let (positions, report) = found(&cloud);
     assert!(report.is_assumed());
-    assert!(report.remarks.iter().any(|remark| remark.contains("tells pulses apart")), "{:?}", report.remarks);
+    assert!(report.remarks.iter().any(|remark| remark.contains("separate pulses")), "{:?}", report.remarks);
     let served = positions.iter().filter(|p| p[0].is_finite()).count();
     assert_eq!(report.found.get(&FoundBy::Assumed), Some(&served));
     // walls and what lies under crowns are left out

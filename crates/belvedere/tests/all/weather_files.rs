@@ -123,8 +123,8 @@ fn rows_of_nsrdb_are_instants_of_the_zone_in_their_head() {
 fn what_is_wrong_is_named_with_its_line() {
     let row = epw_row("1999,6,21,13,60", "800", "700", "150");
     let cases: Vec<(String, &[&str])> = vec![
-        ("x,y,z\n1,2,3\n".to_owned(), &["no weather file", "EPW"]),
-        (String::new(), &["no weather file"]),
+        ("x,y,z\n1,2,3\n".to_owned(), &["not a known weather file", "EPW"]),
+        (String::new(), &["not a known weather file"]),
         (epw(""), &["no row"]),
         (epw(&row.replace("800", "hot")), &["line 9", "global", "hot"]),
         (epw(&row.replace("800", "NaN")), &["line 9", "NaN"]),

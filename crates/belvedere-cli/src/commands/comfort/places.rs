@@ -46,10 +46,10 @@ pub(super) fn routes(
     let (mut routes, mut names) = (Vec::new(), Vec::new());
     for named in shapes("--route", route, TypedAre::Line, &scene.cloud)? {
         let Shape::Line(corners) = named.shape else {
-            return wrong_shape("--route", route, "a route is a line, this holds a point or a polygon");
+            return wrong_shape("--route", route, "a route is a line, but this file has a point or a polygon");
         };
         if corners.len() < 2 {
-            return wrong_shape("--route", route, "a route needs two corners or more");
+            return wrong_shape("--route", route, "a route needs at least two corners");
         }
         routes.push(Route { places: flagged("--distance-step-m", places_along(&corners, step))? });
         names.push(named.name);
@@ -62,10 +62,10 @@ pub(super) fn routes(
         let all = routes.iter_mut().flat_map(|route| &mut route.places).map(|place| (place, height));
         let unknown = set_on_ground(all, &ground).len();
         if unknown == count {
-            bail!("--route: there is no ground known below it; is it in the coordinates of the cloud?");
+            bail!("--route: the ground below it is unknown; is the route in the coordinates of the cloud?");
         }
         if unknown > 0 {
-            let note = format!("{unknown} places of routes have no ground known below them, and no values");
+            let note = format!("{unknown} targets on routes have no known ground below them, and no values");
             summary.add("notes", vec![note]);
         }
     }
@@ -96,7 +96,7 @@ pub(super) fn windows(
         return faces(arguments, path, (scene, grid_north), seed, stages, summary);
     }
     if arguments.spacing.is_some() {
-        return Err(Usage("--spacing belongs to windows that are a mesh".to_owned()).into());
+        return Err(Usage("--spacing applies only to windows from a mesh".to_owned()).into());
     }
     if !["csv", "txt"].contains(&crate::commands::extension(path).as_str()) {
         bail!("{}: windows are a table (.csv .txt) or a mesh (.obj .json .ply with faces)", path.display());
@@ -110,13 +110,13 @@ pub(super) fn windows(
     };
     let (tilt, width, height) = (optional("tilt")?, optional("width")?, optional("height")?);
     if table.row_count() == 0 {
-        bail!("{}: there is no window in it", path.display());
+        bail!("{}: the file has no window", path.display());
     }
     let mut windows = Vec::with_capacity(table.row_count());
     for row in 0..table.row_count() {
         let tilt = if tilt[row].is_nan() { 90.0 } else { tilt[row] };
         if !(0.0..=180.0).contains(&tilt) {
-            bail!("{}: row {}: a tilt of {tilt} is not from 0 (up) to 180 degrees", path.display(), row + 1);
+            bail!("{}: row {}: the tilt is {tilt}, but must be 0 (facing up) to 180 degrees", path.display(), row + 1);
         }
         let size = [width[row], height[row]];
         let size = size.iter().all(|v| v.is_finite()).then_some(size);

@@ -23,7 +23,7 @@ pub(super) fn judge_all(
         stages.run("reading", 0, |control| read_cloud(&[path.to_owned()], &ReadOptions::default(), control))?;
     let named = || path.display().to_string();
     let (pulses, _) = group(&cloud, &stages.control()).with_context(named)?;
-    let (scanner, report) = stages.run("finding the scanner", 0, |control| match &arguments.trajectory {
+    let (scanner, report) = stages.run("estimating scanner positions", 0, |control| match &arguments.trajectory {
         Some(file) => {
             let (trajectory, _) = read_trajectory(file, &cloud.frame.crs)?;
             SensorPositions::from_trajectory(&cloud, &pulses, &trajectory)
@@ -38,9 +38,9 @@ pub(super) fn judge_all(
     let survey = Survey { cloud: &kept_cloud, scanner: &of_kept, models: &[] };
 
     let name = file_name(path);
-    let served = 100.0 * report.known_count as f64 / report.pulse_count.max(1) as f64;
+    let known_percent = 100.0 * report.known_count as f64 / report.pulse_count.max(1) as f64;
     let made_from = format!(
-        "belvedere {}; {}; scanner by {}; {} of {} pulses held out, scanner known for {served:.1} %; seed {}",
+        "belvedere {}; {}; scanner by {}; {} of {} pulses held out, scanner known for {known_percent:.1} %; seed {}",
         env!("CARGO_PKG_VERSION"),
         state_of(path),
         arguments.trajectory.as_deref().map_or_else(|| "the pulses".to_owned(), state_of),
@@ -62,12 +62,12 @@ pub(super) fn judge_all(
             continue;
         }
         let answered = stages
-            .run("asking held-out pulses", 0, |_| method.build().and_then(|built| score(built.as_ref(), &held_out)));
+            .run("testing held-out pulses", 0, |_| method.build().and_then(|built| score(built.as_ref(), &held_out)));
         let mut result = HeldOutResult {
             made_from: made_from.clone(),
             cloud: name.clone(),
             pulses: held_out.pulse_count,
-            scanner_known: served / 100.0,
+            scanner_known: known_percent / 100.0,
             method: method.key.clone(),
             title: method.title.clone(),
             shares: Vec::new(),

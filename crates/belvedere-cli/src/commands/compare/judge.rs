@@ -224,17 +224,17 @@ pub(super) fn audit_published(case: &Case, seed: u64) -> belvedere::Result<(Vec<
     let of = |row: usize| case.sources.get(balls.source[row] as usize).copied().flatten().map(|source| source.kind);
     let mut unions: Vec<(String, Vec<bool>)> = vec![("all".to_owned(), vec![true; balls.len()])];
     let groups: [(&str, &[Material]); 4] = [
-        ("without those of facades", &[Material::Facade]),
-        ("without those of trees", &[Material::TreeCrown, Material::Trunk, Material::Leaf]),
-        ("without those of slabs and bridges", &[Material::Slab, Material::Bridge]),
-        ("without those of the ground", &[Material::Terrain]),
+        ("without wrong balls of facades", &[Material::Facade]),
+        ("without wrong balls of trees", &[Material::TreeCrown, Material::Trunk, Material::Leaf]),
+        ("without wrong balls of slabs and bridges", &[Material::Slab, Material::Bridge]),
+        ("without wrong balls of the ground", &[Material::Terrain]),
     ];
     for (name, materials) in groups {
         let kept = (0..balls.len()).map(|row| of(row).is_none_or(|kind| !materials.contains(&kind))).collect();
         unions.push((name.to_owned(), kept));
     }
     let right = verdicts.iter().map(|v| *v == Verdict::Right).collect();
-    unions.push(("only those whose centre lies in a solid (oracle)".to_owned(), right));
+    unions.push(("only balls whose centre lies in a solid (ground truth)".to_owned(), right));
 
     let mut ablation = Vec::new();
     for (name, kept) in unions {

@@ -23,10 +23,10 @@ use std::path::Path;
 
 pub(crate) fn run(arguments: &Compare, global: &Global) -> Result<Summary> {
     if !arguments.scene.is_empty() && arguments.mesh.is_none() {
-        return Err(Usage("--clouds needs --mesh, the exact surface that answers are held against".to_owned()).into());
+        return Err(Usage("--clouds needs --mesh, the exact surface for comparison".to_owned()).into());
     }
     if arguments.trajectory.is_some() && arguments.scene.is_empty() && arguments.held_out.is_empty() {
-        return Err(Usage("--trajectory needs --clouds or --held-out, whose scanner it is".to_owned()).into());
+        return Err(Usage("--trajectory needs --clouds or --held-out".to_owned()).into());
     }
     let folder = &arguments.output;
     atomic::make_folder(folder)?;
@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &Compare, global: &Global) -> Result<Summary> {
     } else if !global.quiet {
         super::print_raw(found.essence().as_bytes())?;
     }
-    summary.add("look_at", folder.join("report.html").display().to_string());
+    summary.add("open", folder.join("report.html").display().to_string());
     Ok(summary)
 }
 
@@ -86,8 +86,8 @@ fn compare_on(
         }
     }
 
-    let ingredients = stages.run("making the place", 0, |_| place.make())?;
-    let case = stages.run("answering exactly", 0, |_| Case::new(ingredients, arguments.targets, global.seed))?;
+    let ingredients = stages.run("building place", 0, |_| place.make())?;
+    let case = stages.run("testing lines of sight", 0, |_| Case::new(ingredients, arguments.targets, global.seed))?;
     let survey = case.survey();
     let methods = methods(&survey);
     arguments.check_methods(&methods.iter().map(|method| method.key.clone()).collect::<Vec<_>>())?;
@@ -107,8 +107,8 @@ fn compare_on(
             found.methods.push(result);
             continue;
         }
-        let (result, shown) =
-            stages.run("judging methods", 0, |_| judge::judge(&case, method, (&name, made_from.clone()), global.seed));
+        let (result, shown) = stages
+            .run("comparing methods", 0, |_| judge::judge(&case, method, (&name, made_from.clone()), global.seed));
         if global.verbose {
             crate::summary::note(&format!("{name}: {}", method.title));
         }

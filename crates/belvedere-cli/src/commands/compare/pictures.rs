@@ -18,8 +18,7 @@ const UNPROVEN: [u8; 3] = [170, 60, 190];
 const BACKDROP: [u8; 3] = [222, 222, 218];
 
 /// What the colours mean, for captions.
-pub(super) const LEGEND: &str = "yellow: sunlit and said so; grey-blue: shaded and said so; red: sunlit, called blocked; \
-     blue: shaded, called visible; purple: no answer";
+pub(super) const LEGEND: &str = "yellow: correctly lit; grey-blue: correctly in shadow; red: lit, but called blocked; blue: in shadow, but called visible; purple: no answer";
 
 /// Draws the pedestrians of a place under one sun as a method answers them.
 pub(super) fn write_errors(path: &Path, case: &Case, title: &str, answers: &[Answer]) -> Result<()> {

@@ -71,7 +71,12 @@ impl Found {
                 .split_once(PAGE_MARKS[0])
                 .and_then(|(before, rest)| rest.split_once(PAGE_MARKS[1]).map(|(_, after)| (before, after)));
             let Some((before, after)) = parts else {
-                bail!("{}: no lines {} and {} to put tables between", page.display(), PAGE_MARKS[0], PAGE_MARKS[1]);
+                bail!(
+                    "{}: lines {} and {} are missing; the tables go between them",
+                    page.display(),
+                    PAGE_MARKS[0],
+                    PAGE_MARKS[1]
+                );
             };
             let [begin, end] = PAGE_MARKS;
             write_text(page, &format!("{before}{begin}\n\n{markdown}{end}{after}"))?;
@@ -181,8 +186,7 @@ impl Found {
         let shown: Vec<_> = COLUMNS.iter().filter(|(set, ..)| !matches!(*set, "VOL" | "GRD")).collect();
         let mut table = Table::new(
             "False-blocked / false-visible, %",
-            "False-blocked: of what is visible, the share called blocked. False-visible: of what is blocked, the share called \
-             visible. In brackets the 95 % interval: of resampled tiles for one place, of resampled places for several.",
+            "False-blocked: the share of visible targets that a method calls blocked. False-visible: the share of blocked targets that it calls visible. In brackets the 95 % interval: from resampled tiles for one place, from resampled places for several.",
             [vec!["method"], shown.iter().map(|(_, _, heading)| *heading).collect()].concat(),
         );
         for (key, title) in self.method_names() {
@@ -209,9 +213,7 @@ impl Found {
     fn street(&self) -> Table {
         let mut table = Table::new(
             "People in streets, %",
-            "Pedestrians as seen by people who stand anywhere in the open, 1.6 m above ground. Mean: balanced accuracy; a tenth of \
-             the people see worse than the next column says (mean over places). Methods that begin anew for each eye are \
-             asked for the first few people only.",
+            "Pedestrians seen by people who stand anywhere outdoors, 1.6 m above ground. Mean: balanced accuracy. 10th percentile: a tenth of the people have a lower balanced accuracy (mean over places). Methods that start again for each observer answer for the first few people only.",
             vec!["method", "people a place", "mean", "10th percentile", "false-blocked", "false-visible"],
         );
         for (key, title) in self.method_names() {
@@ -234,10 +236,7 @@ impl Found {
     fn worth_of_answers(&self) -> Table {
         let mut table = Table::new(
             "Reliability of each answer of carved balls, %",
-            "Visible: nothing blocks the line of sight, and pulses came near to all of it but half a metre. Unproven: nothing \
-             blocks it, but more than that was never seen. In each pair the share of the targets that get the answer, and how \
-             many of these are right (for unproven: visible in truth). All places together. Pulses that passed are evidence \
-             and no proof: they get into crowns that the truth calls opaque, and half a metre may hide a trunk.",
+            "Visible: nothing blocks the line of sight, and pulses came near all of it except at most half a metre. Unproven: nothing blocks it, but pulses came near less of it. Each pair has the share of the targets with this answer, and the share of these that are correct (for unproven: visible by ground truth). All places together. Passing pulses are evidence, not proof: they enter crowns that are opaque in the ground truth, and half a metre may hide a trunk.",
             vec!["targets, view", "visible", "correct", "unproven", "correct", "blocked", "correct"],
         );
         let mut sums: Vec<AnswerRow> = Vec::new();
@@ -271,9 +270,7 @@ impl Found {
     fn costs(&self) -> Table {
         let mut table = Table::new(
             "Cost",
-            "Building once, preparing a view (mean), answering (all threads), and how much the resident memory grew at its peak; \
-             means over places. Memory that the process still held from the method before is not counted again, so that small \
-             numbers are lower bounds. No answer: share of AIR targets under the suns.",
+            "Building once, preparing a view (mean), answering (all threads), and the peak growth of the resident memory; means over places. Memory that the process still held from the previous method is not counted again, so small numbers are lower bounds. No answer: share of AIR targets under the suns.",
             vec!["method", "build s", "view s", "million queries/s", "peak MiB", "no answer %"],
         );
         for (key, title) in self.method_names() {
@@ -328,9 +325,7 @@ impl Found {
     fn audit(&self) -> Table {
         let mut table = Table::new(
             "Wrong balls of the published method, and causes",
-            "A ball is wrong if its centre lies in free air. Flipped: its normal points into the solid. Tilted: the normal is off \
-             by 30° to 90°. Bulging: the normal is good, but the ball grew out through surface that no point marks. Shares of \
-             the balls of that surface; all places together.",
+            "A ball is wrong if its centre lies in free air. Flipped: its normal points into the solid. Tilted: the error of the normal is 30° to 90°. Bulging: the normal is correct, but the ball grew through a surface without points. Shares of the balls of that surface; all places together.",
             vec!["tangent at", "balls", "wrong %", "flipped %", "tilted %", "bulging %"],
         );
         let mut surfaces: Vec<&str> = Vec::new();
@@ -410,7 +405,7 @@ impl Found {
 
     /// What methods could not do, once each.
     fn refusals(&self) -> Table {
-        let mut table = Table::new("What has no answer", "", vec!["method", "asked", "reason"]);
+        let mut table = Table::new("Combinations without an answer", "", vec!["method", "query", "reason"]);
         let mut add = |title: &str, asked: String, reason: &str| {
             let row = vec![title.to_owned(), asked, reason.to_owned()];
             if !table.rows.contains(&row) {
@@ -450,7 +445,7 @@ impl Found {
         }
         format!(
             "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Belvedere: comparison</title>\n<style>{STYLE}</style>\n\
-             <h1>Visibility on point clouds: how right, how costly</h1>\n{body}</html>\n"
+             <h1>Visibility on point clouds: accuracy and cost</h1>\n{body}</html>\n"
         )
     }
 }

@@ -67,7 +67,7 @@ pub(super) fn find(
     let frame = PointCloud::in_frame(cloud.frame.clone());
     let (rows, from) = roof_points(&cloud, &ground)?;
     let places: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
-    let planes = stages.run("finding planes of roofs", 0, |control| roof_planes(&places, &params, control));
+    let planes = stages.run("detecting roof planes", 0, |control| roof_planes(&places, &params, control));
     let planes = flagged("--panel, --min-area", planes)?;
     let mut section = Summary::default();
     let from = match from {
@@ -75,7 +75,7 @@ pub(super) fn find(
         RoofsFrom::Height => "height above the ground (no class 6)",
     };
     section
-        .add("from", from)
+        .add("source", from)
         .add("points", places.len())
         .add("points_on_planes", planes.iter().map(|plane| plane.points.len()).sum::<usize>())
         .add("planes", planes.len())
@@ -98,15 +98,15 @@ pub(super) fn measure(
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<()> {
-    let rows = stages.run("looking from roofs", roofs.planes.len(), |control| {
+    let rows = stages.run("computing horizons", roofs.planes.len(), |control| {
         roof_irradiation(obstacles, &roofs.planes, seasons, control)
     })?;
     let report = RoofsReport::new(&roofs.planes, &rows);
     let mut section = Summary::default();
     section
-        .add("mwh", rounded(report.mwh, 2))
-        .add("least_loss_percent", rounded(report.least_loss_percent, 2))
-        .add("most_loss_percent", rounded(report.most_loss_percent, 2));
+        .add("energy_mwh", rounded(report.mwh, 2))
+        .add("min_loss_percent", rounded(report.least_loss_percent, 2))
+        .add("max_loss_percent", rounded(report.most_loss_percent, 2));
     summary.add("planes", section);
     for output in &arguments.planes {
         stages.run("writing", 0, |_| match extension(output).as_str() {
@@ -149,8 +149,8 @@ fn figures(roofs: &Roofs, rows: &[RoofIrradiation], site: &Site) -> Vec<(&'stati
         ("sky_kwh_m2", of_rows(&|row| row.mean.diffuse), 1),
         ("ground_kwh_m2", of_rows(&|row| row.mean.reflected), 1),
         ("free_kwh_m2", of_rows(&|row| row.mean.unshaded), 1),
-        ("least_loss", of_rows(&|row| row.mean.loss()), 4),
-        ("most_loss", of_rows(&RoofIrradiation::greatest_loss), 4),
+        ("min_loss", of_rows(&|row| row.mean.loss()), 4),
+        ("max_loss", of_rows(&RoofIrradiation::greatest_loss), 4),
         ("kwh", energy, 0),
     ];
     for (month, name) in MONTH_COLUMNS.into_iter().enumerate() {
@@ -207,7 +207,7 @@ fn write_horizons(
     let eyes: Vec<[f64; 3]> =
         roofs.planes.iter().map(|plane| above_roof(plane.middle, plane.normal).map(f64::from)).collect();
     let params = HorizonParams { azimuth_count: AZIMUTHS, turn: site.convergence, ..HorizonParams::default() };
-    let found = stages.run("looking around", eyes.len(), |control| horizons(blockers, &eyes, &params, control))?;
+    let found = stages.run("computing ranges", eyes.len(), |control| horizons(blockers, &eyes, &params, control))?;
     for (number, skyline) in found.iter().enumerate() {
         let path = folder.join(format!("plane_{}.txt", number + 1));
         write_lines(&path, skyline.iter().map(|point| format!("{:.2}", point.elevation.to_degrees().max(0.0))))?;

@@ -35,7 +35,7 @@ pub(super) fn params(arguments: &Irradiance) -> Result<IrradianceParams> {
 
 pub(super) fn weather(arguments: &Irradiance, stages: &mut Stages) -> Result<Option<Weather>> {
     if arguments.linke.is_some() && arguments.radiation.clear_sky != Some(ClearSkyChoice::Ineichen) {
-        return Err(Usage("--linke belongs to --clear-sky ineichen".to_owned()).into());
+        return Err(Usage("--linke needs --clear-sky ineichen".to_owned()).into());
     }
     match &arguments.radiation.weather {
         Some(path) => Ok(Some(stages.run("reading weather", 0, |_| read_weather(path))?)),
@@ -55,7 +55,7 @@ pub(super) fn site(
     let found = Site::of_scene(&scene.cloud.frame, &scene.model.bounds(), given, station);
     let (site, from) = match given {
         Some(_) => flagged("--location", found)?,
-        None => found.context("say where on earth the scene lies: --crs EPSG:CODE or --location LAT,LON")?,
+        None => found.context("the location of the scene is unknown: give --crs EPSG:CODE or --location LAT,LON")?,
     };
     let from = match from {
         SiteFrom::Location => "--location",
@@ -66,12 +66,12 @@ pub(super) fn site(
     section
         .add("latitude_deg", rounded(site.latitude.to_degrees(), 5))
         .add("longitude_deg", rounded(site.longitude.to_degrees(), 5))
-        .add("grid_north_from_true_north_deg", rounded(site.convergence.to_degrees(), 4))
-        .add("from", from);
+        .add("meridian_convergence_deg", rounded(site.convergence.to_degrees(), 4))
+        .add("source", from);
     if let Some(distance) = station.map(|station| site.distance_to(station)).filter(|distance| *distance > FAR) {
-        section.add("note", format!("the weather is that of a place {:.0} km off", distance / 1000.0));
+        section.add("note", format!("the weather is for a location {:.0} km away", distance / 1000.0));
     }
-    summary.add("site", section);
+    summary.add("location", section);
     Ok(site)
 }
 
@@ -88,11 +88,11 @@ pub(super) fn gather(
     let mut section = Summary::default();
     let source = match weather {
         Some(weather) => {
-            section.add("from", weather.format).add("rows", weather.steps.len());
+            section.add("source", weather.format).add("weather_rows", weather.steps.len());
             if weather.left_out_count > 0 {
-                section.add("rows_without_radiation", weather.left_out_count);
+                section.add("weather_rows_without_radiation", weather.left_out_count);
             }
-            section.add("hours", rounded(weather.hours(), 2)).add("notes", weather.notes.clone());
+            section.add("weather_hours", rounded(weather.hours(), 2)).add("notes", weather.notes.clone());
             RadiationSource::Weather { weather, parts: arguments.parts.unwrap_or(PARTS) }
         }
         None => {
@@ -104,11 +104,11 @@ pub(super) fn gather(
                 }
                 _ => arguments.linke.map_or_else(ClearSky::default, |linke| ClearSky::Ineichen { linke }),
             };
-            section.add("from", clear_sky.to_string()).add("year", year);
+            section.add("source", clear_sky.to_string()).add("year", year);
             RadiationSource::ClearSky { clear_sky, year }
         }
     };
-    let found = stages.run("gathering radiation", 0, |control| period_seasons(&source, site, trees, params, control));
+    let found = stages.run("computing radiation", 0, |control| period_seasons(&source, site, trees, params, control));
     let (seasons, report) = flagged("--parts-per-row, --linke, --year, --patch-division", found)?;
     section
         .add("global_kwh_m2", rounded(report.ghi, 1))
@@ -117,13 +117,12 @@ pub(super) fn gather(
         .add("sun_directions", report.sun_direction_count)
         .add("diffuse_model", params.sky.to_string())
         .add(
-            "obstacles_reflect",
+            "obstacle_reflection",
             if params.surroundings == Surroundings::Dark { "nothing" } else { "like the ground" },
         );
     if report.is_doubtful() {
         let what = format!(
-            "{:.0} kWh/m² of direct radiation come with the sun below the horizon and are not counted: do place and time zone of the \
-             weather fit?",
+            "{:.0} kWh/m² of direct radiation have the sun below the horizon and are ignored: are the location and the time zone of the weather correct?",
             report.dni_without_sun
         );
         section.add("note", what);

@@ -20,19 +20,21 @@ const COLORS: usize = 101;
 type Measure = (&'static str, &'static str, usize, fn(&LandmarkView) -> f64);
 
 const MEASURES: [Measure; 9] = [
-    ("visible_share", "share of the surface of the landmark that is seen, 0 to 1", 5, LandmarkView::visible_share),
-    ("visible_area_m2", "area of the landmark that is seen, square metres", 3, |view| view.visible_area),
+    ("visible_share", "visible share of the surface of the landmark, 0 to 1", 5, LandmarkView::visible_share),
+    ("visible_area_m2", "visible area of the landmark, square metres", 3, |view| view.visible_area),
     ("unproven_area_m2", "area that nothing blocks but is not proven, square metres", 3, |view| view.unproven_area),
-    ("solid_angle_sr", "solid angle of what is seen, steradians", 7, |view| view.solid_angle),
-    ("horizon_share", "share of all azimuths in which some of it is seen, 0 to 1", 6, |view| view.horizon_share),
-    ("horizontal_extent_deg", "angle between the outermost parts seen, degrees", 4, |view| {
+    ("solid_angle_sr", "solid angle of the visible part, steradians", 7, |view| view.solid_angle),
+    ("horizon_share", "share of all azimuths in which a part is visible, 0 to 1", 6, |view| view.horizon_share),
+    ("horizontal_extent_deg", "horizontal angle between the outermost visible parts, degrees", 4, |view| {
         view.horizontal_extent.to_degrees()
     }),
-    ("vertical_extent_deg", "angle between the lowest and the highest part seen, degrees", 4, |view| {
+    ("vertical_extent_deg", "vertical angle between the lowest and highest visible part, degrees", 4, |view| {
         view.vertical_extent.to_degrees()
     }),
-    ("nearest_m", "range of the nearest part seen, metres", 3, |view| view.ranges.map_or(f64::NAN, |ranges| ranges[0])),
-    ("farthest_m", "range of the farthest part seen, metres", 3, |view| {
+    ("nearest_m", "range of the nearest visible part, metres", 3, |view| {
+        view.ranges.map_or(f64::NAN, |ranges| ranges[0])
+    }),
+    ("farthest_m", "range of the farthest visible part, metres", 3, |view| {
         view.ranges.map_or(f64::NAN, |ranges| ranges[1])
     }),
 ];
@@ -114,7 +116,7 @@ pub(super) fn write_map(
         cell: ground.grid.cell,
         colors: &colors,
         marks: &marks,
-        title: "How much of the landmark is seen",
+        title: "Visible share of the landmark",
         legend: MapLegend::Ramp("percent", [0.0, 100.0 * most]),
     };
     Ok(write_png(output, &map_picture(&map)?)?)

@@ -31,7 +31,7 @@ pub(super) fn surface(
         flagged("--spacing", surface)?
     } else {
         if scene.cloud.is_empty() {
-            let what = "a ball file holds no points that could be a landmark: give the cloud, or a mesh with --targets";
+            let what = "a ball file has no points for a landmark: give the cloud, or a mesh with --targets";
             return Err(Usage(what.to_owned()).into());
         }
         let polygons;
@@ -43,16 +43,16 @@ pub(super) fn surface(
             }
             (None, None) => {
                 return Err(Usage(
-                    "say what the landmark is: --targets, --target-class or --target-polygon".to_owned(),
+                    "the landmark is missing: give --targets, --target-class or --target-polygon".to_owned(),
                 )
                 .into());
             }
         };
-        let (rows, surface) = stages.run("finding the landmark", 0, |_| landmark_points(&scene.cloud, &which))?;
+        let (rows, surface) = stages.run("selecting landmark", 0, |_| landmark_points(&scene.cloud, &which))?;
         section.add("points", rows.len());
         surface
     };
-    section.add("samples", surface.pieces.len()).add("area_m2", rounded(surface.area(), 2));
+    section.add("sample_points", surface.pieces.len()).add("area_m2", rounded(surface.area(), 2));
     summary.add("landmark", section);
     let count = surface.pieces.len().max(1) as f64;
     let middle = [0, 1].map(|i| surface.pieces.iter().map(|piece| f64::from(piece.place[i])).sum::<f64>() / count);
@@ -107,14 +107,14 @@ fn polygons_of(path: &Path, scene: &Scene) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
             let (x, y) = (table.full_column(path, "x")?, table.full_column(path, "y")?);
             let ring: Vec<[f64; 2]> = x.iter().zip(y).map(|(&x, &y)| super::on_map_of(cloud, [x, y])).collect();
             if ring.len() < 3 {
-                bail!("{}: a polygon has three corners at least, this one has {}", path.display(), ring.len());
+                bail!("{}: a polygon needs at least three corners, but this one has {}", path.display(), ring.len());
             }
             vec![vec![ring]]
         }
         _ => return Err(Usage(format!("--target-polygon {}: use .geojson .json .csv or .txt", path.display())).into()),
     };
     if polygons.is_empty() {
-        bail!("{}: there is no polygon in it", path.display());
+        bail!("{}: the file has no polygon", path.display());
     }
     Ok(polygons)
 }

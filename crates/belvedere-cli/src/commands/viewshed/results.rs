@@ -42,9 +42,9 @@ pub(super) fn on_cells(
         "geojson" => write_areas(output, seen, &grid, cloud),
         "png" => {
             let title = match (is_reverse, one) {
-                (true, _) => "From where the target is seen",
-                (false, true) => "What the observer sees",
-                (false, false) => "How many observers see it",
+                (true, _) => "Cells from which the target is visible",
+                (false, true) => "Visible from the observer",
+                (false, false) => "Number of observers that see the cell",
             };
             write_map(output, seen, eyes, ground, cloud, title)
         }
@@ -79,7 +79,7 @@ pub(super) fn write_masks(output: &Path, seen: &Viewshed, ground: &Ground, cloud
     }
     let [band] = &seen.masks[..] else {
         let count = seen.seen_counts.len();
-        return Err(Usage(format!("--masks as .tif holds 32 observers, these are {count}: use .npy")).into());
+        return Err(Usage(format!("--masks: a .tif holds 32 observers, but there are {count}; use .npy")).into());
     };
     let raster = Raster::from_values(grid.width, grid.height, band.clone())?;
     let what = "bit i: observer i sees the cell";
@@ -91,7 +91,7 @@ pub(super) fn write_heights(output: &Path, heights: &Raster<f32>, ground: &Groun
     if extension(output) == "npy" {
         return Ok(write_npy_f32_2d(output, heights)?);
     }
-    let what = "least height above the ground in metres that is seen; -9999: none, or nodata";
+    let what = "minimum visible height above the ground in metres; -9999: none, or nodata";
     let place = georeference(&ground.grid, &cloud.frame);
     Ok(write_tif_f32(output, heights, Some(&place), Some(NO_HEIGHT), Some(what))?)
 }
@@ -107,7 +107,7 @@ pub(super) fn on_points(output: &Path, seen: &Viewshed, cloud: &PointCloud) -> R
     if seen.seen_counts.len() > 1 {
         columns.push(ExtraColumn {
             name: "observers",
-            description: "number that see the point",
+            description: "observers that see the point",
             values: ExtraValues::U32(&seen.counts),
         });
     }

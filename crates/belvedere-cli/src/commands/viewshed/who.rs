@@ -95,8 +95,7 @@ pub(super) fn observers(
                 let [x, y] = [0, 1].map(|i| (eye[i] + cloud.frame.origin[i]) / scale);
                 let who = if arguments.who.target.is_some() { "the target" } else { "observer" };
                 bail!(
-                    "{who} {} at {x:.3},{y:.3}: there is no ground known below it; is it in the coordinates of the cloud? Else give its \
-                     height as a third number",
+                    "{who} {} at {x:.3},{y:.3}: the ground below is unknown; is the position in the coordinates of the cloud? If so, give its height as a third number",
                     number + 1
                 );
             };
