@@ -110,7 +110,7 @@ impl SunSums {
     }
 
     /// All figures as measures of `targets`: `sun_hours`, `sun_share`, `first_light`, `last_light`, `longest`; of several days also
-    /// `least_day` and `total_hours`; and for each rule whether it is met on all of its days, 1 or 0.
+    /// `min_sun_hours` and `total_hours`; and for each rule whether it is met on all of its days, 1 or 0.
     #[must_use]
     pub fn into_measures(self, plan: &SunPlan, targets: &Targets) -> Vec<Measure> {
         let most = plan.period.days.iter().map(|day| day.possible_hours).fold(0.0, f64::max);
@@ -136,7 +136,7 @@ impl SunSums {
             measure("longest", "longest uninterrupted sun, hours", hours, self.period.longest),
         ];
         if day_count > 1 {
-            measures.push(measure("least_day", "hours of the day with the least sun", hours, self.period.least));
+            measures.push(measure("min_sun_hours", "hours of the day with the least sun", hours, self.period.least));
             measures.push(measure("total_hours", "hours of sun in all", None, total));
         }
         for (planned, found) in plan.rules.iter().zip(self.rules) {

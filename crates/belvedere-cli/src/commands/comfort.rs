@@ -76,7 +76,7 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     summary.add("lines_of_sight", section);
     let targets = &places.targets;
     let shade = if arguments.times.is_some() { ShadeAtEachSun::Kept } else { ShadeAtEachSun::NotKept };
-    let found = stages.run("looking at sky and sun", 2 * targets.len(), |control| {
+    let found = stages.run("testing sky and sun", 2 * targets.len(), |control| {
         scene_exposure(&blockers, targets, &sky, &schedule, shade, control)
     })?;
     write_rows(&arguments.output, &places, &found)?;

@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
     let sums = match &kept {
         Some((path, head)) => {
             check_kept(head, targets, matrix_scene(&scene, arguments))?;
-            stages.run("reading what is seen", targets.len(), |control| {
+            stages.run("reading matrix", targets.len(), |control| {
                 let mut sums = SunSums::default();
                 let mut first = 0;
                 read_matrix_rows(path.as_path(), head, |words| {
