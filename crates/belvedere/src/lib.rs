@@ -1,49 +1,57 @@
-//! Visibility analysis directly on point clouds.
+//! Visibility analysis directly on point clouds: no city model, no height raster in between.
 //!
-//! A scene is modelled as a union of medial balls (Peters, Ledoux & Biljecki 2015); the balls block lines of sight, and a
-//! depth map says what is visible. The stages are plain functions:
+//! A scene is a union of medial balls (Peters, Ledoux & Biljecki 2015), cut with the space that laser pulses prove empty. The balls
+//! block lines of sight. The answer for a place is visible, blocked, or unproven where no pulse saw the space between.
 //!
-//! ```
-//! use belvedere::clean::{CleanParams, clean};
-//! use belvedere::depth::{ItemBuffer, Profile, depth_map};
-//! use belvedere::medial::{ShrinkParams, Side, shrink};
-//! use belvedere::neighbors::NeighborIndex;
-//! use belvedere::normals::estimate::{Neighborhood, estimate};
-//! use belvedere::normals::{Orientation, orient};
-//! use belvedere::control::Control;
-//! use belvedere::query::{Answer, query_points};
-//! use belvedere::view::{View, to_sun};
-//! use belvedere::PointCloud;
+//! This program writes a raster of the shadow on a LAZ tile on a summer afternoon:
 //!
-//! # fn main() -> belvedere::Result<()> {
-//! // a flat roof 10 m up over sloping ground; real clouds come from `io::read_cloud`
-//! let at = |i: u32, side: f64| [f64::from(i % 60) * side / 60.0, f64::from(i / 60) * side / 60.0];
-//! let roof = (0..3600).map(|i| { let [x, y] = at(i, 12.0); [x + 14.0, y + 14.0, 10.0 + 0.01 * (x * 7.0).sin()] });
-//! let ground = (0..3600).map(|i| { let [x, y] = at(i, 40.0); [x, y, 0.02 * x] });
-//! let (cloud, _left_out) = PointCloud::from_coordinates(&roof.chain(ground).collect::<Vec<_>>());
+//! ```no_run
+//! use belvedere::prelude::*;
 //!
-//! let (kept, _report) = clean(&cloud, &CleanParams::default(), &Control::none())?;
-//! let cloud = cloud.select(&kept);
-//! let index = NeighborIndex::new(&cloud.positions, &Control::none())?;
-//! let normals = estimate(&cloud.positions, &index, Neighborhood::default(), &Control::none())?;
-//! let (oriented, _report) = orient(&cloud, normals, &Orientation::Up, &Control::none())?;
-//! let (balls, _report) = shrink(&oriented, &index, Side::Interior, &ShrinkParams::tau(), &Control::none())?;
-//!
-//! let sun = to_sun(180f64.to_radians(), 60f64.to_radians());
-//! let Bounds { low, high } = cloud.bounds().unwrap();
-//! let view = View::parallel(sun.map(|v| -v), low.map(f64::from), high.map(f64::from), 0.1)?;
-//! let map = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::Without)?;
-//!
-//! // on the ground north of the roof, where its shadow falls, and south of it
-//! let targets = [[20.0, 26.0, 1.0], [20.0, 5.0, 1.0]].map(|p| cloud.frame.from_file_coordinates(p));
-//! let answers = query_points(&map, &targets, map.default_depth_bias());
-//! assert_eq!(answers, [Answer::Blocked, Answer::Visible]);
-//! # Ok(())
-//! # }
+//! fn main() -> Result<()> {
+//!     let control = Control::none();
+//!     let options = ReadOptions::new().with_crs("EPSG:7415");
+//!     let (cloud, _) = read_cloud(["tile.laz"], &options, &control)?;
+//!     let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &control)?;
+//!     let scene = model.scene(&model.rule(), UnprovenAs::Visible, &control)?;
+//!     let cells = Targets::ground_cells(&cloud, 0.5)?;
+//!     let (site, _) = Site::of_scene(model.frame(), &model.bounds(), None, None)?;
+//!     let sun = ShadowSun::at_time(&site, parse_instant("2026-06-21T15:00+02:00", None)?)?;
+//!     let lit = shadow(&scene, &cells, sun, &control)?;
+//!     write_raster("shadow.tif".as_ref(), &cells, &Measure::new("lit", lit))
+//! }
 //! ```
 //!
-//! Units are metres and radians; positions are local f32 on an f64 origin ([`PointCloud`]). Every parallel result is the same,
-//! bit by bit, for any number of threads. The crate prints nothing and reads no clock or environment.
+//! # Where to look
+//!
+//! | task | module |
+//! |---|---|
+//! | read and write clouds, meshes, rasters, tables, ball files | `io` |
+//! | from a cloud to a scene; what Belvedere does by default | [`model`] |
+//! | which lines of sight are free | [`query`] |
+//! | shadow, sun hours, sky view, irradiance, viewsheds, landmarks, solar envelopes, comfort | `apps` |
+//! | results of applications as files | `results` |
+//! | pictures and films | `figures` |
+//! | progress and cancellation of long work | [`control`] |
+//! | single stages, for research | [`clean`], [`normals`], [`pulses`], [`medial`], [`depth`] |
+//!
+//! # Features
+//!
+//! | feature | adds | default |
+//! |---|---|---|
+//! | `apps` | the applications | yes |
+//! | `io` | file formats | yes |
+//! | `figures` | pictures; needs `io` | yes |
+//! | `las` `e57` `ply` `npy` `tiff` `obj` | single file formats; need `io` | yes |
+//! | `crs` | the database of reference systems; without it a system can be carried, but not looked up by its code | yes |
+//!
+//! Without default features the crate builds balls and answers lines of sight for positions that the program has itself.
+//!
+//! # Conventions
+//!
+//! Units are metres and radians. x is east, y north, z up. Positions are local f32 on an f64 origin ([`Frame`]). Every result
+//! is the same, bit by bit, for any number of threads. The crate prints nothing and reads neither clock nor environment.
+//! Parameters are structs with defaults; those that may grow are `#[non_exhaustive]` and have `with_…` methods.
 
 #[cfg(feature = "apps")]
 pub use belvedere_apps as apps;
@@ -58,3 +66,22 @@ pub use belvedere_figures as figures;
 pub use belvedere_io as io;
 #[cfg(all(feature = "apps", feature = "io"))]
 pub mod results;
+
+/// What most programs need: `use belvedere::prelude::*`.
+pub mod prelude {
+    #[cfg(feature = "apps")]
+    pub use crate::apps::shadow::{ShadowSun, shadow};
+    #[cfg(feature = "apps")]
+    pub use crate::apps::sun::{Date, Site, Zone, parse_instant};
+    #[cfg(feature = "apps")]
+    pub use crate::apps::targets::{Measure, Targets};
+    pub use crate::control::Control;
+    pub use crate::crs::Crs;
+    #[cfg(feature = "io")]
+    pub use crate::io::{ReadOptions, read_balls, read_cloud, write_balls, write_cloud};
+    pub use crate::model::{ModelParams, OrientBy, SceneModel};
+    pub use crate::query::{Answer, UnprovenAs, Viewer, Visibility};
+    #[cfg(all(feature = "apps", feature = "io"))]
+    pub use crate::results::write_raster;
+    pub use crate::{Attributes, Bounds, Error, Frame, Mesh, PointCloud, Result};
+}
