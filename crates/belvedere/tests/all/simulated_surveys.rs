@@ -10,7 +10,6 @@ use crate::common::simulated::cloud_of;
 use belvedere::control::Control;
 use std::path::Path;
 
-use belvedere::control::Control;
 use belvedere::io::{
     Heading, LevelOfDetail, ReadOptions, read_cityjson, read_cloud, read_mesh, read_trajectory, write_cloud,
     write_trajectory,
