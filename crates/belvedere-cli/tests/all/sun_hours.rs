@@ -88,7 +88,7 @@ fn rules_and_periods_have_columns_and_a_kept_matrix_answers_the_same() {
     // another day than those kept, other places, other balls, a file that is none
     for (status, flags, words) in [
         (2, "--date 2026-06-21 --targets places.csv --load-matrix seen.npz", "degrees"),
-        (1, "--rule bre-equinox --cell 5 --load-matrix seen.npz", "places"),
+        (1, "--rule bre-equinox --cell 5 --load-matrix seen.npz", "targets"),
         (1, "--rule bre-equinox --targets places.csv --shell 0.3 --load-matrix seen.npz", ""),
         (1, "--rule bre-equinox --targets places.csv --load-matrix places.csv", "places.csv"),
         (1, "--rule bre-equinox --targets places.csv --load-matrix missing.npz", "missing.npz"),
