@@ -56,8 +56,7 @@ pub fn horizons(
                 let value = format!("{eye:?}");
                 return Err(Error::InvalidParameter { name: "eye", value, expected: "finite" });
             }
-            control.check()?;
-            let skyline = scene.skyline_from(eye, params.azimuth_count, -params.turn, &params.earth);
+            let skyline = scene.skyline_from(eye, params.azimuth_count, -params.turn, &params.earth, control)?;
             control.advance(1);
             Ok(skyline)
         })

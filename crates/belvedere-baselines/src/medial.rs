@@ -172,7 +172,7 @@ impl Visibility for MedialBaseline {
         viewer.validate()?;
         let [low, high] = self.bounds;
         let view = View::parallel(to_viewer.map(|v| -v), low, high, PIXEL_SIZE)?;
-        let map = depth_map(&self.balls, &view, self.params.blocking.profile, ItemBuffer::Without)?;
+        let map = depth_map(&self.balls, &view, self.params.blocking.profile, ItemBuffer::Without, &Control::none())?;
         #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
         let bias = self.params.blocking.bias as f32;
         Ok(Box::new(move |targets| Ok(query_points(&map, targets, bias))))

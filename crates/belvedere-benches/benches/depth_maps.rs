@@ -34,10 +34,10 @@ fn maps_and_queries(c: &mut Criterion) {
         for items in [ItemBuffer::Without, ItemBuffer::With] {
             group.throughput(Throughput::Elements(balls.len() as u64));
             group.bench_function(format!("depth map, sun {elevation} degrees high, items {items:?}"), |b| {
-                b.iter(|| depth_map(&balls, &view, Profile::Sphere, items).unwrap().depth.width());
+                b.iter(|| depth_map(&balls, &view, Profile::Sphere, items, &Control::none()).unwrap().depth.width());
             });
         }
-        let map = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::Without).unwrap();
+        let map = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::Without, &Control::none()).unwrap();
         let targets = random_targets(low, high, 1_000_000, 1);
         group.throughput(Throughput::Elements(targets.len() as u64));
         group.bench_function(format!("a million queries, sun {elevation} degrees high"), |b| {

@@ -8,9 +8,8 @@ mod common;
 use belvedere::apps::sky_view::SkyDirections;
 use belvedere::control::Control;
 use belvedere::medial::{ShrinkParams, Side, shrink};
-use belvedere::query::{
-    BlockRule, EarthParams, MedialScene, TargetTree, Viewer, Visibility, random_pairs, visibility_matrix,
-};
+use belvedere::query::target_tree::TargetTree;
+use belvedere::query::{BlockRule, EarthParams, MedialScene, Viewer, Visibility, random_pairs, visibility_matrix};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 const CELLS: usize = 600;
@@ -43,7 +42,7 @@ fn sights(c: &mut Criterion) {
     let pairs = random_pairs(low, high, 1_000_000, 1);
     group.throughput(Throughput::Elements(pairs.len() as u64));
     group.bench_function("a million pairs", |b| {
-        b.iter(|| scene.lines_of_sight(&pairs, &EarthParams::default()).len());
+        b.iter(|| scene.lines_of_sight(&pairs, &EarthParams::default(), &Control::none()).unwrap().len());
     });
     group.throughput(Throughput::Elements((eyes.len() * cells.len()) as u64));
     group.bench_function("20 observers, cell by cell", |b| {
@@ -52,7 +51,9 @@ fn sights(c: &mut Criterion) {
     group.bench_function("20 observers, all cells at once", |b| {
         b.iter(|| {
             let tree = TargetTree::new(&cells);
-            eyes.iter().map(|&eye| scene.answer_among(Viewer::Eye(eye), &tree).unwrap().len()).sum::<usize>()
+            eyes.iter()
+                .map(|&eye| scene.answer_among(Viewer::Eye(eye), &tree, &Control::none()).unwrap().len())
+                .sum::<usize>()
         });
     });
     let sky = SkyDirections::patches(1).unwrap();

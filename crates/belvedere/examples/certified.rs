@@ -12,7 +12,8 @@ use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::read_balls;
 use belvedere::model::SceneModel;
-use belvedere::query::{Answer, BlockRule, CertifiedMap, Scope, UnprovenAs, Viewer, Visibility, random_targets};
+use belvedere::query::certified::CertifiedMap;
+use belvedere::query::{Answer, BlockRule, Scope, UnprovenAs, Viewer, Visibility, random_targets};
 use belvedere::view::{View, to_sun};
 use std::path::Path;
 use std::process::ExitCode;
@@ -60,11 +61,11 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
             false => Viewer::Direction(sun),
         };
         let start = Instant::now();
-        let map = CertifiedMap::new(&scene, &views, Scope::Viewer)?;
+        let map = CertifiedMap::new(&scene, &views, Scope::Viewer, &Control::none())?;
         let drawn = start.elapsed();
         let start = Instant::now();
         for view in &views {
-            depth_map(balls, view, Profile::Sphere, ItemBuffer::Without)?;
+            depth_map(balls, view, Profile::Sphere, ItemBuffer::Without, &Control::none())?;
         }
         let plain = start.elapsed();
         let (mut settled, mut differ, mut visible, mut asked) = (0, 0, 0, 0);
@@ -73,7 +74,7 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
             let seed = u64::try_from(asked)?;
             let targets = random_targets(low, high, BATCH.min(count - asked), seed);
             let start = Instant::now();
-            let (answers, report) = map.answers(&targets);
+            let (answers, report) = map.answers(&targets, &Control::none())?;
             by_map += start.elapsed().as_secs_f64();
             let start = Instant::now();
             let exact = scene.visible(viewer, &targets)?;

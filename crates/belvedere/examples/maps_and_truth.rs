@@ -57,8 +57,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let width = (length(sub(middle, corner)) * 2.0 * 0.6f64.tan() / pixel).round() as usize;
             let camera = View::perspective(corner, middle, 1.2, [width, width], 0.0, f64::INFINITY)?;
             for (name, view) in [("sun", parallel), ("camera", camera)] {
-                let map = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::Without)?;
-                let bounds = depth_bounds(&list, &view, &BoundsParams::default())?;
+                let map = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::Without, &Control::none())?;
+                let bounds = depth_bounds(&list, &view, &BoundsParams::default(), &Control::none())?;
                 let mut errors = Vec::new();
                 let (mut within, mut narrow) = (0, 0);
                 for row in 0..view.size_px[1] {

@@ -5,8 +5,9 @@ mod points;
 
 pub use points::{LandmarkPoints, landmark_points};
 
+use belvedere_core::query::target_tree::TargetTree;
 use belvedere_core::query::{
-    Answer, BackFaces, EarthParams, MedialScene, MeshTargetParams, Sides, SurfacePieces, TargetTree, UnprovenAs, Viewer,
+    Answer, BackFaces, EarthParams, MedialScene, MeshTargetParams, Sides, SurfacePieces, UnprovenAs, Viewer,
 };
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, dot, length, sub, unit};
@@ -199,7 +200,7 @@ pub fn landmark_views(
         } else if places.bend(eye, &params.earth) {
             landmark_view(scene, landmark, eye, params)
         } else {
-            let unblocked = places.unblocked_from(scene, landmark, eye)?;
+            let unblocked = places.unblocked_from(scene, landmark, eye, control)?;
             measured(landmark, eye, params, |row, place| match (unblocked[row], params.unproven) {
                 (false, _) => Answer::Blocked,
                 (true, UnprovenAs::Visible) => Answer::Visible,
@@ -248,11 +249,17 @@ impl Places {
     }
 
     /// Whether nothing blocks the place of each piece on the side that `eye` is on.
-    fn unblocked_from(&self, scene: &MedialScene, landmark: &SurfacePieces, eye: [f64; 3]) -> Result<Vec<bool>> {
+    fn unblocked_from(
+        &self,
+        scene: &MedialScene,
+        landmark: &SurfacePieces,
+        eye: [f64; 3],
+        control: &Control<'_>,
+    ) -> Result<Vec<bool>> {
         let viewer = Viewer::Eye(eye);
         let mut unblocked = vec![false; landmark.pieces.len()];
         for (tree, is_front) in [(&self.fronts, true), (&self.backs, false)] {
-            scene.visible_among(viewer, tree, |place| {
+            scene.visible_among(viewer, tree, control, |place| {
                 let row = tree.rows()[place] as usize;
                 unblocked[row] |= landmark.pieces[row].is_before(viewer) == is_front;
             })?;

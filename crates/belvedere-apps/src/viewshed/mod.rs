@@ -5,7 +5,8 @@ mod observers;
 pub use observers::{Observer, SightLimits, places_along};
 
 use belvedere_core::ground::Ground;
-use belvedere_core::query::{Answer, EarthParams, MedialScene, TargetTree, UnprovenAs, Viewer};
+use belvedere_core::query::target_tree::TargetTree;
+use belvedere_core::query::{Answer, EarthParams, MedialScene, UnprovenAs, Viewer};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
@@ -186,7 +187,7 @@ impl Asked<'_> {
                 let answers = self.seen_by(observer, control)?;
                 answers.into_iter().enumerate().for_each(|(row, answer)| note(row, answer));
             } else {
-                self.scene.visible_among(Viewer::Eye(observer.eye), &self.tree, |place| {
+                self.scene.visible_among(Viewer::Eye(observer.eye), &self.tree, control, |place| {
                     let target = self.tree.positions()[place].map(f64::from);
                     if observer.limits.allow(observer.eye, target) {
                         let answer = match self.params.unproven {
@@ -212,7 +213,7 @@ impl Asked<'_> {
     fn seen_by(&self, observer: &Observer, control: &Control<'_>) -> Result<Vec<Answer>> {
         let allowed = |target: [f32; 3]| observer.limits.allow(observer.eye, target.map(f64::from));
         if !self.bends(observer) {
-            let mut answers = self.scene.answer_among(Viewer::Eye(observer.eye), &self.tree)?;
+            let mut answers = self.scene.answer_among(Viewer::Eye(observer.eye), &self.tree, control)?;
             let targets = self.targets.par_iter().with_min_len(CHUNK);
             answers.par_iter_mut().zip(targets).filter(|(_, target)| !allowed(**target)).for_each(|(answer, _)| {
                 *answer = Answer::Blocked;

@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let Bounds { low, high } = town.cloud.bounds().unwrap_or_default();
         let pairs = random_pairs(low, high, 1_000_000, 1);
         let start = Instant::now();
-        let sights = scene.lines_of_sight(&pairs, &EarthParams::default());
+        let sights = scene.lines_of_sight(&pairs, &EarthParams::default(), &Control::none())?;
         let answering = start.elapsed().as_secs_f64();
         let median = seconds.get(seconds.len() / 2).copied().unwrap_or_default();
         println!("  {} cells: {median:.2} s an observer; {} pairs: {answering:.2} s", targets.len(), sights.len());

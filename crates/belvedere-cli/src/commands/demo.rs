@@ -55,7 +55,9 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     let bounds = pipeline::bounds_of(&cloud)?;
     let (low, high) = bounds.corners();
     let view = View::parallel(sun.map(|v| -v), low, high, default_pixel_size(low, high))?;
-    let map = stages.run("drawing depth map", 0, |_| depth_map(balls, &view, Profile::Sphere, ItemBuffer::Without))?;
+    let map = stages.run("drawing depth map", 0, |control| {
+        depth_map(balls, &view, Profile::Sphere, ItemBuffer::Without, control)
+    })?;
     let blockers = model.scene(&model.rule(), UnprovenAs::Visible, &stages.control())?;
     let answers = stages.run("querying", 0, |_| blockers.visible(Viewer::Direction(sun), &cloud.positions))?;
     let shadowed = answers.iter().filter(|&&a| a == Answer::Blocked).count();
@@ -168,7 +170,7 @@ fn write_pictures(
     let oblique = View::parallel([0.5, 0.7, -0.6], low, high, 0.125)?;
     let heights: Vec<f32> = balls.centers.iter().map(|c| c[2]).collect();
     let mut union = Canvas::new(&oblique, [255; 3]);
-    let seen = depth_map(balls, &oblique, Profile::Sphere, ItemBuffer::With)?;
+    let seen = depth_map(balls, &oblique, Profile::Sphere, ItemBuffer::With, &belvedere::control::Control::none())?;
     if let Some(items) = &seen.balls {
         let colors = ramp_colors(&heights);
         union.draw_seen_balls((&seen.depth, items), (&balls.centers, &balls.radii), Colors::Each(&colors))?;

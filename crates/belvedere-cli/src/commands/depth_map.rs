@@ -7,6 +7,7 @@ use crate::progress::Stages;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::PointCloud;
+use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, NO_BALL, Profile, depth_map, panorama};
 use belvedere::figures::{Picture, camera_picture, depth_picture, panorama_picture, write_png};
 use belvedere::io::{Georeference, write_npy_f32_2d, write_npy_u32_2d, write_tif_f32, write_tif_u32};
@@ -29,7 +30,7 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     let scene = pipeline::scene(&arguments.scene, Points::LetGo, &mut stages, &mut summary)?;
     let views = arguments.view.views(&scene, &mut summary)?;
     let items = if arguments.balls_id.is_some() { ItemBuffer::With } else { ItemBuffer::Without };
-    let map = stages.run("drawing depth map", 0, |_| draw(arguments, &scene, &views, items))?;
+    let map = stages.run("drawing depth map", 0, |control| draw(arguments, &scene, &views, items, control))?;
     let hit = map.depth.values().iter().filter(|d| d.is_finite()).count();
     summary.add("pixels_hit_percent", percent(hit, map.depth.values().len()));
     if views.iter().any(View::is_central) {
@@ -88,18 +89,24 @@ impl Drawn {
     }
 }
 
-fn draw(arguments: &DepthMap, scene: &Scene, views: &[View], items: ItemBuffer) -> Result<Drawn> {
+fn draw(
+    arguments: &DepthMap,
+    scene: &Scene,
+    views: &[View],
+    items: ItemBuffer,
+    control: &Control<'_>,
+) -> Result<Drawn> {
     let profile = arguments.scene.profile.into();
     if let [view] = views {
         let look = if view.is_central() { Look::Camera(*view) } else { Look::Parallel };
-        let map = flagged("--ball-profile", depth_map(scene.model.balls(), view, profile, items))?;
+        let map = flagged("--ball-profile", depth_map(scene.model.balls(), view, profile, items, control))?;
         return Ok(Drawn { depth: map.depth, balls: map.balls, around_eye_count: map.around_eye_count, look });
     }
     if profile != Profile::Sphere {
         return Err(Usage("--ball-profile: the paper's cone is for parallel views only".to_owned()).into());
     }
     let eye = views.first().map_or([0.0; 3], |view| view.frame.eye);
-    let map = panorama(scene.model.balls(), eye, arguments.view.panorama_width()?, items)?;
+    let map = panorama(scene.model.balls(), eye, arguments.view.panorama_width()?, items, control)?;
     Ok(Drawn { depth: map.range, balls: map.balls, around_eye_count: map.around_eye_count, look: Look::Panorama })
 }
 

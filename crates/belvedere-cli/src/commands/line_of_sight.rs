@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
         // nothing then says how much of a line no pulse came near to
         scene.model = scene.model.without_pulses();
     }
-    let sights = stages.run("answering queries", 0, |_| blockers.lines_of_sight(&pairs, &earth));
+    let sights = stages.run("answering queries", 0, |control| blockers.lines_of_sight(&pairs, &earth, control))?;
     let settled = |sight: &Option<belvedere::query::LineOfSight>| {
         sight.map_or(Answer::OutsideView, |sight| unproven_as.settle(sight.answer))
     };

@@ -9,8 +9,7 @@ use anyhow::{Result, bail};
 use belvedere::Mesh;
 use belvedere::io::{Cells, read_mesh, write_mesh_values, write_table};
 use belvedere::query::{
-    BackFaces, MeshTargetParams, Scope, SeenArea, SurfacePieces, Viewer, answer_views, seen_faces, seen_in_all,
-    seen_objects,
+    BackFaces, MeshTargetParams, Scope, SeenArea, SurfacePieces, Viewer, seen_faces, seen_in_all, seen_objects,
 };
 use belvedere::view::View;
 use std::io::Read;
@@ -99,12 +98,12 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     let usual = MeshTargetParams::default();
     let back_faces = arguments.mesh.back_faces.map_or(usual.back_faces, BackFaces::from);
     let params = MeshTargetParams { back_faces, ..usual };
-    let faces = stages.run("querying", 0, |_| {
+    let faces = stages.run("querying", 0, |control| {
         seen_faces(&surface, viewer, &params, |places| {
             // as for points, a view that fits the scene has no plane that a target could lie before
             let moved = |view: &View| if has_picture { *view } else { view.moved_before(places) };
             let views: Vec<View> = views.iter().map(moved).collect();
-            let (answers, _) = answer_views(&blockers, &views, scope, places)?;
+            let (answers, _) = blockers.visible_in_views(&views, scope, places, control)?;
             Ok(answers.into_iter().map(|answer| unproven.settle(answer)).collect())
         })
     })?;

@@ -10,7 +10,7 @@ use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::{ExtraColumn, ExtraValues, ReadOptions, WriteReport, read_cloud, write_cloud, write_npy_u8};
 use belvedere::model::SceneModel;
 use belvedere::query::{
-    Answer, AnswerCounts, BlockRule, CertifiedReport, Scope, UnprovenAs, answer_views, query_points, random_targets,
+    Answer, AnswerCounts, BlockRule, CertifiedReport, Scope, UnprovenAs, query_points, random_targets,
 };
 use belvedere::view::View;
 use belvedere::{Frame, PointCloud};
@@ -53,8 +53,8 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         by_lines_of_sight(arguments, &model, &views, &targets.positions, &mut stages, &mut section)?
     } else {
         let Some(view) = views.first() else { bail!("there is no view") };
-        let map = stages.run("drawing depth map", 0, |_| {
-            depth_map(model.balls(), view, arguments.scene.profile.into(), ItemBuffer::Without)
+        let map = stages.run("drawing depth map", 0, |control| {
+            depth_map(model.balls(), view, arguments.scene.profile.into(), ItemBuffer::Without, control)
         })?;
         let bias = arguments.bias.unwrap_or_else(|| map.default_depth_bias());
         section.add("method", "depth map").add("depth_bias_m", rounded(f64::from(bias), 4));
@@ -100,7 +100,8 @@ fn by_lines_of_sight(
     let depth_bias = arguments.bias.map_or(usual.bias, f64::from);
     let shell = arguments.shell.map_or(usual.shell, f64::from);
     let rule = BlockRule { profile: arguments.scene.profile.into(), bias: depth_bias, shell };
-    let scene = model.scene(&rule, UnprovenAs::Reported, &stages.control())?;
+    let unproven_as = arguments.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
+    let scene = model.scene(&rule, unproven_as, &stages.control())?;
     section.add("depth_bias_m", rounded(depth_bias, 4)).add("shell_m", rounded(shell, 4));
     if let Some(view) = views.iter().find(|view| view.is_central()) {
         section.add("balls_around_eye_ignored", scene.around_eye_count(view.frame.eye));
@@ -109,7 +110,8 @@ fn by_lines_of_sight(
     // the sun, a direction and a panorama only say from where: without a picture there is nothing beside it
     let has_picture = arguments.view.kind.viewport.is_some() || arguments.view.kind.eye.is_some();
     let scope = if has_picture { Scope::View } else { Scope::Viewer };
-    let (answers, report) = stages.run("querying", 0, |_| answer_views(&scene, views, scope, targets))?;
+    let (answers, report) =
+        stages.run("querying", 0, |control| scene.visible_in_views(views, scope, targets, control))?;
     match report {
         None => section.add("method", "lines of sight"),
         Some(CertifiedReport { target_count, settled_count }) => section
@@ -127,8 +129,7 @@ fn counted(answers: &[Answer], unproven_as: UnprovenAs, how: Summary) -> Summary
     section.add("targets", answers.len()).add("visible", counts.visible);
     match unproven_as {
         UnprovenAs::Reported => section.add("unproven", raw.unproven),
-        UnprovenAs::Visible => section.add("unproven_within", raw.unproven),
-        UnprovenAs::Blocked => &mut section,
+        UnprovenAs::Visible | UnprovenAs::Blocked => &mut section,
     };
     section.add("blocked", counts.blocked);
     if unproven_as == UnprovenAs::Blocked {

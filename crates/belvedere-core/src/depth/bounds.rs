@@ -5,6 +5,7 @@ use super::depth_map::ItemBuffer;
 use super::parallel::{self, Parallel};
 use super::tiles;
 use crate::blocking::{Ball, BlockRule};
+use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Result};
@@ -54,8 +55,8 @@ pub struct DepthBounds {
 /// are drawn a little too large for the one and too small for the other, by more than f32 can err.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for 2³² balls or more.
-pub fn depth_bounds(balls: &[Ball], view: &View, params: &BoundsParams) -> Result<DepthBounds> {
+/// [`Error::InvalidParameter`] for 2³² balls or more, and [`Error::Cancelled`].
+pub fn depth_bounds(balls: &[Ball], view: &View, params: &BoundsParams, control: &Control<'_>) -> Result<DepthBounds> {
     if u32::try_from(balls.len()).is_err() {
         return Err(Error::InvalidParameter {
             name: "number of balls",
@@ -78,16 +79,16 @@ pub fn depth_bounds(balls: &[Ball], view: &View, params: &BoundsParams) -> Resul
             Projection::Orthographic { pixels_per_metre } => {
                 let surface = parallel::Bound::new(bound, pixels_per_metre);
                 let shape = Parallel::new(&unlimited, pixels_per_metre, surface);
-                tiles::draw(&shape, view.size_px, balls.len(), ball, ItemBuffer::Without)
+                tiles::draw(&shape, view.size_px, balls.len(), ball, ItemBuffer::Without, control)
             }
             _ => {
                 let shape = Central::new(&unlimited, central::Bound(bound));
-                tiles::draw(&shape, view.size_px, balls.len(), ball, ItemBuffer::Without)
+                tiles::draw(&shape, view.size_px, balls.len(), ball, ItemBuffer::Without, control)
             }
         };
-        drawn.0
+        drawn.map(|(depth, _)| depth)
     };
-    let (lower, upper) = (draw(BoundSide::Lower), draw(BoundSide::Upper));
+    let (lower, upper) = (draw(BoundSide::Lower)?, draw(BoundSide::Upper)?);
     let bounds = lower.values().iter().zip(upper.values()).map(|(&lower, &upper)| [lower, upper]).collect();
     let [width, height] = view.size_px;
     Ok(DepthBounds { view: *view, bounds: Raster::from_values(width, height, bounds)? })

@@ -5,6 +5,7 @@ use super::parallel::{self, Parallel};
 use super::tiles;
 use crate::blocking::{Ball, Profile, SLOPE, SURFACE_DEVIATION, holds_at};
 use crate::medial::{MedialBalls, NO_TOUCH};
+use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Result};
@@ -48,13 +49,19 @@ pub struct DepthMap {
 /// number of threads and any order of balls.
 ///
 /// # Errors
-/// [`Error::LengthMismatch`] for columns of unequal length, [`Error::InvalidParameter`] for 2³² balls or more, and for [`Profile::PaperCone`] in a view that is not parallel.
+/// [`Error::LengthMismatch`] for columns of unequal length, [`Error::InvalidParameter`] for 2³² balls or more, and for [`Profile::PaperCone`] in a view that is not parallel, and [`Error::Cancelled`].
 ///
 /// # Source
 /// Peters, Ledoux & Biljecki 2015, section 3.2 and Algorithm 1 (`WRITEBALL`), of which [`Profile::PaperCone`] is the
 /// printed form and [`Profile::Sphere`] the corrected one: the printed depth describes a cone inside the ball. Skipping
 /// hidden blocks: Greene, Kass & Miller 1993.
-pub fn depth_map(balls: &MedialBalls, view: &View, profile: Profile, items: ItemBuffer) -> Result<DepthMap> {
+pub fn depth_map(
+    balls: &MedialBalls,
+    view: &View,
+    profile: Profile,
+    items: ItemBuffer,
+    control: &Control<'_>,
+) -> Result<DepthMap> {
     balls.validate()?;
     if u32::try_from(balls.len()).is_err() {
         return Err(Error::InvalidParameter {
@@ -70,14 +77,14 @@ pub fn depth_map(balls: &MedialBalls, view: &View, profile: Profile, items: Item
     let (size, count) = (view.size_px, balls.len());
     let drawn = match (view.projection, profile) {
         (Projection::Orthographic { pixels_per_metre }, Profile::Sphere) => {
-            tiles::draw(&Parallel::new(view, pixels_per_metre, parallel::Sphere), size, count, usable, items)
+            tiles::draw(&Parallel::new(view, pixels_per_metre, parallel::Sphere), size, count, usable, items, control)
         }
         (Projection::Orthographic { pixels_per_metre }, Profile::PaperCone) => {
             #[expect(clippy::cast_possible_truncation, reason = "pixels per metre")]
             let cone = parallel::Cone { pixels_per_metre: pixels_per_metre as f32 };
-            tiles::draw(&Parallel::new(view, pixels_per_metre, cone), size, count, usable, items)
+            tiles::draw(&Parallel::new(view, pixels_per_metre, cone), size, count, usable, items, control)
         }
-        (_, Profile::Sphere) => tiles::draw(&Central::new(view, central::Sphere), size, count, usable, items),
+        (_, Profile::Sphere) => tiles::draw(&Central::new(view, central::Sphere), size, count, usable, items, control),
         (_, Profile::PaperCone) => {
             return Err(Error::InvalidParameter {
                 name: "profile",
@@ -85,7 +92,7 @@ pub fn depth_map(balls: &MedialBalls, view: &View, profile: Profile, items: Item
                 expected: "the sphere; the paper defines its cone for parallel views only",
             });
         }
-    };
+    }?;
     let around_eye_count = if view.is_central() {
         let holds_eye = |ball: &Ball| {
             let square: f64 = view.frame.view_from_local(ball.center).map(|v| v * v).iter().sum();

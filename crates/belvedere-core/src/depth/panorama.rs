@@ -4,6 +4,7 @@ use super::depth_map::{ItemBuffer, NO_BALL, depth_map};
 use crate::blocking::Profile;
 use crate::medial::MedialBalls;
 use belvedere_data::Result;
+use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{cross, dot, length, sub};
 use belvedere_data::view::{View, panorama_direction};
@@ -40,10 +41,16 @@ fn front(balls: &MedialBalls, ball: usize, eye: [f64; 3], direction: [f64; 3]) -
 ///
 /// # Errors
 /// As [`View::panorama`] and [`depth_map`].
-pub fn panorama(balls: &MedialBalls, eye: [f64; 3], width: usize, items: ItemBuffer) -> Result<Panorama> {
+pub fn panorama(
+    balls: &MedialBalls,
+    eye: [f64; 3],
+    width: usize,
+    items: ItemBuffer,
+    control: &Control<'_>,
+) -> Result<Panorama> {
     let maps = View::panorama(eye, width.max(1))?
         .iter()
-        .map(|view| depth_map(balls, view, Profile::Sphere, ItemBuffer::With))
+        .map(|view| depth_map(balls, view, Profile::Sphere, ItemBuffer::With, control))
         .collect::<Result<Vec<_>>>()?;
     let width = width.max(1).next_multiple_of(2);
     let height = width / 2;

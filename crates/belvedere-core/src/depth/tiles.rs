@@ -7,6 +7,8 @@
 
 use super::depth_map::{ItemBuffer, NO_BALL};
 use crate::blocking::Ball;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use rayon::prelude::*;
 
@@ -48,13 +50,17 @@ pub(super) trait Shape: Sync {
 
 /// The least depth of `count` balls, given by centre (local) and radius, at each pixel of a picture, metres; +∞ where there is
 /// none. `ball` is `None` for those to be left out.
+///
+/// # Errors
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
 pub(super) fn draw<S: Shape>(
     shape: &S,
     [width, height]: [usize; 2],
     count: usize,
     ball: impl Fn(usize) -> Option<Ball> + Sync,
     items: ItemBuffer,
-) -> (Raster<f32>, Option<Raster<u32>>) {
+    control: &Control<'_>,
+) -> Result<(Raster<f32>, Option<Raster<u32>>)> {
     let splats: Vec<S::Splat> = (0..count)
         .into_par_iter()
         .with_min_len(CHUNK)
@@ -64,6 +70,7 @@ pub(super) fn draw<S: Shape>(
             shape.place(center, radius, i as u32)
         })
         .collect();
+    control.check()?;
     let lists = TileLists::new(shape, &splats, [width, height]);
 
     let mut depth = Raster::filled(width, height, f32::INFINITY);
@@ -72,9 +79,10 @@ pub(super) fn draw<S: Shape>(
         ItemBuffer::Without => None,
     };
     let band = width * TILE;
-    let draw_band = |row: usize, depth: &mut [f32], nearest: Option<&mut [u32]>| {
+    let draw_band = |row: usize, depth: &mut [f32], nearest: Option<&mut [u32]>| -> Result<()> {
         let mut nearest = nearest;
         for column in 0..width.div_ceil(TILE) {
+            control.check()?;
             let with_items = nearest.is_some();
             let nearest_first = lists.of_tile(shape, &splats, column, row);
             if nearest_first.is_empty() {
@@ -84,6 +92,7 @@ pub(super) fn draw<S: Shape>(
             tile.draw(&splats, &nearest_first, with_items);
             tile.store(depth, nearest.as_deref_mut(), width);
         }
+        Ok(())
     };
     match &mut nearest {
         Some(nearest) => depth
@@ -91,12 +100,13 @@ pub(super) fn draw<S: Shape>(
             .par_chunks_mut(band)
             .zip(nearest.values_mut().par_chunks_mut(band))
             .enumerate()
-            .for_each(|(row, (depth, nearest))| draw_band(row, depth, Some(nearest))),
+            .try_for_each(|(row, (depth, nearest))| draw_band(row, depth, Some(nearest)))?,
         None => {
-            depth.values_mut().par_chunks_mut(band).enumerate().for_each(|(row, depth)| draw_band(row, depth, None));
+            let bands = depth.values_mut().par_chunks_mut(band).enumerate();
+            bands.try_for_each(|(row, depth)| draw_band(row, depth, None))?;
         }
     }
-    (depth, nearest)
+    Ok((depth, nearest))
 }
 
 /// Which splats each tile has to look at.

@@ -2,7 +2,6 @@
 
 use super::SceneModel;
 use crate::medial::without_vegetation;
-use crate::pulses::Needles;
 use crate::query::{BlockRule, MedialScene, Proof, ProofParams, UnprovenAs};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
@@ -18,18 +17,15 @@ impl SceneModel {
     /// The scene that answers lines of sight by `rule`.
     ///
     /// Its answers tell unproven from visible where the pulses are known. With [`UnprovenAs::Visible`] that makes no difference, and
-    /// the pulses are not indexed.
+    /// the pulses are left out. They are indexed when a line of sight first needs them.
     ///
     /// # Errors
-    /// Those of [`MedialScene::new`] and [`Proof::new`]; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    /// Those of [`MedialScene::new`] and [`Proof::from_columns`]; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub fn scene(&self, rule: &BlockRule, unproven: UnprovenAs, control: &Control<'_>) -> Result<MedialScene> {
         let balls = self.balls();
         let scene = control.stage("indexing balls", balls.len(), || MedialScene::new(balls, rule))?;
         let Some(pulses) = self.pulses().filter(|_| unproven != UnprovenAs::Visible) else { return Ok(scene) };
-        let proof = control.stage("indexing pulses for proof", pulses.starts.len(), || {
-            Proof::new(Needles::from_columns(pulses, control)?, &ProofParams::default())
-        })?;
-        Ok(scene.with_pulses(proof))
+        Ok(scene.with_pulses(Proof::from_columns(pulses.clone(), &ProofParams::default())?))
     }
 
     /// The same without the balls that are vegetation, and without pulses: what blocks where no tree stood.

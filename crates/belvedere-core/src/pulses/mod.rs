@@ -21,6 +21,7 @@ pub use group::{PulseReport, Pulses, group};
 pub use height_offset::HeightOffset;
 pub use line_path::{LinePath, Stretch};
 pub use locate::{LocateParams, Means, locate};
+pub(crate) use needles::lower_ends;
 pub use needles::{NeedleColumns, NeedleParams, NeedleReport, Needles};
 pub use path_samples::path_samples;
 pub use scan_angle::{AngleVerdict, ScanAngleParams, ScanAnglePart};

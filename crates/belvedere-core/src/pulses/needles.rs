@@ -4,6 +4,7 @@ mod columns;
 mod proximity;
 
 pub use belvedere_data::needles::NeedleColumns;
+pub(crate) use columns::lower_ends;
 
 use crate::neighbors::Tangent;
 use belvedere_data::control::{Control, Stop};

@@ -16,6 +16,7 @@ use super::{Answer, Viewer};
 use crate::blocking::{Ball, Profile};
 use crate::ray_index::{Part, Ray};
 use beam::Beam;
+use belvedere_data::control::Control;
 use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Result};
 use blockers::{BallColumns, LANES, Node};
@@ -42,14 +43,16 @@ impl MedialScene {
     /// Targets that are not finite are [`Answer::OutsideView`].
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a viewer that is not finite, [`Error::UnsupportedViewer`] for [`Viewer::Each`].
-    pub fn answer_among(&self, viewer: Viewer<'_>, targets: &TargetTree) -> Result<Vec<Answer>> {
-        let sweep = Sweep::new(self, viewer, targets)?;
+    /// [`Error::InvalidParameter`] for a viewer that is not finite, [`Error::UnsupportedViewer`] for [`Viewer::Each`], and
+    /// [`Error::Cancelled`].
+    pub fn answer_among(&self, viewer: Viewer<'_>, targets: &TargetTree, control: &Control<'_>) -> Result<Vec<Answer>> {
+        let sweep = Sweep::new(self, viewer, targets, control)?;
         let mut answers = vec![Answer::OutsideView; targets.len()];
         let subtrees = targets.subtrees(SHARE);
         let answered: Vec<Vec<(u32, Answer)>> = subtrees
             .into_par_iter()
             .map(|subtree| {
+                control.check()?;
                 let places = targets.nodes[subtree].first..targets.nodes[subtree].first + targets.nodes[subtree].count;
                 let first = places.start;
                 let mut seen = vec![false; places.len()];
@@ -62,11 +65,12 @@ impl MedialScene {
                             Some(_) if !seen[place - first] => Answer::Blocked,
                             Some((towards, range)) => self.answer_unblocked(target.map(f64::from), towards, range),
                         };
-                        (targets.rows()[place], answer)
+                        Ok((targets.rows()[place], answer))
                     })
                     .collect()
             })
-            .collect();
+            .collect::<Result<_>>()?;
+        control.check()?;
         for (row, answer) in answered.into_iter().flatten() {
             answers[row as usize] = answer;
         }
@@ -78,12 +82,18 @@ impl MedialScene {
     ///
     /// # Errors
     /// As [`MedialScene::answer_among`].
-    pub fn visible_among(&self, viewer: Viewer<'_>, targets: &TargetTree, mut visit: impl FnMut(usize)) -> Result<()> {
-        let sweep = Sweep::new(self, viewer, targets)?;
+    pub fn visible_among(
+        &self,
+        viewer: Viewer<'_>,
+        targets: &TargetTree,
+        control: &Control<'_>,
+        mut visit: impl FnMut(usize),
+    ) -> Result<()> {
+        let sweep = Sweep::new(self, viewer, targets, control)?;
         if !targets.nodes.is_empty() {
             sweep.run(0, &mut visit);
         }
-        Ok(())
+        control.check()
     }
 
     /// Whether the view from `eye` of a target that no ball blocks is proven, both local metres; [`Answer::OutsideView`] where the two
@@ -106,6 +116,7 @@ struct Sweep<'a> {
     apex: Apex,
     /// By how much beams are widened, metres: what f32 may misplace anything in the scene by.
     room: f64,
+    control: &'a Control<'a>,
 }
 
 /// Where beams come from.
@@ -118,7 +129,12 @@ enum Apex {
 }
 
 impl<'a> Sweep<'a> {
-    fn new(scene: &'a MedialScene, viewer: Viewer<'a>, targets: &'a TargetTree) -> Result<Self> {
+    fn new(
+        scene: &'a MedialScene,
+        viewer: Viewer<'a>,
+        targets: &'a TargetTree,
+        control: &'a Control<'a>,
+    ) -> Result<Self> {
         viewer.validate()?;
         let apex = match viewer {
             Viewer::Eye(eye) => Apex::Eye(eye),
@@ -132,7 +148,7 @@ impl<'a> Sweep<'a> {
                 });
             }
         };
-        let index = &scene.index;
+        let index = scene.tree().index();
         let farthest = |v: [f64; 3]| v.into_iter().fold(0.0, |most: f64, v| most.max(v.abs()));
         let mut scale = (0..3).map(|i| index.half_size()[i] + index.center()[i].abs()).fold(0.0, f64::max);
         if let Apex::Eye(eye) = apex {
@@ -142,13 +158,13 @@ impl<'a> Sweep<'a> {
             scale = scale.max(farthest(root.low.map(f64::from))).max(farthest(root.high.map(f64::from)));
         }
         // with a bias below zero what lies that much behind a target blocks it too
-        let behind = (-scene.params.bias).max(0.0);
-        Ok(Self { scene, targets, viewer, apex, room: ROUNDING * scale + behind })
+        let behind = (-scene.params().bias).max(0.0);
+        Ok(Self { scene, targets, viewer, apex, room: ROUNDING * scale + behind, control })
     }
 
     fn run(&self, node: usize, visit: &mut impl FnMut(usize)) {
         let mut lists = Lists::default();
-        let index = &self.scene.index;
+        let index = self.scene.tree().index();
         if let Some(root) = index.root() {
             #[expect(clippy::cast_possible_truncation, reason = "beams are widened by more than what is rounded")]
             let [center, half] = [index.center(), index.half_size()].map(|v| v.map(|v| v as f32));
@@ -160,6 +176,9 @@ impl<'a> Sweep<'a> {
 
     /// Answers the targets below `node`, whose beam can meet nothing but the `given` nodes and balls.
     fn descend(&self, node: usize, lists: &mut Lists, given: [[usize; 2]; 2], visit: &mut impl FnMut(usize)) {
+        if self.control.is_cancelled() {
+            return;
+        }
         let target = &self.targets.nodes[node];
         let Some(halves) = target.halves else { return self.finish(target, lists, given, visit) };
         // what hides one box often hides the next
@@ -276,7 +295,7 @@ impl<'a> Sweep<'a> {
                     nodes.push(node);
                     continue;
                 }
-                let Some(parts) = self.scene.index.parts(node.number) else { continue };
+                let Some(parts) = self.scene.tree().index().parts(node.number) else { continue };
                 let hits = beam.meets_boxes(&parts);
                 for (lane, part) in parts.parts.into_iter().enumerate().filter(|&(lane, _)| hits[lane]) {
                     match part {
@@ -296,7 +315,7 @@ impl<'a> Sweep<'a> {
     /// The shadow of a ball is convex: a box lies in it if its corners do. Targets near its surface meet a ball smaller by up
     /// to the shell, so the shadow of that one is asked; a target counts as `bias` nearer to the viewer.
     fn hides(&self, ball: u32, target: &TargetNode) -> bool {
-        let params = &self.scene.params;
+        let params = self.scene.params();
         if params.profile == Profile::PaperCone {
             return false;
         }

@@ -2,7 +2,8 @@
 
 use super::{Answer, MedialScene, Viewer};
 use crate::blocking::Profile;
-use crate::depth::{BoundsParams, DepthBounds, depth_bounds};
+use crate::depth::DepthBounds;
+use belvedere_data::control::Control;
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
@@ -48,28 +49,29 @@ pub struct CertifiedReport {
 /// a target saves 0.2 to 0.6 (a town of 700 000 balls on two cores).
 const TARGETS_PER_PIXEL: usize = 5;
 
-/// The answer for each of `targets`, (M, 3) local metres, in `views` of one eye or of one parallel viewer: by a [`CertifiedMap`] where
-/// there are more than a few targets a pixel, which then reports, by a line of sight each where not. The answers are the same.
-///
-/// # Errors
-/// As [`CertifiedMap::new`], the paper's cone excepted, which lines of sight answer.
-pub fn answer_views(
-    scene: &MedialScene,
-    views: &[View],
-    scope: Scope,
-    targets: &[[f32; 3]],
-) -> Result<(Vec<Answer>, Option<CertifiedReport>)> {
-    check_views(views)?;
-    let pixel_count: usize = views.iter().map(|view| view.size_px[0] * view.size_px[1]).sum();
-    if scene.params().profile == Profile::Sphere && targets.len() / TARGETS_PER_PIXEL > pixel_count {
-        let (answers, report) = CertifiedMap::new(scene, views, scope)?.answers(targets);
-        return Ok((answers, Some(report)));
+impl MedialScene {
+    /// The answer for each of `targets`, (M, 3) local metres, in `views` of one eye or of one parallel viewer: by a [`CertifiedMap`] where
+    /// there are more than a few targets a pixel, which then reports, by a line of sight each where not. The answers are the
+    /// same.
+    ///
+    /// # Errors
+    /// As [`CertifiedMap::new`], the paper's cone excepted, which lines of sight answer.
+    pub fn visible_in_views(
+        &self,
+        views: &[View],
+        scope: Scope,
+        targets: &[[f32; 3]],
+        control: &Control<'_>,
+    ) -> Result<(Vec<Answer>, Option<CertifiedReport>)> {
+        check_views(views)?;
+        let pixel_count: usize = views.iter().map(|view| view.size_px[0] * view.size_px[1]).sum();
+        if self.params().profile == Profile::Sphere && targets.len() / TARGETS_PER_PIXEL > pixel_count {
+            let (answers, report) = CertifiedMap::new(self, views, scope, control)?.answers(targets, control)?;
+            return Ok((answers, Some(report)));
+        }
+        let answers = self.answer_each(targets, control, |_, target| line_of_sight(views.iter(), scope, target))?;
+        Ok((answers, None))
     }
-    let answer = |&target: &[f32; 3]| match line_of_sight(views.iter(), scope, target) {
-        None => Answer::OutsideView,
-        Some((towards, range)) => scene.answer(target.map(f64::from), towards, range),
-    };
-    Ok((targets.par_iter().with_min_len(CHUNK).map(answer).collect(), None))
 }
 
 /// Refuses views of no or of several viewers.
@@ -106,7 +108,7 @@ impl<'a> CertifiedMap<'a> {
     /// # Errors
     /// [`Error::InvalidParameter`] for no view, for several that do not look from one eye, for balls with
     /// [`Profile::PaperCone`], and as [`depth_bounds`].
-    pub fn new(scene: &'a MedialScene, views: &[View], scope: Scope) -> Result<Self> {
+    pub fn new(scene: &'a MedialScene, views: &[View], scope: Scope, control: &Control<'_>) -> Result<Self> {
         check_views(views)?;
         let params = scene.params();
         if params.profile != Profile::Sphere {
@@ -122,7 +124,7 @@ impl<'a> CertifiedMap<'a> {
                 Scope::Viewer if view.is_central() => 0.0,
                 Scope::Viewer => f64::NEG_INFINITY,
             };
-            depth_bounds(scene.balls(), view, &BoundsParams { shell: params.shell, start })
+            scene.prepared()?.depth(view, start, control)
         };
         Ok(Self { scene, bounds: views.iter().map(bounds_of).collect::<Result<_>>()?, scope })
     }
@@ -134,23 +136,26 @@ impl<'a> CertifiedMap<'a> {
     }
 
     /// The answer for each of `targets`, (M, 3) local metres, in their order, and how many were settled without a line of sight.
-    #[must_use]
-    pub fn answers(&self, targets: &[[f32; 3]]) -> (Vec<Answer>, CertifiedReport) {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn answers(&self, targets: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<Answer>, CertifiedReport)> {
         let mut answers = vec![Answer::OutsideView; targets.len()];
         let settled_count = answers
             .par_chunks_mut(CHUNK)
             .zip(targets.par_chunks(CHUNK))
             .map(|(answers, targets)| {
+                control.check()?;
                 let mut settled = 0;
                 for (answer, &target) in answers.iter_mut().zip(targets) {
                     let way;
                     (*answer, way) = self.answer(target);
                     settled += usize::from(way == Way::Settled);
                 }
-                settled
+                Ok(settled)
             })
-            .sum();
-        (answers, CertifiedReport { target_count: targets.len(), settled_count })
+            .sum::<Result<usize>>()?;
+        Ok((answers, CertifiedReport { target_count: targets.len(), settled_count }))
     }
 
     fn answer(&self, target: [f32; 3]) -> (Answer, Way) {

@@ -50,18 +50,18 @@ impl MedialScene {
 
     /// Where a blocking ball ends upward on the vertical through `target`, local metres: infinite where it never does.
     fn top(&self, number: usize, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
-        let Some(ball) = self.balls.get(number) else { return target[2] };
+        let Some(ball) = self.tree().balls().get(number) else { return target[2] };
         let (center, radius) = (ball.center.map(f64::from), f64::from(ball.radius));
         let whole = shadow_top(center, radius, observer, target, earth);
         let beside = (center[0] - target[0]).hypot(center[1] - target[1]);
-        let margin = self.params.shell + self.params.bias;
+        let margin = self.tree().rule().shell + self.tree().rule().bias;
         if beside > radius + margin || earth.bends(target, observer) {
             return whole;
         }
         let blocks = |z: f64| {
             let place = [target[0], target[1], z];
             let towards = sub(observer, place);
-            Ray::new(place, towards, [self.params.bias, length(towards)])
+            Ray::new(place, towards, [self.tree().rule().bias, length(towards)])
                 .is_some_and(|ray| self.front(number, &ray).is_some())
         };
         // above the ball itself it no longer gives way: only the tangent counts there

@@ -10,9 +10,9 @@ impl MedialScene {
     #[must_use]
     pub fn seen_along(&self, eye: [f64; 3], direction: [f64; 3], reach: f64) -> Option<(usize, f64)> {
         let ray = Ray { origin: eye, direction, ranges: [0.0, reach] };
-        let (number, range) = self
-            .index
-            .nearest(&ray, |number| self.params.meets_ray(*self.balls.get(number)?, ray.origin, ray.direction))?;
+        let (number, range) = self.tree().index().nearest(&ray, |number| {
+            self.tree().rule().meets_ray(*self.tree().balls().get(number)?, ray.origin, ray.direction)
+        })?;
         Some((*self.rows.get(number)? as usize, range))
     }
 }

@@ -19,6 +19,11 @@ impl<T: Send + Sync> Lazy<T> {
         Self { value: OnceLock::new(), making: Mutex::new(()) }
     }
 
+    /// Whether it is there.
+    pub(super) fn is_made(&self) -> bool {
+        self.value.get().is_some()
+    }
+
     /// The value, made by `make` if it is not there yet. Nothing is kept of one that fails.
     ///
     /// # Errors

@@ -1,13 +1,19 @@
 //! A union of medial balls that exact lines of sight are cut with.
 
+use super::backend::{Backend, Prepared};
+use super::ball_tree::BallTree;
 use super::certified::line_in_view;
-use super::{Answer, Proof, Sight, Viewer, Visibility};
+use super::cpu::Cpu;
+use super::lazy::Lazy;
+use super::{Answer, Proof, Sight, Viewer, Visibility, VisibilityMatrix};
 use crate::blocking::{Ball, BlockRule};
 use crate::medial::{MedialBalls, NO_TOUCH};
-use crate::ray_index::{Ray, RayIndex};
+use crate::ray_index::Ray;
 use belvedere_data::Result;
+use belvedere_data::control::Control;
 use belvedere_data::view::View;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
@@ -22,13 +28,12 @@ const CHUNK: usize = 1024;
 /// With pulses ([`MedialScene::with_pulses`]) a target that nothing blocks is [`Answer::Unproven`] where too much of its
 /// line of sight runs through space that no pulse came near to.
 pub struct MedialScene {
-    pub(super) index: RayIndex,
-    /// In the order of the index.
-    pub(super) balls: Vec<Ball>,
-    /// Row of each of them among the balls given.
+    tree: Arc<BallTree>,
+    /// Row among the balls given of each in the tree.
     pub(super) rows: Vec<u32>,
-    pub(super) params: BlockRule,
     pub(super) proof: Option<Proof>,
+    backend: Box<dyn Backend>,
+    prepared: Lazy<Box<dyn Prepared>>,
 }
 
 impl MedialScene {
@@ -37,18 +42,38 @@ impl MedialScene {
     /// # Errors
     /// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) for columns of unequal length, and those of
     /// [`BlockRule::validate`].
-    pub fn new(balls: &MedialBalls, params: &BlockRule) -> Result<Self> {
-        params.validate()?;
+    pub fn new(balls: &MedialBalls, rule: &BlockRule) -> Result<Self> {
         balls.validate()?;
         let ball_of = |row: usize| Ball { center: balls.centers[row], radius: balls.radii[row] };
         let usable: Vec<usize> =
             (0..balls.len()).filter(|&row| balls.touch[row] != NO_TOUCH && ball_of(row).is_usable()).collect();
-        let boxes: Vec<[[f32; 3]; 2]> = usable.par_iter().map(|&row| ball_of(row).bounds()).collect();
-        let index = RayIndex::new(&boxes)?;
+        let list: Vec<Ball> = usable.iter().map(|&row| ball_of(row)).collect();
+        let (tree, order) = BallTree::new(&list, rule)?;
         #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
-        let rows: Vec<u32> = index.order().iter().map(|&number| usable[number as usize] as u32).collect();
-        let balls = rows.iter().map(|&row| ball_of(row as usize)).collect();
-        Ok(Self { index, balls, rows, params: *params, proof: None })
+        let rows = order.iter().map(|&place| usable[place as usize] as u32).collect();
+        Ok(Self { tree: Arc::new(tree), rows, proof: None, backend: Box::new(Cpu), prepared: Lazy::new() })
+    }
+
+    /// The same balls, whose lines of sight are settled in bulk by another backend. Answers stay the same.
+    #[must_use]
+    pub fn with_backend(mut self, backend: Box<dyn Backend>) -> Self {
+        self.backend = backend;
+        self.prepared = Lazy::new();
+        self
+    }
+
+    /// The balls in their tree, and how they block.
+    #[must_use]
+    pub fn tree(&self) -> &BallTree {
+        &self.tree
+    }
+
+    /// The balls as the backend made them ready.
+    ///
+    /// # Errors
+    /// Those of [`Backend::prepare`].
+    pub fn prepared(&self) -> Result<&dyn Prepared> {
+        self.prepared.get_or_make(|| self.backend.prepare(&self.tree)).map(AsRef::as_ref)
     }
 
     /// The same balls, which from now on tell what is proven visible from what is not.
@@ -89,56 +114,71 @@ impl MedialScene {
         self.answer_unblocked(target, towards, f64::INFINITY)
     }
 
-    /// The balls that can block, in no particular order.
-    pub(super) fn balls(&self) -> &[Ball] {
-        &self.balls
-    }
-
     /// How its balls block.
     #[must_use]
     pub fn params(&self) -> &BlockRule {
-        &self.params
+        self.tree.rule()
     }
 
     /// How many balls hold `eye`, local metres: these are left out of lines of sight to it.
     #[must_use]
     pub fn around_eye_count(&self, eye: [f64; 3]) -> usize {
-        self.balls.par_iter().with_min_len(CHUNK).filter(|ball| ball.depth_of(eye) >= 0.0).count()
+        self.tree.balls().par_iter().with_min_len(CHUNK).filter(|ball| ball.depth_of(eye) >= 0.0).count()
+    }
+
+    /// The answer for each of `targets`, (M, 3) local metres, by an exact line of sight: `line` gives the unit vector to the viewer and its
+    /// range for the target of a number, `None` for one that has no line of sight.
+    pub(super) fn answer_each(
+        &self,
+        targets: &[[f32; 3]],
+        control: &Control<'_>,
+        line: impl Fn(usize, [f32; 3]) -> Option<([f64; 3], f64)> + Sync,
+    ) -> Result<Vec<Answer>> {
+        let mut answers = vec![Answer::OutsideView; targets.len()];
+        let chunks = answers.par_chunks_mut(CHUNK).zip(targets.par_chunks(CHUNK)).enumerate();
+        chunks.try_for_each(|(chunk, (answers, targets))| {
+            control.check()?;
+            for (i, (answer, &target)) in answers.iter_mut().zip(targets).enumerate() {
+                if let Some((towards, range)) = line(chunk * CHUNK + i, target) {
+                    *answer = self.answer(target.map(f64::from), towards, range);
+                }
+            }
+            control.advance(targets.len());
+            Ok(())
+        })?;
+        Ok(answers)
     }
 
     /// Answers for `targets`, (M, 3) local metres, in `view`, as [`super::query_points`] gives them from its depth map, but
     /// by exact lines of sight: each ends at the picture plane, or at the near limit of a view from an eye. What lies beside the
     /// picture or beyond its limits is [`Answer::OutsideView`], and balls that reach before the plane or the limit block
-    /// nothing, as those that hold a viewer. [`super::CertifiedMap`] gives the same answers faster where there are many.
-    #[must_use]
-    pub fn query_view(&self, view: &View, targets: &[[f32; 3]]) -> Vec<Answer> {
-        let answer = |&target: &[f32; 3]| match line_in_view(view, target) {
-            None => Answer::OutsideView,
-            Some((towards, range)) => self.answer(target.map(f64::from), towards, range),
-        };
-        targets.par_iter().with_min_len(CHUNK).map(answer).collect()
+    /// nothing, as those that hold a viewer. [`MedialScene::visible_in_views`] gives the same answers, faster where there are many.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub fn query_view(&self, view: &View, targets: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<Answer>> {
+        self.answer_each(targets, control, |_, target| line_in_view(view, target))
     }
 
     /// Number of balls that can block.
     #[must_use]
     pub fn ball_count(&self) -> usize {
-        self.balls.len()
+        self.tree.balls().len()
     }
 
     /// The ball of a row of the index.
     pub(super) fn ball(&self, number: usize) -> Ball {
-        self.balls[number]
+        self.tree.ball(number)
     }
 
     /// The line of sight from `target` along the unit vector `towards`, as [`MedialScene::front`] takes it.
     pub(super) fn ray(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Ray {
-        Ray { origin: target, direction: towards, ranges: [self.params.bias, range] }
+        self.tree.ray(target, towards, range)
     }
 
     /// Whether any ball lies between a target and its viewer at `range` along the unit vector `towards`.
     pub(super) fn blocked(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
-        let ray = self.ray(target, towards, range);
-        self.index.any(&ray, |number| self.front(number, &ray).is_some())
+        self.tree.blocks(&self.tree.ray(target, towards, range))
     }
 
     /// The ball that a line of sight from `target` meets first on its way to `range` metres along the unit vector `towards`: its
@@ -146,14 +186,14 @@ impl MedialScene {
     #[must_use]
     pub fn first_block(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Option<(usize, f64)> {
         let ray = self.ray(target, towards, range);
-        let (number, front) = self.index.nearest(&ray, |number| self.front(number, &ray))?;
+        let (number, front) = self.tree.index().nearest(&ray, |number| self.front(number, &ray))?;
         Some((*self.rows.get(number)? as usize, front))
     }
 
     /// Where a line of sight leaves ball `number`, metres from its target, if that ball blocks it.
     #[inline]
     pub(super) fn front(&self, number: usize, ray: &Ray) -> Option<f64> {
-        self.params.blocks_line(*self.balls.get(number)?, ray.origin, ray.direction, ray.ranges[1])
+        self.tree.front(number, ray)
     }
 }
 
@@ -162,11 +202,16 @@ impl Visibility for MedialScene {
         viewer.validate()?;
         Ok(Box::new(move |targets| {
             viewer.validate_count(targets)?;
-            let answer = |(index, &target): (usize, &[f32; 3])| match viewer.line_of_sight(index, target) {
-                None => Answer::OutsideView,
-                Some((towards, range)) => self.answer(target.map(f64::from), towards, range),
-            };
-            Ok(targets.par_iter().enumerate().with_min_len(CHUNK).map(answer).collect())
+            self.answer_each(targets, &Control::none(), |number, target| viewer.line_of_sight(number, target))
         }))
+    }
+
+    fn visible_towards(
+        &self,
+        targets: &[[f32; 3]],
+        directions: &[[f64; 3]],
+        control: &Control<'_>,
+    ) -> Result<VisibilityMatrix> {
+        self.visibility_matrix(targets, directions, control)
     }
 }

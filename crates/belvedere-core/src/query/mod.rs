@@ -1,11 +1,26 @@
 //! Queries: which targets can be seen.
+//!
+//! There are three ways of asking a [`MedialScene`]:
+//!
+//! - a pair of points: [`MedialScene::line_of_sight`] (what blocks it first, how much of it is not proven), with
+//!   [`MedialScene::crossings`], [`MedialScene::least_visible_height`] and [`MedialScene::seen_along`] beside it;
+//! - many targets of one viewer: [`MedialScene::visible_from`], or [`MedialScene::visible_in_views`] for pictures;
+//! - many directions at many targets: [`MedialScene::visibility_matrix`].
+//!
+//! Other models of a scene answer the second and the third by the trait [`Visibility`]. [`target_tree`] and [`certified`] hold what these
+//! are made of, for those who ask about the same targets or the same view again and again. A [`Backend`] settles lines of sight in bulk.
 
+pub mod backend;
+mod ball_tree;
 mod beams;
 pub mod certified;
 mod clear_height;
+mod cpu;
 pub mod earth;
 mod fingerprint;
 mod free_range;
+mod lazy;
+mod many_targets;
 pub mod medial_scene;
 pub mod mesh;
 pub mod points;
@@ -19,7 +34,10 @@ pub mod visibility;
 pub mod visibility_matrix;
 
 pub use crate::blocking::{Ball, BlockRule, Profile};
-pub use certified::{CertifiedMap, CertifiedReport, Scope, answer_views};
+pub use backend::{Backend, Line, Prepared, Settled};
+pub use ball_tree::BallTree;
+pub use certified::{CertifiedReport, Scope};
+pub use cpu::Cpu;
 pub use earth::{Curvature, EarthParams};
 pub use fingerprint::scene_fingerprint;
 pub use medial_scene::MedialScene;
@@ -29,6 +47,5 @@ pub use proof::{Beside, Proof, ProofParams};
 pub use segments::{Block, Crossing, Enclosure, LineOfSight, merged_crossings, random_pairs};
 pub use skyline::SkylinePoint;
 pub use surface::{Piece, Sides, SurfacePieces};
-pub use target_tree::TargetTree;
 pub use visibility::{Sight, Viewer, Visibility};
 pub use visibility_matrix::{VisibilityMatrix, visibility_matrix};

@@ -1,9 +1,12 @@
 //! Whether pulses saw the space that a line of sight runs through.
 
+use super::lazy::Lazy;
 use super::seen_space::SeenSpace;
-use crate::pulses::Needles;
+use crate::pulses::{NeedleColumns, Needles, lower_ends};
+use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
-use std::collections::BTreeMap;
+use rayon::prelude::*;
+use std::sync::Arc;
 
 /// How far ahead the next pulse is looked for where none is near, metres: half a street.
 const LOOK_AHEAD: f64 = 4.0;
@@ -31,7 +34,7 @@ pub struct ProofParams {
 /// What is thought of space beside the box around the lower ends of all pulses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beside {
-    /// Nothing is asked of it: a line of sight is followed to the rim of the survey.
+    /// Nothing is asked of it: a line of sight is followed to the edge of the survey.
     NotAsked,
     /// No pulse saw it.
     Unseen,
@@ -43,14 +46,27 @@ impl Default for ProofParams {
     }
 }
 
-/// Pulses, asked how much of a line of sight none of them came near to.
+/// Pulses that tell how much of a line of sight none of them came near to. Their index is made when it is first needed.
 pub struct Proof {
-    needles: Needles,
     nearness: f64,
     params: ProofParams,
+    pulses: Pulses,
+    index: Lazy<ProofIndex>,
+}
+
+/// What a proof is made of.
+enum Pulses {
+    /// Indexed already.
+    Indexed(Arc<Needles>),
+    Columns(NeedleColumns),
+}
+
+/// Pulses, made ready for lines of sight.
+struct ProofIndex {
+    needles: Arc<Needles>,
     seen_space: SeenSpace,
     /// West, south and east, north of the lower ends.
-    rim: [[f64; 2]; 2],
+    extent: [[f64; 2]; 2],
 }
 
 /// How near a pulse must pass for a place to count as seen, metres: 0.7, or the usual distance between pulses, 1/√density,
@@ -60,16 +76,18 @@ pub struct Proof {
 /// This project's own.
 #[must_use]
 pub fn nearness(needles: &Needles) -> f64 {
-    let mut counts: BTreeMap<[i32; 2], u32> = BTreeMap::new();
-    for start in needles.lower_ends() {
-        #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
-        let cell = [0, 1].map(|i| (start[i] / COUNTING_CELL).floor() as i32);
-        *counts.entry(cell).or_default() += 1;
-    }
-    let mut counts: Vec<u32> = counts.into_values().collect();
+    nearness_of(needles.lower_ends())
+}
+
+fn nearness_of(lower_ends: impl Iterator<Item = [f32; 3]>) -> f64 {
+    #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
+    let cell = |start: [f32; 3]| [0, 1].map(|i| (start[i] / COUNTING_CELL).floor() as i32);
+    let mut cells: Vec<[i32; 2]> = lower_ends.map(cell).collect();
+    cells.par_sort_unstable();
+    let mut counts: Vec<usize> = cells.chunk_by(|a, b| a == b).map(<[_]>::len).collect();
     counts.sort_unstable();
     let median = counts.get(counts.len() / 2).copied().unwrap_or(1);
-    let density = f64::from(median) / f64::from(COUNTING_CELL * COUNTING_CELL);
+    let density = median as f64 / f64::from(COUNTING_CELL * COUNTING_CELL);
     LEAST_NEARNESS.max(1.0 / density.sqrt())
 }
 
@@ -79,9 +97,23 @@ impl Proof {
     /// # Errors
     /// [`Error::InvalidParameter`] for a parameter outside its range.
     pub fn new(needles: Needles, params: &ProofParams) -> Result<Self> {
+        let nearness = params.nearness.unwrap_or_else(|| nearness(&needles));
+        Self::of_pulses(Pulses::Indexed(Arc::new(needles)), nearness, params)
+    }
+
+    /// The same for pulses as ball files hold them, which are not even indexed before the first line of sight needs it.
+    ///
+    /// # Errors
+    /// As [`Proof::new`], and those of [`NeedleColumns::validate`].
+    pub fn from_columns(columns: NeedleColumns, params: &ProofParams) -> Result<Self> {
+        columns.validate()?;
+        let nearness = params.nearness.unwrap_or_else(|| nearness_of(lower_ends(&columns)));
+        Self::of_pulses(Pulses::Columns(columns), nearness, params)
+    }
+
+    fn of_pulses(pulses: Pulses, nearness: f64, params: &ProofParams) -> Result<Self> {
         let invalid =
             |name, value: f64, expected| Err(Error::InvalidParameter { name, value: value.to_string(), expected });
-        let nearness = params.nearness.unwrap_or_else(|| nearness(&needles));
         if !(nearness.is_finite() && nearness > 0.0) {
             return invalid("nearness of pulses", nearness, "finite and above zero metres");
         }
@@ -91,15 +123,32 @@ impl Proof {
         if !(params.step.is_finite() && params.step > 0.0) {
             return invalid("step along unproven space", params.step, "finite and above zero metres");
         }
-        let mut rim = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        Ok(Self { nearness, params: *params, pulses, index: Lazy::new() })
+    }
+
+    /// Indexes the pulses, if no line of sight needed that before. All else does it by itself, but cannot be cancelled meanwhile.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn prepare(&self, control: &Control<'_>) -> Result<()> {
+        self.index.get_or_make(|| self.make_index(control)).map(|_| ())
+    }
+
+    fn make_index(&self, control: &Control<'_>) -> Result<ProofIndex> {
+        let needles = match &self.pulses {
+            Pulses::Indexed(needles) => Arc::clone(needles),
+            Pulses::Columns(columns) => Arc::new(Needles::from_columns(columns, control)?),
+        };
+        control.check()?;
+        let mut extent = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         for start in needles.lower_ends() {
             for axis in 0..2 {
-                rim[0][axis] = rim[0][axis].min(f64::from(start[axis]));
-                rim[1][axis] = rim[1][axis].max(f64::from(start[axis]));
+                extent[0][axis] = extent[0][axis].min(f64::from(start[axis]));
+                extent[1][axis] = extent[1][axis].max(f64::from(start[axis]));
             }
         }
-        let seen_space = SeenSpace::new(&needles, rim, nearness);
-        Ok(Self { needles, nearness, params: *params, seen_space, rim })
+        let seen_space = SeenSpace::new(&needles, extent, self.nearness);
+        Ok(ProofIndex { needles, seen_space, extent })
     }
 
     /// How near a pulse must pass, metres.
@@ -130,15 +179,16 @@ impl Proof {
 
     /// The unseen length, or something above `enough` as soon as it is known to exceed that.
     fn length(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64) -> f64 {
-        if self.needles.is_empty() {
+        let Some(index) = self.index.get(|control| self.make_index(control)) else { return range };
+        if index.needles.is_empty() {
             return range;
         }
-        let top = f64::from(self.needles.top());
+        let top = f64::from(index.needles.top());
         let mut below = [0.0, range];
         clip(&mut below, target[2], towards[2], [f64::NEG_INFINITY, top]);
         let mut inside = below;
         for axis in 0..2 {
-            clip(&mut inside, target[axis], towards[axis], [self.rim[0][axis], self.rim[1][axis]]);
+            clip(&mut inside, target[axis], towards[axis], [index.extent[0][axis], index.extent[1][axis]]);
         }
         let span = |[from, to]: [f64; 2]| (to - from).max(0.0);
         let beside = match self.params.beside {
@@ -151,24 +201,31 @@ impl Proof {
         if beside > enough || !(span(inside) > 0.0) {
             return beside;
         }
-        beside + self.length_inside(target, towards, inside, enough - beside)
+        beside + self.length_inside(index, (target, towards), inside, enough - beside)
     }
 
-    fn length_inside(&self, origin: [f64; 3], direction: [f64; 3], [from, to]: [f64; 2], enough: f64) -> f64 {
+    fn length_inside(
+        &self,
+        index: &ProofIndex,
+        (origin, direction): ([f64; 3], [f64; 3]),
+        [from, to]: [f64; 2],
+        enough: f64,
+    ) -> f64 {
+        let ProofIndex { needles, seen_space, .. } = index;
         let point = |at: f64| -> [f64; 3] { std::array::from_fn(|i| origin[i] + at * direction[i]) };
         let backward = direction.map(|v| -v);
         let mut unseen = 0.0;
         let mut gap_from: Option<f64> = None;
         let mut at = from;
         while at < to {
-            let seen_to = self.seen_space.near_until(origin, direction, at).or_else(|| {
-                self.needles.near_piece(origin, direction, at, self.nearness).map(|[_, piece_to]| piece_to)
-            });
+            let seen_to = seen_space
+                .near_until(needles, (origin, direction), at)
+                .or_else(|| needles.near_piece(origin, direction, at, self.nearness).map(|[_, piece_to]| piece_to));
             if let Some(seen_to) = seen_to {
                 if let Some(start) = gap_from.take() {
                     // the last step may have gone past where pulses come near again
                     let mut end = at;
-                    while let Some([_, before]) = self.needles.near_piece(origin, backward, -end, self.nearness)
+                    while let Some([_, before]) = needles.near_piece(origin, backward, -end, self.nearness)
                         && end > start
                     {
                         end = -before;
@@ -180,7 +237,7 @@ impl Proof {
             }
             let start = *gap_from.get_or_insert(at);
             let reach = self.nearness + LOOK_AHEAD;
-            let clear = self.needles.nearest_distance(point(at), reach).unwrap_or(reach) - self.nearness;
+            let clear = needles.nearest_distance(point(at), reach).unwrap_or(reach) - self.nearness;
             if unseen + (at + clear.max(0.0)).min(to) - start > enough {
                 return f64::max(unseen + (at + clear.max(0.0)).min(to) - start, enough);
             }

@@ -1,8 +1,7 @@
 //! Boxes of space that are near some pulse everywhere: most of a line of sight is proven by a look at these.
 
 use crate::pulses::Needles;
-use rayon::prelude::*;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::OnceLock;
 
 /// Side of a box as a share of the nearness. A needle that passes the middle of a box within nearness − side/√2 is near to all of
 /// it; the smaller the boxes, the more of them find such a needle, and the more there are.
@@ -16,22 +15,35 @@ const MOST_COLUMNS: f64 = 2e7;
 /// What rounding of f32 may shift a needle by, metres.
 const ROUNDING: f64 = 2e-3;
 
+/// Columns of boxes along a side of a tile: 5 m of usual pulses.
+const TILE: usize = 16;
+
 /// A grid of boxes, each known to be near pulses or not. It proves less than the pulses themselves and nothing that they do not.
+///
+/// Tiles of it are made when a line first runs through them, so that a few lines cost little and many share the work.
 pub(super) struct SeenSpace {
     /// Lowest corner.
     low: [f64; 3],
     /// Width and height of a box.
     side: f64,
     height: f64,
+    /// Boxes above one another.
+    layers: usize,
+    /// How near a needle must pass to the middle line of a box.
+    reach: f64,
     size: [usize; 2],
-    /// A word for each column of boxes, lowest bit first.
-    columns: Vec<u64>,
+    /// Tiles in a row.
+    width: usize,
+    tiles: Vec<OnceLock<Tile>>,
 }
 
+/// A word for each column of boxes of a tile, row by row; the lowest box has the lowest bit.
+type Tile = Box<[u64; TILE * TILE]>;
+
 impl SeenSpace {
-    /// Boxes over the rectangle from `rim[0]` to `rim[1]`, for needles that count up to `nearness` metres.
-    pub(super) fn new(needles: &Needles, rim: [[f64; 2]; 2], nearness: f64) -> Self {
-        let extent = [0, 1].map(|axis| rim[1][axis] - rim[0][axis]);
+    /// Boxes over the rectangle from `low` to `high`, for needles that count up to `nearness` metres.
+    pub(super) fn new(needles: &Needles, [low, high]: [[f64; 2]; 2], nearness: f64) -> Self {
+        let extent = [0, 1].map(|axis| high[axis] - low[axis]);
         let side = (SIDE_PER_NEARNESS * nearness).max((extent[0] * extent[1] / MOST_COLUMNS).max(0.0).sqrt());
         let reach = nearness - side / std::f64::consts::SQRT_2 - ROUNDING;
         let floor = needles.lower_ends().map(|start| f64::from(start[2])).fold(f64::INFINITY, f64::min);
@@ -42,24 +54,53 @@ impl SeenSpace {
         let counts = extent.map(|extent| (extent / side).floor() + 1.0);
         let usable = reach > 0.0 && rise > 0.0 && rise.is_finite() && counts[0] * counts[1] < 2.0 * MOST_COLUMNS;
         let size = if usable { counts.map(whole) } else { [0; 2] };
-        let mut space =
-            Self { low: [rim[0][0], rim[0][1], floor], side, height: rise / layers, size, columns: Vec::new() };
-        // bits are only ever set, so that no order matters
-        let columns: Vec<AtomicU64> = (0..size[0] * size[1]).map(|_| AtomicU64::new(0)).collect();
-        if !columns.is_empty() {
-            needles.par_ends().for_each(|ends| space.mark(ends, reach, whole(layers), &columns));
+        let [width, rows] = size.map(|count| count.div_ceil(TILE));
+        Self {
+            low: [low[0], low[1], floor],
+            side,
+            height: rise / layers,
+            layers: whole(layers),
+            reach,
+            size,
+            width,
+            tiles: (0..width * rows).map(|_| OnceLock::new()).collect(),
         }
-        space.columns = columns.into_iter().map(AtomicU64::into_inner).collect();
-        space
     }
 
-    /// Marks the boxes that a needle is near to: those whose middle line it passes within `reach` both where it enters their
-    /// layer and where it leaves it.
-    fn mark(&self, [start, end]: [[f64; 3]; 2], reach: f64, layers: usize, columns: &[AtomicU64]) {
+    /// The boxes of the tile whose lowest column and row are `first`.
+    fn tile(&self, needles: &Needles, first: [usize; 2]) -> Tile {
+        let mut boxes = Box::new([0; TILE * TILE]);
+        // a box more on all sides than any needle that counts for the tile passes
+        let room = self.reach + self.side;
+        let low = [0, 1].map(|axis| self.low[axis] + first[axis] as f64 * self.side - room);
+        let high = low.map(|low| low + TILE as f64 * self.side + 2.0 * room);
+        needles.each_over([low, high], |ends| self.mark(ends, [low, high], first, &mut boxes));
+        boxes
+    }
+
+    /// Marks the boxes of a tile that a needle is near to: those whose middle line it passes within `reach` both where it enters
+    /// their layer and where it leaves it. Where it does so it lies over the rectangle `over`.
+    fn mark(&self, [start, end]: [[f64; 3]; 2], over: [[f64; 2]; 2], first: [usize; 2], boxes: &mut Tile) {
         let lean = [0, 1].map(|axis| (end[axis] - start[axis]) / (end[2] - start[2]));
+        // heights at which the needle lies over the rectangle
+        let mut heights = [start[2], end[2]];
+        for axis in 0..2 {
+            if lean[axis] != 0.0 {
+                let [a, b] = over.map(|over| start[2] + (over[axis] - start[axis]) / lean[axis]);
+                heights = [heights[0].max(a.min(b)), heights[1].min(a.max(b))];
+            }
+        }
+        let layer_of = |z: f64| (z - self.low[2]) / self.height;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-        let first = ((start[2] - ROUNDING - self.low[2]) / self.height).ceil().max(0.0) as usize;
-        for layer in first..layers {
+        let layers = [
+            // layers that it does not enter from below are left out
+            layer_of(start[2] - ROUNDING).ceil().max(layer_of(heights[0]).floor() - 1.0).max(0.0) as usize,
+            (layer_of(heights[1]).ceil() + 1.0).max(0.0) as usize,
+        ];
+        let middles = [0, 1].map(|axis| -> [f64; TILE] {
+            std::array::from_fn(|index| ((first[axis] + index) as f64 + 0.5) * self.side)
+        });
+        for layer in layers[0]..layers[1].min(self.layers) {
             let bounds = [layer, layer + 1].map(|step| self.low[2] + step as f64 * self.height);
             if bounds[1] > end[2] + ROUNDING {
                 break;
@@ -67,30 +108,31 @@ impl SeenSpace {
             let at = bounds.map(|z| [0, 1].map(|axis| start[axis] + (z - start[2]) * lean[axis] - self.low[axis]));
             let range = [0, 1].map(|axis| {
                 let (least, most) = (at[0][axis].min(at[1][axis]), at[0][axis].max(at[1][axis]));
-                let last = self.size[axis] as f64 - 1.0;
                 // middles within reach of both places
-                let from = ((most - reach) / self.side - 0.5).ceil().clamp(0.0, last + 1.0);
-                let to = ((least + reach) / self.side - 0.5).floor().clamp(-1.0, last) + 1.0;
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the grid")]
-                let range = from as usize..to as usize;
+                let from = ((most - self.reach) / self.side - 0.5).ceil() - first[axis] as f64;
+                let to = ((least + self.reach) / self.side - 0.5).floor() + 1.0 - first[axis] as f64;
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the tile")]
+                let range = from.clamp(0.0, TILE as f64) as usize..to.clamp(0.0, TILE as f64) as usize;
                 range
             });
+            let square = self.reach * self.reach;
             for row in range[1].clone() {
+                let aside = [0, 1].map(|end| (at[end][1] - middles[1][row]).powi(2));
                 for column in range[0].clone() {
-                    let middle = [column, row].map(|index| (index as f64 + 0.5) * self.side);
-                    let near = |at: [f64; 2]| (at[0] - middle[0]).powi(2) + (at[1] - middle[1]).powi(2) < reach * reach;
-                    let bit = 1 << layer;
-                    let word = &columns[row * self.size[0] + column];
-                    if near(at[0]) && near(at[1]) && word.load(Ordering::Relaxed) & bit == 0 {
-                        word.fetch_or(bit, Ordering::Relaxed);
-                    }
+                    let near = |end: usize| (at[end][0] - middles[0][column]).powi(2) + aside[end] < square;
+                    boxes[row * TILE + column] |= u64::from(near(0) & near(1)) << layer;
                 }
             }
         }
     }
 
-    /// Where a line leaves the box that it is in at `at`, if all of that box is near pulses.
-    pub(super) fn near_until(&self, origin: [f64; 3], direction: [f64; 3], at: f64) -> Option<f64> {
+    /// Where a line leaves the box that it is in at `at`, if all of that box is near `needles`, those that the grid was made for.
+    pub(super) fn near_until(
+        &self,
+        needles: &Needles,
+        (origin, direction): ([f64; 3], [f64; 3]),
+        at: f64,
+    ) -> Option<f64> {
         let sides = [self.side, self.side, self.height];
         // a little on, so that a line at the edge of a box is taken for in the one it enters
         let within = at + 1e-9;
@@ -113,8 +155,77 @@ impl SeenSpace {
         if column >= self.size[0] || row >= self.size[1] || layer >= 64 {
             return None;
         }
-        let word = self.columns.get(row * self.size[0] + column)?;
+        let tile = self.tiles.get(row / TILE * self.width + column / TILE)?;
+        let first = [column, row].map(|index| index / TILE * TILE);
+        let boxes = tile.get_or_init(|| self.tile(needles, first));
+        let word = boxes[row % TILE * TILE + column % TILE];
         // at least a micrometre on, so that a walk ends
         (word >> layer & 1 == 1 && exit > at + 1e-6).then_some(exit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pulses::NeedleParams;
+    use belvedere_data::control::Control;
+    use belvedere_data::random::uniform;
+
+    #[test]
+    fn tiles_hold_the_boxes_that_some_needle_is_near_to() {
+        // a plane in strips over 40 m, its pulses leaning to all sides
+        #[expect(clippy::cast_possible_truncation, reason = "positions are f32")]
+        let random = |i: u64, k: u64| uniform(6, 8 * i + k) as f32;
+        let count = 3000;
+        let returns: Vec<[f32; 3]> =
+            (0..count).map(|i| [40.0 * random(i, 0) - 3.0, 40.0 * random(i, 1), 9.0 * random(i, 2).powi(3)]).collect();
+        let scanner: Vec<[f32; 3]> =
+            (0..count).map(|i| [300.0 * random(i, 3) - 130.0, 200.0 * random(i, 4) - 80.0, 300.0]).collect();
+        let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
+        let mut extent = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        for start in needles.lower_ends() {
+            for axis in 0..2 {
+                extent[0][axis] = extent[0][axis].min(f64::from(start[axis]));
+                extent[1][axis] = extent[1][axis].max(f64::from(start[axis]));
+            }
+        }
+        let space = SeenSpace::new(&needles, extent, 1.1);
+        let ends: Vec<[[f64; 3]; 2]> = (0..needles.len())
+            .filter_map(|number| {
+                let (start, up, length) = needles.segment(number)?;
+                let (start, up) = (start.map(f64::from), up.map(f64::from));
+                Some([start, std::array::from_fn(|i| start[i] + f64::from(length) * up[i])])
+            })
+            .collect();
+        let reach = space.reach;
+        let is_near = |column: usize, row: usize, layer: usize| {
+            let middle = [column, row].map(|index| (index as f64 + 0.5) * space.side);
+            let bounds = [layer, layer + 1].map(|step| space.low[2] + step as f64 * space.height);
+            ends.iter().any(|[start, end]| {
+                bounds[0] >= start[2] - ROUNDING
+                    && bounds[1] <= end[2] + ROUNDING
+                    && bounds.iter().all(|z| {
+                        let share = (z - start[2]) / (end[2] - start[2]);
+                        let off = [0, 1].map(|i| start[i] + share * (end[i] - start[i]) - space.low[i] - middle[i]);
+                        off[0].hypot(off[1]) < reach
+                    })
+            })
+        };
+        let mut near_count = 0;
+        let mut asked = 0;
+        for row in (0..space.size[1]).step_by(3) {
+            for column in (0..space.size[0]).step_by(3) {
+                let tile = space.tiles[row / TILE * space.width + column / TILE]
+                    .get_or_init(|| space.tile(&needles, [column, row].map(|index| index / TILE * TILE)));
+                let word = tile[row % TILE * TILE + column % TILE];
+                for layer in 0..space.layers {
+                    let near = is_near(column, row, layer);
+                    assert_eq!(word >> layer & 1 == 1, near, "column {column}, row {row}, layer {layer}");
+                    near_count += usize::from(near);
+                    asked += 1;
+                }
+            }
+        }
+        assert!(near_count > asked / 10 && near_count < asked * 9 / 10, "{near_count} of {asked}");
     }
 }

@@ -3,6 +3,8 @@
 use super::{Answer, EarthParams, MedialScene};
 use crate::blocking::Chord;
 use crate::ray_index::Ray;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
 use belvedere_data::vector::{length, sub};
 use rayon::prelude::*;
 
@@ -95,10 +97,22 @@ impl MedialScene {
         Some(LineOfSight { answer, first_block: None, unproven_length })
     }
 
-    /// [`MedialScene::line_of_sight`] for each of `pairs`, (N, observer and target), local metres, in their order.
-    #[must_use]
-    pub fn lines_of_sight(&self, pairs: &[[[f64; 3]; 2]], earth: &EarthParams) -> Vec<Option<LineOfSight>> {
-        let ask = |&[observer, target]: &[[f64; 3]; 2]| self.line_of_sight(observer, target, earth);
+    /// [`MedialScene::line_of_sight`] for each of `pairs`, (N, observer and target), local metres, in their order. Progress counts pairs.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub fn lines_of_sight(
+        &self,
+        pairs: &[[[f64; 3]; 2]],
+        earth: &EarthParams,
+        control: &Control<'_>,
+    ) -> Result<Vec<Option<LineOfSight>>> {
+        let ask = |&[observer, target]: &[[f64; 3]; 2]| {
+            control.check()?;
+            let sight = self.line_of_sight(observer, target, earth);
+            control.advance(1);
+            Ok(sight)
+        };
         pairs.par_iter().with_min_len(CHUNK).map(ask).collect()
     }
 
@@ -112,7 +126,10 @@ impl MedialScene {
             return self.answer(target, ray.direction, range);
         }
         let pieces = self.pieces(observer, target, earth);
-        if pieces.iter().any(|(piece, _)| self.index.any(&piece.ray, |number| self.front_on(number, piece).is_some())) {
+        if pieces
+            .iter()
+            .any(|(piece, _)| self.tree().index().any(&piece.ray, |number| self.front_on(number, piece).is_some()))
+        {
             return Answer::Blocked;
         }
         let Some(proof) = &self.proof else { return Answer::Visible };
@@ -138,8 +155,8 @@ impl MedialScene {
             let &[from, to] = pair else { continue };
             let piece = length(sub(to, from));
             let Some(ray) = Ray::new(from, sub(to, from), [0.0, piece]) else { continue };
-            self.index.each(&ray, |number| {
-                let inside = self.balls.get(number).and_then(|ball| ball.interval(ray.origin, ray.direction));
+            self.tree().index().each(&ray, |number| {
+                let inside = self.tree().balls().get(number).and_then(|ball| ball.interval(ray.origin, ray.direction));
                 let Some([enters, leaves]) = inside else { return };
                 let ranges = [enters.max(0.0), leaves.min(piece)];
                 if ranges[0] < ranges[1] {
@@ -158,8 +175,8 @@ impl MedialScene {
     pub fn enclosure(&self, point: [f64; 3]) -> Enclosure {
         let mut enclosure = Enclosure::default();
         let Some(ray) = Ray::new(point, [0.0, 0.0, 1.0], [0.0, PROBE]) else { return enclosure };
-        self.index.each(&ray, |number| {
-            let Some(ball) = self.balls.get(number) else { return };
+        self.tree().index().each(&ray, |number| {
+            let Some(ball) = self.tree().balls().get(number) else { return };
             let depth = ball.depth_of(point);
             if depth > 0.0 {
                 enclosure.ball_count += 1;
@@ -179,7 +196,7 @@ impl MedialScene {
     ) {
         if earth.bends(target, observer) {
             for (piece, _) in self.pieces(observer, target, earth) {
-                self.index.each(&piece.ray, |number| {
+                self.tree().index().each(&piece.ray, |number| {
                     if self.front_on(number, &piece).is_some() {
                         visit(number);
                     }
@@ -187,7 +204,7 @@ impl MedialScene {
             }
         } else if let Some(ray) = Ray::new(target, sub(observer, target), [0.0, length(sub(observer, target))]) {
             let ray = self.biased(ray);
-            self.index.each(&ray, |number| {
+            self.tree().index().each(&ray, |number| {
                 if self.front(number, &ray).is_some() {
                     visit(number);
                 }
@@ -212,7 +229,7 @@ impl MedialScene {
     }
 
     fn biased(&self, mut ray: Ray) -> Ray {
-        ray.ranges[0] = self.params.bias;
+        ray.ranges[0] = self.tree().rule().bias;
         ray
     }
 
@@ -226,7 +243,7 @@ impl MedialScene {
             direction: ray.direction.map(|v| -v),
             ranges: [0.0, (reach - ray.ranges[0]).max(0.0)],
         };
-        self.index.nearest(&back, |number| {
+        self.tree().index().nearest(&back, |number| {
             let front = if whole { self.front(number, ray) } else { self.front_on(number, piece) };
             front.map(|front| reach - front)
         })
@@ -242,7 +259,7 @@ impl MedialScene {
             target: *target,
             observer: *observer,
         };
-        self.params.blocks_chord(*self.balls.get(number)?, &chord)
+        self.tree().rule().blocks_chord(*self.tree().balls().get(number)?, &chord)
     }
 }
 

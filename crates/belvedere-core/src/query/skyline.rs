@@ -2,6 +2,8 @@
 
 use super::{EarthParams, MedialScene};
 use crate::blocking::Ball;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -42,24 +44,43 @@ impl MedialScene {
     /// gap is missed, and there is no step to choose. The eye may be a place on a surface: balls give way to it by
     /// [`crate::blocking::BlockRule::shell`] as to any target. Those that hold it even so are left out; [`MedialScene::enclosure`] tells of them.
     /// Over the earth of `earth` far balls sink.
-    #[must_use]
-    pub fn skyline(&self, eye: [f64; 3], count: usize, earth: &EarthParams) -> Vec<SkylinePoint> {
-        self.skyline_from(eye, count, 0.0, earth)
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub fn skyline(
+        &self,
+        eye: [f64; 3],
+        count: usize,
+        earth: &EarthParams,
+        control: &Control<'_>,
+    ) -> Result<Vec<SkylinePoint>> {
+        self.skyline_from(eye, count, 0.0, earth, control)
     }
 
     /// [`MedialScene::skyline`] whose first azimuth is `first`, radians clockwise from grid north.
-    #[must_use]
-    pub fn skyline_from(&self, eye: [f64; 3], count: usize, first: f64, earth: &EarthParams) -> Vec<SkylinePoint> {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub fn skyline_from(
+        &self,
+        eye: [f64; 3],
+        count: usize,
+        first: f64,
+        earth: &EarthParams,
+        control: &Control<'_>,
+    ) -> Result<Vec<SkylinePoint>> {
         if count == 0 || !eye.iter().all(|v| v.is_finite()) || !first.is_finite() {
-            return Vec::new();
+            return Ok(Vec::new());
         }
         let step = TAU / count as f64;
         // sines and cosines of the azimuths
         let directions: Vec<[f64; 2]> = (0..count).map(|i| (first + i as f64 * step).sin_cos().into()).collect();
-        self.balls
+        self.tree()
+            .balls()
             .par_chunks(CHUNK)
             .enumerate()
             .map(|(chunk, balls)| {
+                control.check()?;
                 let mut skyline = vec![EMPTY; count];
                 for (i, &ball) in balls.iter().enumerate() {
                     let Some((offset, radius)) = self.before(eye, ball, earth) else { continue };
@@ -70,14 +91,14 @@ impl MedialScene {
                         }
                     });
                 }
-                skyline
+                Ok(skyline)
             })
-            .reduce(|| vec![EMPTY; count], |a, b| a.into_iter().zip(b).map(|(a, b)| a.or(b)).collect())
+            .try_reduce(|| vec![EMPTY; count], |a, b| Ok(a.into_iter().zip(b).map(|(a, b)| a.or(b)).collect()))
     }
 
     /// From the eye to the centre of a ball, and its radius after giving way; `None` if it holds the eye even so.
     fn before(&self, eye: [f64; 3], ball: Ball, earth: &EarthParams) -> Option<([f64; 3], f64)> {
-        let (mut offset, radius) = self.params.seen_from(ball, eye)?;
+        let (mut offset, radius) = self.tree().rule().seen_from(ball, eye)?;
         if earth.bends(eye, ball.center.map(f64::from)) {
             let span = offset[0].hypot(offset[1]);
             offset[2] -= (1.0 - earth.refraction) * span * span / (2.0 * earth.radius);

@@ -3,6 +3,7 @@
 use crate::Tables;
 use crate::model::Model;
 use belvedere::Result;
+use belvedere::control::Control;
 use belvedere::depth::{DepthMap, ItemBuffer, Profile, depth_map};
 use belvedere::query::{Answer, AnswerCounts, query_points, random_targets};
 use belvedere::view::{View, to_sun};
@@ -67,10 +68,10 @@ pub(crate) fn compare_profiles(model: &Model, views: &[(&str, View)], tables: &m
     let mut looks = Vec::new();
     for (name, view) in views {
         let start = Instant::now();
-        let cone = depth_map(&model.balls, view, Profile::PaperCone, ItemBuffer::Without)?;
+        let cone = depth_map(&model.balls, view, Profile::PaperCone, ItemBuffer::Without, &Control::none())?;
         let cone_time = start.elapsed();
         let start = Instant::now();
-        let sphere = depth_map(&model.balls, view, Profile::Sphere, ItemBuffer::Without)?;
+        let sphere = depth_map(&model.balls, view, Profile::Sphere, ItemBuffer::Without, &Control::none())?;
         let sphere_time = start.elapsed();
         let start = Instant::now();
         let by_cone = query_points(&cone, &targets, 0.0);

@@ -3,6 +3,7 @@
 use crate::experiment::Look;
 use crate::model::{Model, Way, unlimited_tau, within_window};
 use belvedere::Bounds;
+use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::figures::{Canvas, Colors, Picture, depth_picture, ramp_colors, side_by_side, write_png};
 use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkParams};
@@ -68,7 +69,7 @@ fn points_picture(view: &View, points: &[[f32; 3]], colors: &[[u8; 3]], size_px:
 /// A canvas with `balls`, one colour each.
 fn canvas_with_balls(view: &View, balls: &MedialBalls, colors: &[[u8; 3]]) -> Result<Canvas> {
     let mut canvas = Canvas::new(view, PAPER);
-    let map = depth_map(balls, view, Profile::Sphere, ItemBuffer::With)?;
+    let map = depth_map(balls, view, Profile::Sphere, ItemBuffer::With, &Control::none())?;
     if let Some(items) = &map.balls {
         canvas.draw_seen_balls((&map.depth, items), (&balls.centers, &balls.radii), Colors::Each(colors))?;
     }

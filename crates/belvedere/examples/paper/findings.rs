@@ -39,7 +39,7 @@ impl Method {
     /// Whether each target is visible from the sun; every target lies in the view.
     fn sunlit(&self, targets: &[[f32; 3]], to_sun: [f64; 3]) -> Result<Vec<bool>> {
         let view = parallel_to(&self.model, to_sun.map(|v| -v), SUN_PIXELS_PER_METRE)?;
-        let map = depth_map(&self.model.balls, &view, self.profile, ItemBuffer::Without)?;
+        let map = depth_map(&self.model.balls, &view, self.profile, ItemBuffer::Without, &Control::none())?;
         let bias = self.bias.unwrap_or(map.default_depth_bias());
         Ok(query_points(&map, targets, bias).into_iter().map(|a| a != Answer::Blocked).collect())
     }

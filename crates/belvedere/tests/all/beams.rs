@@ -1,9 +1,11 @@
 //! Many targets at once give the answers of single lines of sight.
 
 use belvedere::Error;
+use belvedere::control::Control;
 use belvedere::depth::Profile;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, BlockRule, MedialScene, TargetTree, Viewer, Visibility};
+use belvedere::query::target_tree::TargetTree;
+use belvedere::query::{Answer, BlockRule, MedialScene, Viewer, Visibility};
 use belvedere::random::uniform;
 
 fn add(balls: &mut MedialBalls, center: [f32; 3], radius: f32) {
@@ -78,12 +80,12 @@ fn many_at_once_are_answered_as_one_by_one() {
             let scene = MedialScene::new(&town(3, 8000, shift), &params).unwrap();
             for viewer in viewers(&targets, f64::from(shift)) {
                 let single = scene.visible(viewer, &targets).unwrap();
-                let among = scene.answer_among(viewer, &tree).unwrap();
+                let among = scene.answer_among(viewer, &tree, &Control::none()).unwrap();
                 let differing = single.iter().zip(&among).filter(|(a, b)| a != b).count();
                 assert_eq!(differing, 0, "{params:?} {viewer:?}");
                 let visible = single.iter().filter(|&&answer| answer == Answer::Visible).count();
                 let mut visited = Vec::new();
-                scene.visible_among(viewer, &tree, |place| visited.push(tree.rows()[place])).unwrap();
+                scene.visible_among(viewer, &tree, &Control::none(), |place| visited.push(tree.rows()[place])).unwrap();
                 let at_viewer = single.iter().filter(|&&answer| answer == Answer::OutsideView).count();
                 assert_eq!(visited.len(), visible + at_viewer);
                 assert!(visited.iter().all(|&row| single[row as usize] != Answer::Blocked));
@@ -96,7 +98,7 @@ fn many_at_once_are_answered_as_one_by_one() {
 fn the_scene_of_these_tests_has_targets_of_either_kind() {
     let targets = targets(5, 6000, 0.0);
     let scene = MedialScene::new(&town(3, 8000, 0.0), &BlockRule::carved()).unwrap();
-    let answers = scene.answer_among(viewers(&targets, 0.0)[0], &TargetTree::new(&targets)).unwrap();
+    let answers = scene.answer_among(viewers(&targets, 0.0)[0], &TargetTree::new(&targets), &Control::none()).unwrap();
     let visible = answers.iter().filter(|&&answer| answer == Answer::Visible).count();
     assert!((100..5900).contains(&visible), "{visible} of 6000 visible");
 }
@@ -106,15 +108,15 @@ fn what_is_not_finite_is_outside_and_nothing_is_no_error() {
     let scene = MedialScene::new(&town(3, 500, 0.0), &BlockRule::carved()).unwrap();
     let eye = Viewer::Eye([50.0, 50.0, 20.0]);
     let odd = [[f32::NAN, 0.0, 0.0], [50.0, 50.0, 19.0], [0.0, f32::INFINITY, 0.0]];
-    let answers = scene.answer_among(eye, &TargetTree::new(&odd)).unwrap();
+    let answers = scene.answer_among(eye, &TargetTree::new(&odd), &Control::none()).unwrap();
     assert_eq!(answers, [Answer::OutsideView, Answer::Visible, Answer::OutsideView]);
-    assert!(scene.answer_among(eye, &TargetTree::new(&[])).unwrap().is_empty());
+    assert!(scene.answer_among(eye, &TargetTree::new(&[]), &Control::none()).unwrap().is_empty());
     let nothing = MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap();
-    assert_eq!(nothing.answer_among(eye, &TargetTree::new(&odd[1..2])).unwrap(), [Answer::Visible]);
+    assert_eq!(nothing.answer_among(eye, &TargetTree::new(&odd[1..2]), &Control::none()).unwrap(), [Answer::Visible]);
     let eyes = [[0.0_f32; 3]];
-    let refused = scene.answer_among(Viewer::Each(&eyes), &TargetTree::new(&odd[1..2]));
+    let refused = scene.answer_among(Viewer::Each(&eyes), &TargetTree::new(&odd[1..2]), &Control::none());
     assert!(matches!(refused, Err(Error::UnsupportedViewer { .. })));
-    let refused = scene.answer_among(Viewer::Eye([f64::NAN; 3]), &TargetTree::new(&odd));
+    let refused = scene.answer_among(Viewer::Eye([f64::NAN; 3]), &TargetTree::new(&odd), &Control::none());
     assert!(matches!(refused, Err(Error::InvalidParameter { .. })));
 }
 
@@ -126,7 +128,7 @@ fn a_wall_of_one_ball_hides_what_the_closed_form_says() {
     let scene = MedialScene::new(&ball, &BlockRule::default()).unwrap();
     let targets: Vec<[f32; 3]> =
         (0..4000).map(|i| [5.0 + (i % 80) as f32 * 0.5, (i / 80) as f32 * 0.125 - 3.0, 0.25]).collect();
-    let answers = scene.answer_among(Viewer::Eye([0.0; 3]), &TargetTree::new(&targets)).unwrap();
+    let answers = scene.answer_among(Viewer::Eye([0.0; 3]), &TargetTree::new(&targets), &Control::none()).unwrap();
     let mut hidden = 0;
     for (target, answer) in targets.iter().zip(answers) {
         let [x, y, z] = target.map(f64::from);

@@ -2,6 +2,7 @@
 
 use belvedere::Error;
 use belvedere::blocking::{Ball, BlockRule, Chord, Profile};
+use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, depth_map};
 use belvedere::medial::MedialBalls;
 use belvedere::query::MedialScene;
@@ -200,7 +201,7 @@ fn columns_of_unequal_length_are_refused() {
         shorten(&mut uneven);
         let refused = [
             MedialScene::new(&uneven, &BlockRule::default()).err(),
-            depth_map(&uneven, &view, Profile::Sphere, ItemBuffer::Without).err(),
+            depth_map(&uneven, &view, Profile::Sphere, ItemBuffer::Without, &Control::none()).err(),
         ];
         assert!(refused.iter().all(|error| matches!(error, Some(Error::LengthMismatch { .. }))), "{refused:?}");
     }

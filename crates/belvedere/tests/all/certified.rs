@@ -1,9 +1,11 @@
 //! Certified answers against those of exact lines of sight, and bounds of depth against rays through the pixels.
 
 use belvedere::blocking::Ball;
+use belvedere::control::Control;
 use belvedere::depth::{BoundsParams, Profile, depth_bounds};
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, BlockRule, CertifiedMap, MedialScene, Scope, Viewer, Visibility, random_targets};
+use belvedere::query::certified::CertifiedMap;
+use belvedere::query::{Answer, BlockRule, MedialScene, Scope, Viewer, Visibility, random_targets};
 use belvedere::random::uniform;
 use belvedere::view::View;
 
@@ -61,7 +63,10 @@ fn certified_answers_are_those_of_exact_lines_of_sight() {
                 true => Viewer::Eye(views[0].frame.eye),
                 false => Viewer::Direction(views[0].frame.forward.map(|v| -v)),
             };
-            let (certified, report) = CertifiedMap::new(&scene, &views, Scope::Viewer).unwrap().answers(&targets);
+            let (certified, report) = CertifiedMap::new(&scene, &views, Scope::Viewer, &Control::none())
+                .unwrap()
+                .answers(&targets, &Control::none())
+                .unwrap();
             let exact = scene.visible(viewer, &targets).unwrap();
             let differ = (0..targets.len()).filter(|&i| certified[i] != exact[i]).count();
             assert_eq!(differ, 0, "{name}, bias {depth_bias}, shell {shell}");
@@ -69,8 +74,14 @@ fn certified_answers_are_those_of_exact_lines_of_sight() {
             assert!(exact.contains(&Answer::Blocked) && exact.contains(&Answer::Visible), "{name}");
 
             if let [view] = &views[..] {
-                let (certified, _) = CertifiedMap::new(&scene, &views, Scope::View).unwrap().answers(&targets);
-                assert!(certified == scene.query_view(view, &targets), "{name} within the view");
+                let (certified, _) = CertifiedMap::new(&scene, &views, Scope::View, &Control::none())
+                    .unwrap()
+                    .answers(&targets, &Control::none())
+                    .unwrap();
+                assert!(
+                    certified == scene.query_view(view, &targets, &Control::none()).unwrap(),
+                    "{name} within the view"
+                );
                 assert!(certified.contains(&Answer::OutsideView), "{name}");
             }
         }
@@ -84,7 +95,10 @@ fn bounds_settle_most_targets_and_more_with_finer_pixels() {
     let targets = random_targets([0.0; 3], [60.0, 60.0, 30.0], 20_000, 8);
     let share = |pixel: f64| {
         let view = View::parallel([0.2, 0.1, -0.9], [0.0; 3], [60.0, 60.0, 30.0], pixel).unwrap();
-        let (_, report) = CertifiedMap::new(&scene, &[view], Scope::Viewer).unwrap().answers(&targets);
+        let (_, report) = CertifiedMap::new(&scene, &[view], Scope::Viewer, &Control::none())
+            .unwrap()
+            .answers(&targets, &Control::none())
+            .unwrap();
         report.settled_count as f64 / report.target_count as f64
     };
     let shares = [1.0, 0.5, 0.25, 0.1].map(share);
@@ -119,7 +133,7 @@ fn the_first_surface_of_every_place_of_a_pixel_lies_within_its_bounds() {
         for view in views {
             // limits of range of hemispheres and of depth of cameras differ: cameras are those with a far limit of 60 m
             let start = if name.contains("camera with") { 3.0 } else { 0.0 };
-            let bounds = depth_bounds(&list, &view, &BoundsParams { shell: 0.0, start }).unwrap();
+            let bounds = depth_bounds(&list, &view, &BoundsParams { shell: 0.0, start }, &Control::none()).unwrap();
             for i in 0..1500u64 {
                 let [width, height] = view.size_px.map(|v| v as f64);
                 let (x, y) = (uniform(9, 2 * i) * width, uniform(9, 2 * i + 1) * height);
@@ -147,10 +161,11 @@ fn answers_of_a_certified_map_are_the_same_for_any_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let scene = MedialScene::new(&balls, &BlockRule::carved()).unwrap();
-            let map = CertifiedMap::new(&scene, &View::panorama(EYE, 200).unwrap(), Scope::Viewer).unwrap();
+            let map =
+                CertifiedMap::new(&scene, &View::panorama(EYE, 200).unwrap(), Scope::Viewer, &Control::none()).unwrap();
             let bits: Vec<u32> =
                 map.bounds().iter().flat_map(|b| b.bounds.values().iter().flat_map(|v| v.map(f32::to_bits))).collect();
-            (bits, map.answers(&targets))
+            (bits, map.answers(&targets, &Control::none()).unwrap())
         })
     };
     let one = run(1);
@@ -162,14 +177,17 @@ fn views_and_balls_that_cannot_be_certified_are_refused() {
     let balls = balls(10, 4);
     let scene = MedialScene::new(&balls, &BlockRule::carved()).unwrap();
     let eyes = [[0.0; 3], [1.0, 0.0, 0.0]].map(|eye| View::hemisphere(eye, [0.0, 0.0, 1.0], 10).unwrap());
-    assert!(CertifiedMap::new(&scene, &[], Scope::Viewer).is_err());
-    assert!(CertifiedMap::new(&scene, &eyes, Scope::Viewer).is_err());
+    assert!(CertifiedMap::new(&scene, &[], Scope::Viewer, &Control::none()).is_err());
+    assert!(CertifiedMap::new(&scene, &eyes, Scope::Viewer, &Control::none()).is_err());
     let cone = BlockRule { profile: Profile::PaperCone, ..BlockRule::default() };
     let cones = MedialScene::new(&balls, &cone).unwrap();
-    assert!(CertifiedMap::new(&cones, &eyes[..1], Scope::Viewer).is_err());
+    assert!(CertifiedMap::new(&cones, &eyes[..1], Scope::Viewer, &Control::none()).is_err());
     let odd = [[f32::NAN, 1.0, 1.0], [f32::INFINITY, 0.0, 0.0], [f32::MAX, f32::MAX, 0.0], [0.0; 3]];
     for scope in [Scope::View, Scope::Viewer] {
-        let (answers, _) = CertifiedMap::new(&scene, &eyes[..1], scope).unwrap().answers(&odd);
+        let (answers, _) = CertifiedMap::new(&scene, &eyes[..1], scope, &Control::none())
+            .unwrap()
+            .answers(&odd, &Control::none())
+            .unwrap();
         assert_eq!(answers[0], Answer::OutsideView);
         assert_eq!(answers[3], Answer::OutsideView, "the eye itself");
     }

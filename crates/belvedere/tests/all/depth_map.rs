@@ -1,5 +1,6 @@
 //! Depth maps against loops over all balls and pixels, against the printed algorithm, and against closed forms.
 
+use belvedere::control::Control;
 use belvedere::depth::{DepthMap, ItemBuffer, NO_BALL, Profile, depth_map};
 use belvedere::medial::{MedialBalls, NO_TOUCH};
 use belvedere::query::{Answer, query_points, random_targets};
@@ -67,7 +68,7 @@ fn sphere_depths_equal_the_formula_at_every_pixel() {
     // than balls larger or smaller by that much would show
     let room = 2e-5;
     for view in views() {
-        let map = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::With).unwrap();
+        let map = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::With, &Control::none()).unwrap();
         let items = map.balls.as_ref().unwrap();
         for row in 0..map.depth.height() {
             for column in 0..map.depth.width() {
@@ -125,7 +126,7 @@ fn the_paper_cone_equals_algorithm_1_as_printed_bit_by_bit() {
             let c = [in_pixels[0].floor() as f32, in_pixels[1].floor() as f32, c[2]];
             write_ball(&mut printed, view.size_px, c, balls.radii[i] * s);
         }
-        let map = depth_map(&balls, &view, Profile::PaperCone, ItemBuffer::Without).unwrap();
+        let map = depth_map(&balls, &view, Profile::PaperCone, ItemBuffer::Without, &Control::none()).unwrap();
         for (i, (&mine, &pixels)) in map.depth.values().iter().zip(&printed).enumerate() {
             assert_eq!(mine.to_bits(), (pixels / s).to_bits(), "pixel {i}: {mine} instead of {}", pixels / s);
         }
@@ -135,7 +136,9 @@ fn the_paper_cone_equals_algorithm_1_as_printed_bit_by_bit() {
 #[test]
 fn one_sphere_seen_from_above_has_the_depth_of_a_sphere() {
     let view = top_view(10.0);
-    let map = depth_map(&balls(&[([20.0, 15.0, 10.0], 4.0)]), &view, Profile::Sphere, ItemBuffer::Without).unwrap();
+    let map =
+        depth_map(&balls(&[([20.0, 15.0, 10.0], 4.0)]), &view, Profile::Sphere, ItemBuffer::Without, &Control::none())
+            .unwrap();
     let mut area = 0.0;
     for row in 0..map.depth.height() {
         for column in 0..map.depth.width() {
@@ -158,7 +161,7 @@ fn the_cone_only_ever_reveals() {
     let targets = random_targets([0.0, 0.0, 0.0], [50.0, 40.0, 30.0], 20_000, 1);
     let view = top_view(20.0);
     let answers = |profile| {
-        let map = depth_map(&balls, &view, profile, ItemBuffer::Without).unwrap();
+        let map = depth_map(&balls, &view, profile, ItemBuffer::Without, &Control::none()).unwrap();
         query_points(&map, &targets, 0.0)
     };
     let (sphere, cone) = (answers(Profile::Sphere), answers(Profile::PaperCone));
@@ -181,7 +184,7 @@ fn maps_and_answers_are_bit_identical_for_any_number_of_threads() {
         let in_pool = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let map = depth_map(&balls, view, profile, ItemBuffer::With).unwrap();
+                let map = depth_map(&balls, view, profile, ItemBuffer::With, &Control::none()).unwrap();
                 let targets = random_targets([0.0; 3], [50.0, 40.0, 30.0], 100_000, 2);
                 (bits(&map), query_points(&map, &targets, 0.1))
             })
@@ -202,8 +205,8 @@ fn an_item_buffer_leaves_the_depths_as_they_are_and_breaks_ties_by_row() {
         balls.separation_angles.push(1.0);
     }
     let view = top_view(3.0);
-    let with = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::With).unwrap();
-    let without = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::Without).unwrap();
+    let with = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::With, &Control::none()).unwrap();
+    let without = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::Without, &Control::none()).unwrap();
     assert_eq!(bits(&with).0, bits(&without).0);
     let items = with.balls.unwrap();
     assert!(items.values().iter().all(|&i| i == NO_BALL || i < 500), "a copy was named instead of the original");
@@ -218,14 +221,20 @@ fn balls_that_never_shrank_or_are_not_finite_block_nothing() {
     some.source.extend([0; 3]);
     some.touch.extend([0; 3]);
     some.separation_angles.extend([1.0; 3]);
-    let map = depth_map(&some, &top_view(2.0), Profile::Sphere, ItemBuffer::Without).unwrap();
+    let map = depth_map(&some, &top_view(2.0), Profile::Sphere, ItemBuffer::Without, &Control::none()).unwrap();
     assert!(map.depth.values().iter().all(|d| *d == f32::INFINITY));
 }
 
 #[test]
 fn targets_beside_the_picture_or_behind_its_plane_are_outside_the_view() {
-    let map =
-        depth_map(&balls(&[([20.0, 15.0, 10.0], 4.0)]), &top_view(2.0), Profile::Sphere, ItemBuffer::Without).unwrap();
+    let map = depth_map(
+        &balls(&[([20.0, 15.0, 10.0], 4.0)]),
+        &top_view(2.0),
+        Profile::Sphere,
+        ItemBuffer::Without,
+        &Control::none(),
+    )
+    .unwrap();
     let targets = [
         [20.0, 15.0, 20.0],
         [20.0, 15.0, 5.0],
@@ -265,7 +274,7 @@ proptest! {
         let mut some = all.clone();
         some.touch[60..].fill(NO_TOUCH);
         let view = top_view(1.5);
-        let map = |balls| depth_map(balls, &view, Profile::Sphere, ItemBuffer::Without).unwrap();
+        let map = |balls| depth_map(balls, &view, Profile::Sphere, ItemBuffer::Without, &Control::none()).unwrap();
         let (few, many) = (map(&some), map(&all));
         prop_assert!(few.depth.values().iter().zip(many.depth.values()).all(|(few, many)| many <= few));
     }

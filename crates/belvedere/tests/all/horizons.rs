@@ -25,7 +25,7 @@ fn a_ball_stands_as_high_as_its_tangents() {
     // due east, its middle 30° high at a distance of 20 m, 3 m of radius
     let center = to_sun(FRAC_PI_2, 30f64.to_radians()).map(|v| (20.0 * v) as f32);
     let scene = scene(&[(center, 3.0)], &BlockRule::default());
-    let skyline = scene.skyline([0.0; 3], 360, &EarthParams::flat());
+    let skyline = scene.skyline([0.0; 3], 360, &EarthParams::flat(), &Control::none()).unwrap();
     let expected = 30f64.to_radians() + (3.0f64 / 20.0).asin();
     // centres are f32: 1e-7
     assert!((skyline[90].elevation - expected).abs() < 1e-6, "{:?}", skyline[90]);
@@ -61,7 +61,7 @@ fn skylines_are_what_lines_of_sight_tried_one_by_one_find() {
             if scene.enclosure(eye).ball_count > 0 {
                 continue;
             }
-            let skyline = scene.skyline(eye, 24, &EarthParams::flat());
+            let skyline = scene.skyline(eye, 24, &EarthParams::flat(), &Control::none()).unwrap();
             for (i, point) in skyline.iter().enumerate() {
                 compared += 1;
                 let azimuth = f64::from(i as u32) * 15f64.to_radians();
@@ -84,21 +84,26 @@ fn what_floats_above_a_gap_is_the_horizon_and_a_roof_overhead_hides_the_zenith()
     let north = ([0.0, 20.0, 0.0], 1.0);
     let floating = ([0.0, 20.0, 15.0], 0.2);
     let scene_of = |list: &[_]| scene(list, &BlockRule::default());
-    let low = scene_of(&[north]).skyline([0.0; 3], 4, &EarthParams::flat())[0].elevation;
-    let high = scene_of(&[north, floating]).skyline([0.0; 3], 4, &EarthParams::flat())[0].elevation;
+    let low = scene_of(&[north]).skyline([0.0; 3], 4, &EarthParams::flat(), &Control::none()).unwrap()[0].elevation;
+    let high =
+        scene_of(&[north, floating]).skyline([0.0; 3], 4, &EarthParams::flat(), &Control::none()).unwrap()[0].elevation;
     assert!((low - 0.05f64.asin()).abs() < 1e-7);
     assert!((high - (0.75f64.atan() + (0.2f64 / 25.0).asin())).abs() < 1e-7);
     // above the eye, a little to the north: its rim reaches over the zenith into the south
-    let roof = scene_of(&[([0.0, 1.0, 5.0], 3.0)]).skyline([0.0; 3], 4, &EarthParams::flat());
+    let roof =
+        scene_of(&[([0.0, 1.0, 5.0], 3.0)]).skyline([0.0; 3], 4, &EarthParams::flat(), &Control::none()).unwrap();
     assert_eq!(roof.iter().map(|p| p.elevation == FRAC_PI_2).collect::<Vec<_>>(), [true; 4]);
-    let beside = scene_of(&[([0.0, 4.0, 5.0], 3.0)]).skyline([0.0; 3], 4, &EarthParams::flat());
+    let beside =
+        scene_of(&[([0.0, 4.0, 5.0], 3.0)]).skyline([0.0; 3], 4, &EarthParams::flat(), &Control::none()).unwrap();
     assert!(beside[0].elevation < FRAC_PI_2 && beside[2].ball.is_none());
 }
 
 #[test]
 fn far_balls_sink_with_the_earth() {
     let scene = scene(&[([0.0, 10_000.0, 50.0], 10.0)], &BlockRule::default());
-    let height = |earth: &EarthParams| scene.skyline([0.0; 3], 1, earth)[0].elevation.tan() * 10_000.0;
+    let height = |earth: &EarthParams| {
+        scene.skyline([0.0; 3], 1, earth, &Control::none()).unwrap()[0].elevation.tan() * 10_000.0
+    };
     let bare = EarthParams { curvature: Curvature::On, refraction: 0.0, ..EarthParams::default() };
     // S² / 2R = 7.848 m; tangents of a ball so far away differ from its top by r² / 2S = 5 mm
     assert!((height(&EarthParams::flat()) - height(&bare) - 7.848).abs() < 0.01);

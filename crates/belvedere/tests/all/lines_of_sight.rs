@@ -1,6 +1,7 @@
 //! Lines of sight between pairs of points, against every ball tried in turn and against closed forms.
 #![expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 
+use belvedere::control::Control;
 use belvedere::depth::Profile;
 use belvedere::medial::MedialBalls;
 use belvedere::query::{Answer, BlockRule, Curvature, EarthParams, MedialScene, merged_crossings};
@@ -57,7 +58,7 @@ fn the_first_block_is_that_of_all_balls_tried_in_turn() {
     let scene = MedialScene::new(&balls(&list), &BlockRule::default()).unwrap();
     let at = |i: u64| -> [f64; 3] { std::array::from_fn(|k| 40.0 * uniform(7, 3 * i + k as u64)) };
     let pairs: Vec<[[f64; 3]; 2]> = (0..3000).map(|i| [at(2 * i), at(2 * i + 1)]).collect();
-    let found = scene.lines_of_sight(&pairs, &EarthParams::default());
+    let found = scene.lines_of_sight(&pairs, &EarthParams::default(), &Control::none()).unwrap();
     let mut blocked = 0;
     for ([observer, target], found) in pairs.iter().zip(found) {
         let found = found.unwrap();

@@ -1,5 +1,6 @@
 //! Balls drawn in views from an eye against rays through the middle of every pixel, in f64.
 
+use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, NO_BALL, Profile, depth_map, panorama};
 use belvedere::medial::MedialBalls;
 use belvedere::random::uniform;
@@ -75,7 +76,7 @@ fn outlines_hold_exactly_the_pixels_that_rays_hit() {
         let mut hits = 0;
         // ten balls a time, so that few hide others; 2 000 in each of five views
         for group in around(2000, 3).chunks(10) {
-            let map = depth_map(&balls(group), &view, Profile::Sphere, ItemBuffer::With).unwrap();
+            let map = depth_map(&balls(group), &view, Profile::Sphere, ItemBuffer::With, &Control::none()).unwrap();
             assert_eq!(map.around_eye_count, 0);
             for row in 0..map.depth.height() {
                 for column in 0..map.depth.width() {
@@ -108,7 +109,7 @@ fn many_balls_at_once_show_the_nearest_at_every_pixel() {
         View::hemisphere(EYE, [0.2, 0.1, -0.9], 170).unwrap(),
     ];
     for view in views {
-        let map = depth_map(&drawn, &view, Profile::Sphere, ItemBuffer::Without).unwrap();
+        let map = depth_map(&drawn, &view, Profile::Sphere, ItemBuffer::Without, &Control::none()).unwrap();
         for row in (0..map.depth.height()).step_by(3) {
             for column in 0..map.depth.width() {
                 let place = [column as f64 + 0.5, row as f64 + 0.5];
@@ -124,11 +125,13 @@ fn many_balls_at_once_show_the_nearest_at_every_pixel() {
 fn balls_that_hold_the_eye_are_left_out_and_counted() {
     let list = [([3.0, -2.0, 1.0], 1.0), ([3.0, 5.0, 1.5], 2.0), ([3.5, -2.0, 1.5], 0.5)];
     for (name, view) in views() {
-        let map = depth_map(&balls(&list), &view, Profile::Sphere, ItemBuffer::With).unwrap();
+        let map = depth_map(&balls(&list), &view, Profile::Sphere, ItemBuffer::With, &Control::none()).unwrap();
         assert_eq!(map.around_eye_count, 2, "{name}");
         assert!(map.balls.unwrap().values().iter().all(|&ball| ball == 1 || ball == NO_BALL), "{name}");
     }
-    assert!(depth_map(&balls(&list), &views()[0].1, Profile::PaperCone, ItemBuffer::Without).is_err());
+    assert!(
+        depth_map(&balls(&list), &views()[0].1, Profile::PaperCone, ItemBuffer::Without, &Control::none()).is_err()
+    );
 }
 
 #[test]
@@ -162,7 +165,7 @@ fn a_panorama_shows_balls_at_their_azimuth_and_elevation() {
         std::array::from_fn(|i| (EYE[i] + range * direction[i]) as f32)
     };
     let list = [(at(0.0, 0.0, 10.0), 1.0), (at(90.0, 30.0, 20.0), 1.0), (at(-135.0, -60.0, 5.0), 0.5)];
-    let map = panorama(&balls(&list), EYE, 720, ItemBuffer::With).unwrap();
+    let map = panorama(&balls(&list), EYE, 720, ItemBuffer::With, &Control::none()).unwrap();
     let items = map.balls.unwrap();
     for (ball, [column, row], range) in [(0, [360, 180], 9.0), (1, [540, 120], 19.0), (2, [90, 300], 4.5)] {
         assert_eq!(items.get(column, row), Some(ball));

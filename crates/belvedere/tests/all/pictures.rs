@@ -5,6 +5,7 @@
     reason = "tests stop at the first surprise; the numbers are small"
 )]
 
+use belvedere::control::Control;
 use std::fs;
 use std::io::BufReader;
 
@@ -29,7 +30,7 @@ fn draw_balls(canvas: &mut Canvas, view: &View, centers: &[[f32; 3]], radii: &[f
         touch: vec![0; radii.len()],
         separation_angles: vec![1.0; radii.len()],
     };
-    let map = depth_map(&balls, view, Profile::Sphere, ItemBuffer::With).unwrap();
+    let map = depth_map(&balls, view, Profile::Sphere, ItemBuffer::With, &Control::none()).unwrap();
     let items = map.balls.as_ref().unwrap();
     canvas.draw_seen_balls((&map.depth, items), (centers, radii), colors).unwrap();
 }

@@ -79,7 +79,9 @@ fn every_stage_gives_the_same_bits_for_one_two_and_seven_threads() {
             for params in [ShrinkParams::tau(), ShrinkParams::angles()] {
                 let balls = interior(&prepared, &params);
                 stages.push(bits(&balls.centers));
-                let map = depth_map(&balls, &sun_view(&prepared.cloud), Profile::Sphere, ItemBuffer::With).unwrap();
+                let map =
+                    depth_map(&balls, &sun_view(&prepared.cloud), Profile::Sphere, ItemBuffer::With, &Control::none())
+                        .unwrap();
                 let depths = map.depth.values().iter().zip(map.balls.as_ref().unwrap().values());
                 stages.push(depths.map(|(d, &b)| [d.to_bits(), b, 0]).collect());
                 let Bounds { low, high } = prepared.cloud.bounds().unwrap();
@@ -114,9 +116,14 @@ fn default_balls_are_right_about_nine_in_ten_pedestrians_of_either_kind() {
     let shadowed = Truth::new(&scene).occluded_towards_each(&pedestrians, sun);
     let targets: Vec<[f32; 3]> = pedestrians.iter().map(|&p| to_local(p, prepared.cloud.frame.origin)).collect();
     let rates = |params: &ShrinkParams| {
-        let map =
-            depth_map(&interior(&prepared, params), &sun_view(&prepared.cloud), Profile::Sphere, ItemBuffer::Without)
-                .unwrap();
+        let map = depth_map(
+            &interior(&prepared, params),
+            &sun_view(&prepared.cloud),
+            Profile::Sphere,
+            ItemBuffer::Without,
+            &Control::none(),
+        )
+        .unwrap();
         let answers = query_points(&map, &targets, map.default_depth_bias());
         let share = |answer: Answer, truly_shadowed: bool| {
             let of = shadowed.iter().filter(|&&s| s == truly_shadowed).count();

@@ -220,7 +220,7 @@ fn what_nothing_blocks_is_visible_where_pulses_passed_and_unproven_where_none_di
     // a picture plane 5 m east of the first target, facing west: the line of sight ends before the strip
     let view = View::from_viewport([15.0, 5.0, 10.0], [0.0, 30.0, 0.0], [0.0, 0.0, -10.0], 1.0).unwrap();
     assert_eq!(view.frame.forward, [-1.0, 0.0, 0.0]);
-    let seen = scene(0.5).query_view(&view, &targets);
+    let seen = scene(0.5).query_view(&view, &targets, &Control::none()).unwrap();
     assert_eq!(seen, [Visible, OutsideView, Visible, OutsideView, OutsideView]);
 }
 

@@ -4,11 +4,31 @@ use super::{Item, Needle, Needles};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::needles::NeedleColumns;
+use rayon::prelude::*;
 
 /// Steps of a slope, metres of shift per metre of height: a needle 60 m long is off by 3 mm at its far end.
 const SLOPE_STEP: f64 = 1e-4;
 /// A needle that ends within this of the top of all, metres, reaches it.
 const REACHES_TOP: f64 = 1e-3;
+/// Pulses handed to a thread at once.
+const CHUNK: usize = 1 << 14;
+
+/// Lower ends of those pulses that [`Needles::from_columns`] makes needles of, local metres.
+pub(crate) fn lower_ends(columns: &NeedleColumns) -> impl Iterator<Item = [f32; 3]> + '_ {
+    let rows = (0..columns.starts.len()).filter(|&row| piece(columns, row).is_some());
+    rows.filter_map(|row| columns.starts.get(row).copied())
+}
+
+/// Start, unit vector upward and length of a pulse; `None` without length.
+fn piece(columns: &NeedleColumns, row: usize) -> Option<([f64; 3], [f64; 3], f64)> {
+    let [east, north] = columns.slopes.get(row)?.map(|steps| f64::from(steps) * SLOPE_STEP);
+    let stretch = (east * east + north * north + 1.0).sqrt();
+    let up = [east / stretch, north / stretch, 1.0 / stretch];
+    let start = columns.starts.get(row)?.map(f64::from);
+    let to_top = (f64::from(columns.top) - start[2]) / up[2];
+    let length = columns.lengths.get(row).map_or(to_top, |&length| f64::from(length).min(to_top));
+    (length > 0.0).then_some((start, up, length))
+}
 
 impl Needles {
     /// The needles as columns, in the order of the index. Directions are rounded, so that what [`Needles::from_columns`] makes of
@@ -42,17 +62,8 @@ impl Needles {
         columns.validate()?;
         let low = columns.starts.iter().map(|start| start[2]).fold(columns.top, f32::min);
         let planes = [low, columns.top];
-        let rows = columns.starts.iter().zip(&columns.slopes).enumerate();
-        let items = rows.filter_map(|(row, (start, slope))| {
-            let [east, north] = slope.map(|steps| f64::from(steps) * SLOPE_STEP);
-            let stretch = (east * east + north * north + 1.0).sqrt();
-            let up = [east / stretch, north / stretch, 1.0 / stretch];
-            let start = start.map(f64::from);
-            let to_top = (f64::from(columns.top) - start[2]) / up[2];
-            let length = columns.lengths.get(row).map_or(to_top, |&length| f64::from(length).min(to_top));
-            (length > 0.0).then(|| Item::new(start, up, length, planes))
-        });
-        let items = items.collect();
+        let item = |row| piece(columns, row).map(|(start, up, length)| Item::new(start, up, length, planes));
+        let items: Vec<Item> = (0..columns.starts.len()).into_par_iter().with_min_len(CHUNK).filter_map(item).collect();
         control.check()?;
         Self::index(items, planes, control)
     }

@@ -2,7 +2,6 @@
 
 use super::{Needle, Needles, Node};
 use belvedere_data::vector::{dot, sub};
-use rayon::prelude::*;
 use std::ops::ControlFlow;
 
 /// Pieces of a line shorter than this are not worth a step, metres.
@@ -32,12 +31,58 @@ impl Needles {
         self.needles.iter().map(|needle| needle.start)
     }
 
-    /// Lower and upper end of each needle, local metres, in no particular order.
-    pub(crate) fn par_ends(&self) -> impl ParallelIterator<Item = [[f64; 3]; 2]> + '_ {
-        self.needles.par_iter().map(|needle| {
-            let (start, up) = (needle.start.map(f64::from), needle.up.map(f64::from));
-            [start, std::array::from_fn(|i| start[i] + f64::from(needle.length) * up[i])]
-        })
+    /// Calls `visit` with the lower and upper end, local metres, of every needle that may pass over the level rectangle between the
+    /// corners `low` and `high`, in no particular order.
+    pub(crate) fn each_over(&self, [low, high]: [[f64; 2]; 2], mut visit: impl FnMut([[f64; 3]; 2])) {
+        if self.needles.is_empty() {
+            return;
+        }
+        let mut stack = [0_u32; 64];
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let index = stack[depth] as usize;
+            let node: &Node = &self.nodes[index];
+            if !self.may_pass_over(node, [low, high]) {
+                continue;
+            }
+            if node.count == 0 {
+                #[expect(clippy::cast_possible_truncation, reason = "nodes are numbered with 32 bits")]
+                let first = index as u32 + 1;
+                (stack[depth], stack[depth + 1]) = (node.next, first);
+                depth += 2;
+                continue;
+            }
+            let first = node.next as usize;
+            for needle in &self.needles[first..first + node.count as usize] {
+                let (start, up) = (needle.start.map(f64::from), needle.up.map(f64::from));
+                visit([start, std::array::from_fn(|i| start[i] + f64::from(needle.length) * up[i])]);
+            }
+        }
+    }
+
+    /// Whether the box of a node lies over a rectangle at some height.
+    fn may_pass_over(&self, node: &Node, [low, high]: [[f64; 2]; 2]) -> bool {
+        // shares of the way between the planes, with room for what f32 rounds
+        let span = f64::from(self.planes[1] - self.planes[0]).max(1e-3);
+        let mut shares = node.heights.map(|z| f64::from(z - self.planes[0]) / span);
+        shares = [shares[0] - 1e-4, shares[1] + 1e-4];
+        for axis in 0..2 {
+            let ends = |side: usize| [f64::from(node.below[side]), f64::from(node.above[side])];
+            let ([west, to_west], [east, to_east]) = (ends(axis), ends(axis + 2));
+            // west ≤ high and −east ≤ −low, both linear in the share
+            for [at, slope, most] in [[west, to_west - west, high[axis]], [-east, east - to_east, -low[axis]]] {
+                let left = most + 1e-2 - at;
+                if slope > 0.0 {
+                    shares[1] = shares[1].min(left / slope);
+                } else if slope < 0.0 {
+                    shares[0] = shares[0].max(left / slope);
+                } else if left < 0.0 {
+                    return false;
+                }
+            }
+        }
+        shares[0] <= shares[1]
     }
 
     /// Whether a needle passes nearer than `distance` metres to `point`, local metres. The distance to the piece of a line is

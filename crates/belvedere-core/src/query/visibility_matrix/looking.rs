@@ -1,23 +1,12 @@
-//! Neighbouring targets looked at together: what sweeps left open is asked of balls.
+//! Neighbouring targets looked at together: what the backend left open is asked of balls.
 
-use super::nearby::{NEAR, Nearby};
-use super::space_layers::WORD;
-use super::sweep::Settled;
-use crate::query::MedialScene;
+use super::super::backend::{BLOCK, Bits, Settled, WORD};
+use super::super::ball_tree::BallTree;
 use crate::ray_index::Ray;
 
-/// Targets handed to a thread at once: neighbours, which share what blocks.
-pub(super) const CHUNK: usize = WORDS * WORD;
-/// Words with a bit for each of them.
-const WORDS: usize = 4;
-/// Of these, those for which balls near by are looked up together.
-const TOGETHER: usize = 8;
-
-/// A direction and what of it is needed again and again.
+/// A direction and its column in the matrix.
 pub(super) struct Heading {
     pub(super) direction: [f64; 3],
-    /// Range at which it has left the near space of a target.
-    pub(super) near: f64,
     column: usize,
 }
 
@@ -35,48 +24,43 @@ pub(super) fn headings(directions: &[[f64; 3]]) -> Vec<Heading> {
         let (a, b) = (key(directions[a]), key(directions[b]));
         a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
-    let heading = |column: usize| {
-        let direction = directions[column];
-        let across = direction[0].abs().max(direction[1].abs());
-        Heading { direction, near: (NEAR[1] / direction[2]).min(NEAR[0] / across), column }
-    };
-    order.into_iter().map(heading).collect()
+    order.into_iter().map(|column| Heading { direction: directions[column], column }).collect()
 }
 
 /// What all targets look at.
 pub(super) struct Sky<'a> {
-    scene: &'a MedialScene,
+    tree: &'a BallTree,
     headings: &'a [Heading],
-    /// What a sweep of each direction found; empty without sweeps.
-    settled: Vec<Option<Settled>>,
+    /// What the backend knows of them.
+    settled: &'a Settled,
     /// Which of the headings belongs to each column of the matrix.
     numbers: Vec<Option<usize>>,
 }
 
-/// A bit for each target of a chunk.
-type Bits = [u64; WORDS];
-
 impl<'a> Sky<'a> {
-    /// Looks at `headings`, each with what a sweep settled of it or all without, which are some of `column_count` directions.
-    pub(super) fn new(
-        scene: &'a MedialScene,
-        headings: &'a [Heading],
-        settled: Vec<Option<Settled>>,
-        column_count: usize,
-    ) -> Self {
+    /// Looks at `headings`, which are some of `column_count` directions.
+    pub(super) fn new(tree: &'a BallTree, headings: &'a [Heading], settled: &'a Settled, column_count: usize) -> Self {
         let mut numbers = vec![None; column_count];
         for (number, heading) in headings.iter().enumerate() {
             numbers[heading.column] = Some(number);
         }
-        Self { scene, headings, settled, numbers }
+        Self { tree, headings, settled, numbers }
     }
 
-    /// Sets the bits of directions that are free in the rows, of `width` words each, of the targets of a chunk.
-    pub(super) fn look(&self, targets: &[[f32; 3]], chunk: usize, rows: &mut [u64], width: usize) {
-        let (mut free, mut open) = self.settled_of(targets.len(), chunk);
-        if !self.settled.is_empty() {
-            self.leave_near(targets, &mut free, &mut open);
-        }
+    /// Sets the bits of directions that are free in the rows, of `width` words each, of the targets of a block.
+    pub(super) fn look(&self, targets: &[[f32; 3]], block: usize, rows: &mut [u64], width: usize) {
+        let all: Bits = std::array::from_fn(|word| match targets.len().saturating_sub(word * WORD) {
+            0 => 0,
+            count => u64::MAX >> WORD.saturating_sub(count),
+        });
+        let range = block * self.headings.len()..(block + 1) * self.headings.len();
+        let [free, blocked] = [&self.settled.free, &self.settled.blocked].map(|bits| &bits[range.clone()]);
+        let mut free: Vec<Bits> = free.iter().map(|free| std::array::from_fn(|word| free[word] & all[word])).collect();
+        let mut open: Vec<Bits> = free
+            .iter()
+            .zip(blocked)
+            .map(|(free, blocked)| std::array::from_fn(|word| all[word] & !free[word] & !blocked[word]))
+            .collect();
         self.ask(targets, &mut open);
         for (seen, open) in free.iter_mut().zip(&open) {
             *seen = std::array::from_fn(|word| seen[word] | open[word]);
@@ -92,71 +76,26 @@ impl<'a> Sky<'a> {
         }
     }
 
-    /// For each direction the targets for which a sweep found that nothing blocks beyond their near space, and those of which it does not
-    /// know.
-    fn settled_of(&self, target_count: usize, chunk: usize) -> (Vec<Bits>, Vec<Bits>) {
-        let all: Bits = std::array::from_fn(|word| match target_count.saturating_sub(word * WORD) {
-            0 => 0,
-            count => u64::MAX >> WORD.saturating_sub(count),
-        });
-        let of_chunk = |bits: &[u64]| -> Bits {
-            std::array::from_fn(|word| bits.get(chunk * WORDS + word).copied().unwrap_or(0) & all[word])
-        };
-        (0..self.headings.len())
-            .map(|number| match self.settled.get(number).and_then(Option::as_ref) {
-                None => ([0; WORDS], all),
-                Some(settled) => {
-                    let (free, blocked) = (of_chunk(&settled.free), of_chunk(&settled.blocked));
-                    (free, std::array::from_fn(|word| all[word] & !free[word] & !blocked[word]))
-                }
-            })
-            .unzip()
-    }
-
-    /// Takes out those that a ball near the target blocks.
-    fn leave_near(&self, targets: &[[f32; 3]], free: &mut [Bits], open: &mut [Bits]) {
-        let mut nearby = Nearby::default();
-        for (i, target) in targets.iter().enumerate() {
-            if i % TOGETHER == 0 {
-                nearby.gather(self.scene, &targets[i..targets.len().min(i + TOGETHER)]);
-            }
-            let target = target.map(f64::from);
-            nearby.select(self.scene, target);
-            if nearby.is_empty() {
-                continue;
-            }
-            let (word, bit) = (i / WORD, 1 << (i % WORD));
-            for ((heading, free), open) in self.headings.iter().zip(&mut *free).zip(&mut *open) {
-                let is_asked = (free[word] | open[word]) & bit != 0 && heading.direction[2] >= 0.0;
-                if is_asked && nearby.blocks(self.scene, &self.scene.ray(target, heading.direction, f64::INFINITY)) {
-                    free[word] &= !bit;
-                    open[word] &= !bit;
-                }
-            }
-        }
-    }
-
     /// Takes out those that any ball blocks. One direction after the other, so that lines of sight side by side meet the same balls.
     fn ask(&self, targets: &[[f32; 3]], open: &mut [Bits]) {
+        debug_assert!(targets.len() <= BLOCK);
         // what blocked each target last
         let mut before: Vec<Option<u32>> = vec![None; targets.len()];
-        for (heading, open) in self.headings.iter().zip(open) {
-            let is_near_asked = !self.settled.is_empty() && heading.direction[2] >= 0.0;
+        for ((heading, open), &open_from) in self.headings.iter().zip(open).zip(&self.settled.open_from) {
             // what blocked the targets before in this direction
             let mut last = [None; 2];
             for (word, open) in open.iter_mut().enumerate() {
                 for bit in bits(*open) {
                     let i = word * WORD + bit;
                     let target = targets[i].map(f64::from);
-                    let ray = self.scene.ray(target, heading.direction, f64::INFINITY);
-                    let start = if is_near_asked { heading.near } else { ray.ranges[0] };
-                    let is_by = |&ball: &u32| self.scene.front(ball as usize, &ray).is_some();
+                    let ray = self.tree.ray(target, heading.direction, f64::INFINITY);
+                    let is_by = |&ball: &u32| self.tree.front(ball as usize, &ray).is_some();
                     let [last_one, one_before] = last;
                     let found = last_one
                         .filter(is_by)
                         .or_else(|| one_before.filter(is_by))
                         .or_else(|| before[i].filter(is_by))
-                        .or_else(|| self.block_from(start, &ray));
+                        .or_else(|| self.block_from(open_from, &ray));
                     if found.is_some() {
                         *open &= !(1 << bit);
                         before[i] = found;
@@ -173,8 +112,8 @@ impl<'a> Sky<'a> {
     fn block_from(&self, start: f64, ray: &Ray) -> Option<u32> {
         let mut block = None;
         let far = Ray { ranges: [start.max(ray.ranges[0]), ray.ranges[1]], ..*ray };
-        self.scene.index.any(&far, |number| {
-            let blocks = self.scene.front(number, ray).is_some();
+        self.tree.index().any(&far, |number| {
+            let blocks = self.tree.front(number, ray).is_some();
             #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
             if blocks {
                 block = Some(number as u32);

@@ -1,23 +1,16 @@
 //! Which of many directions each of many targets sees free: what sun hours, sky views and irradiance are sums over.
 
 mod looking;
-mod nearby;
-mod space_layers;
-mod sweep;
 
-use super::{MedialScene, TargetTree};
-use crate::blocking::Profile;
+use super::MedialScene;
+use super::backend::{BLOCK, WORD};
+use super::target_tree::TargetTree;
 use belvedere_data::control::Control;
 use belvedere_data::vector::length;
 use belvedere_data::{Error, Result};
-use looking::{CHUNK, Sky, headings};
+use looking::{Sky, headings};
 use rayon::prelude::*;
-use space_layers::SpaceLayers;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use sweep::{Descending, sweep};
-
-/// Bits in a word.
-const WORD: usize = 64;
 
 /// One bit for each target and direction: set where no ball blocks the line of sight that leaves the target in the direction.
 #[derive(Clone, Debug)]
@@ -92,80 +85,87 @@ impl VisibilityMatrix {
     }
 }
 
-/// Directions from which on it pays to gather what is near a target, and to sweep them.
-const WORTH_GATHERING: usize = 16;
-/// Lines of sight for each ball from which on it pays to sweep.
-const WORTH_SWEEPING: f64 = 4.0;
-/// Directions swept before targets are looked at: two bits of each are kept for every target meanwhile.
+/// Directions that are settled before targets are looked at: two bits of each are kept for every target meanwhile.
 const BATCH: usize = 512;
+/// Targets that are looked at before the next: as many as keep what is settled of them below 100 MB.
+const MOST_TARGETS: usize = BLOCK << 10;
 
-/// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls: for every pair the same as
-/// [`MedialScene::answer`] at infinite range, pulses not being asked. A target that is not finite sees nothing. Progress counts targets.
-///
-/// Where there are many, each direction is swept through cells of space first, 64 lines of sight at a time, which tells of most whether
-/// they meet cells that no ball reaches only, or one that a ball fills. The balls near a target are gathered once for all
-/// directions. What is then open is asked of the ball that blocked its neighbours, and last of all balls.
+/// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls: as
+/// [`MedialScene::visibility_matrix`].
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a direction that is not of unit length (to a millionth).
+/// As there.
 pub fn visibility_matrix(
     scene: &MedialScene,
     targets: &[[f32; 3]],
     directions: &[[f64; 3]],
     control: &Control<'_>,
 ) -> Result<VisibilityMatrix> {
-    if let Some(bad) = directions.iter().find(|direction| !((length(**direction) - 1.0).abs() < 1e-6)) {
-        return Err(Error::InvalidParameter {
-            name: "direction",
-            value: format!("{bad:?}"),
-            expected: "a vector of length 1",
-        });
+    scene.visibility_matrix(targets, directions, control)
+}
+
+impl MedialScene {
+    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls: for every pair the same as
+    /// [`MedialScene::answer`] at infinite range, pulses not being asked. A target that is not finite sees nothing. Progress counts
+    /// targets.
+    ///
+    /// The backend settles most lines of sight ([`super::backend::Prepared::settle`]). What it leaves open is asked of the ball that
+    /// blocked its neighbours, and last of all balls. What the backend makes ready stays with the scene, so that targets may be
+    /// asked in blocks.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a direction that is not of unit length (to a millionth), and [`Error::Cancelled`].
+    pub fn visibility_matrix(
+        &self,
+        targets: &[[f32; 3]],
+        directions: &[[f64; 3]],
+        control: &Control<'_>,
+    ) -> Result<VisibilityMatrix> {
+        if let Some(bad) = directions.iter().find(|direction| !((length(**direction) - 1.0).abs() < 1e-6)) {
+            return Err(Error::InvalidParameter {
+                name: "direction",
+                value: format!("{bad:?}"),
+                expected: "a vector of length 1",
+            });
+        }
+        let width = directions.len().div_ceil(WORD);
+        let tree = TargetTree::new(targets);
+        let known_count = tree.positions().len();
+        let mut words = vec![0; width * (known_count + 1)];
+        #[expect(clippy::cast_possible_truncation, reason = "targets are numbered with 32 bits")]
+        let mut places = vec![known_count as u32; targets.len()];
+        for (place, &row) in (0..).zip(tree.rows()) {
+            places[row as usize] = place;
+        }
+        if self.ball_count() == 0 {
+            let whole = directions.chunks(WORD).map(|part| u64::MAX >> (WORD - part.len()));
+            let row: Vec<u64> = whole.collect();
+            words[..width * known_count].chunks_mut(width.max(1)).for_each(|words| words.copy_from_slice(&row));
+        } else if width > 0 {
+            let headings = headings(directions);
+            // batches of the same size, so that none is too small to be worth a sweep
+            let batch = directions.len().div_ceil(directions.len().div_ceil(BATCH));
+            // a target counts as done when as many lines of sight are
+            let asked = AtomicUsize::new(0);
+            let advance = |lines: usize| {
+                let before = asked.fetch_add(lines, Ordering::Relaxed);
+                control.advance((before + lines) / directions.len() - before / directions.len());
+            };
+            for (words, targets) in words.chunks_mut(width * MOST_TARGETS).zip(tree.positions().chunks(MOST_TARGETS)) {
+                for headings in headings.chunks(batch) {
+                    let of_batch: Vec<[f64; 3]> = headings.iter().map(|heading| heading.direction).collect();
+                    let settled = self.prepared()?.settle(targets, &of_batch, control)?;
+                    let sky = Sky::new(self.tree(), headings, &settled, directions.len());
+                    let blocks = words.par_chunks_mut(width * BLOCK).zip(targets.par_chunks(BLOCK));
+                    blocks.enumerate().try_for_each(|(block, (rows, targets))| {
+                        control.check()?;
+                        sky.look(targets, block, rows, width);
+                        advance(targets.len() * headings.len());
+                        Ok(())
+                    })?;
+                }
+            }
+        }
+        Ok(VisibilityMatrix { places, direction_count: directions.len(), width, words })
     }
-    let width = directions.len().div_ceil(WORD);
-    let tree = TargetTree::new(targets);
-    let known_count = tree.positions().len();
-    let mut words = vec![0; width * (known_count + 1)];
-    #[expect(clippy::cast_possible_truncation, reason = "targets are numbered with 32 bits")]
-    let mut places = vec![known_count as u32; targets.len()];
-    for (place, &row) in (0..).zip(tree.rows()) {
-        places[row as usize] = place;
-    }
-    if scene.ball_count() == 0 {
-        let whole = directions.chunks(WORD).map(|part| u64::MAX >> (WORD - part.len()));
-        let row: Vec<u64> = whole.collect();
-        words[..width * known_count].chunks_mut(width.max(1)).for_each(|words| words.copy_from_slice(&row));
-        return Ok(VisibilityMatrix { places, direction_count: directions.len(), width, words });
-    }
-    let headings = headings(directions);
-    let lines = targets.len() as f64 * directions.len() as f64;
-    let is_swept = scene.params().profile == Profile::Sphere
-        && directions.len() >= WORTH_GATHERING
-        && lines > WORTH_SWEEPING * scene.ball_count() as f64;
-    let space = is_swept.then(|| {
-        let space = SpaceLayers::new(scene.balls(), scene.params());
-        let descending = Descending::new(&space, tree.positions());
-        (space, descending)
-    });
-    // a target counts as done when as many lines of sight are
-    let asked = AtomicUsize::new(0);
-    let advance = |lines: usize| {
-        let before = asked.fetch_add(lines, Ordering::Relaxed);
-        control.advance((before + lines) / directions.len() - before / directions.len());
-    };
-    for batch in headings.chunks(BATCH) {
-        let settled = match &space {
-            None => Vec::new(),
-            Some((space, descending)) => batch
-                .par_iter()
-                .map(|heading| sweep(space, descending, heading.direction, heading.near.max(scene.params().bias)))
-                .collect(),
-        };
-        let sky = Sky::new(scene, batch, settled, directions.len());
-        let chunks = words.par_chunks_mut(width * CHUNK).zip(tree.positions().par_chunks(CHUNK));
-        chunks.enumerate().for_each(|(chunk, (rows, targets))| {
-            sky.look(targets, chunk, rows, width);
-            advance(targets.len() * batch.len());
-        });
-    }
-    Ok(VisibilityMatrix { places, direction_count: directions.len(), width, words })
 }

@@ -1,6 +1,7 @@
 //! One direction swept through the layers of space from the top down: 64 lines of sight at a time.
 
-use super::space_layers::{SpaceLayers, WORD};
+use super::space_layers::SpaceLayers;
+use crate::query::backend::WORD;
 
 /// Most cells that a line of sight moves on in a layer; flatter directions are not swept.
 const MOST_SLOPE: f64 = 24.0;
@@ -24,7 +25,7 @@ impl Descending {
 }
 
 /// What a sweep settles: a bit for each target, 64 a word, in the order of the tree.
-pub(super) struct Settled {
+pub(super) struct Swept {
     /// No ball is reached beyond the near space of the target.
     pub(super) free: Vec<u64>,
     /// A ball blocks.
@@ -87,7 +88,7 @@ impl Lines {
 /// Lines of sight are sorted by the cell in which they meet the lowest level. Those of a cell lie over two by two cells of a layer, the
 /// same ones until they pass a side of a cell to the east or north: each layer is added once for each stretch between two
 /// such passages, moved by whole cells.
-pub(super) fn sweep(space: &SpaceLayers, targets: &Descending, direction: [f64; 3], near: f64) -> Option<Settled> {
+pub(super) fn sweep(space: &SpaceLayers, targets: &Descending, direction: [f64; 3], near: f64) -> Option<Swept> {
     // cells that a line moves on in a layer
     let slope = [direction[0] / direction[2], direction[1] / direction[2]];
     if !(direction[2] > 0.0 && slope[0].abs().max(slope[1].abs()) <= MOST_SLOPE) {
@@ -106,7 +107,7 @@ pub(super) fn sweep(space: &SpaceLayers, targets: &Descending, direction: [f64; 
     let mut reached = Lines::new(first, size);
     let mut filled = Lines::new(first, size);
     let word_count = targets.targets.len().div_ceil(WORD);
-    let mut settled = Settled { free: vec![0; word_count], blocked: vec![0; word_count] };
+    let mut swept = Swept { free: vec![0; word_count], blocked: vec![0; word_count] };
     let mut left = targets.targets.iter().peekable();
     let mut answer = |(at, place): &([f64; 3], u32), reached: &Lines, filled: &Lines| {
         let line: [f64; 2] = std::array::from_fn(|i| at[i] - at[2] * slope[i]);
@@ -116,8 +117,8 @@ pub(super) fn sweep(space: &SpaceLayers, targets: &Descending, direction: [f64; 
             return;
         }
         let (word, bit) = (*place as usize / WORD, *place as usize % WORD);
-        settled.blocked[word] |= u64::from(filled.get(cell)) << bit;
-        settled.free[word] |= u64::from(!reached.get(cell)) << bit;
+        swept.blocked[word] |= u64::from(filled.get(cell)) << bit;
+        swept.free[word] |= u64::from(!reached.get(cell)) << bit;
     };
     let mut moves = Vec::new();
     for layer in (0..depth).rev() {
@@ -139,7 +140,7 @@ pub(super) fn sweep(space: &SpaceLayers, targets: &Descending, direction: [f64; 
     for target in left {
         answer(target, &reached, &filled);
     }
-    Some(settled)
+    Some(swept)
 }
 
 /// By how many whole cells lines of sight have moved in each stretch of a layer.

@@ -1,6 +1,9 @@
 //! Space in layers of cells, a bit each: cells that some ball reaches, and cells that one ball fills.
 
 use crate::blocking::{Ball, BlockRule};
+use crate::query::backend::WORD;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -12,8 +15,6 @@ const MOST_CELLS: f64 = (1_u64 << 30) as f64;
 const MARGIN: f64 = 1e-3;
 /// Balls handed to a thread at once.
 const CHUNK: usize = 4096;
-/// Bits in a word.
-pub(super) const WORD: usize = 64;
 
 /// Cells of space in level layers from the lowest up, rows from the south, cells from the west, 64 a word.
 pub(super) struct SpaceLayers {
@@ -35,7 +36,7 @@ pub(super) struct SpaceLayers {
 
 impl SpaceLayers {
     /// Layers over `balls`, which give way as `rule` says.
-    pub(super) fn new(balls: &[Ball], rule: &BlockRule) -> Self {
+    pub(super) fn new(balls: &[Ball], rule: &BlockRule, control: &Control<'_>) -> Result<Self> {
         let (low, high) = balls
             .par_iter()
             .with_min_len(CHUNK)
@@ -62,16 +63,17 @@ impl SpaceLayers {
         let low = [low[0] - cell, low[1] - cell, low[2]];
         let mut layers = Self { low, cell, size, width, reached: Vec::new(), filled: Vec::new(), taken: Vec::new() };
         // bits are only ever set, so that their order does not matter
-        balls.par_iter().with_min_len(CHUNK).for_each(|&Ball { center, radius }| {
+        balls.par_iter().with_min_len(CHUNK).try_for_each(|&Ball { center, radius }| {
             let radius = f64::from(radius);
             let radii = [radius + MARGIN, rule.least_radius(radius) - MARGIN];
             layers.mark([&reached, &filled], center.map(f64::from), radii);
-        });
+            control.check()
+        })?;
         let plain = |bits: Vec<AtomicU64>| -> Vec<u64> { bits.into_iter().map(AtomicU64::into_inner).collect() };
         layers.reached = layers.joined(&plain(reached), |a, b| a | b);
         layers.filled = layers.joined(&plain(filled), |a, b| a & b);
         layers.taken = layers.taken();
-        layers
+        Ok(layers)
     }
 
     /// Marks the cells that a ball with the first of two radii reaches, and those that one with the second fills.

@@ -1,7 +1,7 @@
 //! Balls around a target, as the parts of its sky that they cover.
 
 use crate::blocking::{Ball, Cover};
-use crate::query::MedialScene;
+use crate::query::ball_tree::BallTree;
 use crate::ray_index::{PARTS, Part, Ray};
 
 /// How far to the sides of a target, and how far above it, balls are taken as near, metres: beyond, rays that rise have left the
@@ -28,7 +28,7 @@ pub(super) struct Nearby {
 
 impl Nearby {
     /// Looks up the balls near any of `targets`.
-    pub(super) fn gather(&mut self, scene: &MedialScene, targets: &[[f32; 3]]) {
+    pub(super) fn gather(&mut self, tree: &BallTree, targets: &[[f32; 3]]) {
         self.around.clear();
         let bound = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| {
             targets.iter().map(|target| f64::from(target[axis])).fold(start, pick)
@@ -36,7 +36,7 @@ impl Nearby {
         let low: [f64; 3] = std::array::from_fn(|i| bound(i, f64::min, f64::INFINITY) - [NEAR[0], NEAR[0], 0.0][i]);
         let high: [f64; 3] =
             std::array::from_fn(|i| bound(i, f64::max, f64::NEG_INFINITY) + [NEAR[0], NEAR[0], NEAR[1]][i]);
-        let index = &scene.index;
+        let index = tree.index();
         self.nodes.clear();
         self.nodes.extend(index.root());
         while let Some(node) = self.nodes.pop() {
@@ -55,7 +55,7 @@ impl Nearby {
                     Part::Nothing => {}
                     Part::Node(node) => self.nodes.push(node),
                     Part::Rows { first, count } => {
-                        let meets = |row: &u32| reaches(scene.ball(*row as usize), [low, high]);
+                        let meets = |row: &u32| reaches(tree.ball(*row as usize), [low, high]);
                         self.around.extend((first..first + count).filter(meets));
                     }
                 }
@@ -65,24 +65,24 @@ impl Nearby {
 
     /// Of the balls looked up, takes those that may block a ray from `target` which does not sink below the horizon before it leaves
     /// the near space.
-    pub(super) fn select(&mut self, scene: &MedialScene, target: [f64; 3]) {
+    pub(super) fn select(&mut self, tree: &BallTree, target: [f64; 3]) {
         self.rows.clear();
         self.covers.clear();
         self.taken.clear();
         let low = [target[0] - NEAR[0], target[1] - NEAR[0], target[2]];
         let high = [target[0] + NEAR[0], target[1] + NEAR[0], target[2] + NEAR[1]];
         for at in 0..self.around.len() {
-            self.take(scene, target, [low, high], self.around[at]);
+            self.take(tree, target, [low, high], self.around[at]);
         }
         self.line_up();
     }
 
-    fn take(&mut self, scene: &MedialScene, target: [f64; 3], corners: [[f64; 3]; 2], row: u32) {
-        let ball = scene.ball(row as usize);
+    fn take(&mut self, tree: &BallTree, target: [f64; 3], corners: [[f64; 3]; 2], row: u32) {
+        let ball = tree.ball(row as usize);
         if !reaches(ball, corners) {
             return;
         }
-        let Cover { towards, cosine, highest } = scene.params().cover(ball, target);
+        let Cover { towards, cosine, highest } = tree.rule().cover(ball, target);
         if highest > -f64::from(ROUNDING) {
             #[expect(clippy::cast_possible_truncation, reason = "tests allow for it")]
             let [x, y, z, cosine, highest] =
@@ -114,7 +114,7 @@ impl Nearby {
 
     /// Whether a ball near the target blocks `ray`.
     #[inline]
-    pub(super) fn blocks(&self, scene: &MedialScene, ray: &Ray) -> bool {
+    pub(super) fn blocks(&self, tree: &BallTree, ray: &Ray) -> bool {
         #[expect(clippy::cast_possible_truncation, reason = "the cosine allows for it")]
         let [x, y, z] = ray.direction.map(|v| v as f32);
         let reaching = self.covers.iter().take_while(|(_, highest)| *highest >= z);
@@ -122,7 +122,7 @@ impl Nearby {
             let meets: [bool; LANES] =
                 std::array::from_fn(|lane| cx[lane] * x + cy[lane] * y + cz[lane] * z >= cosine[lane]);
             meets.contains(&true)
-                && rows.iter().zip(meets).any(|(&row, meets)| meets && scene.front(row as usize, ray).is_some())
+                && rows.iter().zip(meets).any(|(&row, meets)| meets && tree.front(row as usize, ray).is_some())
         })
     }
 }

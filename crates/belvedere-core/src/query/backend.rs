@@ -1,0 +1,113 @@
+//! The seam between the scene and whatever answers lines of sight in bulk.
+//!
+//! A backend takes the balls once ([`Backend::prepare`]) and then answers batch after batch. It may be conservative: a line of sight that
+//! it cannot decide for certain it leaves *open*, and the exact lines of sight of the processor decide that one. So the
+//! answers are the same bits on any device.
+
+use super::ball_tree::BallTree;
+use crate::depth::DepthBounds;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use belvedere_data::view::View;
+use std::sync::Arc;
+
+/// Whatever can answer lines of sight in bulk: the processor ([`super::Cpu`]), or another device.
+pub trait Backend: Send + Sync {
+    /// Takes the balls and the rule by which they block ([`crate::blocking`]).
+    ///
+    /// # Errors
+    /// What the device reports.
+    fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn Prepared>>;
+}
+
+/// Balls made ready by a backend. What takes long to make is made on first use and kept.
+pub trait Prepared: Send + Sync {
+    /// Bounds of the depth of the first surface over each pixel of `view`, as [`crate::depth::depth_bounds`] defines them: they may be wider,
+    /// but must hold. Balls that reach before `start`, as [`crate::depth::BoundsParams::start`], block nothing.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled) and what the device reports.
+    fn depth(&self, view: &View, start: f64, control: &Control<'_>) -> Result<DepthBounds>;
+
+    /// What is certain of the lines of sight without end of each of `targets`, (M, 3) local metres, in each of `directions`, (D, 3)
+    /// unit vectors. Neighbours among the targets stand close together in the list.
+    ///
+    /// # Errors
+    /// As [`Prepared::depth`].
+    fn settle(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], control: &Control<'_>) -> Result<Settled>;
+}
+
+/// What is known of a line of sight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Line {
+    /// No ball blocks it.
+    Free,
+    /// A ball blocks it.
+    Blocked,
+    /// Not known: the exact line of sight decides.
+    Open,
+}
+
+/// Bits in a word.
+pub(super) const WORD: usize = 64;
+/// Words with a bit for each target of a block.
+pub(super) const WORDS: usize = 4;
+/// Targets that are stored, and looked at, together: neighbours, which share what blocks.
+pub(super) const BLOCK: usize = WORDS * WORD;
+
+/// A bit for each target of a block.
+pub(super) type Bits = [u64; WORDS];
+
+/// What a backend settled: for each target and direction whether the line of sight is free, blocked or still open.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settled {
+    direction_count: usize,
+    /// Block after block, in each direction after direction.
+    pub(super) free: Vec<Bits>,
+    pub(super) blocked: Vec<Bits>,
+    /// For each direction the range before which nothing blocks a line that is open, metres.
+    pub(super) open_from: Vec<f64>,
+}
+
+impl Settled {
+    /// All lines open.
+    #[must_use]
+    pub fn new(target_count: usize, direction_count: usize) -> Self {
+        let open = vec![[0; WORDS]; target_count.div_ceil(BLOCK) * direction_count];
+        let open_from = vec![f64::NEG_INFINITY; direction_count];
+        Self { direction_count, free: open.clone(), blocked: open, open_from }
+    }
+
+    /// Sets what is known of a line.
+    pub fn set(&mut self, target: usize, direction: usize, line: Line) {
+        let (at, word, bit) = self.place(target, direction);
+        for (bits, of) in [(&mut self.free, Line::Free), (&mut self.blocked, Line::Blocked)] {
+            if let Some(bits) = bits.get_mut(at) {
+                bits[word] = bits[word] & !bit | if line == of { bit } else { 0 };
+            }
+        }
+    }
+
+    /// What is known of a line.
+    #[must_use]
+    pub fn line(&self, target: usize, direction: usize) -> Line {
+        let (at, word, bit) = self.place(target, direction);
+        let is_set = |bits: &[Bits]| bits.get(at).is_some_and(|bits| bits[word] & bit != 0);
+        match (is_set(&self.free), is_set(&self.blocked)) {
+            (true, _) => Line::Free,
+            (_, true) => Line::Blocked,
+            _ => Line::Open,
+        }
+    }
+
+    /// Says that nothing blocks the open lines of a direction nearer to their targets than `range` metres, which saves work.
+    pub fn set_open_from(&mut self, direction: usize, range: f64) {
+        if let Some(open_from) = self.open_from.get_mut(direction) {
+            *open_from = range;
+        }
+    }
+
+    fn place(&self, target: usize, direction: usize) -> (usize, usize, u64) {
+        (target / BLOCK * self.direction_count + direction, target % BLOCK / WORD, 1 << (target % WORD))
+    }
+}

@@ -1,0 +1,125 @@
+//! The first backend: the processor itself.
+//!
+//! Each direction is swept through cells of space, 64 lines of sight at a time, which tells of most whether they meet cells that no ball
+//! reaches only, or one that a ball fills. Balls near a target, where cells cannot tell, are gathered once for all directions. What is
+//! left is open.
+
+mod nearby;
+mod space_layers;
+mod sweep;
+
+use super::backend::{BLOCK, Backend, Bits, Prepared, Settled, WORD, WORDS};
+use super::ball_tree::BallTree;
+use super::lazy::Lazy;
+use crate::blocking::Profile;
+use crate::depth::{BoundsParams, DepthBounds, depth_bounds};
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use belvedere_data::view::View;
+use nearby::{NEAR, Nearby};
+use rayon::prelude::*;
+use space_layers::SpaceLayers;
+use std::sync::Arc;
+use sweep::{Descending, Swept, sweep};
+
+/// Directions from which on it pays to gather what is near a target, and to sweep them.
+const WORTH_GATHERING: usize = 16;
+/// Lines of sight for each ball from which on it pays to sweep.
+const WORTH_SWEEPING: f64 = 4.0;
+/// Targets for which balls near by are looked up together.
+const TOGETHER: usize = 8;
+
+/// The processor as a backend.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cpu;
+
+impl Backend for Cpu {
+    fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn Prepared>> {
+        Ok(Box::new(PreparedBalls { tree: Arc::clone(balls), layers: Lazy::new() }))
+    }
+}
+
+struct PreparedBalls {
+    tree: Arc<BallTree>,
+    layers: Lazy<SpaceLayers>,
+}
+
+impl Prepared for PreparedBalls {
+    fn depth(&self, view: &View, start: f64, control: &Control<'_>) -> Result<DepthBounds> {
+        let params = BoundsParams { shell: self.tree.rule().shell, start };
+        depth_bounds(self.tree.balls(), view, &params, control)
+    }
+
+    fn settle(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], control: &Control<'_>) -> Result<Settled> {
+        let mut settled = Settled::new(targets.len(), directions.len());
+        let lines = targets.len() as f64 * directions.len() as f64;
+        let is_worth_it = self.layers.is_made() || lines > WORTH_SWEEPING * self.tree.balls().len() as f64;
+        if self.tree.rule().profile != Profile::Sphere || directions.len() < WORTH_GATHERING || !is_worth_it {
+            return Ok(settled);
+        }
+        let layers = self.layers.get_or_make(|| SpaceLayers::new(self.tree.balls(), self.tree.rule(), control))?;
+        let descending = Descending::new(layers, targets);
+        let near: Vec<f64> = directions.iter().map(|direction| near_range(*direction)).collect();
+        let swept: Vec<Option<Swept>> = directions
+            .par_iter()
+            .zip(&near)
+            .map(|(direction, near)| {
+                control.check()?;
+                Ok(sweep(layers, &descending, *direction, near.max(self.tree.rule().bias)))
+            })
+            .collect::<Result<_>>()?;
+        let blocks =
+            settled.free.par_chunks_mut(directions.len()).zip(settled.blocked.par_chunks_mut(directions.len()));
+        blocks.zip(targets.par_chunks(BLOCK)).enumerate().try_for_each(|(block, ((free, blocked), targets))| {
+            control.check()?;
+            for ((swept, free), blocked) in swept.iter().zip(&mut *free).zip(&mut *blocked) {
+                let Some(swept) = swept else { continue };
+                let of_block = |bits: &[u64]| -> Bits {
+                    std::array::from_fn(|word| bits.get(block * WORDS + word).copied().unwrap_or(0))
+                };
+                (*free, *blocked) = (of_block(&swept.free), of_block(&swept.blocked));
+            }
+            self.leave_near(targets, directions, free, blocked);
+            Ok(())
+        })?;
+        for (number, (direction, near)) in directions.iter().zip(near).enumerate() {
+            if direction[2] >= 0.0 {
+                settled.set_open_from(number, near);
+            }
+        }
+        Ok(settled)
+    }
+}
+
+impl PreparedBalls {
+    /// Blocks those lines of a block of targets that a ball near the target blocks.
+    fn leave_near(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], free: &mut [Bits], blocked: &mut [Bits]) {
+        let mut nearby = Nearby::default();
+        for (i, target) in targets.iter().enumerate() {
+            if i % TOGETHER == 0 {
+                nearby.gather(&self.tree, &targets[i..targets.len().min(i + TOGETHER)]);
+            }
+            let target = target.map(f64::from);
+            nearby.select(&self.tree, target);
+            if nearby.is_empty() {
+                continue;
+            }
+            let (word, bit) = (i / WORD, 1 << (i % WORD));
+            for ((direction, free), blocked) in directions.iter().zip(&mut *free).zip(&mut *blocked) {
+                if blocked[word] & bit == 0
+                    && direction[2] >= 0.0
+                    && nearby.blocks(&self.tree, &self.tree.ray(target, *direction, f64::INFINITY))
+                {
+                    free[word] &= !bit;
+                    blocked[word] |= bit;
+                }
+            }
+        }
+    }
+}
+
+/// Range at which a direction has left the near space of a target, metres.
+fn near_range(direction: [f64; 3]) -> f64 {
+    let across = direction[0].abs().max(direction[1].abs());
+    (NEAR[1] / direction[2]).min(NEAR[0] / across)
+}
