@@ -48,7 +48,7 @@ fn every_method_gets_scores_costs_and_pictures() {
     let html = fs::read_to_string(place.path("out/report.html")).unwrap();
     assert!(html.contains("town-100m-1--tau.png") && html.contains("Wrong balls of the published method"));
     // of the four groups of views one holds the suns; each target of each sun gets one answer of three
-    let answers = results["targets"][0]["answers"].as_array().unwrap();
+    let answers = results["places"][0]["answers"].as_array().unwrap();
     let row = |set: &str, views: &str| {
         let row = answers.iter().find(|row| row["set"] == set && row["views"] == views).unwrap();
         ["visible", "unproven", "blocked"].map(|name| [0, 1].map(|i| row[name][i].as_u64().unwrap()))
@@ -65,8 +65,8 @@ fn every_method_gets_scores_costs_and_pictures() {
     }
     let [visible, unproven, _] = row("PED", "sun at 65°").map(|[given, right]| right as f64 / given as f64);
     assert!(visible > unproven, "what pulses bear out is right more often: {visible} {unproven}");
-    assert!(html.contains("What each answer of carved balls is worth") && html.contains("People in streets"));
-    let audit = results["targets"][0]["audit"].as_array().unwrap();
+    assert!(html.contains("Reliability of each answer of carved balls") && html.contains("People in streets"));
+    let audit = results["places"][0]["audit"].as_array().unwrap();
     assert!(audit.iter().any(|row| row["surface"] == "facade" && row["balls"].as_u64() > row["wrong"].as_u64()));
 }
 

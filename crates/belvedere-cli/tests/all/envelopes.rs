@@ -75,14 +75,14 @@ fn envelopes_refuse_what_is_no_parcel_and_suns_that_are_not_up() {
     };
     let sun = "envelope house.laz --sun 180,45 -o e.tif";
     refuse(2, sun, &crossing, &["crossing itself"]);
-    refuse(1, sun, &far, &["no ground"]);
+    refuse(1, sun, &far, &["ground below the parcel is unknown"]);
     refuse(2, "envelope house.laz -o e.tif", &parcel, &["--date"]);
     refuse(2, "envelope house.laz --sun 180,-5 -o e.tif", &parcel, &["above 0"]);
     refuse(2, "envelope house.laz --sun 180,45 --between 15:00,09:00 -o e.tif", &parcel, &["09:00,15:00"]);
     refuse(2, "envelope house.laz --sun 180,45 -o e.gif", &parcel, &["extension"]);
     // the sun is in the south and the parcel north of what is protected: nothing bounds it
     let north = corners(&[[-5.0, -9.0], [5.0, -9.0], [5.0, -8.0], [-5.0, -8.0]]);
-    refuse(2, "envelope house.laz --sun 180,45 -o e.ply", &north, &["ceiling"]);
+    refuse(2, "envelope house.laz --sun 180,45 -o e.ply", &north, &["maximum height"]);
     assert!(!place.path("e.tif").exists() && !place.path("e.ply").exists());
 }
 

@@ -22,7 +22,7 @@ fn the_ground_north_of_a_house_gets_less() {
     let place = place();
     let outputs = "-o energy.tif -o energy.png -o energy.csv --measures measures";
     let summary = place.summary(&format!("irradiance {HOUSE} --clear-sky ineichen --cell 1 --months {outputs}"));
-    assert_eq!(summary["location"]["from"], "reference system");
+    assert_eq!(summary["location"]["source"], "reference system");
     // a clear year at 52° N has about 1630 kWh/m² on a level plane (pvlib: 1631 at a turbidity of 3)
     let global = summary["radiation"]["global_kwh_m2"].as_f64().unwrap();
     assert!((1600.0..1660.0).contains(&global), "{global}");
@@ -86,9 +86,9 @@ fn weather_comes_from_files() {
     place.write("weather.csv", weather(52.0, 0.0));
     let summary =
         place.summary(&format!("irradiance {HOUSE} --weather weather.csv --cell 4 --sky-model perez -o out.csv"));
-    assert_eq!(summary["radiation"]["from"], "PVGIS, typical year");
+    assert_eq!(summary["radiation"]["source"], "PVGIS, typical year");
     assert_eq!(
-        (&summary["radiation"]["rows"], summary["radiation"]["global_kwh_m2"].as_f64()),
+        (&summary["radiation"]["weather_rows"], summary["radiation"]["global_kwh_m2"].as_f64()),
         (&12.into(), Some(3.6))
     );
     assert!(summary["location"]["note"].is_null());
@@ -123,5 +123,5 @@ fn what_cannot_be_is_refused_with_advice() {
     let flags = "--method tau --orient given --ground found --sun-cell-deg 4 --clear-sky bird --cell 4 -o out.csv";
     place.refusal(1, &format!("irradiance adrift.ply {flags}"), &["--location", "--crs"]);
     let summary = place.summary(&format!("irradiance adrift.ply {flags} --location 52,4.4"));
-    assert_eq!(summary["location"]["from"], "--location");
+    assert_eq!(summary["location"]["source"], "--location");
 }

@@ -183,7 +183,7 @@ fn what_cannot_be_is_refused_with_advice() {
         ("--sun 180,30 --film film.png --frame-duration-s 0 -o no.csv", "--frame-duration-s"),
         ("--sun 180,30 --targets places.csv --cell 2 -o no.csv", "--cell"),
         ("--sun 180,30 --targets places.csv -o no.tif", "csv"),
-        ("--sun 180,30 --facing normals -o no.csv", "level"),
+        ("--sun 180,30 --facing normals -o no.csv", "horizontal"),
         ("--sun 180,30 --spacing 1 -o no.csv", "--spacing"),
     ] {
         let run = place.run(&format!("shadow {HOUSE} {flags}"));

@@ -270,7 +270,7 @@ fn the_mesh_is_closed_and_holds_the_volume_also_over_sloping_ground_and_around_h
     }
     let open = solar_envelope(&parcel, &ground(1.0, 0.0), &[], &[], None, &EnvelopeParams::default(), &Control::none())
         .unwrap();
-    assert!(open.to_mesh([0.0; 3]).unwrap_err().to_string().contains("ceiling"));
+    assert!(open.to_mesh([0.0; 3]).unwrap_err().to_string().contains("maximum height"));
 }
 
 #[test]
@@ -337,7 +337,9 @@ fn hostile_input_is_refused_with_what_is_wrong() {
     for ceiling in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(ask(&parcel, &[], &[], Some(ceiling)).contains("ceiling"));
     }
-    assert!(ask(&rectangle([500.0, 500.0], [510.0, 510.0]), &[], &[], None).contains("no ground"));
+    assert!(
+        ask(&rectangle([500.0, 500.0], [510.0, 510.0]), &[], &[], None).contains("ground below the parcel is unknown")
+    );
     for (fence, spacing) in [(-1.0, 1.0), (f64::NAN, 1.0), (0.0, 0.0), (0.0, f64::NAN), (0.0, 1e-9)] {
         let corners = [[0.0, 0.0, 0.0], [10.0, 0.0, 0.0]];
         assert!(protected_line(&corners, fence, spacing, &ground(1.0, 0.0), 0).is_err());
