@@ -53,7 +53,7 @@ fn quiet_prints_nothing_but_does_the_work() {
 fn verbose_tells_the_time_of_each_stage_on_standard_error() {
     let place = with_house();
     let run = place.run("balls house.laz -o balls.npz -v");
-    assert!(run.stderr.contains("building balls: ") && run.stderr.ends_with(" s\n"), "{}", run.stderr);
+    assert!(run.stderr.contains("shrinking balls: ") && run.stderr.ends_with(" s\n"), "{}", run.stderr);
     assert!(!run.stderr.contains('\u{1b}'));
 }
 
