@@ -41,6 +41,7 @@ mod relief;
 mod roof_planes;
 mod rows;
 mod scanner_location;
+mod scene_model;
 mod simulated_surveys;
 mod slender;
 mod solar_envelope;
