@@ -29,6 +29,16 @@ impl Mesh {
         self
     }
 
+    /// The triangles of the objects of these names; vertices and names stay.
+    #[must_use]
+    pub fn of_objects(mut self, names: &[String]) -> Self {
+        let is_named = |object: &u32| self.object_names.get(*object as usize).is_some_and(|name| names.contains(name));
+        let kept = self.triangles.iter().zip(&self.objects).filter(|(_, object)| is_named(object));
+        let (triangles, objects) = kept.map(|(&triangle, &object)| (triangle, object)).unzip();
+        (self.triangles, self.objects) = (triangles, objects);
+        self
+    }
+
     /// Corners of triangle `index`, or `None` where it or one of its vertices does not exist.
     #[must_use]
     pub fn corners(&self, index: usize) -> Option<[[f64; 3]; 3]> {

@@ -7,6 +7,7 @@ use crate::roof_planes::RoofPlane;
 use crate::rows::{BLOCK_BITS, Obstacles, RowBlock, fold_blocks};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
+use belvedere_data::report::rounded;
 use serde::Serialize;
 
 /// Height of panels above their roof, metres: that of usual rails, which balls of a rough roof do not reach.
@@ -35,11 +36,11 @@ impl RoofIrradiation {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RoofsReport {
     /// Energy over the period, MWh.
-    pub mwh: f64,
+    pub energy_mwh: f64,
     /// Share lost by shading where each panel works for itself, percent.
-    pub least_loss_percent: f64,
+    pub min_loss_percent: f64,
     /// Share lost by shading where rows of panels are strings, percent.
-    pub most_loss_percent: f64,
+    pub max_loss_percent: f64,
 }
 
 impl RoofsReport {
@@ -53,9 +54,9 @@ impl RoofsReport {
         let energy = weighted(&|energy| energy.mean.total());
         let limited = weighted(&|energy| energy.string_limited.total());
         Self {
-            mwh: energy / 1000.0,
-            least_loss_percent: 100.0 * (1.0 - energy / unshaded),
-            most_loss_percent: 100.0 * (1.0 - limited / unshaded),
+            energy_mwh: rounded(energy / 1000.0, 2),
+            min_loss_percent: rounded(100.0 * (1.0 - energy / unshaded), 2),
+            max_loss_percent: rounded(100.0 * (1.0 - limited / unshaded), 2),
         }
     }
 }

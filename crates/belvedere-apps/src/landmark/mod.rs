@@ -2,8 +2,10 @@
 
 mod extent;
 mod points;
+mod report;
 
 pub use points::{LandmarkPoints, landmark_points};
+pub use report::{BestView, LandmarkReport};
 
 use belvedere_core::query::target_tree::TargetTree;
 use belvedere_core::query::{

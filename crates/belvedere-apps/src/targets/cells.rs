@@ -70,7 +70,8 @@ impl CellParams {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CellReport {
     /// Cells under a cover that are not asked about.
-    pub covered_cells_left_out: usize,
+    #[serde(rename = "cells_under_cover_left_out")]
+    pub cells_below_objects_excluded: usize,
 }
 
 impl Targets {
@@ -125,7 +126,7 @@ impl Targets {
             let hidden = hidden_ground(&cloud.positions, &ground);
             for (position, _) in positions.iter_mut().zip(hidden).filter(|(_, is_hidden)| *is_hidden) {
                 *position = [f32::NAN; 3];
-                report.covered_cells_left_out += 1;
+                report.cells_below_objects_excluded += 1;
             }
         }
         Ok((Self::at(cloud.frame.clone(), positions, None, Layout::Cells(Box::new(ground))), report))

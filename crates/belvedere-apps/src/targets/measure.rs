@@ -1,5 +1,6 @@
 //! Values of targets, with what is needed to write and draw them.
 
+use belvedere_data::report::rounded;
 use serde::Serialize;
 
 /// One figure for each target.
@@ -23,9 +24,9 @@ pub struct MeasureStatistics {
     /// Mean of the values, all counting alike.
     pub mean: f64,
     /// Least value.
-    pub least: f64,
+    pub min: f64,
     /// Greatest value.
-    pub most: f64,
+    pub max: f64,
 }
 
 impl Measure {
@@ -66,8 +67,19 @@ impl Measure {
         let count = known().count();
         (count > 0).then(|| MeasureStatistics {
             mean: known().sum::<f64>() / count as f64,
-            least: known().fold(f64::INFINITY, f64::min),
-            most: known().fold(f64::NEG_INFINITY, f64::max),
+            min: known().fold(f64::INFINITY, f64::min),
+            max: known().fold(f64::NEG_INFINITY, f64::max),
+        })
+    }
+
+    /// The same, rounded to the digits of the measure.
+    #[must_use]
+    pub fn rounded_statistics(&self) -> Option<MeasureStatistics> {
+        let digits = i32::try_from(self.decimals).unwrap_or(3);
+        self.statistics().map(|found| MeasureStatistics {
+            mean: rounded(found.mean, digits),
+            min: rounded(found.min, digits),
+            max: rounded(found.max, digits),
         })
     }
 
@@ -93,7 +105,7 @@ mod tests {
     #[test]
     fn statistics_are_those_of_known_values() {
         let found = measure(&[1.0, f32::NAN, 4.0, f32::INFINITY]).statistics().unwrap();
-        assert_eq!((found.mean, found.least, found.most), (2.5, 1.0, 4.0));
+        assert_eq!((found.mean, found.min, found.max), (2.5, 1.0, 4.0));
         assert_eq!(measure(&[f32::NAN]).statistics(), None);
     }
 

@@ -27,8 +27,9 @@ pub use windows::Window;
 
 use belvedere_core::ground::Ground;
 use belvedere_core::query::{MedialScene, SurfacePieces};
-use belvedere_data::PointCloud;
+use belvedere_data::control::Control;
 use belvedere_data::frame::Frame;
+use belvedere_data::{PointCloud, Result};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -117,15 +118,20 @@ impl Targets {
     }
 
     /// Leaves out targets that lie inside a ball of `scene`; returns how many.
-    pub fn leave_out_enclosed(&mut self, scene: &MedialScene) -> usize {
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub fn leave_out_enclosed(&mut self, scene: &MedialScene, control: &Control<'_>) -> Result<usize> {
         let is_enclosed = |position: &[f32; 3]| {
-            position.iter().all(|v| v.is_finite()) && scene.enclosure(position.map(f64::from)).ball_count > 0
+            control.check()?;
+            let is_asked = position.iter().all(|v| v.is_finite());
+            Ok(is_asked && scene.enclosure(position.map(f64::from)).ball_count > 0)
         };
-        let enclosed: Vec<bool> = self.positions.par_iter().with_min_len(CHUNK).map(is_enclosed).collect();
+        let enclosed: Vec<bool> = self.positions.par_iter().map(is_enclosed).collect::<Result<_>>()?;
         for (position, _) in self.positions.iter_mut().zip(&enclosed).filter(|(_, is_enclosed)| **is_enclosed) {
             *position = [f32::NAN; 3];
         }
-        enclosed.into_iter().filter(|&is_enclosed| is_enclosed).count()
+        Ok(enclosed.into_iter().filter(|&is_enclosed| is_enclosed).count())
     }
 
     /// How much a target counts.

@@ -79,6 +79,25 @@ pub fn cell_for(low: [f64; 2], high: [f64; 2]) -> f64 {
     cell
 }
 
+/// The part of a box on the map, `low` and `high` corner, that is within reach, metres, of any of the places, local metres; the whole box
+/// where none is.
+#[must_use]
+pub fn box_within_reach(
+    (low, high): ([f64; 2], [f64; 2]),
+    places: impl IntoIterator<Item = ([f64; 2], f64)>,
+) -> ([f64; 2], [f64; 2]) {
+    let (mut from, mut to) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for (place, reach) in places {
+        for axis in 0..2 {
+            from[axis] = from[axis].min(place[axis] - reach);
+            to[axis] = to[axis].max(place[axis] + reach);
+        }
+    }
+    let within = ([0, 1].map(|i| low[i].max(from[i])), [0, 1].map(|i| high[i].min(to[i])));
+    let is_some = (0..2).all(|i| within.0[i] <= within.1[i]);
+    if is_some { within } else { (low, high) }
+}
+
 /// A target in the middle of each cell of `ground`, `height` metres above it, (M, 3) local metres, rows from the north; NaN where no
 /// ground is known.
 #[must_use]
@@ -312,4 +331,19 @@ fn check(observers: &[Observer], earth: &EarthParams) -> Result<()> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_is_cut_to_what_is_within_reach_of_anybody() {
+        let whole = ([0.0, 0.0], [100.0, 50.0]);
+        assert_eq!(box_within_reach(whole, [([20.0, 20.0], 10.0), ([40.0, 30.0], 5.0)]), ([10.0, 10.0], [45.0, 35.0]));
+        assert_eq!(box_within_reach(whole, [([20.0, 20.0], f64::INFINITY)]), whole);
+        // nobody is near: all of it is asked about
+        assert_eq!(box_within_reach(whole, [([500.0, 20.0], 10.0)]), whole);
+        assert_eq!(box_within_reach(whole, []), whole);
+    }
 }

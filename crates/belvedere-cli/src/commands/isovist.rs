@@ -1,6 +1,6 @@
 //! `belvedere isovist`.
 
-use super::sights::{Proving, blockers, file};
+use super::sights::{Proving, blockers};
 use super::surroundings::{eyes, needs_ground, note_enclosed};
 use super::{check_output, extension};
 use crate::arguments::{GivingWay, Global, Isovist, Usage};
@@ -85,7 +85,7 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
 type Row = Vec<(&'static str, f64, usize)>;
 
 fn row(cloud: &PointCloud, eye: [f64; 3], isovist: &isovist::Isovist, grid_north: f64) -> Row {
-    let [x, y, z] = file(cloud, eye);
+    let [x, y, z] = cloud.frame.file_from_local(eye);
     let plan = &isovist.plan;
     let mut row: Row = vec![
         ("x", x, 3),

@@ -3,19 +3,20 @@
 mod results;
 mod what;
 
-use super::sights::{self, Proving, blockers, ground_cloud, local, on_map};
+use super::sights::{self, Proving, blockers, ground_cloud};
 use super::{check_distinct, check_output, extension};
 use crate::arguments::{Global, Landmark, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
-use crate::summary::{Summary, percent, rounded};
+use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::PointCloud;
-use belvedere::apps::landmark::{LandmarkParams, LandmarkView, landmark_views, observer_cell_for};
-use belvedere::apps::viewshed::{OBSERVER_HEIGHT, cell_targets};
+use belvedere::apps::landmark::{LandmarkParams, LandmarkReport, enclosed_eyes, landmark_views, observer_cell_for};
+use belvedere::apps::targets::{CellParams, CoveredCells, Targets, set_on_ground};
+use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::io::{RowsAre, read_observers};
-use belvedere::query::{BackFaces, MedialScene, MeshTargetParams};
+use belvedere::query::{BackFaces, MeshTargetParams};
 
 pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     check_outputs(arguments)?;
@@ -41,11 +42,20 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     summary.add("lines_of_sight", section);
 
     let height = arguments.observer_height.unwrap_or(OBSERVER_HEIGHT);
-    let mut eyes = match &rows {
-        Some(rows) => standing(rows, height, &ground, &cloud)?,
-        None => cell_targets(&ground, height).iter().map(|eye| eye.map(f64::from)).collect(),
-    };
-    let enclosed = stages.run("testing observers", 0, |_| shut_out(&mut eyes, rows.is_none(), &blockers));
+    let (eyes, inside) = stages.run("testing observers", 0, |control| match &rows {
+        Some(rows) => {
+            // the position of an observer from a file is kept, even inside a wall
+            let eyes = standing(rows, height, &ground, &cloud)?;
+            let enclosed = enclosed_eyes(&blockers, &eyes, control)?;
+            Ok((eyes, enclosed.into_iter().filter(|&is_enclosed| is_enclosed).count()))
+        }
+        None => {
+            let cells = CellParams::default().with_height(height).with_covered(CoveredCells::Kept);
+            let (mut targets, _) = Targets::of_cells(&cloud, ground.clone(), &cells, control)?;
+            let inside = targets.leave_out_enclosed(&blockers, control)?;
+            Ok::<_, anyhow::Error>((targets.positions.iter().map(|eye| eye.map(f64::from)).collect(), inside))
+        }
+    })?;
     let usual = LandmarkParams::default().faces;
     let params = LandmarkParams {
         faces: MeshTargetParams { back_faces: arguments.back_faces.map_or(usual.back_faces, BackFaces::from), ..usual },
@@ -56,7 +66,7 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     let views = stages
         .run("testing landmark", eyes.len(), |progress| landmark_views(&blockers, &surface, &eyes, &params, progress));
     let views = flagged("--max-distance", views)?;
-    summary.add("observers", told(&views, &eyes, enclosed));
+    summary.add("observers", Summary::of(&LandmarkReport::new(&views, &eyes, inside)));
     for output in &arguments.output {
         stages.run("writing", 0, |_| match extension(output).as_str() {
             "csv" => results::write_rows(output, &views, &eyes, &cloud),
@@ -89,7 +99,7 @@ fn check_outputs(arguments: &Landmark) -> Result<()> {
 
 /// The cells that observers stand in, or that the ground below those of a file is asked on.
 fn grid(arguments: &Landmark, scene: &Scene) -> Result<MapGrid> {
-    let [low, high] = on_map(scene.model.bounds());
+    let (low, high) = scene.model.bounds().on_map();
     let cell = match &arguments.observers {
         Some(_) => belvedere::apps::viewshed::cell_for(low, high),
         None => arguments.cell.unwrap_or_else(|| observer_cell_for(low, high)),
@@ -113,58 +123,22 @@ fn rows(arguments: &Landmark, cloud: &PointCloud) -> Result<Option<Vec<Row>>> {
 }
 
 fn standing(rows: &[Row], height: f64, ground: &Ground, cloud: &PointCloud) -> Result<Vec<[f64; 3]>> {
-    let mut eyes = Vec::with_capacity(rows.len());
-    for (number, &(mut eye, own)) in rows.iter().enumerate() {
-        if eye[2].is_nan() {
-            let Some(level) = ground.height_at([eye[0], eye[1]]) else {
-                let [x, y, _] = sights::file(cloud, eye);
-                bail!(
-                    "observer {} at {x:.3},{y:.3}: the ground below is unknown; is the position in the coordinates of the cloud? If so, add a column z",
-                    number + 1
-                );
-            };
-            eye[2] = level + own.unwrap_or(height);
-        }
-        eyes.push(eye);
+    let mut eyes: Vec<[f64; 3]> = rows.iter().map(|row| row.0).collect();
+    let heights = rows.iter().map(|row| row.1.unwrap_or(height));
+    let unknown = set_on_ground(eyes.iter_mut().zip(heights), ground);
+    if let Some(&number) = unknown.first() {
+        let [x, y, _] = cloud.frame.file_from_local(eyes[number]);
+        bail!(
+            "observer {} at {x:.3},{y:.3}: there is no ground known below it; is it in the coordinates of the cloud? Else give a \
+             column z",
+            number + 1
+        );
     }
     Ok(eyes)
 }
 
-/// Counts eyes inside what the cloud takes for solid; those of a grid are made NaN, which sees nothing.
-fn shut_out(eyes: &mut [[f64; 3]], is_grid: bool, blockers: &MedialScene) -> usize {
-    let mut count = 0;
-    for eye in eyes.iter_mut().filter(|eye| eye[2].is_finite()) {
-        if blockers.enclosure(*eye).ball_count > 0 {
-            count += 1;
-            if is_grid {
-                *eye = [f64::NAN; 3];
-            }
-        }
-    }
-    count
-}
-
-fn told(views: &[LandmarkView], eyes: &[[f64; 3]], enclosed: usize) -> Summary {
-    let standing = eyes.iter().filter(|eye| eye[2].is_finite()).count();
-    let seeing = views.iter().filter(|view| view.visible_area > 0.0).count();
-    let mut section = Summary::default();
-    section
-        .add("count", standing)
-        .add("observers_inside_obstacles", enclosed)
-        .add("observers_with_view", seeing)
-        .add("observers_with_view_percent", percent(seeing, standing));
-    let best = views.iter().enumerate().filter(|(_, view)| view.visible_area > 0.0);
-    if let Some((row, view)) = best.max_by(|a, b| a.1.visible_share().total_cmp(&b.1.visible_share())) {
-        section
-            .add("max_visible_share", rounded(view.visible_share(), 4))
-            .add("max_visible_share_observer", row + 1)
-            .add("max_visible_share_solid_angle_sr", rounded(view.solid_angle, 5));
-    }
-    section
-}
-
 /// Local place on the map of file coordinates.
 fn on_map_of(cloud: &PointCloud, [x, y]: [f64; 2]) -> [f64; 2] {
-    let [x, y, _] = local(cloud, [x, y, 0.0]);
+    let [x, y, _] = cloud.frame.local_from_file([x, y, 0.0]);
     [x, y]
 }

@@ -1,6 +1,6 @@
 //! `belvedere line-of-sight`.
 
-use super::sights::{Proving, blockers, enclosure_note, file, ground, ground_cloud, local, on_map};
+use super::sights::{Proving, blockers, enclosure_note, ground, ground_cloud};
 use super::{check_output, extension, is_same};
 use crate::arguments::{Global, GroundChoice, LineOfSight, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
@@ -58,7 +58,10 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
             one.add("answer", name(unproven_as.settle(sight.answer)));
             if let Some(block) = sight.first_block {
                 one.add("first_block_range_m", rounded(block.range, 3))
-                    .add("block_position", file(&scene.cloud, block.place).map(|v| rounded(v, 3)).to_vec())
+                    .add(
+                        "block_position",
+                        scene.cloud.frame.file_from_local(block.place).map(|v| rounded(v, 3)).to_vec(),
+                    )
                     .add("block_ball", block.ball)
                     .add("block_source", scene.model.balls().source.get(block.ball).copied().unwrap_or_default());
             }
@@ -84,7 +87,7 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
 fn pairs(arguments: &LineOfSight, scene: &Scene, seed: u64, stages: &mut Stages) -> Result<Vec<[[f64; 3]; 2]>> {
     let lines = &arguments.lines;
     if let (Some(from), Some(to)) = (&lines.from, &lines.to) {
-        return Ok(vec![[local(&scene.cloud, from.0), local(&scene.cloud, to.0)]]);
+        return Ok(vec![[scene.cloud.frame.local_from_file(from.0), scene.cloud.frame.local_from_file(to.0)]]);
     }
     if let Some(count) = lines.random {
         return Ok(random_pairs(scene.model.bounds().low, scene.model.bounds().high, count, seed));
@@ -100,7 +103,10 @@ fn pairs(arguments: &LineOfSight, scene: &Scene, seed: u64, stages: &mut Stages)
         *column = table.full_column(path, name)?;
     }
     let end = |row: usize, first: usize| {
-        local(&scene.cloud, std::array::from_fn(|i| columns[first + i].get(row).copied().unwrap_or(f64::NAN)))
+        scene
+            .cloud
+            .frame
+            .local_from_file(std::array::from_fn(|i| columns[first + i].get(row).copied().unwrap_or(f64::NAN)))
     };
     Ok((0..table.row_count()).map(|row| [end(row, 0), end(row, 3)]).collect())
 }
@@ -113,12 +119,14 @@ fn write(
     answers: &[Answer],
 ) -> Result<()> {
     let ends: [Vec<f64>; 6] = std::array::from_fn(|column| {
-        pairs.iter().map(|pair| file(&scene.cloud, pair[column / 3])[column % 3]).collect()
+        pairs.iter().map(|pair| scene.cloud.frame.file_from_local(pair[column / 3])[column % 3]).collect()
     });
     let block = |i: usize| sights[i].and_then(|sight| sight.first_block);
     let count = sights.len();
     let place: [Vec<f64>; 3] = std::array::from_fn(|axis| {
-        (0..count).map(|i| block(i).map_or(f64::NAN, |block| file(&scene.cloud, block.place)[axis])).collect()
+        (0..count)
+            .map(|i| block(i).map_or(f64::NAN, |block| scene.cloud.frame.file_from_local(block.place)[axis]))
+            .collect()
     });
     let range: Vec<f64> = (0..count).map(|i| block(i).map_or(f64::NAN, |block| block.range)).collect();
     let unproven: Vec<f64> = sights
@@ -226,7 +234,7 @@ fn profile_ground(
     if scene.cloud.is_empty() && matches!(arguments.ground, GroundChoice::OfScene(_)) {
         return Ok(None);
     }
-    let [low, high] = on_map(scene.model.bounds());
+    let (low, high) = scene.model.bounds().on_map();
     let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     let grid = MapGrid::covering(low, high, belvedere::apps::viewshed::cell_for(low, high), origin)?;
     let (cloud, points) = ground_cloud(&arguments.ground, scene, stages)?;

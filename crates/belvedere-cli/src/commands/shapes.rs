@@ -1,6 +1,5 @@
 //! Shapes on the map: from flags and files to local metres.
 
-use super::sights::local;
 use crate::arguments::Corners;
 use anyhow::{Result, bail};
 use belvedere::PointCloud;
@@ -29,7 +28,7 @@ pub(super) fn shapes(flag: &str, corners: &Corners, typed_are: TypedAre, cloud: 
     };
     let path = match corners {
         Corners::Typed(corners) => {
-            let corners = corners.iter().map(|&corner| local(cloud, corner)).collect();
+            let corners = corners.iter().map(|&corner| cloud.frame.local_from_file(corner)).collect();
             return Ok(vec![Named { shape: shape(corners), name: flag.to_owned() }]);
         }
         Corners::File(path) => path,

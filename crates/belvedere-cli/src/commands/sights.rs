@@ -5,7 +5,6 @@ use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
-use belvedere::Bounds;
 use belvedere::PointCloud;
 use belvedere::depth::Profile;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
@@ -140,23 +139,6 @@ pub(crate) fn ground(
         .add("cells_without_ground", grid.len() - report.cell_count);
     summary.add("ground", section);
     Ok(ground)
-}
-
-/// Local metres of a place in file coordinates.
-pub(crate) fn local(cloud: &PointCloud, file: [f64; 3]) -> [f64; 3] {
-    let scale = cloud.frame.crs.metres_per_unit_xyz();
-    std::array::from_fn(|i| file[i] * scale[i] - cloud.frame.origin[i])
-}
-
-/// File coordinates of a local place.
-pub(crate) fn file(cloud: &PointCloud, local: [f64; 3]) -> [f64; 3] {
-    let scale = cloud.frame.crs.metres_per_unit_xyz();
-    std::array::from_fn(|i| (local[i] + cloud.frame.origin[i]) / scale[i])
-}
-
-/// Lowest and highest corner of a scene on the map, local metres.
-pub(crate) fn on_map(bounds: Bounds) -> [[f64; 2]; 2] {
-    [bounds.low, bounds.high].map(|p| [f64::from(p[0]), f64::from(p[1])])
 }
 
 /// Notes for people on an eye inside something solid.

@@ -1,18 +1,16 @@
 //! Eyes of isovists and horizons: from flags and files to places.
 
-use super::sights::{self, local};
+use super::sights;
 use crate::arguments::{Eyes, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
-use belvedere::apps::viewshed::{OBSERVER_HEIGHT, cell_for};
-use belvedere::ground::MapGrid;
+use belvedere::apps::targets::{grid_around, set_on_ground};
+use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::io::{RowsAre, read_observers};
 use belvedere::query::MedialScene;
 
-/// Ground made around eyes, metres.
-const MARGIN: f64 = 10.0;
 /// Most notes on eyes that are in something solid.
 const MOST_NOTES: usize = 5;
 
@@ -27,7 +25,7 @@ pub(super) fn eyes(
     let mut rows: Vec<([f64; 3], f64)> = Vec::new();
     for place in &arguments.eye {
         let ([x, y], z) = (place.0, place.1);
-        rows.push((local(&scene.cloud, [x, y, z.unwrap_or(f64::NAN)]), usual));
+        rows.push((scene.cloud.frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]), usual));
     }
     if let Some(path) = &arguments.eyes {
         for row in read_observers(path, &scene.cloud.frame.crs, RowsAre::Places)? {
@@ -36,26 +34,18 @@ pub(super) fn eyes(
             rows.extend(row.corners.iter().map(|corner| (place(corner), height)));
         }
     }
-    let grounded: Vec<[f64; 2]> = rows.iter().filter(|row| row.0[2].is_nan()).map(|row| [row.0[0], row.0[1]]).collect();
-    if !grounded.is_empty() {
-        let bound = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| {
-            grounded.iter().map(|place| place[axis]).fold(start, pick)
-        };
-        let low = [0, 1].map(|axis| bound(axis, f64::min, f64::INFINITY) - MARGIN);
-        let high = [0, 1].map(|axis| bound(axis, f64::max, f64::NEG_INFINITY) + MARGIN);
-        let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
-        let grid = flagged("--observer", MapGrid::covering(low, high, cell_for(low, high), origin))?;
+    let grid = grid_around(rows.iter().map(|row| row.0), scene.cloud.frame.origin);
+    if let Some(grid) = flagged("--observer", grid)? {
         let (cloud, points) = sights::ground_cloud(&arguments.ground, scene, stages)?;
         let ground = sights::ground(&cloud, points, grid, stages, summary)?;
-        for (number, (place, height)) in rows.iter_mut().enumerate().filter(|(_, row)| row.0[2].is_nan()) {
-            let Some(level) = ground.height_at([place[0], place[1]]) else {
-                let [x, y, _] = sights::file(&cloud, *place);
-                bail!(
-                    "eye {} at {x:.3},{y:.3}: the ground below is unknown; is the position in the coordinates of the cloud? If so, give its height as a third number",
-                    number + 1
-                );
-            };
-            place[2] = level + *height;
+        let unknown = set_on_ground(rows.iter_mut().map(|(place, height)| (place, *height)), &ground);
+        if let Some(&number) = unknown.first() {
+            let [x, y, _] = cloud.frame.file_from_local(rows[number].0);
+            bail!(
+                "eye {} at {x:.3},{y:.3}: there is no ground known below it; is it in the coordinates of the cloud? Else give its \
+                 height as a third number",
+                number + 1
+            );
         }
     }
     if let Some((place, _)) = rows.iter().find(|(place, _)| !place.iter().all(|v| v.is_finite())) {

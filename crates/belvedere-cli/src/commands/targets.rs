@@ -7,7 +7,7 @@ use super::{check_distinct, check_output, extension};
 use crate::arguments::{FacingChoice, SkyOutputs, SkyPlaces, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
-use crate::summary::{Summary, rounded};
+use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::targets::{CellLevel, CellParams, Facing, Measure, MeshParams, Targets};
 use belvedere::apps::viewshed::cell_for;
@@ -117,7 +117,7 @@ impl SkyPlaces {
         let name = if self.places.surface { "finding the surface" } else { "finding hidden ground" };
         let (targets, report) = stages.run(name, 0, |control| Targets::of_cells(&cloud, ground, &params, control))?;
         if !self.places.surface {
-            summary.add("cells_below_objects_excluded", report.covered_cells_left_out);
+            summary.add_report(&report);
         }
         Ok(Asked { targets, from: Source::Cells(Box::new(cloud)) })
     }
@@ -225,15 +225,7 @@ impl Asked {
         let mut section = Summary::default();
         section.add("targets", self.targets.asked_count());
         for measure in measures {
-            let digits = i32::try_from(measure.decimals).unwrap_or(3);
-            let mut figures = Summary::default();
-            if let Some(found) = measure.statistics() {
-                figures
-                    .add("mean", rounded(found.mean, digits))
-                    .add("min", rounded(found.least, digits))
-                    .add("max", rounded(found.most, digits));
-            }
-            section.add(&measure.name, figures);
+            section.add(&measure.name, Summary::of(&measure.rounded_statistics()));
         }
         section
     }

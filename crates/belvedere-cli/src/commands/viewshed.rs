@@ -3,7 +3,7 @@
 mod results;
 mod who;
 
-use super::sights::{Proving, blockers, enclosure_note, file, ground, ground_cloud, on_map};
+use super::sights::{Proving, blockers, enclosure_note, ground, ground_cloud};
 use super::{check_distinct, check_output};
 use crate::arguments::{Global, Viewshed};
 use crate::pipeline::{self, Points, flagged};
@@ -11,8 +11,9 @@ use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
 use belvedere::PointCloud;
+use belvedere::apps::targets::{CellParams, CoveredCells, Targets};
 use belvedere::apps::viewshed::{
-    Masks, OBSERVER_HEIGHT, Observer, TARGET_HEIGHT, ViewshedParams, cell_for, cell_targets, least_visible_heights,
+    Masks, OBSERVER_HEIGHT, Observer, TARGET_HEIGHT, ViewshedParams, box_within_reach, cell_for, least_visible_heights,
     viewshed,
 };
 use belvedere::ground::{Ground, MapGrid};
@@ -62,9 +63,10 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     let params = ViewshedParams { earth, unproven, masks };
     let is_of_points = |path: &Path| OF_POINTS.contains(&super::extension(path).as_str());
     if arguments.masks.is_some() || arguments.output.iter().any(|path| !is_of_points(path)) {
-        let targets = cell_targets(&ground, target_height);
-        let seen = stages.run("testing cells", observers.len(), |progress| {
-            viewshed(&blockers, &observers, &targets, &params, progress)
+        let cells = CellParams::default().with_height(target_height).with_covered(CoveredCells::Kept);
+        let seen = stages.run("testing cells", observers.len(), |control| {
+            let (targets, _) = Targets::of_cells(&cloud, ground.clone(), &cells, control)?;
+            viewshed(&blockers, &observers, &targets.positions, &params, control)
         })?;
         summary.add("cells", counted(&seen.answers, unproven, Some(grid.cell)));
         let eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
@@ -113,17 +115,8 @@ fn check_outputs(arguments: &Viewshed) -> Result<()> {
 
 /// The cells looked at: those of the cloud that are near enough to any observer.
 fn grid(arguments: &Viewshed, scene: &pipeline::Scene, rows: &[who::Row]) -> Result<MapGrid> {
-    let [mut low, mut high] = on_map(scene.model.bounds());
-    let [all_low, all_high] = [low, high];
-    let reach = |row: &who::Row| row.limits.distance[1];
-    for axis in 0..2 {
-        let places = || rows.iter().map(|row| (row.place[axis], reach(row)));
-        low[axis] = low[axis].max(places().map(|(at, reach)| at - reach).fold(f64::INFINITY, f64::min));
-        high[axis] = high[axis].min(places().map(|(at, reach)| at + reach).fold(f64::NEG_INFINITY, f64::max));
-    }
-    if low[0] > high[0] || low[1] > high[1] {
-        [low, high] = [all_low, all_high];
-    }
+    let reaches = rows.iter().map(|row| ([row.place[0], row.place[1]], row.limits.distance[1]));
+    let (low, high) = box_within_reach(scene.model.bounds().on_map(), reaches);
     let cell = arguments.cell.unwrap_or_else(|| cell_for(low, high));
     let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     flagged("--cell", MapGrid::covering(low, high, cell, origin))
@@ -142,7 +135,7 @@ fn told(observers: &[Observer], ground: &Ground, blockers: &MedialScene, cloud: 
     let mut section = Summary::default();
     section.add("count", observers.len());
     if let [one] = observers {
-        section.add("eye", file(cloud, one.eye).map(|v| rounded(v, 3)).to_vec());
+        section.add("eye", cloud.frame.file_from_local(one.eye).map(|v| rounded(v, 3)).to_vec());
         if let Some(height) = ground.height_at([one.eye[0], one.eye[1]]) {
             section.add("above_ground_m", rounded(one.eye[2] - height, 3));
         }

@@ -153,6 +153,13 @@ impl SurfacePieces {
         self.pieces.iter().map(|piece| f64::from(piece.area)).sum()
     }
 
+    /// Mean place of the pieces on the map, local metres; the origin without any.
+    #[must_use]
+    pub fn middle_on_map(&self) -> [f64; 2] {
+        let count = self.pieces.len().max(1) as f64;
+        [0, 1].map(|i| self.pieces.iter().map(|piece| f64::from(piece.place[i])).sum::<f64>() / count)
+    }
+
     /// Area of each face, (faces) m².
     #[must_use]
     pub fn face_areas(&self) -> Vec<f64> {

@@ -170,3 +170,19 @@ fn a_cancelled_stream_ends_between_blocks() {
     });
     assert!(failed.is_err() && blocks == 1);
 }
+
+#[test]
+fn targets_inside_a_ball_are_left_out() {
+    let balls = MedialBalls {
+        centers: vec![[0.0, 0.0, 5.0]],
+        radii: vec![2.0],
+        source: vec![0],
+        touch: vec![0],
+        separation_angles: vec![1.0],
+    };
+    let scene = MedialScene::new(&balls, &params()).unwrap();
+    let mut targets = targets(20);
+    targets.positions = vec![[0.0, 0.5, 5.0], [0.0, 0.0, 9.0], [f32::NAN; 3]];
+    assert_eq!(targets.leave_out_enclosed(&scene, &Control::none()).unwrap(), 1);
+    assert_eq!((0..3).map(|row| targets.is_asked(row)).collect::<Vec<_>>(), [false, true, false]);
+}

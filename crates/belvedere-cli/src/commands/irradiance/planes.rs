@@ -1,6 +1,6 @@
 //! Planes of roofs: found, asked, and written.
 
-use super::super::sights::{ground, ground_cloud, on_map};
+use super::super::sights::{ground, ground_cloud};
 use super::super::{check_distinct, check_output, check_parent, extension};
 use crate::arguments::{GroundChoice, Irradiance};
 use crate::commands::horizon::write_lines;
@@ -58,7 +58,7 @@ pub(super) fn find(
         cell: arguments.panel.unwrap_or(usual.cell),
         ..usual
     };
-    let [low, high] = on_map(scene.model.bounds());
+    let (low, high) = scene.model.bounds().on_map();
     let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     let grid = MapGrid::covering(low, high, GROUND_CELL, origin)?;
     let (cloud, points) = ground_cloud(&arguments.places.ground, scene, stages)?;
@@ -101,13 +101,7 @@ pub(super) fn measure(
     let rows = stages.run("computing horizons", roofs.planes.len(), |control| {
         roof_irradiation(obstacles, &roofs.planes, seasons, control)
     })?;
-    let report = RoofsReport::new(&roofs.planes, &rows);
-    let mut section = Summary::default();
-    section
-        .add("energy_mwh", rounded(report.mwh, 2))
-        .add("min_loss_percent", rounded(report.least_loss_percent, 2))
-        .add("max_loss_percent", rounded(report.most_loss_percent, 2));
-    summary.add("planes", section);
+    summary.add("planes", Summary::of(&RoofsReport::new(&roofs.planes, &rows)));
     for output in &arguments.planes {
         stages.run("writing", 0, |_| match extension(output).as_str() {
             "csv" => write_rows(output, roofs, &rows, site),

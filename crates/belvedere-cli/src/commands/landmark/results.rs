@@ -1,6 +1,5 @@
 //! Views of a landmark as files.
 
-use crate::commands::sights::file;
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::landmark::LandmarkView;
@@ -44,7 +43,7 @@ pub(super) fn write_rows(output: &Path, views: &[LandmarkView], eyes: &[[f64; 3]
     let rows: Vec<usize> = (0..eyes.len()).filter(|&row| eyes[row].iter().all(|v| v.is_finite())).collect();
     let mut columns: Vec<(&'static str, Vec<f64>, usize)> = Vec::new();
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-        columns.push((name, rows.iter().map(|&row| file(cloud, eyes[row])[axis]).collect(), 3));
+        columns.push((name, rows.iter().map(|&row| cloud.frame.file_from_local(eyes[row])[axis]).collect(), 3));
     }
     for (name, _, decimals, value) in MEASURES {
         columns.push((name, rows.iter().map(|&row| value(&views[row])).collect(), decimals));

@@ -54,38 +54,25 @@ pub(super) fn surface(
     };
     section.add("sample_points", surface.pieces.len()).add("area_m2", rounded(surface.area(), 2));
     summary.add("landmark", section);
-    let count = surface.pieces.len().max(1) as f64;
-    let middle = [0, 1].map(|i| surface.pieces.iter().map(|piece| f64::from(piece.place[i])).sum::<f64>() / count);
+    let middle = surface.middle_on_map();
     Ok((surface, middle))
 }
 
 /// The triangles of the objects named, all where none is.
-fn objects_of(mut mesh: Mesh, names: &[String], path: &Path) -> Result<Mesh> {
+fn objects_of(mesh: Mesh, names: &[String], path: &Path) -> Result<Mesh> {
     if names.is_empty() {
         return Ok(mesh);
     }
-    let mut wanted = vec![false; mesh.object_names.len()];
-    for name in names {
-        let mut found = false;
-        for (own, wanted) in mesh.object_names.iter().zip(&mut wanted).filter(|(own, _)| *own == name) {
-            *wanted = own == name;
-            found = true;
-        }
-        if !found {
-            let some: Vec<&str> = mesh.object_names.iter().take(8).map(String::as_str).collect();
-            bail!(
-                "{}: there is no object {name}; it has {} objects, such as {}",
-                path.display(),
-                wanted.len(),
-                some.join(", ")
-            );
-        }
+    if let Some(name) = names.iter().find(|name| !mesh.object_names.contains(name)) {
+        let some: Vec<&str> = mesh.object_names.iter().take(8).map(String::as_str).collect();
+        bail!(
+            "{}: there is no object {name}; it has {} objects, such as {}",
+            path.display(),
+            mesh.object_names.len(),
+            some.join(", ")
+        );
     }
-    let is_wanted = |&object: &u32| wanted.get(object as usize) == Some(&true);
-    let kept: Vec<usize> = (0..mesh.triangles.len()).filter(|&t| mesh.objects.get(t).is_some_and(is_wanted)).collect();
-    mesh.triangles = kept.iter().map(|&t| mesh.triangles[t]).collect();
-    mesh.objects = kept.iter().map(|&t| mesh.objects[t]).collect();
-    Ok(mesh)
+    Ok(mesh.of_objects(names))
 }
 
 /// Polygons of a file, each a rim and holes, local metres.

@@ -1,10 +1,11 @@
 //! Who looks: from flags and files to eyes.
 
 use crate::arguments::{Usage, Viewshed};
-use crate::commands::sights::local;
+
 use crate::pipeline::flagged;
 use anyhow::{Result, bail};
 use belvedere::PointCloud;
+use belvedere::apps::targets::set_on_ground;
 use belvedere::apps::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, places_along};
 use belvedere::ground::Ground;
 use belvedere::io::{ObserverRow, RowsAre, read_observers};
@@ -36,7 +37,7 @@ pub(super) fn rows(arguments: &Viewshed, cloud: &PointCloud, grid_north: f64) ->
     let height = looking.observer_height.unwrap_or(OBSERVER_HEIGHT);
     let typed = |place: &crate::arguments::Place, height: f64| {
         let &crate::arguments::Place([x, y], z) = place;
-        Row { place: local(cloud, [x, y, z.unwrap_or(f64::NAN)]), height, limits }
+        Row { place: cloud.frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]), height, limits }
     };
     if let Some(target) = &who.target {
         if limits.azimuth.is_some() || limits.elevation.is_some() {
@@ -86,23 +87,19 @@ pub(super) fn observers(
     ground: &Ground,
     cloud: &PointCloud,
 ) -> Result<Vec<Observer>> {
-    let mut observers = Vec::with_capacity(rows.len());
-    for (number, row) in rows.iter().enumerate() {
-        let mut eye = row.place;
-        if eye[2].is_nan() {
-            let Some(height) = ground.height_at([eye[0], eye[1]]) else {
-                let scale = cloud.frame.crs.metres_per_unit;
-                let [x, y] = [0, 1].map(|i| (eye[i] + cloud.frame.origin[i]) / scale);
-                let who = if arguments.who.target.is_some() { "the target" } else { "observer" };
-                bail!(
-                    "{who} {} at {x:.3},{y:.3}: the ground below is unknown; is the position in the coordinates of the cloud? If so, give its height as a third number",
-                    number + 1
-                );
-            };
-            eye[2] = height + row.height;
-        }
-        observers.push(Observer { eye, limits: row.limits });
+    let mut eyes: Vec<[f64; 3]> = rows.iter().map(|row| row.place).collect();
+    let unknown = set_on_ground(eyes.iter_mut().zip(rows).map(|(eye, row)| (eye, row.height)), ground);
+    if let Some(&number) = unknown.first() {
+        let [x, y, _] = cloud.frame.file_from_local(eyes[number]);
+        let who = if arguments.who.target.is_some() { "the target" } else { "observer" };
+        bail!(
+            "{who} {} at {x:.3},{y:.3}: there is no ground known below it; is it in the coordinates of the cloud? Else give its \
+             height as a third number",
+            number + 1
+        );
     }
+    let observers: Vec<Observer> =
+        eyes.into_iter().zip(rows).map(|(eye, row)| Observer { eye, limits: row.limits }).collect();
     flagged("--observer-height", check(&observers))?;
     Ok(observers)
 }
