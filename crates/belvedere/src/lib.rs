@@ -10,7 +10,7 @@
 //!
 //! fn main() -> Result<()> {
 //!     let control = Control::none();
-//!     let options = ReadOptions::new().with_crs("EPSG:7415");
+//!     let options = ReadOptions::new().with_crs("EPSG:7415".to_owned());
 //!     let (cloud, _) = read_cloud(["tile.laz"], &options, &control)?;
 //!     let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &control)?;
 //!     let scene = model.scene(&model.rule(), UnprovenAs::Visible, &control)?;
