@@ -52,7 +52,7 @@ impl OrientedSurvey {
     /// turns them outward.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] where cleaning leaves none; those of [`clean`], [`locate`], [`estimate`] and [`orient`];
+    /// [`Error::NoPoints`] where cleaning leaves none; those of [`clean`], [`locate`], [`estimate`] and [`orient()`];
     /// [`Error::Cancelled`].
     pub fn prepare(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
         prepare(Cow::Borrowed(cloud), params, control)

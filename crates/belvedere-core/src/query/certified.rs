@@ -107,7 +107,7 @@ impl<'a> CertifiedMap<'a> {
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for no view, for several that do not look from one eye, for balls with
-    /// [`Profile::PaperCone`], and as [`depth_bounds`].
+    /// [`Profile::PaperCone`], and as [`depth_bounds`](crate::depth::depth_bounds).
     pub fn new(scene: &'a MedialScene, views: &[View], scope: Scope, control: &Control<'_>) -> Result<Self> {
         check_views(views)?;
         let params = scene.params();
