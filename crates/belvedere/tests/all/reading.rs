@@ -108,7 +108,7 @@ fn report_names_what_is_odd() {
         ("tudelft_ahn4_small/small.laz", "24 extra bytes per point ignored: Deviation, Reflectance, Amplitude"),
         ("ign_decimated_towns/test_semis_2023_0292_6833_LA93_IGN69.laz", "12 of 289055 GPS times are zero"),
         ("delft_ahn3/ahn3_cropped_2.laz", "names no reference system; coordinates are taken as metres"),
-        ("quantised/samp11-utm.pcd", "steps by up to 0.5 m"),
+        ("quantised/samp11-utm.pcd", "steps of up to 0.5 m"),
     ] {
         let Some(path) = crate::common::data(test, &format!("data/{file}")) else { continue };
         let notes = notes_of(path);
