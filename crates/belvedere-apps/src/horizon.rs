@@ -8,6 +8,7 @@ use std::f64::consts::{PI, TAU};
 
 /// How horizons are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct HorizonParams {
     /// Number of azimuths, equally far apart, 1 to 1 000 000. Default 360: one a degree.
     pub azimuth_count: usize,
@@ -17,6 +18,12 @@ pub struct HorizonParams {
     /// How lines of sight run over the earth.
     pub earth: EarthParams,
 }
+
+belvedere_data::setters!(HorizonParams {
+    with_azimuth_count(azimuth_count: usize),
+    with_turn(turn: f64),
+    with_earth(earth: EarthParams),
+});
 
 impl Default for HorizonParams {
     fn default() -> Self {

@@ -5,7 +5,7 @@
 //! not depend on each other, and no result depends on how targets are cut into blocks.
 
 use crate::tree_light::TreeLight;
-use belvedere_core::query::{MedialScene, VisibilityMatrix, visibility_matrix};
+use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 use std::ops::Range;
@@ -52,7 +52,7 @@ pub struct RowBlock {
 /// [`Obstacles::matrix_count`] times each.
 ///
 /// # Errors
-/// Those of [`visibility_matrix()`] and of `fold`, and [`Error::Cancelled`].
+/// Those of [`MedialScene::visibility_matrix`] and of `fold`, and [`Error::Cancelled`].
 pub fn fold_rows(
     obstacles: Obstacles<'_>,
     targets: &[[f32; 3]],
@@ -82,9 +82,9 @@ pub fn fold_blocks(
     }
     for (number, of_block) in targets.chunks(block).enumerate() {
         control.check()?;
-        let matrix = visibility_matrix(obstacles.scene, of_block, directions, control)?;
+        let matrix = obstacles.scene.visibility_matrix(of_block, directions, control)?;
         let without_trees =
-            obstacles.trees.map(|trees| visibility_matrix(&trees.opaque, of_block, directions, control)).transpose()?;
+            obstacles.trees.map(|trees| trees.opaque.visibility_matrix(of_block, directions, control)).transpose()?;
         let first = number * block;
         fold(RowBlock { rows: first..first + of_block.len(), matrix, without_trees })?;
     }

@@ -6,7 +6,7 @@
 use crate::sun::{Date, Site};
 use belvedere_core::medial::MedialBalls;
 use belvedere_core::model::SceneModel;
-use belvedere_core::query::{BlockRule, MedialScene, VisibilityMatrix};
+use belvedere_core::query::{BlockRule, MedialScene};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 
@@ -170,52 +170,6 @@ impl TreeLight {
         };
         self.transmissivity.of(foliage)
     }
-}
-
-/// Share of the light that reaches a target from a direction: 1 where nothing blocks, 0 where anything but vegetation does, and
-/// `transmissivity` where only vegetation does. `all` is the matrix of all balls, `opaque` that of those that are not vegetation, of the
-/// same targets and directions. A crown behind a crown takes no more: their balls overlap within one, and nothing tells two apart.
-#[must_use]
-pub fn light_share(
-    all: &VisibilityMatrix,
-    opaque: &VisibilityMatrix,
-    target: usize,
-    direction: usize,
-    transmissivity: f64,
-) -> f64 {
-    if all.is_free(target, direction) {
-        1.0
-    } else if opaque.is_free(target, direction) {
-        transmissivity
-    } else {
-        0.0
-    }
-}
-
-/// Sum of `weights`, one for each direction, times the share of the light that comes from there; `transmissivities` has one for each
-/// direction too, since the sun stands in some of them in summer and in others in winter. Where either list is shorter than the
-/// directions, the rest counts nothing.
-#[must_use]
-pub fn light_sum(
-    all: &VisibilityMatrix,
-    opaque: &VisibilityMatrix,
-    target: usize,
-    weights: &[f64],
-    transmissivities: &[f64],
-) -> f64 {
-    let (free, through) = (all.row(target), opaque.row(target));
-    let bit =
-        |row: &[u64], direction: usize| row.get(direction / 64).is_some_and(|word| word >> (direction % 64) & 1 == 1);
-    let shares = weights.iter().zip(transmissivities).enumerate().map(|(direction, (weight, transmissivity))| {
-        if bit(free, direction) {
-            *weight
-        } else if bit(through, direction) {
-            weight * transmissivity
-        } else {
-            0.0
-        }
-    });
-    shares.sum()
 }
 
 /// Measures that are sums over directions, (M), with trees that let a share of the light through: `all` are their values where

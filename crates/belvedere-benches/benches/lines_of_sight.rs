@@ -9,7 +9,7 @@ use belvedere::apps::sky_view::SkyDirections;
 use belvedere::control::Control;
 use belvedere::medial::{ShrinkParams, Side, shrink};
 use belvedere::query::target_tree::TargetTree;
-use belvedere::query::{BlockRule, EarthParams, MedialScene, Viewer, Visibility, random_pairs, visibility_matrix};
+use belvedere::query::{BlockRule, EarthParams, MedialScene, Viewer, Visibility, random_pairs};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 const CELLS: usize = 600;
@@ -60,7 +60,7 @@ fn sights(c: &mut Criterion) {
     let lifted: Vec<[f32; 3]> = cells.iter().map(|&[x, y, z]| [x, y, z + 0.1]).collect();
     group.throughput(Throughput::Elements((sky.directions.len() * lifted.len()) as u64));
     group.bench_function("145 directions of the sky, all cells", |b| {
-        b.iter(|| visibility_matrix(&scene, &lifted, &sky.directions, &Control::none()).unwrap().row(0).len());
+        b.iter(|| scene.visibility_matrix(&lifted, &sky.directions, &Control::none()).unwrap().row(0).len());
     });
 }
 

@@ -1,6 +1,8 @@
 //! What can be typed: flags as entered. What they build is made in `pipeline` and in each command. Texts longer than a line are in `help/`.
 
 mod balls;
+#[cfg(feature = "compare")]
+mod compare;
 mod envelope;
 mod irradiance;
 mod numbers;
@@ -18,6 +20,8 @@ mod view;
 pub(crate) use balls::{
     Balls, Cleaning, MethodChoice, NeighborChoice, Normals, OrientChoice, Orienting, Shrinking, SideChoice, TreesChoice,
 };
+#[cfg(feature = "compare")]
+pub(crate) use compare::Compare;
 pub(crate) use envelope::{Comfort, Corners, Envelope};
 pub(crate) use irradiance::{ClearSkyChoice, Irradiance};
 pub(crate) use numbers::Numbers;
@@ -29,7 +33,7 @@ pub(crate) use shadow::Shadow;
 pub(crate) use sky::{FacingChoice, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
 pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};
 pub(crate) use surroundings::{BelowChoice, Eyes, Horizon, Isovist, Landmark, MeshTargets};
-pub(crate) use towns::{Compare, PatternChoice, ScannerChoice, Simulate};
+pub(crate) use towns::{PatternChoice, ScannerChoice, Simulate};
 pub(crate) use vegetation::{LeavesChoice, ThroughTrees, ThroughTreesChoice};
 pub(crate) use view::{North, SizeChoice, ViewChoice};
 
@@ -136,6 +140,7 @@ pub(crate) enum Command {
     /// Measure sun, shade and sky along walking routes and at windows
     Comfort(Comfort),
     /// Compare the accuracy and cost of visibility methods against ground truth
+    #[cfg(feature = "compare")]
     Compare(Compare),
     /// List all commands with their parameters, types, defaults and texts
     Describe,

@@ -22,7 +22,7 @@ pub(crate) const BALL_FLAGS: [&str; 14] = [
 ];
 
 /// What a command does, its input, output, units and limits, and examples that work as printed on the files of the demo.
-const TEXTS: [(&str, &str); 23] = [
+const TEXTS: &[(&str, &str)] = &[
     ("demo", include_str!("help/demo.txt")),
     ("simulate", include_str!("help/simulate.txt")),
     ("info", include_str!("help/info.txt")),
@@ -42,6 +42,7 @@ const TEXTS: [(&str, &str); 23] = [
     ("sun-hours", include_str!("help/sun-hours.txt")),
     ("envelope", include_str!("help/envelope.txt")),
     ("comfort", include_str!("help/comfort.txt")),
+    #[cfg(feature = "compare")]
     ("compare", include_str!("help/compare.txt")),
     ("describe", include_str!("help/describe.txt")),
     ("completions", include_str!("help/completions.txt")),

@@ -57,7 +57,8 @@ pub(crate) fn check_every_row(report: &ReadReport) -> Result<()> {
 }
 
 fn read_counted(input: &CloudInput, stages: &mut Stages, summary: &mut Summary) -> Result<(PointCloud, ReadReport)> {
-    let options = ReadOptions::new().with_crs(input.crs.clone());
+    let mut options = ReadOptions::new();
+    options.crs = input.crs.clone();
     let (cloud, report) = stages.run("reading", 0, |control| read_cloud(&input.clouds, &options, control))?;
     summary.add("points", cloud.len());
     summary.add("reading", Summary::of(&report));

@@ -167,6 +167,27 @@ impl RayIndex {
         }
     }
 
+    /// Calls `visit` for every row whose box may meet the box between two corners, local metres, in no particular order.
+    pub fn near(&self, low: [f64; 3], high: [f64; 3], mut visit: impl FnMut(usize)) {
+        // what the corners of nodes are rounded by
+        let slack = (0..3).map(|axis| self.center[axis].abs() + self.half_size[axis]).fold(0.0, f64::max) * BOX_PADDING;
+        let mut nodes: Vec<u32> = self.root().into_iter().collect();
+        while let Some(parts) = nodes.pop().and_then(|node| self.parts(node)) {
+            for (child, part) in parts.parts.into_iter().enumerate() {
+                let meets = (0..3).all(|axis| {
+                    let (center, half) =
+                        (f64::from(parts.centers[axis][child]), f64::from(parts.half_sizes[axis][child]));
+                    center - half - slack <= high[axis] && center + half + slack >= low[axis]
+                });
+                match part {
+                    Part::Rows { first, count } if meets => (first..first + count).for_each(|row| visit(row as usize)),
+                    Part::Node(node) if meets => nodes.push(node),
+                    _ => {}
+                }
+            }
+        }
+    }
+
     /// Where the boxes of nodes count from, local metres.
     #[must_use]
     pub fn center(&self) -> [f64; 3] {

@@ -15,6 +15,7 @@ pub mod needles;
 pub mod random;
 pub mod raster;
 pub mod report;
+mod setters;
 pub mod trajectory;
 pub mod vector;
 pub mod view;

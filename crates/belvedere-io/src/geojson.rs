@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use serde_json::{Map, Value, json};
+use geojson::{Feature, FeatureCollection, Geometry, Position};
+use serde_json::{Map, Value};
 
 use crate::output::Output;
 use belvedere_data::crs::{Crs, GeographicProjection};
@@ -16,7 +17,7 @@ const METRE_DECIMALS: i32 = 3;
 /// Polygons with properties in common.
 #[derive(Clone, Debug, Default)]
 pub struct Area {
-    /// For each polygon its rim, counter-clockwise, and its holes, clockwise, each closed; easting and northing in metres.
+    /// For each polygon its outer ring, counter-clockwise, and its holes, clockwise, each closed; easting and northing in metres.
     pub polygons: Vec<Vec<Vec<[f64; 2]>>>,
     /// What is known of it.
     pub properties: Map<String, Value>,
@@ -43,37 +44,36 @@ pub fn write_geojson_areas<'a>(output: impl Into<Output<'a>>, areas: &[Area], cr
     let output = output.into();
     let projection = crs.geographic_projection().ok();
     let coordinates = if projection.is_some() { GeojsonCoordinates::Wgs84 } else { GeojsonCoordinates::OfTheFile };
-    let mut features = Vec::with_capacity(areas.len());
+    let mut collection = FeatureCollection::default();
     for area in areas {
         let mut polygons = Vec::with_capacity(area.polygons.len());
         for polygon in &area.polygons {
-            let rings: Vec<Value> = polygon
-                .iter()
-                .map(|ring| written_ring(ring, projection.as_ref(), crs, output.name()))
-                .collect::<Result<_>>()?;
-            polygons.push(Value::Array(rings));
+            let ring = |ring: &Vec<[f64; 2]>| written_ring(ring, projection.as_ref(), crs, output.name());
+            polygons.push(polygon.iter().map(ring).collect::<Result<Vec<_>>>()?);
         }
-        features.push(json!({
-            "type": "Feature",
-            "properties": area.properties,
-            "geometry": { "type": "MultiPolygon", "coordinates": polygons },
-        }));
+        collection.features.push(Feature {
+            geometry: Some(Geometry::new_multi_polygon(polygons)),
+            properties: Some(area.properties.clone()),
+            ..Feature::default()
+        });
     }
-    let mut file = json!({ "type": "FeatureCollection", "features": features });
-    if coordinates == GeojsonCoordinates::OfTheFile
-        && let Some(members) = file.as_object_mut()
-    {
+    if coordinates == GeojsonCoordinates::OfTheFile {
         let note = format!("coordinates are not WGS 84 but those of the cloud: {}", crs.describe());
-        members.insert("crs_note".to_owned(), note.into());
+        collection.foreign_members = Some(Map::from_iter([("crs_note".to_owned(), note.into())]));
     }
     output.write(|path, output| {
-        serde_json::to_writer(&mut *output, &file).map_err(|e| Error::io(path)(e.into()))?;
+        serde_json::to_writer(&mut *output, &collection).map_err(|e| Error::io(path)(e.into()))?;
         writeln!(output).map_err(Error::io(path))
     })?;
     Ok(coordinates)
 }
 
-fn written_ring(ring: &[[f64; 2]], projection: Option<&GeographicProjection>, crs: &Crs, path: &Path) -> Result<Value> {
+fn written_ring(
+    ring: &[[f64; 2]],
+    projection: Option<&GeographicProjection>,
+    crs: &Crs,
+    path: &Path,
+) -> Result<Vec<Position>> {
     let written = |&place: &[f64; 2]| {
         let (values, decimals) = match projection {
             Some(projection) => {
@@ -86,7 +86,7 @@ fn written_ring(ring: &[[f64; 2]], projection: Option<&GeographicProjection>, cr
             None => (place.map(|v| v / crs.metres_per_unit), METRE_DECIMALS),
         };
         let scale = 10.0_f64.powi(decimals);
-        Ok(json!(values.map(|v| (v * scale).round() / scale)))
+        Ok(Position::from(values.map(|v| (v * scale).round() / scale)))
     };
-    ring.iter().map(written).collect::<Result<Vec<Value>>>().map(Value::Array)
+    ring.iter().map(written).collect()
 }

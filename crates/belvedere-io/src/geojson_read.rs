@@ -2,15 +2,13 @@
 
 use std::path::Path;
 
+use geojson::{GeoJson, Geometry, GeometryValue, Position};
 use serde_json::{Map, Value};
 
 use super::source::Source;
 
 use belvedere_data::crs::{Crs, CrsKind, GeographicProjection};
 use belvedere_data::{Error, Result};
-
-/// Deepest nesting of geometry collections.
-const MOST_NESTING: usize = 8;
 
 /// What stands at a feature's place: absolute metres in the system of the cloud, height NaN where the file has none.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +17,7 @@ pub enum Shape {
     Point([f64; 3]),
     /// A line through corners.
     Line(Vec<[f64; 3]>),
-    /// Rim and holes.
+    /// Outer ring and holes.
     Polygon(Vec<Vec<[f64; 3]>>),
 }
 
@@ -44,22 +42,30 @@ pub struct GeojsonFeature {
 pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<GeojsonFeature>> {
     let (name, bytes) = source.into().read_all()?;
     let path = name.as_path();
-    let file: Value = serde_json::from_slice(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes))
-        .map_err(|e| Error::malformed(path, format!("is no JSON: {e}")))?;
+    let file: GeoJson = serde_json::from_slice(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes))
+        .map_err(|e| Error::malformed(path, format!("is not GeoJSON: {e}")))?;
     let mut raw = Vec::new();
-    let no_properties = Map::new();
-    match file.get("type").and_then(Value::as_str) {
-        Some("FeatureCollection") => {
-            let features = file.get("features").and_then(Value::as_array);
-            for feature in features.ok_or_else(|| Error::malformed(path, "the collection has no features"))? {
-                of_feature(feature, path, &mut raw)?;
+    let members = match file {
+        GeoJson::FeatureCollection(collection) => {
+            for feature in collection.features {
+                let properties = feature.properties.unwrap_or_default();
+                feature.geometry.map_or(Ok(()), |geometry| of_geometry(geometry, &properties, path, &mut raw))?;
             }
+            collection.foreign_members
         }
-        Some("Feature") => of_feature(&file, path, &mut raw)?,
-        Some(_) => of_geometry(&file, &no_properties, path, 0, &mut raw)?,
-        None => return Err(Error::malformed(path, "is not GeoJSON: it has no member `type`")),
-    }
-    let placing = Placing::new(&file, &raw, path, crs)?;
+        GeoJson::Feature(feature) => {
+            let properties = feature.properties.unwrap_or_default();
+            feature.geometry.map_or(Ok(()), |geometry| of_geometry(geometry, &properties, path, &mut raw))?;
+            feature.foreign_members
+        }
+        GeoJson::Geometry(mut geometry) => {
+            let members = geometry.foreign_members.take();
+            of_geometry(geometry, &Map::new(), path, &mut raw)?;
+            members
+        }
+    };
+    let named = members.as_ref().and_then(|members| members.get("crs")?.pointer("/properties/name")?.as_str());
+    let placing = Placing::new(named, &raw, path, crs)?;
     for feature in &mut raw {
         match &mut feature.shape {
             Shape::Point(p) => *p = placing.place(*p, path)?,
@@ -81,60 +87,46 @@ fn place_all(corners: &mut [[f64; 3]], placing: &Placing, path: &Path) -> Result
     Ok(())
 }
 
-fn of_feature(feature: &Value, path: &Path, found: &mut Vec<GeojsonFeature>) -> Result<()> {
-    let empty = Map::new();
-    let properties = feature.get("properties").and_then(Value::as_object).unwrap_or(&empty);
-    match feature.get("geometry") {
-        None | Some(Value::Null) => Ok(()),
-        Some(geometry) => of_geometry(geometry, properties, path, 0, found),
-    }
-}
-
 fn of_geometry(
-    geometry: &Value,
+    geometry: Geometry,
     properties: &Map<String, Value>,
     path: &Path,
-    depth: usize,
     found: &mut Vec<GeojsonFeature>,
 ) -> Result<()> {
-    let kind = geometry.get("type").and_then(Value::as_str).unwrap_or_default();
-    let coordinates = geometry.get("coordinates").unwrap_or(&Value::Null);
     let mut push = |shape| found.push(GeojsonFeature { shape, properties: properties.clone() });
-    match kind {
-        "Point" => push(Shape::Point(position(coordinates, path)?)),
-        "MultiPoint" => positions(coordinates, path)?.into_iter().for_each(|p| push(Shape::Point(p))),
-        "LineString" => push(Shape::Line(positions(coordinates, path)?)),
-        "MultiLineString" => rings(coordinates, path)?.into_iter().for_each(|line| push(Shape::Line(line))),
-        "Polygon" => push(Shape::Polygon(rings(coordinates, path)?)),
-        "MultiPolygon" => {
-            for polygon in list(coordinates, path)? {
-                push(Shape::Polygon(rings(polygon, path)?));
+    match geometry.value {
+        GeometryValue::Point { coordinates } => push(Shape::Point(position(&coordinates, path)?)),
+        GeometryValue::MultiPoint { coordinates } => {
+            positions(&coordinates, path)?.into_iter().for_each(|p| push(Shape::Point(p)));
+        }
+        GeometryValue::LineString { coordinates } => push(Shape::Line(positions(&coordinates, path)?)),
+        GeometryValue::MultiLineString { coordinates } => {
+            rings(&coordinates, path)?.into_iter().for_each(|line| push(Shape::Line(line)));
+        }
+        GeometryValue::Polygon { coordinates } => push(Shape::Polygon(rings(&coordinates, path)?)),
+        GeometryValue::MultiPolygon { coordinates } => {
+            for polygon in coordinates {
+                push(Shape::Polygon(rings(&polygon, path)?));
             }
         }
-        "GeometryCollection" if depth < MOST_NESTING => {
-            for member in list(geometry.get("geometries").unwrap_or(&Value::Null), path)? {
-                of_geometry(member, properties, path, depth + 1, found)?;
+        GeometryValue::GeometryCollection { geometries } => {
+            for member in geometries {
+                of_geometry(member, properties, path, found)?;
             }
         }
-        _ => return Err(Error::malformed(path, format!("\"{kind}\" is no GeoJSON geometry"))),
     }
     Ok(())
 }
 
-fn list<'a>(value: &'a Value, path: &Path) -> Result<&'a Vec<Value>> {
-    value.as_array().ok_or_else(|| Error::malformed(path, "a geometry has no list of coordinates"))
+fn rings(rings: &[Vec<Position>], path: &Path) -> Result<Vec<Vec<[f64; 3]>>> {
+    rings.iter().map(|ring| positions(ring, path)).collect()
 }
 
-fn rings(value: &Value, path: &Path) -> Result<Vec<Vec<[f64; 3]>>> {
-    list(value, path)?.iter().map(|ring| positions(ring, path)).collect()
+fn positions(list: &[Position], path: &Path) -> Result<Vec<[f64; 3]>> {
+    list.iter().map(|p| position(p, path)).collect()
 }
 
-fn positions(value: &Value, path: &Path) -> Result<Vec<[f64; 3]>> {
-    list(value, path)?.iter().map(|p| position(p, path)).collect()
-}
-
-fn position(value: &Value, path: &Path) -> Result<[f64; 3]> {
-    let numbers: Vec<f64> = list(value, path)?.iter().filter_map(Value::as_f64).collect();
+fn position(numbers: &Position, path: &Path) -> Result<[f64; 3]> {
     match numbers[..] {
         [x, y] => Ok([x, y, f64::NAN]),
         [x, y, z, ..] => Ok([x, y, z]),
@@ -149,9 +141,8 @@ struct Placing {
 }
 
 impl Placing {
-    fn new(file: &Value, features: &[GeojsonFeature], path: &Path, crs: &Crs) -> Result<Self> {
+    fn new(named: Option<&str>, features: &[GeojsonFeature], path: &Path, crs: &Crs) -> Result<Self> {
         let scale = crs.metres_per_unit_xyz();
-        let named = file.pointer("/crs/properties/name").and_then(Value::as_str);
         if let Some(name) = named.filter(|name| !name.ends_with("CRS84")) {
             let code = name.rsplit(':').next().unwrap_or(name);
             let given = Crs::parse(&format!("EPSG:{code}")).map_err(|_| Error::UnusableCrs {

@@ -58,10 +58,10 @@ impl ReadOptions {
         Self::default()
     }
 
-    /// The same with a reference system in place of what the files say; `None` believes the files.
+    /// The same with a reference system in place of what the files say.
     #[must_use]
-    pub fn with_crs(mut self, crs: impl Into<Option<String>>) -> Self {
-        self.crs = crs.into();
+    pub fn with_crs(mut self, crs: impl Into<String>) -> Self {
+        self.crs = Some(crs.into());
         self
     }
 

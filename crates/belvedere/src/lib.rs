@@ -10,7 +10,7 @@
 //!
 //! fn main() -> Result<()> {
 //!     let control = Control::none();
-//!     let options = ReadOptions::new().with_crs("EPSG:7415".to_owned());
+//!     let options = ReadOptions::new().with_crs("EPSG:7415");
 //!     let (cloud, _) = read_cloud(["tile.laz"], &options, &control)?;
 //!     let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &control)?;
 //!     let scene = model.scene(&model.rule(), UnprovenAs::Visible, &control)?;
@@ -43,6 +43,7 @@
 //! | `io` | file formats | yes |
 //! | `figures` | pictures; needs `io` | yes |
 //! | `las` `e57` `ply` `npy` `tiff` `obj` | single file formats; need `io` | yes |
+//! | `scanner-estimate` | finding the scanner from pulses with several returns and from scan angles; without it, clouds without scanner positions count as scanned from straight above | yes |
 //! | `crs` | the database of reference systems; without it a system can be carried, but not looked up by its code | yes |
 //!
 //! Without default features the crate builds balls and answers lines of sight for positions that the program has itself.

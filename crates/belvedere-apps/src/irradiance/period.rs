@@ -18,6 +18,7 @@ const MOST_SUN_DIRECTIONS: f64 = 200_000.0;
 
 /// How the radiation of a period is gathered and falls on planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct IrradianceParams {
     /// Model of the sky's diffuse radiation.
     pub sky: SkyModel,
@@ -33,6 +34,15 @@ pub struct IrradianceParams {
     /// Whether months are kept apart.
     pub grouping: Grouping,
 }
+
+belvedere_data::setters!(IrradianceParams {
+    with_sky(sky: SkyModel),
+    with_patch_division(patch_division: usize),
+    with_sun_cell(sun_cell: f64),
+    with_albedo(albedo: f64),
+    with_surroundings(surroundings: Surroundings),
+    with_grouping(grouping: Grouping),
+});
 
 /// What obstacles send to a plane in place of the sky that they hide.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! A period in parts by what crowns of trees let through, and the energy of places and planes over all of them.
 
+use super::ClearSky;
 use super::instants::{clear_instants, weather_instants};
 use super::irradiation::{Irradiation, irradiation};
 use super::period::{Instant, IrradianceParams, PeriodRadiation, PeriodReport};
-use super::{ClearSky, PARTS};
 use crate::rows::{Obstacles, check_normals, fold_rows, normals_of};
 use crate::sun::{Date, Site, Zone};
 use crate::targets::Targets;
@@ -22,7 +22,7 @@ pub enum RadiationSource<'a> {
     Weather {
         /// The rows.
         weather: &'a Weather,
-        /// Parts of each row; [`PARTS`] is usual.
+        /// Parts of each row; [`PARTS`](super::PARTS) is usual.
         parts: usize,
     },
     /// A year without clouds.
@@ -32,14 +32,6 @@ pub enum RadiationSource<'a> {
         /// The year.
         year: i16,
     },
-}
-
-impl<'a> RadiationSource<'a> {
-    /// Rows of weather, each cut into the usual number of parts.
-    #[must_use]
-    pub fn of_weather(weather: &'a Weather) -> Self {
-        Self::Weather { weather, parts: PARTS }
-    }
 }
 
 /// What the days send on which crowns let the same share through.

@@ -17,6 +17,7 @@ const CHECKED: usize = 1024;
 
 /// How isovists are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct IsovistParams {
     /// Angle between rays of the panorama, and between the first rays of the plan, radians, a ten-thousandth to a quarter of a circle.
     /// Default 1°: 64 800 rays.
@@ -26,6 +27,12 @@ pub struct IsovistParams {
     /// Least jump in range that makes an edge of the plan, metres, above 0. Default 0.25: balls bulge by centimetres.
     pub jump: f64,
 }
+
+belvedere_data::setters!(IsovistParams {
+    with_step(step: f64),
+    with_max_range(max_range: f64),
+    with_jump(jump: f64),
+});
 
 impl Default for IsovistParams {
     fn default() -> Self {

@@ -26,6 +26,7 @@ const NEAREST: f64 = 1e-3;
 
 /// How landmarks are looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LandmarkParams {
     /// How its faces are asked. Default: those turned away are not visible, so that shares are those of the whole landmark.
     pub faces: MeshTargetParams,
@@ -36,6 +37,13 @@ pub struct LandmarkParams {
     /// Greatest range of what counts, metres, above 0. Default: infinite.
     pub max_range: f64,
 }
+
+belvedere_data::setters!(LandmarkParams {
+    with_faces(faces: MeshTargetParams),
+    with_unproven(unproven: UnprovenAs),
+    with_earth(earth: EarthParams),
+    with_max_range(max_range: f64),
+});
 
 impl Default for LandmarkParams {
     fn default() -> Self {

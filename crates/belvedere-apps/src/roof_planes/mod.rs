@@ -22,6 +22,7 @@ const LEAST_CELL: f64 = 0.1;
 
 /// How planes are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RoofPlaneParams {
     /// Farthest that a point of a plane lies from it, metres, above 0. Default 0.12: four times the noise of airborne scans.
     pub distance: f64,
@@ -37,6 +38,15 @@ pub struct RoofPlaneParams {
     /// Side of the cells that a plane is cut into, metres, 0.1 to 1000. Default 1: the width of a panel.
     pub cell: f64,
 }
+
+belvedere_data::setters!(RoofPlaneParams {
+    with_distance(distance: f64),
+    with_angle(angle: f64),
+    with_reach(reach: f64),
+    with_most_tilt(most_tilt: f64),
+    with_least_area(least_area: f64),
+    with_cell(cell: f64),
+});
 
 impl Default for RoofPlaneParams {
     fn default() -> Self {

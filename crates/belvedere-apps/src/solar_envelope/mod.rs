@@ -17,7 +17,7 @@ pub use parcel::{Footprint, Parcel};
 pub use protected::{ProtectedPiece, protected_faces, protected_line};
 
 use belvedere_core::ground::{Ground, MapGrid};
-use belvedere_core::query::{MedialScene, VisibilityMatrix, visibility_matrix};
+use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{dot, length};
@@ -32,11 +32,16 @@ const MOST_PAIRS: usize = 200_000_000;
 
 /// What bounds an envelope besides the sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct EnvelopeParams {
     /// Greatest height above the ground, metres, above 0: what zoning allows anyway. Default `None`: columns that no sun bounds are
     /// infinitely high.
     pub ceiling: Option<f64>,
 }
+
+belvedere_data::setters!(EnvelopeParams {
+    with_ceiling(ceiling: Option<f64>),
+});
 
 /// A solar envelope over the cells of a grid.
 #[derive(Clone, Debug)]
@@ -166,7 +171,7 @@ pub fn solar_envelope(
 /// million bits. Progress counts pieces.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for more than 200 million pairs, and those of [`visibility_matrix()`].
+/// [`Error::InvalidParameter`] for more than 200 million pairs, and those of [`MedialScene::visibility_matrix`].
 pub fn existing_shade(
     scene: &MedialScene,
     protected: &[ProtectedPiece],
@@ -175,7 +180,7 @@ pub fn existing_shade(
 ) -> Result<VisibilityMatrix> {
     check_pairs(protected.len(), suns.len())?;
     let samples: Vec<[f32; 3]> = protected.iter().map(|piece| piece.sample).collect();
-    visibility_matrix(scene, &samples, suns, control)
+    scene.visibility_matrix(&samples, suns, control)
 }
 
 fn check_pairs(pieces: usize, suns: usize) -> Result<()> {

@@ -15,6 +15,7 @@ const MOMENT: f64 = 0.01;
 
 /// How days are parted.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct DayParams {
     /// Length of a step, seconds, 10 to 3600; steps are made a little shorter where they do not fill the day. Default 600: shadows of edges
     /// come and go within half a step of the truth, ±5 minutes each.
@@ -25,6 +26,12 @@ pub struct DayParams {
     /// By how much air lifts the sun. Default [`Refraction::Standard`].
     pub refraction: Refraction,
 }
+
+belvedere_data::setters!(DayParams {
+    with_step(step: f64),
+    with_least_elevation(least_elevation: f64),
+    with_refraction(refraction: Refraction),
+});
 
 impl Default for DayParams {
     fn default() -> Self {

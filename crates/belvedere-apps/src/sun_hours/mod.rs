@@ -56,12 +56,18 @@ impl SunHours {
 
 /// What the statistics of a place are taken over.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SunHoursParams {
     /// Column of the matrix that holds the first direction of the schedule. Default 0.
     pub first_direction: usize,
     /// Hours of sun that a day must have to count in [`SunHours::days`], 0 to 24. Default 0: each day counts.
     pub sufficient_hours: f64,
 }
+
+belvedere_data::setters!(SunHoursParams {
+    with_first_direction(first_direction: usize),
+    with_sufficient_hours(sufficient_hours: f64),
+});
 
 impl Default for SunHoursParams {
     fn default() -> Self {

@@ -40,29 +40,15 @@ pub struct CellParams {
     pub covered: CoveredCells,
 }
 
+belvedere_data::setters!(CellParams {
+    with_level(level: CellLevel),
+    with_height(height: f64),
+    with_covered(covered: CoveredCells),
+});
+
 impl Default for CellParams {
     fn default() -> Self {
         Self { level: CellLevel::Ground, height: SKY_TARGET_HEIGHT, covered: CoveredCells::LeftOut }
-    }
-}
-
-impl CellParams {
-    /// These with another level.
-    #[must_use]
-    pub fn with_level(self, level: CellLevel) -> Self {
-        Self { level, ..self }
-    }
-
-    /// These with another height, metres.
-    #[must_use]
-    pub fn with_height(self, height: f64) -> Self {
-        Self { height, ..self }
-    }
-
-    /// These with another treatment of cells under a cover.
-    #[must_use]
-    pub fn with_covered(self, covered: CoveredCells) -> Self {
-        Self { covered, ..self }
     }
 }
 

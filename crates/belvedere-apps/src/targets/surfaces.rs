@@ -29,35 +29,16 @@ pub struct MeshParams {
     pub lift: f64,
 }
 
+belvedere_data::setters!(MeshParams {
+    with_spacing(spacing: f64),
+    with_seed(seed: u64),
+    with_facing(facing: Facing),
+    with_lift(lift: f64),
+});
+
 impl Default for MeshParams {
     fn default() -> Self {
         Self { spacing: 0.5, seed: 0, facing: Facing::Normals, lift: MeshTargetParams::default().lift }
-    }
-}
-
-impl MeshParams {
-    /// These with another spacing, metres.
-    #[must_use]
-    pub fn with_spacing(self, spacing: f64) -> Self {
-        Self { spacing, ..self }
-    }
-
-    /// These with another seed.
-    #[must_use]
-    pub fn with_seed(self, seed: u64) -> Self {
-        Self { seed, ..self }
-    }
-
-    /// These with another facing.
-    #[must_use]
-    pub fn with_facing(self, facing: Facing) -> Self {
-        Self { facing, ..self }
-    }
-
-    /// These with another lift, metres.
-    #[must_use]
-    pub fn with_lift(self, lift: f64) -> Self {
-        Self { lift, ..self }
     }
 }
 

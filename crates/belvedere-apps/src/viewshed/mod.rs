@@ -17,6 +17,7 @@ const CHUNK: usize = 512;
 
 /// How viewsheds are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ViewshedParams {
     /// How lines of sight run over the earth.
     pub earth: EarthParams,
@@ -25,6 +26,12 @@ pub struct ViewshedParams {
     /// Whether to keep which observer sees which target. Default: counts only.
     pub masks: Masks,
 }
+
+belvedere_data::setters!(ViewshedParams {
+    with_earth(earth: EarthParams),
+    with_unproven(unproven: UnprovenAs),
+    with_masks(masks: Masks),
+});
 
 impl Default for ViewshedParams {
     fn default() -> Self {

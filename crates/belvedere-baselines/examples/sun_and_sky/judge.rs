@@ -9,7 +9,7 @@ use belvedere::Bounds;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid, SurfaceParams, highest_points, top_surface};
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, BlockRule, MedialScene, Viewer, Visibility, visibility_matrix};
+use belvedere::query::{Answer, BlockRule, MedialScene, Viewer, Visibility};
 use belvedere::{PointCloud, Result};
 use belvedere_baselines::Survey;
 use belvedere_baselines::medial::{MedialParams, Outward, scene_model};
@@ -210,7 +210,7 @@ impl Town {
     pub(crate) fn judge(&self, places: &Places, light: &Light, lift: f32, params: &BlockRule) -> Result<Score> {
         let scene = MedialScene::new(&self.balls, params)?;
         let asked: Vec<[f32; 3]> = places.asked.iter().map(|p| [p[0], p[1], p[2] + lift]).collect();
-        let found = visibility_matrix(&scene, &asked, &light.directions, &Control::none())?;
+        let found = scene.visibility_matrix(&asked, &light.directions, &Control::none())?;
         Ok(Score::new(places, light, &|target, column| found.is_free(target, column)))
     }
 

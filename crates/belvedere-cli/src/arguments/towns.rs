@@ -1,12 +1,9 @@
-//! Flags of the commands that make towns: `simulate` and `compare`.
+//! Flags of `simulate`, and what towns are given by.
 
-use super::{Usage, target_count};
-use belvedere_baselines::methods::Listing;
 use belvedere_scenes::Preset;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use std::str::FromStr;
 
 #[derive(Args)]
 pub(crate) struct Simulate {
@@ -107,103 +104,8 @@ pub(crate) enum PatternChoice {
     Conical,
 }
 
-#[derive(Args)]
-pub(crate) struct Compare {
-    /// Types of simulated towns, separated by commas [default: town]
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = presets(),
-        help_heading = "Simulated towns")]
-    pub(crate) presets: Vec<Preset>,
-    /// Seeds of the towns and their scans, separated by commas
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1", help_heading = "Simulated towns")]
-    pub(crate) seeds: Vec<u64>,
-    /// Side of a town in metres, 60 to 5000
-    #[arg(long, value_name = "M", default_value_t = 150.0, value_parser = within::<60, 5000>, help_heading = "Simulated towns")]
-    pub(crate) extent: f64,
-    /// Pulses per square metre, all strips together, 0.1 to 200
-    #[arg(long, value_name = "N", default_value_t = 10.0, value_parser = density, help_heading = "Simulated towns")]
-    pub(crate) density: f64,
-    /// Point clouds of a real place, instead of simulated towns; needs --mesh
-    #[arg(long = "clouds", value_name = "CLOUD", num_args = 1.., help_heading = "Real place with ground truth")]
-    pub(crate) scene: Vec<PathBuf>,
-    /// Exact surface of the real place, as ground truth (.obj .ply .json)
-    ///
-    /// Triangles are counter-clockwise seen from outside.
-    #[arg(long, value_name = "MESH", requires = "scene", help_heading = "Real place with ground truth")]
-    pub(crate) mesh: Option<PathBuf>,
-    /// Scanner positions for --clouds or --held-out (.csv .txt .sbet)
-    ///
-    /// Without it, normals of --clouds are oriented upward and their own points are not queried. For --held-out, scanner positions are estimated
-    /// from pulses with several returns.
-    #[arg(long, value_name = "FILE", help_heading = "Real place with ground truth")]
-    pub(crate) trajectory: Option<PathBuf>,
-    /// City model or reconstructed surface that is compared as another method; repeatable
-    #[arg(long, value_name = "NAME=MESH", requires = "scene", help_heading = "Real place with ground truth")]
-    pub(crate) model: Vec<NamedFile>,
-    /// Point clouds that are tested with their own laser pulses
-    ///
-    /// A tenth of the pulses is kept from the methods. The path of each such pulse was free, and what lies behind its return is hidden; the
-    /// methods must answer both. Needs GPS times, return numbers and pulses with several returns.
-    #[arg(long, value_name = "CLOUD", num_args = 1.., help_heading = "Real clouds without ground truth")]
-    pub(crate) held_out: Vec<PathBuf>,
-    /// Methods to compare, by the start of their names [default: all except variants, which need their full names]
-    #[arg(long, value_name = "LIST", value_delimiter = ',', help_heading = "Methods and targets")]
-    pub(crate) methods: Vec<String>,
-    /// Number of targets of each type
-    #[arg(long = "target-count", value_name = "N", default_value_t = 50_000, value_parser = target_count, help_heading = "Methods and targets")]
-    pub(crate) targets: usize,
-    /// Folder for report.html, report.md, results and pictures; created if it does not exist
-    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
-    pub(crate) output: PathBuf,
-    /// Also insert the tables into this Markdown file
-    ///
-    /// The tables go between the lines `<!-- tables -->` and `<!-- end of tables -->`.
-    #[arg(long, value_name = "FILE", help_heading = "Result")]
-    pub(crate) page: Option<PathBuf>,
-}
-
-impl Compare {
-    /// Whether a method is selected: by the start of its key, or by its whole key if it runs only when named.
-    pub(crate) fn wants(&self, key: &str, listing: Listing) -> bool {
-        match listing {
-            Listing::Always => {
-                self.methods.is_empty() || self.methods.iter().any(|start| key.starts_with(start.as_str()))
-            }
-            Listing::WhenNamed | Listing::OnHeldOutPulses => self.methods.iter().any(|name| name == key),
-        }
-    }
-
-    /// Refuses names that no method of `keys` begins with.
-    pub(crate) fn check_methods(&self, keys: &[String]) -> Result<(), Usage> {
-        match self.methods.iter().find(|start| !keys.iter().any(|key| key.starts_with(start.as_str()))) {
-            Some(unknown) => {
-                let keys = keys.join(", ");
-                Err(Usage(format!("--methods: no method begins with {unknown:?}; there are {keys}")))
-            }
-            None => Ok(()),
-        }
-    }
-}
-
-/// A file under a name of the user's choice.
-#[derive(Clone)]
-pub(crate) struct NamedFile {
-    pub(crate) name: String,
-    pub(crate) file: PathBuf,
-}
-
-impl FromStr for NamedFile {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (name, file) = text.split_once('=').ok_or("use NAME=FILE")?;
-        let plain = !name.is_empty() && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-');
-        let named = plain.then(|| Self { name: name.to_owned(), file: file.into() });
-        named.ok_or_else(|| "the name may have lower-case letters, digits and hyphens".to_owned())
-    }
-}
-
 /// Presets by their names.
-fn presets() -> impl TypedValueParser<Value = Preset> {
+pub(super) fn presets() -> impl TypedValueParser<Value = Preset> {
     PossibleValuesParser::new(Preset::ALL.map(Preset::name)).map(|name| {
         // the parser lets no other name through
         Preset::ALL.into_iter().find(|preset| preset.name() == name).unwrap_or(Preset::Town)
@@ -211,11 +113,11 @@ fn presets() -> impl TypedValueParser<Value = Preset> {
 }
 
 /// A number from `LOW` to `HIGH`, both included.
-fn within<const LOW: u16, const HIGH: u16>(text: &str) -> Result<f64, String> {
+pub(super) fn within<const LOW: u16, const HIGH: u16>(text: &str) -> Result<f64, String> {
     between(text, f64::from(LOW), f64::from(HIGH))
 }
 
-fn density(text: &str) -> Result<f64, String> {
+pub(super) fn density(text: &str) -> Result<f64, String> {
     between(text, 0.1, 200.0)
 }
 

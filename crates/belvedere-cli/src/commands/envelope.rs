@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
             Some(flagged("--spacing, --step", found)?)
         }
     };
-    let params = EnvelopeParams { ceiling: arguments.ceiling };
+    let params = EnvelopeParams::default().with_ceiling(arguments.ceiling);
     let found = stages.run("computing envelope", suns.directions.len(), |control| {
         solar_envelope(&parcel, &below, &land.pieces, &suns.directions, free.as_ref(), &params, control)
     });

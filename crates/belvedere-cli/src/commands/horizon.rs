@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
         blockers(&scene, arguments.scene.profile.into(), &giving_way, Proving::Never, &mut stages, &mut section)?;
     summary.add("lines_of_sight", section);
     note_enclosed(&blockers, &places, &mut summary);
-    let params = HorizonParams { azimuth_count, turn: north.of_grid, earth };
+    let params = HorizonParams::default().with_azimuth_count(azimuth_count).with_turn(north.of_grid).with_earth(earth);
     let found =
         stages.run("computing ranges", places.len(), |control| horizons(&blockers, &places, &params, control))?;
     let least = if arguments.below == BelowChoice::Zero { 0.0 } else { -90.0 };

@@ -12,7 +12,8 @@ use belvedere::{Error, PointCloud};
 pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
-    let options = ReadOptions::new().with_crs(arguments.input.crs.clone());
+    let mut options = ReadOptions::new();
+    options.crs = arguments.input.crs.clone();
     let (cloud, report) = stages.run("reading", 0, |control| read_cloud(&arguments.input.clouds, &options, control))?;
     let files = report.files.iter().map(|file| {
         let mut section = Summary::default();

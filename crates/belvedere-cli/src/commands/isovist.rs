@@ -38,11 +38,10 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
     let (blockers, _) =
         blockers(&scene, arguments.scene.profile.into(), &giving_way, Proving::Never, &mut stages, &mut section)?;
     let usual = IsovistParams::default();
-    let params = IsovistParams {
-        step: arguments.step.map_or(usual.step, f64::to_radians),
-        max_range: arguments.max_distance.unwrap_or(usual.max_range),
-        jump: arguments.jump.unwrap_or(usual.jump),
-    };
+    let params = IsovistParams::default()
+        .with_step(arguments.step.map_or(usual.step, f64::to_radians))
+        .with_max_range(arguments.max_distance.unwrap_or(usual.max_range))
+        .with_jump(arguments.jump.unwrap_or(usual.jump));
     note_enclosed(&blockers, &places, &mut summary);
     let isovists = stages.run("computing ranges", places.len(), |progress| {
         places

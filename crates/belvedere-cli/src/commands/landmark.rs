@@ -57,12 +57,14 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
         }
     })?;
     let usual = LandmarkParams::default().faces;
-    let params = LandmarkParams {
-        faces: MeshTargetParams { back_faces: arguments.back_faces.map_or(usual.back_faces, BackFaces::from), ..usual },
-        unproven,
-        earth,
-        max_range: arguments.max_distance.unwrap_or(f64::INFINITY),
-    };
+    let params = LandmarkParams::default()
+        .with_faces(MeshTargetParams {
+            back_faces: arguments.back_faces.map_or(usual.back_faces, BackFaces::from),
+            ..usual
+        })
+        .with_unproven(unproven)
+        .with_earth(earth)
+        .with_max_range(arguments.max_distance.unwrap_or(f64::INFINITY));
     let views = stages
         .run("testing landmark", eyes.len(), |progress| landmark_views(&blockers, &surface, &eyes, &params, progress));
     let views = flagged("--max-distance", views)?;

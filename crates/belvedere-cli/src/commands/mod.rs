@@ -2,6 +2,7 @@
 
 mod balls;
 mod comfort;
+#[cfg(feature = "compare")]
 mod compare;
 mod demo;
 mod depth_map;
@@ -64,6 +65,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::SunHours(arguments) => sun_hours::run(arguments, global),
         Command::Envelope(arguments) => envelope::run(arguments, global),
         Command::Comfort(arguments) => comfort::run(arguments, global),
+        #[cfg(feature = "compare")]
         Command::Compare(arguments) => compare::run(arguments, global),
         Command::Describe => Ok(describe::run()),
         Command::Completions { shell } => {

@@ -172,7 +172,8 @@ pub(super) fn points_of_file(
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<PointCloud> {
-    let options = ReadOptions::new().with_crs(crs);
+    let mut options = ReadOptions::new();
+    options.crs = crs;
     let (cloud, report) =
         stages.run("reading targets", 0, |control| read_cloud(&[path.to_owned()], &options, control))?;
     pipeline::check_every_row(&report)?;

@@ -84,11 +84,10 @@ impl SunPeriod {
     /// How days are parted.
     pub(crate) fn params(&self, place: &SunPlace) -> Result<DayParams> {
         let usual = DayParams::default();
-        Ok(DayParams {
-            step: self.step.map_or(usual.step, |minutes| minutes * 60.0),
-            least_elevation: self.least_elevation.map_or(usual.least_elevation, f64::to_radians),
-            refraction: place.refraction()?,
-        })
+        Ok(DayParams::default()
+            .with_step(self.step.map_or(usual.step, |minutes| minutes * 60.0))
+            .with_least_elevation(self.least_elevation.map_or(usual.least_elevation, f64::to_radians))
+            .with_refraction(place.refraction()?))
     }
 
     /// The days typed; `None` where there are none.

@@ -211,7 +211,7 @@ fn plan(
     for (column, rule) in rules {
         let dates = flagged("--year", rule.days.dates(when.year, site, &zone))?;
         let least_elevation = when.least_elevation.map_or(rule.least_elevation, f64::to_radians);
-        let schedule = schedule(&Period::Days(dates), &DayParams { least_elevation, ..*params })?;
+        let schedule = schedule(&Period::Days(dates), &params.with_least_elevation(least_elevation))?;
         of_rules.push((column.to_owned(), rule, schedule));
     }
     let main = match (when.period(&arguments.sun, site, &zone)?, of_rules.first()) {

@@ -60,7 +60,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     summary.add(if is_reverse { "target" } else { "observers" }, told(&observers, &ground, &blockers, &cloud));
 
     let masks = if arguments.masks.is_some() { Masks::Kept } else { Masks::NotKept };
-    let params = ViewshedParams { earth, unproven, masks };
+    let params = ViewshedParams::default().with_earth(earth).with_unproven(unproven).with_masks(masks);
     let is_of_points = |path: &Path| OF_POINTS.contains(&super::extension(path).as_str());
     if arguments.masks.is_some() || arguments.output.iter().any(|path| !is_of_points(path)) {
         let cells = CellParams::default().with_height(target_height).with_covered(CoveredCells::Kept);
@@ -78,7 +78,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
         }
     }
     if arguments.output.iter().any(|path| is_of_points(path)) {
-        let params = ViewshedParams { masks: Masks::NotKept, ..params };
+        let params = params.with_masks(Masks::NotKept);
         let seen = stages.run("testing points", observers.len(), |progress| {
             viewshed(&blockers, &observers, &cloud.positions, &params, progress)
         })?;

@@ -4,6 +4,7 @@
 
 mod carved;
 mod common;
+#[cfg(feature = "compare")]
 mod compare;
 mod conventions;
 mod depth_maps;

@@ -33,49 +33,14 @@ pub struct ModelParams {
     pub balls: BallParams,
 }
 
-impl ModelParams {
-    /// The same with other rules for cleaning.
-    #[must_use]
-    pub fn with_clean(mut self, clean: CleanParams) -> Self {
-        self.clean = clean;
-        self
-    }
-
-    /// The same with normals from other neighbourhoods.
-    #[must_use]
-    pub fn with_neighborhood(mut self, neighborhood: Neighborhood) -> Self {
-        self.neighborhood = neighborhood;
-        self
-    }
-
-    /// The same with another way of turning normals outward.
-    #[must_use]
-    pub fn with_orient(mut self, orient: OrientBy) -> Self {
-        self.orient = orient;
-        self
-    }
-
-    /// The same with other parameters of finding the scanner.
-    #[must_use]
-    pub fn with_locate(mut self, locate: LocateParams) -> Self {
-        self.locate = locate;
-        self
-    }
-
-    /// The same with other parameters of pulses.
-    #[must_use]
-    pub fn with_needles(mut self, needles: NeedleParams) -> Self {
-        self.needles = needles;
-        self
-    }
-
-    /// The same with balls made in another way.
-    #[must_use]
-    pub fn with_balls(mut self, balls: BallParams) -> Self {
-        self.balls = balls;
-        self
-    }
-}
+belvedere_data::setters!(ModelParams {
+    with_clean(clean: CleanParams),
+    with_neighborhood(neighborhood: Neighborhood),
+    with_orient(orient: OrientBy),
+    with_locate(locate: LocateParams),
+    with_needles(needles: NeedleParams),
+    with_balls(balls: BallParams),
+});
 
 /// How the outward side of normals is found. Ways that know where the scanner was also say where pulses came from.
 #[derive(Clone, Debug, Default)]

@@ -1,8 +1,8 @@
 //! The sign of a normal from a mesh of the same place: nearest face, or which side of the point lies in the open.
 
 use rayon::prelude::*;
-use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
+use crate::ray_index::{Ray, RayIndex};
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{cross, dot, sub};
 use belvedere_data::{Mesh, Result};
@@ -46,24 +46,26 @@ struct Face {
     verified: bool,
 }
 
-impl RTreeObject for Face {
-    type Envelope = AABB<[f64; 3]>;
-
-    fn envelope(&self) -> Self::Envelope {
-        AABB::from_points(&self.corners)
+impl Face {
+    fn distance_to(&self, point: [f64; 3]) -> f64 {
+        let d = sub(nearest_on_triangle(point, self.corners), point);
+        dot(d, d).sqrt()
     }
-}
 
-impl PointDistance for Face {
-    fn distance_2(&self, point: &[f64; 3]) -> f64 {
-        let d = sub(nearest_on_triangle(*point, self.corners), *point);
-        dot(d, d)
+    #[expect(clippy::cast_possible_truncation, reason = "the index is wider than its boxes by more than the rounding")]
+    fn bounds(&self) -> [[f32; 3]; 2] {
+        let by = |pick: fn(f64, f64) -> f64| {
+            std::array::from_fn(|i| self.corners.iter().map(|corner| corner[i]).reduce(pick).unwrap_or(f64::NAN) as f32)
+        };
+        [by(f64::min), by(f64::max)]
     }
 }
 
 /// A mesh in the local coordinates of a cloud, ready for questions.
 pub(super) struct ReferenceMesh {
-    faces: RTree<Face>,
+    /// In the order of the index.
+    faces: Vec<Face>,
+    index: RayIndex,
     top: f64,
 }
 
@@ -95,11 +97,12 @@ impl ReferenceMesh {
             return Ok(None);
         }
         control.check()?;
-        let mut reference = Self { faces: RTree::bulk_load(faces), top };
+        let index = RayIndex::new(&faces.iter().map(Face::bounds).collect::<Vec<_>>())?;
+        let mut unordered: Vec<Option<Face>> = faces.into_iter().map(Some).collect();
+        let faces = index.order().iter().filter_map(|&row| unordered.get_mut(row as usize)?.take()).collect();
+        let mut reference = Self { faces, index, top };
         let probed: Vec<Option<bool>> = reference
             .faces
-            .iter()
-            .collect::<Vec<_>>()
             .par_iter()
             .map(|face| {
                 if stop.is_set() {
@@ -147,14 +150,12 @@ impl ReferenceMesh {
     /// Signed |cosine| with the face that is the point's own surface, and whether that face is verified; `None` where
     /// there is none, or faces about as near and about as well aligned disagree about the sign.
     fn own_face(&self, position: [f64; 3], normal: [f64; 3]) -> Option<(f64, bool)> {
-        let nearest = self.faces.nearest_neighbor(position)?.distance_2(&position).sqrt();
-        if nearest > MAX_FACE_DISTANCE_M {
-            return None;
-        }
-        let reach = nearest + EDGE_SLACK_M;
+        let reach = self.nearest_distance(position)? + EDGE_SLACK_M;
         let mut best: Option<(f64, bool)> = None;
         let mut against = 0.0_f64;
-        for face in self.faces.locate_within_distance(position, reach * reach) {
+        let mut candidates = Vec::new();
+        self.each_within(position, reach, |face, _| candidates.push(face));
+        for face in candidates {
             let offset = sub(position, nearest_on_triangle(position, face.corners));
             let height = dot(offset, face.normal);
             if dot(offset, offset) - height * height > MAX_LATERAL_M * MAX_LATERAL_M {
@@ -183,6 +184,28 @@ impl ReferenceMesh {
         best.filter(|found| found.0.abs() > MIN_ALIGNMENT && against <= MIN_ALIGNMENT)
     }
 
+    /// Distance to the nearest face, if that is at most [`MAX_FACE_DISTANCE_M`].
+    fn nearest_distance(&self, position: [f64; 3]) -> Option<f64> {
+        // boxes that grow, so that a fine mesh is not searched metres around
+        [0.125, 0.5, 1.0].into_iter().find_map(|share| {
+            let reach = share * MAX_FACE_DISTANCE_M;
+            let mut nearest = f64::INFINITY;
+            self.each_within(position, reach, |_, distance| nearest = nearest.min(distance));
+            (nearest <= reach).then_some(nearest)
+        })
+    }
+
+    /// Calls `visit` for every face within `reach` of `position`, with its distance.
+    fn each_within<'a>(&'a self, position: [f64; 3], reach: f64, mut visit: impl FnMut(&'a Face, f64)) {
+        self.index.near(position.map(|v| v - reach), position.map(|v| v + reach), |row| {
+            let Some(face) = self.faces.get(row) else { return };
+            let distance = face.distance_to(position);
+            if distance <= reach {
+                visit(face, distance);
+            }
+        });
+    }
+
     /// Whether the side that `normal` points to is open and the other enclosed (`true`), or the reverse; `None` where
     /// both are the same.
     fn open_side(&self, position: [f64; 3], normal: [f64; 3], offset: f64) -> Option<bool> {
@@ -202,13 +225,14 @@ impl ReferenceMesh {
         if z > self.top {
             return true;
         }
-        let ray = AABB::from_corners(position, [x, y, self.top]);
-        let crossings = self
-            .faces
-            .locate_in_envelope_intersecting(ray)
-            .filter(|face| covers(face.corners, x, y) && height_at(face, x, y) > z)
-            .count();
-        crossings % 2 == 0
+        let Some(up) = Ray::new(position, [0.0, 0.0, 1.0], [0.0, self.top - z]) else { return true };
+        let mut is_open = true;
+        self.index.each(&up, |row| {
+            if self.faces.get(row).is_some_and(|face| covers(face.corners, x, y) && height_at(face, x, y) > z) {
+                is_open = !is_open;
+            }
+        });
+        is_open
     }
 }
 

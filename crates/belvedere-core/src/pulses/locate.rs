@@ -3,12 +3,12 @@
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
+use super::SensorPositions;
+use super::estimate::{self, height_offset, paths_from_angles, paths_from_returns};
+use super::flight_parts::{AngleVerdict, HeightOffset, ScanAngleParams, ScanAnglePart, SensorEstimateParams, Verdict};
 use super::group::{Pulses, group};
-use super::height_offset::{HeightOffset, height_offset};
 use super::line_path::position_on;
-use super::scan_angle::{AngleVerdict, ScanAngleParams, ScanAnglePart, paths_from_angles};
 use super::scanner_report::{FoundBy, ScannerReport};
-use super::sensor_estimate::{SensorEstimateParams, SensorPositions, Verdict, paths_from_returns};
 use super::vertical::{VerticalParams, vertical_pulses};
 use belvedere_data::cloud::to_local;
 use belvedere_data::control::Control;
@@ -179,6 +179,11 @@ fn by_pulses(
 ) -> Result<Vec<[f32; 3]>> {
     let unknown = [f32::NAN; 3];
     let pulses = pulses_of(cloud, report, control)?;
+    if !estimate::IS_BUILT {
+        report
+            .remarks
+            .push("this build of Belvedere cannot find the scanner from the points (feature scanner-estimate)".into());
+    }
     if let Some(pulses) = &pulses {
         (report.paths, report.parts) = paths_from_returns(cloud, pulses, &params.returns, control)?;
     }

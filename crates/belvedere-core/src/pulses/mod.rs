@@ -5,26 +5,30 @@
 //! that a cloud has: poses or a trajectory ([`Means`]), pulses with several returns ([`SensorPositions`]), scan angles
 //! ([`ScanAngleParams`]), and at last the assumption that pulses fall straight down ([`vertical_pulses`]).
 
+#[cfg(feature = "scanner-estimate")]
+mod estimate;
+#[cfg(not(feature = "scanner-estimate"))]
+#[path = "not_estimated.rs"]
+mod estimate;
+mod flight_parts;
 mod group;
-mod height_offset;
 mod line_path;
 mod locate;
 mod needles;
 mod path_samples;
-mod scan_angle;
 mod scanner_report;
-mod sensor_estimate;
-mod sensor_fit;
+mod sensor_positions;
 mod vertical;
 
+pub use flight_parts::{
+    AngleVerdict, HeightOffset, ScanAngleParams, ScanAnglePart, SensorEstimateParams, SensorPart, Verdict,
+};
 pub use group::{PulseReport, Pulses, group};
-pub use height_offset::HeightOffset;
 pub use line_path::{LinePath, Stretch};
 pub use locate::{LocateParams, Means, locate};
 pub(crate) use needles::lower_ends;
 pub use needles::{NeedleColumns, NeedleParams, NeedleReport, Needles};
 pub use path_samples::path_samples;
-pub use scan_angle::{AngleVerdict, ScanAngleParams, ScanAnglePart};
 pub use scanner_report::{FlightLine, FoundBy, ScannerReport, TypicalFlight};
-pub use sensor_estimate::{SensorEstimateParams, SensorPart, SensorPositions, SensorReport, Verdict};
+pub use sensor_positions::{SensorPositions, SensorReport};
 pub use vertical::{VerticalParams, vertical_pulses};

@@ -1,10 +1,8 @@
 //! How the scanner was found, and what of that is told to a reader.
 
+use super::flight_parts::{HeightOffset, ScanAnglePart, SensorPart};
 use super::group::PulseReport;
-use super::height_offset::HeightOffset;
 use super::line_path::LinePath;
-use super::scan_angle::ScanAnglePart;
-use super::sensor_estimate::SensorPart;
 use belvedere_data::report::{percent, rounded};
 use belvedere_data::trajectory::ClockOffset;
 use serde::{Serialize, Serializer, ser::SerializeMap};

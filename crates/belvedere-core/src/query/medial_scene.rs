@@ -5,7 +5,7 @@ use super::ball_tree::BallTree;
 use super::certified::line_in_view;
 use super::cpu::Cpu;
 use super::lazy::Lazy;
-use super::{Answer, Proof, Sight, Viewer, Visibility, VisibilityMatrix};
+use super::{Answer, Proof, Sight, Viewer, Visibility};
 use crate::blocking::{Ball, BlockRule};
 use crate::medial::{MedialBalls, NO_TOUCH};
 use crate::ray_index::Ray;
@@ -204,14 +204,5 @@ impl Visibility for MedialScene {
             viewer.validate_count(targets)?;
             self.answer_each(targets, &Control::none(), |number, target| viewer.line_of_sight(number, target))
         }))
-    }
-
-    fn visible_towards(
-        &self,
-        targets: &[[f32; 3]],
-        directions: &[[f64; 3]],
-        control: &Control<'_>,
-    ) -> Result<VisibilityMatrix> {
-        self.visibility_matrix(targets, directions, control)
     }
 }

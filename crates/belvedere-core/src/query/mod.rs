@@ -48,4 +48,4 @@ pub use segments::{Block, Crossing, Enclosure, LineOfSight, merged_crossings, ra
 pub use skyline::SkylinePoint;
 pub use surface::{Piece, Sides, SurfacePieces};
 pub use visibility::{Sight, Viewer, Visibility};
-pub use visibility_matrix::{VisibilityMatrix, visibility_matrix};
+pub use visibility_matrix::VisibilityMatrix;

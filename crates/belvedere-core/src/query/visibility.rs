@@ -1,8 +1,6 @@
 //! What any way of answering visibility has in common.
 
-use super::backend::WORD;
-use super::{Answer, VisibilityMatrix};
-use belvedere_data::control::Control;
+use super::Answer;
 use belvedere_data::{Error, Result};
 
 /// Who looks at the targets: the other end of each line of sight.
@@ -35,31 +33,6 @@ pub trait Visibility: Sync {
     /// As [`Visibility::seen_from`] and what it returns.
     fn visible(&self, viewer: Viewer<'_>, targets: &[[f32; 3]]) -> Result<Vec<Answer>> {
         self.seen_from(viewer)?(targets)
-    }
-
-    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free. What is not proven counts as free.
-    /// Progress counts directions unless a method knows better.
-    ///
-    /// # Errors
-    /// As [`Visibility::visible`], and [`Error::Cancelled`].
-    fn visible_towards(
-        &self,
-        targets: &[[f32; 3]],
-        directions: &[[f64; 3]],
-        control: &Control<'_>,
-    ) -> Result<VisibilityMatrix> {
-        let width = directions.len().div_ceil(WORD);
-        let mut words = vec![0_u64; width * targets.len()];
-        for (number, &direction) in directions.iter().enumerate() {
-            control.check()?;
-            let answers = self.visible(Viewer::Direction(direction), targets)?;
-            for (row, answer) in words.chunks_mut(width.max(1)).zip(answers) {
-                let is_free = matches!(answer, Answer::Visible | Answer::Unproven);
-                row[number / WORD] |= u64::from(is_free) << (number % WORD);
-            }
-            control.advance(1);
-        }
-        VisibilityMatrix::from_words(targets.len(), directions.len(), words)
     }
 }
 

@@ -107,7 +107,7 @@ fn delft(folder: &Path, tables: &mut Tables) -> Result<()> {
     else {
         return Ok(());
     };
-    let options = ReadOptions::new().with_crs("EPSG:7415".to_owned());
+    let options = ReadOptions::new().with_crs("EPSG:7415");
     let (cloud, _) = read_cloud(&[tile], &options, &Control::none())?;
     let (mesh, _) = read_mesh(&city)?;
     let block = within_window(&cloud, BLOCK);

@@ -6,7 +6,7 @@ use belvedere::medial::{MedialBalls, ShrinkMethod, ShrinkParams, Side, shrink};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, orient};
-use belvedere::query::{BlockRule, MedialScene, visibility_matrix};
+use belvedere::query::{BlockRule, MedialScene};
 use belvedere::random::uniform;
 use belvedere::view::to_sun;
 use belvedere::{Mesh, PointCloud};
@@ -56,7 +56,7 @@ fn compare(balls: &MedialBalls, form: Form<'_>, pixel: f64, middles: &[[f64; 2]]
     let targets: Vec<[f32; 3]> =
         middles.iter().flat_map(|middle| (0..across * across).map(move |i| place(middle, i))).collect();
     let suns = SUNS_DEG.map(|[azimuth, elevation]| to_sun(azimuth.to_radians(), elevation.to_radians()));
-    let matrix = visibility_matrix(&scene, &targets, &suns, &Control::none()).unwrap();
+    let matrix = scene.visibility_matrix(&targets, &suns, &Control::none()).unwrap();
     let mut compared = [0, 0];
     for (column, &sun) in suns.iter().enumerate() {
         let (mut here, mut wrong) = ([0, 0], Vec::new());

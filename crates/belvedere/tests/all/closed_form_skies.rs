@@ -4,7 +4,7 @@
 use belvedere::apps::sky_view::{SkyDirections, SkyView, sky_view};
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{BlockRule, MedialScene, visibility_matrix};
+use belvedere::query::{BlockRule, MedialScene};
 use belvedere::random::uniform;
 use std::f64::consts::{PI, TAU};
 
@@ -64,7 +64,7 @@ fn basin(radius: f64, rim: f64) -> MedialScene {
 fn view(scene: &MedialScene, targets: &[[f64; 3]], normals: Option<&[[f32; 3]]>, count: usize) -> SkyView {
     let sky = SkyDirections::even(count).unwrap();
     let targets: Vec<[f32; 3]> = targets.iter().map(|p| p.map(|v| v as f32)).collect();
-    let matrix = visibility_matrix(scene, &targets, &sky.directions, &Control::none()).unwrap();
+    let matrix = scene.visibility_matrix(&targets, &sky.directions, &Control::none()).unwrap();
     sky_view(&matrix, &sky, normals).unwrap()
 }
 

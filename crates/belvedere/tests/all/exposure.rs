@@ -4,7 +4,7 @@ use belvedere::apps::exposure::{plane_normal, route_lengths, shaded_shares, sky_
 use belvedere::apps::sky_view::SkyDirections;
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix, visibility_matrix};
+use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn scene(center: [f32; 3], radius: f32) -> MedialScene {
@@ -19,7 +19,7 @@ fn scene(center: [f32; 3], radius: f32) -> MedialScene {
 }
 
 fn matrix(scene: &MedialScene, targets: &[[f32; 3]], directions: &[[f64; 3]]) -> VisibilityMatrix {
-    visibility_matrix(scene, targets, directions, &Control::none()).unwrap()
+    scene.visibility_matrix(targets, directions, &Control::none()).unwrap()
 }
 
 /// A ball far below, which hides nothing.

@@ -119,23 +119,19 @@ fn azimuths_may_count_from_true_north_and_any_number_of_threads_gives_the_same()
         })
         .collect();
     let scene = scene(&list, &BlockRule::default());
-    let grid = HorizonParams { azimuth_count: 720, ..HorizonParams::default() };
+    let grid = HorizonParams::default().with_azimuth_count(720);
     let [all] = horizons(&scene, &[[0.0, 0.0, 12.0]], &grid, &Control::none()).unwrap().try_into().unwrap();
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let [alone] =
         one.install(|| horizons(&scene, &[[0.0, 0.0, 12.0]], &grid, &Control::none())).unwrap().try_into().unwrap();
     assert_eq!(all, alone);
     // grid north points 1° east of true north: what is at 10° by the grid is at 11° by the globe
-    let turned = HorizonParams { turn: 1f64.to_radians(), ..grid };
+    let turned = grid.with_turn(1f64.to_radians());
     let [globe] = horizons(&scene, &[[0.0, 0.0, 12.0]], &turned, &Control::none()).unwrap().try_into().unwrap();
     for (i, point) in all.iter().enumerate() {
         assert!((globe[(i + 2) % 720].elevation - point.elevation).abs() < 1e-9, "{i}");
     }
-    for params in [
-        HorizonParams { azimuth_count: 0, ..grid },
-        HorizonParams { azimuth_count: 2_000_000, ..grid },
-        HorizonParams { turn: f64::NAN, ..grid },
-    ] {
+    for params in [grid.with_azimuth_count(0), grid.with_azimuth_count(2_000_000), grid.with_turn(f64::NAN)] {
         assert!(horizons(&scene, &[[0.0; 3]], &params, &Control::none()).is_err());
     }
     assert!(horizons(&scene, &[[f64::NAN; 3]], &grid, &Control::none()).is_err());

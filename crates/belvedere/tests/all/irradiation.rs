@@ -8,7 +8,7 @@ use belvedere::apps::sky_view::{SkyDirections, sky_view};
 use belvedere::apps::sun::{Site, Zone, sun_position};
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, BlockRule, MedialScene, visibility_matrix};
+use belvedere::query::{Answer, BlockRule, MedialScene};
 use belvedere::random::uniform;
 use belvedere::vector::dot;
 use belvedere::weather::{CalendarDay, Irradiance, RowsHold, Weather, WeatherStep, unix_day};
@@ -65,7 +65,7 @@ fn a_year_that_nothing_shades_is_that_of_pvlib() {
     let targets = vec![[0.0; 3]; PVLIB.len()];
     let normals: Vec<[f32; 3]> = PVLIB.iter().map(|plane| facing(plane.0, plane.1)).collect();
     for (model, sky) in [SkyModel::Isotropic, SkyModel::HayDavies, SkyModel::Perez].into_iter().enumerate() {
-        let radiation = PeriodRadiation::gather(&instants, &IrradianceParams { sky, ..Default::default() }).unwrap();
+        let radiation = PeriodRadiation::gather(&instants, &IrradianceParams::default().with_sky(sky)).unwrap();
         assert!((radiation.report.ghi - 1631.037).abs() < 1.6 && (radiation.report.dni - 2728.955).abs() < 2.7);
         let sums = scene_irradiation(&nothing, &targets, Some(&normals), &radiation, &Control::none()).unwrap();
         for (sum, plane) in sums.iter().zip(&PVLIB) {
@@ -137,18 +137,18 @@ fn directions_gathered_in_cells_shade_as_single_instants_do() {
 fn an_even_sky_gives_the_sky_view_factor() {
     let (scene, targets) = surrounded();
     let instants: Vec<Instant> = clear_year().into_iter().step_by(50).collect();
-    let params = IrradianceParams { sky: SkyModel::Isotropic, ..Default::default() };
+    let params = IrradianceParams::default().with_sky(SkyModel::Isotropic);
     let radiation = PeriodRadiation::gather(&instants, &params).unwrap();
     let sums = scene_irradiation(&scene, &targets, None, &radiation, &Control::none()).unwrap();
     let sky = SkyDirections::patches(2).unwrap();
-    let matrix = visibility_matrix(&scene, &targets, &sky.directions, &Control::none()).unwrap();
+    let matrix = scene.visibility_matrix(&targets, &sky.directions, &Control::none()).unwrap();
     let seen = sky_view(&matrix, &sky, None).unwrap();
     for (sum, factor) in sums.iter().zip(&seen.factors) {
         // factors are f32, and their patches sum up to 1 within 1e-4
         assert!((sum.diffuse / radiation.report.dhi - f64::from(*factor)).abs() < 2e-4, "{sum:?} {factor}");
     }
     // what obstacles send as if they were ground is what they hide of the sky
-    let like_ground = IrradianceParams { surroundings: Surroundings::LikeGround, ..params };
+    let like_ground = params.with_surroundings(Surroundings::LikeGround);
     let radiation = PeriodRadiation::gather(&instants, &like_ground).unwrap();
     let brighter = scene_irradiation(&scene, &targets, None, &radiation, &Control::none()).unwrap();
     for (sum, factor) in brighter.iter().zip(&seen.factors) {
@@ -162,7 +162,7 @@ fn months_add_up_to_the_year() {
     let (scene, targets) = surrounded();
     let instants: Vec<Instant> = clear_year().into_iter().step_by(12).collect();
     let whole = PeriodRadiation::gather(&instants, &IrradianceParams::default()).unwrap();
-    let params = IrradianceParams { grouping: Grouping::Months, ..Default::default() };
+    let params = IrradianceParams::default().with_grouping(Grouping::Months);
     let months = PeriodRadiation::gather(&instants, &params).unwrap();
     assert_eq!(months.group_count(), 12);
     let normals = vec![facing(40.0, 200.0); targets.len()];
@@ -182,7 +182,7 @@ fn a_string_gets_what_all_of_its_cells_get() {
     let cells: Vec<[f32; 3]> = [0.0_f32, 3.0, 6.0, 9.0].map(|x| [x, 0.0, 0.0]).to_vec();
     let instants: Vec<Instant> = clear_year().into_iter().step_by(7).collect();
     let radiation = PeriodRadiation::gather(&instants, &IrradianceParams::default()).unwrap();
-    let matrix = visibility_matrix(&scene, &cells, &radiation.directions(), &Control::none()).unwrap();
+    let matrix = scene.visibility_matrix(&cells, &radiation.directions(), &Control::none()).unwrap();
     let alone = irradiation(&matrix, None, &radiation).unwrap();
     let up = [0.0, 0.0, 1.0];
     let string = |strings: &[usize]| plane_irradiation(&matrix, 0, strings, up, &radiation).unwrap();
@@ -261,18 +261,18 @@ fn what_cannot_be_is_refused() {
     let instants = clear_year();
     let gather = |params: IrradianceParams| PeriodRadiation::gather(&instants[..10], &params);
     for albedo in [-0.1, 1.1, f64::NAN] {
-        assert!(gather(IrradianceParams { albedo, ..Default::default() }).is_err());
+        assert!(gather(IrradianceParams::default().with_albedo(albedo)).is_err());
     }
     for sun_cell in [0.0, -1.0, 1e-4, 1.0, f64::NAN, f64::INFINITY] {
-        assert!(gather(IrradianceParams { sun_cell, ..Default::default() }).is_err(), "{sun_cell}");
+        assert!(gather(IrradianceParams::default().with_sun_cell(sun_cell)).is_err(), "{sun_cell}");
     }
-    assert!(gather(IrradianceParams { patch_division: 0, ..Default::default() }).is_err());
+    assert!(gather(IrradianceParams::default().with_patch_division(0)).is_err());
     assert!(PeriodRadiation::gather(&[], &IrradianceParams::default()).is_err());
     let bad = Instant { irradiance: Irradiance { ghi: f64::NAN, dni: 0.0, dhi: 0.0 }, ..instants[0] };
     assert!(PeriodRadiation::gather(&[bad], &IrradianceParams::default()).is_err());
     let radiation = gather(IrradianceParams::default()).unwrap();
     let nothing = scene(Vec::new(), Vec::new());
-    let matrix = visibility_matrix(&nothing, &[[0.0; 3]], &[[0.0, 0.0, 1.0]], &Control::none()).unwrap();
+    let matrix = nothing.visibility_matrix(&[[0.0; 3]], &[[0.0, 0.0, 1.0]], &Control::none()).unwrap();
     assert!(irradiation(&matrix, None, &radiation).is_err(), "other directions");
     let places = [[0.0; 3], [f32::NAN, 0.0, 0.0]];
     assert!(scene_irradiation(&nothing, &places, Some(&[[0.0, 0.0, 1.0]]), &radiation, &Control::none()).is_err());

@@ -15,7 +15,7 @@ fn walls(low: [f64; 3], high: [f64; 3]) -> impl Fn([f64; 3]) -> Option<f64> + Sy
 }
 
 fn seen(range: impl Fn([f64; 3]) -> Option<f64> + Sync, max_range: f64) -> Isovist {
-    isovist_of(&range, &IsovistParams { max_range, ..IsovistParams::default() }, &Control::none()).unwrap()
+    isovist_of(&range, &IsovistParams::default().with_max_range(max_range), &Control::none()).unwrap()
 }
 
 fn near(found: f64, expected: f64, share: f64) {
@@ -103,7 +103,7 @@ fn a_screen_before_a_wall_makes_two_jumps_of_known_length() {
 fn a_ball_takes_its_cap_from_the_openness_and_its_cone_from_the_volume() {
     let (distance, radius, reach): (f64, f64, f64) = (10.0, 4.0, 30.0);
     let scene = scene(&[([0.0, 10.0, 0.0], 4.0)]);
-    let params = IsovistParams { step: 0.25f64.to_radians(), max_range: reach, ..IsovistParams::default() };
+    let params = IsovistParams::default().with_step(0.25f64.to_radians()).with_max_range(reach);
     let found = isovist(&scene, [0.0; 3], &params, &Control::none()).unwrap();
     let half = (radius / distance).asin();
     let cap = (1.0 - half.cos()) / 2.0;
@@ -137,11 +137,11 @@ fn an_eye_inside_a_ball_looks_through_it_and_senseless_parameters_are_refused() 
     assert_eq!(found.openness, 1.0);
     let usual = IsovistParams::default();
     for params in [
-        IsovistParams { step: 0.0, ..usual },
-        IsovistParams { step: f64::NAN, ..usual },
-        IsovistParams { step: 3.0, ..usual },
-        IsovistParams { max_range: f64::INFINITY, ..usual },
-        IsovistParams { jump: 0.0, ..usual },
+        usual.with_step(0.0),
+        usual.with_step(f64::NAN),
+        usual.with_step(3.0),
+        usual.with_max_range(f64::INFINITY),
+        usual.with_jump(0.0),
     ] {
         assert!(isovist(&scene, [9.0; 3], &params, &Control::none()).is_err(), "{params:?}");
     }

@@ -91,10 +91,7 @@ fn backs_count_as_told_and_nothing_seen_is_all_zero() {
             &open,
             &wall(0.5),
             behind,
-            &LandmarkParams {
-                faces: MeshTargetParams { back_faces, ..MeshTargetParams::default() },
-                ..LandmarkParams::default()
-            },
+            &LandmarkParams::default().with_faces(MeshTargetParams { back_faces, ..MeshTargetParams::default() }),
         )
     };
     let whole = with(BackFaces::NotVisible);
@@ -102,7 +99,7 @@ fn backs_count_as_told_and_nothing_seen_is_all_zero() {
     near(whole.area, 100.0, 1e-5);
     assert_eq!(with(BackFaces::LeftOut), LandmarkView::default());
     near(with(BackFaces::BothSides).visible_share(), 1.0, 1e-9);
-    let params = LandmarkParams { max_range: 20.0, ..LandmarkParams::default() };
+    let params = LandmarkParams::default().with_max_range(20.0);
     assert_eq!(landmark_view(&open, &wall(0.5), [0.0, -30.0, 0.0], &params).visible_area, 0.0);
 }
 
@@ -121,7 +118,7 @@ fn observers_are_answered_in_order_on_any_number_of_threads() {
     assert_eq!(all[200], LandmarkView::default());
     assert!(all[..200].iter().any(|view| view.visible_share() < 0.95));
     assert_eq!(all[7], landmark_view(&scene, &wall, eyes[7], &params));
-    let wrong = LandmarkParams { max_range: 0.0, ..params };
+    let wrong = params.with_max_range(0.0);
     assert!(landmark_views(&scene, &wall, &eyes, &wrong, &Control::none()).is_err());
     let nothing = SurfacePieces { pieces: Vec::new(), ..wall };
     assert!(landmark_views(&scene, &nothing, &eyes, &params, &Control::none()).is_err());

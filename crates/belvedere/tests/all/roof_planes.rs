@@ -137,13 +137,13 @@ fn roofs_are_told_by_class_or_by_height() {
 fn parameters_out_of_range_are_refused() {
     let usual = RoofPlaneParams::default();
     for params in [
-        RoofPlaneParams { distance: 0.0, ..usual },
-        RoofPlaneParams { reach: f64::NAN, ..usual },
-        RoofPlaneParams { cell: -1.0, ..usual },
+        usual.with_distance(0.0),
+        usual.with_reach(f64::NAN),
+        usual.with_cell(-1.0),
         // would be 10^18 cells a square metre
-        RoofPlaneParams { cell: 1e-9, ..usual },
-        RoofPlaneParams { angle: 2.0, ..usual },
-        RoofPlaneParams { least_area: f64::NAN, ..usual },
+        usual.with_cell(1e-9),
+        usual.with_angle(2.0),
+        usual.with_least_area(f64::NAN),
     ] {
         assert!(roof_planes(&house(4.0), &params, &Control::none()).is_err(), "{params:?}");
     }

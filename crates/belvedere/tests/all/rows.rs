@@ -10,7 +10,7 @@ use belvedere::apps::targets::Targets;
 use belvedere::apps::tree_light::{Leaves, Transmissivity, TreeLight};
 use belvedere::control::{Control, Watcher};
 use belvedere::medial::{MedialBalls, without_vegetation};
-use belvedere::query::{BlockRule, MedialScene, visibility_matrix};
+use belvedere::query::{BlockRule, MedialScene};
 use belvedere::random::uniform;
 use belvedere::{Error, PointCloud};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -56,7 +56,7 @@ fn blocks_of_any_size_give_the_rows_of_the_whole_matrix() {
     let targets = targets(700);
     let sky = SkyDirections::even(150).unwrap();
     let [whole, opaque] = [&scene, &trees.opaque]
-        .map(|scene| visibility_matrix(scene, &targets.positions, &sky.directions, &Control::none()).unwrap());
+        .map(|scene| scene.visibility_matrix(&targets.positions, &sky.directions, &Control::none()).unwrap());
     assert_ne!(whole, opaque, "trees must hide something");
     for block in [1, 63, 64, 257, 699, 700, 10_000] {
         let obstacles = Obstacles { scene: &scene, trees: Some(&trees) };
@@ -89,13 +89,13 @@ fn what_is_summed_up_block_by_block_is_what_the_whole_matrix_gives() {
     let zone = Zone::mean_solar(&site);
     let schedule = |day: &str| {
         let days = Period::Days(vec![Date::parse(day).unwrap()]);
-        let days = sun_days(&site, &zone, &days, &DayParams { step: 1800.0, ..DayParams::default() }).unwrap();
+        let days = sun_days(&site, &zone, &days, &DayParams::default().with_step(1800.0)).unwrap();
         SunSchedule::new(&days, Binning::Exact).unwrap()
     };
     let period = schedule("2026-06-21");
     let none = Control::none();
-    let of_sky = visibility_matrix(&scene, &targets.positions, &sky.directions, &none).unwrap();
-    let of_sun = visibility_matrix(&scene, &targets.positions, &period.directions, &none).unwrap();
+    let of_sky = scene.visibility_matrix(&targets.positions, &sky.directions, &none).unwrap();
+    let of_sun = scene.visibility_matrix(&targets.positions, &period.directions, &none).unwrap();
     let clear = |mut values: Vec<f32>| {
         targets.clear_unasked(&mut values);
         values.into_iter().map(f32::to_bits).collect::<Vec<_>>()

@@ -7,7 +7,7 @@ use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::medial::MedialBalls;
 use belvedere::mesh::Mesh;
-use belvedere::query::{BlockRule, MedialScene, SurfacePieces, visibility_matrix};
+use belvedere::query::{BlockRule, MedialScene, SurfacePieces};
 use belvedere::random::uniform;
 use belvedere::raster::Raster;
 use belvedere::view::to_sun;
@@ -256,7 +256,7 @@ fn the_mesh_is_closed_and_holds_the_volume_also_over_sloping_ground_and_around_h
     let hole = vec![[-2.0, -7.3], [1.1, -7.7], [0.2, -5.1]];
     let parcel = Parcel::new(&[rim, hole]).unwrap();
     let fence = line(&[[-12.0, 4.0, 0.0], [11.0, 2.0, 0.0]], 0.5);
-    let params = EnvelopeParams { ceiling: Some(4.0) };
+    let params = EnvelopeParams::default().with_ceiling(Some(4.0));
     for (slope, suns) in [(0.0, vec![sun(180.0, 20.0)]), (0.9, vec![sun(150.0, 25.0), sun(215.0, 18.0)])] {
         let found =
             solar_envelope(&parcel, &ground(1.0, slope), &fence, &suns, None, &params, &Control::none()).unwrap();
@@ -287,7 +287,7 @@ fn where_something_else_shades_already_the_credit_lifts_the_bound() {
     };
     let scene = MedialScene::new(&balls, &BlockRule::carved()).unwrap();
     let samples: Vec<[f32; 3]> = pieces.iter().map(|piece| piece.sample).collect();
-    let free = visibility_matrix(&scene, &samples, &suns, &Control::none()).unwrap();
+    let free = scene.visibility_matrix(&samples, &suns, &Control::none()).unwrap();
     let parcel = rectangle([-6.0, -8.0], [6.0, 0.0]);
     let params = EnvelopeParams::default();
     let credited =
@@ -304,7 +304,7 @@ fn where_something_else_shades_already_the_credit_lifts_the_bound() {
         assert!(without.top.is_finite());
     }
     // a matrix of something else
-    let other = visibility_matrix(&scene, &samples[1..], &suns, &Control::none()).unwrap();
+    let other = scene.visibility_matrix(&samples[1..], &suns, &Control::none()).unwrap();
     assert!(
         solar_envelope(&parcel, &ground(1.0, 0.0), &pieces, &suns, Some(&other), &params, &Control::none()).is_err()
     );
@@ -326,7 +326,7 @@ fn envelopes_do_not_depend_on_threads() {
 fn hostile_input_is_refused_with_what_is_wrong() {
     let parcel = rectangle([-6.0, -8.0], [6.0, 0.0]);
     let ask = |parcel: &Parcel, protected: &[ProtectedPiece], suns: &[[f64; 3]], ceiling: Option<f64>| {
-        let params = EnvelopeParams { ceiling };
+        let params = EnvelopeParams::default().with_ceiling(ceiling);
         solar_envelope(parcel, &ground(1.0, 0.0), protected, suns, None, &params, &Control::none())
             .unwrap_err()
             .to_string()

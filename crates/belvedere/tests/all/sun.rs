@@ -182,7 +182,7 @@ fn days_hold_the_light_of_the_place_whatever_the_zone() {
 #[test]
 fn light_of_a_day_is_that_of_the_closed_form() {
     // cos H = −tan φ tan δ for the middle of the disc without refraction; at an equinox 12 hours, everywhere
-    let plain = DayParams { refraction: Refraction::Without, ..DayParams::default() };
+    let plain = DayParams::default().with_refraction(Refraction::Without);
     for latitude in [0.0, 23.0, 52.0, -52.0, 64.0] {
         let site = site(latitude, 5.0);
         for (text, declination) in [("2026-03-20", 0.0_f64), ("2026-06-21", 23.435), ("2026-12-21", -23.435)] {
@@ -200,18 +200,18 @@ fn light_of_a_day_is_that_of_the_closed_form() {
     // a day lasts as long whatever the step
     let site = site(52.0, 5.0);
     let hours = |step| {
-        let params = DayParams { step, ..DayParams::default() };
+        let params = DayParams::default().with_step(step);
         sun_day(&site, &Zone::utc(), date("2026-02-19"), None, &params).unwrap().possible_hours()
     };
     for step in [60.0, 420.0, 1800.0, 3600.0] {
         assert!((hours(step) - hours(600.0)).abs() < 1e-4, "{step}: {} {}", hours(step), hours(600.0));
     }
     for step in [0.0, -600.0, f64::NAN, f64::INFINITY, 9.0, 3601.0] {
-        let params = DayParams { step, ..DayParams::default() };
+        let params = DayParams::default().with_step(step);
         assert!(sun_day(&site, &Zone::utc(), date("2026-02-19"), None, &params).is_err(), "{step}");
     }
     // above 10° there is less, and only between two instants less still
-    let params = DayParams { least_elevation: 10f64.to_radians(), ..DayParams::default() };
+    let params = DayParams::default().with_least_elevation(10f64.to_radians());
     let high = sun_day(&site, &Zone::utc(), date("2026-02-19"), None, &params).unwrap();
     assert!(high.possible_hours() < hours(600.0) - 1.5);
     assert!(high.steps.iter().all(|step| step.direction[2] > 10f64.to_radians().sin()));
@@ -306,7 +306,7 @@ fn zones_name_instants_and_summer_time_leaves_none_in_doubt() {
 
 fn year(latitude: f64, step: f64) -> Vec<SunDay> {
     let site = site(latitude, 5.4);
-    let params = DayParams { step, ..DayParams::default() };
+    let params = DayParams::default().with_step(step);
     date("2025-01-01")
         .to(date("2025-12-31"))
         .map(|date| sun_day(&site, &Zone::mean_solar(&site), date, None, &params).unwrap())

@@ -1,14 +1,14 @@
 //! Hours of sun against closed forms, and against every sun and every ball tried in turn.
 
+use crate::common::light_share;
 use belvedere::apps::sun::{
     Binning, Date, DayParams, Period, Refraction, Site, SunSchedule, Zone, sun_days, sun_position_with,
 };
 use belvedere::apps::sun_hours::{RuleDays, SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
-use belvedere::apps::tree_light::light_share;
 use belvedere::control::Control;
 use belvedere::io::{MatrixHead, SavedMatrix, read_matrix, write_matrix, write_matrix_rows};
 use belvedere::medial::MedialBalls;
-use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix, visibility_matrix};
+use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix};
 use belvedere::random::uniform;
 
 fn scene(centers: &[[f32; 3]], radii: &[f32]) -> MedialScene {
@@ -32,7 +32,7 @@ fn date(text: &str) -> Date {
 }
 
 fn plain(step: f64) -> DayParams {
-    DayParams { step, refraction: Refraction::Without, ..DayParams::default() }
+    DayParams::default().with_step(step).with_refraction(Refraction::Without)
 }
 
 fn schedule(site: &Site, dates: Vec<Date>, params: &DayParams, binning: Binning) -> SunSchedule {
@@ -46,9 +46,8 @@ fn hours_at(
     targets: &[[f32; 3]],
     normals: Option<&[[f32; 3]]>,
 ) -> SunHours {
-    let matrix = visibility_matrix(scene, targets, &schedule.directions, &Control::none()).unwrap();
-    sun_hours(&matrix, schedule, normals, &SunHoursParams { sufficient_hours: 2.0, ..SunHoursParams::default() })
-        .unwrap()
+    let matrix = scene.visibility_matrix(targets, &schedule.directions, &Control::none()).unwrap();
+    sun_hours(&matrix, schedule, normals, &SunHoursParams::default().with_sufficient_hours(2.0)).unwrap()
 }
 
 /// A ball so far off that it seems 15° wide in each direction, where the sun stands at its noon on the day of the equinox.
@@ -126,7 +125,7 @@ fn a_year_of_shared_suns_is_a_year_of_suns() {
     let targets: Vec<[f32; 3]> =
         (0..40).map(|i| [60.0 * at(2000 + 2 * i) - 30.0, 60.0 * at(2001 + 2 * i) - 30.0, 0.0]).collect();
     let dates: Vec<Date> = date("2025-01-01").to(date("2025-12-31")).collect();
-    let params = DayParams { step: 1200.0, ..DayParams::default() };
+    let params = DayParams::default().with_step(1200.0);
     let exact = schedule(&site, dates.clone(), &params, Binning::Exact);
     let shared = schedule(&site, dates, &params, Binning::Within(1f64.to_radians()));
     assert!(shared.directions.len() * 10 < exact.directions.len(), "{}", shared.directions.len());
@@ -173,8 +172,8 @@ fn light_through_crowns_counts_by_the_share_of_its_day() {
     let opaque = scene(&[[0.0, -40.0, 2.0]], &[12.0]);
     let targets = [[0.0; 3], [3.0, 1.0, 2.0], [0.0, 30.0, 0.0], [-25.0, -20.0, 0.0]];
     let [all, opaque] = [crowns, opaque]
-        .map(|scene| visibility_matrix(&scene, &targets, &schedule.directions, &Control::none()).unwrap());
-    let params = SunHoursParams { sufficient_hours: 8.0, ..SunHoursParams::default() };
+        .map(|scene| scene.visibility_matrix(&targets, &schedule.directions, &Control::none()).unwrap());
+    let params = SunHoursParams::default().with_sufficient_hours(8.0);
     let of = |shares: &[f64]| sun_hours_through_crowns(&all, &opaque, &schedule, None, &params, shares);
     let shares = [0.5, 0.5, 0.03, 0.03];
     let found = of(&shares).unwrap();
@@ -259,16 +258,16 @@ fn what_does_not_belong_together_is_refused() {
     let schedule = schedule(&site, vec![date("2026-03-20")], &plain(600.0), Binning::Exact);
     let blockers = scene(&[[0.0, 0.0, -1000.0]], &[1.0]);
     let targets = [[0.0; 3], [f32::NAN; 3]];
-    let matrix = visibility_matrix(&blockers, &targets, &schedule.directions, &Control::none()).unwrap();
+    let matrix = blockers.visibility_matrix(&targets, &schedule.directions, &Control::none()).unwrap();
     let usual = SunHoursParams::default();
     let found = sun_hours(&matrix, &schedule, None, &usual).unwrap();
     assert!(found.hours[0] > 11.0 && found.hours[1] == 0.0, "a place that is none sees nothing");
     assert!(sun_hours(&matrix, &schedule, Some(&[[0.0, 0.0, 1.0]]), &usual).is_err());
     for first_direction in [1, usize::MAX] {
-        assert!(sun_hours(&matrix, &schedule, None, &SunHoursParams { first_direction, ..usual }).is_err());
+        assert!(sun_hours(&matrix, &schedule, None, &usual.with_first_direction(first_direction)).is_err());
     }
     for sufficient_hours in [-1.0, 25.0, f64::NAN] {
-        assert!(sun_hours(&matrix, &schedule, None, &SunHoursParams { sufficient_hours, ..usual }).is_err());
+        assert!(sun_hours(&matrix, &schedule, None, &usual.with_sufficient_hours(sufficient_hours)).is_err());
     }
     let zone = Zone::utc();
     let [a, b] = [date("2026-03-20").noon_utc(), date("2026-03-21").noon_utc()];
@@ -302,7 +301,7 @@ fn a_matrix_of_a_year_answers_any_of_its_days() {
     let site = site(52.0);
     let zone = Zone::mean_solar(&site);
     let year: Vec<Date> = date("2025-01-01").to(date("2025-12-31")).collect();
-    let params = DayParams { step: 1800.0, ..DayParams::default() };
+    let params = DayParams::default().with_step(1800.0);
     let kept = schedule(&site, year, &params, Binning::Within(1f64.to_radians()));
     let day = sun_days(&site, &zone, &Period::Days(vec![date("2025-05-03")]), &params).unwrap();
     let among = SunSchedule::among(&day, &kept.directions, 1f64.to_radians()).unwrap();

@@ -1,11 +1,12 @@
 //! Light through a hedge and through a crown, whose shares are formulas.
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
+use crate::common::light_share;
 use belvedere::apps::sky_view::{SkyDirections, sky_view};
-use belvedere::apps::tree_light::{Foliage, Transmissivity, light_share, light_sum, through_crowns};
+use belvedere::apps::tree_light::{Foliage, Transmissivity, through_crowns};
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, vegetation_of_classes, vegetation_of_transmission, without_vegetation};
-use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix, visibility_matrix};
+use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix};
 use belvedere::view::to_sun;
 
 const LEAF: u8 = 5;
@@ -34,7 +35,7 @@ impl Balls {
         let opaque = without_vegetation(&self.balls, &vegetation_of_classes(&self.balls, &self.classes)).unwrap();
         [&self.balls, &opaque].map(|balls| {
             let scene = MedialScene::new(balls, &BlockRule::default()).unwrap();
-            visibility_matrix(&scene, &[[0.0; 3]], directions, &Control::none()).unwrap()
+            scene.visibility_matrix(&[[0.0; 3]], directions, &Control::none()).unwrap()
         })
     }
 }
@@ -65,20 +66,11 @@ fn a_hedge_before_a_low_wall_lets_its_share_of_the_sun_through() {
             let found = light_share(&all, &opaque, 0, direction, transmissivity);
             assert_eq!(found, share(elevation, transmissivity), "{} degrees", elevation.to_degrees());
         }
-        let found = light_sum(&all, &opaque, 0, &[0.25; 90], &[transmissivity; 90]);
         let expected: f64 = elevations.iter().map(|&e| 0.25 * share(e, transmissivity)).sum();
-        assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
-        // the same from the sums of both, as measures that know no trees are made
         let sums = [&all, &opaque].map(|matrix| [matrix.sum(0, &[0.25; 90]) as f32]);
         let mixed = through_crowns(&sums[0], &sums[1], transmissivity).unwrap()[0];
         assert!((f64::from(mixed) - expected).abs() < 1e-5, "{mixed} instead of {expected}");
     }
-    // in leaf while the sun is high and bare while it is low
-    let season: Vec<f64> = elevations.iter().map(|&e| if e > 0.4 { 0.03 } else { 0.5 }).collect();
-    let found = light_sum(&all, &opaque, 0, &[1.0; 90], &season);
-    let expected: f64 = elevations.iter().zip(&season).map(|(&e, &t)| share(e, t)).sum();
-    assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
-    assert_eq!(light_sum(&all, &opaque, 0, &[1.0; 90], &[]), 0.0);
 }
 
 #[test]

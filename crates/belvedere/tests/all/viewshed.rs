@@ -120,7 +120,7 @@ fn counts_and_masks_are_those_of_each_observer_alone() {
     let targets = cell_targets(&ground, 0.0);
     let observers: Vec<Observer> =
         (0..35).map(|i| looking([40.0 * uniform(1, i), 40.0 * uniform(2, i), 1.7])).collect();
-    let params = ViewshedParams { masks: Masks::Kept, ..ViewshedParams::default() };
+    let params = ViewshedParams::default().with_masks(Masks::Kept);
     let all = viewshed(&scene, &observers, &targets, &params, &Control::none()).unwrap();
     assert_eq!(all.masks.len(), 2);
     for (number, observer) in observers.iter().enumerate() {
@@ -158,7 +158,7 @@ fn eyes_and_parameters_that_are_no_numbers_are_refused() {
     let run = |observer, params| viewshed(&scene, &[observer], &[[1.0; 3]], &params, &Control::none());
     assert!(run(looking([f64::NAN; 3]), ViewshedParams::default()).is_err());
     let earth = EarthParams { refraction: 2.0, ..EarthParams::default() };
-    assert!(run(looking([0.0; 3]), ViewshedParams { earth, ..ViewshedParams::default() }).is_err());
+    assert!(run(looking([0.0; 3]), ViewshedParams::default().with_earth(earth)).is_err());
     // a target without a height is no error, and nothing is said of it
     let targets = [[1.0, 1.0, f32::NAN]];
     let none = viewshed(&scene, &[looking([0.0; 3])], &targets, &ViewshedParams::default(), &Control::none());

@@ -3,7 +3,7 @@
 use belvedere::apps::sky_view::SkyDirections;
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, BlockRule, MedialScene, VisibilityMatrix, visibility_matrix};
+use belvedere::query::{Answer, BlockRule, MedialScene, VisibilityMatrix};
 use belvedere::random::uniform;
 
 /// Blocks of balls on a bumpy ground, crowns of small ones between.
@@ -57,9 +57,9 @@ fn every_bit_is_the_answer_of_a_line_of_sight() {
     for params in [BlockRule::carved(), BlockRule::default(), BlockRule { bias: 0.7, ..BlockRule::default() }] {
         let scene = MedialScene::new(&balls, &params).unwrap();
         // many enough to be swept, and too few
-        let swept = visibility_matrix(&scene, &targets, &directions, &Control::none()).unwrap();
+        let swept = scene.visibility_matrix(&targets, &directions, &Control::none()).unwrap();
         assert_eq!(differing(&swept, &scene, &targets, &directions), 0, "{params:?}");
-        let few = visibility_matrix(&scene, &targets, &directions[..5], &Control::none()).unwrap();
+        let few = scene.visibility_matrix(&targets, &directions[..5], &Control::none()).unwrap();
         assert_eq!(differing(&few, &scene, &targets, &directions[..5]), 0, "{params:?}");
         assert_eq!((swept.target_count(), swept.direction_count()), (1201, 98));
         let free: usize =
@@ -78,10 +78,10 @@ fn every_bit_is_the_answer_of_a_line_of_sight() {
 fn nothing_blocks_without_balls_and_bad_directions_are_refused() {
     let scene = MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap();
     let sky = SkyDirections::even(20).unwrap();
-    let matrix = visibility_matrix(&scene, &[[0.0; 3]], &sky.directions, &Control::none()).unwrap();
+    let matrix = scene.visibility_matrix(&[[0.0; 3]], &sky.directions, &Control::none()).unwrap();
     assert!((0..20).all(|column| matrix.is_free(0, column)));
-    assert!(visibility_matrix(&scene, &[[0.0; 3]], &[[0.0, 0.0, 2.0]], &Control::none()).is_err());
-    assert!(visibility_matrix(&scene, &[[0.0; 3]], &[[f64::NAN, 0.0, 1.0]], &Control::none()).is_err());
-    let none = visibility_matrix(&scene, &[], &sky.directions, &Control::none()).unwrap();
+    assert!(scene.visibility_matrix(&[[0.0; 3]], &[[0.0, 0.0, 2.0]], &Control::none()).is_err());
+    assert!(scene.visibility_matrix(&[[0.0; 3]], &[[f64::NAN, 0.0, 1.0]], &Control::none()).is_err());
+    let none = scene.visibility_matrix(&[], &sky.directions, &Control::none()).unwrap();
     assert_eq!(none.target_count(), 0);
 }

@@ -340,8 +340,9 @@ fn written_clouds_read_back_the_same() {
             // a table says nothing of its unit
             continue;
         }
-        let (found, report) =
-            read_cloud(std::slice::from_ref(&path), &ReadOptions::new().with_crs(code), &Control::none()).unwrap();
+        let mut options = ReadOptions::new();
+        options.crs = code;
+        let (found, report) = read_cloud(std::slice::from_ref(&path), &options, &Control::none()).unwrap();
         let about = format!("{} {crs:?} {:?}", case.name, report.files);
         assert_eq!(found.frame.crs.epsg, crs.epsg, "{about}");
         assert!((found.frame.crs.metres_per_unit - crs.metres_per_unit).abs() < 1e-12, "{about}");

@@ -53,11 +53,9 @@ pub(super) fn find(
         return Ok(None);
     }
     let usual = RoofPlaneParams::default();
-    let params = RoofPlaneParams {
-        least_area: arguments.least_area.unwrap_or(usual.least_area),
-        cell: arguments.panel.unwrap_or(usual.cell),
-        ..usual
-    };
+    let params = usual
+        .with_least_area(arguments.least_area.unwrap_or(usual.least_area))
+        .with_cell(arguments.panel.unwrap_or(usual.cell));
     let (low, high) = scene.model.bounds().on_map();
     let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     let grid = MapGrid::covering(low, high, GROUND_CELL, origin)?;
@@ -200,7 +198,7 @@ fn write_horizons(
     atomic::make_folder(folder)?;
     let eyes: Vec<[f64; 3]> =
         roofs.planes.iter().map(|plane| above_roof(plane.middle, plane.normal).map(f64::from)).collect();
-    let params = HorizonParams { azimuth_count: AZIMUTHS, turn: site.convergence, ..HorizonParams::default() };
+    let params = HorizonParams::default().with_azimuth_count(AZIMUTHS).with_turn(site.convergence);
     let found = stages.run("computing ranges", eyes.len(), |control| horizons(blockers, &eyes, &params, control))?;
     for (number, skyline) in found.iter().enumerate() {
         let path = folder.join(format!("plane_{}.txt", number + 1));

@@ -21,14 +21,13 @@ const FAR: f64 = 50_000.0;
 
 pub(super) fn params(arguments: &Irradiance) -> Result<IrradianceParams> {
     let usual = IrradianceParams::default();
-    let params = IrradianceParams {
-        sky: arguments.sky.map_or(usual.sky, Into::into),
-        patch_division: arguments.patch_division.unwrap_or(usual.patch_division),
-        sun_cell: arguments.sun_cell.map_or(usual.sun_cell, f64::to_radians),
-        albedo: arguments.albedo.unwrap_or(usual.albedo),
-        surroundings: arguments.surroundings.map_or(usual.surroundings, Into::into),
-        grouping: if arguments.months { Grouping::Months } else { Grouping::Whole },
-    };
+    let params = IrradianceParams::default()
+        .with_sky(arguments.sky.map_or(usual.sky, Into::into))
+        .with_patch_division(arguments.patch_division.unwrap_or(usual.patch_division))
+        .with_sun_cell(arguments.sun_cell.map_or(usual.sun_cell, f64::to_radians))
+        .with_albedo(arguments.albedo.unwrap_or(usual.albedo))
+        .with_surroundings(arguments.surroundings.map_or(usual.surroundings, Into::into))
+        .with_grouping(if arguments.months { Grouping::Months } else { Grouping::Whole });
     flagged("--albedo, --sun-cell-deg", params.validate())?;
     Ok(params)
 }

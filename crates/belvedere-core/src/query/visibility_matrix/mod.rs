@@ -90,20 +90,6 @@ const BATCH: usize = 512;
 /// Targets that are looked at before the next: as many as keep what is settled of them below 100 MB.
 const MOST_TARGETS: usize = BLOCK << 10;
 
-/// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls: as
-/// [`MedialScene::visibility_matrix`].
-///
-/// # Errors
-/// As there.
-pub fn visibility_matrix(
-    scene: &MedialScene,
-    targets: &[[f32; 3]],
-    directions: &[[f64; 3]],
-    control: &Control<'_>,
-) -> Result<VisibilityMatrix> {
-    scene.visibility_matrix(targets, directions, control)
-}
-
 impl MedialScene {
     /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls: for every pair the same as
     /// [`MedialScene::answer`] at infinite range, pulses not being asked. A target that is not finite sees nothing. Progress counts

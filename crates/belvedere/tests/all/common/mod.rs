@@ -1,7 +1,8 @@
-//! Where the shared test data lie.
+//! What several tests need: the shared data, simulated scenes, light by hand.
 
 pub(crate) mod simulated;
 
+use belvedere::query::VisibilityMatrix;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -22,4 +23,20 @@ pub(crate) fn data(test: &str, relative: &str) -> Option<PathBuf> {
 /// so this writes to standard error itself.
 pub(crate) fn skipped(what: &str) {
     let _ = writeln!(std::io::stderr().lock(), "SKIPPED {what}");
+}
+
+/// Share of the light that reaches a target from a direction: 1 where nothing blocks, 0 where anything but vegetation does, and
+/// `share` where only vegetation does. `opaque` is the matrix of the balls that are not vegetation.
+pub(crate) fn light_share(
+    all: &VisibilityMatrix,
+    opaque: &VisibilityMatrix,
+    target: usize,
+    direction: usize,
+    share: f64,
+) -> f64 {
+    match (all.is_free(target, direction), opaque.is_free(target, direction)) {
+        (true, _) => 1.0,
+        (false, true) => share,
+        (false, false) => 0.0,
+    }
 }

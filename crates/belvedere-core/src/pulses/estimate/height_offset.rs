@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::Pulses;
 use super::sensor_fit::{Pair, median, trust};
+use crate::pulses::Pulses;
+use crate::pulses::flight_parts::HeightOffset;
 use belvedere_data::PointCloud;
 
 /// Rounds of improvement and reweighting; offsets of a tenth of the height settle in four.
@@ -19,26 +20,17 @@ const LEAST_DEVIATIONS: f64 = 4.0;
 /// Share of the misses of single pulses that may be systematic: beams that graze edges miss to one side more than to the other.
 const SYSTEMATIC_SHARE: f64 = 0.5;
 
-/// A constant by which the heights of a trajectory differ from those of the cloud, such as that between ellipsoid and sea.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeightOffset {
-    /// Metres to add to the heights of the trajectory.
-    pub offset: f64,
-    /// Its standard deviation, metres.
-    pub sd: f64,
-    /// Pulses with several returns that tell it.
-    pub pair_count: usize,
-    /// Whether it stands out from chance and from what beams feign, exceeds a metre, and was therefore added.
-    pub is_applied: bool,
-}
-
 /// The offset that brings `positions`, (P, 3) local metres for each of `pulses`, NaN where unknown, nearest to the lines of the
 /// pulses with several returns; `None` where too few have returns far enough apart.
 ///
 /// # Source
-/// The miss at the last return as in [`super::SensorPositions::from_returns`], with Huber's weights and one unknown for all
+/// The miss at the last return as in [`crate::pulses::SensorPositions::from_returns`], with Huber's weights and one unknown for all
 /// lines; ours.
-pub(super) fn height_offset(cloud: &PointCloud, pulses: &Pulses, positions: &[[f32; 3]]) -> Option<HeightOffset> {
+pub(in crate::pulses) fn height_offset(
+    cloud: &PointCloud,
+    pulses: &Pulses,
+    positions: &[[f32; 3]],
+) -> Option<HeightOffset> {
     let place = |row: &u32| cloud.positions.get(*row as usize).map(|p| Vector3::from(p.map(f64::from)));
     let pair = |(pulse, scanner): (usize, &[f32; 3])| {
         let returns = pulses.returns_of(pulse);

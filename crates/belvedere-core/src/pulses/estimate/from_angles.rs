@@ -1,12 +1,13 @@
 //! Where the scanner was, from the scan angles of the points.
 
-use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3, Vector4, Vector6};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 use rayon::prelude::*;
 
-use super::Pulses;
-use super::line_path::{Knot, LinePath, Stretch};
-use super::scanner_report::FoundBy;
 use super::sensor_fit::median;
+use crate::pulses::Pulses;
+use crate::pulses::flight_parts::{AngleVerdict, ScanAngleParams, ScanAnglePart};
+use crate::pulses::line_path::{Knot, LinePath, Stretch};
+use crate::pulses::scanner_report::FoundBy;
 use belvedere_data::control::Control;
 use belvedere_data::trajectory::MAX_GAP_S;
 use belvedere_data::vector::length;
@@ -22,88 +23,6 @@ const ROUNDS: usize = 6;
 const LEAST_PAIRS: usize = 20;
 /// Least distance between first and last return for a pulse to tell its direction, metres.
 const LEAST_LENGTH: f64 = 3.0;
-
-/// When scan angles are trusted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScanAngleParams {
-    /// Longest part of a flight line that is taken for straight and evenly flown, seconds, 0.5 to 60. Default 10.
-    pub part_s: f64,
-    /// Least standard deviation of the angles of a part, radians. Default 1°: a tile of 30 m below a scanner 450 m up.
-    pub least_spread: f64,
-    /// Greatest median angle by which points may miss their place, across and along the flight, radians. Default 1°: half a
-    /// degree of rounding, and a pitch that angles do not tell.
-    pub greatest_miss: f64,
-    /// Greatest bend of scan lines, metres along the flight for each metre of height and square of the tangent of the angle, that
-    /// passes for straight. Default 0.35: a cone of 20° bends by 1.4, one of 45° by 0.5.
-    pub greatest_bend: f64,
-    /// Greatest tangent of the angle between scan lines and the perpendicular of the flight. Default 0.36 (20°): crabbing.
-    pub greatest_crab: f64,
-    /// Greatest median angle to the pulses with several returns, where there are any, radians. Default 3°.
-    pub greatest_contradiction: f64,
-    /// Speeds that are accepted, metres per second. Default 15 to 120: helicopters to jets.
-    pub speeds: [f64; 2],
-    /// Least height above the middle of the points that is accepted, metres. Default 30.
-    pub least_height: f64,
-}
-
-impl Default for ScanAngleParams {
-    fn default() -> Self {
-        Self {
-            part_s: 10.0,
-            least_spread: 1_f64.to_radians(),
-            greatest_miss: 1_f64.to_radians(),
-            greatest_bend: 0.35,
-            greatest_crab: 0.36,
-            greatest_contradiction: 3_f64.to_radians(),
-            speeds: [15.0, 120.0],
-            least_height: 30.0,
-        }
-    }
-}
-
-/// Whether the scan angles of a part of a flight line are trusted, and why not.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AngleVerdict {
-    /// Trusted.
-    Accepted,
-    /// Too few points with a time and an angle.
-    TooFewPoints,
-    /// Angles or times that span too little to tell height and flight.
-    TooNarrow,
-    /// Points do not lie where their angles, taken across the flight, put them: a cone, a tilted scanner, or rounded times.
-    NotAcross,
-    /// Scan lines are bent, as those of a cone are, or cannot be told from bent ones.
-    Bent,
-    /// Pulses with several returns point elsewhere.
-    Contradicted,
-    /// No aircraft flies so slowly or so fast, or so low.
-    Implausible,
-}
-
-/// What the scan angles of a part of a flight line tell.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ScanAnglePart {
-    /// Flight line.
-    pub source_id: u16,
-    /// First and last time, seconds.
-    pub times: [f64; 2],
-    /// Points.
-    pub point_count: usize,
-    /// Position half-way between the two times, local metres; NaN where nothing could be computed.
-    pub position: [f64; 3],
-    /// Metres per second.
-    pub velocity: [f64; 3],
-    /// Height above the middle of the points, metres.
-    pub height: f64,
-    /// Median angles by which points miss their place, across and along the flight, radians.
-    pub misses: [f64; 2],
-    /// Angle by which the scanner looks ahead, radians, as far as pulses with several returns tell; 0 where these are too few.
-    pub pitch: f64,
-    /// Median angle to the pulses with several returns, radians; NaN where these are too few.
-    pub contradiction: f64,
-    /// Whether it is used.
-    pub verdict: AngleVerdict,
-}
 
 /// A point with what is needed of it.
 #[derive(Clone, Copy)]
@@ -127,7 +46,7 @@ struct Sample {
 ///
 /// # Source
 /// This project's own.
-pub(super) fn paths_from_angles(
+pub(in crate::pulses) fn paths_from_angles(
     cloud: &PointCloud,
     pulses: Option<&Pulses>,
     params: &ScanAngleParams,
@@ -253,12 +172,10 @@ fn estimate(part: &[Sample], pairs: &[Direction], params: &ScanAngleParams) -> (
         AngleVerdict::Accepted
     };
     let path = (result.verdict == AngleVerdict::Accepted).then(|| {
-        let ([x, y, z], [u, v, w]) = (result.position, fit.velocity);
         // misses of a whole line share their cause, so that their number makes nothing surer
         let aside = fit.height * fit.misses[0].max(fit.misses[1]);
         let position_sd = [aside, aside, aside / fit.angle_spread.tan() * 0.1];
-        let covariance = Matrix6::from_diagonal(&Vector6::from_fn(|i, _| position_sd[i % 3].powi(2)));
-        let knot = Knot { time: middle, state: Vector6::new(x, y, z, u, v, w), covariance };
+        let knot = Knot { time: middle, position: result.position, velocity: fit.velocity };
         let stretch = Stretch { times: [first, last], position_sd, median_angle: fit.misses[0].hypot(fit.misses[1]) };
         LinePath::new(result.source_id, FoundBy::ScanAngle, vec![stretch], vec![knot])
     });

@@ -1,0 +1,14 @@
+//! Where the scanner was, from the returns alone: least squares over parts of flight lines.
+
+mod from_angles;
+mod from_returns;
+mod height_offset;
+mod sensor_fit;
+mod smoother;
+
+pub(super) use from_angles::paths_from_angles;
+pub(super) use from_returns::paths_from_returns;
+pub(super) use height_offset::height_offset;
+
+/// Whether this build can estimate.
+pub(super) const IS_BUILT: bool = true;

@@ -1,0 +1,35 @@
+//! Takes the place of `estimate` in a build without the feature `scanner-estimate`: nothing is found.
+
+use super::Pulses;
+use super::flight_parts::{HeightOffset, ScanAngleParams, ScanAnglePart, SensorEstimateParams, SensorPart};
+use super::line_path::LinePath;
+use belvedere_data::control::Control;
+use belvedere_data::{PointCloud, Result};
+
+/// Whether this build can estimate.
+pub(super) const IS_BUILT: bool = false;
+
+pub(super) fn paths_from_returns(
+    _: &PointCloud,
+    _: &Pulses,
+    params: &SensorEstimateParams,
+    control: &Control<'_>,
+) -> Result<(Vec<LinePath>, Vec<SensorPart>)> {
+    params.validate()?;
+    control.check()?;
+    Ok((Vec::new(), Vec::new()))
+}
+
+pub(super) fn paths_from_angles(
+    _: &PointCloud,
+    _: Option<&Pulses>,
+    _: &ScanAngleParams,
+    control: &Control<'_>,
+) -> Result<(Vec<LinePath>, Vec<ScanAnglePart>)> {
+    control.check()?;
+    Ok((Vec::new(), Vec::new()))
+}
+
+pub(super) fn height_offset(_: &PointCloud, _: &Pulses, _: &[[f32; 3]]) -> Option<HeightOffset> {
+    None
+}

@@ -1,0 +1,96 @@
+//! Where the scanner was when it sent each pulse: from a trajectory, or from the pulses themselves.
+
+use super::Pulses;
+use super::estimate::paths_from_returns;
+use super::flight_parts::{SensorEstimateParams, SensorPart};
+use super::line_path::position_on;
+use belvedere_data::control::Control;
+use belvedere_data::trajectory::{ClockOffset, Trajectory};
+use belvedere_data::{PointCloud, Result};
+
+/// Scanner position of each pulse.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SensorPositions {
+    /// Local metres, (P, 3); NaN where unknown.
+    pub per_pulse: Vec<[f32; 3]>,
+}
+
+/// How scanner positions were found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SensorReport {
+    /// Pulses in all.
+    pub pulse_count: usize,
+    /// Pulses whose scanner position is known.
+    pub known_count: usize,
+    /// How GPS times became those of the trajectory, where one was used.
+    pub clock: Option<ClockOffset>,
+    /// The parts of flight lines that were estimated, by line and time.
+    pub parts: Vec<SensorPart>,
+}
+
+impl SensorPositions {
+    /// Positions at the times of `pulses` on `trajectory`; unknown where it has no position.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where it has none at any of the times.
+    pub fn from_trajectory(
+        cloud: &PointCloud,
+        pulses: &Pulses,
+        trajectory: &Trajectory,
+    ) -> Result<(Self, SensorReport)> {
+        let (per_pulse, clock) = trajectory.scanner_positions_at(&pulses.times, cloud)?;
+        let known_count = per_pulse.iter().filter(|p| is_known(p)).count();
+        let report =
+            SensorReport { pulse_count: pulses.len(), known_count, clock: Some(clock), ..SensorReport::default() };
+        Ok((Self { per_pulse }, report))
+    }
+
+    /// Positions from the directions of pulses with several returns, by flight line.
+    ///
+    /// A line is cut where nothing was scanned for two seconds and then into equal parts of at most
+    /// [`SensorEstimateParams::part_s`]. In each part the scanner moves evenly, S + V t, such that the last return of each
+    /// pulse lies as near as possible to the line from the scanner through the first. Misses that stand out count less, and level flight is
+    /// assumed where the pulses tell nothing. The parts of a line are then joined to one path by a smoother that knows how far an
+    /// aircraft leaves a constant velocity; it also places parts with too few pulses between or beside good ones, as long as it
+    /// is sure enough. Parts whose estimate is not fit for use are unknown; [`SensorReport::parts`] says why.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a parameter outside its range.
+    ///
+    /// # Source
+    /// The idea: Gatziolis & McGaughey 2019; Roussel, Bourdon & Achim 2020. Weights: Huber 1964. One least-squares problem
+    /// with velocity for each part instead of pairs of pulses is ours.
+    pub fn from_returns(
+        cloud: &PointCloud,
+        pulses: &Pulses,
+        params: &SensorEstimateParams,
+        control: &Control<'_>,
+    ) -> Result<(Self, SensorReport)> {
+        let (paths, parts) = paths_from_returns(cloud, pulses, params, control)?;
+        let position = |(&line, &time): (&u16, &f64)| match position_on(&paths, line, time) {
+            Some((_, place)) => belvedere_data::cloud::to_local(place, [0.0; 3]),
+            None => [f32::NAN; 3],
+        };
+        let per_pulse: Vec<[f32; 3]> = pulses.source_ids.iter().zip(&pulses.times).map(position).collect();
+        let known_count = per_pulse.iter().filter(|p| is_known(p)).count();
+        Ok((Self { per_pulse }, SensorReport { pulse_count: pulses.len(), known_count, clock: None, parts }))
+    }
+
+    /// Scanner position of each point of the cloud that `pulses` were grouped from, (N, 3), local metres; NaN where unknown.
+    #[must_use]
+    pub fn per_point(&self, pulses: &Pulses, point_count: usize) -> Vec<[f32; 3]> {
+        let mut per_point = vec![[f32::NAN; 3]; point_count];
+        for (pulse, position) in self.per_pulse.iter().enumerate() {
+            for &row in pulses.returns_of(pulse) {
+                if let Some(of_point) = per_point.get_mut(row as usize) {
+                    *of_point = *position;
+                }
+            }
+        }
+        per_point
+    }
+}
+
+fn is_known(position: &[f32; 3]) -> bool {
+    position.iter().all(|v| v.is_finite())
+}
