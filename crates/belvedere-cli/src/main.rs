@@ -9,13 +9,15 @@ mod progress;
 mod scene_config;
 mod simulated;
 mod summary;
+mod written_files;
 
 use clap::FromArgMatches;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     interrupt::listen();
-    let matches = match scene_config::matches(&help::command(), std::env::args_os().collect()) {
+    let program = help::command();
+    let matches = match scene_config::matches(&program, std::env::args_os().collect()) {
         Ok(matches) => matches,
         Err(error) => return failure(&error),
     };
@@ -23,7 +25,7 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => error.exit(),
     };
-    match commands::run(&cli) {
+    match written_files::check(&program, &matches).and_then(|()| commands::run(&cli)) {
         Ok(summary) => summary.print(&cli.global),
         Err(error) => failure(&error),
     }

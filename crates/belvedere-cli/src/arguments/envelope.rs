@@ -161,13 +161,13 @@ pub(crate) struct Comfort {
     #[arg(long, value_enum, value_name = "NAME", help_heading = "Sky")]
     pub(crate) patches: Option<PatchesChoice>,
     /// Table with a row for each target of the routes, or for each window (.csv)
-    #[arg(short, long, value_name = "CSV", help_heading = "Result")]
+    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
     /// Also write a table with a row for each whole route (.csv)
-    #[arg(long, value_name = "CSV", requires = "route", help_heading = "Result")]
+    #[arg(long, value_name = "OUT", requires = "route", help_heading = "Result")]
     pub(crate) routes: Option<PathBuf>,
     /// Also write a table with a row for each route and sun: time, sun direction, shaded share of the route (.csv)
-    #[arg(long, value_name = "CSV", requires = "route", help_heading = "Result")]
+    #[arg(long, value_name = "OUT", requires = "route", help_heading = "Result")]
     pub(crate) times: Option<PathBuf>,
 }
 

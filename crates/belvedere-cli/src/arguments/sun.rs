@@ -88,7 +88,7 @@ pub(crate) struct SunHours {
     /// Also save the visibility matrix, for other days and rules with --load-matrix (.npz)
     ///
     /// NumPy arrays: bits (targets x words of 64 directions, lowest bit first), directions, targets, origin.
-    #[arg(long = "save-matrix", value_name = "MATRIX", help_heading = "Result")]
+    #[arg(long = "save-matrix", value_name = "OUT", help_heading = "Result")]
     pub(crate) keep: Option<PathBuf>,
     /// Use a matrix from --save-matrix of the same balls and targets, instead of computing visibility
     ///

@@ -1,6 +1,6 @@
 //! `belvedere balls`.
 
-use super::{check_output, check_parent, extension, is_folder, is_same};
+use super::{check_output, check_parent, extension, is_folder, is_written_back};
 use crate::arguments::{Balls, Cleaning, Global, MethodChoice, SideChoice, Usage};
 use crate::pipeline::{self, params};
 use crate::progress::Stages;
@@ -113,8 +113,7 @@ fn write_folder(
     let (coords, inner, outer) =
         (pipeline::file_coordinates(cloud, &cloud.positions), centers(&interior), centers(&exterior));
     let (inner_touch, outer_touch) = (touch(&interior), touch(&exterior));
-    let is_input = arguments.input.clouds.iter().any(|input| is_same(input, &arguments.output));
-    // what was read from this folder stays as it is: its coordinates may be finer than the layout's f32
+    let is_input = is_written_back(&arguments.input.clouds, &arguments.output);
     folder.coords = (!is_input).then_some(&coords);
     folder.normals = (!is_input || cloud.attributes.normals.is_none()).then_some(survey.oriented.normals());
     folder.ma_coords_in = Some(&inner);

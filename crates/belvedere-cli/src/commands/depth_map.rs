@@ -1,6 +1,6 @@
 //! `belvedere depth-map`.
 
-use super::{check_output, extension, is_same};
+use super::{check_output, extension};
 use crate::arguments::{DepthMap, Global, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
@@ -21,9 +21,6 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["tif", "tiff", "npy", "png"])?;
     if let Some(path) = &arguments.balls_id {
         check_output("--ball-ids", path, &["tif", "tiff", "npy"])?;
-        if is_same(path, &arguments.output) {
-            return Err(Usage(format!("--ball-ids {}: the same file as -o", path.display())).into());
-        }
     }
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();

@@ -1,9 +1,9 @@
 //! `belvedere envelope`.
 
+use super::check_output;
 use super::mesh_targets::{is_mesh, mesh_of};
 use super::shapes::{TypedAre, shapes, wrong_shape};
 use super::sights::{Proving, blockers, ground, ground_cloud};
-use super::{check_distinct, check_output};
 use crate::arguments::{Corners, Envelope, Global, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
@@ -92,14 +92,12 @@ fn in_unit(height: f32, metres_per_unit: f64) -> f32 {
 }
 
 fn check_outputs(arguments: &Envelope) -> Result<()> {
-    let all: Vec<&std::path::PathBuf> = arguments.output.iter().chain(&arguments.tops).collect();
     for output in &arguments.output {
         check_output("-o", output, &["tif", "tiff", "npy", "png", "ply", "obj"])?;
     }
     if let Some(output) = &arguments.tops {
         check_output("--tops", output, &["tif", "tiff", "npy"])?;
     }
-    check_distinct(all)?;
     if arguments.sun.is_empty() && !arguments.when.is_given() {
         return Err(
             Usage("protected suns are missing: give --date DAY, --from and --to, or --sun AZ,EL".to_owned()).into()

@@ -4,7 +4,7 @@ mod results;
 mod what;
 
 use super::sights::{self, Proving, blockers, ground_cloud};
-use super::{check_distinct, check_output, extension};
+use super::{check_output, extension};
 use crate::arguments::{Global, Landmark, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
@@ -96,7 +96,7 @@ fn check_outputs(arguments: &Landmark) -> Result<()> {
             .into());
         }
     }
-    check_distinct(&arguments.output)
+    Ok(())
 }
 
 /// The cells that observers stand in, or that the ground below those of a file is asked on.

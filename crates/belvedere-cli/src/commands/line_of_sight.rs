@@ -1,7 +1,7 @@
 //! `belvedere line-of-sight`.
 
 use super::sights::{Proving, blockers, enclosure_note, ground, ground_cloud};
-use super::{check_output, extension, is_same};
+use super::{check_output, extension};
 use crate::arguments::{Global, GroundChoice, LineOfSight, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
@@ -23,9 +23,6 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     }
     if let Some(profile) = &arguments.profile_out {
         check_output("--profile-out", profile, &["csv", "png"])?;
-        if arguments.output.as_ref().is_some_and(|output| is_same(profile, output)) {
-            return Err(Usage(format!("--profile-out {}: the same file as -o", profile.display())).into());
-        }
     }
     let earth = arguments.earth.params()?;
     let mut stages = Stages::new(global);

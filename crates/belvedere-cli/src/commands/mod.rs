@@ -140,21 +140,9 @@ fn check_parent(path: &Path) -> Result<()> {
     }
 }
 
-/// Refuses outputs that would be written over each other.
-fn check_distinct<'a>(outputs: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
-    let outputs: Vec<&PathBuf> = outputs.into_iter().collect();
-    for (i, a) in outputs.iter().enumerate() {
-        if let Some(b) = outputs.iter().skip(i + 1).find(|b| is_same(a, b)) {
-            return Err(Usage(format!("{}: given for two results", b.display())).into());
-        }
-    }
-    Ok(())
-}
-
-/// Whether two paths name the same file or folder, as far as that can be told.
-fn is_same(a: &Path, b: &Path) -> bool {
-    match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => a == b,
-    }
+/// Whether a folder in the layout of masbcpp is written where it was read. Its coordinates then stay as they are: they may be finer than
+/// the f32 of the layout.
+fn is_written_back(inputs: &[PathBuf], folder: &Path) -> bool {
+    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    inputs.iter().any(|input| same(input, folder) || same(input, &folder.join("coords.npy")))
 }

@@ -1,6 +1,6 @@
 //! `belvedere normals`.
 
-use super::{NormalColumns, check_output, check_parent, is_folder, is_same};
+use super::{NormalColumns, check_output, check_parent, is_folder, is_written_back};
 use crate::arguments::{Cleaning, Global, Normals, OrientChoice};
 use crate::pipeline::{self, params};
 use crate::progress::Stages;
@@ -39,9 +39,8 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
     let oriented = &survey.oriented;
     let report = stages.run("writing", 0, |_| -> Result<WriteReport> {
         if is_folder {
-            // the points of the input are never replaced: its coordinates may be finer than the layout's f32
-            let coords = arguments.input.clouds.iter().all(|input| !is_same(input, output));
-            let coords = coords.then(|| pipeline::file_coordinates(&cloud, &cloud.positions));
+            let coords = (!is_written_back(&arguments.input.clouds, output))
+                .then(|| pipeline::file_coordinates(&cloud, &cloud.positions));
             let folder = MasbcppFolder {
                 coords: coords.as_deref(),
                 normals: Some(oriented.normals()),

@@ -1,8 +1,8 @@
 //! `belvedere shadow`.
 
+use super::check_output;
 use super::sights::{Proving, blockers};
 use super::targets::Asked;
-use super::{check_distinct, check_output};
 use crate::arguments::{Global, Shadow, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
@@ -99,7 +99,6 @@ fn check(arguments: &Shadow) -> Result<()> {
     }
     if let Some(film) = &arguments.film {
         check_output("--film", film, &["png", "apng"])?;
-        check_distinct(arguments.outputs.output.iter().chain([film]))?;
     }
     if (arguments.film.is_some() || arguments.frames.is_some()) && !arguments.places.is_grid() {
         return Err(Usage("--film and --frames apply only to a grid".to_owned()).into());

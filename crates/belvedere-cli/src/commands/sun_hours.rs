@@ -1,7 +1,7 @@
 //! `belvedere sun-hours`.
 
+use super::check_output;
 use super::sights::{Proving, blockers, scene_params};
-use super::{check_distinct, check_output};
 use crate::arguments::{Global, SunHours, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
@@ -28,7 +28,6 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
     let params = arguments.when.params(&arguments.sun)?;
     if let Some(keep) = &arguments.keep {
         check_output("--save-matrix", keep, &["npz"])?;
-        check_distinct(arguments.outputs.output.iter().chain([keep]))?;
     }
     if arguments.trees.is_given() && (arguments.keep.is_some() || arguments.from_matrix.is_some()) {
         let what = "--through-trees does not work with --save-matrix and --load-matrix: a matrix does not separate trees from other obstacles";

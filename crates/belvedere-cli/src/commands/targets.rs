@@ -3,7 +3,7 @@
 use super::mesh_targets::{self, mesh_of};
 use super::query::points_of_file;
 use super::sights::{ground, ground_cloud};
-use super::{check_distinct, check_output, extension};
+use super::{check_output, extension};
 use crate::arguments::{FacingChoice, SkyOutputs, SkyPlaces, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
@@ -46,7 +46,6 @@ impl SkyPlaces {
         for output in &outputs.output {
             check_output("-o", output, known)?;
         }
-        check_distinct(&outputs.output)?;
         let refused = [
             ("--measures", outputs.measures.is_some(), mesh || points, "a grid"),
             ("--cell", self.cell.is_some(), mesh || points, "a grid"),

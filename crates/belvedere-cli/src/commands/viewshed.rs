@@ -3,8 +3,8 @@
 mod results;
 mod who;
 
+use super::check_output;
 use super::sights::{Proving, blockers, enclosure_note, ground, ground_cloud};
-use super::{check_distinct, check_output};
 use crate::arguments::{Global, Viewshed};
 use crate::pipeline::{self, Points, flagged};
 use crate::progress::Stages;
@@ -110,7 +110,7 @@ fn check_outputs(arguments: &Viewshed) -> Result<()> {
     if let Some(output) = &arguments.masks {
         check_output("--masks", output, &["tif", "tiff", "npy"])?;
     }
-    check_distinct(arguments.output.iter().chain(&arguments.heights).chain(&arguments.masks))
+    Ok(())
 }
 
 /// The cells looked at: those of the cloud that are near enough to any observer.

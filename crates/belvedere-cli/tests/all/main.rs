@@ -27,3 +27,4 @@ mod surroundings;
 mod trajectory;
 mod tree_light;
 mod usage;
+mod written_files;

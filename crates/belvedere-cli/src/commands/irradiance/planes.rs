@@ -1,7 +1,7 @@
 //! Planes of roofs: found, asked, and written.
 
 use super::super::sights::{ground, ground_cloud};
-use super::super::{check_distinct, check_output, check_parent, extension};
+use super::super::{check_output, check_parent, extension};
 use crate::arguments::{GroundChoice, Irradiance};
 use crate::commands::horizon::write_lines;
 use crate::pipeline::{Scene, flagged};
@@ -39,7 +39,7 @@ pub(super) fn check(arguments: &Irradiance) -> Result<()> {
     if let Some(folder) = &arguments.horizons {
         check_parent(folder)?;
     }
-    check_distinct(arguments.planes.iter().chain(&arguments.outputs.output))
+    Ok(())
 }
 
 /// The planes of the scene's roofs, where they are wanted.

@@ -1,0 +1,100 @@
+//! No output replaces an input, and no file gets two results. Checked for all commands at once, on what was typed, before anything is read.
+
+use crate::arguments::Usage;
+use anyhow::Result;
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Command};
+use std::path::{Path, PathBuf};
+
+/// A path that was typed, and the flag it belongs to.
+struct Typed {
+    flag: String,
+    path: PathBuf,
+}
+
+/// Refuses an output that is the same file as an input or as another output of the command in `matches`.
+pub(crate) fn check(program: &Command, matches: &ArgMatches) -> Result<()> {
+    let Some((name, of_command)) = matches.subcommand() else { return Ok(()) };
+    let Some(command) = program.find_subcommand(name) else { return Ok(()) };
+    let (mut inputs, mut outputs): (Vec<Typed>, Vec<Typed>) = (Vec::new(), Vec::new());
+    for argument in command.get_arguments().filter(|argument| argument.get_action().takes_values()) {
+        if of_command.value_source(argument.get_id().as_str()) != Some(ValueSource::CommandLine) {
+            continue;
+        }
+        for value in of_command.get_raw(argument.get_id().as_str()).into_iter().flatten() {
+            let typed = |path: PathBuf| Typed { flag: flag(argument), path };
+            if is_output(argument) {
+                outputs.push(typed(value.into()));
+            } else {
+                // flags such as --orient name their file behind an equals sign; what names no file is no concern here
+                let text = value.to_string_lossy();
+                let behind = text.split_once('=').map(|(_, file)| PathBuf::from(file));
+                inputs.extend(std::iter::once(PathBuf::from(value)).chain(behind).flat_map(files_of).map(typed));
+            }
+        }
+    }
+    for (i, output) in outputs.iter().enumerate() {
+        let path = output.path.display();
+        if let Some(input) = inputs.iter().find(|input| is_same(&input.path, &output.path)) {
+            let (flag, input) = (&output.flag, input.path.display());
+            return Err(Usage(format!(
+                "{flag} {path}: the same file as the input {input}, which it would replace; choose another name"
+            ))
+            .into());
+        }
+        if let Some(earlier) = outputs[..i].iter().find(|other| is_same(&other.path, &output.path)) {
+            let (flag, other) = (&output.flag, &earlier.flag);
+            return Err(
+                Usage(format!("{flag} {path}: given for two results (also {other}); choose another name")).into()
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Whether an argument names a file to write. Folders hold files of other names than their command reads.
+fn is_output(argument: &Arg) -> bool {
+    argument.get_value_names().is_some_and(|names| names.iter().any(|name| name == "OUT"))
+}
+
+fn flag(argument: &Arg) -> String {
+    match (argument.get_short(), argument.get_long()) {
+        (Some(short), _) => format!("-{short}"),
+        (None, Some(long)) => format!("--{long}"),
+        (None, None) => argument.get_id().to_string(),
+    }
+}
+
+/// The file at a path, or the files of a folder.
+fn files_of(path: PathBuf) -> Vec<PathBuf> {
+    match path.read_dir() {
+        Ok(entries) => entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| path.is_file()).collect(),
+        Err(_) => vec![path],
+    }
+}
+
+/// Whether two paths lead to the same plain file, through links too, or would if it was there.
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (a.metadata(), b.metadata()) {
+        (Ok(of_a), Ok(of_b)) => of_a.is_file() && of_b.is_file() && is_identical((a, &of_a), (b, &of_b)),
+        (Err(_), Err(_)) => absolute(a).is_some_and(|a| Some(a) == absolute(b)),
+        _ => false,
+    }
+}
+
+#[cfg(unix)]
+fn is_identical((_, a): (&Path, &std::fs::Metadata), (_, b): (&Path, &std::fs::Metadata)) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    (a.dev(), a.ino()) == (b.dev(), b.ino())
+}
+
+#[cfg(not(unix))]
+fn is_identical((a, _): (&Path, &std::fs::Metadata), (b, _): (&Path, &std::fs::Metadata)) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+/// The path of a file that is not there yet.
+fn absolute(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    Some(folder.canonicalize().ok()?.join(path.file_name()?))
+}
