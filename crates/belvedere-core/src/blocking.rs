@@ -12,6 +12,7 @@
 //! Peters, Ledoux & Biljecki 2015, section 3 (balls that block, and the cone of [`Profile::PaperCone`]). Bias and shell are this
 //! project's.
 
+use belvedere_data::model::FARTHEST;
 use belvedere_data::vector::{dot, length, sub};
 use belvedere_data::{Error, Result};
 
@@ -264,10 +265,10 @@ impl Passing {
 }
 
 impl Ball {
-    /// Whether centre and radius are finite and the radius is above zero.
+    /// Whether the radius is above zero, and centre and radius are at most [`FARTHEST`], whose squares are still exact enough.
     #[must_use]
     pub fn is_usable(&self) -> bool {
-        self.radius > 0.0 && self.radius.is_finite() && self.center.iter().all(|v| v.is_finite())
+        self.radius > 0.0 && self.radius <= FARTHEST && self.center.iter().all(|v| v.abs() <= FARTHEST)
     }
 
     /// Lowest and highest corner of a box that holds the ball, rounded outward.

@@ -6,6 +6,15 @@ use crate::needles::NeedleColumns;
 use crate::{Error, Result};
 use std::collections::BTreeMap;
 
+/// How far from the origin anything of a scene may lie, and how large a ball may be, metres. Beyond lies damage: readers leave out points
+/// that are 1000 km away, and squares of much larger numbers leave the range of f32.
+pub const FARTHEST: f32 = 1e7;
+
+/// Whether a local position is one that a scene can hold.
+pub(crate) fn is_near(position: [f32; 3]) -> bool {
+    position.iter().all(|v| v.abs() <= FARTHEST)
+}
+
 /// The plain data of a scene model: what is saved in a ball file and read from it.
 ///
 /// The crate `belvedere` makes it from a cloud and answers from it (`SceneModel`).
@@ -35,8 +44,8 @@ impl ModelParts {
         self
     }
 
-    /// Checks that all columns are equally long, centres, bounds and origin finite, radii finite and not negative, transmissions
-    /// between 0 and 1, and the pulses.
+    /// Checks that all columns are equally long, centres, bounds and origin within [`FARTHEST`], radii too and not negative,
+    /// transmissions between 0 and 1, and the pulses.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] or [`Error::InvalidParameter`] for the first fault.
@@ -47,17 +56,20 @@ impl ModelParts {
             return Err(Error::LengthMismatch { what: "transmissions of balls", expected, found });
         }
         let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
-        if let Some(c) = self.balls.centers.iter().find(|c| c.iter().any(|v| !v.is_finite())) {
-            return invalid("centre of a ball", format!("{c:?}"), "finite");
+        if let Some(c) = self.balls.centers.iter().find(|c| !is_near(**c)) {
+            return invalid("centre of a ball", format!("{c:?}"), "within 10000 km of the origin");
         }
-        if let Some(r) = self.balls.radii.iter().find(|&&r| !(r.is_finite() && r >= 0.0)) {
-            return invalid("radius of a ball", r.to_string(), "finite and not negative");
+        if let Some(r) = self.balls.radii.iter().find(|r| !(0.0..=FARTHEST).contains(*r)) {
+            return invalid("radius of a ball", r.to_string(), "0 to 10000 km");
         }
-        if !self.bounds.is_finite() {
-            return invalid("bounds of balls", format!("{:?}", (self.bounds.low, self.bounds.high)), "finite");
+        let Bounds { low, high } = self.bounds;
+        if !(is_near(low) && is_near(high) && low.iter().zip(&high).all(|(low, high)| low <= high)) {
+            let corners = format!("{:?}", (low, high));
+            return invalid("bounds of balls", corners, "lowest and highest corner within 10000 km of the origin");
         }
-        if self.frame.origin.iter().any(|v| !v.is_finite()) {
-            return invalid("origin of balls", format!("{:?}", self.frame.origin), "finite");
+        // a zone before the easting gives some 60 000 km; vertical systems and units add nothing to that
+        if self.frame.origin.iter().any(|v| !(v.abs() <= 1e9)) {
+            return invalid("origin of balls", format!("{:?}", self.frame.origin), "within a million km of zero");
         }
         if let Some(t) = self.transmission.iter().find(|t| !(t.is_nan() || (0.0..=1.0).contains(*t))) {
             return invalid("transmission of a ball", t.to_string(), "0 to 1, or NaN");

@@ -1,5 +1,6 @@
 //! Pulses as columns of numbers: the pieces of lines that they prove empty.
 
+use crate::model::{FARTHEST, is_near};
 use crate::{Error, Result};
 
 /// The empty piece of each pulse above its first return, one per row: 16 bytes each where all reach the same height, 20 otherwise.
@@ -16,7 +17,7 @@ pub struct NeedleColumns {
 }
 
 impl NeedleColumns {
-    /// Checks that columns are equally long and all numbers finite, lengths (which may be infinite) above zero.
+    /// Checks that columns are equally long and all positions within [`FARTHEST`], lengths (which may be infinite) above zero.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] or [`Error::InvalidParameter`] for the first fault.
@@ -28,14 +29,14 @@ impl NeedleColumns {
             }
         }
         let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
-        if let Some(start) = self.starts.iter().find(|start| !start.iter().all(|v| v.is_finite())) {
-            return invalid("lower end of a pulse", format!("{start:?}"), "finite");
+        if let Some(start) = self.starts.iter().find(|start| !is_near(**start)) {
+            return invalid("lower end of a pulse", format!("{start:?}"), "within 10000 km of the origin");
         }
         if let Some(length) = self.lengths.iter().find(|length| !(**length > 0.0)) {
             return invalid("length of a pulse", length.to_string(), "above zero");
         }
-        if !self.top.is_finite() {
-            return invalid("top of all pulses", self.top.to_string(), "finite");
+        if !(self.top.abs() <= FARTHEST) {
+            return invalid("top of all pulses", self.top.to_string(), "within 10000 km of the origin");
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Arrays of NumPy's archive format, written and read with every promise of a header held against what is really there.
 
-use std::io::{self, Read, Seek, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 
 use npyz::npz::{NpzArchive, NpzWriter};
 use npyz::zip::ZipWriter;
@@ -36,6 +36,46 @@ pub(crate) fn begin_array<'a, T: AutoSerialize, W: Write + Seek>(
     archive.array(name, options)?.default_dtype().shape(shape).begin_nd()
 }
 
+/// Bytes that all arrays of an archive may hold together, whatever its size.
+const MOST_BYTES_OF_SMALL: u64 = 1 << 26;
+/// Bytes that all arrays may hold for each byte of the archive. Compressed balls hold 2 to 4, matrices of open land at most 20.
+const MOST_BYTES_FOR_EACH: u64 = 100;
+/// The record that ends an archive without a comment.
+const END_BYTES: usize = 22;
+
+/// Opens an archive of `size` bytes whose directory does not contradict itself, and whose arrays are not far larger than the archive.
+///
+/// # Errors
+/// [`io::ErrorKind::InvalidData`] where it is damaged or would expand beyond reason.
+pub(crate) fn open<R: Read + Seek>(mut reader: R, size: u64) -> io::Result<NpzArchive<R>> {
+    let mut end = [0; END_BYTES];
+    if size >= END_BYTES as u64 {
+        reader.seek(SeekFrom::Start(size - END_BYTES as u64))?;
+        reader.read_exact(&mut end)?;
+        reader.seek(SeekFrom::Start(0))?;
+    }
+    // the directory counts its entries twice; the crate reads as many as the first says and would not miss the others
+    if end.starts_with(b"PK\x05\x06") && end[8..10] != end[10..12] {
+        return Err(invalid("its directory is damaged: two counts of its entries differ".to_owned()));
+    }
+    let mut archive = NpzArchive::new(reader)?;
+    let entries = archive.zip_archive();
+    if let Some(name) = entries.file_names().find(|name| !name.ends_with(".npy")) {
+        return Err(invalid(format!("its entry {name:?} is not an array")));
+    }
+    let mut bytes = 0_u64;
+    for index in 0..entries.len() {
+        bytes = bytes.saturating_add(entries.by_index_raw(index)?.size());
+    }
+    let most = size.saturating_mul(MOST_BYTES_FOR_EACH).max(MOST_BYTES_OF_SMALL);
+    if bytes > most {
+        return Err(invalid(format!(
+            "its {size} bytes would expand to {bytes}, more than {MOST_BYTES_FOR_EACH} times as many"
+        )));
+    }
+    Ok(archive)
+}
+
 /// The rows of an array of shape (M, N).
 pub(crate) fn rows<T: Deserialize + Clone, const N: usize, R: Read + Seek>(
     archive: &mut NpzArchive<R>,
@@ -67,7 +107,7 @@ pub(crate) fn values<T: Deserialize, R: Read + Seek>(
         if count > most {
             return Err(invalid(format!("the array {name} is too large")));
         }
-        // the shape is not to be trusted with an allocation: the vector grows with what is really there
+        // the shape was held against the size of the entry, but not yet the size against what is really there
         let mut values = Vec::new();
         for value in reader {
             values.push(value?);
@@ -106,9 +146,19 @@ fn read_array<T: Deserialize, R: Read + Seek, O, E: From<io::Error>>(
         return Err(invalid(format!("there is no array {name}")).into());
     }
     let file = archive.zip_archive().by_name(&npyz::npz::file_name_from_array_name(name)).map_err(io::Error::from);
-    let mut file = file?;
+    let file = file?;
+    let size = file.size();
+    // what is compressed may go on beyond the size that its entry states
+    let mut file = file.take(size.saturating_add(1));
     let header = read_header(&mut file).map_err(|e| invalid(format!("array {name}: {e}")))?;
     let shape = header.shape().to_vec();
+    let count = shape.iter().try_fold(1_u64, |product, &n| product.checked_mul(n));
+    let bytes_of_values = count.zip(header.dtype().num_bytes()).and_then(|(n, each)| n.checked_mul(each as u64));
+    if bytes_of_values.is_none() || bytes_of_values != file.limit().checked_sub(1) {
+        return Err(
+            invalid(format!("array {name} is damaged: its shape {shape:?} does not fit its {size} bytes")).into()
+        );
+    }
     if header.order() == Order::Fortran && shape.len() > 1 {
         let what = format!("the array {name} is in Fortran order; save it with numpy.ascontiguousarray");
         return Err(invalid(what).into());
@@ -118,6 +168,9 @@ fn read_array<T: Deserialize, R: Read + Seek, O, E: From<io::Error>>(
     let found = read(&shape, &mut values)?;
     drop(values);
     // the checksum of an entry is tested at its end, which the values alone do not reach
-    io::copy(&mut file, &mut io::sink())?;
+    let beyond = io::copy(&mut file, &mut io::sink()).map_err(|e| invalid(format!("array {name} is damaged: {e}")))?;
+    if beyond > 0 {
+        return Err(invalid(format!("array {name} is damaged: it is longer than the {size} bytes stated")).into());
+    }
     Ok(found)
 }

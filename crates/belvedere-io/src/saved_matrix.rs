@@ -5,7 +5,7 @@ use std::path::Path;
 
 use npyz::npz::{NpzArchive, NpzWriter};
 
-use crate::npz_arrays::{array, begin_array, in_blocks, rows, values};
+use crate::npz_arrays::{array, begin_array, in_blocks, open, rows, values};
 use crate::output::Output;
 use crate::source::{Input, Reader, Source};
 use belvedere_data::{Error, Result};
@@ -137,7 +137,7 @@ fn write_head<W: Write + Seek>(archive: &mut NpzWriter<W>, head: &MatrixHead) ->
 }
 
 fn unreadable(path: &Path) -> impl Fn(io::Error) -> Error + '_ {
-    move |e| Error::malformed(path, format!("not a visibility matrix: {e}"))
+    move |e| Error::malformed(path, format!("damaged, or not a visibility matrix: {e}"))
 }
 
 fn damaged(path: &Path) -> impl Fn(Error) -> Error + '_ {
@@ -149,8 +149,8 @@ fn damaged(path: &Path) -> impl Fn(Error) -> Error + '_ {
 /// # Errors
 /// [`Error::Io`] where the file cannot be read, [`Error::Malformed`] for files that are damaged or hold something else.
 pub fn read_matrix_head<'a>(source: impl Into<Source<'a>>) -> Result<MatrixHead> {
-    let Input { name, reader, .. } = source.into().open()?;
-    let mut archive = NpzArchive::new(reader).map_err(unreadable(&name))?;
+    let Input { name, reader, size } = source.into().open()?;
+    let mut archive = open(reader, size).map_err(unreadable(&name))?;
     head_of(&name, &mut archive)
 }
 
@@ -198,8 +198,8 @@ pub fn read_matrix_rows<'a>(
     head: &MatrixHead,
     sink: impl FnMut(&[u64]) -> Result<()>,
 ) -> Result<()> {
-    let Input { name, reader, .. } = source.into().open()?;
-    let mut archive = NpzArchive::new(reader).map_err(unreadable(&name))?;
+    let Input { name, reader, size } = source.into().open()?;
+    let mut archive = open(reader, size).map_err(unreadable(&name))?;
     rows_of(&name, &mut archive, head, sink)
 }
 
@@ -232,8 +232,8 @@ fn rows_of(
 /// # Errors
 /// Those of [`read_matrix_head`].
 pub fn read_matrix<'a>(source: impl Into<Source<'a>>) -> Result<SavedMatrix> {
-    let Input { name, reader, .. } = source.into().open()?;
-    let mut archive = NpzArchive::new(reader).map_err(unreadable(&name))?;
+    let Input { name, reader, size } = source.into().open()?;
+    let mut archive = open(reader, size).map_err(unreadable(&name))?;
     let head = head_of(&name, &mut archive)?;
     let mut words = Vec::new();
     rows_of(&name, &mut archive, &head, |rows| {

@@ -109,6 +109,8 @@ fn files_that_cannot_be_used_are_named() {
         place.refusal(1, &format!("query --sun 180,30 --self -o out.laz {name}"), &["error: ", name]);
         place.refusal(1, &format!("query --sun 180,30 --targets {name} -o out.csv house.laz"), &["error: ", name]);
     }
+    place.write("damaged.npz", "PK but no archive");
+    place.refusal(1, "query --sun 180,30 --random 9 -o out.csv damaged.npz", &["damaged.npz: damaged, or not a ball"]);
     assert!(place.names().iter().all(|name| !name.contains("out")), "{:?}", place.names());
 }
 

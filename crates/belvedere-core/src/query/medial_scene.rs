@@ -37,7 +37,7 @@ pub struct MedialScene {
 }
 
 impl MedialScene {
-    /// Indexes `balls`. Those that never shrank, or whose centre or radius is not finite, are left out.
+    /// Indexes `balls`. Those that never shrank, or whose centre or radius is beyond [`FARTHEST`](belvedere_data::model::FARTHEST), are left out.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) for columns of unequal length, and those of

@@ -36,7 +36,8 @@ pub(crate) fn read_las(input: Input<'_>) -> Result<ModelParts> {
         return Err(Error::malformed(path, "holds no balls; it needs the extra bytes radius and touch"));
     };
     let text = file.header.record(RECORD_USER, RECORD_ID).unwrap_or_default();
-    let metadata = metadata::from_json(String::from_utf8_lossy(text).trim_end_matches('\0'));
+    let metadata = metadata::from_json(String::from_utf8_lossy(text).trim_end_matches('\0'))
+        .map_err(|e| Error::malformed(path, e))?;
     let (announced, present) = (file.header.points, file.points_in_file());
     if present < announced {
         return Err(Error::malformed(path, format!("ends after {present} of {announced} balls")));

@@ -15,6 +15,10 @@ use belvedere_data::{Bounds, Frame};
 /// What the numbers beside the metadata mean in files that hold points.
 pub(super) const FILE_UNITS: &str = "file units, radians; origin in metres, bounds in metres relative to it";
 
+const FORMAT: &str = "belvedere balls 1";
+/// Lengths of units in metres that occur, and many that do not.
+const UNITS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
+
 const KINDS: [(CrsKind, &str); 5] = [
     (CrsKind::Unknown, "unknown"),
     (CrsKind::Projected, "projected"),
@@ -29,7 +33,7 @@ pub(super) fn to_json(parts: &ModelParts, units: &str) -> String {
     let provenance: Map<String, Value> =
         parts.provenance.iter().map(|(k, v)| (k.clone(), Value::String(v.clone()))).collect();
     json!({
-        "format": "belvedere balls 1",
+        "format": FORMAT,
         "units": units,
         "origin": parts.frame.origin,
         "bounds": [parts.bounds.low, parts.bounds.high],
@@ -57,30 +61,41 @@ pub(super) struct Metadata {
     bounds: Option<Bounds>,
 }
 
-/// What `text`, written by [`to_json`], says. Programs may have dropped all or part of it.
-pub(super) fn from_json(text: &str) -> Metadata {
-    let value: Value = serde_json::from_str(text).unwrap_or(Value::Null);
+/// What `text`, written by [`to_json`], says; the defaults where a program dropped it and it is empty. What is wrong with it otherwise.
+pub(super) fn from_json(text: &str) -> Result<Metadata, String> {
+    if text.is_empty() {
+        return Ok(Metadata::default());
+    }
+    let damaged = |what: &str| format!("its metadata is damaged ({what}); make the ball file again");
+    let value: Value = serde_json::from_str(text).map_err(|e| damaged(&e.to_string()))?;
+    if value["format"] != FORMAT {
+        return Err(damaged("it names another format"));
+    }
     let crs = &value["crs"];
     let code = |key: &str| crs[key].as_u64().and_then(|v| u32::try_from(v).ok());
-    let unit = |key: &str| crs[key].as_f64().filter(|v| v.is_finite() && *v > 0.0).unwrap_or(1.0);
+    let unit = |key: &str| match crs[key].as_f64() {
+        None => Ok(1.0),
+        Some(metres) if UNITS.contains(&metres) => Ok(metres),
+        Some(metres) => Err(damaged(&format!("a unit of {metres} metres"))),
+    };
     let named = KINDS.iter().find(|(_, name)| crs["kind"] == *name).map(|&(kind, _)| kind);
     let is_known = crs["wkt"].is_string() || crs["epsg"].is_number();
     let provenance = value["provenance"].as_object().into_iter().flatten();
     let corner = |i: usize| three(&value["bounds"][i]).map(|corner| corner.map(narrow));
-    Metadata {
+    Ok(Metadata {
         crs: Crs {
             wkt: crs["wkt"].as_str().map(str::to_owned),
             epsg: code("epsg"),
             vertical_epsg: code("vertical_epsg"),
-            metres_per_unit: unit("metres_per_unit"),
-            vertical_metres_per_unit: unit("vertical_metres_per_unit"),
+            metres_per_unit: unit("metres_per_unit")?,
+            vertical_metres_per_unit: unit("vertical_metres_per_unit")?,
             // balls are only ever made in a plane
             kind: named.unwrap_or(if is_known { CrsKind::Projected } else { CrsKind::Unknown }),
         },
         provenance: provenance.filter_map(|(k, v)| Some((k.clone(), v.as_str()?.to_owned()))).collect(),
         origin: three(&value["origin"]),
         bounds: corner(0).zip(corner(1)).map(|(low, high)| Bounds { low, high }),
-    }
+    })
 }
 
 fn three(value: &Value) -> Option<[f64; 3]> {

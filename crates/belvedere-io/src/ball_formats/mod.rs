@@ -16,7 +16,7 @@ mod write_ply;
 #[cfg(feature = "las")]
 pub(crate) use las::{las_has_balls, read_las, write_las};
 #[cfg(feature = "npy")]
-pub(crate) use npz::{npz_has_balls, read_npz, write_npz};
+pub(crate) use npz::{read_npz, write_npz};
 #[cfg(feature = "ply")]
 pub(crate) use ply::{ply_has_balls, read_ply};
 pub(crate) use write_ply::write_ply;

@@ -5,7 +5,7 @@ use std::io::{self, Read, Seek, Write};
 use npyz::npz::{NpzArchive, NpzWriter};
 
 use super::metadata;
-use crate::npz_arrays::{array, has, invalid, rows, values};
+use crate::npz_arrays::{array, has, invalid, open, rows, values};
 use crate::output::Output;
 use crate::source::Input;
 use belvedere_data::model::ModelParts;
@@ -16,6 +16,9 @@ const UNITS: &str = "metres relative to origin, radians; coordinates in the crs 
                      (origin + centers) / metres_per_unit";
 /// Arrays that files with pulses have.
 const PULSE_ARRAYS: [&str; 3] = ["pulse_starts", "pulse_slopes", "pulse_top"];
+/// Arrays that all or some files have beside these.
+const OTHER_ARRAYS: [&str; 9] =
+    ["centers", "origin", "radii", "source", "touch", "separation_angles", "transmission", "pulse_lengths", "metadata"];
 /// Metadata longer than this is not ours.
 const MAX_METADATA_BYTES: u64 = 1 << 24;
 
@@ -52,15 +55,20 @@ fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, parts: &ModelParts)
 }
 
 pub(crate) fn read_npz(input: Input<'_>) -> Result<ModelParts> {
-    let Input { name, reader, .. } = input;
+    let Input { name, reader, size } = input;
     let path = name.as_path();
-    let malformed = |e: io::Error| Error::malformed(path, format!("not a ball file: {e}"));
-    let mut archive = NpzArchive::new(reader).map_err(malformed)?;
-    let text = match values::<u8, _>(&mut archive, "metadata", MAX_METADATA_BYTES) {
-        Ok((text, _)) => String::from_utf8_lossy(&text).into_owned(),
-        Err(_) => String::new(),
+    let malformed = |e: io::Error| Error::malformed(path, format!("damaged, or not a ball file: {e}"));
+    let mut archive = open(reader, size).map_err(malformed)?;
+    if let Some(unknown) = unknown(&archive) {
+        let what = format!("damaged, or not a ball file: no ball file has an array {unknown:?}");
+        return Err(Error::malformed(path, what));
+    }
+    let text = if has(&archive, "metadata") {
+        values::<u8, _>(&mut archive, "metadata", MAX_METADATA_BYTES).map_err(malformed)?.0
+    } else {
+        Vec::new()
     };
-    let metadata = metadata::from_json(&text);
+    let metadata = metadata::from_json(&String::from_utf8_lossy(&text)).map_err(|e| Error::malformed(path, e))?;
     let centers = rows::<f32, 3, _>(&mut archive, "centers").map_err(malformed)?;
     let (origin, _) = values::<f64, _>(&mut archive, "origin", 3).map_err(malformed)?;
     let origin = <[f64; 3]>::try_from(origin.as_slice())
@@ -91,7 +99,8 @@ fn pulses<R: Read + Seek>(archive: &mut NpzArchive<R>) -> io::Result<NeedleColum
     })
 }
 
-pub(crate) fn npz_has_balls(input: Input<'_>) -> bool {
-    let Ok(archive) = NpzArchive::new(input.reader) else { return false };
-    ["centers", "radii", "origin"].iter().all(|name| has(&archive, name))
+/// An array of another name: a damaged name of one that is not in every file would not be missed.
+fn unknown<R: Read + Seek>(archive: &NpzArchive<R>) -> Option<String> {
+    let is_known = |name: &&str| PULSE_ARRAYS.contains(name) || OTHER_ARRAYS.contains(name);
+    archive.array_names().find(|name| !is_known(name)).map(str::to_owned)
 }

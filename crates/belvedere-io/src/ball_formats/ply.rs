@@ -20,7 +20,7 @@ pub(crate) fn read_ply(input: Input<'_>) -> Result<ModelParts> {
         return Err(Error::malformed(file.name(), what));
     }
     let json = joined(METADATA_KEY, file.comments());
-    let mut metadata = metadata::from_json(&json);
+    let mut metadata = metadata::from_json(&json).map_err(|e| Error::malformed(file.name(), e))?;
     if json.is_empty() {
         metadata.crs = crs_from_comments(file.comments()).unwrap_or_default();
     }

@@ -1,10 +1,13 @@
 //! Damaged ball files: archives of NumPy arrays, and meshes that claim long lists.
 
-use std::io::Cursor;
+use std::collections::BTreeMap;
+use std::io::{Cursor, Write};
 
-use belvedere_data::Frame;
 use belvedere_data::balls::MedialBalls;
+use belvedere_data::crs::Crs;
 use belvedere_data::model::ModelParts;
+use belvedere_data::needles::NeedleColumns;
+use belvedere_data::{Bounds, Frame};
 use belvedere_io::{Output, Source, read_balls, read_mesh, write_balls};
 
 /// A small ball file in the format of an extension.
@@ -60,6 +63,110 @@ fn damaged_ball_files_are_refused_or_hold_no_more_than_their_bytes() {
         }
     }
     assert!(refused > 200 && read > 50, "{refused} refused, {read} read");
+}
+
+/// An archive with every array that a ball file can have.
+fn full_archive() -> (ModelParts, Vec<u8>) {
+    let count = 5_usize;
+    let parts = ModelParts {
+        frame: Frame { origin: [85_000.0, 447_000.0, 1.0], crs: Crs { epsg: Some(28_992), ..Crs::default() } },
+        bounds: Bounds { low: [-5.0; 3], high: [9.0; 3] },
+        balls: MedialBalls {
+            centers: vec![[1.0, 2.0, 3.0]; count],
+            radii: vec![1.5; count],
+            source: vec![7; count],
+            touch: vec![u32::MAX; count],
+            separation_angles: vec![0.5; count],
+        },
+        transmission: vec![0.25; count],
+        pulses: Some(NeedleColumns {
+            starts: vec![[0.5; 3]; 3],
+            slopes: vec![[10, -20]; 3],
+            lengths: vec![4.0; 3],
+            top: 12.0,
+        }),
+        provenance: BTreeMap::from([("method".to_owned(), "carved".to_owned())]),
+    };
+    let mut cursor = Cursor::new(Vec::new());
+    write_balls(Output::writer("balls.npz", &mut cursor), &parts).unwrap();
+    (parts, cursor.into_inner())
+}
+
+#[test]
+fn no_flipped_bit_of_an_archive_changes_its_balls_without_an_error() {
+    let (parts, valid) = full_archive();
+    let mut unseen = 0;
+    for place in 0..valid.len() {
+        for bit in [place % 8, (place + 3) % 8] {
+            let mut bytes = valid.clone();
+            bytes[place] ^= 1 << bit;
+            match read_balls(Source::bytes("balls.npz", &bytes)) {
+                Ok(found) => {
+                    assert!(found == parts, "bit {bit} of byte {place} of {}", valid.len());
+                    unseen += 1;
+                }
+                Err(error) => assert!(error.to_string().contains("balls.npz: damaged"), "{error}"),
+            }
+        }
+    }
+    // dates, versions and the like mean nothing here
+    assert!(unseen * 3 < valid.len() * 2, "{unseen} of {} bits", valid.len() * 2);
+}
+
+/// An archive with one array, whose values are all zero.
+fn archive_of_zeros(name: &str, shape: &str, bytes: usize) -> Vec<u8> {
+    let mut archive = npyz::zip::ZipWriter::new(Cursor::new(Vec::new()));
+    let options = npyz::zip::write::FileOptions::default().compression_method(npyz::zip::CompressionMethod::Deflated);
+    archive.start_file(format!("{name}.npy"), options).unwrap();
+    let header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}\n");
+    archive.write_all(b"\x93NUMPY\x01\x00").unwrap();
+    archive.write_all(&u16::try_from(header.len()).unwrap().to_le_bytes()).unwrap();
+    archive.write_all(header.as_bytes()).unwrap();
+    let block = vec![0; 1 << 20];
+    for start in (0..bytes).step_by(block.len()) {
+        archive.write_all(&block[..block.len().min(bytes - start)]).unwrap();
+    }
+    archive.finish().unwrap().into_inner()
+}
+
+#[test]
+fn archives_that_expand_beyond_reason_are_refused_before_they_do() {
+    // 84 MB from a tenth of one
+    let bomb = archive_of_zeros("centers", "(6999999, 3)", 83_999_988);
+    assert!(bomb.len() < 100_000, "{}", bomb.len());
+    let error = read_balls(Source::bytes("bomb.npz", &bomb)).unwrap_err().to_string();
+    assert!(error.starts_with("bomb.npz: damaged") && error.contains("more than 100 times"), "{error}");
+    // the directory and the header of the array claim less than there is
+    let mut liar = archive_of_zeros("centers", "(6999999, 3)", 83_999_988);
+    let length = u32::try_from(liar.windows(4).rev().position(|w| w == b"PK\x01\x02").unwrap()).unwrap();
+    let entry = liar.len() - 4 - length as usize;
+    liar[entry + 24..entry + 28].copy_from_slice(&1000_u32.to_le_bytes());
+    let error = read_balls(Source::bytes("liar.npz", &liar)).unwrap_err().to_string();
+    assert!(error.starts_with("liar.npz: damaged") && error.contains("does not fit its 1000 bytes"), "{error}");
+    let mut liar = archive_of_zeros("centers", "(8, 3)", 83_999_988);
+    let entry = liar.len() - 4 - length as usize;
+    let header = liar[entry..].windows(2).position(|w| w == b"PK").map(|_| 10 + 58).unwrap();
+    liar[entry + 24..entry + 28].copy_from_slice(&u32::try_from(header + 96).unwrap().to_le_bytes());
+    let error = read_balls(Source::bytes("liar.npz", &liar)).unwrap_err().to_string();
+    assert!(error.starts_with("liar.npz: damaged"), "{error}");
+}
+
+#[test]
+fn numbers_that_no_scene_has_are_refused() {
+    let refused = |change: fn(&mut ModelParts), what: &str| {
+        let (mut parts, _) = full_archive();
+        change(&mut parts);
+        let mut cursor = Cursor::new(Vec::new());
+        let error = write_balls(Output::writer("balls.npz", &mut cursor), &parts).unwrap_err().to_string();
+        assert!(error.contains(what), "{error}");
+    };
+    refused(|parts| parts.balls.radii[2] = 1e38, "radius of a ball");
+    refused(|parts| parts.balls.centers[1][2] = -1e30, "centre of a ball");
+    refused(|parts| parts.bounds.high[0] = 1e30, "bounds of balls");
+    refused(|parts| parts.bounds.low[0] = 100.0, "bounds of balls");
+    refused(|parts| parts.frame.origin[0] = 1e300, "origin of balls");
+    refused(|parts| parts.pulses.as_mut().unwrap().starts[0][1] = 1e20, "lower end of a pulse");
+    refused(|parts| parts.pulses.as_mut().unwrap().top = f32::NAN, "top of all pulses");
 }
 
 #[test]

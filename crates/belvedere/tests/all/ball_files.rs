@@ -139,7 +139,7 @@ fn pulses_and_transmissions_that_cannot_be_are_errors_that_name_the_file() {
     places.iter().for_each(|&at| bytes[at] = b'q');
     fs::write(&path, bytes).unwrap();
     let message = read_balls(&path).unwrap_err().to_string();
-    assert!(message.contains("odd.npz") && message.contains("pulse_slopes"), "{message}");
+    assert!(message.contains("odd.npz") && message.contains("slopes"), "{message}");
 }
 
 #[test]
