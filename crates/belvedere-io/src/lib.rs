@@ -64,6 +64,7 @@ mod rows;
 mod saved_matrix;
 mod source;
 mod table;
+mod text_rows;
 mod trajectory;
 mod weather;
 mod write_cloud;
@@ -104,6 +105,7 @@ pub use saved_matrix::{
 };
 pub use source::{ReadSeek, Source};
 pub use table::{Cells, Table, read_table, write_table};
+pub use text_rows::{TextRows, read_text_rows, with_columns_read, write_text_rows};
 pub use trajectory::{TrajectoryReport, read_trajectory};
 pub use weather::read_weather;
 pub use write_cloud::{ExtraColumn, ExtraValues, WriteReport, write_cloud};

@@ -7,7 +7,8 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use crate::output::Output;
-use crate::source::{Input, Source};
+use crate::source::{Input, Source, extension};
+use crate::text_rows::TextRows;
 use belvedere_data::{Error, Result};
 
 /// Rows printed by one task.
@@ -18,24 +19,29 @@ const TASKS_PER_BLOCK: usize = 32;
 /// A table of numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
-    names: Vec<String>,
     columns: Vec<Vec<f64>>,
     /// Row and text of the first cell of each column that is no number.
     not_numbers: Vec<Option<(usize, String)>>,
-    row_count: usize,
+    text: TextRows,
 }
 
 impl Table {
+    /// The rows as they were given.
+    #[must_use]
+    pub fn into_text(self) -> TextRows {
+        self.text
+    }
+
     /// Number of rows below the header.
     #[must_use]
     pub fn row_count(&self) -> usize {
-        self.row_count
+        self.text.row_count()
     }
 
     /// Names of the columns as the file has them.
     #[must_use]
     pub fn names(&self) -> &[String] {
-        &self.names
+        self.text.names()
     }
 
     /// The column of that name, upper or lower case, (rows), NaN in empty cells; `None` where there is none.
@@ -43,7 +49,7 @@ impl Table {
     /// # Errors
     /// [`Error::Malformed`] where one of its cells holds text.
     pub fn column(&self, path: &Path, name: &str) -> Result<Option<&[f64]>> {
-        let Some(index) = self.names.iter().position(|own| own.eq_ignore_ascii_case(name)) else { return Ok(None) };
+        let Some(index) = self.names().iter().position(|own| own.eq_ignore_ascii_case(name)) else { return Ok(None) };
         if let Some(Some((row, text))) = self.not_numbers.get(index) {
             let text: String = text.chars().take(40).collect();
             return Err(Error::malformed(path, format!("row {row}: \"{text}\" in column {name} is not a number")));
@@ -57,7 +63,7 @@ impl Table {
     /// [`Error::Malformed`] where it is missing, or a cell is empty, text or not finite.
     pub fn full_column(&self, path: &Path, name: &str) -> Result<&[f64]> {
         let column = self.column(path, name)?.ok_or_else(|| {
-            Error::malformed(path, format!("there is no column {name}; the header has {}", self.names.join(", ")))
+            Error::malformed(path, format!("there is no column {name}; the header has {}", self.names().join(", ")))
         })?;
         if let Some(row) = column.iter().position(|v| !v.is_finite()) {
             return Err(Error::malformed(path, format!("row {}: {name} is empty or not finite", row + 1)));
@@ -96,15 +102,19 @@ pub fn read_table<'a>(source: impl Into<Source<'a>>) -> Result<Table> {
         .from_reader(file);
     let names: Vec<String> =
         reader.headers().map_err(failed)?.iter().map(|name| name.trim_start_matches('\u{feff}').to_owned()).collect();
-    let mut table =
-        Table { columns: vec![Vec::new(); names.len()], not_numbers: vec![None; names.len()], names, row_count: 0 };
+    let mut table = Table {
+        columns: vec![Vec::new(); names.len()],
+        not_numbers: vec![None; names.len()],
+        text: TextRows::new(names),
+    };
     let mut record = csv::StringRecord::new();
     while reader.read_record(&mut record).map_err(failed)? {
-        table.row_count += 1;
+        table.text.push(&record);
+        let number = table.text.row_count();
         for ((cell, column), not_number) in record.iter().zip(&mut table.columns).zip(&mut table.not_numbers) {
             let value = if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
             if value.is_none() && not_number.is_none() {
-                *not_number = Some((table.row_count, cell.to_owned()));
+                *not_number = Some((number, cell.to_owned()));
             }
             column.push(value.unwrap_or(f64::NAN));
         }
@@ -121,6 +131,8 @@ pub enum Cells<'a> {
     Whole(&'a [Option<u64>]),
     /// Words, quoted where they hold a separator.
     Words(&'a [&'a str]),
+    /// Words as they were given; where one is empty, the number with so many decimals.
+    Given(&'a [&'a str], &'a [f64], usize),
 }
 
 impl Cells<'_> {
@@ -128,11 +140,11 @@ impl Cells<'_> {
         match self {
             Self::Real(values, _) => values.len(),
             Self::Whole(values) => values.len(),
-            Self::Words(values) => values.len(),
+            Self::Words(values) | Self::Given(values, ..) => values.len(),
         }
     }
 
-    fn print(&self, row: usize, text: &mut Vec<u8>) -> std::io::Result<()> {
+    fn print(&self, row: usize, separator: char, text: &mut Vec<u8>) -> std::io::Result<()> {
         match self {
             Self::Real(values, decimals) => match values.get(row) {
                 Some(value) if value.is_finite() => write!(text, "{value:.decimals$}"),
@@ -142,14 +154,25 @@ impl Cells<'_> {
                 Some(Some(value)) => write!(text, "{value}"),
                 _ => Ok(()),
             },
-            Self::Words(values) => text.write_all(quoted(values.get(row).copied().unwrap_or_default()).as_bytes()),
+            Self::Given(words, values, decimals) if words.get(row).is_none_or(|word| word.is_empty()) => {
+                Self::Real(values, *decimals).print(row, separator, text)
+            }
+            Self::Words(words) | Self::Given(words, ..) => {
+                text.write_all(quoted(words.get(row).copied().unwrap_or_default(), separator).as_bytes())
+            }
         }
     }
 }
 
+/// What parts the cells of a table of that name.
+pub(crate) fn separator_of(path: &Path) -> char {
+    if ["txt", "xyz"].contains(&extension(path).as_str()) { ' ' } else { ',' }
+}
+
 /// A word as a cell of a table.
-fn quoted(word: &str) -> Cow<'_, str> {
-    let is_plain = !word.contains([',', '"', '\n', '\r']);
+pub(crate) fn quoted(word: &str, separator: char) -> Cow<'_, str> {
+    let is_empty_between_blanks = separator == ' ' && word.is_empty();
+    let is_plain = !word.contains([separator, '"', '\n', '\r']) && !is_empty_between_blanks;
     if is_plain { Cow::Borrowed(word) } else { Cow::Owned(format!("\"{}\"", word.replace('"', "\"\""))) }
 }
 
@@ -169,14 +192,14 @@ pub fn write_table<'a>(output: impl Into<Output<'a>>, columns: &[(&str, Cells<'_
                 if i > 0 {
                     text.push(b',');
                 }
-                cells.print(row, &mut text)?;
+                cells.print(row, ',', &mut text)?;
             }
             text.push(b'\n');
         }
         Ok(text)
     };
     output.into().write(|path, output| {
-        let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+        let names: Vec<Cow<'_, str>> = columns.iter().map(|(name, _)| quoted(name, ',')).collect();
         writeln!(output, "{}", names.join(",")).map_err(Error::io(path))?;
         let starts: Vec<usize> = (0..expected).step_by(ROWS_PER_TASK).collect();
         for block in starts.chunks(TASKS_PER_BLOCK) {

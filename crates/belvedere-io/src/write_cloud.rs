@@ -86,7 +86,7 @@ pub fn write_cloud<'a>(
     }
 }
 
-fn to_column<'a>(extra: &ExtraColumn<'a>) -> Column<'a> {
+pub(crate) fn to_column<'a>(extra: &ExtraColumn<'a>) -> Column<'a> {
     let values = match extra.values {
         ExtraValues::U8(v) => Values::U8(Cow::Borrowed(v)),
         ExtraValues::U32(v) => Values::U32(Cow::Borrowed(v)),

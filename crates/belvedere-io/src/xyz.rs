@@ -7,6 +7,7 @@ use super::part::Part;
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
 use super::source::Input;
+use super::text_rows::TextRows;
 use belvedere_data::{Error, Result};
 
 /// A line longer than this is no point.
@@ -27,11 +28,50 @@ enum Separator {
 impl Separator {
     fn split(self, line: &str) -> impl Iterator<Item = &str> {
         let (by_character, by_blank) = match self {
-            Self::Character(c) => (Some(line.split(c).map(|token| token.trim().trim_matches('"'))), None),
+            Self::Character(c) => (Some(Parted { rest: Some(line), by: c }), None),
             Self::Blank => (None, Some(line.split_ascii_whitespace())),
         };
         by_character.into_iter().flatten().chain(by_blank.into_iter().flatten())
     }
+}
+
+/// Cells parted by a character, without surrounding blanks and quotation marks. Within quotation marks the character is a part of the cell.
+struct Parted<'a> {
+    rest: Option<&'a str>,
+    by: char,
+}
+
+impl<'a> Iterator for Parted<'a> {
+    type Item = &'a str;
+
+    fn next(&mut self) -> Option<&'a str> {
+        let rest = self.rest?;
+        let quotation =
+            rest.trim_start().strip_prefix('"').and_then(|inside| inside.split_at_checked(closing(inside)?));
+        let (cell, behind) = match quotation {
+            // what follows the closing mark up to the next separator is no part of the cell
+            Some((cell, behind)) => (cell, behind.find(self.by).map(|at| &behind[at..])),
+            None => match rest.find(self.by) {
+                Some(at) => (rest[..at].trim().trim_matches('"'), Some(&rest[at..])),
+                None => (rest.trim().trim_matches('"'), None),
+            },
+        };
+        self.rest = behind.map(|behind| &behind[self.by.len_utf8()..]);
+        Some(cell)
+    }
+}
+
+/// Where the quotation mark is that ends what is `inside` two; a doubled one stands for itself.
+fn closing(inside: &str) -> Option<usize> {
+    let mut marks = inside.match_indices('"').map(|(at, _)| at);
+    while let Some(at) = marks.next() {
+        if inside[at + 1..].starts_with('"') {
+            marks.next();
+        } else {
+            return Some(at);
+        }
+    }
+    None
 }
 
 /// The points of the source.
@@ -48,7 +88,7 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
         part.report.format = "text, empty".to_owned();
         return Ok(part);
     };
-    let Start { separator, columns, ahead } = start;
+    let Start { separator, columns, ahead, .. } = start;
     part.report.format = format!("text, {}", columns_in_words(separator, &columns));
     let mut rows = Rows::new(columns.iter().copied().flatten()).with_numbers(reading.options.row_numbers);
     let mut bad = Bad::default();
@@ -75,10 +115,38 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
     Ok(part)
 }
 
+/// The lines of points as they are, with the names of their columns.
+pub(super) fn read_text(input: Input<'_>) -> Result<TextRows> {
+    let Input { name, reader: mut file, .. } = input;
+    let path = name.as_path();
+    let mut part = Part::new(path, "text");
+    let mut lines = Lines { path, file: &mut file, number: 0, bytes: Vec::new() };
+    let Some(start) = find_start(path, &mut part, &mut lines)? else { return Ok(TextRows::default()) };
+    let Start { separator, mut names, ahead, .. } = start;
+    let width = ahead.first().map_or(0, |(_, line)| separator.split(line).count());
+    if names.is_empty() {
+        names = ["x", "y", "z"].map(str::to_owned).to_vec();
+    }
+    while names.len() < width {
+        names.push(format!("column_{}", names.len() + 1));
+    }
+    let mut rows = TextRows::new(names);
+    let mut take = |line: &str| rows.push(separator.split(line).map(|cell| cell.replace("\"\"", "\"")));
+    for (_, line) in &ahead {
+        take(line);
+    }
+    while let Some((_, line)) = lines.next_data()? {
+        take(&line);
+    }
+    Ok(rows)
+}
+
 /// What the first lines tell.
 struct Start {
     separator: Separator,
     columns: Vec<Option<Role>>,
+    /// Names of the columns; none where no line has them.
+    names: Vec<String>,
     /// Data lines read already, with their numbers.
     ahead: Vec<(usize, String)>,
 }
@@ -120,7 +188,7 @@ fn is_comment(line: &str) -> bool {
 
 /// Reads on to the data; `None` where there is none.
 fn find_start<R: BufRead>(path: &Path, part: &mut Part, lines: &mut Lines<'_, R>) -> Result<Option<Start>> {
-    let mut names: Option<Vec<Option<Role>>> = None;
+    let mut names: Option<Header> = None;
     let mut ahead: Vec<(usize, String)> = Vec::new();
     let mut header_seen = false;
     while ahead.len() < LOOK_AHEAD {
@@ -153,11 +221,11 @@ fn find_start<R: BufRead>(path: &Path, part: &mut Part, lines: &mut Lines<'_, R>
     let Some((number, first)) = ahead.first() else { return Ok(None) };
     let separator = separator(first);
     refuse_decimal_comma(path, *number, first, separator)?;
-    let columns = names.unwrap_or_else(|| guess_columns(part, separator, &ahead));
+    let (columns, names) = names.unwrap_or_else(|| (guess_columns(part, separator, &ahead), Vec::new()));
     if separator.split(first).count() > columns.len() {
         part.note(format!("columns ignored: all after number {}", columns.len()));
     }
-    Ok(Some(Start { separator, columns, ahead }))
+    Ok(Some(Start { separator, columns, names, ahead }))
 }
 
 fn is_numeric(line: &str) -> bool {
@@ -165,10 +233,14 @@ fn is_numeric(line: &str) -> bool {
     separator.split(line).all(|token| token.parse::<f64>().is_ok())
 }
 
-/// The roles of the names in a header line, or `None` where x, y and z are not among them.
-fn header(line: &str) -> Option<Vec<Option<Role>>> {
-    let columns: Vec<Option<Role>> = separator(line).split(line).map(role_of).collect();
-    [Role::X, Role::Y, Role::Z].iter().all(|&role| columns.contains(&Some(role))).then_some(columns)
+/// The roles of columns, and their names.
+type Header = (Vec<Option<Role>>, Vec<String>);
+
+/// The names in a header line and their roles, or `None` where x, y and z are not among them.
+fn header(line: &str) -> Option<Header> {
+    let names: Vec<String> = separator(line).split(line).map(str::to_owned).collect();
+    let columns: Vec<Option<Role>> = names.iter().map(|name| role_of(name)).collect();
+    [Role::X, Role::Y, Role::Z].iter().all(|&role| columns.contains(&Some(role))).then_some((columns, names))
 }
 
 fn separator(line: &str) -> Separator {
@@ -181,8 +253,11 @@ fn separator(line: &str) -> Separator {
 
 fn refuse_decimal_comma(path: &Path, number: usize, line: &str, separator: Separator) -> Result<()> {
     let comma = match separator {
-        // Split at commas, "1,5 2,5 3,5" leaves a blank within a token.
-        Separator::Character(',') => separator.split(line).any(|token| token.contains(char::is_whitespace)),
+        // split at commas, "1,5 2,5 3,5" leaves tokens of two numbers
+        Separator::Character(',') => separator.split(line).any(|token| {
+            let mut words = token.split_whitespace();
+            token.contains(char::is_whitespace) && words.all(|word| word.parse::<f64>().is_ok())
+        }),
         _ => separator.split(line).take(3).any(|token| token.contains(',')),
     };
     if comma {

@@ -13,7 +13,7 @@ use belvedere::apps::exposure::{Exposure, ShadeAtEachSun, scene_exposure};
 use belvedere::apps::sky_view::{SKY_DIRECTIONS, SkyDirections};
 use belvedere::apps::sun::{Binning, SunSchedule, sun_days};
 use belvedere::apps::targets::Measure;
-use belvedere::io::{Cells, write_table};
+use belvedere::io::{Cells, with_columns_read, write_table};
 use places::{Places, routes, windows};
 use std::path::Path;
 
@@ -136,7 +136,8 @@ fn write_groups(output: &Path, places: &Places, found: &Exposure) -> Result<()> 
     }
     cells.extend(places.group_columns.iter().map(|(name, values, d)| (*name, Cells::Real(values, *d))));
     cells.extend(columns.iter().map(|(name, values, d)| (name.as_str(), Cells::Real(values, *d))));
-    Ok(write_table(output, &cells)?)
+    let read = places.given.columns(&(0..places.given.row_count()).collect::<Vec<_>>());
+    Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], &cells))?)
 }
 
 /// A row for each route and sun.

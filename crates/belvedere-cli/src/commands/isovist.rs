@@ -1,7 +1,7 @@
 //! `belvedere isovist`.
 
 use super::sights::{Proving, blockers};
-use super::surroundings::{eyes, needs_ground, note_enclosed};
+use super::surroundings::{eyes, needs_ground, note_enclosed, rows_as_given};
 use super::{check_output, extension};
 use crate::arguments::{GivingWay, Global, Isovist, Usage};
 use crate::pipeline::{self, Points, flagged};
@@ -11,7 +11,7 @@ use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::isovist::{self, IsovistParams, RadialStatistics};
 use belvedere::figures::{panorama_picture, write_png};
-use belvedere::io::{Cells, atomic, write_table};
+use belvedere::io::{Cells, TextRows, atomic, with_columns_read, write_table};
 use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::Path;
@@ -65,6 +65,7 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
     } else {
         summary.add("observers", rows.len());
     }
+    let given = rows_as_given(arguments.eyes.eyes.as_deref())?;
     for output in &arguments.output {
         stages.run("writing", 0, |_| match extension(output).as_str() {
             "json" => write_json(output, &rows, &isovists, north.of_grid),
@@ -72,7 +73,7 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
                 let Some(isovist) = isovists.first() else { return Ok(()) };
                 write_png(output, &panorama_picture(&isovist.panorama, "Ranges around the observer"))
             }
-            _ => write_rows(output, &rows),
+            _ => write_rows(output, &rows, &given),
         })?;
     }
     summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
@@ -119,7 +120,8 @@ fn row(cloud: &PointCloud, eye: [f64; 3], isovist: &isovist::Isovist, grid_north
     row
 }
 
-fn write_rows(output: &Path, rows: &[Row]) -> belvedere::Result<()> {
+/// A row for each observer, with what a table said of it.
+fn write_rows(output: &Path, rows: &[Row], given: &TextRows) -> belvedere::Result<()> {
     let Some(first) = rows.first() else { return Ok(()) };
     let columns: Vec<Vec<f64>> = (0..first.len()).map(|i| rows.iter().map(|row| row[i].1).collect()).collect();
     let named: Vec<(&'static str, Cells<'_>)> = first
@@ -127,7 +129,8 @@ fn write_rows(output: &Path, rows: &[Row]) -> belvedere::Result<()> {
         .zip(&columns)
         .map(|(&(name, _, decimals), values)| (name, Cells::Real(values, decimals)))
         .collect();
-    write_table(output, &named)
+    let read = given.columns(&(0..given.row_count()).collect::<Vec<_>>());
+    write_table(output, &with_columns_read(&read, &["x", "y", "z"], &named))
 }
 
 fn write_json(output: &Path, rows: &[Row], isovists: &[isovist::Isovist], grid_north: f64) -> belvedere::Result<()> {

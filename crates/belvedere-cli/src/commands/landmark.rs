@@ -4,6 +4,7 @@ mod results;
 mod what;
 
 use super::sights::{self, Proving, blockers, ground_cloud};
+use super::surroundings::rows_as_given;
 use super::{check_output, extension};
 use crate::arguments::{Global, Landmark, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
@@ -69,9 +70,10 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
         .run("testing landmark", eyes.len(), |progress| landmark_views(&blockers, &surface, &eyes, &params, progress));
     let views = flagged("--max-distance", views)?;
     summary.add("observers", Summary::of(&LandmarkReport::new(&views, &eyes, inside)));
+    let given = rows_as_given(arguments.observers.as_deref())?;
     for output in &arguments.output {
         stages.run("writing", 0, |_| match extension(output).as_str() {
-            "csv" => results::write_rows(output, &views, &eyes, &cloud),
+            "csv" => results::write_rows(output, &views, &eyes, &given, &cloud),
             "png" => results::write_map(output, &views, &ground, &cloud, middle),
             _ => results::write_share(output, &views, &ground, &cloud),
         })?;

@@ -10,7 +10,7 @@ use anyhow::Result;
 use belvedere::apps::profile::{SightProfile, sight_profile};
 use belvedere::figures::{profile_picture, write_png};
 use belvedere::ground::{Ground, MapGrid};
-use belvedere::io::{Cells, read_table, write_table};
+use belvedere::io::{Cells, TextRows, read_table, with_columns_read, write_table};
 use belvedere::query::{Answer, AnswerCounts, EarthParams, MedialScene, UnprovenAs, random_pairs};
 use std::path::Path;
 
@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     let mut summary = Summary::default();
     let points = if arguments.profile_out.is_some() { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
-    let pairs = pairs(arguments, &scene, global.seed, &mut stages)?;
+    let (pairs, rows) = pairs(arguments, &scene, global.seed, &mut stages)?;
     let mut section = Summary::default();
     let (blockers, unproven_as) = blockers(
         &scene,
@@ -70,7 +70,7 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
         summary.add("line", one);
     }
     if let Some(output) = &arguments.output {
-        stages.run("writing", 0, |_| write(output, &scene, &pairs, &sights, &answers))?;
+        stages.run("writing", 0, |_| write(output, &scene, &pairs, &rows, &sights, &answers))?;
         summary.add("written", output.display().to_string());
     }
     if let (Some(output), [pair]) = (&arguments.profile_out, &pairs[..]) {
@@ -80,14 +80,21 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     Ok(summary)
 }
 
-/// Observer and target of each line, local metres.
-fn pairs(arguments: &LineOfSight, scene: &Scene, seed: u64, stages: &mut Stages) -> Result<Vec<[[f64; 3]; 2]>> {
+/// Observer and target of each line, local metres, and the rows of the table they are from.
+fn pairs(
+    arguments: &LineOfSight,
+    scene: &Scene,
+    seed: u64,
+    stages: &mut Stages,
+) -> Result<(Vec<[[f64; 3]; 2]>, TextRows)> {
     let lines = &arguments.lines;
     if let (Some(from), Some(to)) = (&lines.from, &lines.to) {
-        return Ok(vec![[scene.cloud.frame.local_from_file(from.0), scene.cloud.frame.local_from_file(to.0)]]);
+        let pair = [from.0, to.0].map(|place| scene.cloud.frame.local_from_file(place));
+        return Ok((vec![pair], TextRows::default()));
     }
     if let Some(count) = lines.random {
-        return Ok(random_pairs(scene.model.bounds().low, scene.model.bounds().high, count, seed));
+        let pairs = random_pairs(scene.model.bounds().low, scene.model.bounds().high, count, seed);
+        return Ok((pairs, TextRows::default()));
     }
     let Some(path) = &lines.pairs else {
         return Err(
@@ -105,13 +112,15 @@ fn pairs(arguments: &LineOfSight, scene: &Scene, seed: u64, stages: &mut Stages)
             .frame
             .local_from_file(std::array::from_fn(|i| columns[first + i].get(row).copied().unwrap_or(f64::NAN)))
     };
-    Ok((0..table.row_count()).map(|row| [end(row, 0), end(row, 3)]).collect())
+    let pairs = (0..table.row_count()).map(|row| [end(row, 0), end(row, 3)]).collect();
+    Ok((pairs, table.into_text()))
 }
 
 fn write(
     output: &Path,
     scene: &Scene,
     pairs: &[[[f64; 3]; 2]],
+    rows: &TextRows,
     sights: &[Option<belvedere::query::LineOfSight>],
     answers: &[Answer],
 ) -> Result<()> {
@@ -144,7 +153,8 @@ fn write(
     columns.extend(["block_x", "block_y", "block_z"].into_iter().zip(&place).map(|(n, v)| (n, Cells::Real(v, 3))));
     columns.push(("block_ball", Cells::Whole(&balls)));
     columns.push(("block_source", Cells::Whole(&sources)));
-    Ok(write_table(output, &columns)?)
+    let read = rows.columns(&(0..rows.row_count()).collect::<Vec<_>>());
+    Ok(write_table(output, &with_columns_read(&read, &ENDS, &columns))?)
 }
 
 #[expect(clippy::too_many_arguments, reason = "what a run knows, handed on once")]

@@ -7,7 +7,10 @@ use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
-use belvedere::io::{ExtraColumn, ExtraValues, ReadOptions, WriteReport, read_cloud, write_cloud, write_npy_u8};
+use belvedere::io::{
+    ExtraColumn, ExtraValues, ReadOptions, TextRows, WriteReport, read_cloud, read_text_rows, write_cloud,
+    write_npy_u8, write_text_rows,
+};
 use belvedere::model::SceneModel;
 use belvedere::query::{
     Answer, AnswerCounts, BlockRule, CertifiedReport, Scope, UnprovenAs, query_points, random_targets,
@@ -42,6 +45,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     if arguments.targets.own && extension(output) == "npy" {
         pipeline::check_every_row(&scene.left_out)?;
     }
+    let rows = rows_as_given(arguments, &scene, &mut summary)?;
     let Scene { model, cloud, .. } = scene;
     let mut targets = targets(arguments, cloud, model.bounds(), global.seed, &mut stages, &mut summary)?;
     if arguments.view.kind.viewport.is_none() {
@@ -72,6 +76,9 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
             description: "0 blocked 1 visible 2 unproven 3 out",
             values: ExtraValues::U8(&codes),
         };
+        if let Some(rows) = &rows {
+            return write_text_rows(output, rows, &[column]).map(|()| WriteReport::default());
+        }
         if is_las(output)
             && let Some(normals) = targets.attributes.normals.take()
         {
@@ -85,6 +92,35 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     summary.add("written", output.display().to_string());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
+}
+
+/// The rows of the targets as they were given, where they go from a table to a table.
+fn rows_as_given(arguments: &Query, scene: &Scene, summary: &mut Summary) -> Result<Option<TextRows>> {
+    let clouds = &arguments.scene.input.clouds;
+    match (&arguments.targets.targets, &clouds[..]) {
+        (Some(path), _) => text_rows_for(path, &arguments.output, summary),
+        (None, [path]) if arguments.targets.own && scene.left_out.left_out_count() == 0 => {
+            text_rows_for(path, &arguments.output, summary)
+        }
+        _ => Ok(None),
+    }
+}
+
+/// The rows of a table of points for an output that is a table too. Columns that another output has no place for are reported.
+pub(super) fn text_rows_for(path: &Path, output: &Path, summary: &mut Summary) -> Result<Option<TextRows>> {
+    let is_table = |path: &Path| ["csv", "txt", "xyz"].contains(&extension(path).as_str());
+    if !is_table(path) {
+        return Ok(None);
+    }
+    let rows = read_text_rows(path)?;
+    if is_table(output) {
+        return Ok(Some(rows));
+    }
+    let lost = rows.names_without_role();
+    if !lost.is_empty() {
+        summary.add("columns_not_written", lost);
+    }
+    Ok(None)
 }
 
 /// Answers by exact lines of sight, told apart by pulses where these are known.

@@ -1,6 +1,6 @@
 //! Eyes of isovists and horizons: from flags and files to places.
 
-use super::sights;
+use super::{extension, sights};
 use crate::arguments::{Eyes, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
@@ -8,8 +8,9 @@ use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::apps::targets::{grid_around, set_on_ground};
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
-use belvedere::io::{RowsAre, read_observers};
+use belvedere::io::{RowsAre, TextRows, read_observers, read_table};
 use belvedere::query::MedialScene;
+use std::path::Path;
 
 /// Most notes on eyes that are in something solid.
 const MOST_NOTES: usize = 5;
@@ -52,6 +53,14 @@ pub(super) fn eyes(
         return Err(Usage(format!("--observer, --observer-height: the eye is at {place:?}, but must be finite")).into());
     }
     Ok(rows.into_iter().map(|row| row.0).collect())
+}
+
+/// The rows of a table of observers as they were given; none for other files and for observers that were typed.
+pub(super) fn rows_as_given(observers: Option<&Path>) -> Result<TextRows> {
+    match observers.filter(|path| ["csv", "txt"].contains(&extension(path).as_str())) {
+        Some(path) => Ok(read_table(path)?.into_text()),
+        None => Ok(TextRows::default()),
+    }
 }
 
 /// Reports on eyes that are inside what the cloud takes for solid.

@@ -1,7 +1,7 @@
 //! Targets of the sun and the sky: from flags and files to targets, and from measures to files.
 
 use super::mesh_targets::{self, mesh_of};
-use super::query::points_of_file;
+use super::query::{points_of_file, text_rows_for};
 use super::sights::{ground, ground_cloud};
 use super::{check_output, extension};
 use crate::arguments::{FacingChoice, SkyOutputs, SkyPlaces, Usage};
@@ -17,7 +17,7 @@ use belvedere::io::atomic;
 use belvedere::raster::Raster;
 use belvedere::results::{TakenFrom, measure_map, write_measures, write_raster};
 use belvedere::{Mesh, PointCloud};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Targets and what they were taken from.
 pub(crate) struct Asked {
@@ -28,8 +28,8 @@ pub(crate) struct Asked {
 enum Source {
     /// The cloud that the ground below cells, and the relief of maps, come from.
     Cells(Box<PointCloud>),
-    /// Points with their attributes.
-    Points(Box<PointCloud>),
+    /// Points with their attributes, and the file they were read from unless they are those of the scene.
+    Points(Box<PointCloud>, Option<PathBuf>),
     Mesh(Box<Mesh>),
 }
 
@@ -87,7 +87,7 @@ impl SkyPlaces {
             }
             let cloud = points_of_file(path, None, &scene.cloud.frame, stages, summary)?;
             let normals = cloud.attributes.normals.clone();
-            return self.of_points(cloud, normals);
+            return self.of_points(cloud, normals, Some(path));
         }
         if self.places.own {
             if scene.cloud.is_empty() {
@@ -98,6 +98,7 @@ impl SkyPlaces {
             return self.of_points(
                 std::mem::replace(&mut scene.cloud, PointCloud { frame, ..PointCloud::default() }),
                 normals,
+                None,
             );
         }
         let (low, high) = scene.model.bounds().on_map();
@@ -121,7 +122,7 @@ impl SkyPlaces {
         Ok(Asked { targets, from: Source::Cells(Box::new(cloud)) })
     }
 
-    fn of_points(&self, cloud: PointCloud, normals: Option<Vec<[f32; 3]>>) -> Result<Asked> {
+    fn of_points(&self, cloud: PointCloud, normals: Option<Vec<[f32; 3]>>, file: Option<&Path>) -> Result<Asked> {
         let normals = match self.facing {
             Some(FacingChoice::Normals) => {
                 let what = "--facing normals: the points have none; `belvedere normals` estimates them";
@@ -129,7 +130,10 @@ impl SkyPlaces {
             }
             _ => None,
         };
-        Ok(Asked { targets: Targets::of_points(&cloud, normals), from: Source::Points(Box::new(cloud)) })
+        Ok(Asked {
+            targets: Targets::of_points(&cloud, normals),
+            from: Source::Points(Box::new(cloud), file.map(Path::to_owned)),
+        })
     }
 
     fn of_mesh(
@@ -210,9 +214,13 @@ impl Asked {
             let relief = self.relief().unwrap_or_else(|| ground.heights.clone());
             return Ok(write_png(output, &map(&relief, ground.grid.cell)?)?);
         }
+        let rows = match &self.from {
+            Source::Points(_, Some(file)) => text_rows_for(file, output, summary)?,
+            _ => None,
+        };
         let from = match &self.from {
             Source::Cells(_) => TakenFrom::Nothing,
-            Source::Points(cloud) => TakenFrom::Cloud(cloud),
+            Source::Points(cloud, _) => rows.as_ref().map_or(TakenFrom::Cloud(cloud), TakenFrom::Rows),
             Source::Mesh(mesh) => TakenFrom::Mesh(mesh),
         };
         summary.add_writing(&write_measures(output, &self.targets, from, measures)?);

@@ -10,6 +10,7 @@ mod conventions;
 mod depth_maps;
 mod determinism;
 mod envelopes;
+mod given_rows;
 mod help_examples;
 mod info;
 mod interrupts;

@@ -3,7 +3,7 @@
 //! | targets | `.tif` | `.laz` `.las` `.ply` `.csv` |
 //! |---|---|---|
 //! | cells of a grid | the first measure as raster | a point for each cell that is asked about, all measures as columns |
-//! | points | | the points with their attributes, all measures as columns |
+//! | points | | the points with their attributes, all measures as columns; `.csv` of a table: its rows as they were given |
 //! | faces of a mesh | | `.csv`: a row for each object and face; `.ply`: the mesh coloured by the first measure |
 
 mod faces;
@@ -15,7 +15,9 @@ pub use map::measure_map;
 
 use crate::apps::targets::{Layout, Measure, Targets};
 use crate::ground::{Ground, MapGrid};
-use crate::io::{ExtraColumn, ExtraValues, Georeference, WriteReport, write_cloud, write_tif_f32};
+use crate::io::{
+    ExtraColumn, ExtraValues, Georeference, TextRows, WriteReport, write_cloud, write_text_rows, write_tif_f32,
+};
 use crate::raster::Raster;
 use crate::{Error, Frame, Mesh, PointCloud, Result};
 use std::path::Path;
@@ -30,6 +32,8 @@ pub enum TakenFrom<'a> {
     Nothing,
     /// The points of a cloud, with their attributes.
     Cloud(&'a PointCloud),
+    /// The rows of a table, which stay as they were given; for outputs that are tables too.
+    Rows(&'a TextRows),
     /// The faces of a mesh.
     Mesh(&'a Mesh),
 }
@@ -72,6 +76,9 @@ pub fn write_measures(
             }?;
             Ok(WriteReport::default())
         }
+        (_, TakenFrom::Rows(rows)) if !is_tiff => {
+            write_text_rows(path, rows, &columns(measures)).map(|()| WriteReport::default())
+        }
         (_, TakenFrom::Cloud(cloud)) if !is_tiff => write_points(path, cloud, measures),
         (Layout::Cells(_) | Layout::Points, TakenFrom::Nothing) if !is_tiff => {
             let rows: Vec<usize> = (0..expected).filter(|&row| targets.is_asked(row)).collect();
@@ -111,9 +118,13 @@ fn cells(targets: &Targets) -> Result<&Ground> {
 }
 
 fn write_points(path: &Path, cloud: &PointCloud, measures: &[Measure]) -> Result<WriteReport> {
+    write_cloud(path, cloud, &columns(measures))
+}
+
+fn columns(measures: &[Measure]) -> Vec<ExtraColumn<'_>> {
     let column = |measure| {
         let measure: &Measure = measure;
         ExtraColumn { name: &measure.name, description: measure.description, values: ExtraValues::F32(&measure.values) }
     };
-    write_cloud(path, cloud, &measures.iter().map(column).collect::<Vec<_>>())
+    measures.iter().map(column).collect()
 }

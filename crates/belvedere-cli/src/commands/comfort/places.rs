@@ -12,7 +12,7 @@ use belvedere::Frame;
 use belvedere::apps::exposure::{ROUTE_STEP, WALKER_HEIGHT};
 use belvedere::apps::targets::{Route, Targets, Window, grid_around, set_on_ground};
 use belvedere::apps::viewshed::{CELL, places_along};
-use belvedere::io::{Shape, read_table};
+use belvedere::io::{Shape, TextRows, read_table};
 use std::path::Path;
 
 /// Name, values and decimals.
@@ -27,6 +27,8 @@ pub(super) struct Places {
     pub(super) group_columns: Vec<Column>,
     /// What each is called; empty where nothing is.
     pub(super) names: Vec<String>,
+    /// The rows of a table of windows.
+    pub(super) given: TextRows,
     /// What groups are.
     pub(super) kind: &'static str,
     /// Column of their numbers.
@@ -78,6 +80,7 @@ pub(super) fn routes(
         place_columns,
         group_columns: vec![("length_m", routes.iter().map(Route::length).collect(), 2)],
         names,
+        given: TextRows::default(),
         kind: "routes",
         row_name: "route",
     })
@@ -133,7 +136,7 @@ pub(super) fn windows(
         ("azimuth", azimuth.to_vec(), 2),
         ("tilt", tilts, 2),
     ];
-    Ok(of_windows(targets, group_columns, Vec::new()))
+    Ok(Places { given: table.into_text(), ..of_windows(targets, group_columns, Vec::new()) })
 }
 
 fn faces(
@@ -165,7 +168,8 @@ fn faces(
 }
 
 fn of_windows(targets: Targets, group_columns: Vec<Column>, names: Vec<String>) -> Places {
-    Places { targets, place_columns: Vec::new(), group_columns, names, kind: "windows", row_name: "window" }
+    let given = TextRows::default();
+    Places { targets, place_columns: Vec::new(), group_columns, names, given, kind: "windows", row_name: "window" }
 }
 
 /// Coordinates of the file.

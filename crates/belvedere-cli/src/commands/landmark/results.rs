@@ -5,7 +5,7 @@ use belvedere::PointCloud;
 use belvedere::apps::landmark::LandmarkView;
 use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp_colors, write_png};
 use belvedere::ground::{Ground, highest_points};
-use belvedere::io::{Cells, atomic, write_table, write_tif_f32};
+use belvedere::io::{Cells, TextRows, atomic, with_columns_read, write_table, write_tif_f32};
 use belvedere::raster::Raster;
 use belvedere::results::georeference;
 use std::path::Path;
@@ -38,8 +38,14 @@ const MEASURES: [Measure; 9] = [
     }),
 ];
 
-/// A row for each observer that stands somewhere.
-pub(super) fn write_rows(output: &Path, views: &[LandmarkView], eyes: &[[f64; 3]], cloud: &PointCloud) -> Result<()> {
+/// A row for each observer that stands somewhere, with what a table said of it.
+pub(super) fn write_rows(
+    output: &Path,
+    views: &[LandmarkView],
+    eyes: &[[f64; 3]],
+    given: &TextRows,
+    cloud: &PointCloud,
+) -> Result<()> {
     let rows: Vec<usize> = (0..eyes.len()).filter(|&row| eyes[row].iter().all(|v| v.is_finite())).collect();
     let mut columns: Vec<(&'static str, Vec<f64>, usize)> = Vec::new();
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
@@ -50,7 +56,8 @@ pub(super) fn write_rows(output: &Path, views: &[LandmarkView], eyes: &[[f64; 3]
     }
     let named: Vec<(&'static str, Cells<'_>)> =
         columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))).collect();
-    Ok(write_table(output, &named)?)
+    let read = given.columns(&rows);
+    Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z"], &named))?)
 }
 
 /// The share seen as a raster.
