@@ -155,7 +155,7 @@ fn layout(low: [f64; 2], high: [f64; 2], params: &DsmParams) -> Result<([f64; 2]
         return Err(Error::InvalidParameter {
             name: "size of the raster",
             value: format!("{} x {} cells", size[0], size[1]),
-            expected: "at most 1073741824 cells; take larger cells",
+            expected: "at most 268435456 cells; take larger cells",
         });
     }
     Ok((corner, size.map(whole)))

@@ -10,10 +10,10 @@ use crate::splatting::{SplatParams, Splats};
 use crate::tin::{Tin, TinParams};
 use crate::voxels::{VoxelParams, Voxels};
 use crate::{Model, Survey};
-use belvedere::Result;
 use belvedere::medial::{CarvedParams, CrownParams, Rule, Trees};
 use belvedere::model::BallParams;
 use belvedere::query::{BlockRule, Visibility};
+use belvedere::{Mesh, PointCloud, Result};
 
 /// When a comparison of all methods takes one in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -170,4 +170,14 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
     methods.push(winter.on_held_out_pulses());
     methods.extend(carved_variants().map(|(key, title, params)| medial(&key, &title, params).when_named()));
     methods
+}
+
+/// Keys of all methods that there are for a survey with models of these names.
+#[must_use]
+pub fn method_keys(models: &[&str]) -> Vec<String> {
+    let cloud = PointCloud::default();
+    let model = |name: &&str| Model { name: (*name).to_owned(), mesh: Mesh::default() };
+    let models: Vec<Model> = models.iter().map(model).collect();
+    let survey = Survey { cloud: &cloud, scanner: &[], models: &models };
+    methods(&survey).into_iter().map(|method| method.key).collect()
 }

@@ -25,7 +25,7 @@ pub(crate) use compare::Compare;
 pub(crate) use envelope::{Comfort, Corners, Envelope};
 pub(crate) use irradiance::{ClearSkyChoice, Irradiance};
 pub(crate) use numbers::Numbers;
-use numbers::{above_zero, at_least_one, finite, known_crs, length, target_count};
+use numbers::{above_zero, at_least_one, at_most, finite, known_crs, length, location};
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Shell, Viewshed};
 pub(crate) use query::{DepthMap, Query, UnprovenChoice};
 pub(crate) use scene::{CloudInput, ProfileChoice, SceneConfig, SceneInput};
@@ -65,8 +65,8 @@ pub(crate) struct Cli {
 #[derive(Args)]
 #[command(next_help_heading = "Global options")]
 pub(crate) struct Global {
-    /// Number of threads; it does not change results [default: all processors]
-    #[arg(long, global = true, value_name = "N", value_parser = at_least_one)]
+    /// Number of threads, at most 1024; it does not change results [default: all processors]
+    #[arg(long, global = true, value_name = "N", value_parser = at_most::<1024>)]
     pub(crate) threads: Option<usize>,
     /// Seed of the random numbers
     #[arg(long, global = true, value_name = "N", default_value_t = 1)]

@@ -216,6 +216,30 @@ impl ViewChoice {
         Ok(views)
     }
 
+    /// Refuses what no scene could be seen with, before one is read.
+    pub(crate) fn check(&self) -> Result<()> {
+        let kind = &self.kind;
+        if let Some(eye) = kind.panorama {
+            flagged("--panorama, --size", View::panorama(eye.0, self.panorama_width()?))?;
+        } else if let Some(eye) = kind.eye {
+            self.camera(eye.0, |place| place)?;
+        } else if let Some(direction) = kind.direction {
+            flagged("--direction, --pixel", View::parallel(direction.0, [0.0; 3], [1.0; 3], 1.0))?;
+        } else if let Some(sun) = kind.sun.filter(|sun| !(0.0..=90.0).contains(&sun.0[1])) {
+            let elevation = sun.0[1];
+            return Err(Usage(format!("--sun: the elevation is {elevation}, but must be 0 to 90 degrees")).into());
+        } else if let Some(viewport) = &kind.viewport {
+            let (vx, vy) = (viewport.vx, viewport.vy);
+            flagged("--viewport", View::from_viewport(viewport.p0, vx, vy, viewport.pixels_per_unit))?;
+        }
+        Ok(())
+    }
+
+    /// Whether the view is from an eye.
+    pub(crate) fn is_central(&self) -> bool {
+        self.kind.panorama.is_some() || self.kind.eye.is_some()
+    }
+
     /// Width of a panorama in pixels.
     pub(crate) fn panorama_width(&self) -> Result<usize> {
         match self.size {
@@ -228,7 +252,7 @@ impl ViewChoice {
         }
     }
 
-    fn camera(&self, eye: [f64; 3], scene: &Scene) -> Result<View> {
+    fn camera(&self, eye: [f64; 3], to_local: impl Fn([f64; 3]) -> [f64; 3]) -> Result<View> {
         let Some(look_at) = self.look_at else { return Err(Usage("--eye needs --look-at".to_owned()).into()) };
         let size = match self.size {
             None => DEFAULT_CAMERA,
@@ -239,7 +263,7 @@ impl ViewChoice {
         };
         let fov = self.fov.unwrap_or(DEFAULT_FOV_DEG).to_radians();
         let (near, far) = (self.near.map_or(0.0, f64::from), self.far.unwrap_or(f64::INFINITY));
-        let [eye, look_at] = [eye, look_at.0].map(|place| scene.local_from_file(place));
+        let [eye, look_at] = [eye, look_at.0].map(to_local);
         flagged("--eye, --look-at, --fov, --size, --near, --far", View::perspective(eye, look_at, fov, size, near, far))
     }
 
@@ -247,10 +271,6 @@ impl ViewChoice {
         let (low, high) = scene.model.bounds().corners();
         let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));
         let view = if let Some(sun) = &self.kind.sun {
-            if !(0.0..=90.0).contains(&sun.0[1]) {
-                let elevation = sun.0[1];
-                return Err(Usage(format!("--sun: the elevation is {elevation}, but must be 0 to 90 degrees")).into());
-            }
             let [azimuth, elevation] = sun.0.map(f64::to_radians);
             let north = self.north.of_scene(scene);
             north.report(summary);
@@ -269,7 +289,7 @@ impl ViewChoice {
             );
             flagged("--viewport", view)?
         } else if let Some(eye) = &self.kind.eye {
-            self.camera(eye.0, scene)?
+            self.camera(eye.0, |place| scene.local_from_file(place))?
         } else {
             return Err(Usage(
                 "a view is missing: give --viewport, --sun, --direction, --eye or --panorama".to_owned(),

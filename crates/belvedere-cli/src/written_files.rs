@@ -1,9 +1,11 @@
-//! No output replaces an input, and no file gets two results. Checked for all commands at once, on what was typed, before anything is read.
+//! Inputs are there, no output replaces an input, and no file gets two results. Checked for all commands at once, on what was typed, before anything is read.
 
-use crate::arguments::Usage;
+use crate::arguments::{Corners, Usage};
 use anyhow::Result;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Command};
+use std::any::TypeId;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// A path that was typed, and the flag it belongs to.
@@ -12,7 +14,7 @@ struct Typed {
     path: PathBuf,
 }
 
-/// Refuses an output that is the same file as an input or as another output of the command in `matches`.
+/// Refuses inputs beside the scene that are not there, and outputs that are the same file as an input or as another output of the command in `matches`.
 pub(crate) fn check(program: &Command, matches: &ArgMatches) -> Result<()> {
     let Some((name, of_command)) = matches.subcommand() else { return Ok(()) };
     let Some(command) = program.find_subcommand(name) else { return Ok(()) };
@@ -26,10 +28,13 @@ pub(crate) fn check(program: &Command, matches: &ArgMatches) -> Result<()> {
             if is_output(argument) {
                 outputs.push(typed(value.into()));
             } else {
-                // flags such as --orient name their file behind an equals sign; what names no file is no concern here
-                let text = value.to_string_lossy();
-                let behind = text.split_once('=').map(|(_, file)| PathBuf::from(file));
-                inputs.extend(std::iter::once(PathBuf::from(value)).chain(behind).flat_map(files_of).map(typed));
+                let paths = files_named(argument, value);
+                if is_beside_the_scene(argument) {
+                    for path in &paths {
+                        path.metadata().map_err(belvedere::Error::io(path))?;
+                    }
+                }
+                inputs.extend(paths.into_iter().flat_map(files_of).map(typed));
             }
         }
     }
@@ -50,6 +55,27 @@ pub(crate) fn check(program: &Command, matches: &ArgMatches) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Whether an argument names a file that is read after the scene is built, which may take hours. The files of the scene are read at once.
+fn is_beside_the_scene(argument: &Arg) -> bool {
+    let is_of_scene = |name: &clap::builder::Str| ["CLOUD", "DIR"].contains(&name.as_str());
+    // a page is written to
+    argument.get_id() != "page" && argument.get_value_names().is_none_or(|names| !names.iter().any(is_of_scene))
+}
+
+/// The file that a value names, if it does. Some flags name it behind an equals sign.
+fn files_named(argument: &Arg, value: &OsStr) -> Vec<PathBuf> {
+    let text = value.to_string_lossy();
+    let parsed = argument.get_value_parser().type_id();
+    match text.split_once('=') {
+        _ if parsed == TypeId::of::<PathBuf>() => vec![value.into()],
+        Some(("trajectory" | "mesh" | "cloud", file)) => vec![file.into()],
+        Some((_, file)) if argument.get_id() == "model" => vec![file.into()],
+        // corners are typed, or in a file
+        _ if parsed == TypeId::of::<Corners>() && !text.contains(',') => vec![value.into()],
+        _ => Vec::new(),
+    }
 }
 
 /// Whether an argument names a file to write. Folders hold files of other names than their command reads.

@@ -1,7 +1,7 @@
 //! Flags of `compare`.
 
 use super::towns::{density, presets, within};
-use super::{Usage, target_count};
+use super::{Usage, at_most};
 use belvedere_baselines::methods::Listing;
 use belvedere_scenes::Preset;
 use clap::Args;
@@ -50,7 +50,7 @@ pub(crate) struct Compare {
     #[arg(long, value_name = "LIST", value_delimiter = ',', help_heading = "Methods and targets")]
     pub(crate) methods: Vec<String>,
     /// Number of targets of each type
-    #[arg(long = "target-count", value_name = "N", default_value_t = 50_000, value_parser = target_count, help_heading = "Methods and targets")]
+    #[arg(long = "target-count", value_name = "N", default_value_t = 50_000, value_parser = at_most::<10_000_000>, help_heading = "Methods and targets")]
     pub(crate) targets: usize,
     /// Folder for report.html, report.md, results and pictures; created if it does not exist
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]

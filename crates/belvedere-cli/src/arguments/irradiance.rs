@@ -1,6 +1,6 @@
 //! Flags of irradiance and of photovoltaic loss.
 
-use super::{Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTrees, above_zero, at_least_one};
+use super::{Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTrees, above_zero, at_least_one, location};
 use belvedere::apps::irradiance::{SkyModel, Surroundings};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -18,7 +18,7 @@ pub(crate) struct Irradiance {
     #[arg(long, value_name = "YEAR", requires = "clear_sky", help_heading = "Radiation")]
     pub(crate) year: Option<i16>,
     /// Latitude and longitude in degrees, north and east positive [default: from the reference system, else the weather file]
-    #[arg(long, value_name = "LAT,LON", allow_hyphen_values = true, help_heading = "Radiation")]
+    #[arg(long, value_name = "LAT,LON", value_parser = location, allow_hyphen_values = true, help_heading = "Radiation")]
     pub(crate) location: Option<Numbers<2>>,
     /// Number of sun positions for each row of weather; pvlib uses 1 [default: 4]
     #[arg(long = "parts-per-row", value_name = "N", value_parser = at_least_one, conflicts_with = "clear_sky", help_heading = "Radiation")]

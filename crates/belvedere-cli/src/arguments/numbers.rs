@@ -14,22 +14,26 @@ pub(super) fn at_least_one(text: &str) -> Result<usize, String> {
     }
 }
 
-/// More targets than this fill the memory of most machines, so that a slipped digit is an error and not a crash.
-const MOST_TARGETS: usize = 1_000_000_000;
-
-pub(super) fn target_count(text: &str) -> Result<usize, String> {
-    at_least_one(text)
-        .ok()
-        .filter(|&count| count <= MOST_TARGETS)
-        .ok_or_else(|| format!("must be a whole number from 1 to {MOST_TARGETS}"))
+/// A whole number from 1 to `MOST`.
+pub(super) fn at_most<const MOST: usize>(text: &str) -> Result<usize, String> {
+    let count = at_least_one(text).ok().filter(|&count| count <= MOST);
+    count.ok_or_else(|| format!("must be a whole number from 1 to {MOST}"))
 }
 
-pub(super) fn finite(text: &str) -> Result<f32, String> {
-    text.parse().ok().filter(|v: &f32| v.is_finite()).ok_or_else(|| "must be a finite number".to_owned())
+/// Latitude and longitude in degrees.
+pub(super) fn location(text: &str) -> Result<Numbers<2>, String> {
+    let place: Numbers<2> = text.parse()?;
+    let [latitude, longitude] = place.0;
+    let is_on_earth = latitude.abs() <= 90.0 && longitude.abs() <= 360.0;
+    is_on_earth.then_some(place).ok_or_else(|| "must be a latitude (-90 to 90) and a longitude in degrees".to_owned())
+}
+
+pub(super) fn finite<T: FromStr + Copy + Into<f64>>(text: &str) -> Result<T, String> {
+    text.parse().ok().filter(|&v: &T| v.into().is_finite()).ok_or_else(|| "must be a finite number".to_owned())
 }
 
 pub(super) fn length(text: &str) -> Result<f32, String> {
-    finite(text)?;
+    finite::<f32>(text)?;
     text.parse().ok().filter(|v: &f32| *v >= 0.0).ok_or_else(|| "must be a number of metres, 0 or more".to_owned())
 }
 

@@ -1,8 +1,8 @@
 //! Flags of lines of sight and viewsheds.
 
-use super::{North, Numbers, SceneInput, UnprovenChoice, above_zero, length, target_count};
+use super::{North, Numbers, SceneInput, UnprovenChoice, above_zero, at_most, finite, length};
 use belvedere::ground::GroundPoints;
-use belvedere::query::Curvature;
+use belvedere::query::{Curvature, MOST_RANDOM_PAIRS};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -43,8 +43,8 @@ pub(crate) struct Lines {
     /// Table with columns ax,ay,az,bx,by,bz in file coordinates: observer A, target B
     #[arg(long, value_name = "CSV", conflicts_with_all = ["from", "to", "random"])]
     pub(crate) pairs: Option<PathBuf>,
-    /// N random pairs, uniform in the bounding box of the cloud (see --seed)
-    #[arg(long, value_name = "N", value_parser = target_count, conflicts_with_all = ["from", "to"])]
+    /// N random pairs, at most 10 million, uniform in the bounding box of the cloud (see --seed)
+    #[arg(long, value_name = "N", value_parser = at_most::<MOST_RANDOM_PAIRS>, conflicts_with_all = ["from", "to"])]
     pub(crate) random: Option<usize>,
     /// Observer of one line, in file coordinates
     #[arg(long = "observer", value_name = "X,Y,Z", requires = "to", allow_hyphen_values = true)]
@@ -190,10 +190,10 @@ pub(crate) struct Looking {
     #[arg(long = "distance-step-m", value_name = "M", requires = "observers", value_parser = above_zero::<f64>, allow_negative_numbers = true)]
     pub(crate) step: Option<f64>,
     /// Height of observers above the ground in metres [default: 1.7]
-    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = finite::<f64>, allow_negative_numbers = true)]
     pub(crate) observer_height: Option<f64>,
     /// Height of targets above the ground in metres [default: 0]
-    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = finite::<f64>, allow_negative_numbers = true)]
     pub(crate) target_height: Option<f64>,
     /// Maximum horizontal distance in metres [default: no limit]
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true)]

@@ -1,6 +1,7 @@
 //! Flags of depth maps and of targets in a view.
 
-use super::{MeshTargets, SceneInput, ViewChoice, finite, length, target_count};
+use super::{MeshTargets, SceneInput, ViewChoice, at_most, finite, length};
+use belvedere::query::MOST_RANDOM_TARGETS;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -38,7 +39,7 @@ pub(crate) struct Query {
     /// With carved balls and from an eye it is the length of the line of sight that may lie inside a ball. Default: depth noise plus
     /// half a pixel on a slope of 63 degrees, 0.58 for pixels of 0.25 m and 0.22 from an eye; 0 with carved balls and with
     /// --ball-profile paper-cone.
-    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite, help_heading = "Result")]
+    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite::<f32>, help_heading = "Result")]
     pub(crate) bias: Option<f32>,
     /// Surface tolerance: how far carved balls are reduced near a target, in metres [default: 0.2]
     ///
@@ -65,8 +66,8 @@ pub(crate) struct Targets {
     /// Points or a mesh to query, in the coordinates of the scene; a table needs columns x, y and z
     #[arg(long, value_name = "FILE")]
     pub(crate) targets: Option<PathBuf>,
-    /// Query N random points, uniform in the bounding box of the cloud (see --seed)
-    #[arg(long, value_name = "N", value_parser = target_count)]
+    /// Query N random points, at most 50 million, uniform in the bounding box of the cloud (see --seed)
+    #[arg(long, value_name = "N", value_parser = at_most::<MOST_RANDOM_TARGETS>)]
     pub(crate) random: Option<usize>,
     /// Query all points of the cloud, in their order
     #[arg(long = "self")]

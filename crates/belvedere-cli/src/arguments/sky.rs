@@ -15,7 +15,7 @@ pub(crate) struct SkyPlaces {
     /// Height of cells above the ground or above --surface, in metres [default: 0.1]
     ///
     /// Use 1.5 for the head of a person.
-    #[arg(long = "target-height", value_name = "M", allow_negative_numbers = true, value_parser = finite, help_heading = "Targets")]
+    #[arg(long = "target-height", value_name = "M", allow_negative_numbers = true, value_parser = finite::<f32>, help_heading = "Targets")]
     pub(crate) height: Option<f32>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///

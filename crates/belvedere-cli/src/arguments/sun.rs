@@ -1,6 +1,6 @@
 //! Flags of the location, the time zone, the days and the sun hours.
 
-use super::{Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTrees, above_zero};
+use super::{Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTrees, above_zero, location};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use std::path::PathBuf;
 #[command(next_help_heading = "Sun")]
 pub(crate) struct SunPlace {
     /// Latitude and longitude of the scene in degrees, north and east positive [default: from its reference system]
-    #[arg(long, value_name = "LAT,LON", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LAT,LON", value_parser = location, allow_hyphen_values = true)]
     pub(crate) location: Option<Numbers<2>>,
     /// Time zone of times and days, such as Europe/Amsterdam or +02:00 [default: that of a given time, else mean solar time]
     #[arg(long, value_name = "ZONE", allow_hyphen_values = true)]

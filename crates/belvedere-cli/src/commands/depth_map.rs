@@ -22,6 +22,7 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     if let Some(path) = &arguments.balls_id {
         check_output("--ball-ids", path, &["tif", "tiff", "npy"])?;
     }
+    arguments.view.check()?;
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let scene = pipeline::scene(&arguments.scene, Points::LetGo, &mut stages, &mut summary)?;

@@ -1,7 +1,7 @@
 //! `belvedere horizon`.
 
 use super::sights::{Proving, blockers};
-use super::surroundings::{eyes, needs_ground, note_enclosed};
+use super::surroundings::{eyes, least_count, needs_ground, note_enclosed};
 use super::{check_output, extension};
 use crate::arguments::{BelowChoice, GivingWay, Global, Horizon, Usage};
 use crate::pipeline::{self, Points, flagged};
@@ -24,20 +24,13 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
         Some(step) => flagged("--angle-step-deg", azimuth_count(step.to_radians()))?,
         None => usual.azimuth_count,
     };
+    check_formats(arguments, least_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let points = if needs_ground(&arguments.eyes) { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
     let places = eyes(&arguments.eyes, &mut scene, &mut stages, &mut summary)?;
-    let only_one = |output: &&std::path::PathBuf| extension(output) != "csv" && places.len() > 1;
-    if let Some(output) = arguments.output.iter().find(only_one) {
-        let what = format!(
-            "{}: the format holds a single observer, but there are {}; use .csv",
-            output.display(),
-            places.len()
-        );
-        return Err(Usage(what).into());
-    }
+    check_formats(arguments, places.len())?;
     let north = match places.first() {
         Some(eye) => arguments.north.at(&scene, [eye[0], eye[1]]),
         None => arguments.north.of_scene(&scene),
@@ -68,6 +61,18 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
     summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
+}
+
+/// Refuses formats that hold one observer where there are more.
+fn check_formats(arguments: &Horizon, count: usize) -> Result<()> {
+    match arguments.output.iter().find(|output| count > 1 && extension(output) != "csv") {
+        Some(output) => {
+            let output = output.display();
+            let what = format!("{output}: the format holds a single observer, but there are {count}; use .csv");
+            Err(Usage(what).into())
+        }
+        None => Ok(()),
+    }
 }
 
 fn told(elevations: &[Vec<f64>]) -> Summary {

@@ -1,7 +1,7 @@
 //! `belvedere isovist`.
 
 use super::sights::{Proving, blockers};
-use super::surroundings::{eyes, needs_ground, note_enclosed, rows_as_given};
+use super::surroundings::{eyes, least_count, needs_ground, note_enclosed, rows_as_given};
 use super::{check_output, extension};
 use crate::arguments::{GivingWay, Global, Isovist, Usage};
 use crate::pipeline::{self, Points, flagged};
@@ -22,15 +22,11 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
     }
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
+    check_pictures(arguments, least_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
     let points = if needs_ground(&arguments.eyes) { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
     let places = eyes(&arguments.eyes, &mut scene, &mut stages, &mut summary)?;
-    if places.len() > 1
-        && let Some(output) = arguments.output.iter().find(|output| extension(output) == "png")
-    {
-        let what = format!("{}: a picture shows a single observer, but there are {}", output.display(), places.len());
-        return Err(Usage(what).into());
-    }
+    check_pictures(arguments, places.len())?;
     let north = arguments.north.of_scene(&scene);
     north.report(&mut summary);
     let mut section = Summary::default();
@@ -79,6 +75,17 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
     summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
+}
+
+/// Refuses pictures of several observers.
+fn check_pictures(arguments: &Isovist, count: usize) -> Result<()> {
+    match arguments.output.iter().find(|output| count > 1 && extension(output) == "png") {
+        Some(output) => {
+            let output = output.display();
+            Err(Usage(format!("{output}: a picture shows a single observer, but there are {count}")).into())
+        }
+        None => Ok(()),
+    }
 }
 
 /// Name, value and decimals of every measure.

@@ -20,12 +20,17 @@ use belvedere::{Frame, PointCloud};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
+    arguments.view.check()?;
     if let Some(path) = arguments.targets.targets.as_deref().filter(|path| mesh_targets::is_mesh(path)) {
         return mesh_targets::run(arguments, path, global);
     }
     mesh_targets::refuse_flags(&arguments.mesh)?;
     let output = &arguments.output;
     check_output("-o", output, &["csv", "txt", "xyz", "laz", "las", "ply", "npy"])?;
+    let is_central = arguments.view.is_central();
+    if is_central && Profile::from(arguments.scene.profile) != Profile::Sphere {
+        return Err(Usage("--ball-profile: the paper's cone is for parallel views only".to_owned()).into());
+    }
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let points = if arguments.targets.own { Points::Keep } else { Points::LetGo };
@@ -38,10 +43,6 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         return Err(Usage("--shell applies only to carved balls, and these are not carved".to_owned()).into());
     }
     let mut views = arguments.view.views(&scene, &mut summary)?;
-    let is_central = views.iter().any(View::is_central);
-    if is_central && Profile::from(arguments.scene.profile) != Profile::Sphere {
-        return Err(Usage("--ball-profile: the paper's cone is for parallel views only".to_owned()).into());
-    }
     if arguments.targets.own && extension(output) == "npy" {
         pipeline::check_every_row(&scene.left_out)?;
     }

@@ -104,7 +104,7 @@ fn check_pulses(arguments: &Simulate) -> Result<()> {
     let (count, advice) = match arguments.scanner {
         ScannerChoice::Airborne => {
             let density = arguments.airborne.density.unwrap_or(DENSITY);
-            (density * arguments.extent.powi(2), "use a use a use a lower --density or --extent")
+            (density * arguments.extent.powi(2), "use a lower --density or --extent")
         }
         ScannerChoice::Terrestrial => {
             let params = terrestrial(arguments, 0);

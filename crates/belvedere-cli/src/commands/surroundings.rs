@@ -55,6 +55,11 @@ pub(super) fn eyes(
     Ok(rows.into_iter().map(|row| row.0).collect())
 }
 
+/// How many observers there are at least: those typed, or the rows of a table; one for other files.
+pub(super) fn least_count(typed: usize, observers: Option<&Path>) -> Result<usize> {
+    Ok(typed.max(rows_as_given(observers)?.row_count()).max(1))
+}
+
 /// The rows of a table of observers as they were given; none for other files and for observers that were typed.
 pub(super) fn rows_as_given(observers: Option<&Path>) -> Result<TextRows> {
     match observers.filter(|path| ["csv", "txt"].contains(&extension(path).as_str())) {

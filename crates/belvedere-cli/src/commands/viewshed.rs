@@ -28,6 +28,7 @@ const MOST_NOTES: usize = 5;
 
 pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     check_outputs(arguments)?;
+    who::check(arguments)?;
     let earth = arguments.earth.params()?;
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();

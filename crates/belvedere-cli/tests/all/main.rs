@@ -16,6 +16,7 @@ mod info;
 mod interrupts;
 mod irradiance;
 mod language;
+mod limits;
 mod masbcpp_folder;
 mod odd_clouds;
 mod queries;

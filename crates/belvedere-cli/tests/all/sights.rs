@@ -151,7 +151,7 @@ fn what_cannot_be_is_refused_with_advice() {
     );
     place.refusal(2, &format!("viewshed {HOUSE} {observer} -o seen.doc"), &["extension"]);
     place.refusal(2, &format!("viewshed {HOUSE} {observer} -o seen.tif -o seen.tif"), &["two results"]);
-    place.refusal(2, &format!("viewshed {HOUSE} {observer} --cell 1e-9 -o seen.tif"), &["--cell", "400 million"]);
+    place.refusal(2, &format!("viewshed {HOUSE} {observer} --cell 1e-9 -o seen.tif"), &["--cell", "100 million"]);
     place.refusal(2, &format!("viewshed {HOUSE} {observer} --refraction 2 -o seen.tif"), &["refraction"]);
     place.refusal(2, &format!("viewshed {HOUSE} {observer} --unproven report -o seen.tif"), &["--unproven", "pulses"]);
     place.refusal(

@@ -56,6 +56,7 @@ fn an_output_that_is_an_input_is_refused_before_anything_is_read() {
 fn two_results_do_not_share_a_file() {
     let place = Workplace::new();
     place.write("out.tif", "before");
+    place.write("a.csv", "x,y\n");
     for (arguments, words) in [
         ("depth-map house.laz --sun 180,30 -o out.npy --ball-ids ./out.npy", ["--ball-ids", "also -o"]),
         ("viewshed house.laz --observer 1,1 -o out.tif --masks out.tif", ["--masks", "two results"]),
@@ -63,7 +64,7 @@ fn two_results_do_not_share_a_file() {
     ] {
         place.refusal(2, arguments, &words);
     }
-    assert_eq!(place.names(), ["out.tif"]);
+    assert_eq!(place.names(), ["a.csv", "out.tif"]);
 }
 
 #[test]

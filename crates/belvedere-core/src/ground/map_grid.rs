@@ -3,7 +3,7 @@
 use belvedere_data::{Error, Result};
 
 /// Most cells of a grid: what a few bytes each still fit into the memory of a usual machine.
-const MOST_CELLS: f64 = 4e8;
+const MOST_CELLS: f64 = 1e8;
 
 /// Square cells on the map, rows from the north, columns from the west.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,10 +44,10 @@ impl MapGrid {
             return invalid(
                 "cell",
                 format!("{cell} m, which makes {columns} x {rows} cells"),
-                "large enough for at most 400 million cells",
+                "large enough for at most 100 million cells",
             );
         }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers up to 4e8")]
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers up to 1e8")]
         let (width, height) = (columns as usize, rows as usize);
         Ok(Self { corner: [west * cell - origin[0], north * cell - origin[1]], cell, width, height })
     }

@@ -42,7 +42,9 @@ pub use earth::{Curvature, EarthParams};
 pub use fingerprint::scene_fingerprint;
 pub use medial_scene::MedialScene;
 pub use mesh::{BackFaces, MeshTargetParams, SeenArea, facing, seen_faces, seen_in_all, seen_objects};
-pub use points::{Answer, AnswerCounts, UnprovenAs, query_points, random_targets};
+pub use points::{
+    Answer, AnswerCounts, MOST_RANDOM_PAIRS, MOST_RANDOM_TARGETS, UnprovenAs, query_points, random_targets,
+};
 pub use proof::{Beside, Proof, ProofParams};
 pub use segments::{Block, Crossing, Enclosure, LineOfSight, merged_crossings, random_pairs};
 pub use skyline::SkylinePoint;

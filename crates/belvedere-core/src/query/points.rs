@@ -114,6 +114,11 @@ pub fn query_points(map: &DepthMap, targets: &[[f32; 3]], depth_bias: f32) -> Ve
         .collect()
 }
 
+/// Most random targets of one run, which needs some 100 bytes for each. More come from runs with other seeds.
+pub const MOST_RANDOM_TARGETS: usize = 50_000_000;
+/// Most random pairs of one run, which needs some 400 bytes for each.
+pub const MOST_RANDOM_PAIRS: usize = 10_000_000;
+
 /// `count` positions spread evenly at random over the local box from `low` to `high`: the paper's experiment. The same
 /// seed gives the same positions for any number of threads.
 #[must_use]

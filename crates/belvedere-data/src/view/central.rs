@@ -1,6 +1,6 @@
 //! Views from an eye: perspective, hemispheres, and the full sphere as two of them.
 
-use super::{MAX_PIXEL_COUNT, Projection, View, ViewFrame, to_sun};
+use super::{MAX_PIXEL_COUNT, MAX_SIDE, Projection, View, ViewFrame, to_sun};
 use crate::vector::{sub, unit};
 use crate::{Error, Result};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -18,12 +18,13 @@ fn checked_eye(eye: [f64; 3]) -> Result<[f64; 3]> {
 }
 
 fn checked_size(size_px: [usize; 2]) -> Result<[usize; 2]> {
+    let is_short = size_px.iter().all(|side| *side <= MAX_SIDE);
     match size_px[0].checked_mul(size_px[1]) {
-        Some(1..=MAX_PIXEL_COUNT) => Ok(size_px),
+        Some(1..=MAX_PIXEL_COUNT) if is_short => Ok(size_px),
         _ => Err(Error::InvalidParameter {
             name: "picture size",
             value: format!("{} x {} pixels", size_px[0], size_px[1]),
-            expected: "at least one pixel and at most 1073741824",
+            expected: "at least one pixel, at most 65536 on a side and 268435456 pixels in all",
         }),
     }
 }

@@ -9,8 +9,10 @@ pub use central::panorama_direction;
 pub use frame::ViewFrame;
 pub use projection::Projection;
 
-/// Most pixels a view may have, so that a mistyped pixel size is an error and not a crash: 4 GiB of f32.
-pub const MAX_PIXEL_COUNT: usize = 1 << 30;
+/// Most pixels a view may have, so that a mistyped pixel size is an error and not a crash: 1 GiB of f32.
+pub const MAX_PIXEL_COUNT: usize = 1 << 28;
+/// Most pixels on a side: longer pictures are slips, and many programs cannot open them.
+pub const MAX_SIDE: usize = 1 << 16;
 
 /// A view: frame, projection and picture size.
 #[derive(Clone, Copy, Debug, PartialEq)]

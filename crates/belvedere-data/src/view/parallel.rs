@@ -1,6 +1,6 @@
 //! Parallel views: the paper's viewport, and views that fit a scene.
 
-use super::{MAX_PIXEL_COUNT, Projection, View, ViewFrame};
+use super::{MAX_PIXEL_COUNT, MAX_SIDE, Projection, View, ViewFrame};
 use crate::vector::{cross, dot, unit};
 use crate::{Error, Result};
 
@@ -36,8 +36,12 @@ impl View {
         let down = cross(forward, right);
         let size = |v: [f64; 3]| (dot(v, v).sqrt() * pixels_per_metre - 1e-6).ceil().max(1.0);
         let (width, height) = (size(vx), size(vy));
-        if !(width * height <= MAX_PIXEL_COUNT as f64) {
-            return invalid("picture size", format!("{width} x {height} pixels"), "at most 1073741824 pixels");
+        if !(width * height <= MAX_PIXEL_COUNT as f64 && width.max(height) <= MAX_SIDE as f64) {
+            return invalid(
+                "picture size",
+                format!("{width} x {height} pixels"),
+                "at most 65536 on a side and 268435456 pixels in all",
+            );
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked against MAX_PIXEL_COUNT")]
         let size_px = [width as usize, height as usize];

@@ -15,7 +15,7 @@ use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::io::atomic;
-use belvedere_baselines::methods::{Listing, methods};
+use belvedere_baselines::methods::{Listing, method_keys, methods};
 use case::{Case, STREET_OBSERVERS};
 use place::Place;
 use results::{MethodResult, PlaceResult, keep, kept};
@@ -28,6 +28,8 @@ pub(crate) fn run(arguments: &Compare, global: &Global) -> Result<Summary> {
     if arguments.trajectory.is_some() && arguments.scene.is_empty() && arguments.held_out.is_empty() {
         return Err(Usage("--trajectory needs --clouds or --held-out".to_owned()).into());
     }
+    let models: Vec<&str> = arguments.model.iter().map(|model| model.name.as_str()).chain(place::MODELS).collect();
+    arguments.check_methods(&method_keys(&models))?;
     let folder = &arguments.output;
     atomic::make_folder(folder)?;
     atomic::make_folder(&folder.join("results"))?;

@@ -12,6 +12,9 @@ use belvedere_baselines::Model;
 use belvedere_scenes::{AirborneParams, Material, Preset, Scene, blocks, scan_airborne, town};
 use std::path::{Path, PathBuf};
 
+/// Names of the models of simulated towns.
+pub(super) const MODELS: [&str; 3] = ["blocks", "no-trees", "exact"];
+
 /// A place by its description.
 pub(super) enum Place {
     Simulated { preset: Preset, extent: f64, seed: u64, pulses_per_m2: f64 },
@@ -74,9 +77,9 @@ impl Place {
                 let (trajectory, _) = Trajectory::from_records(path.collect());
                 let (scanner, _) = trajectory.scanner_positions(&cloud)?;
                 let models = vec![
-                    Model { name: "blocks".to_owned(), mesh: mesh_of(&blocks(&scene), |_| true) },
-                    Model { name: "no-trees".to_owned(), mesh: mesh_of(&scene, |material| !is_loose(material)) },
-                    Model { name: "exact".to_owned(), mesh: mesh_of(&scene, |_| true) },
+                    Model { name: MODELS[0].to_owned(), mesh: mesh_of(&blocks(&scene), |_| true) },
+                    Model { name: MODELS[1].to_owned(), mesh: mesh_of(&scene, |material| !is_loose(material)) },
+                    Model { name: MODELS[2].to_owned(), mesh: mesh_of(&scene, |_| true) },
                 ];
                 Ok(Ingredients { cloud, scanner, models, scene })
             }

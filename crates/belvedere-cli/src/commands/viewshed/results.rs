@@ -78,8 +78,7 @@ pub(super) fn write_masks(output: &Path, seen: &Viewshed, ground: &Ground, cloud
         return Ok(write_npy_u32_bands(output, &seen.masks, grid.width, grid.height)?);
     }
     let [band] = &seen.masks[..] else {
-        let count = seen.seen_counts.len();
-        return Err(Usage(format!("--masks: a .tif holds 32 observers, but there are {count}; use .npy")).into());
+        return Err(Usage("--masks: a .tif holds 32 observers; use .npy".to_owned()).into());
     };
     let raster = Raster::from_values(grid.width, grid.height, band.clone())?;
     let what = "bit i: observer i sees the cell";

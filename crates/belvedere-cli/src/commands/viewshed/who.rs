@@ -1,7 +1,8 @@
 //! Who looks: from flags and files to eyes.
 
 use crate::arguments::{Usage, Viewshed};
-
+use crate::commands::extension;
+use crate::commands::surroundings::least_count;
 use crate::pipeline::flagged;
 use anyhow::{Result, bail};
 use belvedere::PointCloud;
@@ -9,6 +10,7 @@ use belvedere::apps::targets::set_on_ground;
 use belvedere::apps::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, places_along};
 use belvedere::ground::Ground;
 use belvedere::io::{ObserverRow, RowsAre, read_observers};
+use std::path::PathBuf;
 
 /// Metres between the observers on a line of GeoJSON.
 const STEP: f64 = 5.0;
@@ -21,9 +23,38 @@ pub(super) struct Row {
     pub(super) limits: SightLimits,
 }
 
-/// The observers of the flags or of the file. `grid_north` is the azimuth of grid north, radians.
-pub(super) fn rows(arguments: &Viewshed, cloud: &PointCloud, grid_north: f64) -> Result<Vec<Row>> {
+/// Bits of a mask that a raster holds for each cell.
+const MOST_IN_MASK: usize = 32;
+/// Counts that a raster holds; the next number is nodata.
+const MOST_COUNTED: usize = 65_534;
+
+/// Refuses limits that no observer can have, and outputs that cannot hold the observers that are known of, before a scene is read.
+pub(super) fn check(arguments: &Viewshed) -> Result<()> {
+    limits(arguments, 0.0)?;
     let (who, looking) = (&arguments.who, &arguments.looking);
+    let count = if looking.step.is_some() { 1 } else { least_count(who.observer.len(), who.observers.as_deref())? };
+    check_count(arguments, count)
+}
+
+/// Refuses outputs that cannot hold so many observers.
+pub(super) fn check_count(arguments: &Viewshed, count: usize) -> Result<()> {
+    let is_tif = |path: &PathBuf| matches!(extension(path).as_str(), "tif" | "tiff");
+    if count > MOST_IN_MASK && arguments.masks.as_ref().is_some_and(is_tif) {
+        return Err(
+            Usage(format!("--masks: a .tif holds {MOST_IN_MASK} observers, but there are {count}; use .npy")).into()
+        );
+    }
+    if count > MOST_COUNTED && arguments.output.iter().any(is_tif) {
+        return Err(Usage(format!(
+            "-o: a .tif counts at most {MOST_COUNTED} observers, but there are {count}; give fewer, or use --masks with .npy"
+        ))
+        .into());
+    }
+    Ok(())
+}
+
+fn limits(arguments: &Viewshed, grid_north: f64) -> Result<SightLimits> {
+    let looking = &arguments.looking;
     let unlimited = SightLimits::default();
     let limits = SightLimits {
         azimuth: looking.azimuth.map(|v| v.0.map(|azimuth| azimuth.to_radians() - grid_north)),
@@ -34,17 +65,23 @@ pub(super) fn rows(arguments: &Viewshed, cloud: &PointCloud, grid_north: f64) ->
         ],
     };
     flagged("--min-distance, --max-distance, --azimuth-range, --elevation-range", limits.validate())?;
+    if arguments.who.target.is_some() && (limits.azimuth.is_some() || limits.elevation.is_some()) {
+        let what = "--azimuth-range and --elevation-range limit the view of one observer; with --target there are many";
+        return Err(Usage(what.to_owned()).into());
+    }
+    Ok(limits)
+}
+
+/// The observers of the flags or of the file. `grid_north` is the azimuth of grid north, radians.
+pub(super) fn rows(arguments: &Viewshed, cloud: &PointCloud, grid_north: f64) -> Result<Vec<Row>> {
+    let (who, looking) = (&arguments.who, &arguments.looking);
+    let limits = limits(arguments, grid_north)?;
     let height = looking.observer_height.unwrap_or(OBSERVER_HEIGHT);
     let typed = |place: &crate::arguments::Place, height: f64| {
         let &crate::arguments::Place([x, y], z) = place;
         Row { place: cloud.frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]), height, limits }
     };
     if let Some(target) = &who.target {
-        if limits.azimuth.is_some() || limits.elevation.is_some() {
-            let what =
-                "--azimuth-range and --elevation-range limit the view of one observer; with --target there are many";
-            return Err(Usage(what.to_owned()).into());
-        }
         return Ok(vec![typed(target, looking.target_height.unwrap_or(TARGET_HEIGHT))]);
     }
     let Some(path) = &who.observers else {
@@ -61,6 +98,7 @@ pub(super) fn rows(arguments: &Viewshed, cloud: &PointCloud, grid_north: f64) ->
         let height = row.height.unwrap_or(height);
         rows.extend(places.into_iter().map(|place| Row { place, height, limits }));
     }
+    check_count(arguments, rows.len())?;
     Ok(rows)
 }
 
@@ -100,11 +138,11 @@ pub(super) fn observers(
     }
     let observers: Vec<Observer> =
         eyes.into_iter().zip(rows).map(|(eye, row)| Observer { eye, limits: row.limits }).collect();
-    flagged("--observer-height", check(&observers))?;
+    flagged("--observer-height", check_eyes(&observers))?;
     Ok(observers)
 }
 
-fn check(observers: &[Observer]) -> belvedere::Result<()> {
+fn check_eyes(observers: &[Observer]) -> belvedere::Result<()> {
     match observers.iter().find(|observer| !observer.eye.iter().all(|v| v.is_finite())) {
         None => Ok(()),
         Some(observer) => Err(belvedere::Error::InvalidParameter {

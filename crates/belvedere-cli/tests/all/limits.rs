@@ -1,0 +1,80 @@
+//! Options are checked before anything is read, and what would fill the memory or take hours is refused.
+
+use crate::common::{EAST, NORTH, Workplace, house};
+
+#[test]
+fn options_are_refused_before_a_cloud_is_read() {
+    let place = Workplace::new();
+    // whoever reads it says so
+    place.write("junk.laz", "no point cloud");
+    place.write("many.csv", format!("x,y\n{}", "1,2\n".repeat(65_535)));
+    place.write("some.csv", format!("x,y\n{}", "1,2\n".repeat(40)));
+    place.write("mesh.obj", "v 0 0 0\n");
+    for (arguments, words) in [
+        ("info junk.laz --threads 100000", ["--threads", "1 to 1024"]),
+        ("query junk.laz --sun 180,30 --random 1000000000 -o o.csv", ["--random", "1 to 50000000"]),
+        ("line-of-sight junk.laz --random 1000000000 -o o.csv", ["--random", "1 to 10000000"]),
+        ("depth-map junk.laz --eye 1,1,1 --look-at 1,1,2 --size 1000000000x1 -o o.tif", ["--size", "65536 on a side"]),
+        ("depth-map junk.laz --eye 1,1,1 --look-at 1,1,1 -o o.tif", ["--look-at", "point to look at"]),
+        ("depth-map junk.laz --eye 1,1,1 --look-at 2,1,1 --fov 300 -o o.tif", ["--fov", "175"]),
+        ("depth-map junk.laz --eye 1,1,1 --look-at 2,1,1 --near 5 --far 3 -o o.tif", ["--near", "--far"]),
+        ("depth-map junk.laz --sun 10,95 -o o.tif", ["--sun", "0 to 90"]),
+        ("depth-map junk.laz --direction 0,0,0 -o o.tif", ["--direction", "0"]),
+        ("query junk.laz --panorama 1,1,1 --size 100x100 --random 5 -o o.csv", ["--size", "twice as wide"]),
+        ("query junk.laz --panorama 1,1,1 --ball-profile paper-cone --random 5 -o o.csv", ["--ball-profile", "cone"]),
+        ("viewshed junk.laz --observer 1,1 --max-distance 5 --min-distance 10 -o o.tif", ["--max-distance", "5"]),
+        ("viewshed junk.laz --observer 1,1 --elevation-range 50,20 -o o.tif", ["--elevation-range", "50"]),
+        ("viewshed junk.laz --target 1,1 --azimuth-range 1,2 -o o.tif", ["--azimuth-range", "--target"]),
+        ("viewshed junk.laz --observer 1,1 --observer-height nan -o o.tif", ["--observer-height", "finite"]),
+        ("viewshed junk.laz --observers some.csv --masks o.tif -o p.tif", ["--masks", "40; use .npy"]),
+        ("viewshed junk.laz --observers many.csv -o o.tif", ["65534", "65535"]),
+        ("isovist junk.laz --observers some.csv -o o.png", ["o.png", "single observer"]),
+        ("horizon junk.laz --observer 1,1 --observer 2,2 -o o.txt", ["o.txt", "single observer"]),
+        ("irradiance junk.laz --clear-sky bird --location 200,10 -o o.tif", ["--location", "latitude"]),
+        #[cfg(feature = "compare")]
+        ("compare -o o --methods nonsense", ["--methods", "nonsense"]),
+        #[cfg(feature = "compare")]
+        ("compare -o o --clouds junk.laz --mesh mesh.obj --methods voxels,nonsense", ["--methods", "nonsense"]),
+        #[cfg(feature = "compare")]
+        ("compare -o o --target-count 1000000000", ["--target-count", "1 to 10000000"]),
+    ] {
+        let run = place.refusal(2, arguments, &words);
+        assert!(!run.stderr.contains("junk.laz:"), "{arguments}: {}", run.stderr);
+    }
+    assert_eq!(place.names(), ["junk.laz", "many.csv", "mesh.obj", "some.csv"]);
+}
+
+#[test]
+fn files_that_are_not_there_are_told_before_a_cloud_is_read() {
+    let place = Workplace::new();
+    place.write("junk.laz", "no point cloud");
+    for (arguments, file) in [
+        ("viewshed junk.laz --observers no.csv -o o.tif", "no.csv"),
+        ("viewshed junk.laz --observer 1,1 --ground cloud=no.laz -o o.tif", "no.laz"),
+        ("query junk.laz --sun 180,30 --targets no.csv -o o.csv", "no.csv"),
+        ("line-of-sight junk.laz --pairs no.csv -o o.csv", "no.csv"),
+        ("balls junk.laz --orient trajectory=no.txt -o o.npz", "no.txt"),
+        ("balls junk.laz --orient mesh=no.obj -o o.npz", "no.obj"),
+        ("envelope junk.laz --parcel no.geojson --protect no.geojson --date 2024-03-21 -o o.tif", "no.geojson"),
+    ] {
+        place.refusal(1, arguments, &[&format!("error: {file}: No such file")]);
+    }
+}
+
+#[test]
+fn grids_and_pictures_beyond_memory_are_refused_before_they_are_made() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    place.summary("balls house.laz -o balls.npz");
+    let start = std::time::Instant::now();
+    for (arguments, words) in [
+        (format!("viewshed house.laz --observer {EAST},{NORTH} --cell 1e-3 -o o.tif"), ["--cell", "100 million"]),
+        ("sky-view house.laz --cell 1e-3 -o o.tif".to_owned(), ["--cell", "100 million"]),
+        ("shadow house.laz --sun 180,30 --cell 1e-3 -o o.tif".to_owned(), ["--cell", "100 million"]),
+        ("depth-map balls.npz --sun 180,30 --pixel 1e-3 -o o.tif".to_owned(), ["--pixel", "268435456"]),
+    ] {
+        place.refusal(2, &arguments, &words);
+    }
+    assert!(start.elapsed().as_secs() < 60);
+    assert_eq!(place.names(), ["balls.npz", "house.laz"]);
+}
