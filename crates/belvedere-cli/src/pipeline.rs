@@ -157,6 +157,14 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, path: &Path) -> Result<()> {
         ("--next-angle", shrinking.next_angle.is_some()),
     ];
     match given.into_iter().find(|(_, given)| *given) {
+        Some(("--crs", _)) => {
+            let path = path.display();
+            Err(Usage(format!(
+                "--crs is for building balls from a cloud, but {path} is a ball file: give --location LAT,LON where the sun needs a place, \
+                 or make the ball file again with --crs"
+            ))
+            .into())
+        }
         Some((flag, _)) => {
             let path = path.display();
             Err(Usage(format!("{flag} is for building balls from a cloud, but {path} is a ball file")).into())

@@ -1,5 +1,6 @@
 //! Outputs that appear under their name only when they are complete.
 
+use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -125,11 +126,33 @@ fn check_parent(path: &Path) -> Result<()> {
     }
 }
 
+/// Removes the temporary files that runs left when they were killed while they wrote `target`.
+fn remove_leftovers(target: &Path, name: &OsStr) {
+    // only Linux tells without further ado which processes there are
+    if !Path::new("/proc/self/stat").exists() {
+        return;
+    }
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let start = format!(".{}.", name.to_string_lossy());
+    for entry in folder.read_dir().into_iter().flatten().flatten() {
+        let found = entry.file_name();
+        let numbers =
+            found.to_str().and_then(|found| found.strip_prefix(&start)?.strip_suffix(".part")?.split_once('-'));
+        let Some((process, attempt)) = numbers else { continue };
+        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+        if is_number(process) && is_number(attempt) && !Path::new("/proc").join(process).exists() {
+            // one that cannot be removed is in nobody's way
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
 fn create_beside(target: &Path) -> Result<(File, Temporary)> {
     check_parent(target)?;
     let Some(name) = target.file_name() else {
         return Err(Error::io(target)(std::io::Error::new(ErrorKind::InvalidInput, "names no file")));
     };
+    remove_leftovers(target, name);
     for attempt in 0..MAX_NAME_ATTEMPTS {
         let mut hidden = std::ffi::OsString::from(".");
         hidden.push(name);

@@ -55,7 +55,7 @@ pub fn read_batches<'a, S: Into<Source<'a>>>(
     control: &Control<'a>,
 ) -> Result<CloudBatches<'a>> {
     Ok(CloudBatches {
-        pending: files_of(sources.into_iter().map(Into::into))?.into(),
+        pending: files_of(sources.into_iter().map(Into::into))?.0.into(),
         forced: options.forced_crs()?,
         systems: Systems::new(options),
         options: options.clone(),

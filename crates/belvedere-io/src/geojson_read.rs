@@ -5,7 +5,7 @@ use std::path::Path;
 use geojson::{GeoJson, Geometry, GeometryValue, Position};
 use serde_json::{Map, Value};
 
-use super::source::Source;
+use super::source::{Source, refuse_other_shapes};
 
 use belvedere_data::crs::{Crs, CrsKind, GeographicProjection};
 use belvedere_data::{Error, Result};
@@ -40,7 +40,9 @@ pub struct GeojsonFeature {
 /// [`Error::Io`]; [`Error::Malformed`] for what is no GeoJSON and for coordinates that are not finite; [`Error::UnusableCrs`] where the
 /// file names another system than the cloud's.
 pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<GeojsonFeature>> {
-    let (name, bytes) = source.into().read_all()?;
+    let source = source.into();
+    refuse_other_shapes(source.name())?;
+    let (name, bytes) = source.read_all()?;
     let path = name.as_path();
     let file: GeoJson = serde_json::from_slice(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes))
         .map_err(|e| Error::malformed(path, format!("is not GeoJSON: {e}")))?;

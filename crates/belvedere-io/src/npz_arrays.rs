@@ -9,6 +9,21 @@ use npyz::{AutoSerialize, Deserialize, NpyWriter, Order, WriterBuilder};
 
 use crate::npy_header::read_header;
 
+/// Writes an archive, whose arrays `body` appends.
+pub(crate) fn write_archive<W: Write + Seek, E: From<io::Error>>(
+    output: W,
+    body: impl FnOnce(&mut NpzWriter<W>) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut archive = NpzWriter::new(output);
+    let written =
+        body(&mut archive).and_then(|()| Ok(archive.zip_writer().finish().map_err(io::Error::from)?.flush()?));
+    if written.is_err() {
+        // dropped without its end, the writer of the crate tries again to write it, and prints its own error
+        std::mem::forget(archive);
+    }
+    written
+}
+
 /// Appends an array to an archive.
 pub(crate) fn array<T: AutoSerialize, W: Write + Seek>(
     archive: &mut NpzWriter<W>,

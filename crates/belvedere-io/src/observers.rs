@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Map, Value};
 
 use crate::geojson_read::{Shape, read_geojson};
-use crate::source::Source;
+use crate::source::{Source, refuse_other_shapes};
 use crate::table::read_table;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
@@ -52,6 +52,7 @@ pub fn read_observers<'a>(source: impl Into<Source<'a>>, crs: &Crs, rows_are: Ro
     let source = source.into();
     let name = source.name().to_owned();
     let path = name.as_path();
+    refuse_other_shapes(path)?;
     let rows = match source.extension().as_str() {
         "csv" | "txt" => of_table(source, path, crs, rows_are)?,
         "geojson" | "json" => of_geojson(source, path, crs)?,

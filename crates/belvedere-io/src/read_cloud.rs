@@ -36,6 +36,8 @@ pub struct ReadReport {
     pub crs_source: String,
     /// Attributes that only some of the files have and the cloud therefore lacks.
     pub dropped_attributes: Vec<&'static str>,
+    /// Files of a folder that are no point clouds although their names look so: tables without x, y and z.
+    pub skipped_files: Vec<PathBuf>,
     /// What should be known before the cloud is used.
     pub notes: Vec<String>,
     /// Row of each point among the points of its file, from 0, where [`ReadOptions::row_numbers`] asks for it; empty otherwise.
@@ -90,7 +92,7 @@ impl ReadReport {
 /// [`ReadOptions::frame`], or else the middle, in whole metres, of the points within 10 km of the median point of all files.
 /// Points more than 1000 km from the median (or from the given origin) along an axis, and points that are not finite, are left out
 /// and counted. An attribute that one of the files lacks is dropped; files without any point are ignored. The result does not
-/// depend on the number of threads. The items of progress are points.
+/// depend on the number of threads. The items of progress are points. Tables without x, y and z in a folder are skipped and reported.
 ///
 /// # Errors
 /// [`Error::Io`], [`Error::UnknownFormat`], [`Error::MissingFeature`] and [`Error::Malformed`] about the source at fault;
@@ -106,7 +108,8 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
     let reading = Reading { options, forced: forced.as_ref(), control };
     let mut systems = Systems::new(options);
     let mut parts: Vec<Part> = Vec::new();
-    for source in files_of(sources.into_iter().map(Into::into))? {
+    let (sources, skipped_files) = files_of(sources.into_iter().map(Into::into))?;
+    for source in sources {
         control.check()?;
         let mut part = read_one(source, &reading)?;
         systems.accept(&mut part, &reading)?;
@@ -115,7 +118,8 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
         parts.push(part);
     }
     control.check()?;
-    assemble::assemble(parts, options)
+    let (cloud, report) = assemble::assemble(parts, options)?;
+    Ok((cloud, ReadReport { skipped_files, ..report }))
 }
 
 /// The reference system that all files must share.
@@ -158,19 +162,32 @@ impl Systems {
     }
 }
 
-/// The sources with folders replaced by their files.
-pub(super) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>) -> Result<Vec<Source<'a>>> {
-    let mut found = Vec::new();
+/// The sources with folders replaced by their files, and the files of folders that are tables of something else.
+pub(super) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>) -> Result<(Vec<Source<'a>>, Vec<PathBuf>)> {
+    let (mut found, mut skipped) = (Vec::new(), Vec::new());
     for source in sources {
-        match source.folder() {
-            Some(folder) if !is_masbcpp(folder) => found.extend(files_in(folder)?.into_iter().map(Source::path)),
-            _ => found.push(source),
+        let Some(folder) = source.folder().filter(|folder| !is_masbcpp(folder)) else {
+            found.push(source);
+            continue;
+        };
+        let (others, clouds): (Vec<PathBuf>, Vec<PathBuf>) =
+            files_in(folder)?.into_iter().partition(|file| is_stray(file));
+        if clouds.is_empty() {
+            return Err(Error::malformed(folder, "the folder holds tables, but none with columns x, y and z"));
         }
+        found.extend(clouds.into_iter().map(Source::path));
+        skipped.extend(others);
     }
     if found.is_empty() {
         return Err(Error::NoPoints { what: "no file was given".to_owned() });
     }
-    Ok(found)
+    Ok((found, skipped))
+}
+
+/// Whether a file beside clouds is a table that belongs to them, such as a trajectory of other columns or a list of tiles.
+fn is_stray(file: &Path) -> bool {
+    ["xyz", "txt", "csv"].contains(&extension(file).as_str())
+        && Source::path(file).open().is_ok_and(xyz::is_another_table)
 }
 
 fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {

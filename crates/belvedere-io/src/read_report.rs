@@ -22,6 +22,11 @@ impl Serialize for ReadReport {
         map.serialize_entry("reference_system", if self.crs.is_empty() { "unknown" } else { &self.crs })?;
         map.serialize_entry("left_out", &left_out)?;
         map.serialize_entry("attributes_not_in_every_file", &self.dropped_attributes)?;
+        if !self.skipped_files.is_empty() {
+            let names: Vec<String> = self.skipped_files.iter().map(|file| file.display().to_string()).collect();
+            map.serialize_entry("skipped_file_count", &names.len())?;
+            map.serialize_entry("skipped_files_without_x_y_z", &names)?;
+        }
         map.serialize_entry("notes", &notes)?;
         map.end()
     }

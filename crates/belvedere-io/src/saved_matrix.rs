@@ -5,7 +5,7 @@ use std::path::Path;
 
 use npyz::npz::{NpzArchive, NpzWriter};
 
-use crate::npz_arrays::{array, begin_array, in_blocks, open, rows, values};
+use crate::npz_arrays::{array, begin_array, in_blocks, open, rows, values, write_archive};
 use crate::output::Output;
 use crate::source::{Input, Reader, Source};
 use belvedere_data::{Error, Result};
@@ -113,17 +113,23 @@ pub fn write_matrix_rows<'a>(
     head.check_directions()?;
     let [m, d] = [head.targets.len(), head.directions.len()].map(|n| n as u64);
     output.into().write(|path, output| {
-        let mut archive = NpzWriter::new(output);
-        let mut bits = begin_array(&mut archive, "bits", &[m, d.div_ceil(WORD as u64)]).map_err(Error::io(path))?;
-        let mut count = 0;
-        rows(&mut |words| {
-            head.check_rows(words)?;
-            count += words.len();
-            bits.extend(words.iter().copied()).map_err(Error::io(path))
-        })?;
-        head.check_count(count)?;
-        bits.finish().map_err(Error::io(path))?;
-        write_head(&mut archive, head).map_err(Error::io(path))
+        let written = write_archive(output, |archive| {
+            let mut bits = begin_array(archive, "bits", &[m, d.div_ceil(WORD as u64)])?;
+            let mut count = 0;
+            rows(&mut |words| {
+                head.check_rows(words)?;
+                count += words.len();
+                bits.extend(words.iter().copied()).map_err(Error::io(path))
+            })
+            .map_err(Stopped::BySink)?;
+            head.check_count(count).map_err(Stopped::BySink)?;
+            bits.finish()?;
+            Ok(write_head(archive, head)?)
+        });
+        written.map_err(|stopped| match stopped {
+            Stopped::ByFile(error) => Error::io(path)(error),
+            Stopped::BySink(error) => error,
+        })
     })
 }
 
@@ -132,8 +138,7 @@ fn write_head<W: Write + Seek>(archive: &mut NpzWriter<W>, head: &MatrixHead) ->
     array(archive, "directions", &[d, 3], head.directions.iter().flatten().copied())?;
     array(archive, "targets", &[m, 3], head.targets.iter().flatten().copied())?;
     array(archive, "origin", &[3], head.origin.into_iter())?;
-    array(archive, "scene", &[1], [head.scene].into_iter())?;
-    archive.zip_writer().finish()?.flush()
+    array(archive, "scene", &[1], [head.scene].into_iter())
 }
 
 fn unreadable(path: &Path) -> impl Fn(io::Error) -> Error + '_ {
@@ -171,7 +176,7 @@ fn head_of(path: &Path, archive: &mut NpzArchive<Reader<'_>>) -> Result<MatrixHe
     Ok(head)
 }
 
-/// Why rows were read no further.
+/// Why rows were read or written no further.
 enum Stopped {
     ByFile(io::Error),
     BySink(Error),

@@ -122,6 +122,23 @@ pub(crate) fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
+/// An error with the conversion to run, for formats of shapes that are not read.
+pub(crate) fn refuse_other_shapes(name: &Path) -> Result<()> {
+    let format = match extension(name).as_str() {
+        "gpkg" => "a GeoPackage",
+        "shp" | "dbf" | "shx" => "a Shapefile",
+        "kml" | "kmz" => "KML",
+        "gml" => "GML",
+        _ => return Ok(()),
+    };
+    let file = name.display();
+    let what = format!(
+        "is {format}; convert it to GeoJSON: ogr2ogr -f GeoJSON {} {file}",
+        name.with_extension("geojson").display()
+    );
+    Err(Error::malformed(name, what))
+}
+
 /// Why a name is of no use: its format was not built in, or is none of `supported`, the extensions that would do.
 pub(crate) fn unusable(name: &Path, kind: &'static str, supported: &'static str) -> Error {
     let extension = extension(name);

@@ -1,6 +1,7 @@
 //! The folder of NumPy arrays that masbcpp, the reference program of the shrinking ball, reads and writes.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use crate::atomic;
 use crate::output::Output;
@@ -46,7 +47,7 @@ impl MasbcppFolder<'_> {
 }
 
 /// Writes the arrays of `folder` into the folder at `path`, which is made if only it is missing. Each file appears only
-/// when it is complete; files of other names stay.
+/// when it is complete; files of other names stay. Where writing fails, what was not there before is removed again.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] when the arrays differ in length, before anything is written, and [`Error::Io`].
@@ -58,7 +59,20 @@ pub fn write_masbcpp(path: &Path, folder: &MasbcppFolder<'_>) -> Result<()> {
             return Err(Error::LengthMismatch { what, expected: expected.unwrap_or(0), found });
         }
     }
+    let names = folder.lengths().map(|(name, _)| path.join(format!("{name}.npy")));
+    let new: Vec<&PathBuf> = names.iter().filter(|name| !name.exists()).collect();
+    let is_new = !path.exists();
     atomic::make_folder(path)?;
+    write_arrays(path, folder).inspect_err(|_| {
+        // the error that led here is the one to report
+        new.iter().for_each(|name| drop(fs::remove_file(name)));
+        if is_new {
+            let _ = fs::remove_dir(path);
+        }
+    })
+}
+
+fn write_arrays(path: &Path, folder: &MasbcppFolder<'_>) -> Result<()> {
     let triples = [
         ("coords.npy", folder.coords),
         ("normals.npy", folder.normals),

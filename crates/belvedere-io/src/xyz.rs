@@ -141,6 +141,19 @@ pub(super) fn read_text(input: Input<'_>) -> Result<TextRows> {
     Ok(rows)
 }
 
+/// Whether a text file is a table of something else: its first line has names, but not of x, y and z.
+pub(super) fn is_another_table(input: Input<'_>) -> bool {
+    let Input { name, reader: mut file, .. } = input;
+    let mut lines = Lines { path: &name, file: &mut file, number: 0, bytes: Vec::new() };
+    let Ok(Some((_, line))) = lines.next_data() else { return false };
+    is_names(&line) && header(&line).is_none()
+}
+
+/// Whether a first line has names of columns.
+fn is_names(line: &str) -> bool {
+    line.contains(|c: char| c.is_ascii_alphabetic()) && !is_numeric(line)
+}
+
 /// What the first lines tell.
 struct Start {
     separator: Separator,
@@ -202,7 +215,7 @@ fn find_start<R: BufRead>(path: &Path, part: &mut Part, lines: &mut Lines<'_, R>
         if line.is_empty() {
             continue;
         }
-        if ahead.is_empty() && !header_seen && line.contains(|c: char| c.is_ascii_alphabetic()) && !is_numeric(&line) {
+        if ahead.is_empty() && !header_seen && is_names(&line) {
             header_seen = true;
             names = header(&line);
             if names.is_none() {

@@ -11,11 +11,11 @@ pub(crate) struct DepthMap {
     pub(crate) scene: SceneInput,
     #[command(flatten)]
     pub(crate) view: ViewChoice,
-    /// Depth in metres (.tif .npy), or a picture with a legend (.png)
+    /// Depth in metres (.tif .npy), or a picture with a legend (.png); repeatable
     ///
     /// Rows run from the top. Pixels without a surface are nodata (-9999) in .tif and infinity in .npy.
-    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
-    pub(crate) output: PathBuf,
+    #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
+    pub(crate) output: Vec<PathBuf>,
     /// Also write the index of the ball that each pixel shows (.tif .npy)
     ///
     /// The index is the row in the ball file, counted from 0; 4294967295 for none. For a cloud, it is the row in the file that

@@ -18,7 +18,9 @@ use belvedere::view::View;
 const NOTHING_HIT: f32 = -9999.0;
 
 pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
-    check_output("-o", &arguments.output, &["tif", "tiff", "npy", "png"])?;
+    for output in &arguments.output {
+        check_output("-o", output, &["tif", "tiff", "npy", "png"])?;
+    }
     if let Some(path) = &arguments.balls_id {
         check_output("--ball-ids", path, &["tif", "tiff", "npy"])?;
     }
@@ -34,14 +36,15 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     if views.iter().any(View::is_central) {
         summary.add("balls_around_eye_ignored", map.around_eye_count);
     }
-    let output = &arguments.output;
     let place = views.first().and_then(|view| georeference(&scene.cloud, view));
-    stages.run("writing", 0, |_| match extension(output).as_str() {
-        "npy" => write_npy_f32_2d(output, &map.depth),
-        "png" => write_png(output, &map.picture()),
-        _ => write_tif_f32(output, &map.depth, place.as_ref(), Some(NOTHING_HIT), Some(map.description())),
-    })?;
-    summary.add("written", output.display().to_string());
+    for output in &arguments.output {
+        stages.run("writing", 0, |_| match extension(output).as_str() {
+            "npy" => write_npy_f32_2d(output, &map.depth),
+            "png" => write_png(output, &map.picture()),
+            _ => write_tif_f32(output, &map.depth, place.as_ref(), Some(NOTHING_HIT), Some(map.description())),
+        })?;
+    }
+    summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     if let (Some(path), Some(balls)) = (&arguments.balls_id, &map.balls) {
         stages.run("writing", 0, |_| match extension(path).as_str() {
             "npy" => write_npy_u32_2d(path, balls),

@@ -31,10 +31,11 @@ mod trajectory;
 mod tree_light;
 mod viewshed;
 
-use crate::arguments::{Cli, Command, Usage};
+use crate::arguments::{Cli, Command, Global, Usage};
 use crate::help;
-use crate::summary::Summary;
+use crate::summary::{Summary, note};
 use anyhow::{Context, Result, bail};
+use belvedere::crs::Crs;
 use belvedere::io::{ExtraColumn, ExtraValues};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -128,6 +129,19 @@ fn check_output(flag: &str, path: &Path, known: &[&str]) -> Result<()> {
         return Err(Usage(format!("{flag} {}: the extension must be one of .{known}", path.display())).into());
     }
     check_parent(path)
+}
+
+/// Warns of GeoJSON whose coordinates are not those that its standard promises.
+fn warn_of_geojson(outputs: &[PathBuf], crs: &Crs, global: &Global, summary: &mut Summary) {
+    if !outputs.iter().any(|output| extension(output) == "geojson") || crs.geographic_projection().is_ok() {
+        return;
+    }
+    let warning = "GeoJSON has the coordinates of the cloud, not longitude and latitude: the reference system of the scene is unknown. Other \
+                   programs will misplace it; give --crs EPSG:CODE where the balls are built";
+    summary.add("warning", warning);
+    if !global.quiet {
+        note(&format!("warning: {warning}"));
+    }
 }
 
 /// Refuses an output in a folder that is not there.

@@ -3,8 +3,8 @@
 mod results;
 mod who;
 
-use super::check_output;
 use super::sights::{Proving, blockers, enclosure_note, ground, ground_cloud};
+use super::{check_output, warn_of_geojson};
 use crate::arguments::{Global, Viewshed};
 use crate::pipeline::{self, Points, flagged};
 use crate::progress::Stages;
@@ -33,6 +33,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
+    warn_of_geojson(&arguments.output, &scene.cloud.frame.crs, global, &mut summary);
     let north = arguments.looking.north.of_scene(&scene);
     let rows = who::rows(arguments, &scene.cloud, north.of_grid)?;
     if rows.iter().any(|row| row.limits.azimuth.is_some()) {

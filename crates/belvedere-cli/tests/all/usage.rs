@@ -208,7 +208,7 @@ fn wrong_usage_names_the_flag_and_ends_with_status_2() {
         ("query balls.npz --sun 180,30 --self -o out.csv", &["--self", "ball file"]),
         ("query balls.npz --sun 180,30 --random 5 --method angles -o out.csv", &["--method", "balls.npz"]),
         ("query balls.npz --sun 180,30 --random 5 --orient up -o out.csv", &["--orient", "balls.npz"]),
-        ("query balls.npz --sun 180,30 --random 5 --crs EPSG:28992 -o out.csv", &["--crs", "balls.npz"]),
+        ("query balls.npz --sun 180,30 --random 5 --crs EPSG:28992 -o out.csv", &["--crs", "balls.npz", "--location"]),
     ] {
         place.refusal(2, arguments, words);
     }

@@ -93,3 +93,84 @@ fn every_path_of_a_result_is_known_as_an_output() {
     }
     assert!(count > 30, "{count}");
 }
+
+/// Runs with files of at most 16 KiB, and what a full disk says: an error of each write.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_leaves_one_clear_line_and_no_file() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    place.summary("balls house.laz -o balls.npz");
+    for (arguments, file) in [
+        ("balls house.laz -o out.npz", "out.npz"),
+        ("balls house.laz -o out", "out/coords.npy"),
+        ("query balls.npz --sun 180,30 --random 9999 -o out.csv", "out.csv"),
+        ("depth-map balls.npz --sun 180,30 -o out.npy -o out.tif", "out.npy"),
+    ] {
+        let program = place.command(arguments);
+        let mut shell = std::process::Command::new("sh");
+        shell.current_dir(place.path(".")).args(["-c", "trap '' XFSZ; ulimit -f 32; exec \"$0\" \"$@\""]);
+        let output = shell.arg(program.get_program()).args(program.get_args()).output().unwrap();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{arguments}: {stderr}");
+        assert_eq!(stderr, format!("error: {file}: File too large (os error 27)\n"), "{arguments}");
+        assert_eq!(place.names(), ["balls.npz", "house.laz"], "{arguments}");
+    }
+}
+
+#[test]
+fn a_depth_map_has_several_outputs() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let run = place.summary("depth-map house.laz --sun 180,30 -o depth.tif -o depth.png -o depth.npy");
+    assert_eq!(run["written"], serde_json::json!(["depth.tif", "depth.png", "depth.npy"]));
+    assert_eq!(place.names(), ["depth.npy", "depth.png", "depth.tif", "house.laz"]);
+}
+
+#[test]
+fn geojson_without_a_reference_system_comes_with_a_warning() {
+    let place = Workplace::new();
+    let mut nowhere = house();
+    nowhere.frame.crs = belvedere::crs::Crs::default();
+    place.write_cloud("nowhere.ply", &nowhere);
+    let viewshed = format!("viewshed nowhere.ply --observer {EAST},{},5 --cell 2 -o seen.geojson", NORTH - 12.0);
+    let run = place.run(&viewshed);
+    assert_eq!(run.status, 0, "{run:?}");
+    assert!(run.stderr.starts_with("warning: GeoJSON") && run.stderr.contains("--crs EPSG:CODE"), "{run:?}");
+    assert!(run.stdout.contains("warning: GeoJSON"), "{run:?}");
+    assert_eq!(place.run(&format!("{viewshed} --quiet")).stderr, "");
+    assert_eq!(place.run(&format!("{viewshed} --crs EPSG:28992")).stderr, "");
+}
+
+#[test]
+fn shapes_of_other_formats_are_refused_with_the_conversion_to_run() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    for (flags, name) in [
+        ("viewshed house.laz -o out.tif --observers", "cameras.gpkg"),
+        ("isovist house.laz -o out.csv --observers", "cameras.shp"),
+        ("envelope house.laz -o out.tif --date 2024-03-21 --protect targets.csv --parcel", "parcel.gpkg"),
+    ] {
+        place.write(name, "binary");
+        place.write("targets.csv", format!("x,y\n{EAST},{NORTH}\n"));
+        let conversion = format!("ogr2ogr -f GeoJSON {}.geojson {name}", name.split_once('.').unwrap().0);
+        place.refusal(1, &format!("{flags} {name}"), &[&conversion]);
+    }
+}
+
+#[test]
+fn a_stray_table_in_a_folder_of_tiles_is_skipped_and_named() {
+    let place = Workplace::new();
+    std::fs::create_dir(place.path("tiles")).unwrap();
+    place.write_cloud("tiles/house.laz", &house());
+    place.write("tiles/index.csv", "tile,year\nhouse.laz,2024\n");
+    let run = place.summary("info tiles");
+    assert_eq!(run["points"], house().len());
+    let reading = place.summary("balls tiles -o balls.npz")["reading"].clone();
+    assert_eq!(reading["skipped_file_count"], 1);
+    assert_eq!(reading["skipped_files_without_x_y_z"], serde_json::json!(["tiles/index.csv"]));
+    // named by itself it is an error, and so is a folder with nothing else
+    place.refusal(1, "info tiles/index.csv", &["tiles/index.csv", "without columns x, y and z"]);
+    std::fs::remove_file(place.path("tiles/house.laz")).unwrap();
+    place.refusal(1, "info tiles", &["tiles", "none with columns x, y and z"]);
+}

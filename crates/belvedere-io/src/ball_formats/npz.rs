@@ -5,7 +5,7 @@ use std::io::{self, Read, Seek, Write};
 use npyz::npz::{NpzArchive, NpzWriter};
 
 use super::metadata;
-use crate::npz_arrays::{array, has, invalid, open, rows, values};
+use crate::npz_arrays::{array, has, invalid, open, rows, values, write_archive};
 use crate::output::Output;
 use crate::source::Input;
 use belvedere_data::model::ModelParts;
@@ -23,10 +23,7 @@ const OTHER_ARRAYS: [&str; 9] =
 const MAX_METADATA_BYTES: u64 = 1 << 24;
 
 pub(crate) fn write_npz(output: Output<'_>, parts: &ModelParts) -> Result<()> {
-    output.write(|path, output| {
-        let mut archive = NpzWriter::new(output);
-        write_arrays(&mut archive, parts).map_err(Error::io(path))
-    })
+    output.write(|path, output| write_archive(output, |archive| write_arrays(archive, parts)).map_err(Error::io(path)))
 }
 
 fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, parts: &ModelParts) -> io::Result<()> {
@@ -50,8 +47,7 @@ fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, parts: &ModelParts)
             array(archive, "pulse_lengths", &[p], lengths.iter().copied())?;
         }
     }
-    array(archive, "metadata", &[metadata.len() as u64], metadata.bytes())?;
-    archive.zip_writer().finish()?.flush()
+    array(archive, "metadata", &[metadata.len() as u64], metadata.bytes())
 }
 
 pub(crate) fn read_npz(input: Input<'_>) -> Result<ModelParts> {

@@ -7,7 +7,8 @@ use belvedere_data::crs::Crs;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Mesh, PointCloud};
 use belvedere_io::{
-    Cells, Georeference, Output, atomic, write_cloud, write_mesh, write_npy_f32_2d, write_table, write_tif_f32,
+    Cells, Georeference, MasbcppFolder, Output, atomic, write_cloud, write_masbcpp, write_mesh, write_npy_f32_2d,
+    write_table, write_tif_f32,
 };
 
 fn names_in(folder: &Path) -> Vec<String> {
@@ -70,4 +71,43 @@ fn a_cancelled_output_leaves_what_was_there() {
         (names_in(folder.path()), std::fs::read(&path).unwrap()),
         (vec!["result.csv".to_owned()], b"before".into())
     );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn files_that_killed_runs_left_are_removed_and_those_of_others_are_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("result.csv");
+    // beyond the largest number of a process
+    let dead = 4_194_305;
+    let own = std::process::id();
+    let kept = [
+        format!(".result.csv.{own}-9.part"),
+        format!(".other.csv.{dead}-0.part"),
+        ".result.csv.old-0.part".to_owned(),
+        format!(".result.csv.{dead}-0.part.txt"),
+    ];
+    for name in kept.iter().chain([&format!(".result.csv.{dead}-0.part"), &format!(".result.csv.{dead}-12.part")]) {
+        std::fs::write(folder.path().join(name), "unfinished").unwrap();
+    }
+    write_table(path.as_path(), &[("x", Cells::Real(&[1.0], 1))]).unwrap();
+    let mut expected = kept.to_vec();
+    expected.push("result.csv".to_owned());
+    expected.sort();
+    assert_eq!(names_in(folder.path()), expected);
+}
+
+#[test]
+fn a_folder_of_arrays_that_cannot_be_written_is_as_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("balls");
+    let arrays = MasbcppFolder { coords: Some(&[[1.0; 3]]), ma_qidx_in: Some(&[0]), ..MasbcppFolder::default() };
+    // a folder in the place of the last array
+    std::fs::create_dir_all(path.join("ma_qidx_in.npy")).unwrap();
+    std::fs::write(path.join("notes.txt"), "ours").unwrap();
+    assert!(write_masbcpp(&path, &arrays).is_err());
+    assert_eq!(names_in(&path), ["ma_qidx_in.npy", "notes.txt"]);
+    std::fs::remove_dir(path.join("ma_qidx_in.npy")).unwrap();
+    write_masbcpp(&path, &arrays).unwrap();
+    assert_eq!(names_in(&path), ["coords.npy", "ma_qidx_in.npy", "notes.txt"]);
 }

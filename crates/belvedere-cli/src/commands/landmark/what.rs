@@ -79,7 +79,7 @@ fn objects_of(mesh: Mesh, names: &[String], path: &Path) -> Result<Mesh> {
 fn polygons_of(path: &Path, scene: &Scene) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
     let cloud = &scene.cloud;
     let polygons: Vec<Vec<Vec<[f64; 2]>>> = match extension(path).as_str() {
-        "geojson" | "json" => {
+        "geojson" | "json" | "gpkg" | "shp" => {
             let place = |corner: &[f64; 3]| [corner[0] - cloud.frame.origin[0], corner[1] - cloud.frame.origin[1]];
             read_geojson(path, &cloud.frame.crs)?
                 .into_iter()
