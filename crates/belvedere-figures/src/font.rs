@@ -1,76 +1,121 @@
-//! A small bitmap font, so that legends need no font file.
+//! Text in pictures, in DejaVu Sans.
+//!
+//! The font is built in, so that legends need no font file. It has Latin, Greek, Cyrillic, Armenian, Georgian, Hebrew, Arabic and more, and mathematical
+//! signs. A character that it lacks, such as a Chinese one, is drawn as a box. Letters are set one after the other from left to right; scripts whose
+//! letters join or run to the left are not shaped.
 
 use crate::picture::Picture;
+use ab_glyph::{Font, FontRef, Glyph, PxScale, ScaleFont, point};
 
-/// Columns of a character including the gap to the next.
-pub(crate) const ADVANCE: usize = 6;
-/// Rows of a character including one for descenders.
+/// Rows of a line of text at scale 1, pixels: capitals and what hangs below them.
 pub(crate) const HEIGHT: usize = 8;
 
-/// Rows from the top, bit 4 the leftmost of five columns; from blank to tilde in the order of ASCII.
-#[rustfmt::skip]
-const GLYPHS: [[u8; HEIGHT]; 95] = [
-    [0, 0, 0, 0, 0, 0, 0, 0], [4, 4, 4, 4, 4, 0, 4, 0], [10, 10, 10, 0, 0, 0, 0, 0], [10, 10, 31, 10, 31, 10, 10, 0],
-    [4, 15, 20, 14, 5, 30, 4, 0], [24, 25, 2, 4, 8, 19, 3, 0], [12, 18, 20, 8, 21, 18, 13, 0], [4, 4, 8, 0, 0, 0, 0, 0],
-    [2, 4, 8, 8, 8, 4, 2, 0], [8, 4, 2, 2, 2, 4, 8, 0], [0, 4, 21, 14, 21, 4, 0, 0], [0, 4, 4, 31, 4, 4, 0, 0],
-    [0, 0, 0, 0, 0, 12, 4, 8], [0, 0, 0, 31, 0, 0, 0, 0], [0, 0, 0, 0, 0, 12, 12, 0], [0, 1, 2, 4, 8, 16, 0, 0],
-    [14, 17, 19, 21, 25, 17, 14, 0], [4, 12, 4, 4, 4, 4, 14, 0], [14, 17, 1, 6, 8, 16, 31, 0], [14, 17, 1, 6, 1, 17, 14, 0],
-    [2, 6, 10, 18, 31, 2, 2, 0], [31, 16, 30, 1, 1, 17, 14, 0], [6, 8, 16, 30, 17, 17, 14, 0], [31, 1, 2, 4, 8, 8, 8, 0],
-    [14, 17, 17, 14, 17, 17, 14, 0], [14, 17, 17, 15, 1, 2, 12, 0], [0, 12, 12, 0, 12, 12, 0, 0], [0, 12, 12, 0, 12, 4, 8, 0],
-    [1, 2, 4, 8, 4, 2, 1, 0], [0, 0, 31, 0, 31, 0, 0, 0], [16, 8, 4, 2, 4, 8, 16, 0], [14, 17, 1, 2, 4, 0, 4, 0],
-    [14, 17, 23, 21, 23, 16, 14, 0], [4, 10, 17, 17, 31, 17, 17, 0], [30, 17, 17, 30, 17, 17, 30, 0], [14, 17, 16, 16, 16, 17, 14, 0],
-    [28, 18, 17, 17, 17, 18, 28, 0], [31, 16, 16, 30, 16, 16, 31, 0], [31, 16, 16, 30, 16, 16, 16, 0], [14, 17, 16, 23, 17, 17, 15, 0],
-    [17, 17, 17, 31, 17, 17, 17, 0], [14, 4, 4, 4, 4, 4, 14, 0], [7, 2, 2, 2, 2, 18, 12, 0], [17, 18, 20, 24, 20, 18, 17, 0],
-    [16, 16, 16, 16, 16, 16, 31, 0], [17, 27, 21, 21, 17, 17, 17, 0], [17, 25, 21, 19, 17, 17, 17, 0], [14, 17, 17, 17, 17, 17, 14, 0],
-    [30, 17, 17, 30, 16, 16, 16, 0], [14, 17, 17, 17, 21, 18, 13, 0], [30, 17, 17, 30, 20, 18, 17, 0], [15, 16, 16, 14, 1, 1, 30, 0],
-    [31, 4, 4, 4, 4, 4, 4, 0], [17, 17, 17, 17, 17, 17, 14, 0], [17, 17, 17, 17, 10, 10, 4, 0], [17, 17, 17, 21, 21, 27, 17, 0],
-    [17, 17, 10, 4, 10, 17, 17, 0], [17, 17, 10, 4, 4, 4, 4, 0], [31, 1, 2, 4, 8, 16, 31, 0], [14, 8, 8, 8, 8, 8, 14, 0],
-    [0, 16, 8, 4, 2, 1, 0, 0], [14, 2, 2, 2, 2, 2, 14, 0], [4, 10, 17, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0, 0, 31],
-    [8, 4, 2, 0, 0, 0, 0, 0], [0, 0, 14, 1, 15, 17, 15, 0], [16, 16, 30, 17, 17, 17, 30, 0], [0, 0, 14, 17, 16, 17, 14, 0],
-    [1, 1, 15, 17, 17, 17, 15, 0], [0, 0, 14, 17, 31, 16, 14, 0], [6, 9, 8, 28, 8, 8, 8, 0], [0, 0, 15, 17, 17, 15, 1, 14],
-    [16, 16, 30, 17, 17, 17, 17, 0], [4, 0, 12, 4, 4, 4, 14, 0], [2, 0, 6, 2, 2, 2, 18, 12], [16, 16, 18, 20, 24, 20, 18, 0],
-    [12, 4, 4, 4, 4, 4, 14, 0], [0, 0, 26, 21, 21, 21, 21, 0], [0, 0, 30, 17, 17, 17, 17, 0], [0, 0, 14, 17, 17, 17, 14, 0],
-    [0, 0, 30, 17, 17, 30, 16, 16], [0, 0, 15, 17, 17, 15, 1, 1], [0, 0, 22, 25, 16, 16, 16, 0], [0, 0, 15, 16, 14, 1, 30, 0],
-    [8, 8, 28, 8, 8, 9, 6, 0], [0, 0, 17, 17, 17, 19, 13, 0], [0, 0, 17, 17, 17, 10, 4, 0], [0, 0, 17, 17, 21, 21, 10, 0],
-    [0, 0, 17, 10, 4, 10, 17, 0], [0, 0, 17, 17, 17, 15, 1, 14], [0, 0, 31, 2, 4, 8, 31, 0], [2, 4, 4, 8, 4, 4, 2, 0],
-    [4, 4, 4, 4, 4, 4, 4, 0], [8, 4, 4, 2, 4, 4, 8, 0], [0, 0, 8, 21, 2, 0, 0, 0],
-];
-const DEGREE: [u8; HEIGHT] = [12, 18, 18, 12, 0, 0, 0, 0];
-const SQUARED: [u8; HEIGHT] = [12, 2, 4, 8, 14, 0, 0, 0];
-const UNKNOWN: [u8; HEIGHT] = [31, 17, 17, 17, 17, 17, 31, 0];
+/// DejaVu Sans 2.37, see `fonts/LICENSE`.
+const FONT: &[u8] = include_bytes!("../fonts/DejaVuSans.ttf");
+/// Height of the font at scale 1, from the top of the highest letters to the bottom of the lowest, pixels: its capitals are then 7 pixels high.
+const FONT_HEIGHT: f32 = 11.2;
+/// Where letters stand at scale 1, pixels below the upper edge of a line.
+const BASELINE: f32 = 7.0;
 
-fn glyph(c: char) -> [u8; HEIGHT] {
-    match c {
-        '°' => DEGREE,
-        '²' => SQUARED,
-        '–' | '—' | '−' => GLYPHS[13],
-        _ => u32::from(c).checked_sub(32).and_then(|i| GLYPHS.get(i as usize)).copied().unwrap_or(UNKNOWN),
+/// The glyphs of `text` at `scale`, from `x` and `y` on, and where the next would begin.
+fn set(text: &str, x: f32, y: f32, scale: usize) -> (Vec<Glyph>, f32) {
+    // the font was parsed by the tests
+    let Ok(font) = FontRef::try_from_slice(FONT) else { return (Vec::new(), x) };
+    let size = PxScale::from(FONT_HEIGHT * scale as f32);
+    let font = font.as_scaled(size);
+    let (mut glyphs, mut at, mut before) = (Vec::new(), x, None);
+    for c in text.chars().filter(|c| !c.is_control()) {
+        let id = font.glyph_id(c);
+        at += before.map_or(0.0, |before| font.kern(before, id));
+        glyphs.push(id.with_scale_and_position(size, point(at, y + BASELINE * scale as f32)));
+        at += font.h_advance(id);
+        before = Some(id);
     }
+    (glyphs, at)
 }
 
-/// Width in pixels of `text` at `scale` pixels per dot.
+/// Width in pixels of `text` at `scale`.
 pub(crate) fn text_width(text: &str, scale: usize) -> usize {
-    (text.chars().count() * ADVANCE).saturating_sub(1) * scale
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, `as` saturates")]
+    let width = set(text, 0.0, 0.0, scale).1.ceil() as usize;
+    width
 }
 
-/// Draws `text` with its upper left corner at (`x`, `y`); what lies outside the picture is cut off.
+/// Draws `text` with the upper left corner of its line at (`x`, `y`); what lies outside the picture is cut off.
 pub(crate) fn draw_text(picture: &mut Picture, x: usize, y: usize, text: &str, scale: usize, color: [u8; 3]) {
-    for (place, c) in text.chars().enumerate() {
-        for (row, bits) in glyph(c).into_iter().enumerate() {
-            for column in (0..5).filter(|column| bits >> (4 - column) & 1 == 1) {
-                let left = x + (place * ADVANCE + column) * scale;
-                picture.fill_rectangle([left, y + row * scale], [scale, scale], color);
+    let Ok(font) = FontRef::try_from_slice(FONT) else { return };
+    for outline in set(text, x as f32, y as f32, scale).0.into_iter().filter_map(|glyph| font.outline_glyph(glyph)) {
+        let corner = outline.px_bounds().min;
+        outline.draw(|column, row, cover| {
+            let (column, row) = (corner.x + column as f32, corner.y + row as f32);
+            if column < 0.0 || row < 0.0 {
+                return;
             }
-        }
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, pixels")]
+            let place = [column as usize, row as usize];
+            let Some(paper) = picture.get(place[0], place[1]) else { return };
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two bytes")]
+            let mixed = |i: usize| {
+                let cover = cover.clamp(0.0, 1.0);
+                (f32::from(paper[i]) * (1.0 - cover) + f32::from(color[i]) * cover).round() as u8
+            };
+            picture.fill_rectangle(place, [1, 1], [0, 1, 2].map(mixed));
+        });
     }
 }
 
-/// `text` cut with dots at the end so that it fits into `width` pixels.
+/// `text` cut with an ellipsis at the end so that it fits into `width` pixels.
 pub(crate) fn fitted(text: &str, width: usize, scale: usize) -> String {
     if text_width(text, scale) <= width {
         return text.to_owned();
     }
-    let most = (width / scale + 1) / ADVANCE;
-    let kept: String = text.chars().take(most.saturating_sub(2)).collect();
-    format!("{}..", kept.trim_end())
+    let mut kept = text.to_owned();
+    while kept.pop().is_some() {
+        let cut = format!("{}…", kept.trim_end());
+        if text_width(&cut, scale) <= width {
+            return cut;
+        }
+    }
+    String::new()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drawn(text: &str) -> Picture {
+        let mut picture = Picture::filled(400, 40, [255; 3]);
+        draw_text(&mut picture, 2, 4, text, 3, [0; 3]);
+        picture
+    }
+
+    #[test]
+    fn letters_of_many_scripts_differ_and_what_the_font_lacks_is_a_box() {
+        // capitals of Latin, Greek, Cyrillic, Armenian, Georgian, Hebrew, Arabic, and signs
+        let letters = ["A", "É", "ß", "Ω", "Ж", "Ա", "ა", "א", "ب", "°", "²", "€", "−"];
+        let pictures = letters.map(drawn);
+        let boxed = drawn("\u{4e2d}");
+        for (i, picture) in pictures.iter().enumerate() {
+            assert!(*picture != boxed && pictures[..i].iter().all(|other| other != picture), "{}", letters[i]);
+        }
+        assert_eq!(boxed, drawn("\u{6587}"));
+        assert!(boxed.rgb.contains(&0) && drawn(" ").rgb.iter().all(|&v| v == 255));
+    }
+
+    #[test]
+    fn text_stays_within_its_width_and_is_cut_to_fit() {
+        for text in ["Sun hours, 21 June", "Stadtstraße 4", "Солнце", ""] {
+            let width = text_width(text, 3);
+            let picture = drawn(text);
+            let inked = |column: usize| (0..40).any(|row| picture.get(column, row) != Some([255; 3]));
+            assert!((width + 4..400).all(|column| !inked(column)), "{text}");
+            assert!(text.is_empty() || (2..width + 2).any(inked), "{text}");
+            // within the line of HEIGHT rows and a little above and below
+            assert!((0..400).all(|column| picture.get(column, 0) == Some([255; 3])));
+        }
+        let cut = fitted("a title that is too long", 60, 2);
+        assert!(cut.ends_with('…') && text_width(&cut, 2) <= 60, "{cut}");
+        assert_eq!(fitted("short", 600, 2), "short");
+        assert_eq!(fitted("anything", 0, 1), "");
+    }
 }

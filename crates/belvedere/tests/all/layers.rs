@@ -32,7 +32,8 @@ const LEVELS: [(&str, u8); 12] = [
 ];
 
 /// Crates of others that only one file or folder may name.
-const ONE_HOME: [(&str, &str); 19] = [
+const ONE_HOME: [(&str, &str); 20] = [
+    ("ab_glyph::", "figures/src/font.rs"),
     ("colorous::", "io/src/colors.rs"),
     ("las::", "io/src/"),
     ("laz::", "io/src/laz.rs"),
