@@ -8,7 +8,7 @@ use super::assemble::assemble;
 use super::las::{self, LasPoints};
 use super::part::Part;
 use super::read_cloud::{Systems, files_of, read_one};
-use super::read_options::{ReadOptions, Reading};
+use super::read_options::{ReadOptions, Reading, UpAxis};
 use super::source::Source;
 use belvedere_data::cloud::PointCloud;
 use belvedere_data::control::Control;
@@ -54,6 +54,10 @@ pub fn read_batches<'a, S: Into<Source<'a>>>(
     options: &ReadOptions,
     control: &Control<'a>,
 ) -> Result<CloudBatches<'a>> {
+    if options.up != UpAxis::Z {
+        let value = "y".to_owned();
+        return Err(Error::InvalidParameter { name: "axis that is up", value, expected: "z for clouds in batches" });
+    }
     Ok(CloudBatches {
         pending: files_of(sources.into_iter().map(Into::into))?.0.into(),
         forced: options.forced_crs()?,

@@ -119,6 +119,13 @@ impl Part {
         self.crs = crs;
     }
 
+    /// Turns a part whose y is up: positions, normals and scanners (x, y, z) become (x, −z, y).
+    pub(super) fn turn_y_up(&mut self) {
+        self.coordinates = Coordinates::Real(self.coordinates.positions().map(|[x, y, z]| [x, -z, y]).collect());
+        self.scanners.iter_mut().for_each(|p| *p = [p[0], -p[2], p[1]]);
+        self.attributes.normals.iter_mut().flatten().for_each(|n| *n = [n[0], -n[2], n[1]]);
+    }
+
     /// Drops the points that `reading` does not ask for.
     ///
     /// # Errors

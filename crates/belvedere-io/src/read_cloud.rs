@@ -9,7 +9,7 @@ use super::las;
 use super::part::Part;
 #[cfg(feature = "ply")]
 use super::ply;
-use super::read_options::{ReadOptions, Reading};
+use super::read_options::{ReadOptions, Reading, UpAxis};
 use super::source::{Source, extension, unusable};
 use super::{assemble, pcd, ptx, xyz};
 #[cfg(feature = "npy")]
@@ -113,6 +113,9 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
         control.check()?;
         let mut part = read_one(source, &reading)?;
         systems.accept(&mut part, &reading)?;
+        if options.up == UpAxis::Y {
+            part.turn_y_up();
+        }
         part.check_attributes();
         part.check_precision();
         parts.push(part);

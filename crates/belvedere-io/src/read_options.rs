@@ -25,6 +25,18 @@ pub struct ReadOptions {
     pub classes: Option<Vec<u8>>,
     /// Whether the report gives the row of each point in its file. Default: not.
     pub row_numbers: RowNumbers,
+    /// Which axis of the files is up. Default: z.
+    pub up: UpAxis,
+}
+
+/// Which axis of a file is up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UpAxis {
+    /// The third, as in surveys.
+    #[default]
+    Z,
+    /// The second, as in computer graphics: (x, y, z) is read as (x, −z, y).
+    Y,
 }
 
 /// A box that points must lie in, or on the faces of, to be read.
@@ -86,6 +98,13 @@ impl ReadOptions {
         self
     }
 
+    /// The same for files with another axis up.
+    #[must_use]
+    pub fn with_up(mut self, up: UpAxis) -> Self {
+        self.up = up;
+        self
+    }
+
     /// The same with the row of each point in the report.
     #[must_use]
     pub fn with_row_numbers(mut self) -> Self {
@@ -108,6 +127,13 @@ impl ReadOptions {
             Some(Within::Local(bounds)) if !(0..3).all(|i| bounds.low[i] <= bounds.high[i]) => {
                 let value = format!("{:?} to {:?}", bounds.low, bounds.high);
                 return invalid("box to read", value, "from the lowest to the highest corner");
+            }
+            Some(Within::Local(_)) if self.up == UpAxis::Y => {
+                return invalid(
+                    "box to read",
+                    "in local coordinates".to_owned(),
+                    "in those of the file where its y is up",
+                );
             }
             Some(Within::Local(_)) if self.frame.is_none() => {
                 return invalid("box to read", "in local coordinates".to_owned(), "given together with a frame");
