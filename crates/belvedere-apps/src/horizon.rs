@@ -32,10 +32,11 @@ impl Default for HorizonParams {
 }
 
 /// The skyline around each of `eyes`, (N) local metres, at azimuths of equal steps clockwise from north. See
-/// [`MedialScene::skyline`]; elevations are exact for the balls. Progress counts eyes.
+/// [`MedialScene::skyline`]; elevations are exact for the balls. An eye that is not finite
+/// ([`crate::eyes::skip_unfit_eyes`]) has no points. Progress counts eyes.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range, and [`Error::Cancelled`].
+/// [`Error::InvalidParameter`] for parameters outside their range, and [`Error::Cancelled`].
 pub fn horizons(
     scene: &MedialScene,
     eyes: &[[f64; 3]],
@@ -59,10 +60,6 @@ pub fn horizons(
     }
     eyes.iter()
         .map(|&eye| {
-            if !eye.iter().all(|v| v.is_finite()) {
-                let value = format!("{eye:?}");
-                return Err(Error::InvalidParameter { name: "eye", value, expected: "finite" });
-            }
             let skyline = scene.skyline_from(eye, params.azimuth_count, -params.turn, &params.earth, control)?;
             control.advance(1);
             Ok(skyline)

@@ -1,6 +1,8 @@
 //! What users ask of a scene: each application puts questions to [`belvedere_core::query`] and sums up the answers.
 
+pub mod edge;
 pub mod exposure;
+pub mod eyes;
 pub mod horizon;
 pub mod irradiance;
 pub mod isovist;

@@ -28,7 +28,7 @@ pub(crate) use numbers::Numbers;
 use numbers::{above_zero, at_least_one, at_most, finite, known_crs, length, location};
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Shell, Viewshed};
 pub(crate) use query::{DepthMap, Query, UnprovenChoice};
-pub(crate) use scene::{CloudInput, ProfileChoice, SceneConfig, SceneInput};
+pub(crate) use scene::{CloudInput, ProfileChoice, SceneConfig, SceneInput, UpChoice};
 pub(crate) use shadow::Shadow;
 pub(crate) use sky::{FacingChoice, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
 pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};
@@ -37,7 +37,7 @@ pub(crate) use towns::{PatternChoice, ScannerChoice, Simulate};
 pub(crate) use vegetation::{LeavesChoice, ThroughTrees, ThroughTreesChoice};
 pub(crate) use view::{North, SizeChoice, ViewChoice};
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Wrong usage that only shows once arguments are combined: exit status 2.
@@ -54,7 +54,15 @@ impl std::error::Error for Usage {}
 
 /// Visibility analysis directly on point clouds
 #[derive(Parser)]
-#[command(name = "belvedere", version, max_term_width = 110, arg_required_else_help = true, propagate_version = true)]
+#[command(
+    name = "belvedere",
+    version,
+    max_term_width = 110,
+    arg_required_else_help = true,
+    propagate_version = true,
+    disable_help_flag = true,
+    disable_version_flag = true
+)]
 pub(crate) struct Cli {
     #[command(flatten)]
     pub(crate) global: Global,
@@ -80,6 +88,12 @@ pub(crate) struct Global {
     /// Print the duration of each stage on standard error
     #[arg(short, long, global = true)]
     pub(crate) verbose: bool,
+    /// Print help: a line for each flag with -h, all of it with --help
+    #[arg(short, long, global = true, action = ArgAction::Help)]
+    help: Option<bool>,
+    /// Print the version
+    #[arg(short = 'V', long, global = true, action = ArgAction::Version)]
+    version: Option<bool>,
     /// Print only errors
     #[arg(long, global = true, conflicts_with_all = ["verbose", "json"])]
     pub(crate) quiet: bool,

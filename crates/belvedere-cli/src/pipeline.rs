@@ -3,13 +3,14 @@
 pub(crate) mod params;
 
 use crate::arguments::{
-    CloudInput, MethodChoice, OrientChoice, ProfileChoice, SceneInput, SizeChoice, UnprovenChoice, Usage, ViewChoice,
+    CloudInput, MethodChoice, OrientChoice, ProfileChoice, SceneInput, SizeChoice, UnprovenChoice, UpChoice, Usage,
+    ViewChoice,
 };
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::depth::Profile;
-use belvedere::io::{ReadOptions, ReadReport, is_ball_file, read_balls, read_cloud};
+use belvedere::io::{ReadOptions, ReadReport, UpAxis, is_ball_file, read_balls, read_cloud};
 use belvedere::model::SceneModel;
 use belvedere::query::UnprovenAs;
 use belvedere::view::{View, default_pixel_size, to_sun};
@@ -59,6 +60,7 @@ pub(crate) fn check_every_row(report: &ReadReport) -> Result<()> {
 fn read_counted(input: &CloudInput, stages: &mut Stages, summary: &mut Summary) -> Result<(PointCloud, ReadReport)> {
     let mut options = ReadOptions::new();
     options.crs = input.crs.clone();
+    options.up = input.up.into();
     let (cloud, report) = stages.run("reading", 0, |control| read_cloud(&input.clouds, &options, control))?;
     summary.add("points", cloud.len());
     summary.add("reading", Summary::of(&report));
@@ -143,6 +145,7 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, path: &Path) -> Result<()> {
     let (cleaning, orienting, shrinking) = (&arguments.cleaning, &arguments.orienting, &arguments.shrinking);
     let given = [
         ("--crs", arguments.input.crs.is_some()),
+        ("--up", arguments.input.up != UpChoice::Z),
         ("--keep-noise", cleaning.keep_noise),
         ("--keep-duplicates", cleaning.keep_duplicates),
         ("--keep-isolated", cleaning.keep_isolated),
@@ -188,6 +191,15 @@ impl From<UnprovenChoice> for UnprovenAs {
     }
 }
 
+impl From<UpChoice> for UpAxis {
+    fn from(choice: UpChoice) -> Self {
+        match choice {
+            UpChoice::Z => Self::Z,
+            UpChoice::Y => Self::Y,
+        }
+    }
+}
+
 impl From<ProfileChoice> for Profile {
     fn from(choice: ProfileChoice) -> Self {
         match choice {
@@ -207,6 +219,13 @@ impl ViewChoice {
             }
             None => vec![self.view(scene, summary)?],
         };
+        let outside = |view: &View| {
+            let coverage = scene.model.coverage();
+            view.is_central() && coverage.is_some_and(|coverage| !coverage.holds(view.frame.eye))
+        };
+        if views.first().is_some_and(outside) {
+            summary.warn("the eye is outside the cloud: what stands around it and before it is unknown");
+        }
         let mut section = Summary::default();
         if let [view] = &views[..] {
             section.add("width_px", view.size_px[0]).add("height_px", view.size_px[1]);

@@ -8,6 +8,9 @@ use serde_json::{Map, Value};
 use std::io::Write;
 use std::process::ExitCode;
 
+/// Key of the warnings.
+const WARNINGS: &str = "warnings";
+
 /// Named figures and sections, in order.
 #[derive(Clone, Default)]
 pub(crate) struct Summary(Map<String, Value>);
@@ -39,6 +42,23 @@ impl Summary {
         }
     }
 
+    /// Adds a warning: what the user must know to read the results rightly. Warnings go to standard error unless the summary is JSON.
+    pub(crate) fn warn(&mut self, text: impl Into<String>) -> &mut Self {
+        let warnings = self.0.entry(WARNINGS).or_insert_with(|| Value::Array(Vec::new()));
+        if let Value::Array(warnings) = warnings {
+            warnings.push(text.into().into());
+        }
+        self
+    }
+
+    /// Adds a warning that `part` of `whole` targets are so, with the share, unless none is.
+    pub(crate) fn warn_of_share(&mut self, part: usize, whole: usize, what: &str, so: &str) -> &mut Self {
+        if part > 0 {
+            self.warn(format!("{part} of {whole} {what} ({} %) {so}", report::percent(part, whole)));
+        }
+        self
+    }
+
     /// Adds the seconds of each stage and their sum.
     pub(crate) fn add_seconds(&mut self, seconds: Vec<(&'static str, f64)>) -> &mut Self {
         let mut section = Self::default();
@@ -67,11 +87,17 @@ impl Summary {
         if self.0.is_empty() {
             return ExitCode::SUCCESS;
         }
+        let mut entries = self.0.clone();
+        if !global.json
+            && let Some(Value::Array(warnings)) = entries.remove(WARNINGS)
+        {
+            warnings.iter().for_each(|warning| note(&format!("warning: {}", plain(warning))));
+        }
         let mut text = String::new();
         if global.json {
-            text = format!("{:#}\n", Value::Object(self.0.clone()));
+            text = format!("{:#}\n", Value::Object(entries));
         } else if !global.quiet {
-            lines(&self.0, 0, &mut text);
+            lines(&entries, 0, &mut text);
         }
         // a reader that stopped listening is not a failure
         match std::io::stdout().lock().write_all(text.as_bytes()) {

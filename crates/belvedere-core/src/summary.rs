@@ -8,7 +8,7 @@ use belvedere_data::cloud::PointCloud;
 use belvedere_data::control::Control;
 use std::collections::BTreeMap;
 
-pub use facades::FacadeSummary;
+pub use facades::{FacadeSummary, Walls};
 
 /// Counts and ranges of a cloud.
 #[derive(Clone, Debug, Default)]

@@ -198,6 +198,9 @@ impl Crs {
             CrsKind::Geocentric => {
                 (y.atan2(x).to_degrees(), z.atan2(x.hypot(y)).to_degrees(), "earth-centred (geocentric)")
             }
+            CrsKind::Projected if self.is_web_mercator() => {
+                (web_mercator_degrees(x), (y / WEB_MERCATOR_RADIUS).sinh().atan().to_degrees(), WEB_MERCATOR)
+            }
             CrsKind::Unknown | CrsKind::Projected | CrsKind::Local => return None,
         };
         let target = utm_zone(longitude, latitude);
@@ -206,6 +209,17 @@ impl Crs {
              example: pdal translate IN.laz OUT.laz reprojection --filters.reprojection.out_srs=EPSG:{target}",
             self.describe()
         ))
+    }
+
+    /// Whether this is Web Mercator, whose metres are true at the equator only: twice too long at 60° of latitude.
+    #[must_use]
+    pub fn is_web_mercator(&self) -> bool {
+        let codes = [3857, 3785, 900_913, 102_100, 102_113];
+        let name = self.wkt.as_deref().and_then(wkt::name).unwrap_or_default().to_ascii_lowercase();
+        self.horizontal_epsg().is_some_and(|code| codes.contains(&code))
+            || ["pseudo-mercator", "web mercator", "web_mercator", "popular visualisation"]
+                .iter()
+                .any(|n| name.contains(n))
     }
 
     fn horizontal_epsg(&self) -> Option<u32> {
@@ -228,6 +242,14 @@ fn invalid(text: &str) -> Error {
             "well-known text; this program was built without the cargo feature `crs`, which codes and PROJ strings need"
         },
     }
+}
+
+/// Radius of the sphere of Web Mercator, metres.
+const WEB_MERCATOR_RADIUS: f64 = 6_378_137.0;
+const WEB_MERCATOR: &str = "in Web Mercator, whose metres are not metres on the ground";
+
+fn web_mercator_degrees(x: f64) -> f64 {
+    (x / WEB_MERCATOR_RADIUS).to_degrees()
 }
 
 /// EPSG unit codes as GeoTIFF keys use them, with their metres.

@@ -60,6 +60,14 @@ pub enum Error {
         /// Where they were lost.
         what: String,
     },
+    /// There are points, but too few, or none beside one line, for a surface.
+    #[error("{count} points are left, {what}: a surface cannot be made of them; is this the right file?")]
+    NoSurface {
+        /// Number of points.
+        count: usize,
+        /// What they lack.
+        what: &'static str,
+    },
     /// A parameter lies outside its range.
     #[error("{name} is {value}, but must be {expected}")]
     InvalidParameter {

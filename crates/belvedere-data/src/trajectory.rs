@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::cloud::to_local;
+use crate::vector::length;
 use crate::{Error, GpsTimeKind, PointCloud, Result};
 
 /// Longest gap between two positions that is interpolated over: recorders write at 1 Hz or faster, and in two seconds an
@@ -171,14 +172,17 @@ impl Trajectory {
     /// the cloud's times became those of the trajectory.
     ///
     /// # Errors
-    /// [`Error::MissingAttribute`] without GPS times, [`Error::InvalidParameter`] where it knows a position at none of them.
+    /// [`Error::MissingAttribute`] without GPS times, [`Error::InvalidParameter`] where it knows a position at none of them, is more than 50 km away from
+    /// all points, or above less than a tenth of them.
     pub fn scanner_positions(&self, cloud: &PointCloud) -> Result<(Vec<[f32; 3]>, ClockOffset)> {
         let times = cloud.attributes.gps_time.as_deref().ok_or(Error::MissingAttribute {
             attribute: "GPS time",
             needed_for: "a trajectory",
             advice: "use the cloud as delivered by the survey, or orient by up or by a mesh",
         })?;
-        self.scanner_positions_at(times, cloud)
+        let (positions, offset) = self.scanner_positions_at(times, cloud)?;
+        check_above(&positions, &cloud.positions)?;
+        Ok((positions, offset))
     }
 
     /// As [`Trajectory::scanner_positions`], at `times`, (N), on the clock of `cloud`, in place of those of its points.
@@ -210,6 +214,35 @@ impl Trajectory {
         let Some(&before) = after.checked_sub(1).and_then(|i| self.times.get(i)) else { return false };
         before >= time || self.times.get(after).is_some_and(|next| next - before <= MAX_GAP_S)
     }
+}
+
+/// Farthest that a scanner may be from its points, metres: ten times what airborne scanners reach.
+const MOST_DISTANCE: f64 = 50_000.0;
+/// How far below its scanner a point must be to count as below it, metres: more than points of the ground are rough.
+const CLEARLY_BELOW: f32 = 0.5;
+/// Least share of the points that are below their scanner: those of a vehicle measure the road, those of an aircraft everything.
+const LEAST_BELOW: f64 = 0.1;
+
+/// Refuses scanner positions that cannot be those of points: in degrees, in another system, or at the height of the ground. Both (N, 3), local metres.
+fn check_above(positions: &[[f32; 3]], points: &[[f32; 3]]) -> Result<()> {
+    let invalid = |value, expected| Err(Error::InvalidParameter { name: "trajectory", value, expected });
+    let known: Vec<(&[f32; 3], &[f32; 3])> =
+        positions.iter().zip(points).filter(|(p, _)| !p.iter().any(|v| v.is_nan())).collect();
+    if known.is_empty() {
+        return Ok(());
+    }
+    let distance = |(p, q): &(&[f32; 3], &[f32; 3])| length([0, 1, 2].map(|i| f64::from(p[i]) - f64::from(q[i])));
+    let nearest = known.iter().map(distance).fold(f64::INFINITY, f64::min);
+    if !(nearest <= MOST_DISTANCE) {
+        let value = format!("at least {:.0} km away from the points", nearest / 1000.0);
+        return invalid(value, "in the reference system of the cloud: easting, northing and height, not degrees");
+    }
+    let below = known.iter().filter(|(p, q)| p[2] - q[2] > CLEARLY_BELOW && p[2].is_finite()).count();
+    if (below as f64) < LEAST_BELOW * known.len() as f64 {
+        let value = format!("above {} of {} points only", below, known.len());
+        return invalid(value, "above the points: heights are those of the scanner, not of the ground");
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Maps over a shaded relief, with a legend and a scale bar.
+//! Maps over a shaded relief, with coordinates, a legend, a scale bar and an arrow to the north.
 
 use rayon::prelude::*;
 
@@ -6,6 +6,7 @@ use crate::font::{HEIGHT, draw_text, fitted, text_width};
 use crate::picture::{INK, PAPER, Picture, text_scale};
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
+use belvedere_io::Georeference;
 use belvedere_io::colors::ramp;
 
 /// Maps smaller than this are enlarged.
@@ -19,6 +20,8 @@ const TO_LIGHT: [f64; 3] = [-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2];
 /// Colours of a mark: its disc and the ring around it.
 const MARK: [[u8; 3]; 2] = [[225, 30, 45], [255, 255, 255]];
 
+/// About so many coordinates along the longer side of a map.
+const COORDINATES: f64 = 5.0;
 /// Most round values beside a ramp.
 const MOST_TICKS: f64 = 9.0;
 
@@ -28,6 +31,8 @@ pub struct MapPicture<'a> {
     pub relief: &'a Raster<f32>,
     /// Side of a pixel, metres.
     pub cell: f64,
+    /// Where the map lies, for coordinates along its sides, in the reference system and unit of the file; `None` draws none.
+    pub place: Option<&'a Georeference>,
     /// Colour of each pixel, as many as heights; `None` shows the bare relief.
     pub colors: &'a [Option<[u8; 3]>],
     /// Places to mark, in columns from the west and rows from the north.
@@ -141,14 +146,18 @@ fn framed(map: &Picture, what: &MapPicture<'_>, pixel: f64) -> Picture {
     let bar_px = (bar / pixel).round() as usize;
     let texts = lines.iter().map(|(_, text)| text.as_str()).chain([heading]);
     let legend = texts.map(|text| text_width(text, scale)).max().unwrap_or(0) + swatch + 5 * scale;
+    let axes =
+        what.place.map(|place| Axes::new(place, what.relief, [map.width, map.height], scale)).unwrap_or_default();
+    let (indent, shelf) = axes.room(scale);
     let top = margin + line + 4 * scale;
     let rows = lines.len() + usize::from(!heading.is_empty());
-    let height = top + map.height.max(rows * (line + 3 * scale)) + margin + line + 2 * scale;
-    let mut sheet = Picture::filled(margin * 3 + map.width + legend, height + margin, PAPER);
+    let height = top + (map.height + shelf).max(rows * (line + 3 * scale)) + margin + line + 2 * scale;
+    let mut sheet = Picture::filled(margin * 3 + indent + map.width + legend, height + margin, PAPER);
     let title = fitted(what.title, sheet.width - 2 * margin, scale);
     draw_text(&mut sheet, margin, margin, &title, scale, INK);
-    sheet.paste(map, [margin, top]);
-    let left = margin * 2 + map.width;
+    sheet.paste(map, [margin + indent, top]);
+    axes.draw(&mut sheet, [margin + indent, top], [map.width, map.height], scale);
+    let left = margin * 2 + indent + map.width;
     let mut at = top;
     if !heading.is_empty() {
         draw_text(&mut sheet, left, at, heading, scale, INK);
@@ -161,10 +170,102 @@ fn framed(map: &Picture, what: &MapPicture<'_>, pixel: f64) -> Picture {
         draw_text(&mut sheet, left + swatch + 5 * scale, at + scale, text, scale, INK);
         at += line + 3 * scale;
     }
-    let below = top + map.height + margin;
-    sheet.fill_rectangle([margin, below + 2 * scale], [bar_px, 3 * scale], INK);
-    draw_text(&mut sheet, margin + bar_px + 4 * scale, below, &bar_text, scale, INK);
+    let (below, from) = (top + map.height + shelf + margin, margin + indent);
+    sheet.fill_rectangle([from, below + 2 * scale], [bar_px, 3 * scale], INK);
+    draw_text(&mut sheet, from + bar_px + 4 * scale, below, &bar_text, scale, INK);
+    let right = from + map.width;
+    draw_north(&mut sheet, [right.saturating_sub(text_width("N", scale) + 10 * scale), below], scale);
     sheet
+}
+
+/// An arrow up, where maps have the north of their grid, and its letter.
+fn draw_north(sheet: &mut Picture, [left, top]: [usize; 2], scale: usize) {
+    let height = (HEIGHT + 2) * scale;
+    for row in 0..height {
+        // a slender triangle
+        let half = row * 3 * scale / height;
+        sheet.fill_rectangle([left + 4 * scale - half, top + row], [2 * half + 1, 1], INK);
+    }
+    draw_text(sheet, left + 9 * scale, top + scale, "N", scale, INK);
+}
+
+/// Round coordinates along the sides of a map: pixels from its west side with their eastings, and from its north side with their northings.
+#[derive(Default)]
+struct Axes {
+    eastings: Vec<(usize, String)>,
+    northings: Vec<(usize, String)>,
+}
+
+impl Axes {
+    fn new(place: &Georeference, relief: &Raster<f32>, size_px: [usize; 2], scale: usize) -> Self {
+        let spans = [place.column_step[0] * relief.width() as f64, -place.row_step[1] * relief.height() as f64];
+        if !spans.iter().all(|span| *span > 0.0 && span.is_finite()) {
+            return Self::default();
+        }
+        let step = round_step(spans[0].max(spans[1]) / COORDINATES);
+        let along = |from: f64, span: f64| {
+            let first = (from / step).ceil();
+            (0..100).map(move |i| (first + f64::from(i)) * step).take_while(move |value| *value <= from + span)
+        };
+        let decimals = usize::try_from((0..6).find(|&n| step * 10f64.powi(n) >= 0.999).unwrap_or(6)).unwrap_or(0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the map")]
+        let pixel = |share: f64, size: usize| (share * size as f64) as usize;
+        let [west, north] = place.upper_left;
+        let mut eastings: Vec<(usize, String)> = Vec::new();
+        let mut free_from = 0;
+        for value in along(west, spans[0]) {
+            let (at, text) = (pixel((value - west) / spans[0], size_px[0]), format!("{value:.decimals$}"));
+            let half = text_width(&text, scale) / 2;
+            // coordinates are long, and those of small maps would run into each other
+            if at >= free_from + half || eastings.is_empty() {
+                free_from = at + half + 6 * scale;
+                eastings.push((at, text));
+            }
+        }
+        let northings = along(north - spans[1], spans[1])
+            .map(|value| (pixel((north - value) / spans[1], size_px[1]), format!("{value:.decimals$}")))
+            .collect();
+        Self { eastings, northings }
+    }
+
+    /// Pixels that coordinates take left of a map and below it.
+    fn room(&self, scale: usize) -> (usize, usize) {
+        let widest = self.northings.iter().map(|(_, text)| text_width(text, scale)).max();
+        let indent = widest.map_or(0, |widest| widest + 6 * scale);
+        (indent, if self.eastings.is_empty() { 0 } else { (HEIGHT + 6) * scale })
+    }
+
+    /// Draws ticks and coordinates of a map of `size` pixels at `corner`.
+    fn draw(&self, sheet: &mut Picture, [left, top]: [usize; 2], [width, height]: [usize; 2], scale: usize) {
+        if self.eastings.is_empty() && self.northings.is_empty() {
+            return;
+        }
+        let pen = scale.div_ceil(2);
+        for (corner, size) in [
+            ([left - pen, top - pen], [width + 2 * pen, pen]),
+            ([left - pen, top + height], [width + 2 * pen, pen]),
+            ([left - pen, top], [pen, height]),
+            ([left + width, top], [pen, height]),
+        ] {
+            sheet.fill_rectangle(corner, size, INK);
+        }
+        for (at, text) in &self.eastings {
+            sheet.fill_rectangle([left + at, top + height], [pen, 4 * scale], INK);
+            let from = (left + at).saturating_sub(text_width(text, scale) / 2);
+            draw_text(sheet, from, top + height + 5 * scale, text, scale, INK);
+        }
+        for (at, text) in &self.northings {
+            sheet.fill_rectangle([left - 4 * scale, top + at], [4 * scale, pen], INK);
+            let from = left.saturating_sub(text_width(text, scale) + 5 * scale);
+            draw_text(sheet, from, (top + at).saturating_sub(4 * scale), text, scale, INK);
+        }
+    }
+}
+
+/// The least of 1, 2 and 5 times a power of ten that is at least `least`.
+fn round_step(least: f64) -> f64 {
+    let power = 10.0_f64.powf(least.log10().floor());
+    [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|&step| step >= least * (1.0 - 1e-9)).unwrap_or(power)
 }
 
 /// Round values between `low` and `high`, and either end that is half a step or more from the next of them (counts begin at 1): the
@@ -213,6 +314,23 @@ fn scale_bar(most: f64) -> (f64, String) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn coordinates_along_a_map_are_round_and_where_they_belong() {
+        let place = Georeference {
+            upper_left: [84_985.0, 446_015.0],
+            column_step: [0.5, 0.0],
+            row_step: [0.0, -0.5],
+            crs: belvedere_data::crs::Crs::default(),
+        };
+        let axes = Axes::new(&place, &Raster::filled(60, 40, 0.0), [600, 400], 1);
+        // 30 m across: every ten metres would be three, every five too many
+        let told =
+            |ticks: &[(usize, String)]| ticks.iter().map(|(at, text)| format!("{at} {text}")).collect::<Vec<_>>();
+        assert_eq!(told(&axes.eastings), ["100 84990", "300 85000", "500 85010"]);
+        assert_eq!(told(&axes.northings), ["300 446000", "100 446010"]);
+        assert_eq!([0.3, 1.0, 6.1, 140.0].map(round_step), [0.5, 1.0, 10.0, 200.0]);
+    }
 
     #[test]
     fn values_beside_a_ramp_are_round() {

@@ -20,6 +20,9 @@ use belvedere_data::{Error, Result};
 /// Points decoded at a time: some LAZ chunks of 50 000 for each of two dozen threads, and a tenth of a second of work.
 const BATCH: u64 = 1_000_000;
 
+/// How far points may lie outside the bounds of a header, in its unit: what programs round them by.
+const LEAST_ROOM: f64 = 0.01;
+
 /// Scales this fine are used for degrees, not for metres.
 const DEGREE_SCALE: f64 = 1.000_001e-6;
 
@@ -119,7 +122,7 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
             reading.control.check()?;
         }
         (part.coordinates, part.attributes) = columns.finish();
-        return Ok(part);
+        return check_bounds(part, points.bounds, points.scale);
     }
     (part.coordinates, part.attributes) = columns.finish();
     part.rows = (reading.options.row_numbers == RowNumbers::Kept).then(Vec::new);
@@ -133,6 +136,40 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
         }
     }
     points.passed_over.report(&mut part);
+    check_bounds(part, points.bounds, points.scale)
+}
+
+/// Compares the points of a file with the bounds of its header, which follow from the same scale and offset: notes points outside, refuses a file
+/// all of whose points are.
+fn check_bounds(mut part: Part, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> Result<Part> {
+    let is_given = bounds.iter().all(|[low, high]| low <= high) && bounds.iter().flatten().any(|&v| v != 0.0);
+    let mut found = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    let mut outside = 0_usize;
+    let room = scale.map(|scale| (10.0 * scale.abs()).max(LEAST_ROOM));
+    for place in part.coordinates.positions() {
+        for (own, &v) in found.iter_mut().zip(&place) {
+            *own = [own[0].min(v), own[1].max(v)];
+        }
+        let is_in = |i: usize| (bounds[i][0] - room[i]..=bounds[i][1] + room[i]).contains(&place[i]);
+        outside += usize::from(!(0..3).all(is_in));
+    }
+    let count = part.coordinates.len();
+    if !is_given || count == 0 || outside == 0 {
+        return Ok(part);
+    }
+    let told = |bounds: [[f64; 2]; 3]| bounds.map(|[low, high]| format!("{low:.2} to {high:.2}")).join(", ");
+    let what = format!(
+        "{outside} of {count} points are outside the bounds of the header ({}): they lie in {}",
+        told(bounds),
+        told(found)
+    );
+    if outside == count {
+        return Err(Error::malformed(
+            &part.report.path,
+            format!("{what}; its scale, its offset or its bounds are wrong"),
+        ));
+    }
+    part.note(what);
     Ok(part)
 }
 
@@ -169,6 +206,7 @@ pub(super) fn open<'a>(input: Input<'a>, reading: &Reading<'_>) -> Result<(Part,
         format: source.format,
         scale: header.scale,
         offset: header.offset,
+        bounds: header.bounds,
         adjusted_gps_time: header.adjusted_gps_time,
         normals,
         selection: reading.selection(&part.crs),
@@ -185,6 +223,7 @@ pub(super) struct LasPoints<'a> {
     format: Format,
     scale: [f64; 3],
     offset: [f64; 3],
+    bounds: [[f64; 2]; 3],
     adjusted_gps_time: bool,
     normals: Option<ExtraNormals>,
     selection: Option<Selection>,

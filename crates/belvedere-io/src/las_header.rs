@@ -19,6 +19,8 @@ pub(super) struct LasHeader {
     pub(super) points: u64,
     pub(super) scale: [f64; 3],
     pub(super) offset: [f64; 3],
+    /// Least and greatest x, y and z that the header gives.
+    pub(super) bounds: [[f64; 2]; 3],
     /// Global encoding bit 0.
     pub(super) adjusted_gps_time: bool,
     /// Whether the number of points of the old and the new field differ.
@@ -80,6 +82,11 @@ pub(super) fn read_header(path: &Path, file: &mut (impl Read + Seek), size: u64)
         points: if long_points == 0 { legacy_points } else { long_points },
         scale: [fields.f64(131)?, fields.f64(139)?, fields.f64(147)?],
         offset: [fields.f64(155)?, fields.f64(163)?, fields.f64(171)?],
+        bounds: [
+            [fields.f64(187)?, fields.f64(179)?],
+            [fields.f64(203)?, fields.f64(195)?],
+            [fields.f64(219)?, fields.f64(211)?],
+        ],
         adjusted_gps_time: version.1 >= 2 && fields.u16(6)? & 1 != 0,
         counts_differ: legacy_points != 0 && long_points != 0 && legacy_points != long_points,
         records: Vec::new(),

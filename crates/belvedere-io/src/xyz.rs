@@ -234,6 +234,17 @@ fn find_start<R: BufRead>(path: &Path, part: &mut Part, lines: &mut Lines<'_, R>
     let Some((number, first)) = ahead.first() else { return Ok(None) };
     let separator = separator(first);
     refuse_decimal_comma(path, *number, first, separator)?;
+    if let (Some((roles, _)), Separator::Character(',')) = (&names, separator)
+        && separator.split(first).count() > roles.len()
+    {
+        let what = format!(
+            "line {number} has {} cells, but the header has {} ({}); for decimal commas separate cells by semicolons and replace commas by points",
+            separator.split(first).count(),
+            roles.len(),
+            shorten(first)
+        );
+        return Err(Error::malformed(path, what));
+    }
     let (columns, names) = names.unwrap_or_else(|| (guess_columns(part, separator, &ahead), Vec::new()));
     if separator.split(first).count() > columns.len() {
         part.note(format!("columns ignored: all after number {}", columns.len()));

@@ -97,6 +97,11 @@ impl IrradianceParams {
     }
 }
 
+/// Sine of the elevation below which it is night, −12°: within an hour around sunset the sun sinks to here where days are shortest.
+const NIGHT: f64 = -0.208;
+/// Most radiation that sensors show at night, W/m².
+const MOST_AT_NIGHT: f64 = 20.0;
+
 /// An instant, or a part of an interval, of a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instant {
@@ -160,6 +165,8 @@ pub struct PeriodReport {
     pub dhi: f64,
     /// Direct radiation of instants at which the sun is below the horizon, kWh/m²: not counted.
     pub dni_without_sun: f64,
+    /// Hours with more than 20 W/m² while the sun is more than 12° below the horizon.
+    pub night_hours: f64,
     /// Instants with radiation.
     pub instant_count: usize,
     /// Distinct directions of the sun.
@@ -173,6 +180,7 @@ impl PeriodReport {
         self.dni += other.dni;
         self.dhi += other.dhi;
         self.dni_without_sun += other.dni_without_sun;
+        self.night_hours += other.night_hours;
         self.instant_count += other.instant_count;
         self.sun_direction_count += other.sun_direction_count;
     }
@@ -231,6 +239,9 @@ impl PeriodRadiation {
                 for (patch, radiation) in of_instant.iter().enumerate() {
                     patches[patch * group_count + group] += radiation * instant.hours;
                 }
+            }
+            if instant.sun[2] < NIGHT && ghi > MOST_AT_NIGHT {
+                report.night_hours += instant.hours;
             }
             if instant.sun[2] <= 0.0 {
                 report.dni_without_sun += dni * instant.hours / 1000.0;
@@ -292,4 +303,28 @@ fn sun_cell([x, y, z]: [f64; 3], side: f64) -> (u32, u32) {
     let azimuth = x.atan2(y).rem_euclid(TAU);
     let column = (azimuth / TAU * column_count).floor().min(column_count - 1.0);
     (row as u32, column as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn radiation_at_night_is_counted() {
+        let at = |elevation_deg: f64, ghi: f64| {
+            let elevation = elevation_deg.to_radians();
+            Instant {
+                sun: [elevation.cos(), 0.0, elevation.sin()],
+                zenith: FRAC_PI_2 - elevation,
+                hours: 0.25,
+                month: 6,
+                irradiance: Irradiance { ghi, dni: 0.0, dhi: ghi },
+                extraterrestrial: 1360.0,
+            }
+        };
+        // noon, dusk, noise of a sensor at midnight, and a wrong clock
+        let instants = [at(60.0, 800.0), at(-5.0, 40.0), at(-40.0, 2.0), at(-40.0, 500.0)];
+        let found = PeriodRadiation::gather(&instants, &IrradianceParams::default()).unwrap();
+        assert_eq!(found.report.night_hours, 0.25);
+    }
 }

@@ -223,18 +223,6 @@ pub fn landmark_views(
     eyes.par_iter().map(look).collect()
 }
 
-/// Which of `eyes` are inside a ball of `scene`, (N); an eye that is not finite is not.
-///
-/// # Errors
-/// [`Error::Cancelled`].
-pub fn enclosed_eyes(scene: &MedialScene, eyes: &[[f64; 3]], control: &Control<'_>) -> Result<Vec<bool>> {
-    let is_enclosed = |eye: &[f64; 3]| {
-        control.check()?;
-        Ok(eye[2].is_finite() && scene.enclosure(*eye).ball_count > 0)
-    };
-    eyes.par_iter().map(is_enclosed).collect()
-}
-
 /// Where the pieces of a landmark are asked about, in trees that serve all eyes.
 struct Places {
     /// For eyes before the face of a piece.

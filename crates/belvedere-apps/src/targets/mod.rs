@@ -26,7 +26,7 @@ pub use surfaces::{FaceMeans, Facing, MeshParams, object_areas};
 pub use windows::Window;
 
 use belvedere_core::ground::Ground;
-use belvedere_core::query::{MedialScene, SurfacePieces};
+use belvedere_core::query::{Coverage, MedialScene, SurfacePieces};
 use belvedere_data::control::Control;
 use belvedere_data::frame::Frame;
 use belvedere_data::{PointCloud, Result};
@@ -115,6 +115,14 @@ impl Targets {
                 *value = f32::NAN;
             }
         });
+    }
+
+    /// Leaves out targets that lie beside or below the cloud; returns how many.
+    pub fn leave_out_outside(&mut self, coverage: &Coverage) -> usize {
+        let is_outside =
+            |position: &[f32; 3]| position.iter().all(|v| v.is_finite()) && !coverage.holds(position.map(f64::from));
+        let outside = self.positions.par_iter_mut().with_min_len(CHUNK).filter(|position| is_outside(position));
+        outside.map(|position| *position = [f32::NAN; 3]).count()
     }
 
     /// Leaves out targets that lie inside a ball of `scene`; returns how many.

@@ -119,13 +119,14 @@ pub fn cell_targets(ground: &Ground, height: f64) -> Vec<[f32; 3]> {
     ground.heights.values().par_iter().enumerate().with_min_len(CHUNK).map(target).collect()
 }
 
-/// What `observers` see of `targets`, (M, 3) local metres; control counts observers.
+/// What `observers` see of `targets`, (M, 3) local metres; control counts observers. An observer whose eye is not finite
+/// ([`crate::eyes::skip_unfit_eyes`]) sees nothing and keeps its number.
 ///
 /// A reverse viewshed, from where a target is seen, is the viewshed of an observer in its place, of the eyes that might see it: a
 /// line of sight is the same both ways. Balls that hold the target are then left out, and those at the eyes give way.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range.
+/// [`Error::InvalidParameter`] for parameters outside their range, and [`Error::Cancelled`].
 pub fn viewshed(
     scene: &MedialScene,
     observers: &[Observer],
@@ -185,13 +186,19 @@ struct Band {
 }
 
 impl Asked<'_> {
-    /// Blocked for what somebody looks at, otherwise outside the view.
+    /// Blocked for what somebody looks at, otherwise outside the view; outside the cloud for what lies there.
     fn before_anybody_sees(&self, observers: &[Observer]) -> Vec<Answer> {
+        let lookers: Vec<&Observer> =
+            observers.iter().filter(|observer| !self.scene.is_outside_cloud(observer.eye)).collect();
         let is_looked_at = |&target: &[f32; 3]| {
             let target = target.map(f64::from);
-            observers.iter().any(|observer| observer.eye != target && observer.limits.allow(observer.eye, target))
+            lookers.iter().any(|observer| observer.eye != target && observer.limits.allow(observer.eye, target))
         };
-        let answer = |target| if is_looked_at(target) { Answer::Blocked } else { Answer::OutsideView };
+        let answer = |target: &[f32; 3]| match is_looked_at(target) {
+            true if self.scene.is_outside_cloud(target.map(f64::from)) => Answer::OutsideCloud,
+            true => Answer::Blocked,
+            false => Answer::OutsideView,
+        };
         self.targets.par_iter().with_min_len(CHUNK).map(answer).collect()
     }
 
@@ -209,7 +216,9 @@ impl Asked<'_> {
                 Answer::Unproven => band.unproven.push(row as u32),
                 _ => {}
             };
-            if self.bends(observer) || threading == Threading::Shared {
+            if !observer.eye.iter().all(|v| v.is_finite()) {
+                // a skipped observer
+            } else if self.bends(observer) || threading == Threading::Shared {
                 let answers = self.seen_by(observer, control)?;
                 answers.into_iter().enumerate().for_each(|(row, answer)| note(row, answer));
             } else {
@@ -332,10 +341,6 @@ fn check(observers: &[Observer], earth: &EarthParams) -> Result<()> {
     earth.validate()?;
     for observer in observers {
         observer.limits.validate()?;
-        if !observer.eye.iter().all(|v| v.is_finite()) {
-            let value = format!("{:?}", observer.eye);
-            return Err(Error::InvalidParameter { name: "eye of an observer", value, expected: "finite" });
-        }
     }
     Ok(())
 }

@@ -41,13 +41,17 @@ impl SightLimits {
         if let Some(azimuth) = self.azimuth
             && !azimuth.iter().all(|v| v.is_finite())
         {
-            return invalid("azimuth", azimuth, "two finite angles");
+            return invalid("azimuth", azimuth.map(f64::to_degrees), "two finite angles");
         }
         let right = std::f64::consts::FRAC_PI_2 + 1e-9;
         if let Some(elevation) = self.elevation
             && !(elevation[0] < elevation[1] && elevation[0] >= -right && elevation[1] <= right)
         {
-            return invalid("elevation", elevation, "in ascending order, from -90 to 90 degrees");
+            return invalid(
+                "elevation in degrees",
+                elevation.map(f64::to_degrees),
+                "in ascending order, from -90 to 90 degrees",
+            );
         }
         let [least, most] = self.distance;
         if !(least >= 0.0 && least.is_finite() && most > least) {

@@ -63,8 +63,6 @@ impl FromStr for Hours {
 
 #[derive(Args)]
 pub(crate) struct Envelope {
-    #[command(flatten)]
-    pub(crate) scene: SceneInput,
     /// Parcel: polygons (GeoJSON), a table of corners with columns x and y (.csv), or "X,Y X,Y X,Y ..."
     #[arg(long, value_name = "FILE|CORNERS", required = true, allow_hyphen_values = true, help_heading = "Land")]
     pub(crate) parcel: Corners,
@@ -121,12 +119,12 @@ pub(crate) struct Envelope {
     /// Also write the top of the envelope in the vertical system of the cloud (.tif .npy)
     #[arg(long, value_name = "OUT", help_heading = "Result")]
     pub(crate) tops: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }
 
 #[derive(Args)]
 pub(crate) struct Comfort {
-    #[command(flatten)]
-    pub(crate) scene: SceneInput,
     #[command(flatten)]
     pub(crate) places: ComfortPlaces,
     #[command(flatten)]
@@ -169,6 +167,8 @@ pub(crate) struct Comfort {
     /// Also write a table with a row for each route and sun: time, sun direction, shaded share of the route (.csv)
     #[arg(long, value_name = "OUT", requires = "route", help_heading = "Result")]
     pub(crate) times: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }
 
 #[derive(Args)]

@@ -8,8 +8,6 @@ use std::path::PathBuf;
 #[derive(Args)]
 pub(crate) struct Irradiance {
     #[command(flatten)]
-    pub(crate) scene: SceneInput,
-    #[command(flatten)]
     pub(crate) radiation: RadiationChoice,
     /// Linke turbidity of a clear sky by ineichen, 1 to 20: 2 clean, 3 normal, 5 hazy [default: 3]
     #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Radiation")]
@@ -72,6 +70,8 @@ pub(crate) struct Irradiance {
     pub(crate) months: bool,
     #[command(flatten)]
     pub(crate) outputs: IrradianceOutputs,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }
 
 #[derive(Args)]

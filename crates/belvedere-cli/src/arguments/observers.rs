@@ -10,8 +10,6 @@ use std::str::FromStr;
 #[derive(Args)]
 pub(crate) struct LineOfSight {
     #[command(flatten)]
-    pub(crate) scene: SceneInput,
-    #[command(flatten)]
     pub(crate) lines: Lines,
     #[command(flatten)]
     pub(crate) earth: Earth,
@@ -34,6 +32,8 @@ pub(crate) struct LineOfSight {
     /// blocking ball and of the point that it touches.
     #[arg(short, long, value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
     pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }
 
 #[derive(Args)]
@@ -122,8 +122,6 @@ impl From<CurvatureChoice> for Curvature {
 #[derive(Args)]
 pub(crate) struct Viewshed {
     #[command(flatten)]
-    pub(crate) scene: SceneInput,
-    #[command(flatten)]
     pub(crate) who: Who,
     #[command(flatten)]
     pub(crate) looking: Looking,
@@ -162,6 +160,8 @@ pub(crate) struct Viewshed {
     /// .npy: (bands, rows, columns) u32; bit i of band b is observer 32 b + i. .tif: up to 32 observers.
     #[arg(long, value_name = "OUT", help_heading = "Result")]
     pub(crate) masks: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }
 
 #[derive(Args)]

@@ -8,8 +8,6 @@ use std::path::PathBuf;
 #[derive(Args)]
 pub(crate) struct DepthMap {
     #[command(flatten)]
-    pub(crate) scene: SceneInput,
-    #[command(flatten)]
     pub(crate) view: ViewChoice,
     /// Depth in metres (.tif .npy), or a picture with a legend (.png); repeatable
     ///
@@ -22,12 +20,12 @@ pub(crate) struct DepthMap {
     /// `belvedere balls` writes with the same flags.
     #[arg(long = "ball-ids", value_name = "OUT", help_heading = "Result")]
     pub(crate) balls_id: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }
 
 #[derive(Args)]
 pub(crate) struct Query {
-    #[command(flatten)]
-    pub(crate) scene: SceneInput,
     #[command(flatten)]
     pub(crate) view: ViewChoice,
     #[command(flatten)]
@@ -57,6 +55,8 @@ pub(crate) struct Query {
     /// One row for each target, in the order of the input.
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }
 
 #[derive(Args)]

@@ -9,11 +9,24 @@ pub(crate) struct CloudInput {
     /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy), or a folder of them
     ///
     /// Several files, or a folder, are read as one cloud. A folder with coords.npy is read in the layout of masbcpp.
-    #[arg(value_name = "CLOUD", required = true)]
+    #[arg(value_name = "CLOUD", required = true, help_heading = None::<&'static str>)]
     pub(crate) clouds: Vec<PathBuf>,
     /// Coordinate reference system, as EPSG:CODE or WKT [default: that of the file]
-    #[arg(long, value_name = "CRS", value_parser = known_crs)]
+    #[arg(long, value_name = "CRS", value_parser = known_crs, help_heading = "Scene")]
     pub(crate) crs: Option<String>,
+    /// Axis of the clouds that is up: z, or y as in computer graphics
+    ///
+    /// With y, coordinates x, y, z are read as x, -z, y. Results are in these coordinates, and so are observers and targets.
+    #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpChoice::Z, help_heading = "Scene", hide_short_help = true)]
+    pub(crate) up: UpChoice,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum UpChoice {
+    /// The third axis, as in surveys
+    Z,
+    /// The second axis
+    Y,
 }
 
 /// Clouds to build balls from, or a ball file.
@@ -42,7 +55,7 @@ pub(crate) struct SceneConfig {
     /// Keys are the names of the flags with underscores, for example {"orient": "pulses", "max_radius": 2, "keep_noise": true}. A flag on
     /// the command line overrides the file. These flags (--orient, --method, --trees and more) are
     /// accepted here too. A ball file refuses them, because its balls are already built.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = "Scene")]
     pub(crate) scene_config: Option<PathBuf>,
 }
 

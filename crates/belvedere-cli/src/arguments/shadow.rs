@@ -9,8 +9,6 @@ use std::path::PathBuf;
 #[derive(Args)]
 pub(crate) struct Shadow {
     #[command(flatten)]
-    pub(crate) scene: SceneInput,
-    #[command(flatten)]
     pub(crate) suns: Suns,
     #[command(flatten)]
     pub(crate) when: SunPeriod,
@@ -36,6 +34,8 @@ pub(crate) struct Shadow {
     #[arg(long = "frame-duration-s", value_name = "S", default_value_t = 0.25, requires = "film", help_heading = "Result",
         value_parser = above_zero::<f64>, allow_negative_numbers = true)]
     pub(crate) seconds: f64,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }
 
 #[derive(Args)]

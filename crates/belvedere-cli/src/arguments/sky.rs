@@ -33,6 +33,12 @@ pub(crate) struct SkyPlaces {
     /// Cells of a grid are always level.
     #[arg(long, value_enum, value_name = "HOW", help_heading = "Targets")]
     pub(crate) facing: Option<FacingChoice>,
+    /// Also write a mask of the cells near the edge of the cloud (.tif): 1 near the edge, 0 not, nodata 255
+    ///
+    /// A cell is near the edge if more than 5 % of the light comes from directions that leave the cloud below its highest point: objects beyond the
+    /// cloud, as high as that, could block them. Directions count by the sine of their elevation.
+    #[arg(long = "edge-mask", value_name = "OUT", help_heading = "Targets")]
+    pub(crate) edge_mask: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -77,8 +83,6 @@ pub(crate) struct SkyOutputs {
 #[derive(Args)]
 pub(crate) struct SkyView {
     #[command(flatten)]
-    pub(crate) scene: SceneInput,
-    #[command(flatten)]
     pub(crate) places: SkyPlaces,
     #[command(flatten)]
     pub(crate) shell: Shell,
@@ -95,6 +99,8 @@ pub(crate) struct SkyView {
     pub(crate) trees: ThroughTrees,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

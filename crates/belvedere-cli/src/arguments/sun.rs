@@ -61,8 +61,6 @@ pub(crate) struct SunPeriod {
 #[derive(Args)]
 pub(crate) struct SunHours {
     #[command(flatten)]
-    pub(crate) scene: SceneInput,
-    #[command(flatten)]
     pub(crate) when: SunPeriod,
     /// Daylight rule: nl-light, nl-strict, the-hague, bre-equinox, or your own as HOURS@DAYS; repeatable
     ///
@@ -95,4 +93,6 @@ pub(crate) struct SunHours {
     /// Each sun uses the nearest direction of the matrix, at most --sun-tolerance-deg away [default: 1].
     #[arg(long = "load-matrix", value_name = "MATRIX", conflicts_with = "keep", help_heading = "Period")]
     pub(crate) from_matrix: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }

@@ -42,8 +42,6 @@ impl From<BackFacesChoice> for BackFaces {
 #[derive(Args)]
 pub(crate) struct Landmark {
     #[command(flatten)]
-    pub(crate) scene: SceneInput,
-    #[command(flatten)]
     pub(crate) what: What,
     /// Name of an object of the mesh that is the landmark; repeatable [default: all]
     #[arg(long, value_name = "NAME", requires = "target", help_heading = "Landmark (one of)")]
@@ -90,6 +88,8 @@ pub(crate) struct Landmark {
     /// Also write a raster of each measure of a grid into this folder; created if it does not exist
     #[arg(long, value_name = "DIR", conflicts_with = "observers", help_heading = "Result")]
     pub(crate) measures: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }
 
 #[derive(Args)]
@@ -132,8 +132,6 @@ pub(crate) struct Eyes {
 #[derive(Args)]
 pub(crate) struct Isovist {
     #[command(flatten)]
-    pub(crate) scene: SceneInput,
-    #[command(flatten)]
     pub(crate) eyes: Eyes,
     #[command(flatten)]
     pub(crate) north: North,
@@ -151,12 +149,12 @@ pub(crate) struct Isovist {
     /// .json also has the corners of the plan.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }
 
 #[derive(Args)]
 pub(crate) struct Horizon {
-    #[command(flatten)]
-    pub(crate) scene: SceneInput,
     #[command(flatten)]
     pub(crate) eyes: Eyes,
     #[command(flatten)]
@@ -175,6 +173,8 @@ pub(crate) struct Horizon {
     /// line, clockwise from north. .png: one observer.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

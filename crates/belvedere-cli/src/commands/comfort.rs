@@ -4,6 +4,7 @@ mod places;
 
 use super::check_output;
 use super::sights::{Proving, blockers};
+use super::targets::{leave_out_outside, report_edge};
 use crate::arguments::{Comfort, Global, PatchesChoice, Usage};
 use crate::pipeline::{self, Points, flagged};
 use crate::progress::Stages;
@@ -61,13 +62,16 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     if arguments.places.windows.is_some() || arguments.times.is_some() {
         north.report(&mut summary);
     }
-    let places = match (&arguments.places.route, &arguments.places.windows) {
+    let mut places = match (&arguments.places.route, &arguments.places.windows) {
         (Some(route), _) => routes(arguments, route, &mut scene, &mut stages, &mut summary)?,
         (None, Some(path)) => {
             windows(arguments, path, (&scene, north.of_grid), global.seed, &mut stages, &mut summary)?
         }
         (None, None) => return Err(Usage("targets are missing: give --route or --windows".to_owned()).into()),
     };
+    leave_out_outside(&mut places.targets, &scene, &mut summary);
+    let directions = [sky.directions.as_slice(), &schedule.directions].concat();
+    report_edge(&places.targets, &scene, &directions, &mut stages, &mut summary)?;
     let mut section = Summary::default();
     let profile = arguments.scene.profile.into();
     let (blockers, _) =

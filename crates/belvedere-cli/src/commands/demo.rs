@@ -1,6 +1,6 @@
 //! `belvedere demo`: a simulated town, everything done on it, and how right the answers are.
 
-use crate::arguments::{CloudInput, Demo, Global};
+use crate::arguments::{CloudInput, Demo, Global, UpChoice};
 use crate::pipeline;
 use crate::progress::Stages;
 use crate::simulated::{cloud_of, write_text};
@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     stages.run("writing town", 0, |_| write_town(folder, &scene, &scan))?;
 
     // from here on only what a survey would deliver: the LAZ file and the trajectory
-    let input = CloudInput { clouds: vec![folder.join("town.laz")], crs: None };
+    let input = CloudInput { clouds: vec![folder.join("town.laz")], crs: None, up: UpChoice::Z };
     let cloud = pipeline::read(&input, &mut stages, &mut summary)?;
     let path = folder.join("trajectory.csv");
     let (trajectory, _) = stages.run("reading trajectory", 0, |_| read_trajectory(&path, &cloud.frame.crs))?;

@@ -392,7 +392,8 @@ fn write_one(output: &Path, found: &SolarEnvelope, ground: &Ground, cloud: &Poin
             heights.values_mut().iter_mut().filter(|h| h.is_infinite()).for_each(|h| *h = f32::NAN);
             let relief = highest_points(&cloud.positions, ground);
             let measure = Measure::new("height", heights.values().to_vec()).with_description("metres above the ground");
-            Ok(write_png(output, &measure_map(&measure, &relief, ground.grid.cell, "Solar envelope")?)?)
+            let place = georeference(&ground.grid, &cloud.frame);
+            Ok(write_png(output, &measure_map(&measure, &relief, ground.grid.cell, &place, "Solar envelope")?)?)
         }
         _ => write_heights(
             output,

@@ -1,16 +1,18 @@
 //! `belvedere horizon`.
 
 use super::sights::{Proving, blockers};
-use super::surroundings::{eyes, least_count, needs_ground, note_enclosed};
+use super::surroundings::{check_eyes, eyes, least_count, needs_ground};
 use super::{check_output, extension};
 use crate::arguments::{BelowChoice, GivingWay, Global, Horizon, Usage};
 use crate::pipeline::{self, Points, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
+use belvedere::apps::edge::horizon_share_near_edge;
 use belvedere::apps::horizon::{HorizonParams, azimuth_count, horizons};
 use belvedere::figures::{horizon_picture, write_png};
 use belvedere::io::atomic;
+use belvedere::query::SkylinePoint;
 use std::io::Write;
 use std::path::Path;
 
@@ -29,7 +31,7 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
     let mut summary = Summary::default();
     let points = if needs_ground(&arguments.eyes) { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
-    let places = eyes(&arguments.eyes, &mut scene, &mut stages, &mut summary)?;
+    let mut places = eyes(&arguments.eyes, &mut scene, &mut stages, &mut summary)?;
     check_formats(arguments, places.len())?;
     let north = match places.first() {
         Some(eye) => arguments.north.at(&scene, [eye[0], eye[1]]),
@@ -41,7 +43,7 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
     let (blockers, _) =
         blockers(&scene, arguments.scene.profile.into(), &giving_way, Proving::Never, &mut stages, &mut section)?;
     summary.add("lines_of_sight", section);
-    note_enclosed(&blockers, &places, &mut summary);
+    check_eyes(&blockers, &scene.cloud.frame, &mut places, &mut stages, &mut summary)?;
     let params = HorizonParams::default().with_azimuth_count(azimuth_count).with_turn(north.of_grid).with_earth(earth);
     let found =
         stages.run("computing ranges", places.len(), |control| horizons(&blockers, &places, &params, control))?;
@@ -50,7 +52,16 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
         .iter()
         .map(|skyline| skyline.iter().map(|point| point.elevation.to_degrees().max(least)).collect())
         .collect();
-    summary.add("horizons", told(&elevations));
+    let mut section = told(&elevations);
+    if let Some(coverage) = scene.model.coverage() {
+        let known = || places.iter().zip(&found).filter(|(eye, _)| eye[0].is_finite());
+        let share = |(eye, skyline): (&[f64; 3], &Vec<SkylinePoint>)| {
+            horizon_share_near_edge(&coverage, *eye, skyline, -north.of_grid)
+        };
+        let mean = known().map(share).sum::<f64>() / known().count().max(1) as f64;
+        section.add("azimuths_near_edge_percent", rounded(100.0 * mean, 2));
+    }
+    summary.add("horizons", section);
     for output in &arguments.output {
         stages.run("writing", 0, |_| match (extension(output).as_str(), elevations.first()) {
             ("png", Some(one)) => write_png(output, &horizon_picture(one, "Horizon elevation, degrees")),
@@ -80,8 +91,7 @@ fn told(elevations: &[Vec<f64>]) -> Summary {
     let all = || elevations.iter().flatten().copied();
     let count = elevations.iter().map(Vec::len).sum::<usize>().max(1);
     section
-        .add("observers", elevations.len())
-        .add("azimuths", elevations.first().map_or(0, Vec::len))
+        .add("azimuths", elevations.iter().map(Vec::len).max().unwrap_or(0))
         .add("mean_elevation_deg", rounded(all().sum::<f64>() / count as f64, 3))
         .add("max_elevation_deg", rounded(all().fold(-90.0, f64::max), 3));
     section
@@ -97,7 +107,9 @@ fn write_columns(output: &Path, elevations: &[Vec<f64>], count: usize) -> belved
         // six decimals for steps that are no whole numbers, without the zeros of those that are
         let azimuth = format!("{:.6}", 360.0 * i as f64 / count as f64);
         let azimuth = azimuth.trim_end_matches('0').trim_end_matches('.').to_owned();
-        elevations.iter().fold(azimuth, |row, eye| format!("{row},{:.4}", eye.get(i).copied().unwrap_or(f64::NAN)))
+        // a skipped observer has empty cells
+        let cell = |eye: &Vec<f64>| eye.get(i).map(|elevation| format!("{elevation:.4}")).unwrap_or_default();
+        elevations.iter().fold(azimuth, |row, eye| format!("{row},{}", cell(eye)))
     };
     write_lines(output, std::iter::once(header).chain((0..count).map(row)))
 }

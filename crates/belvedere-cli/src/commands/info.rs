@@ -14,6 +14,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     let mut summary = Summary::default();
     let mut options = ReadOptions::new();
     options.crs = arguments.input.crs.clone();
+    options.up = arguments.input.up.into();
     let (cloud, report) = stages.run("reading", 0, |control| read_cloud(&arguments.input.clouds, &options, control))?;
     let files = report.files.iter().map(|file| {
         let mut section = Summary::default();
@@ -41,11 +42,13 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     summary.add("points_per_m2_of_covered_ground", rounded(facts.density, 2));
     if let Some(facades) = stages.run("measuring facades", 0, |control| FacadeSummary::of(&cloud, control))? {
         let mut section = Summary::default();
-        section
-            .add("steep_points", facades.steep_point_count)
-            .add("building_points", facades.building_point_count)
-            .add("estimated_wall_area_m2", whole(facades.area))
-            .add("points_per_m2_of_wall", rounded(facades.density, 2));
+        section.add("steep_points", facades.steep_point_count).add("building_points", facades.building_point_count);
+        match facades.walls {
+            Some(walls) => section
+                .add("estimated_wall_area_m2", whole(walls.area))
+                .add("points_per_m2_of_wall", rounded(walls.density, 2)),
+            None => section.add("walls", "not estimable: too few points on them"),
+        };
         summary.add("facades", section);
     }
     if let Some(pulses) = facts.pulses {

@@ -48,6 +48,8 @@ pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
     section.add("directions", seasons.iter().map(|season| season.radiation.directions().len()).sum::<usize>());
     summary.add("lines_of_sight", section);
     if let Some(asked) = &asked {
+        let directions: Vec<[f64; 3]> = seasons.iter().flat_map(|season| season.radiation.directions()).collect();
+        asked.report_edge(&arguments.places, &scene, &directions, &mut stages, &mut summary)?;
         let looks = asked.targets.len() * look_count(&obstacles, &seasons);
         let sums = stages.run("testing sun and sky", looks, |control| {
             season_irradiation(obstacles, &asked.targets, &seasons, control)

@@ -1,7 +1,7 @@
 //! `belvedere isovist`.
 
 use super::sights::{Proving, blockers};
-use super::surroundings::{eyes, least_count, needs_ground, note_enclosed, rows_as_given};
+use super::surroundings::{check_eyes, eyes, least_count, needs_ground, rows_as_given};
 use super::{check_output, extension};
 use crate::arguments::{GivingWay, Global, Isovist, Usage};
 use crate::pipeline::{self, Points, flagged};
@@ -38,35 +38,32 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
         .with_step(arguments.step.map_or(usual.step, f64::to_radians))
         .with_max_range(arguments.max_distance.unwrap_or(usual.max_range))
         .with_jump(arguments.jump.unwrap_or(usual.jump));
-    note_enclosed(&blockers, &places, &mut summary);
+    let mut fit = places.clone();
+    check_eyes(&blockers, &scene.cloud.frame, &mut fit, &mut stages, &mut summary)?;
     let isovists = stages.run("computing ranges", places.len(), |progress| {
-        places
-            .iter()
-            .map(|&eye| {
-                let isovist = isovist::isovist(&blockers, eye, &params, progress);
-                progress.advance(1);
-                isovist
-            })
-            .collect::<belvedere::Result<Vec<_>>>()
+        let look = |&eye: &[f64; 3]| {
+            let isovist = isovist::isovist(&blockers, eye, &params, progress);
+            progress.advance(1);
+            isovist
+        };
+        // a skipped eye has a row without measures
+        fit.iter().map(|eye| eye[0].is_finite().then(|| look(eye)).transpose()).collect::<belvedere::Result<Vec<_>>>()
     });
     let isovists = flagged("--angle-step-deg, --max-distance, --min-jump", isovists)?;
-    let rows: Vec<Row> =
-        places.iter().zip(&isovists).map(|(&eye, isovist)| row(&scene.cloud, eye, isovist, north.of_grid)).collect();
+    let rows = rows(&scene.cloud, &places, &isovists, north.of_grid);
     if let [row] = &rows[..] {
         let mut section = Summary::default();
         for &(name, value, decimals) in row {
             section.add(name, rounded(value, i32::try_from(decimals).unwrap_or(4)));
         }
         summary.add("isovist", section);
-    } else {
-        summary.add("observers", rows.len());
     }
     let given = rows_as_given(arguments.eyes.eyes.as_deref())?;
     for output in &arguments.output {
         stages.run("writing", 0, |_| match extension(output).as_str() {
             "json" => write_json(output, &rows, &isovists, north.of_grid),
             "png" => {
-                let Some(isovist) = isovists.first() else { return Ok(()) };
+                let Some(Some(isovist)) = isovists.first() else { return Ok(()) };
                 write_png(output, &panorama_picture(&isovist.panorama, "Ranges around the observer"))
             }
             _ => write_rows(output, &rows, &given),
@@ -90,6 +87,20 @@ fn check_pictures(arguments: &Isovist, count: usize) -> Result<()> {
 
 /// Name, value and decimals of every measure.
 type Row = Vec<(&'static str, f64, usize)>;
+
+/// A row for each eye; one that was skipped has its coordinates alone.
+fn rows(cloud: &PointCloud, places: &[[f64; 3]], isovists: &[Option<isovist::Isovist>], grid_north: f64) -> Vec<Row> {
+    let Some(known) = isovists.iter().flatten().next() else { return Vec::new() };
+    let of_place = |(&place, isovist): (&[f64; 3], &Option<isovist::Isovist>)| match isovist {
+        Some(isovist) => row(cloud, place, isovist, grid_north),
+        None => {
+            let mut row = row(cloud, place, known, grid_north);
+            row.iter_mut().skip(3).for_each(|(_, value, _)| *value = f64::NAN);
+            row
+        }
+    };
+    places.iter().zip(isovists).map(of_place).collect()
+}
 
 fn row(cloud: &PointCloud, eye: [f64; 3], isovist: &isovist::Isovist, grid_north: f64) -> Row {
     let [x, y, z] = cloud.frame.file_from_local(eye);
@@ -140,11 +151,16 @@ fn write_rows(output: &Path, rows: &[Row], given: &TextRows) -> belvedere::Resul
     write_table(output, &with_columns_read(&read, &["x", "y", "z"], &named))
 }
 
-fn write_json(output: &Path, rows: &[Row], isovists: &[isovist::Isovist], grid_north: f64) -> belvedere::Result<()> {
-    let object = |(row, isovist): (&Row, &isovist::Isovist)| {
+fn write_json(
+    output: &Path,
+    rows: &[Row],
+    isovists: &[Option<isovist::Isovist>],
+    grid_north: f64,
+) -> belvedere::Result<()> {
+    let object = |(row, isovist): (&Row, &Option<isovist::Isovist>)| {
         let mut object: Map<String, Value> =
             row.iter().map(|&(name, value, _)| (name.to_owned(), json!(value))).collect();
-        let corners = isovist.plan.corners.iter();
+        let corners = isovist.iter().flat_map(|isovist| &isovist.plan.corners);
         let corners: Vec<Value> = corners
             .map(|[azimuth, range]| json!([(azimuth + grid_north).to_degrees().rem_euclid(360.0), range]))
             .collect();

@@ -3,16 +3,16 @@
 mod results;
 mod what;
 
-use super::sights::{self, Proving, blockers, ground_cloud};
+use super::sights::{self, Proving, blockers, ground_cloud, skip_unfit};
 use super::surroundings::rows_as_given;
 use super::{check_output, extension};
 use crate::arguments::{Global, Landmark, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::Summary;
-use anyhow::{Result, bail};
+use anyhow::Result;
 use belvedere::PointCloud;
-use belvedere::apps::landmark::{LandmarkParams, LandmarkReport, enclosed_eyes, landmark_views, observer_cell_for};
+use belvedere::apps::landmark::{LandmarkParams, LandmarkReport, landmark_views, observer_cell_for};
 use belvedere::apps::targets::{CellParams, CoveredCells, Targets, set_on_ground};
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::ground::{Ground, MapGrid};
@@ -43,20 +43,28 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     summary.add("lines_of_sight", section);
 
     let height = arguments.observer_height.unwrap_or(OBSERVER_HEIGHT);
-    let (eyes, inside) = stages.run("testing observers", 0, |control| match &rows {
+    let places: Vec<[f64; 3]>;
+    let (eyes, inside) = match &rows {
         Some(rows) => {
-            // the position of an observer from a file is kept, even inside a wall
-            let eyes = standing(rows, height, &ground, &cloud)?;
-            let enclosed = enclosed_eyes(&blockers, &eyes, control)?;
-            Ok((eyes, enclosed.into_iter().filter(|&is_enclosed| is_enclosed).count()))
+            places = standing(rows, height, &ground);
+            let mut eyes = places.clone();
+            let who = ("observer", &cloud.frame);
+            let report = skip_unfit(&blockers, Some(&ground), who, &mut eyes, &mut stages, &mut summary)?;
+            summary.add("observers_given", Summary::of(&report));
+            (eyes, report.skipped_inside_obstacle)
         }
         None => {
-            let cells = CellParams::default().with_height(height).with_covered(CoveredCells::Kept);
-            let (mut targets, _) = Targets::of_cells(&cloud, ground.clone(), &cells, control)?;
-            let inside = targets.leave_out_enclosed(&blockers, control)?;
-            Ok::<_, anyhow::Error>((targets.positions.iter().map(|eye| eye.map(f64::from)).collect(), inside))
+            let (eyes, inside) = stages.run("testing observers", 0, |control| {
+                let cells = CellParams::default().with_height(height).with_covered(CoveredCells::Kept);
+                let (mut targets, _) = Targets::of_cells(&cloud, ground.clone(), &cells, control)?;
+                let inside = targets.leave_out_enclosed(&blockers, control)?;
+                let eyes: Vec<[f64; 3]> = targets.positions.iter().map(|eye| eye.map(f64::from)).collect();
+                Ok::<_, anyhow::Error>((eyes, inside))
+            })?;
+            places = eyes.clone();
+            (eyes, inside)
         }
-    })?;
+    };
     let usual = LandmarkParams::default().faces;
     let params = LandmarkParams::default()
         .with_faces(MeshTargetParams {
@@ -73,7 +81,7 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     let given = rows_as_given(arguments.observers.as_deref())?;
     for output in &arguments.output {
         stages.run("writing", 0, |_| match extension(output).as_str() {
-            "csv" => results::write_rows(output, &views, &eyes, &given, &cloud),
+            "csv" => results::write_rows(output, &views, &places, &given, &cloud),
             "png" => results::write_map(output, &views, &ground, &cloud, middle),
             _ => results::write_share(output, &views, &ground, &cloud),
         })?;
@@ -126,19 +134,12 @@ fn rows(arguments: &Landmark, cloud: &PointCloud) -> Result<Option<Vec<Row>>> {
     Ok(Some(rows))
 }
 
-fn standing(rows: &[Row], height: f64, ground: &Ground, cloud: &PointCloud) -> Result<Vec<[f64; 3]>> {
+/// Where observers of a file stand; the height is NaN where no ground is known.
+fn standing(rows: &[Row], height: f64, ground: &Ground) -> Vec<[f64; 3]> {
     let mut eyes: Vec<[f64; 3]> = rows.iter().map(|row| row.0).collect();
     let heights = rows.iter().map(|row| row.1.unwrap_or(height));
-    let unknown = set_on_ground(eyes.iter_mut().zip(heights), ground);
-    if let Some(&number) = unknown.first() {
-        let [x, y, _] = cloud.frame.file_from_local(eyes[number]);
-        bail!(
-            "observer {} at {x:.3},{y:.3}: there is no ground known below it; is it in the coordinates of the cloud? Else give a \
-             column z",
-            number + 1
-        );
-    }
-    Ok(eyes)
+    set_on_ground(eyes.iter_mut().zip(heights), ground);
+    eyes
 }
 
 /// Local place on the map of file coordinates.

@@ -7,6 +7,7 @@ use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
+use belvedere::apps::eyes::skip_unfit_eyes;
 use belvedere::apps::profile::{SightProfile, sight_profile};
 use belvedere::figures::{profile_picture, write_png};
 use belvedere::ground::{Ground, MapGrid};
@@ -14,6 +15,7 @@ use belvedere::io::{Cells, TextRows, read_table, with_columns_read, write_table}
 use belvedere::query::{Answer, AnswerCounts, EarthParams, MedialScene, UnprovenAs, random_pairs};
 use std::path::Path;
 
+const OUTSIDE_LINE: &str = "have an end outside the cloud, where nothing is known, and no answer";
 /// Columns of a table of pairs.
 const ENDS: [&str; 6] = ["ax", "ay", "az", "bx", "by", "bz"];
 
@@ -48,7 +50,13 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
         sight.map_or(Answer::OutsideView, |sight| unproven_as.settle(sight.answer))
     };
     let answers: Vec<Answer> = sights.iter().map(settled).collect();
+    let mut observers: Vec<[f64; 3]> = pairs.iter().map(|[observer, _]| *observer).collect();
+    let fit =
+        stages.run("testing observers", 0, |control| skip_unfit_eyes(&blockers, None, &mut observers, control))?;
+    section.add("observers_inside_obstacle", fit.skipped_inside_obstacle);
     summary.add("lines_of_sight", counted(&answers, unproven_as, section));
+    let outside = AnswerCounts::of(&answers).outside_cloud;
+    summary.warn_of_share(outside, answers.len(), "lines of sight", OUTSIDE_LINE);
     if let ([[observer, _]], [sight]) = (&pairs[..], &sights[..]) {
         let mut one = Summary::default();
         if let Some(sight) = sight {
@@ -62,7 +70,7 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
                     .add("block_ball", block.ball)
                     .add("block_source", scene.model.balls().source.get(block.ball).copied().unwrap_or_default());
             }
-            if scene.model.pulses().is_some() {
+            if scene.model.pulses().is_some() && sight.answer != Answer::OutsideCloud {
                 one.add("unproven_m", rounded(sight.unproven_length, 3));
             }
         }
@@ -257,6 +265,7 @@ fn counted(answers: &[Answer], unproven_as: UnprovenAs, how: Summary) -> Summary
     }
     section
         .add("no_line", counts.outside_view)
+        .add("outside_cloud", counts.outside_cloud)
         .add("visible_percent", percent(counts.visible, answers.len()))
         .add_all(how);
     section
@@ -267,6 +276,7 @@ fn name(answer: Answer) -> &'static str {
         Answer::Visible => "visible",
         Answer::Blocked => "blocked",
         Answer::Unproven => "unproven",
+        Answer::OutsideCloud => "outside the cloud",
         _ => "no line",
     }
 }

@@ -13,7 +13,7 @@ use belvedere::io::{
 };
 use belvedere::model::SceneModel;
 use belvedere::query::{
-    Answer, AnswerCounts, BlockRule, CertifiedReport, Scope, UnprovenAs, query_points, random_targets,
+    Answer, AnswerCounts, BlockRule, CertifiedReport, Scope, UnprovenAs, Viewer, query_points, random_targets,
 };
 use belvedere::view::View;
 use belvedere::{Frame, PointCloud};
@@ -63,8 +63,15 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         })?;
         let bias = arguments.bias.unwrap_or_else(|| map.default_depth_bias());
         section.add("method", "depth map").add("depth_bias_m", rounded(f64::from(bias), 4));
-        stages.run("querying", 0, |_| query_points(&map, &targets.positions, bias))
+        let mut answers = stages.run("querying", 0, |_| query_points(&map, &targets.positions, bias));
+        if let Some(coverage) = model.coverage() {
+            let viewer = Viewer::Direction(view.frame.forward.map(|v| -v));
+            coverage.mark_outside(viewer, &targets.positions, &mut answers);
+        }
+        answers
     };
+    let outside = AnswerCounts::of(&answers).outside_cloud;
+    summary.warn_of_share(outside, answers.len(), "targets", sights::OUTSIDE_CLOUD);
     let unproven_as = arguments.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
     let codes: Vec<u8> = answers.iter().map(|&answer| unproven_as.settle(answer) as u8).collect();
     summary.add("answers", counted(&answers, unproven_as, section));
@@ -74,7 +81,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         }
         let column = ExtraColumn {
             name: "answer",
-            description: "0 blocked 1 visible 2 unproven 3 out",
+            description: "0 no 1 yes 2 unproven 3 4 outside",
             values: ExtraValues::U8(&codes),
         };
         if let Some(rows) = &rows {
@@ -174,6 +181,7 @@ fn counted(answers: &[Answer], unproven_as: UnprovenAs, how: Summary) -> Summary
     }
     section
         .add("outside_view", counts.outside_view)
+        .add("outside_cloud", counts.outside_cloud)
         .add("visible_percent", percent(counts.visible, answers.len()))
         .add_all(how);
     section

@@ -2,7 +2,7 @@
 
 use super::check_output;
 use super::sights::{Proving, blockers};
-use super::targets::Asked;
+use super::targets::{Asked, Relief};
 use crate::arguments::{Global, Shadow, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
@@ -16,7 +16,6 @@ use belvedere::apps::tree_light::Season;
 use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, write_apng, write_png};
 use belvedere::io::atomic;
 use belvedere::query::UnprovenAs;
-use belvedere::raster::Raster;
 
 const SHADE_COLOR: [u8; 3] = [38, 52, 96];
 const HALF_COLOR: [u8; 3] = [140, 140, 160];
@@ -43,6 +42,8 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     let profile = arguments.scene.profile.into();
     let (blockers, unproven) = blockers(&scene, profile, &arguments.giving_way, proving, &mut stages, &mut section)?;
     let kinds: Vec<ShadowSun> = suns.iter().map(|sun| sun.sun).collect();
+    let to_suns: Vec<[f64; 3]> = kinds.iter().map(|sun| sun.to_sun).collect();
+    asked.report_edge(&arguments.places, &scene, &to_suns, &mut stages, &mut summary)?;
     section.add("directions", kinds.iter().map(|sun| sun_directions(sun.to_sun, edges).len()).sum::<usize>());
     summary.add("lines_of_sight", section);
     let trees = arguments.trees.of(&scene, blockers.params(), &mut summary)?;
@@ -69,10 +70,10 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     summary.add("shadow", asked.statistics(&measures[..measures.len().min(MOST_TOLD)]));
     let has_parts = lit.iter().flatten().any(|&share| share > 0.0 && share < 1.0);
     let legend = if has_parts { Legend::WithParts } else { Legend::WithoutParts };
-    let picture = |number: usize, relief: &Raster<f32>, cell: f64| {
-        frame(&suns[number], &lit[number], doubts.as_deref().filter(|_| number == 0), legend, relief, cell)
+    let picture = |number: usize, relief: &Relief| {
+        frame(&suns[number], &lit[number], doubts.as_deref().filter(|_| number == 0), legend, relief)
     };
-    let pictured = |relief: &Raster<f32>, cell: f64| picture(0, relief, cell);
+    let pictured = |relief: &Relief| picture(0, relief);
     asked.write_with(&arguments.outputs, &measures, &pictured, &mut stages, &mut summary)?;
     films(arguments, &asked, &suns, &picture, &mut stages)?;
     summary.add_seconds(stages.into_seconds());
@@ -210,8 +211,7 @@ fn frame(
     lit: &[f32],
     doubts: Option<&[f32]>,
     legend: Legend,
-    relief: &Raster<f32>,
-    cell: f64,
+    relief: &Relief,
 ) -> belvedere::Result<Picture> {
     let color = |(row, &share): (usize, &f32)| match share {
         _ if doubts.and_then(|doubts| doubts.get(row)).is_some_and(|&doubt| doubt > 0.0) => Some(UNPROVEN_COLOR),
@@ -233,25 +233,25 @@ fn frame(
         meanings.push((UNPROVEN_COLOR, "lit, unproven"));
     }
     let (title, legend) = (sun.title.as_str(), MapLegend::Colors(&meanings));
-    map_picture(&MapPicture { relief, cell, colors: &colors, marks: &[], title, legend })
+    let Relief { heights: relief, cell, place } = relief;
+    map_picture(&MapPicture { relief, cell: *cell, place: Some(place), colors: &colors, marks: &[], title, legend })
 }
 
-/// Draws the shadow of the sun of that number over a relief with cells of a side in metres.
-type Drawing<'a> = dyn Fn(usize, &Raster<f32>, f64) -> belvedere::Result<Picture> + 'a;
+/// Draws the shadow of the sun of that number over a relief.
+type Drawing<'a> = dyn Fn(usize, &Relief) -> belvedere::Result<Picture> + 'a;
 
 /// Writes a picture of each sun, after each other or apart.
 fn films(arguments: &Shadow, asked: &Asked, suns: &[Sun], picture: &Drawing<'_>, stages: &mut Stages) -> Result<()> {
-    let (Some(ground), Some(relief)) = (asked.targets.ground(), asked.relief()) else { return Ok(()) };
+    let Some(relief) = asked.relief() else { return Ok(()) };
     if let Some(folder) = &arguments.frames {
         atomic::make_folder(folder)?;
         for (number, sun) in suns.iter().enumerate() {
-            let picture = picture(number, &relief, ground.grid.cell)?;
+            let picture = picture(number, &relief)?;
             stages.run("writing", 0, |_| write_png(&folder.join(format!("{}.png", sun.column)), &picture))?;
         }
     }
     if let Some(film) = &arguments.film {
-        let frames: belvedere::Result<Vec<Picture>> =
-            (0..suns.len()).map(|number| picture(number, &relief, ground.grid.cell)).collect();
+        let frames: belvedere::Result<Vec<Picture>> = (0..suns.len()).map(|number| picture(number, &relief)).collect();
         stages.run("writing film", 0, |_| write_apng(film, &frames?, arguments.seconds))?;
     }
     Ok(())

@@ -5,11 +5,17 @@ use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
-use belvedere::PointCloud;
+use belvedere::apps::eyes::{EyesReport, SkippedEye, skip_unfit_eyes};
 use belvedere::depth::Profile;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
 use belvedere::io::{ReadOptions, read_cloud};
 use belvedere::query::{BlockRule, EarthParams, MedialScene, UnprovenAs};
+use belvedere::{Frame, PointCloud};
+
+/// What is warned of with the share of what it happens to.
+pub(crate) const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
+/// Most eyes that are skipped by name.
+const MOST_NAMED: usize = 5;
 
 /// Whether pulses are asked about lines of sight that nothing blocks.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -139,6 +145,32 @@ pub(crate) fn ground(
         .add("cells_without_ground", grid.len() - report.cell_count);
     summary.add("ground", section);
     Ok(ground)
+}
+
+/// Makes eyes that cannot look NaN, and warns of each: those of `who`, such as "observer". Fails where none is left.
+pub(crate) fn skip_unfit(
+    blockers: &MedialScene,
+    ground: Option<&Ground>,
+    (who, frame): (&str, &Frame),
+    eyes: &mut [[f64; 3]],
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<EyesReport> {
+    let report = stages.run("testing observers", 0, |control| skip_unfit_eyes(blockers, ground, eyes, control))?;
+    let named = |skipped: &SkippedEye| {
+        let [x, y, _] = frame.file_from_local(skipped.place);
+        (format!("{who} {} at {x:.3},{y:.3}", skipped.row + 1), skipped.fault)
+    };
+    if let Some((name, fault)) = report.faults.first().map(named).filter(|_| report.skipped == report.count) {
+        bail!("no {who} is left: {name}: {fault}");
+    }
+    for (name, fault) in report.faults.iter().take(MOST_NAMED).map(named) {
+        summary.warn(format!("{name} is skipped: {fault}"));
+    }
+    if report.skipped > MOST_NAMED {
+        summary.warn(format!("{} of {} {who}s are skipped", report.skipped, report.count));
+    }
+    Ok(report)
 }
 
 /// Notes for people on an eye inside something solid.

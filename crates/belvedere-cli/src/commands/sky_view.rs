@@ -21,6 +21,7 @@ pub(crate) fn run(arguments: &SkyView, global: &Global) -> Result<Summary> {
     let points = if arguments.places.needs_points() { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
     let asked = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
+    asked.report_edge(&arguments.places, &scene, &sky.directions, &mut stages, &mut summary)?;
     let mut section = Summary::default();
     let profile = arguments.scene.profile.into();
     let (blockers, _) =

@@ -50,6 +50,7 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
     let site = arguments.sun.site(&scene, &mut summary)?;
     let (plan, zone) = plan(arguments, &site, rules, &params, &suns, &mut summary)?;
     let asked = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
+    asked.report_edge(&arguments.places, &scene, plan.directions(), &mut stages, &mut summary)?;
     let targets = &asked.targets;
     let trees = arguments.trees.of(&scene, &matrix_params(&scene, arguments), &mut summary)?;
     let sums = match &kept {

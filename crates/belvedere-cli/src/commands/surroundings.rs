@@ -1,11 +1,12 @@
 //! Eyes of isovists and horizons: from flags and files to places.
 
 use super::{extension, sights};
-use crate::arguments::{Eyes, Usage};
+use crate::arguments::Eyes;
 use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::Summary;
-use anyhow::{Result, bail};
+use anyhow::Result;
+use belvedere::Frame;
 use belvedere::apps::targets::{grid_around, set_on_ground};
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::io::{RowsAre, TextRows, read_observers, read_table};
@@ -35,22 +36,14 @@ pub(super) fn eyes(
             rows.extend(row.corners.iter().map(|corner| (place(corner), height)));
         }
     }
-    let grid = grid_around(rows.iter().map(|row| row.0), scene.cloud.frame.origin);
+    let coverage = scene.model.coverage();
+    // ground is made where there are points: one eye far away would make its cells large for all
+    let over = |place: &[f64; 3]| coverage.is_none_or(|coverage| coverage.holds_on_map(*place));
+    let grid = grid_around(rows.iter().map(|row| row.0).filter(over), scene.cloud.frame.origin);
     if let Some(grid) = flagged("--observer", grid)? {
         let (cloud, points) = sights::ground_cloud(&arguments.ground, scene, stages)?;
         let ground = sights::ground(&cloud, points, grid, stages, summary)?;
-        let unknown = set_on_ground(rows.iter_mut().map(|(place, height)| (place, *height)), &ground);
-        if let Some(&number) = unknown.first() {
-            let [x, y, _] = cloud.frame.file_from_local(rows[number].0);
-            bail!(
-                "eye {} at {x:.3},{y:.3}: there is no ground known below it; is it in the coordinates of the cloud? Else give its \
-                 height as a third number",
-                number + 1
-            );
-        }
-    }
-    if let Some((place, _)) = rows.iter().find(|(place, _)| !place.iter().all(|v| v.is_finite())) {
-        return Err(Usage(format!("--observer, --observer-height: the eye is at {place:?}, but must be finite")).into());
+        set_on_ground(rows.iter_mut().map(|(place, height)| (place, *height)), &ground);
     }
     Ok(rows.into_iter().map(|row| row.0).collect())
 }
@@ -68,8 +61,21 @@ pub(super) fn rows_as_given(observers: Option<&Path>) -> Result<TextRows> {
     }
 }
 
-/// Reports on eyes that are inside what the cloud takes for solid.
-pub(super) fn note_enclosed(blockers: &MedialScene, eyes: &[[f64; 3]], summary: &mut Summary) {
+/// Skips eyes that cannot look, by making them NaN, and reports on those just inside the surface of an obstacle.
+pub(super) fn check_eyes(
+    blockers: &MedialScene,
+    frame: &Frame,
+    eyes: &mut [[f64; 3]],
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<()> {
+    let report = sights::skip_unfit(blockers, None, ("observer", frame), eyes, stages, summary)?;
+    summary.add("observers", Summary::of(&report));
+    note_enclosed(blockers, eyes, summary);
+    Ok(())
+}
+
+fn note_enclosed(blockers: &MedialScene, eyes: &[[f64; 3]], summary: &mut Summary) {
     let note =
         |(number, &eye): (usize, &[f64; 3])| sights::enclosure_note(blockers, eye, &format!("eye {}", number + 1));
     let mut notes: Vec<String> = eyes.iter().enumerate().filter_map(note).collect();

@@ -2,27 +2,42 @@
 
 use super::mesh_targets::{self, mesh_of};
 use super::query::{points_of_file, text_rows_for};
-use super::sights::{ground, ground_cloud};
+use super::sights::{OUTSIDE_CLOUD, ground, ground_cloud};
 use super::{check_output, extension};
 use crate::arguments::{FacingChoice, SkyOutputs, SkyPlaces, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::Result;
+use belvedere::apps::edge::{EdgeReport, near_edge};
 use belvedere::apps::targets::{CellLevel, CellParams, Facing, Measure, MeshParams, Targets};
 use belvedere::apps::viewshed::cell_for;
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::{MapGrid, highest_points};
-use belvedere::io::atomic;
+use belvedere::io::{Georeference, atomic, write_tif_u8};
 use belvedere::raster::Raster;
-use belvedere::results::{TakenFrom, measure_map, write_measures, write_raster};
+use belvedere::results::{TakenFrom, georeference, measure_map, write_measures, write_raster};
 use belvedere::{Mesh, PointCloud};
 use std::path::{Path, PathBuf};
+
+/// Share of targets near the edge that is warned of, percent.
+const EDGE_WARNING_PERCENT: f64 = 1.0;
+const NEAR_EDGE: &str = "are near the edge of the cloud: objects beyond it, as high as its highest point, could take some of their sun or sky";
+/// No flag of the edge.
+const NO_FLAG: u8 = 255;
 
 /// Targets and what they were taken from.
 pub(crate) struct Asked {
     pub(crate) targets: Targets,
     from: Source,
+}
+
+/// Heights of the highest points of cells, and where these lie.
+pub(crate) struct Relief {
+    pub(crate) heights: Raster<f32>,
+    /// Side of a cell, metres.
+    pub(crate) cell: f64,
+    pub(crate) place: Georeference,
 }
 
 enum Source {
@@ -46,8 +61,12 @@ impl SkyPlaces {
         for output in &outputs.output {
             check_output("-o", output, known)?;
         }
+        if let Some(mask) = &self.edge_mask {
+            check_output("--edge-mask", mask, &["tif", "tiff"])?;
+        }
         let refused = [
             ("--measures", outputs.measures.is_some(), mesh || points, "a grid"),
+            ("--edge-mask", self.edge_mask.is_some(), mesh || points, "a grid"),
             ("--cell", self.cell.is_some(), mesh || points, "a grid"),
             ("--target-height", self.height.is_some(), mesh || points, "a grid"),
             ("--spacing", self.spacing.is_some(), !mesh, "a mesh"),
@@ -81,6 +100,15 @@ impl SkyPlaces {
         stages: &mut Stages,
         summary: &mut Summary,
     ) -> Result<Asked> {
+        let mut asked = self.typed(scene, seed, stages, summary)?;
+        // cells are those of the cloud
+        if !self.is_grid() {
+            leave_out_outside(&mut asked.targets, scene, summary);
+        }
+        Ok(asked)
+    }
+
+    fn typed(&self, scene: &mut Scene, seed: u64, stages: &mut Stages, summary: &mut Summary) -> Result<Asked> {
         if let Some(path) = &self.places.targets {
             if mesh_targets::is_mesh(path) {
                 return self.of_mesh(path, scene, seed, stages, summary);
@@ -155,13 +183,63 @@ impl SkyPlaces {
     }
 }
 
+/// Reports how many targets are so near the edge of the cloud that objects beyond it could change their result, warns of many, and gives a flag for each.
+pub(super) fn report_edge(
+    targets: &Targets,
+    scene: &Scene,
+    directions: &[[f64; 3]],
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<Vec<Option<bool>>> {
+    let Some(coverage) = scene.model.coverage() else { return Ok(vec![None; targets.len()]) };
+    let flags = stages.run("testing the edge of the cloud", targets.len(), |control| {
+        near_edge(&coverage, &targets.positions, directions, control)
+    })?;
+    let report = EdgeReport::of(&flags);
+    summary.add_report(&report);
+    if report.targets_near_edge_percent >= EDGE_WARNING_PERCENT {
+        summary.warn_of_share(report.targets_near_edge, targets.asked_count(), "targets", NEAR_EDGE);
+    }
+    Ok(flags)
+}
+
+/// Leaves out targets beside or below the cloud, and warns of them.
+pub(super) fn leave_out_outside(targets: &mut Targets, scene: &Scene, summary: &mut Summary) {
+    let count = targets.asked_count();
+    let outside = scene.model.coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));
+    summary.add("targets_outside_cloud", outside).warn_of_share(outside, count, "targets", OUTSIDE_CLOUD);
+}
+
 impl Asked {
-    /// Heights of the highest points of the cells, to draw maps on; `None` where targets are no cells.
-    pub(crate) fn relief(&self) -> Option<Raster<f32>> {
-        match (&self.from, self.targets.ground()) {
-            (Source::Cells(cloud), Some(ground)) => Some(highest_points(&cloud.positions, ground)),
-            _ => None,
+    /// What maps are drawn on; `None` where targets are no cells.
+    pub(crate) fn relief(&self) -> Option<Relief> {
+        let (Source::Cells(cloud), Some(ground)) = (&self.from, self.targets.ground()) else { return None };
+        Some(Relief {
+            heights: highest_points(&cloud.positions, ground),
+            cell: ground.grid.cell,
+            place: georeference(&ground.grid, &self.targets.frame),
+        })
+    }
+
+    /// [`report_edge`] of these targets, with a mask of their cells where it is wanted.
+    pub(crate) fn report_edge(
+        &self,
+        places: &SkyPlaces,
+        scene: &Scene,
+        directions: &[[f64; 3]],
+        stages: &mut Stages,
+        summary: &mut Summary,
+    ) -> Result<()> {
+        let flags = report_edge(&self.targets, scene, directions, stages, summary)?;
+        if let (Some(path), Some(ground)) = (&places.edge_mask, self.targets.ground()) {
+            let values = flags.iter().map(|flag| flag.map_or(NO_FLAG, u8::from)).collect();
+            let raster = Raster::from_values(ground.grid.width, ground.grid.height, values)?;
+            let place = georeference(&ground.grid, &self.targets.frame);
+            let what = "1 near the edge of the cloud, 0 not, 255 nodata";
+            stages.run("writing", 0, |_| write_tif_u8(path, &raster, Some(&place), Some(NO_FLAG), Some(what)))?;
+            summary.add("edge_mask_written", path.display().to_string());
         }
+        Ok(())
     }
 
     /// Writes all measures to each of the outputs; maps show the first.
@@ -173,16 +251,16 @@ impl Asked {
         stages: &mut Stages,
         summary: &mut Summary,
     ) -> Result<()> {
-        let map = |relief: &Raster<f32>, cell: f64| measure_map(&measures[0], relief, cell, title);
+        let map = |relief: &Relief| measure_map(&measures[0], &relief.heights, relief.cell, &relief.place, title);
         self.write_with(outputs, measures, &map, stages, summary)
     }
 
-    /// The same with maps of one's own, made of a relief and the side of its cells.
+    /// The same with maps of one's own.
     pub(crate) fn write_with(
         &self,
         outputs: &SkyOutputs,
         measures: &[Measure],
-        map: &dyn Fn(&Raster<f32>, f64) -> belvedere::Result<Picture>,
+        map: &dyn Fn(&Relief) -> belvedere::Result<Picture>,
         stages: &mut Stages,
         summary: &mut Summary,
     ) -> Result<()> {
@@ -207,12 +285,11 @@ impl Asked {
         &self,
         output: &Path,
         measures: &[Measure],
-        map: &dyn Fn(&Raster<f32>, f64) -> belvedere::Result<Picture>,
+        map: &dyn Fn(&Relief) -> belvedere::Result<Picture>,
         summary: &mut Summary,
     ) -> Result<()> {
-        if let (Some(ground), "png") = (self.targets.ground(), extension(output).as_str()) {
-            let relief = self.relief().unwrap_or_else(|| ground.heights.clone());
-            return Ok(write_png(output, &map(&relief, ground.grid.cell)?)?);
+        if let (Some(relief), "png") = (self.relief(), extension(output).as_str()) {
+            return Ok(write_png(output, &map(&relief)?)?);
         }
         let rows = match &self.from {
             Source::Points(_, Some(file)) => text_rows_for(file, output, summary)?,

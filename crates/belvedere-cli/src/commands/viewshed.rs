@@ -3,7 +3,7 @@
 mod results;
 mod who;
 
-use super::sights::{Proving, blockers, enclosure_note, ground, ground_cloud};
+use super::sights::{OUTSIDE_CLOUD, Proving, blockers, enclosure_note, ground, ground_cloud, skip_unfit};
 use super::{check_output, warn_of_geojson};
 use crate::arguments::{Global, Viewshed};
 use crate::pipeline::{self, Points, flagged};
@@ -11,10 +11,11 @@ use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
 use belvedere::PointCloud;
+use belvedere::apps::eyes::{EyeFault, EyesReport, fault_of};
 use belvedere::apps::targets::{CellParams, CoveredCells, Targets};
 use belvedere::apps::viewshed::{
-    Masks, OBSERVER_HEIGHT, Observer, TARGET_HEIGHT, ViewshedParams, box_within_reach, cell_for, least_visible_heights,
-    viewshed,
+    Masks, OBSERVER_HEIGHT, Observer, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, box_within_reach, cell_for,
+    least_visible_heights, viewshed,
 };
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::query::{Answer, AnswerCounts, MedialScene, UnprovenAs};
@@ -42,7 +43,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     let grid = grid(arguments, &scene, &rows)?;
     let (cloud, ground_points) = ground_cloud(&arguments.ground, &mut scene, &mut stages)?;
     let ground = ground(&cloud, ground_points, grid, &mut stages, &mut summary)?;
-    let observers = who::observers(arguments, &rows, &ground, &scene.cloud)?;
+    let mut observers = who::observers(&rows, &ground);
     let is_reverse = arguments.who.target.is_some();
     let target_height = match is_reverse {
         true => arguments.looking.observer_height.unwrap_or(OBSERVER_HEIGHT),
@@ -59,7 +60,10 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
         &mut section,
     )?;
     summary.add("lines_of_sight", section);
-    summary.add(if is_reverse { "target" } else { "observers" }, told(&observers, &ground, &blockers, &cloud));
+    let who = if is_reverse { "target" } else { "observer" };
+    let report = skip_observers(&mut observers, &blockers, &ground, (who, &cloud), &mut stages, &mut summary)?;
+    let key = if is_reverse { "target" } else { "observers" };
+    summary.add(key, told(&observers, report, &ground, &blockers, &cloud));
 
     let masks = if arguments.masks.is_some() { Masks::Kept } else { Masks::NotKept };
     let params = ViewshedParams::default().with_earth(earth).with_unproven(unproven).with_masks(masks);
@@ -71,6 +75,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
             viewshed(&blockers, &observers, &targets.positions, &params, control)
         })?;
         summary.add("cells", counted(&seen.answers, unproven, Some(grid.cell)));
+        warn_of_blind(&observers, &seen, who, &mut summary);
         let eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
         for output in arguments.output.iter().filter(|path| !is_of_points(path)) {
             stages.run("writing", 0, |_| on_cells(output, &seen, &eyes, &ground, &cloud, is_reverse))?;
@@ -85,6 +90,8 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
             viewshed(&blockers, &observers, &cloud.positions, &params, progress)
         })?;
         summary.add("cloud_points", counted(&seen.answers, unproven, None));
+        let outside = AnswerCounts::of(&seen.answers).outside_cloud;
+        summary.warn_of_share(outside, seen.answers.len(), "points", OUTSIDE_CLOUD);
         for output in arguments.output.iter().filter(|path| is_of_points(path)) {
             let report = stages.run("writing", 0, |_| on_points(output, &seen, &cloud))?;
             summary.add_writing(&report);
@@ -132,10 +139,51 @@ fn finite(height: f64) -> belvedere::Result<()> {
     Err(belvedere::Error::InvalidParameter { name: "height above the ground", value, expected: "finite" })
 }
 
-/// How many observers there are and which stand where nobody can.
-fn told(observers: &[Observer], ground: &Ground, blockers: &MedialScene, cloud: &PointCloud) -> Summary {
-    let mut section = Summary::default();
-    section.add("count", observers.len());
+/// Makes the eyes of observers that cannot look NaN. What is seen of a target often is its inside: only the cloud's limits count for it.
+fn skip_observers(
+    observers: &mut [Observer],
+    blockers: &MedialScene,
+    ground: &Ground,
+    (who, cloud): (&str, &PointCloud),
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<EyesReport> {
+    let mut eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
+    let report = match (who, &eyes[..]) {
+        ("target", &[eye]) if matches!(fault_of(blockers, None, eye), None | Some(EyeFault::InsideObstacle(_))) => {
+            EyesReport::none_skipped(1)
+        }
+        _ => skip_unfit(blockers, Some(ground), (who, &cloud.frame), &mut eyes, stages, summary)?,
+    };
+    observers.iter_mut().zip(eyes).for_each(|(observer, eye)| observer.eye = eye);
+    Ok(report)
+}
+
+/// Warns of observers that see nothing.
+fn warn_of_blind(observers: &[Observer], seen: &Seen, who: &str, summary: &mut Summary) {
+    let seeing = seen.answers.iter().any(|answer| matches!(answer, Answer::Visible | Answer::Unproven));
+    if observers.len() == 1 && !seeing {
+        summary.warn(match who {
+            "target" => "no cell sees the target: is it below or inside an obstacle?",
+            _ => "the observer sees no cell: does it stand below a tree or between obstacles?",
+        });
+    }
+    let blind = |(observer, count): &(&Observer, &usize)| **count == 0 && observer.eye[0].is_finite();
+    let blind = observers.iter().zip(&seen.seen_counts).filter(blind).count();
+    if observers.len() > 1 {
+        summary.warn_of_share(blind, observers.len(), "observers", "see no cell");
+    }
+}
+
+/// How many observers there are and which are inside the surface of an obstacle.
+fn told(
+    observers: &[Observer],
+    report: EyesReport,
+    ground: &Ground,
+    blockers: &MedialScene,
+    cloud: &PointCloud,
+) -> Summary {
+    let mut section = Summary::of(&report);
     if let [one] = observers {
         section.add("eye", cloud.frame.file_from_local(one.eye).map(|v| rounded(v, 3)).to_vec());
         if let Some(height) = ground.height_at([one.eye[0], one.eye[1]]) {
@@ -143,7 +191,7 @@ fn told(observers: &[Observer], ground: &Ground, blockers: &MedialScene, cloud: 
         }
     }
     let mut notes = Vec::new();
-    for (number, observer) in observers.iter().enumerate() {
+    for (number, observer) in observers.iter().enumerate().filter(|(_, observer)| observer.eye[0].is_finite()) {
         let who = format!("eye {}", number + 1);
         let height = ground.height_at([observer.eye[0], observer.eye[1]]);
         if let Some(height) = height.filter(|height| observer.eye[2] < *height) {
@@ -162,7 +210,7 @@ fn told(observers: &[Observer], ground: &Ground, blockers: &MedialScene, cloud: 
 
 fn counted(answers: &[Answer], unproven: UnprovenAs, cell: Option<f64>) -> Summary {
     let counts = AnswerCounts::of(answers);
-    let asked = answers.len() - counts.outside_view;
+    let asked = answers.len() - counts.outside_view - counts.outside_cloud;
     let mut section = Summary::default();
     section.add("targets", asked).add("visible", counts.visible);
     if unproven == UnprovenAs::Reported {
@@ -171,6 +219,7 @@ fn counted(answers: &[Answer], unproven: UnprovenAs, cell: Option<f64>) -> Summa
     section
         .add("blocked", counts.blocked)
         .add("outside_view", counts.outside_view)
+        .add("outside_cloud", counts.outside_cloud)
         .add("visible_percent", percent(counts.visible, asked));
     if let Some(cell) = cell {
         section.add("visible_m2", rounded(counts.visible as f64 * cell * cell, 1));

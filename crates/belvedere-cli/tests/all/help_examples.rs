@@ -107,7 +107,9 @@ fn every_example_works_as_printed() {
         let words = words(&line);
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let run = place.run_with("", &words);
-        assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{example}");
+        // the town of the demo is small: much of it is near its edge
+        let is_edge = |line: &str| line.starts_with("warning: ") && line.contains("near the edge of the cloud");
+        assert!(run.status == 0 && run.stderr.lines().all(is_edge), "{example}: {run:?}");
     }
 }
 

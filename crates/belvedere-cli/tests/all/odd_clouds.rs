@@ -1,6 +1,6 @@
 //! Clouds of hardly any points, or of no shape, give a result or a clear message.
 
-use crate::common::Workplace;
+use crate::common::{Workplace, house};
 
 /// What can be run on a cloud.
 const COMMANDS: [&str; 8] = [
@@ -85,4 +85,25 @@ fn a_ball_file_without_balls_shows_nothing() {
     // the file knows where its scene is
     let summary = place.summary("depth-map balls.npz --direction 0,0,-1 -o out.npy");
     assert_eq!(summary["pixels_hit_percent"], 0.0);
+}
+
+#[test]
+fn a_cloud_with_y_up_answers_as_the_same_cloud_with_z_up() {
+    let place = Workplace::new();
+    let cloud = house();
+    let row = |[x, y, z]: [f32; 3], [nx, ny, nz]: [f32; 3]| format!("{x},{y},{z},{nx},{ny},{nz}\n");
+    let rows = |turn: fn([f32; 3]) -> [f32; 3]| {
+        let normals = cloud.attributes.normals.as_ref().unwrap();
+        let rows: String = cloud.positions.iter().zip(normals).map(|(&p, &n)| row(turn(p), turn(n))).collect();
+        format!("x,y,z,nx,ny,nz\n{rows}")
+    };
+    place.write("z.csv", rows(|v| v));
+    // up is the second, and north runs away from the viewer
+    place.write("y.csv", rows(|[x, y, z]| [x, z, -y]));
+    let ask = "--method tau --orient given --sun 180,30 --random 500 -o";
+    place.summary(&format!("query z.csv {ask} z-answers.npy"));
+    place.summary(&format!("query y.csv --up y {ask} y-answers.npy"));
+    assert_eq!(place.bytes("z-answers.npy"), place.bytes("y-answers.npy"));
+    place.summary("balls y.csv --up y --method tau --orient given -o y.npz");
+    place.refusal(2, &format!("query y.npz --up y {ask} a.npy"), &["--up", "ball file"]);
 }

@@ -1,6 +1,6 @@
 //! Meshes as targets, landmarks, isovists and horizons on the command line.
 
-use crate::common::{EAST, NORTH, Workplace, at, house};
+use crate::common::{EAST, NORTH, Workplace, at, house, house_in_a_field};
 
 /// A house as a cloud, and a wall of 10 m by 6 m as a mesh 30 m east of it that faces west.
 fn place() -> Workplace {
@@ -15,6 +15,13 @@ fn place() -> Workplace {
         })
         .collect();
     place.write("wall.obj", format!("{vertices}o wall, west\nf 1 4 3 2\no back\nf 1 2 3 4\n"));
+    place
+}
+
+/// The same with ground below the wall and those who look at it.
+fn wide_place() -> Workplace {
+    let place = place();
+    place.write_cloud("house.laz", &house_in_a_field());
     place
 }
 
@@ -35,7 +42,7 @@ fn column(place: &Workplace, name: &str, column: &str) -> Vec<f64> {
 
 #[test]
 fn a_mesh_as_target_is_answered_by_object_and_face() {
-    let place = place();
+    let place = wide_place();
     let eye = at(15.0, 0.0, 3.0).map(|v| v.to_string()).join(",");
     let run = place.summary(&format!("query {HOUSE} --panorama {eye} --targets wall.obj -o seen.csv"));
     assert_eq!(run["faces"]["count"], 4);
@@ -75,7 +82,7 @@ fn meshes_refuse_what_is_for_points_and_points_what_is_for_meshes() {
 
 #[test]
 fn landmarks_give_tables_rasters_and_maps() {
-    let place = place();
+    let place = wide_place();
     let wall = format!("landmark {HOUSE} --targets wall.obj --object back");
     let (east, west) = (at(40.0, 0.0, 3.5), at(0.0, 0.0, 14.0));
     place.write(
@@ -123,7 +130,7 @@ fn landmarks_say_what_is_wrong_with_them() {
     place.refusal(
         1,
         &format!("landmark {HOUSE} --targets wall.obj --observers eyes.csv -o a.csv"),
-        &["observer 1", "ground"],
+        &["observer 1", "outside the cloud"],
     );
     place.write("line.csv", "x,y\n1,2\n3,4\n");
     place.refusal(1, &format!("landmark {HOUSE} --target-polygon line.csv -o a.csv"), &["three corners"]);
@@ -186,5 +193,5 @@ fn isovists_and_horizons_of_a_house_are_those_of_its_shape() {
     );
     place.refusal(2, &format!("isovist {HOUSE} --observer {eye} --angle-step-deg 100 -o a.csv"), &["--angle-step-deg"]);
     let far = format!("{},{}", EAST + 500.0, NORTH);
-    place.refusal(1, &format!("horizon {HOUSE} --observer {far} -o sky.csv"), &["eye 1", "ground"]);
+    place.refusal(1, &format!("horizon {HOUSE} --observer {far} -o sky.csv"), &["observer 1", "outside the cloud"]);
 }

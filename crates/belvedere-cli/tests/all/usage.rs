@@ -280,3 +280,19 @@ fn an_earlier_output_is_replaced_by_a_complete_one() {
     assert!(place.npz::<f32>("balls.npz", "radii").len() > 1000);
     assert_eq!(place.names(), ["balls.npz", "house.laz"]);
 }
+
+#[test]
+fn help_shows_the_options_of_a_command_before_those_of_all_commands() {
+    let place = Workplace::new();
+    for (command, own) in [("shadow", "Sun:"), ("viewshed", "Observers (one of):"), ("sky-view", "Sky:")] {
+        for flag in ["--help", "-h"] {
+            let help = place.run(&format!("{command} {flag}")).stdout;
+            let place_of =
+                |heading: &str| help.find(&format!("\n{heading}\n")).unwrap_or_else(|| panic!("{heading}: {help}"));
+            assert!(place_of("Arguments:") < place_of(own), "{help}");
+            assert!(place_of(own) < place_of("Scene:") && place_of("Scene:") < place_of("Global options:"), "{help}");
+            assert!(!help.contains("\nOptions:\n"), "{help}");
+        }
+    }
+    assert!(place.run("--version").stdout.starts_with("belvedere "));
+}

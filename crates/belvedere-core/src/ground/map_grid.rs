@@ -5,6 +5,9 @@ use belvedere_data::{Error, Result};
 /// Most cells of a grid: what a few bytes each still fit into the memory of a usual machine.
 const MOST_CELLS: f64 = 1e8;
 
+/// Cells up to this side may be larger than the area that they divide, metres: a small area still is one cell.
+const LEAST_SIDE: f64 = 100.0;
+
 /// Square cells on the map, rows from the north, columns from the west.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapGrid {
@@ -23,7 +26,7 @@ impl MapGrid {
     /// from where `origin`, metres, counts from: grids of neighbouring surveys fit together.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a cell that is not above zero, a box that is not finite, and more than 4e8 cells.
+    /// [`Error::InvalidParameter`] for a cell that is not above zero or longer than the box and than 100 m, a box that is not finite, and more than 4e8 cells.
     pub fn covering(low: [f64; 2], high: [f64; 2], cell: f64, origin: [f64; 2]) -> Result<Self> {
         let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
         if !(cell.is_finite() && cell > 0.0) {
@@ -31,6 +34,10 @@ impl MapGrid {
         }
         if !low.iter().chain(&high).all(|v| v.is_finite()) || low[0] > high[0] || low[1] > high[1] {
             return invalid("box of the grid", format!("{low:?} to {high:?}"), "finite");
+        }
+        let side = (high[0] - low[0]).max(high[1] - low[1]);
+        if cell > side.max(LEAST_SIDE) {
+            return invalid("cell", format!("{cell} m"), "at most as long as the area that it divides");
         }
         let west = ((low[0] + origin[0]) / cell).floor();
         let south = ((low[1] + origin[1]) / cell).floor();

@@ -19,7 +19,7 @@ impl SceneModel {
     /// The result is the same, bit by bit, for any number of threads.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::MissingAttribute`] where the cloud lacks what the parameters need,
+    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves too few for a surface, [`Error::MissingAttribute`] where the cloud lacks what the parameters need,
     /// [`Error::InvalidParameter`] for a parameter out of range, [`Error::Cancelled`].
     pub fn build(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
         let (survey, report) = prepare(Cow::Borrowed(cloud), params, control)?;

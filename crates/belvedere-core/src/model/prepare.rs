@@ -8,8 +8,12 @@ use crate::normals::estimate::estimate;
 use crate::normals::{Normals, Orientation, OrientedCloud, orient};
 use crate::pulses::{FoundBy, Means, NeedleColumns, Needles, Pulses, ScannerReport, group, locate};
 use belvedere_data::control::Control;
+use belvedere_data::vector::{cross, length, sub, unit};
 use belvedere_data::{Attributes, Bounds, Error, PointCloud, Result};
 use std::borrow::Cow;
+
+/// Points no farther from a line than this lie on it, metres: the step of coordinates in most files.
+const LINE_WIDTH: f64 = 1e-3;
 
 /// A cloud that is ready for balls: cleaned, with outward normals, an index, and what its pulses prove empty.
 pub struct OrientedSurvey {
@@ -52,7 +56,7 @@ impl OrientedSurvey {
     /// turns them outward.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] where cleaning leaves none; those of [`clean`], [`locate`], [`estimate`] and [`orient()`];
+    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves fewer than four or all on one line; those of [`clean`], [`locate`], [`estimate`] and [`orient()`];
     /// [`Error::Cancelled`].
     pub fn prepare(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
         prepare(Cow::Borrowed(cloud), params, control)
@@ -90,6 +94,7 @@ pub(super) fn prepare(
     if kept.is_empty() {
         return Err(Error::NoPoints { what: format!("{read_count} were read, and cleaning removed all of them") });
     }
+    check_surface(kept.iter().filter_map(|&row| cloud.positions.get(row as usize)))?;
     let mut cloud = if kept.len() == read_count { cloud } else { Cow::Owned(cloud.select(&kept)) };
     let carving = params.balls.carving();
     let wants_scanner =
@@ -134,6 +139,22 @@ pub(super) fn prepare(
     report.normals = NormalsReport::new(&by, orientation);
     let bounds = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?;
     Ok((OrientedSurvey { oriented, index, kept, bounds, classification, carving }, report))
+}
+
+/// Refuses points that cannot lie on a surface: fewer than four, or all within a millimetre of one line.
+fn check_surface<'a>(points: impl Iterator<Item = &'a [f32; 3]> + Clone) -> Result<()> {
+    let count = points.clone().count();
+    if count < 4 {
+        return Err(Error::NoSurface { count, what: "fewer than four" });
+    }
+    let place = |p: &[f32; 3]| p.map(f64::from);
+    let Some(first) = points.clone().next().map(place) else { return Ok(()) };
+    let along = points.clone().map(|p| sub(place(p), first)).max_by(|a, b| length(*a).total_cmp(&length(*b)));
+    let is_beside = match along.and_then(unit) {
+        Some(along) => points.clone().any(|p| length(cross(sub(place(p), first), along)) > LINE_WIDTH),
+        None => false,
+    };
+    if is_beside { Ok(()) } else { Err(Error::NoSurface { count, what: "all on one line or in one place" }) }
 }
 
 /// How normals are turned outward, decided by what was asked for and by what the cloud offers.

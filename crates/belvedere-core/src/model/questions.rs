@@ -2,11 +2,17 @@
 
 use super::SceneModel;
 use crate::medial::without_vegetation;
-use crate::query::{BlockRule, MedialScene, Proof, ProofParams, UnprovenAs};
+use crate::query::{BlockRule, Coverage, MedialScene, Proof, ProofParams, UnprovenAs};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 
 impl SceneModel {
+    /// Over which space the cloud of this model lies; `None` where its bounds say nothing.
+    #[must_use]
+    pub fn coverage(&self) -> Option<Coverage> {
+        Coverage::of(self.bounds())
+    }
+
     /// How the balls of this model block lines of sight unless something else is wanted: carved balls give way to what lies at
     /// their surface, others have a bias.
     #[must_use]
@@ -17,13 +23,15 @@ impl SceneModel {
     /// The scene that answers lines of sight by `rule`.
     ///
     /// Its answers tell unproven from visible where the pulses are known. With [`UnprovenAs::Visible`] that makes no difference, and
-    /// the pulses are left out. They are indexed when a line of sight first needs them.
+    /// the pulses are left out. They are indexed when a line of sight first needs them. What lies beside or below the cloud has no answer
+    /// ([`SceneModel::coverage`]).
     ///
     /// # Errors
     /// Those of [`MedialScene::new`] and [`Proof::from_columns`]; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub fn scene(&self, rule: &BlockRule, unproven: UnprovenAs, control: &Control<'_>) -> Result<MedialScene> {
         let balls = self.balls();
         let scene = control.stage("indexing balls", balls.len(), || MedialScene::new(balls, rule))?;
+        let scene = scene.with_coverage(self.coverage());
         let Some(pulses) = self.pulses().filter(|_| unproven != UnprovenAs::Visible) else { return Ok(scene) };
         Ok(scene.with_pulses(Proof::from_columns(pulses.clone(), &ProofParams::default())?))
     }
@@ -35,6 +43,7 @@ impl SceneModel {
     /// of [`MedialScene::new`].
     pub fn scene_without_vegetation(&self, rule: &BlockRule, control: &Control<'_>) -> Result<MedialScene> {
         let balls = without_vegetation(self.balls(), self.vegetation())?;
-        control.stage("indexing balls without trees", balls.len(), || MedialScene::new(&balls, rule))
+        let scene = control.stage("indexing balls without trees", balls.len(), || MedialScene::new(&balls, rule))?;
+        Ok(scene.with_coverage(self.coverage()))
     }
 }

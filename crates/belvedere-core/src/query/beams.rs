@@ -40,7 +40,7 @@ const RECENT: usize = 4;
 impl MedialScene {
     /// The answer for each target, in the order in which they were given: the same as those of
     /// [`super::Visibility::visible`], at a cost that grows with the rim of what is visible rather than with the number of targets.
-    /// Targets that are not finite are [`Answer::OutsideView`].
+    /// Targets that are not finite are [`Answer::OutsideView`], those beside or below the cloud [`Answer::OutsideCloud`].
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a viewer that is not finite, [`Error::UnsupportedViewer`] for [`Viewer::Each`], and
@@ -49,6 +49,7 @@ impl MedialScene {
         let sweep = Sweep::new(self, viewer, targets, control)?;
         let mut answers = vec![Answer::OutsideView; targets.len()];
         let subtrees = targets.subtrees(SHARE);
+        let eye_outside = is_eye_outside(self, viewer);
         let answered: Vec<Vec<(u32, Answer)>> = subtrees
             .into_par_iter()
             .map(|subtree| {
@@ -61,6 +62,7 @@ impl MedialScene {
                     .map(|place| {
                         let target = targets.positions()[place];
                         let answer = match viewer.line_of_sight(place, target) {
+                            _ if eye_outside || self.is_outside_cloud(target.map(f64::from)) => Answer::OutsideCloud,
                             None => Answer::OutsideView,
                             Some(_) if !seen[place - first] => Answer::Blocked,
                             Some((towards, range)) => self.answer_unblocked(target.map(f64::from), towards, range),
@@ -78,7 +80,7 @@ impl MedialScene {
     }
 
     /// Calls `visit` with the place, in the order of the tree, of every target that no ball blocks, one at the viewer itself among
-    /// them; what pulses prove is not asked. Runs on the calling thread; the places ascend.
+    /// them, but none outside the cloud; what pulses prove is not asked. Runs on the calling thread; the places ascend.
     ///
     /// # Errors
     /// As [`MedialScene::answer_among`].
@@ -90,8 +92,12 @@ impl MedialScene {
         mut visit: impl FnMut(usize),
     ) -> Result<()> {
         let sweep = Sweep::new(self, viewer, targets, control)?;
-        if !targets.nodes.is_empty() {
-            sweep.run(0, &mut visit);
+        if !targets.nodes.is_empty() && !is_eye_outside(self, viewer) {
+            sweep.run(0, &mut |place| {
+                if !self.is_outside_cloud(targets.positions()[place].map(f64::from)) {
+                    visit(place);
+                }
+            });
         }
         control.check()
     }
@@ -106,6 +112,11 @@ impl MedialScene {
             Some(unit) => self.answer_unblocked(target, unit, belvedere_data::vector::length(towards)),
         }
     }
+}
+
+/// Whether a viewer is an eye beside or below the cloud.
+fn is_eye_outside(scene: &MedialScene, viewer: Viewer<'_>) -> bool {
+    matches!(viewer, Viewer::Eye(eye) if scene.is_outside_cloud(eye))
 }
 
 /// One viewer's look at a tree of targets.

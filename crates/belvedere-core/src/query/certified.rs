@@ -70,6 +70,10 @@ impl MedialScene {
             return Ok((answers, Some(report)));
         }
         let answers = self.answer_each(targets, control, |_, target| line_of_sight(views.iter(), scope, target))?;
+        let answers = match views.first() {
+            Some(view) => self.marked(viewer_of(view), targets, answers),
+            None => answers,
+        };
         Ok((answers, None))
     }
 }
@@ -97,7 +101,7 @@ fn line_of_sight<'v>(
 ) -> Option<([f64; 3], f64)> {
     match scope {
         Scope::View => views.find_map(|view| line_in_view(view, target)),
-        Scope::Viewer => views.next().and_then(|view| viewer(view).line_of_sight(0, target)),
+        Scope::Viewer => views.next().and_then(|view| viewer_of(view).line_of_sight(0, target)),
     }
 }
 
@@ -155,6 +159,9 @@ impl<'a> CertifiedMap<'a> {
                 Ok(settled)
             })
             .sum::<Result<usize>>()?;
+        if let Some(bounds) = self.bounds.first() {
+            answers = self.scene.marked(viewer_of(&bounds.view), targets, answers);
+        }
         Ok((answers, CertifiedReport { target_count: targets.len(), settled_count }))
     }
 
@@ -207,7 +214,7 @@ enum Way {
 }
 
 /// Who looks through a view.
-fn viewer(view: &View) -> Viewer<'static> {
+pub(super) fn viewer_of(view: &View) -> Viewer<'static> {
     if view.is_central() { Viewer::Eye(view.frame.eye) } else { Viewer::Direction(view.frame.forward.map(|v| -v)) }
 }
 
@@ -223,11 +230,11 @@ pub(super) fn line_in_view(view: &View, target: [f32; 3]) -> Option<([f64; 3], f
     match view.projection {
         Projection::Orthographic { .. } => Some((view.frame.forward.map(|v| -v), depth)),
         Projection::Perspective { near, .. } => {
-            let (towards, range) = viewer(view).line_of_sight(0, target)?;
+            let (towards, range) = viewer_of(view).line_of_sight(0, target)?;
             Some((towards, range - near * (range / depth)))
         }
         Projection::Hemispherical { near, .. } => {
-            let (towards, range) = viewer(view).line_of_sight(0, target)?;
+            let (towards, range) = viewer_of(view).line_of_sight(0, target)?;
             Some((towards, range - near))
         }
     }

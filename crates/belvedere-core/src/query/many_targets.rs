@@ -20,7 +20,7 @@ const TARGETS_PER_PIXEL: f64 = 16.0;
 
 impl MedialScene {
     /// The answer for each of `targets`, (M, 3) local metres, seen by `viewer`, in their order; progress counts targets. What is not finite, or
-    /// is the viewer itself, is [`Answer::OutsideView`].
+    /// is the viewer itself, is [`Answer::OutsideView`]; what lies beside or below the cloud [`Answer::OutsideCloud`].
     ///
     /// Every answer is that of [`MedialScene::answer`]. Few targets get a line of sight each, many of one eye are ordered into
     /// a tree of targets, and very many under one sun are looked up in bounds of depth first.
@@ -39,7 +39,10 @@ impl MedialScene {
             Viewer::Direction(to_viewer) if targets.len() >= MAP_FROM && self.params().profile == Profile::Sphere => {
                 self.visible_by_map(to_viewer, targets, control)
             }
-            _ => self.answer_each(targets, control, |number, target| viewer.line_of_sight(number, target)),
+            _ => {
+                let line = |number, target| viewer.line_of_sight(number, target);
+                Ok(self.marked(viewer, targets, self.answer_each(targets, control, line)?))
+            }
         }
     }
 

@@ -2,10 +2,10 @@
 
 use super::backend::{Backend, Prepared};
 use super::ball_tree::BallTree;
-use super::certified::line_in_view;
+use super::certified::{line_in_view, viewer_of};
 use super::cpu::Cpu;
 use super::lazy::Lazy;
-use super::{Answer, Proof, Sight, Viewer, Visibility};
+use super::{Answer, Coverage, Proof, Sight, Viewer, Visibility};
 use crate::blocking::{Ball, BlockRule};
 use crate::medial::{MedialBalls, NO_TOUCH};
 use crate::ray_index::Ray;
@@ -27,11 +27,14 @@ const CHUNK: usize = 1024;
 ///
 /// With pulses ([`MedialScene::with_pulses`]) a target that nothing blocks is [`Answer::Unproven`] where too much of its
 /// line of sight runs through space that no pulse came near to.
+///
+/// With a coverage ([`MedialScene::with_coverage`]) what lies beside or below the cloud is [`Answer::OutsideCloud`].
 pub struct MedialScene {
     tree: Arc<BallTree>,
     /// Row among the balls given of each in the tree.
     pub(super) rows: Vec<u32>,
     pub(super) proof: Option<Proof>,
+    coverage: Option<Coverage>,
     backend: Box<dyn Backend>,
     prepared: Lazy<Box<dyn Prepared>>,
 }
@@ -51,7 +54,8 @@ impl MedialScene {
         let (tree, order) = BallTree::new(&list, rule)?;
         #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
         let rows = order.iter().map(|&place| usable[place as usize] as u32).collect();
-        Ok(Self { tree: Arc::new(tree), rows, proof: None, backend: Box::new(Cpu), prepared: Lazy::new() })
+        let tree = Arc::new(tree);
+        Ok(Self { tree, rows, proof: None, coverage: None, backend: Box::new(Cpu), prepared: Lazy::new() })
     }
 
     /// The same balls, whose lines of sight are settled in bulk by another backend. Answers stay the same.
@@ -81,6 +85,33 @@ impl MedialScene {
     pub fn with_pulses(mut self, proof: Proof) -> Self {
         self.proof = Some(proof);
         self
+    }
+
+    /// The same balls, of which it is known over which space the cloud lies that they were made from.
+    #[must_use]
+    pub fn with_coverage(mut self, coverage: Option<Coverage>) -> Self {
+        self.coverage = coverage;
+        self
+    }
+
+    /// Over which space the cloud lies, where that is known.
+    #[must_use]
+    pub fn coverage(&self) -> Option<&Coverage> {
+        self.coverage.as_ref()
+    }
+
+    /// Whether a position, local metres, lies beside or below the cloud.
+    #[must_use]
+    pub fn is_outside_cloud(&self, position: [f64; 3]) -> bool {
+        self.coverage.is_some_and(|coverage| !coverage.holds(position))
+    }
+
+    /// `answers` of `targets`, with those of what lies outside the cloud as such.
+    pub(super) fn marked(&self, viewer: Viewer<'_>, targets: &[[f32; 3]], mut answers: Vec<Answer>) -> Vec<Answer> {
+        if let Some(coverage) = &self.coverage {
+            coverage.mark_outside(viewer, targets, &mut answers);
+        }
+        answers
     }
 
     /// The pulses that prove what is visible, where they are known.
@@ -157,7 +188,8 @@ impl MedialScene {
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub fn query_view(&self, view: &View, targets: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<Answer>> {
-        self.answer_each(targets, control, |_, target| line_in_view(view, target))
+        let answers = self.answer_each(targets, control, |_, target| line_in_view(view, target))?;
+        Ok(self.marked(viewer_of(view), targets, answers))
     }
 
     /// Number of balls that can block.
@@ -202,7 +234,8 @@ impl Visibility for MedialScene {
         viewer.validate()?;
         Ok(Box::new(move |targets| {
             viewer.validate_count(targets)?;
-            self.answer_each(targets, &Control::none(), |number, target| viewer.line_of_sight(number, target))
+            let line = |number, target| viewer.line_of_sight(number, target);
+            Ok(self.marked(viewer, targets, self.answer_each(targets, &Control::none(), line)?))
         }))
     }
 }

@@ -18,6 +18,8 @@ pub enum Answer {
     Unproven = 2,
     /// It lies beside the picture or behind its plane, or its position is not finite: the view says nothing of it.
     OutsideView = 3,
+    /// The target or its eye lies beside or below the cloud, of which nothing is known ([`super::Coverage`]).
+    OutsideCloud = 4,
 }
 
 /// What to make of [`Answer::Unproven`].
@@ -54,6 +56,8 @@ pub struct AnswerCounts {
     pub unproven: usize,
     /// [`Answer::OutsideView`].
     pub outside_view: usize,
+    /// [`Answer::OutsideCloud`].
+    pub outside_cloud: usize,
 }
 
 impl AnswerCounts {
@@ -66,6 +70,7 @@ impl AnswerCounts {
             blocked: count(Answer::Blocked),
             unproven: count(Answer::Unproven),
             outside_view: count(Answer::OutsideView),
+            outside_cloud: count(Answer::OutsideCloud),
         }
     }
 }

@@ -16,11 +16,12 @@ const PROBE: f64 = 1e-3;
 /// What is known of a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineOfSight {
-    /// Visible, blocked, or unproven where pulses are known.
+    /// Visible, blocked, unproven where pulses are known, or outside the cloud.
     pub answer: Answer,
     /// What the observer sees in place of the target, if the line is blocked.
     pub first_block: Option<Block>,
-    /// How much of it no pulse came near to, metres; 0 where pulses are not known, and where it is blocked.
+    /// How much of it no pulse came near to, metres; 0 where pulses are not known, and where it is blocked; NaN
+    /// outside the cloud.
     pub unproven_length: f64,
 }
 
@@ -72,6 +73,10 @@ impl MedialScene {
     #[must_use]
     pub fn line_of_sight(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Option<LineOfSight> {
         let straight = Ray::new(target, sub(observer, target), [0.0, length(sub(observer, target))])?;
+        if [observer, target].into_iter().any(|end| self.is_outside_cloud(end)) {
+            let answer = Answer::OutsideCloud;
+            return Some(LineOfSight { answer, first_block: None, unproven_length: f64::NAN });
+        }
         let pieces = if earth.bends(target, observer) {
             self.pieces(observer, target, earth)
         } else {
@@ -122,6 +127,9 @@ impl MedialScene {
     pub fn sight_answer(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Answer {
         let range = length(sub(observer, target));
         let Some(ray) = Ray::new(target, sub(observer, target), [0.0, range]) else { return Answer::OutsideView };
+        if [observer, target].into_iter().any(|end| self.is_outside_cloud(end)) {
+            return Answer::OutsideCloud;
+        }
         if !earth.bends(target, observer) {
             return self.answer(target, ray.direction, range);
         }

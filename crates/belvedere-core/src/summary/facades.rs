@@ -16,6 +16,11 @@ const BUILDING: u8 = 6;
 const STEEPEST_NORMAL: f32 = 0.3;
 /// Neighbours that tell how much wall a point stands for.
 const NEIGHBORS: u8 = 8;
+/// How far the eighth neighbour on a wall may be for a point to represent wall, metres: at this distance a wall has a tenth of a point per square metre,
+/// fewer than any survey of buildings leaves.
+const MOST_REACH: f64 = 5.0;
+/// Fewest points on walls, near each other, whose area is estimated.
+const LEAST_STEEP: usize = 50;
 /// Building points looked at; of larger clouds every so manieth square is taken, so that this stays a matter of seconds.
 const MOST_POINTS: usize = 2_000_000;
 /// Side of those squares, metres: a few houses, of which little is cut at the rim.
@@ -28,17 +33,24 @@ pub struct FacadeSummary {
     pub building_point_count: usize,
     /// Those of them on steep surfaces.
     pub steep_point_count: usize,
-    /// Wall area that these stand for, m².
+    /// The walls; `None` where fewer than 50 of these lie near each other, which is too few to estimate them.
+    pub walls: Option<Walls>,
+}
+
+/// Walls that points represent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Walls {
+    /// Their area, m².
     pub area: f64,
-    /// Points per square metre of that wall.
+    /// Points per square metre of it.
     pub density: f64,
 }
 
 impl FacadeSummary {
-    /// Facade density of `cloud`; `None` where it has no points of class 6 (building) or hardly any on walls.
+    /// Facade density of `cloud`; `None` where it has no points of class 6 (building).
     ///
     /// Points of class 6 are on a wall where the normal of their 16 neighbours of that class is within 17° of the horizon.
-    /// Each stands for an eighth of the disc that reaches to its eighth neighbour on a wall. On simulated scans a tenth of the wall
+    /// Each stands for an eighth of the disc that reaches to its eighth neighbour on a wall, unless that is farther than 5 m. On simulated scans a tenth of the wall
     /// points, near eaves and corners, is taken for roof, and the density comes out within a quarter of that of the walls above
     /// ground. Walls without any points do not count; roofs steeper than 73° do. Clouds of more than two million building
     /// points are judged by a part of their area.
@@ -69,21 +81,17 @@ impl FacadeSummary {
             .filter(|(_, normal)| normal[2].abs() < STEEPEST_NORMAL && **normal != [0.0; 3])
             .map(|(&p, _)| p)
             .collect();
-        let Some(area) = area_of(&steep, control)? else { return Ok(None) };
-        Ok(Some(Self {
-            building_point_count: buildings.len(),
-            steep_point_count: steep.len(),
-            area,
-            density: steep.len() as f64 / area,
-        }))
+        let walls = walls_of(&steep, control)?;
+        let (building_point_count, steep_point_count) = (buildings.len(), steep.len());
+        Ok((building_point_count > 0).then_some(Self { building_point_count, steep_point_count, walls }))
     }
 }
 
-/// Area of the surface that `points` lie on, m², or `None` for too few of them or all in one spot.
-fn area_of(points: &[[f32; 3]], control: &Control<'_>) -> Result<Option<f64>> {
+/// The surface that `points` lie on, or `None` for too few of them near each other or all in one spot.
+fn walls_of(points: &[[f32; 3]], control: &Control<'_>) -> Result<Option<Walls>> {
     let stop = Stop::new(control);
     let count = usize::from(NEIGHBORS);
-    if points.len() <= count {
+    if points.len() < LEAST_STEEP {
         return Ok(None);
     }
     let index = NeighborIndex::new(points, control)?;
@@ -100,8 +108,9 @@ fn area_of(points: &[[f32; 3]], control: &Control<'_>) -> Result<Option<f64>> {
         .collect();
     stop.check()?;
     // in order, so that the sum is the same for any number of threads
-    let area = discs.iter().sum::<f64>() / f64::from(NEIGHBORS);
-    Ok((area > 0.0).then_some(area))
+    let near = || discs.iter().filter(|&&disc| disc <= PI * MOST_REACH * MOST_REACH);
+    let (area, used) = (near().sum::<f64>() / f64::from(NEIGHBORS), near().count());
+    Ok((area > 0.0 && used >= LEAST_STEEP).then(|| Walls { area, density: used as f64 / area }))
 }
 
 #[cfg(test)]
@@ -146,8 +155,9 @@ mod tests {
             let facades = FacadeSummary::of(&box_cloud(density, 6), &Control::none()).unwrap().unwrap();
             // Points near the eaves have mixed neighbours: a strip as wide as these reach, up to a fifth of a wall of 20 m at
             // the lower density. The area loses those points, but discs at the rim reach beyond it.
-            assert!((0.8..1.1).contains(&(facades.area / 2800.0)), "{facades:?}");
-            assert!((0.8..1.2).contains(&(facades.density / f64::from(density))), "{facades:?}");
+            let walls = facades.walls.unwrap();
+            assert!((0.8..1.1).contains(&(walls.area / 2800.0)), "{facades:?}");
+            assert!((0.8..1.2).contains(&(walls.density / f64::from(density))), "{facades:?}");
             assert!(facades.steep_point_count > facades.building_point_count / 5);
         }
     }
@@ -156,9 +166,27 @@ mod tests {
     fn clouds_without_walls_or_buildings_have_no_facades() {
         assert_eq!(FacadeSummary::of(&PointCloud::default(), &Control::none()).unwrap(), None);
         assert_eq!(FacadeSummary::of(&box_cloud(1, 2), &Control::none()).unwrap(), None);
-        assert_eq!(FacadeSummary::of(&box_cloud(0, 6), &Control::none()).unwrap(), None);
+        let walls = |cloud: &PointCloud| FacadeSummary::of(cloud, &Control::none()).unwrap().unwrap().walls;
+        assert_eq!(walls(&box_cloud(0, 6)), None);
         let mut spot = box_cloud(1, 6);
         spot.positions.iter_mut().for_each(|p| *p = [1.0, 2.0, 3.0]);
-        assert_eq!(FacadeSummary::of(&spot, &Control::none()).unwrap(), None);
+        assert_eq!(walls(&spot), None);
+    }
+
+    #[test]
+    fn a_few_steep_points_far_apart_are_no_wall() {
+        // three zigzags of 17 points, 9 m apart
+        let mut cloud = box_cloud(0, 6);
+        for pole in 0..3_i16 {
+            for step in 0..17_i16 {
+                cloud.positions.push([
+                    400.0 + 700.0 * f32::from(pole),
+                    9.0 * f32::from(step % 2),
+                    9.0 * f32::from(step),
+                ]);
+            }
+        }
+        cloud.attributes.classification = Some(vec![6; cloud.positions.len()]);
+        assert_eq!(FacadeSummary::of(&cloud, &Control::none()).unwrap().unwrap().walls, None);
     }
 }

@@ -66,6 +66,11 @@ pub struct Weather {
     pub notes: Vec<String>,
 }
 
+/// Hours of a year of the Gregorian calendar.
+const HOURS_OF_YEAR: f64 = 8765.82;
+/// Share of a year that may be missing or too much: two weeks, more than leap days and rows without values.
+const YEAR_TOLERANCE: f64 = 0.04;
+
 impl Weather {
     /// Hours of all rows together.
     #[must_use]
@@ -73,10 +78,19 @@ impl Weather {
         self.steps.iter().map(|step| step.hours).sum()
     }
 
+    /// What must be said of a period that is not one year: sums are those of its rows.
+    #[must_use]
+    pub fn period_remark(&self) -> Option<String> {
+        let years = self.hours() / HOURS_OF_YEAR;
+        let remark =
+            || format!("the weather covers {:.0} hours, {years:.2} years: energies are sums over these", self.hours());
+        ((years - 1.0).abs() > YEAR_TOLERANCE).then(remark)
+    }
+
     /// Checks what the reader of any format must have made sure of.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] without rows, [`Error::InvalidParameter`] for a place that is not on earth, and for values that are not finite
+    /// [`Error::NoPoints`] without rows, [`Error::InvalidParameter`] for rows of the same time, for a place that is not on earth, and for values that are not finite
     /// or below zero.
     pub fn validate(&self) -> Result<()> {
         if self.steps.is_empty() {
@@ -88,6 +102,16 @@ impl Weather {
                 name: "place of the weather",
                 value: format!("{}, {}", self.latitude.to_degrees(), self.longitude.to_degrees()),
                 expected: "latitude -90 to 90 and longitude -360 to 360 degrees",
+            });
+        }
+        let mut instants: Vec<f64> = self.steps.iter().map(|step| step.instant).collect();
+        instants.sort_unstable_by(f64::total_cmp);
+        let repeated = instants.windows(2).filter(|pair| pair[0] >= pair[1]).count();
+        if repeated > 0 {
+            return Err(Error::InvalidParameter {
+                name: "weather",
+                value: format!("{repeated} of {} rows with the time of another row", self.steps.len()),
+                expected: "one row for each time, or their energy counts twice",
             });
         }
         for step in &self.steps {
@@ -104,5 +128,47 @@ impl Weather {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn weather(hours: impl Iterator<Item = u32>) -> Weather {
+        let step = |hour: u32| WeatherStep {
+            instant: f64::from(hour) * 3600.0,
+            hours: 1.0,
+            month: 1,
+            ghi: 100.0,
+            dni: None,
+            dhi: None,
+            temperature: None,
+        };
+        Weather {
+            format: "EPW",
+            latitude: 0.9,
+            longitude: 0.1,
+            height: 0.0,
+            rows_hold: RowsHold::Means,
+            steps: hours.map(step).collect(),
+            left_out_count: 0,
+            notes: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn rows_of_the_same_time_are_refused_and_counted() {
+        assert!(weather(0..8760).validate().is_ok());
+        let twice = weather((0..8760).chain(0..8760)).validate().unwrap_err().to_string();
+        assert!(twice.contains("8760 of 17520 rows"), "{twice}");
+    }
+
+    #[test]
+    fn a_period_that_is_not_a_year_is_remarked() {
+        assert_eq!(weather(0..8760).period_remark(), None);
+        assert_eq!(weather(0..8784).period_remark(), None);
+        assert!(weather(0..4380).period_remark().unwrap().contains("4380 hours, 0.50 years"));
+        assert!(weather(0..3 * 8766).period_remark().unwrap().contains("3.00 years"));
     }
 }

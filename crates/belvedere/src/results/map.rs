@@ -3,16 +3,23 @@
 use crate::Result;
 use crate::apps::targets::Measure;
 use crate::figures::{MapLegend, MapPicture, Picture, map_picture, ramp_colors};
+use crate::io::Georeference;
 use crate::raster::Raster;
 
 /// Colours of measures on a map.
 const COLORS: usize = 101;
 
-/// A measure of cells of `cell` metres over shaded `relief`, with a legend.
+/// A measure of cells of `cell` metres over shaded `relief` that lies at `place`, with a legend.
 ///
 /// # Errors
 /// Those of [`map_picture`].
-pub fn measure_map(measure: &Measure, relief: &Raster<f32>, cell: f64, title: &str) -> Result<Picture> {
+pub fn measure_map(
+    measure: &Measure,
+    relief: &Raster<f32>,
+    cell: f64,
+    place: &Georeference,
+    title: &str,
+) -> Result<Picture> {
     let values: Vec<f64> = measure.values.iter().map(|&v| f64::from(v)).collect();
     let [low, high] = measure.span(&values);
     let ramp = ramp_colors(&(0..COLORS).map(|i| i as f32).collect::<Vec<f32>>());
@@ -24,5 +31,5 @@ pub fn measure_map(measure: &Measure, relief: &Raster<f32>, cell: f64, title: &s
     };
     let colors: Vec<Option<[u8; 3]>> = values.iter().map(color).collect();
     let legend = MapLegend::Ramp(measure.description, [low, high]);
-    map_picture(&MapPicture { relief, cell, colors: &colors, marks: &[], title, legend })
+    map_picture(&MapPicture { relief, cell, place: Some(place), colors: &colors, marks: &[], title, legend })
 }

@@ -134,5 +134,6 @@ fn azimuths_may_count_from_true_north_and_any_number_of_threads_gives_the_same()
     for params in [grid.with_azimuth_count(0), grid.with_azimuth_count(2_000_000), grid.with_turn(f64::NAN)] {
         assert!(horizons(&scene, &[[0.0; 3]], &params, &Control::none()).is_err());
     }
-    assert!(horizons(&scene, &[[f64::NAN; 3]], &grid, &Control::none()).is_err());
+    // an eye that was skipped has none
+    assert!(horizons(&scene, &[[f64::NAN; 3]], &grid, &Control::none()).unwrap()[0].is_empty());
 }

@@ -236,7 +236,11 @@ fn info_tells_density_multi_returns_and_facade_density_as_the_simulation_knows_t
         assert!((0.8..1.0).contains(&found), "{pattern:?}: {found} of the wall points");
         let exact = on_walls / wall_area(&scene, &town_params.terrain());
         // What the documentation of the estimate promises.
-        assert!((facades.density / exact - 1.0).abs() < 0.25, "{pattern:?}: {} for {exact}", facades.density);
+        assert!(
+            (facades.walls.unwrap().density / exact - 1.0).abs() < 0.25,
+            "{pattern:?}: {} for {exact}",
+            facades.walls.unwrap().density
+        );
     }
 }
 

@@ -153,10 +153,11 @@ fn what_lies_outside_the_limits_is_not_asked() {
 }
 
 #[test]
-fn eyes_and_parameters_that_are_no_numbers_are_refused() {
+fn parameters_out_of_range_are_refused_and_eyes_that_are_no_numbers_see_nothing() {
     let scene = scene(&random_balls(5, 10.0), &BlockRule::default());
     let run = |observer, params| viewshed(&scene, &[observer], &[[1.0; 3]], &params, &Control::none());
-    assert!(run(looking([f64::NAN; 3]), ViewshedParams::default()).is_err());
+    // an observer that was skipped sees nothing
+    assert_eq!(run(looking([f64::NAN; 3]), ViewshedParams::default()).unwrap().seen_counts, [0]);
     let earth = EarthParams { refraction: 2.0, ..EarthParams::default() };
     assert!(run(looking([0.0; 3]), ViewshedParams::default().with_earth(earth)).is_err());
     // a target without a height is no error, and nothing is said of it

@@ -91,6 +91,9 @@ pub(super) fn gather(
             if weather.left_out_count > 0 {
                 section.add("weather_rows_without_radiation", weather.left_out_count);
             }
+            if let Some(remark) = weather.period_remark() {
+                summary.warn(remark);
+            }
             section.add("weather_hours", rounded(weather.hours(), 2)).add("notes", weather.notes.clone());
             RadiationSource::Weather { weather, parts: arguments.parts.unwrap_or(PARTS) }
         }
@@ -119,12 +122,18 @@ pub(super) fn gather(
             "obstacle_reflection",
             if params.surroundings == Surroundings::Dark { "nothing" } else { "like the ground" },
         );
+    if report.night_hours > 0.0 {
+        summary.warn(format!(
+            "the weather has radiation in {:.1} hours of the night, with the sun more than 12 degrees below the horizon: are its location and time zone correct?",
+            report.night_hours
+        ));
+    }
     if report.is_doubtful() {
         let what = format!(
             "{:.0} kWh/m² of direct radiation have the sun below the horizon and are ignored: are the location and the time zone of the weather correct?",
             report.dni_without_sun
         );
-        section.add("note", what);
+        summary.warn(what);
     }
     summary.add("radiation", section);
     Ok(seasons)

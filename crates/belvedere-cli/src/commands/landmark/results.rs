@@ -38,21 +38,22 @@ const MEASURES: [Measure; 9] = [
     }),
 ];
 
-/// A row for each observer that stands somewhere, with what a table said of it.
+/// A row for each observer that stands somewhere, with what a table said of it; one that was skipped has its coordinates alone.
 pub(super) fn write_rows(
     output: &Path,
     views: &[LandmarkView],
-    eyes: &[[f64; 3]],
+    places: &[[f64; 3]],
     given: &TextRows,
     cloud: &PointCloud,
 ) -> Result<()> {
-    let rows: Vec<usize> = (0..eyes.len()).filter(|&row| eyes[row].iter().all(|v| v.is_finite())).collect();
+    let rows: Vec<usize> = (0..places.len()).filter(|&row| places[row][..2].iter().all(|v| v.is_finite())).collect();
     let mut columns: Vec<(&'static str, Vec<f64>, usize)> = Vec::new();
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-        columns.push((name, rows.iter().map(|&row| cloud.frame.file_from_local(eyes[row])[axis]).collect(), 3));
+        columns.push((name, rows.iter().map(|&row| cloud.frame.file_from_local(places[row])[axis]).collect(), 3));
     }
     for (name, _, decimals, value) in MEASURES {
-        columns.push((name, rows.iter().map(|&row| value(&views[row])).collect(), decimals));
+        let of_view = |&row: &usize| if views[row].area > 0.0 { value(&views[row]) } else { f64::NAN };
+        columns.push((name, rows.iter().map(of_view).collect(), decimals));
     }
     let named: Vec<(&'static str, Cells<'_>)> =
         columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))).collect();
@@ -120,6 +121,7 @@ pub(super) fn write_map(
     let map = MapPicture {
         relief: &relief,
         cell: ground.grid.cell,
+        place: Some(&georeference(&ground.grid, &cloud.frame)),
         colors: &colors,
         marks: &marks,
         title: "Visible share of the landmark",

@@ -50,7 +50,7 @@ pub(super) fn on_cells(
         }
         _ if one => {
             let code = |answer: &Answer| match answer {
-                Answer::OutsideView => NODATA,
+                Answer::OutsideView | Answer::OutsideCloud => NODATA,
                 known => *known as u8,
             };
             let values = seen.answers.iter().map(code).collect();
@@ -60,7 +60,7 @@ pub(super) fn on_cells(
         }
         _ => {
             let count = |(answer, &count): (&Answer, &u32)| match answer {
-                Answer::OutsideView => NO_COUNT,
+                Answer::OutsideView | Answer::OutsideCloud => NO_COUNT,
                 _ => u16::try_from(count).unwrap_or(NO_COUNT).min(NO_COUNT - 1),
             };
             let values = seen.answers.iter().zip(&seen.counts).map(count).collect();
@@ -100,7 +100,7 @@ pub(super) fn on_points(output: &Path, seen: &Viewshed, cloud: &PointCloud) -> R
     let codes: Vec<u8> = seen.answers.iter().map(|&answer| answer as u8).collect();
     let mut columns = vec![ExtraColumn {
         name: "answer",
-        description: "0 blocked 1 visible 2 unproven 3 no",
+        description: "0 no 1 yes 2 unproven 3 4 outside",
         values: ExtraValues::U8(&codes),
     }];
     if seen.seen_counts.len() > 1 {
@@ -168,6 +168,7 @@ fn write_map(
     }
     let legend = if one { MapLegend::Colors(&meanings) } else { MapLegend::Ramp("observers", [1.0, f64::from(most)]) };
     let cell = ground.grid.cell;
-    let map = MapPicture { relief: &relief, cell, colors: &colors, marks: &marks, title, legend };
+    let place = georeference(&ground.grid, &cloud.frame);
+    let map = MapPicture { relief: &relief, cell, place: Some(&place), colors: &colors, marks: &marks, title, legend };
     Ok(write_png(output, &map_picture(&map)?)?)
 }

@@ -4,7 +4,7 @@ use crate::arguments::{Usage, Viewshed};
 use crate::commands::extension;
 use crate::commands::surroundings::least_count;
 use crate::pipeline::flagged;
-use anyhow::{Result, bail};
+use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::targets::set_on_ground;
 use belvedere::apps::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, places_along};
@@ -118,37 +118,9 @@ fn limits_of(row: &ObserverRow, typed: SightLimits, grid_north: f64) -> SightLim
     }
 }
 
-/// The observers with their eyes above the ground.
-pub(super) fn observers(
-    arguments: &Viewshed,
-    rows: &[Row],
-    ground: &Ground,
-    cloud: &PointCloud,
-) -> Result<Vec<Observer>> {
+/// The observers with their eyes above the ground; the height of an eye is NaN where no ground is known below it.
+pub(super) fn observers(rows: &[Row], ground: &Ground) -> Vec<Observer> {
     let mut eyes: Vec<[f64; 3]> = rows.iter().map(|row| row.place).collect();
-    let unknown = set_on_ground(eyes.iter_mut().zip(rows).map(|(eye, row)| (eye, row.height)), ground);
-    if let Some(&number) = unknown.first() {
-        let [x, y, _] = cloud.frame.file_from_local(eyes[number]);
-        let who = if arguments.who.target.is_some() { "the target" } else { "observer" };
-        bail!(
-            "{who} {} at {x:.3},{y:.3}: there is no ground known below it; is it in the coordinates of the cloud? Else give its \
-             height as a third number",
-            number + 1
-        );
-    }
-    let observers: Vec<Observer> =
-        eyes.into_iter().zip(rows).map(|(eye, row)| Observer { eye, limits: row.limits }).collect();
-    flagged("--observer-height", check_eyes(&observers))?;
-    Ok(observers)
-}
-
-fn check_eyes(observers: &[Observer]) -> belvedere::Result<()> {
-    match observers.iter().find(|observer| !observer.eye.iter().all(|v| v.is_finite())) {
-        None => Ok(()),
-        Some(observer) => Err(belvedere::Error::InvalidParameter {
-            name: "eye of an observer",
-            value: format!("{:?}", observer.eye),
-            expected: "finite",
-        }),
-    }
+    set_on_ground(eyes.iter_mut().zip(rows).map(|(eye, row)| (eye, row.height)), ground);
+    eyes.into_iter().zip(rows).map(|(eye, row)| Observer { eye, limits: row.limits }).collect()
 }

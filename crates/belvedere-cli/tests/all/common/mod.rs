@@ -198,6 +198,19 @@ pub(crate) fn house() -> PointCloud {
     }
 }
 
+/// The same house with ground 45 m around its middle, for those who look at it from farther away.
+pub(crate) fn house_in_a_field() -> PointCloud {
+    let mut cloud = house();
+    for x in -45..=45_i16 {
+        for y in (-45..=45_i16).filter(|y| x.abs() > 15 || y.abs() > 15) {
+            let height = if (x + y) % 2 == 0 { ROUGHNESS } else { -ROUGHNESS };
+            cloud.positions.push([f32::from(x), f32::from(y), height]);
+            cloud.attributes.normals.get_or_insert_default().push([0.0, 0.0, 1.0]);
+        }
+    }
+    cloud
+}
+
 /// A position relative to the middle of the house in the coordinates of its file.
 pub(crate) fn at(x: f64, y: f64, z: f64) -> [f64; 3] {
     [EAST + x, NORTH + y, z]

@@ -1,0 +1,169 @@
+//! Who cannot look: eyes without ground below them, beside or below the cloud, or inside what stands there.
+
+use belvedere_core::ground::Ground;
+use belvedere_core::query::{Coverage, MedialScene};
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use belvedere_data::report::rounded;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// How deep an eye may lie in an obstacle or below the ground, metres: what points and the surface tolerance of balls leave open. An eye
+/// on a wall or a roof is a usual question.
+const TOLERANCE: f64 = 0.2;
+
+/// Why nobody can look from a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum EyeFault {
+    /// It has no height, and no ground is known below it.
+    NoGround,
+    /// It lies beside or below the cloud.
+    OutsideCloud,
+    /// It lies so far below the ground, metres.
+    BelowGround(f64),
+    /// It lies so deep in an obstacle, metres.
+    InsideObstacle(f64),
+}
+
+impl std::fmt::Display for EyeFault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NoGround => f.write_str("there is no ground known below it; give its height as a third coordinate"),
+            Self::OutsideCloud => f.write_str("it is outside the cloud; is it in the coordinates of the cloud?"),
+            Self::BelowGround(depth) => write!(f, "it is {depth:.2} m below the ground"),
+            Self::InsideObstacle(depth) => write!(f, "it is inside an obstacle, {depth:.2} m deep"),
+        }
+    }
+}
+
+/// An eye that is skipped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SkippedEye {
+    /// Its row among the eyes, from 0.
+    pub row: usize,
+    /// Where it is, local metres; the height may be NaN.
+    pub place: [f64; 3],
+    /// Why it is skipped.
+    pub fault: EyeFault,
+}
+
+/// How many eyes can look, and why others cannot.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct EyesReport {
+    /// Eyes that were given.
+    pub count: usize,
+    /// Eyes that were skipped.
+    pub skipped: usize,
+    /// Of these, without known ground below.
+    pub skipped_without_ground: usize,
+    /// Of these, beside or below the cloud.
+    pub skipped_outside_cloud: usize,
+    /// Of these, below the ground.
+    pub skipped_below_ground: usize,
+    /// Of these, inside an obstacle.
+    pub skipped_inside_obstacle: usize,
+    /// The eyes skipped.
+    #[serde(skip)]
+    pub faults: Vec<SkippedEye>,
+}
+
+impl EyesReport {
+    /// `count` eyes that all look.
+    #[must_use]
+    pub fn none_skipped(count: usize) -> Self {
+        Self { count, ..Self::default() }
+    }
+}
+
+/// Finds the `eyes`, (N) local metres, that cannot look in `scene`, and makes them NaN, so that others keep their rows. `ground` is asked
+/// where it is given.
+///
+/// # Errors
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+pub fn skip_unfit_eyes(
+    scene: &MedialScene,
+    ground: Option<&Ground>,
+    eyes: &mut [[f64; 3]],
+    control: &Control<'_>,
+) -> Result<EyesReport> {
+    let fault = |(row, &place): (usize, &[f64; 3])| {
+        control.check()?;
+        Ok(fault_of(scene, ground, place).map(|fault| SkippedEye { row, place, fault }))
+    };
+    let faults: Vec<Option<SkippedEye>> = eyes.par_iter().enumerate().map(fault).collect::<Result<_>>()?;
+    let faults: Vec<SkippedEye> = faults.into_iter().flatten().collect();
+    for skipped in &faults {
+        eyes[skipped.row] = [f64::NAN; 3];
+    }
+    let number = |is_so: fn(&EyeFault) -> bool| faults.iter().filter(|skipped| is_so(&skipped.fault)).count();
+    Ok(EyesReport {
+        count: eyes.len(),
+        skipped: faults.len(),
+        skipped_without_ground: number(|fault| matches!(fault, EyeFault::NoGround)),
+        skipped_outside_cloud: number(|fault| matches!(fault, EyeFault::OutsideCloud)),
+        skipped_below_ground: number(|fault| matches!(fault, EyeFault::BelowGround(_))),
+        skipped_inside_obstacle: number(|fault| matches!(fault, EyeFault::InsideObstacle(_))),
+        faults,
+    })
+}
+
+/// Why nobody can look from `place`, local metres, whose height is NaN where no ground is known below it; `None` where somebody can.
+#[must_use]
+pub fn fault_of(scene: &MedialScene, ground: Option<&Ground>, place: [f64; 3]) -> Option<EyeFault> {
+    let [x, y, z] = place;
+    let is_over = |coverage: &Coverage| if z.is_nan() { coverage.holds_on_map(place) } else { coverage.holds(place) };
+    if !scene.coverage().is_none_or(is_over) {
+        return Some(EyeFault::OutsideCloud);
+    }
+    if z.is_nan() {
+        return Some(EyeFault::NoGround);
+    }
+    if let Some(below) = ground.and_then(|ground| ground.height_at([x, y])).map(|height| height - z)
+        && below > TOLERANCE
+    {
+        return Some(EyeFault::BelowGround(rounded(below, 3)));
+    }
+    let depth = scene.enclosure(place).depth;
+    (depth > TOLERANCE.max(scene.params().shell)).then(|| EyeFault::InsideObstacle(rounded(depth, 3)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::medial::MedialBalls;
+    use belvedere_core::query::BlockRule;
+    use belvedere_data::Bounds;
+
+    #[test]
+    fn eyes_that_cannot_look_are_named_and_others_keep_their_rows() {
+        // one ball of 3 m around (10, 10, 3) on a cloud of 20 by 20 m
+        let balls = MedialBalls {
+            centers: vec![[10.0, 10.0, 3.0]],
+            radii: vec![3.0],
+            source: vec![0],
+            touch: vec![0],
+            separation_angles: vec![1.0],
+        };
+        let bounds = Bounds { low: [0.0; 3], high: [20.0, 20.0, 6.0] };
+        let scene = MedialScene::new(&balls, &BlockRule::carved()).unwrap().with_coverage(Coverage::of(bounds));
+        let fit = [2.0, 2.0, 1.7];
+        let mut eyes = [
+            fit,
+            [10.0, 10.0, 1.0],       // 1 m deep in the ball
+            [10.0, 10.0, 6.0 - 0.1], // on its surface, within the tolerance
+            [3_000.0, 2.0, 1.7],
+            [2.0, 2.0, -5.0],
+            [2.0, 2.0, f64::NAN],
+            [3_000.0, 2.0, f64::NAN],
+            [10.0, 10.0, 106.0], // a drone
+        ];
+        let report = skip_unfit_eyes(&scene, None, &mut eyes, &Control::none()).unwrap();
+        let rows: Vec<usize> = report.faults.iter().map(|skipped| skipped.row).collect();
+        assert_eq!(rows, [1, 3, 4, 5, 6]);
+        assert_eq!(report.faults[0].fault, EyeFault::InsideObstacle(1.0));
+        assert_eq!((report.count, report.skipped, report.skipped_outside_cloud), (8, 5, 3));
+        assert_eq!((report.skipped_without_ground, report.skipped_inside_obstacle), (1, 1));
+        assert!(eyes[0] == fit && eyes[7][2] == 106.0 && eyes[1][0].is_nan());
+    }
+}
