@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![allow(clippy::cast_possible_truncation, reason = "the numbers of tests are small, or made to be f32")]
 
+mod answers;
 mod carved;
 mod common;
 #[cfg(feature = "compare")]
@@ -12,6 +13,7 @@ mod determinism;
 mod envelopes;
 mod given_rows;
 mod help_examples;
+mod implausible;
 mod info;
 mod interrupts;
 mod irradiance;
@@ -20,6 +22,7 @@ mod limits;
 mod masbcpp_folder;
 mod odd_clouds;
 mod queries;
+mod readme;
 mod shadow;
 mod sights;
 mod simulate;
