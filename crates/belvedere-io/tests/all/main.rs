@@ -5,5 +5,6 @@ mod common;
 mod hostile_archives;
 mod hostile_input;
 mod hostile_laz;
+mod hostile_side_files;
 mod outputs;
 mod sources;
