@@ -185,8 +185,6 @@ pub(crate) struct Info {
 
 #[derive(Args)]
 pub(crate) struct Trajectory {
-    #[command(flatten)]
-    pub(crate) input: CloudInput,
     /// Time between two positions in seconds, 0.01 to 2
     #[arg(
         long = "time-step-s",
@@ -199,4 +197,6 @@ pub(crate) struct Trajectory {
     /// Table of scanner positions (.csv .txt)
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) input: CloudInput,
 }

@@ -91,7 +91,7 @@ impl Summary {
         if !global.json
             && let Some(Value::Array(warnings)) = entries.remove(WARNINGS)
         {
-            warnings.iter().for_each(|warning| note(&format!("warning: {}", plain(warning))));
+            warnings.iter().filter(|_| !global.quiet).for_each(|warning| note(&format!("warning: {}", plain(warning))));
         }
         let mut text = String::new();
         if global.json {

@@ -9,24 +9,20 @@ use std::str::FromStr;
 #[derive(Args)]
 pub(crate) struct Normals {
     #[command(flatten)]
-    pub(crate) input: CloudInput,
-    #[command(flatten)]
-    pub(crate) config: SceneConfig,
-    #[command(flatten)]
     pub(crate) cleaning: Cleaning,
     #[command(flatten)]
     pub(crate) orienting: Orienting,
     /// Cloud with normals (.laz .las .ply .csv), or a folder for coords.npy and normals.npy
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
-}
-
-#[derive(Args)]
-pub(crate) struct Balls {
     #[command(flatten)]
     pub(crate) input: CloudInput,
     #[command(flatten)]
     pub(crate) config: SceneConfig,
+}
+
+#[derive(Args)]
+pub(crate) struct Balls {
     #[command(flatten)]
     pub(crate) cleaning: Cleaning,
     #[command(flatten)]
@@ -57,6 +53,10 @@ pub(crate) struct Balls {
     #[arg(long = "cell", value_name = "M", default_value_t = 0.5, requires = "simplify", help_heading = "Result",
         value_parser = above_zero::<f32>, allow_negative_numbers = true)]
     pub(crate) cell_size: f32,
+    #[command(flatten)]
+    pub(crate) input: CloudInput,
+    #[command(flatten)]
+    pub(crate) config: SceneConfig,
 }
 
 #[derive(Args)]

@@ -31,9 +31,9 @@ mod trajectory;
 mod tree_light;
 mod viewshed;
 
-use crate::arguments::{Cli, Command, Global, Usage};
+use crate::arguments::{Cli, Command, Usage};
 use crate::help;
-use crate::summary::{Summary, note};
+use crate::summary::Summary;
 use anyhow::{Context, Result, bail};
 use belvedere::crs::Crs;
 use belvedere::io::{ExtraColumn, ExtraValues};
@@ -132,16 +132,14 @@ fn check_output(flag: &str, path: &Path, known: &[&str]) -> Result<()> {
 }
 
 /// Warns of GeoJSON whose coordinates are not those that its standard promises.
-fn warn_of_geojson(outputs: &[PathBuf], crs: &Crs, global: &Global, summary: &mut Summary) {
+fn warn_of_geojson(outputs: &[PathBuf], crs: &Crs, summary: &mut Summary) {
     if !outputs.iter().any(|output| extension(output) == "geojson") || crs.geographic_projection().is_ok() {
         return;
     }
-    let warning = "GeoJSON has the coordinates of the cloud, not longitude and latitude: the reference system of the scene is unknown. Other \
-                   programs will misplace it; give --crs EPSG:CODE where the balls are built";
-    summary.add("warning", warning);
-    if !global.quiet {
-        note(&format!("warning: {warning}"));
-    }
+    summary.warn(
+        "GeoJSON has the coordinates of the cloud, not longitude and latitude: the reference system of the scene is unknown. Other \
+                   programs will misplace it; give --crs EPSG:CODE where the balls are built",
+    );
 }
 
 /// Refuses an output in a folder that is not there.

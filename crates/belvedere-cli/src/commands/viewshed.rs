@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
-    warn_of_geojson(&arguments.output, &scene.cloud.frame.crs, global, &mut summary);
+    warn_of_geojson(&arguments.output, &scene.cloud.frame.crs, &mut summary);
     let north = arguments.looking.north.of_scene(&scene);
     let rows = who::rows(arguments, &scene.cloud, north.of_grid)?;
     if rows.iter().any(|row| row.limits.azimuth.is_some()) {

@@ -60,9 +60,8 @@ fn places_outside_the_cloud_have_an_answer_of_their_own_in_all_ways_of_asking() 
 fn without_json_warnings_go_to_standard_error() {
     let place = place();
     place.write("targets.csv", table("x,y,z", &[at(FAR, 0.0, 2.0).to_vec()]));
-    let run =
-        place.run("query house.laz --method tau --orient given --sun 180,60 --targets targets.csv -o out.csv --quiet");
-    assert_eq!((run.status, run.stdout.as_str()), (0, ""));
+    let run = place.run("query house.laz --method tau --orient given --sun 180,60 --targets targets.csv -o out.csv");
+    assert!(run.status == 0 && !run.stdout.contains("warning"), "{run:?}");
     assert!(run.stderr.starts_with("warning: 1 of 1 targets (100 %) are outside the cloud"), "{}", run.stderr);
 }
 

@@ -284,7 +284,9 @@ fn an_earlier_output_is_replaced_by_a_complete_one() {
 #[test]
 fn help_shows_the_options_of_a_command_before_those_of_all_commands() {
     let place = Workplace::new();
-    for (command, own) in [("shadow", "Sun:"), ("viewshed", "Observers (one of):"), ("sky-view", "Sky:")] {
+    for (command, own) in
+        [("shadow", "Sun:"), ("viewshed", "Observers (one of):"), ("sky-view", "Sky:"), ("balls", "Normals:")]
+    {
         for flag in ["--help", "-h"] {
             let help = place.run(&format!("{command} {flag}")).stdout;
             let place_of =
