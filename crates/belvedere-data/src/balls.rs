@@ -2,11 +2,14 @@
 
 use crate::{Error, Result};
 
-/// Value of [`MedialBalls::touch`] for a ball that never shrank.
+/// Value of [`MedialBalls::touch`] for a ball that is not bounded, or left out.
 pub const NO_TOUCH: u32 = u32::MAX;
 
 /// Value of [`MedialBalls::touch`] for a ball whose second contact is a pulse instead of a point.
 pub const PULSE_TOUCH: u32 = NO_TOUCH - 1;
+
+/// Value of [`MedialBalls::touch`] for a ball that neither a point nor a pulse bounds, but a limit of its radius.
+pub const LIMIT_TOUCH: u32 = NO_TOUCH - 2;
 
 /// Which side of the surface a ball lies on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,8 +22,9 @@ pub enum Side {
 
 /// Medial balls, one per row.
 ///
-/// A ball is tangent at its source point p and touches a second point q. One that met no second point kept its initial
-/// radius: its touch is [`NO_TOUCH`], it says nothing about the scene and is never used for visibility.
+/// A ball is tangent at its source point p and touches a second point q. One that met no second point is cut to a limit, because the
+/// surface at p blocks all the same ([`LIMIT_TOUCH`]). Where there is no limit, as in the paper's method, it keeps its initial radius: its touch is
+/// [`NO_TOUCH`], and it is not used for visibility.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MedialBalls {
     /// Centres, (B, 3), local metres.
@@ -29,9 +33,9 @@ pub struct MedialBalls {
     pub radii: Vec<f32>,
     /// Index of the point p each ball is tangent at, (B).
     pub source: Vec<u32>,
-    /// Index of the second point q each ball touches, [`PULSE_TOUCH`] where a pulse bounds it, or [`NO_TOUCH`], (B).
+    /// Index of the second point q each ball touches, [`PULSE_TOUCH`] where a pulse bounds it, [`LIMIT_TOUCH`] or [`NO_TOUCH`], (B).
     pub touch: Vec<u32>,
-    /// Separation angle ∠pcq in radians, (B); NaN for a ball that never shrank or that a pulse bounds.
+    /// Separation angle ∠pcq in radians, (B); NaN for a ball that no point bounds.
     pub separation_angles: Vec<f32>,
 }
 

@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let index = NeighborIndex::new(&cloud.positions, &Control::none())?;
         #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
         let method = ShrinkMethod::Tau { penetration: (0.05 * spacing) as f32 };
-        let params = ShrinkParams { method, initial_radius: 5.0, max_radius: 5.0 };
+        let params = ShrinkParams { method, initial_radius: 5.0, max_radius: 5.0, max_spacings: f32::INFINITY };
         let (balls, _) = shrink(&oriented, &index, Side::Interior, &params, &Control::none())?;
         let balls = balls.shrunk();
         let list: Vec<_> =

@@ -5,13 +5,17 @@ use super::seasons::{SeasonRadiation, add, group_count, mix};
 use super::strings::{PlaneIrradiation, plane_irradiation};
 use crate::roof_planes::RoofPlane;
 use crate::rows::{BLOCK_BITS, Obstacles, RowBlock, fold_blocks};
+use belvedere_core::query::MedialScene;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
+use belvedere_data::vector::{length, sub};
 use serde::Serialize;
 
 /// Height of panels above their roof, metres: that of usual rails, which balls of a rough roof do not reach.
 pub const PANEL_HEIGHT: f64 = 0.1;
+/// Cells of a plane that are tried for the place of its horizon.
+const MOST_TRIES: usize = 16;
 
 /// Energy of a plane over a period.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,9 +26,17 @@ pub struct RoofIrradiation {
     pub string_limited: Irradiation,
     /// What arrives in each group of the period, kWh/m²: 12 months, or the whole.
     pub groups: Vec<f64>,
+    /// Cells that count: those of the plane that see anything of the sky.
+    pub cell_count: usize,
 }
 
 impl RoofIrradiation {
+    /// Area of the cells of `plane` that count, m².
+    #[must_use]
+    pub fn panel_area(&self, plane: &RoofPlane) -> f64 {
+        self.cell_count as f64 * plane.cells.cell.powi(2)
+    }
+
     /// The greatest share lost by shading, that of strings, 0 to 1.
     #[must_use]
     pub fn greatest_loss(&self) -> f64 {
@@ -41,14 +53,16 @@ pub struct RoofsReport {
     pub min_loss_percent: f64,
     /// Share lost by shading where rows of panels are strings, percent.
     pub max_loss_percent: f64,
+    /// Area of the cells that this is about, m².
+    pub panel_area_m2: f64,
 }
 
 impl RoofsReport {
-    /// Sums over `planes`, each with its energy, by their area.
+    /// Sums over `planes`, each with its energy, by the area of their cells.
     #[must_use]
     pub fn new(planes: &[RoofPlane], energies: &[RoofIrradiation]) -> Self {
         let weighted = |value: &dyn Fn(&RoofIrradiation) -> f64| -> f64 {
-            planes.iter().zip(energies).map(|(plane, energy)| plane.area * value(energy)).sum()
+            planes.iter().zip(energies).map(|(plane, energy)| energy.panel_area(plane) * value(energy)).sum()
         };
         let unshaded = weighted(&|energy| energy.mean.unshaded).max(f64::MIN_POSITIVE);
         let energy = weighted(&|energy| energy.mean.total());
@@ -57,6 +71,7 @@ impl RoofsReport {
             energy_mwh: rounded(energy / 1000.0, 2),
             min_loss_percent: rounded(100.0 * (1.0 - energy / unshaded), 2),
             max_loss_percent: rounded(100.0 * (1.0 - limited / unshaded), 2),
+            panel_area_m2: rounded(weighted(&|_| 1.0), 1),
         }
     }
 }
@@ -65,6 +80,26 @@ impl RoofsReport {
 #[must_use]
 pub fn above_roof(place: [f64; 3], normal: [f64; 3]) -> [f32; 3] {
     crate::targets::to_f32([0, 1, 2].map(|i| place[i] + PANEL_HEIGHT * normal[i]))
+}
+
+/// Where the horizon of each of `planes` is measured: above the middle of the cell nearest to the middle of the plane that lies in no ball of
+/// `scene`, of the nearest 16; above the nearest cell where all do. With it whether it lies in none.
+#[must_use]
+pub fn horizon_places(planes: &[RoofPlane], scene: &MedialScene) -> Vec<([f32; 3], bool)> {
+    let of_plane = |plane: &RoofPlane| {
+        let distance = |place: &[f64; 3]| length(sub(*place, plane.middle));
+        let mut places: Vec<[f64; 3]> = plane.cells.middles().into_iter().map(|(place, _)| place).collect();
+        places.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let places: Vec<[f32; 3]> =
+            places.into_iter().take(MOST_TRIES).map(|place| above_roof(place, plane.normal)).collect();
+        let is_open = |place: &&[f32; 3]| scene.enclosure(place.map(f64::from)).ball_count == 0;
+        match (places.iter().find(is_open), places.first()) {
+            (Some(open), _) => (*open, true),
+            (None, Some(first)) => (*first, false),
+            (None, None) => (above_roof(plane.middle, plane.normal), false),
+        }
+    };
+    planes.iter().map(of_plane).collect()
 }
 
 /// The energy of each of `planes` over all of `seasons` among `obstacles`. Progress counts planes.
@@ -139,6 +174,7 @@ fn of_planes(
             mean: Irradiation::sum(&sum.mean),
             string_limited: Irradiation::sum(&sum.string_limited),
             groups: sum.mean.iter().map(Irradiation::total).collect(),
+            cell_count: sum.cell_count,
         })
         .collect())
 }

@@ -17,10 +17,13 @@ pub struct PlaneIrradiation {
     /// The same where a row of cells gets what all of its cells get at once: the most that a plant loses whose rows are strings without
     /// bypass diodes.
     pub string_limited: Vec<Irradiation>,
+    /// Cells that are counted: those that see anything of the sky.
+    pub cell_count: usize,
 }
 
 /// The energy of a plane with a unit `normal`, upward, whose cells are rows of `matrix` from `first` on: `strings`, (C), numbers the string
-/// of each, those of a string together. A plane without cells gets nothing.
+/// of each, those of a string together. Cells that see nothing at all lie inside an obstacle or under a roof, where no panel is put: they do not count.
+/// A plane without cells gets nothing.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where the matrix has fewer rows or other directions.
@@ -44,13 +47,15 @@ pub fn plane_irradiation(
     let mut sums = PlaneIrradiation {
         mean: vec![Irradiation::default(); group_count],
         string_limited: vec![Irradiation::default(); group_count],
+        cell_count: (first..first + strings.len()).filter(|&target| sees_sky(matrix, target)).count(),
     };
-    let share = 1.0 / strings.len().max(1) as f64;
+    let share = 1.0 / sums.cell_count.max(1) as f64;
     let mut groups = vec![Irradiation::default(); group_count];
     let mut cell = first;
     for string in strings.chunk_by(|a, b| a == b) {
-        let mut all = matrix.row(cell).to_vec();
-        for target in cell..cell + string.len() {
+        let mut all = vec![u64::MAX; matrix.row(cell).len()];
+        let open: Vec<usize> = (cell..cell + string.len()).filter(|&target| sees_sky(matrix, target)).collect();
+        for &target in &open {
             on_plane(radiation, normal, |direction| matrix.is_free(target, direction), &mut groups);
             add(&mut sums.mean, &groups, share);
             all.iter_mut().zip(matrix.row(target)).for_each(|(all, own)| *all &= own);
@@ -58,10 +63,14 @@ pub fn plane_irradiation(
         let is_free =
             |direction: usize| all.get(direction / WORD).is_some_and(|word| word >> (direction % WORD) & 1 == 1);
         on_plane(radiation, normal, is_free, &mut groups);
-        add(&mut sums.string_limited, &groups, share * string.len() as f64);
+        add(&mut sums.string_limited, &groups, share * open.len() as f64);
         cell += string.len();
     }
     Ok(sums)
+}
+
+fn sees_sky(matrix: &VisibilityMatrix, target: usize) -> bool {
+    matrix.row(target).iter().any(|&word| word != 0)
 }
 
 fn add(sums: &mut [Irradiation], groups: &[Irradiation], weight: f64) {

@@ -20,17 +20,40 @@ pub struct PlaneCells {
     pub along: [f64; 3],
     /// Unit vector from row to row, up the slope.
     pub up: [f64; 3],
-    /// Which cells hold points of the plane, or lie between some that do; row 0 lowest.
+    /// On which cells a panel can lie: their middle is among points of the plane, and nothing stands on them; row 0 lowest.
     pub filled: Raster<bool>,
 }
 
 impl PlaneCells {
-    /// The cells of a plane that hold some of `rows` among `points`, from its lowest and outermost points on.
-    pub(super) fn of(points: &[[f32; 3]], rows: &[u32], plane: &PlaneFit, cell: f64) -> Self {
+    /// The cells of a plane that hold some of `rows` among `points`, from its lowest and outermost points on, and of which
+    /// `is_usable`, given the middle of a cell, says yes.
+    pub(super) fn of(
+        points: &[[f32; 3]],
+        rows: &[u32],
+        plane: &PlaneFit,
+        cell: f64,
+        is_usable: impl Fn(&Self, [f64; 3]) -> bool,
+    ) -> Self {
         let [along, up] = axes(plane.normal);
         let (filled, [u, v], cell) = filled(&in_plane(points, rows, plane), cell, 0.0);
         let corner = [0, 1, 2].map(|i| plane.middle[i] + u * along[i] + v * up[i]);
-        Self { cell, corner, along, up, filled }
+        let mut cells = Self { cell, corner, along, up, filled };
+        let width = cells.filled.width();
+        let keep: Vec<bool> = (0..cells.filled.values().len())
+            .map(|i| cells.filled.values()[i] && is_usable(&cells, cells.middle(i % width, i / width)))
+            .collect();
+        cells.filled.values_mut().copy_from_slice(&keep);
+        cells
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.filled.values().iter().filter(|filled| **filled).count()
+    }
+
+    fn middle(&self, column: usize, row: usize) -> [f64; 3] {
+        self.place([column as f64 + 0.5, row as f64 + 0.5])
     }
 
     /// Middles of the filled cells, local metres, row by row, and the row of each.
@@ -38,7 +61,7 @@ impl PlaneCells {
     pub fn middles(&self) -> Vec<([f64; 3], usize)> {
         let width = self.filled.width();
         let filled = self.filled.values().iter().enumerate().filter(|(_, filled)| **filled);
-        filled.map(|(i, _)| (self.place([(i % width) as f64 + 0.5, (i / width) as f64 + 0.5]), i / width)).collect()
+        filled.map(|(i, _)| (self.middle(i % width, i / width), i / width)).collect()
     }
 
     /// Local metres of a place given in cells from the corner, along the rows and up.

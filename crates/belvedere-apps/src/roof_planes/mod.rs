@@ -4,6 +4,7 @@ mod cells;
 mod fit;
 mod grow;
 mod points;
+mod room;
 
 pub use cells::PlaneCells;
 pub use points::{RoofsFrom, roof_points};
@@ -12,6 +13,7 @@ use belvedere_core::neighbors::NeighborIndex;
 use belvedere_core::normals::estimate::{Neighborhood, estimate};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
+use room::Room;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// ASPRS class of buildings.
@@ -105,7 +107,7 @@ pub struct RoofPlane {
     pub roughness: f64,
     /// Its cells.
     pub cells: PlaneCells,
-    /// Area in the plane, m².
+    /// Area in the plane, m², chimneys and the like on it included.
     pub area: f64,
 }
 
@@ -116,6 +118,12 @@ impl RoofPlane {
         self.normal[2].clamp(-1.0, 1.0).acos()
     }
 
+    /// Area of its cells, m²: that of the panels that it has room for.
+    #[must_use]
+    pub fn panel_area(&self) -> f64 {
+        self.cells.count() as f64 * self.cells.cell.powi(2)
+    }
+
     /// Azimuth that it faces, clockwise from grid north, radians, 0 to 2π; means little where it is level.
     #[must_use]
     pub fn azimuth(&self) -> f64 {
@@ -123,7 +131,8 @@ impl RoofPlane {
     }
 }
 
-/// The plane parts of `points`, (N, 3) local metres, those of roofs being given; largest first. Points of no plane are left out.
+/// The plane parts of `points`, (N, 3) local metres, those of roofs being given; largest first. Points of no plane are left out, and so
+/// are planes without room for a panel.
 ///
 /// From points whose surroundings are flattest on, a plane takes in neighbours that lie near it and look the same way, and is fitted anew
 /// as it grows. Its area is that of the cells that hold points, less what cells at its rim reach over it.
@@ -143,13 +152,17 @@ pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams, control: &Cont
         let is_flat_enough = fit.normal[2].clamp(-1.0, 1.0).acos() <= params.most_tilt;
         is_flat_enough && cells::area(points, rows, fit, params.cell) >= params.least_area
     };
-    let mut planes: Vec<RoofPlane> = grow::regions(points, &index, &normals, params, is_roof, control)?
-        .into_iter()
-        .map(|(rows, fit)| {
-            let cells = PlaneCells::of(points, &rows, &fit, params.cell);
+    let regions = grow::regions(points, &index, &normals, params, is_roof, control)?;
+    let room = Room::new(points, &index, &regions, params);
+    let mut planes: Vec<RoofPlane> = (0..)
+        .zip(regions)
+        .map(|(number, (rows, fit))| {
+            let fits = |cells: &PlaneCells, middle| room.fits(number, cells, fit.normal, middle);
+            let cells = PlaneCells::of(points, &rows, &fit, params.cell, fits);
             let area = cells::area(points, &rows, &fit, params.cell);
             RoofPlane { points: rows, middle: fit.middle, normal: fit.normal, roughness: fit.roughness, cells, area }
         })
+        .filter(|plane| plane.cells.count() > 0)
         .collect();
     // of equal areas the one with the lower first point, so that the order is settled
     planes.sort_by(|a, b| b.area.total_cmp(&a.area).then_with(|| a.points.first().cmp(&b.points.first())));

@@ -68,6 +68,18 @@ pub struct Viewshed {
 pub const OBSERVER_HEIGHT: f64 = 1.7;
 /// Default height of targets above the ground, metres.
 pub const TARGET_HEIGHT: f64 = 0.0;
+/// Height above the ground at which targets that stand on it are tested, metres. The height of the ground is known to a few centimetres, and
+/// balls bulge by as much between its points: over tens of metres a line of sight at the ground itself would run in and out of them. On simulated towns 0.05 halves
+/// the false-blocked cells (6.9 to 3.7 %); 0.1 gains no more and sees more of what is hidden.
+pub const GROUND_TOLERANCE: f64 = 0.05;
+
+/// The height above the ground at which a target of `height` metres is tested: no lower than [`GROUND_TOLERANCE`], unless it lies below the
+/// ground.
+#[must_use]
+pub fn tested_height(height: f64) -> f64 {
+    if height >= 0.0 { height.max(GROUND_TOLERANCE) } else { height }
+}
+
 /// Default side of a cell, metres: what points of usual airborne surveys (0.3 to 0.5 m apart) can tell.
 pub const CELL: f64 = 0.5;
 
@@ -290,7 +302,8 @@ fn add(result: &mut Viewshed, band: Band, masks: Masks) {
 
 /// How high above the ground a thing must reach in each cell for its top to be seen by one of the observers, metres: 0 where the
 /// ground is seen, +∞ where nothing up to `ceiling` metres is, NaN where no ground is known or no observer is turned to the
-/// cell. At most 2 mm above the exact figure for the balls; pulses are not asked. Limits of elevation are asked of the ground.
+/// cell. At most 2 mm above the exact figure for the balls, and 0 up to [`GROUND_TOLERANCE`]; pulses are not used. Limits of elevation are
+/// those of the ground.
 ///
 /// # Errors
 /// As [`viewshed`], and for a ceiling below zero.
@@ -321,6 +334,7 @@ pub fn least_visible_heights(
             // another observer sees it lower already, or nobody looked yet
             let bound = if height.is_finite() { f64::from(*height) } else { ceiling };
             let seen = scene.least_visible_height(observer.eye, foot, bound, earth);
+            let seen = seen.map(|height| if height > GROUND_TOLERANCE { height } else { 0.0 });
             #[expect(clippy::cast_possible_truncation, reason = "metres above the ground")]
             let seen = seen.map_or(f32::INFINITY, |seen| seen as f32);
             if !(*height <= seen) {

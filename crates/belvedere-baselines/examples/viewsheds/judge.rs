@@ -4,7 +4,7 @@
 mod flown;
 
 use belvedere::Bounds;
-use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, cell_targets, viewshed};
+use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, cell_targets, tested_height, viewshed};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
 use belvedere::medial::MedialBalls;
@@ -95,7 +95,7 @@ impl Town {
         let scene = MedialScene::new(&self.balls, &BlockRule::carved())?;
         let (needles, _) = Needles::of_cloud(&self.cloud, &self.scanner, &NeedleParams::default(), &Control::none())?;
         let scene = scene.with_pulses(Proof::new(needles, &ProofParams::default())?);
-        let targets = cell_targets(&self.ground, height);
+        let targets = cell_targets(&self.ground, tested_height(height));
         let origin = self.cloud.frame.origin;
         let mut score = Score::default();
         for &eye in &self.eyes {

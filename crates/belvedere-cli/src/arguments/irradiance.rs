@@ -33,7 +33,7 @@ pub(crate) struct Irradiance {
     /// Radiation from obstacles, instead of the sky that they hide [default: dark]
     #[arg(long, value_enum, value_name = "HOW", help_heading = "Radiation")]
     pub(crate) surroundings: Option<SurroundingsChoice>,
-    /// Side of the cells that group the sun directions, in degrees, 0.5 to 36 [default: 1]
+    /// Side of the cells that group the sun directions, in degrees, 0.5 to 36 [default: 3]
     #[arg(long = "sun-cell-deg", value_name = "DEG", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Radiation")]
     pub(crate) sun_cell: Option<f64>,
     #[command(flatten)]

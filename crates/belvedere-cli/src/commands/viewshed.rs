@@ -15,7 +15,7 @@ use belvedere::apps::eyes::{EyeFault, EyesReport, fault_of};
 use belvedere::apps::targets::{CellParams, CoveredCells, Targets};
 use belvedere::apps::viewshed::{
     Masks, OBSERVER_HEIGHT, Observer, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, box_within_reach, cell_for,
-    least_visible_heights, viewshed,
+    least_visible_heights, tested_height, viewshed,
 };
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::query::{Answer, AnswerCounts, MedialScene, UnprovenAs};
@@ -69,7 +69,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     let params = ViewshedParams::default().with_earth(earth).with_unproven(unproven).with_masks(masks);
     let is_of_points = |path: &Path| OF_POINTS.contains(&super::extension(path).as_str());
     if arguments.masks.is_some() || arguments.output.iter().any(|path| !is_of_points(path)) {
-        let cells = CellParams::default().with_height(target_height).with_covered(CoveredCells::Kept);
+        let cells = CellParams::default().with_height(tested_height(target_height)).with_covered(CoveredCells::Kept);
         let seen = stages.run("testing cells", observers.len(), |control| {
             let (targets, _) = Targets::of_cells(&cloud, ground.clone(), &cells, control)?;
             viewshed(&blockers, &observers, &targets.positions, &params, control)

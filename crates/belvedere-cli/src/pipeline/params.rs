@@ -80,7 +80,9 @@ impl Shrinking {
                 if self.first_angle.is_some() || self.next_angle.is_some() {
                     return Err(angles_only());
                 }
-                Ok(BallParams::CarvedIfPossible(self.carved()?, self.shrunk(MethodChoice::Tau)?))
+                let mut shrunk = self.shrunk(MethodChoice::Tau)?;
+                shrunk.max_spacings = ShrinkParams::tau_by_spacing().max_spacings;
+                Ok(BallParams::CarvedIfPossible(self.carved()?, shrunk))
             }
             (Some(MethodChoice::Carved), _) => Ok(BallParams::Carved(self.carved()?)),
             (method, default) => {

@@ -15,11 +15,20 @@ pub struct KindBounds {
     /// Least radius at any other point, to which carved balls are grown again: a wall is at least this thick. Default
     /// 0.15.
     pub least_radius: f32,
+    /// Most radius of a ball that neither a point nor a pulse bounds: one of the ground, or behind a wall that nothing was seen
+    /// behind. Default 0.5, as thick as balls from points alone are at most.
+    pub unbounded_radius: f32,
 }
 
 impl Default for KindBounds {
     fn default() -> Self {
-        Self { vegetation_radius: 1.0, later_return_radius: 0.3, ground_radius: 2.0, least_radius: 0.15 }
+        Self {
+            vegetation_radius: 1.0,
+            later_return_radius: 0.3,
+            ground_radius: 2.0,
+            least_radius: 0.15,
+            unbounded_radius: 0.5,
+        }
     }
 }
 
@@ -56,6 +65,8 @@ pub struct RadiusBounds {
     pub least: Vec<f32>,
     /// To which a ball is cut, (N); +∞ for no limit. It wins over the least.
     pub most: Vec<f32>,
+    /// To which a ball is cut that neither a point nor a pulse bounds, metres.
+    pub unbounded: f32,
 }
 
 impl RadiusBounds {
@@ -73,7 +84,7 @@ impl RadiusBounds {
             Kind::Other => (params.least_radius, f32::INFINITY),
         };
         let (least, most) = kinds.iter().enumerate().map(bounds).unzip();
-        Self { least, most }
+        Self { least, most, unbounded: params.unbounded_radius }
     }
 
     /// Cuts the most radius of point `row` down to `most`.

@@ -4,7 +4,7 @@ use super::bounds::RadiusBounds;
 use crate::neighbors::Tangent;
 use crate::normals::OrientedCloud;
 use crate::pulses::Needles;
-use belvedere_data::balls::{MedialBalls, NO_TOUCH, PULSE_TOUCH};
+use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
@@ -31,8 +31,8 @@ pub struct CarveReport {
 /// `bounds`. Row i of `balls` must be the interior ball of point i of `oriented`, as [`super::shrink`] makes it; so must
 /// row i of the bounds.
 ///
-/// A ball that had met no point but meets a pulse counts as shrunk from here on, with [`PULSE_TOUCH`]; so does one that is
-/// limited. The result depends on neither order nor number of threads.
+/// A ball that had met no point but meets a pulse gets [`PULSE_TOUCH`]. One that meets neither gets [`LIMIT_TOUCH`] and at most
+/// [`RadiusBounds::unbounded`]: its surface blocks all the same. The result depends on neither order nor number of threads.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where they differ in length, [`Error::Cancelled`].
@@ -82,17 +82,24 @@ pub fn carve(
             report.carved += 1;
             radius = carved;
         }
-        let (least, most) = (bounds.least[row], bounds.most[row]);
+        let (least, mut most) = (bounds.least[row], bounds.most[row]);
+        let is_unbounded = carved.is_none() && balls.touch[row] == NO_TOUCH;
+        if is_unbounded && most.is_infinite() {
+            most = bounds.unbounded;
+        }
         report.limited += usize::from(radius > most);
         report.grown += usize::from(radius < least);
         radius = radius.max(least).min(most);
         if radius < balls.radii[row] || carved.is_some() {
             balls.radii[row] = radius;
             balls.centers[row] = std::array::from_fn(|i| positions[row][i] - normals[row][i] * radius);
-            if carved.is_some() || balls.touch[row] == NO_TOUCH {
+            if carved.is_some() {
                 balls.touch[row] = PULSE_TOUCH;
                 balls.separation_angles[row] = f32::NAN;
             }
+        }
+        if is_unbounded {
+            balls.touch[row] = LIMIT_TOUCH;
         }
     }
     Ok(report)

@@ -139,6 +139,7 @@ impl CarvedParams {
             method: ShrinkMethod::Tau { penetration: self.penetration },
             initial_radius: self.initial_radius,
             max_radius: self.max_radius,
+            max_spacings: f32::INFINITY,
         }
     }
 }
@@ -301,7 +302,7 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
             report.relief_fills = relief.fill(&mut balls, needles, control)?;
         }
         if let Some(slender) = &slender {
-            report.slender_fills = slender.fill(&mut balls, index, needles, control)?;
+            report.slender_fills = slender.fill(&mut balls, needles, control)?;
         }
         Ok(())
     })?;

@@ -18,7 +18,7 @@ pub mod thin_surfaces;
 pub mod vegetation;
 pub mod vegetation_balls;
 
-pub use belvedere_data::balls::{MedialBalls, NO_TOUCH, PULSE_TOUCH, Side};
+pub use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH, Side};
 pub use bounds::{Kind, KindBounds, RadiusBounds, kinds};
 pub use carve::{CarveReport, carve};
 pub use carved::{CarvedBalls, CarvedInput, CarvedParams, CarvedReport, Rule, carved_balls};

@@ -1,8 +1,8 @@
 //! The shrinking ball: from oriented points to medial balls.
 
-use crate::neighbors::{NeighborIndex, Tangent};
+use crate::neighbors::{Neighbor, NeighborIndex, Tangent};
 use crate::normals::OrientedCloud;
-use belvedere_data::balls::{MedialBalls, NO_TOUCH, Side};
+use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH, Side};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Result};
@@ -38,8 +38,14 @@ pub struct ShrinkParams {
     /// Radius every ball starts with, metres, up to 100 000.
     pub initial_radius: f32,
     /// Most radius a ball is left with, metres, above 0; +∞ for no limit. A larger ball gives way to the one of this radius
-    /// within it that is tangent at the same point, and keeps its touch and separation angle.
+    /// within it that is tangent at the same point, and keeps its touch and separation angle. An interior ball of
+    /// [`ShrinkMethod::Tau`] that met no point gets this radius too: nothing lies behind its surface, as behind the outer walls of a scanned room,
+    /// and that surface blocks.
     pub max_radius: f32,
+    /// Most radius of interior balls of [`ShrinkMethod::Tau`] in point spacings at their points, above 0; +∞ for no such limit. Where points
+    /// are dense, balls need not be thick to leave no gap, and thick ones stand out of thin things. The penetration is then at most a
+    /// quarter of the limit.
+    pub max_spacings: f32,
 }
 
 impl ShrinkParams {
@@ -53,6 +59,7 @@ impl ShrinkParams {
             },
             initial_radius: 200.0,
             max_radius: f32::INFINITY,
+            max_spacings: f32::INFINITY,
         }
     }
 
@@ -65,7 +72,15 @@ impl ShrinkParams {
     /// 0.1 to 2.4 %. Clouds much sparser than that want about twice their point spacing.
     #[must_use]
     pub fn tau() -> Self {
-        Self { method: ShrinkMethod::Tau { penetration: 0.05 }, initial_radius: 30.0, max_radius: 0.5 }
+        let method = ShrinkMethod::Tau { penetration: 0.05 };
+        Self { method, initial_radius: 30.0, max_radius: 0.5, max_spacings: f32::INFINITY }
+    }
+
+    /// The same for clouds that no pulse can carve. Scans from the ground are such, whose points lie millimetres apart near the scanner and decimetres far from it: balls of at most
+    /// three spacings, which overlap also where scan lines are ten times farther apart than the points on them.
+    #[must_use]
+    pub fn tau_by_spacing() -> Self {
+        Self { max_spacings: 3.0, ..Self::tau() }
     }
 
     /// Checks what [`shrink`] checks, before a cloud is there.
@@ -81,6 +96,9 @@ impl ShrinkParams {
         }
         if !(self.max_radius > 0.0) {
             return invalid("greatest radius", self.max_radius.into(), "above 0 metres");
+        }
+        if !(self.max_spacings > 0.0) {
+            return invalid("greatest radius in point spacings", self.max_spacings.into(), "above 0");
         }
         match self.method {
             ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
@@ -106,8 +124,11 @@ pub struct ShrinkReport {
     /// Balls that touch a second point.
     #[serde(rename = "balls_shrunk")]
     pub shrunk: usize,
-    /// Balls that kept the initial radius; never used for visibility.
-    #[serde(rename = "balls_never_shrunk_and_unused")]
+    /// Balls that no point bounds and that were cut to the limit of radii.
+    #[serde(rename = "balls_of_maximum_radius")]
+    pub limited: usize,
+    /// Balls that no point bounds and that kept the initial radius. Visibility does not use them unless pulses bound them.
+    #[serde(rename = "balls_without_bound")]
     pub never_shrunk: usize,
     /// Points without a normal, which get no ball: radius 0, no touch.
     #[serde(rename = "points_without_normal")]
@@ -145,25 +166,36 @@ pub fn shrink(
         return Err(Error::LengthMismatch { what: "neighbour index", expected: count, found: index.len() });
     }
     let order = index.tree_order();
-    let mut in_tree_order = vec![Ball { center: [0.0; 3], radius: 0.0, touch: NO_TOUCH }; count];
+    let limits_radii = side == Side::Interior && matches!(params.method, ShrinkMethod::Tau { .. });
+    let mut in_tree_order = vec![Ball::NONE; count];
     in_tree_order.par_chunks_mut(CHUNK).zip(order.par_chunks(CHUNK)).try_for_each(|(balls, points)| {
         control.check()?;
+        let mut near = Vec::new();
         for (ball, &i) in balls.iter_mut().zip(points) {
             let (p, n) = (positions[i as usize], normals[i as usize]);
             let inward = match side {
                 Side::Interior => n.map(|v| -v),
                 Side::Exterior => n,
             };
+            let mut limit = params.max_radius;
+            if limits_radii && params.max_spacings.is_finite() {
+                limit = limit.min(params.max_spacings * spacing_at(index, p, &mut near));
+            }
             *ball = match params.method {
-                _ if n == [0.0; 3] => Ball { center: p, radius: 0.0, touch: NO_TOUCH },
+                _ if n == [0.0; 3] => Ball { center: p, ..Ball::NONE },
                 ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
                     let cosines = [first_separation_angle, next_separation_angle].map(least_cosine);
                     shrink_by_angles(positions, index, p, inward, params.initial_radius, cosines)
+                }
+                ShrinkMethod::Tau { penetration } if limit < params.max_radius => {
+                    let penetration = penetration.min(LIMITED_PENETRATION * limit);
+                    shrink_by_penetration(index, p, inward, params.initial_radius.min(limit), penetration)
                 }
                 ShrinkMethod::Tau { penetration } => {
                     shrink_by_penetration(index, p, inward, params.initial_radius, penetration)
                 }
             };
+            ball.limit = limit;
         }
         control.advance(points.len());
         Ok(())
@@ -177,6 +209,11 @@ pub fn shrink(
         separation_angles: vec![f32::NAN; count],
     };
     let mut report = ShrinkReport::default();
+    let cut = |balls: &mut MedialBalls, i: usize, radius: f32| {
+        let (p, share) = (positions[i], radius / balls.radii[i]);
+        balls.centers[i] = std::array::from_fn(|axis| p[axis] + (balls.centers[i][axis] - p[axis]) * share);
+        balls.radii[i] = radius;
+    };
     for (&i, ball) in order.iter().zip(in_tree_order) {
         let i = i as usize;
         balls.centers[i] = ball.center;
@@ -186,11 +223,13 @@ pub fn shrink(
             report.shrunk += 1;
             let cosine = separation_cosine(positions[i], positions[ball.touch as usize], ball.center);
             balls.separation_angles[i] = cosine.acos();
-            if ball.radius > params.max_radius {
-                let (p, share) = (positions[i], params.max_radius / ball.radius);
-                balls.centers[i] = std::array::from_fn(|axis| p[axis] + (ball.center[axis] - p[axis]) * share);
-                balls.radii[i] = params.max_radius;
+            if ball.radius > ball.limit {
+                cut(&mut balls, i, ball.limit);
             }
+        } else if ball.radius > 0.0 && limits_radii && ball.limit < params.initial_radius {
+            report.limited += 1;
+            balls.touch[i] = LIMIT_TOUCH;
+            cut(&mut balls, i, ball.limit);
         } else if ball.radius > 0.0 {
             report.never_shrunk += 1;
         } else {
@@ -205,6 +244,24 @@ struct Ball {
     center: [f32; 3],
     radius: f32,
     touch: u32,
+    /// Most radius that it is left with.
+    limit: f32,
+}
+
+impl Ball {
+    const NONE: Self = Self { center: [0.0; 3], radius: 0.0, touch: NO_TOUCH, limit: f32::INFINITY };
+}
+
+/// Share of the limit of a radius that penetration is at most, where spacing limits it.
+const LIMITED_PENETRATION: f32 = 0.25;
+/// Neighbours that tell the spacing of points: enough to reach from one scan line to the next.
+const SPACING_NEIGHBORS: usize = 12;
+
+/// Distance between points at `p`, metres, if those around it lay in squares.
+fn spacing_at(index: &NeighborIndex, p: [f32; 3], near: &mut Vec<Neighbor>) -> f32 {
+    index.k_nearest(p, SPACING_NEIGHBORS + 1, near);
+    let farthest = near.last().map_or(f32::INFINITY, |found| found.distance_squared.sqrt());
+    farthest / (SPACING_NEIGHBORS as f32 / std::f32::consts::PI).sqrt()
 }
 
 /// Cosine of ∠pcq, within −1 to 1.
@@ -232,7 +289,7 @@ fn shrink_by_angles(
     [first_cosine, next_cosine]: [f64; 2],
 ) -> Ball {
     let center_of = |radius: f32| std::array::from_fn(|i| p[i] + inward[i] * radius);
-    let mut ball = Ball { center: center_of(initial_radius), radius: initial_radius, touch: NO_TOUCH };
+    let mut ball = Ball { center: center_of(initial_radius), radius: initial_radius, ..Ball::NONE };
     for shrinks in 0..MOST_SHRINKS {
         let inside = ball.radius - CONVERGED;
         let Some(nearest) = index.nearest_within(ball.center, inside * inside) else { break };
@@ -252,7 +309,7 @@ fn shrink_by_angles(
         if too_small {
             break;
         }
-        ball = Ball { center, radius, touch: nearest.index };
+        ball = Ball { center, radius, touch: nearest.index, ..ball };
     }
     ball
 }
@@ -267,8 +324,8 @@ fn shrink_by_penetration(
     let tangent = Tangent { point: p, inward, margin: penetration };
     match index.smallest_tangent_ball(&tangent, initial_radius - penetration) {
         Some((empty_radius, touch)) => {
-            Ball { center: tangent.center(empty_radius), radius: empty_radius + penetration, touch }
+            Ball { center: tangent.center(empty_radius), radius: empty_radius + penetration, touch, ..Ball::NONE }
         }
-        None => Ball { center: tangent.center(initial_radius - penetration), radius: initial_radius, touch: NO_TOUCH },
+        None => Ball { center: tangent.center(initial_radius - penetration), radius: initial_radius, ..Ball::NONE },
     }
 }

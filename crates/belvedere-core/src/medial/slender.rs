@@ -11,6 +11,7 @@ use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Attributes, Result};
 use rayon::prelude::*;
+use std::cmp::Ordering;
 use std::f32::consts::FRAC_1_SQRT_2;
 
 /// How slender things are told and represented.
@@ -124,22 +125,43 @@ impl<'a> Slender<'a> {
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-    pub(super) fn fill(
-        &self,
-        balls: &mut MedialBalls,
-        index: &NeighborIndex,
-        needles: &Needles,
-        control: &Control<'_>,
-    ) -> Result<usize> {
+    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &Needles, control: &Control<'_>) -> Result<usize> {
+        let rows = self.standing_places();
+        let places: Vec<[f32; 3]> = rows.iter().map(|&row| self.positions[row]).collect();
+        let index = NeighborIndex::new(&places, control)?;
         let stop = Stop::new(control);
-        let fills = |row: usize| self.fills(row, index, needles).into_iter().map(move |ball| (row, ball));
-        let rows = (0..self.heights.len()).into_par_iter().with_min_len(CHUNK);
-        let found: Vec<_> = rows.filter(|&row| !stop.is_set() && self.stands(row)).flat_map_iter(fills).collect();
+        let place = |number: usize| Place { position: places[number], height: self.heights[rows[number]] };
+        let fills = |number: usize| {
+            let mut near = Vec::new();
+            index.within_radius(places[number], self.params.reach, |found| near.push(place(found.index as usize)));
+            near.retain(|other| other.position != places[number]);
+            self.fills(&place(number), &near, needles).into_iter().map(move |ball| (number, ball))
+        };
+        let numbers = (0..rows.len()).into_par_iter().with_min_len(CHUNK);
+        let found: Vec<_> = numbers.filter(|_| !stop.is_set()).flat_map_iter(fills).collect();
         stop.check()?;
-        for &(row, (center, radius)) in &found {
-            balls.push(row, center, radius, PULSE_TOUCH);
+        for &(number, (center, radius)) in &found {
+            balls.push(rows[number], center, radius, PULSE_TOUCH);
         }
         Ok(found.len())
+    }
+
+    /// Points of what stands, one in each cell of half the spacing of balls, whatever the order of the points: dense clouds have thousands
+    /// within reach of each other, and balls closer than that fill nothing more.
+    fn standing_places(&self) -> Vec<usize> {
+        let side = self.params.spacing / 2.0;
+        #[expect(clippy::cast_possible_truncation, reason = "cells of half a decimetre over any cloud; `as` saturates")]
+        let cell = |row: usize| self.positions[row].map(|v| (v / side).floor() as i32);
+        let mut rows: Vec<usize> = (0..self.heights.len()).filter(|&row| self.stands(row)).collect();
+        let first = |a: usize, b: usize| {
+            let by_axis = self.positions[a].iter().zip(&self.positions[b]).map(|(a, b)| a.total_cmp(b));
+            by_axis.fold(Ordering::Equal, Ordering::then)
+        };
+        rows.par_sort_unstable_by(|&a, &b| cell(a).cmp(&cell(b)).then(first(a, b)).then(a.cmp(&b)));
+        rows.dedup_by_key(|row| cell(*row));
+        // as the points were, so that balls of neighbours stay together
+        rows.sort_unstable();
+        rows
     }
 
     /// Whether point `row` is part of what [`Slender::fill`] fills.
@@ -147,29 +169,35 @@ impl<'a> Slender<'a> {
         self.heights[row] <= self.params.standing_height
     }
 
-    /// The balls that fill at point `row` and between it and points next to it.
-    fn fills(&self, row: usize, index: &NeighborIndex, needles: &Needles) -> Vec<([f32; 3], f32)> {
-        let p = self.positions[row];
-        let mut near: Vec<usize> = Vec::new();
-        index.within_radius(p, self.params.reach, |found| near.push(found.index as usize));
-        near.retain(|&other| other != row && self.stands(other));
+    /// The balls that fill at a place and between it and those next to it.
+    fn fills(&self, place: &Place, near: &[Place], needles: &Needles) -> Vec<([f32; 3], f32)> {
+        let p = place.position;
         let apart = |a: [f32; 3], b: [f32; 3]| (a[0] - b[0]).hypot(a[1] - b[1]);
-        let place = |other: &usize| self.positions[*other];
-        let top = near.iter().map(place).filter(|q| apart(p, *q) < TOP_REACH_M).fold(p[2], |top, q| top.max(q[2]));
-        let ground = p[2] - self.heights[row];
+        let beside = near.iter().map(|other| other.position).filter(|q| apart(p, *q) < TOP_REACH_M);
+        let top = beside.fold(p[2], |top, q| top.max(q[2]));
+        let ground = p[2] - place.height;
         let chain = Chain { radius: self.params.standing_radius, spacing: self.params.spacing };
         let mut balls: Vec<_> = chain.below([p[0], p[1], top], ground, needles).collect();
-        for other in &near {
-            let q = place(other);
+        for (number, other) in near.iter().enumerate() {
+            let q = other.position;
             let middle = [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, p[2].max(q[2])];
             let gap = apart(p, q);
             // one of the two makes the balls between them, whatever the order of the points
             let is_first = p.iter().zip(&q).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).is_some_and(|o| o.is_lt());
-            let has_third = || near.iter().any(|third| third != other && apart(place(third), middle) < gap / 2.0);
+            let has_third = || {
+                let mut others = near.iter().enumerate().filter(|(third, _)| *third != number);
+                others.any(|(_, third)| apart(third.position, middle) < gap / 2.0)
+            };
             if is_first && gap > self.params.spacing && !has_third() {
-                balls.extend(chain.below(middle, ground.min(q[2] - self.heights[*other]), needles));
+                balls.extend(chain.below(middle, ground.min(q[2] - other.height), needles));
             }
         }
         balls
     }
+}
+
+/// A point of something that stands, and its height above the ground.
+struct Place {
+    position: [f32; 3],
+    height: f32,
 }

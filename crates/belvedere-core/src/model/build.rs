@@ -1,5 +1,6 @@
 //! From a cloud to a scene model.
 
+use super::blocked_pulses::blocked_pulses;
 use super::params::{BallParams, ModelParams};
 use super::prepare::{OrientedSurvey, prepare};
 use super::report::{BallsReport, BuildReport};
@@ -8,6 +9,7 @@ use crate::medial::{
     CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, carved_balls, shrink, vegetation_of_classes,
     vegetation_of_transmission,
 };
+use crate::query::{BallTree, BlockRule};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Frame, PointCloud, Result};
 use std::borrow::Cow;
@@ -89,8 +91,16 @@ fn of_survey(
         ("method".to_owned(), settled.name().to_owned()),
         ("parameters".to_owned(), format!("{settled:?}")),
     ]);
+    let mut tree = None;
+    if let (BallParams::Carved(_), Some(input), Some(pulses)) = (&settled, &survey.carving, &mut report.pulses) {
+        let own = control.stage("indexing balls", balls.len(), || BallTree::new(&balls, &BlockRule::carved()))?;
+        let needles = &input.needles;
+        pulses.blocked =
+            Some(control.stage("checking pulses", needles.len(), || blocked_pulses(&own, needles, control))?);
+        tree = Some(own);
+    }
     let parts = ModelParts { frame, bounds: survey.bounds, balls, transmission, pulses: survey.pulses(), provenance };
-    Ok((SceneModel { parts, vegetation, normals: None }, report))
+    Ok((SceneModel { parts, vegetation, normals: None, tree }, report))
 }
 
 /// How balls were made, as a saved model says it.

@@ -6,6 +6,7 @@
 //!
 //! The stages are public functions of the modules below; [`OrientedSurvey::prepare`] stops before the balls are made.
 
+mod blocked_pulses;
 mod build;
 mod params;
 mod prepare;
@@ -15,10 +16,11 @@ mod report;
 pub use belvedere_data::model::ModelParts;
 pub use params::{BallParams, ModelParams, OrientBy};
 pub use prepare::OrientedSurvey;
-pub use report::{BallsReport, BuildReport, NormalsReport, PulsesReport};
+pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesReport};
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
 use crate::pulses::NeedleColumns;
+use crate::query::BallTree;
 use belvedere_data::{Bounds, Error, Frame, Result};
 
 /// A scene that answers what is visible: balls that block lines of sight, and the pulses that prove others free.
@@ -32,6 +34,8 @@ pub struct SceneModel {
     vegetation: Vec<bool>,
     /// Outward unit normals of the points, (N, 3); zero where a point has none.
     normals: Option<Vec<[f32; 3]>>,
+    /// The balls in a tree, where something has needed them so already.
+    tree: Option<BallTree>,
 }
 
 impl SceneModel {
@@ -50,7 +54,7 @@ impl SceneModel {
             });
         }
         let vegetation = vegetation_of_transmission(&parts.transmission);
-        Ok(Self { parts, vegetation, normals: None })
+        Ok(Self { parts, vegetation, normals: None, tree: None })
     }
 
     /// Everything that is saved of a model: what a ball file holds.

@@ -81,7 +81,7 @@ pub enum BallParams {
 
 impl Default for BallParams {
     fn default() -> Self {
-        Self::CarvedIfPossible(CarvedParams::default(), ShrinkParams::tau())
+        Self::CarvedIfPossible(CarvedParams::default(), ShrinkParams::tau_by_spacing())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::SceneModel;
 use crate::medial::without_vegetation;
-use crate::query::{BlockRule, Coverage, MedialScene, Proof, ProofParams, UnprovenAs};
+use crate::query::{BallTree, BlockRule, Coverage, MedialScene, Proof, ProofParams, UnprovenAs};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 
@@ -27,11 +27,14 @@ impl SceneModel {
     /// ([`SceneModel::coverage`]).
     ///
     /// # Errors
-    /// Those of [`MedialScene::new`] and [`Proof::from_columns`]; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    /// Those of [`BallTree::new`] and [`Proof::from_columns`]; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub fn scene(&self, rule: &BlockRule, unproven: UnprovenAs, control: &Control<'_>) -> Result<MedialScene> {
         let balls = self.balls();
-        let scene = control.stage("indexing balls", balls.len(), || MedialScene::new(balls, rule))?;
-        let scene = scene.with_coverage(self.coverage());
+        let tree = match &self.tree {
+            Some(tree) => tree.with_rule(rule)?,
+            None => control.stage("indexing balls", balls.len(), || BallTree::new(balls, rule))?,
+        };
+        let scene = MedialScene::of_tree(tree).with_coverage(self.coverage());
         let Some(pulses) = self.pulses().filter(|_| unproven != UnprovenAs::Visible) else { return Ok(scene) };
         Ok(scene.with_pulses(Proof::from_columns(pulses.clone(), &ProofParams::default())?))
     }

@@ -35,9 +35,24 @@ pub struct PulsesReport {
     /// Why the crowns of trees could not be measured, if they could not: what is missing to tell pulses apart.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crowns_not_measured: Option<String>,
+    /// Pulses whose way the finished balls block, of those used: what is built against what was measured. Left out where none were
+    /// used to carve.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub blocked: Option<BlockedPulses>,
     /// Why pulses do not carve, where they were to carve if possible.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub remark: Option<String>,
+}
+
+/// Pulses whose way is blocked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct BlockedPulses {
+    /// How many.
+    #[serde(rename = "pulses_blocked_by_balls")]
+    pub count: usize,
+    /// Their share of the pulses used, percent.
+    #[serde(rename = "pulses_blocked_by_balls_percent")]
+    pub percent: f64,
 }
 
 /// How normals were turned outward.

@@ -3,28 +3,61 @@
 use crate::blocking::{Ball, BlockRule};
 use crate::ray_index::{Ray, RayIndex};
 use belvedere_data::Result;
+use belvedere_data::balls::{MedialBalls, NO_TOUCH};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Balls, the rule by which they block, and a tree of boxes around them. A backend takes its balls from here.
+#[derive(Clone)]
 pub struct BallTree {
-    index: RayIndex,
-    balls: Vec<Ball>,
+    index: Arc<RayIndex>,
+    balls: Arc<[Ball]>,
+    /// For each ball its row among those given.
+    rows: Arc<[u32]>,
     rule: BlockRule,
 }
 
+impl std::fmt::Debug for BallTree {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "BallTree({} balls, {:?})", self.balls.len(), self.rule)
+    }
+}
+
 impl BallTree {
-    /// Orders `balls`, which must be [usable](Ball::is_usable), into a tree. Beside it, for each row of the tree, the place of its ball
-    /// among those given.
+    /// Orders `balls` into a tree. Those that are not bounded, or whose centre or radius is beyond
+    /// [`FARTHEST`](belvedere_data::model::FARTHEST), are left out.
     ///
     /// # Errors
-    /// Those of [`BlockRule::validate`] and of [`RayIndex::new`].
-    pub fn new(balls: &[Ball], rule: &BlockRule) -> Result<(Self, Vec<u32>)> {
+    /// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) for columns of unequal length, those of
+    /// [`BlockRule::validate`] and of [`RayIndex::new`].
+    pub fn new(balls: &MedialBalls, rule: &BlockRule) -> Result<Self> {
         rule.validate()?;
-        let boxes: Vec<[[f32; 3]; 2]> = balls.par_iter().map(Ball::bounds).collect();
+        balls.validate()?;
+        let ball_of = |row: usize| Ball { center: balls.centers[row], radius: balls.radii[row] };
+        let usable: Vec<usize> =
+            (0..balls.len()).filter(|&row| balls.touch[row] != NO_TOUCH && ball_of(row).is_usable()).collect();
+        let boxes: Vec<[[f32; 3]; 2]> = usable.par_iter().map(|&row| ball_of(row).bounds()).collect();
         let index = RayIndex::new(&boxes)?;
-        let order = index.order().to_vec();
-        let balls = order.par_iter().map(|&place| balls[place as usize]).collect();
-        Ok((Self { index, balls, rule: *rule }, order))
+        let row_of = |&place: &u32| usable[place as usize];
+        let balls = index.order().par_iter().map(|place| ball_of(row_of(place))).collect();
+        #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
+        let rows = index.order().iter().map(|place| row_of(place) as u32).collect();
+        Ok(Self { index: Arc::new(index), balls, rows, rule: *rule })
+    }
+
+    /// The same balls, which block by another rule.
+    ///
+    /// # Errors
+    /// Those of [`BlockRule::validate`].
+    pub fn with_rule(&self, rule: &BlockRule) -> Result<Self> {
+        rule.validate()?;
+        Ok(Self { rule: *rule, ..self.clone() })
+    }
+
+    /// For each of [`BallTree::balls`] its row among the balls that the tree was made of.
+    #[must_use]
+    pub fn rows(&self) -> &[u32] {
+        &self.rows
     }
 
     /// The tree of boxes; its rows are those of [`BallTree::balls`].
@@ -51,9 +84,9 @@ impl BallTree {
         self.balls[row]
     }
 
-    /// The line of sight from `target` along `towards`, as [`BallTree::front`] takes it.
+    /// The line of sight from `target` along `towards`, as `BallTree::front` takes it.
     #[inline]
-    pub(super) fn ray(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Ray {
+    pub(crate) fn ray(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Ray {
         Ray { origin: target, direction: towards, ranges: [self.rule.bias, range] }
     }
 
@@ -64,7 +97,7 @@ impl BallTree {
     }
 
     /// Whether any ball blocks a line of sight.
-    pub(super) fn blocks(&self, ray: &Ray) -> bool {
+    pub(crate) fn blocks(&self, ray: &Ray) -> bool {
         self.index.any(ray, |row| self.front(row, ray).is_some())
     }
 }

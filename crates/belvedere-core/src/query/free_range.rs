@@ -13,6 +13,6 @@ impl MedialScene {
         let (number, range) = self.tree().index().nearest(&ray, |number| {
             self.tree().rule().meets_ray(*self.tree().balls().get(number)?, ray.origin, ray.direction)
         })?;
-        Some((*self.rows.get(number)? as usize, range))
+        Some((*self.tree().rows().get(number)? as usize, range))
     }
 }

@@ -7,7 +7,7 @@ use super::cpu::Cpu;
 use super::lazy::Lazy;
 use super::{Answer, Coverage, Proof, Sight, Viewer, Visibility};
 use crate::blocking::{Ball, BlockRule};
-use crate::medial::{MedialBalls, NO_TOUCH};
+use crate::medial::MedialBalls;
 use crate::ray_index::Ray;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
@@ -31,8 +31,6 @@ const CHUNK: usize = 1024;
 /// With a coverage ([`MedialScene::with_coverage`]) what lies beside or below the cloud is [`Answer::OutsideCloud`].
 pub struct MedialScene {
     tree: Arc<BallTree>,
-    /// Row among the balls given of each in the tree.
-    pub(super) rows: Vec<u32>,
     pub(super) proof: Option<Proof>,
     coverage: Option<Coverage>,
     backend: Box<dyn Backend>,
@@ -40,22 +38,19 @@ pub struct MedialScene {
 }
 
 impl MedialScene {
-    /// Indexes `balls`. Those that never shrank, or whose centre or radius is beyond [`FARTHEST`](belvedere_data::model::FARTHEST), are left out.
+    /// Indexes `balls`.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) for columns of unequal length, and those of
-    /// [`BlockRule::validate`].
+    /// Those of [`BallTree::new`].
     pub fn new(balls: &MedialBalls, rule: &BlockRule) -> Result<Self> {
-        balls.validate()?;
-        let ball_of = |row: usize| Ball { center: balls.centers[row], radius: balls.radii[row] };
-        let usable: Vec<usize> =
-            (0..balls.len()).filter(|&row| balls.touch[row] != NO_TOUCH && ball_of(row).is_usable()).collect();
-        let list: Vec<Ball> = usable.iter().map(|&row| ball_of(row)).collect();
-        let (tree, order) = BallTree::new(&list, rule)?;
-        #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
-        let rows = order.iter().map(|&place| usable[place as usize] as u32).collect();
+        Ok(Self::of_tree(BallTree::new(balls, rule)?))
+    }
+
+    /// The scene of balls that are in a tree already.
+    #[must_use]
+    pub fn of_tree(tree: BallTree) -> Self {
         let tree = Arc::new(tree);
-        Ok(Self { tree, rows, proof: None, coverage: None, backend: Box::new(Cpu), prepared: Lazy::new() })
+        Self { tree, proof: None, coverage: None, backend: Box::new(Cpu), prepared: Lazy::new() }
     }
 
     /// The same balls, whose lines of sight are settled in bulk by another backend. Answers stay the same.
@@ -219,7 +214,7 @@ impl MedialScene {
     pub fn first_block(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Option<(usize, f64)> {
         let ray = self.ray(target, towards, range);
         let (number, front) = self.tree.index().nearest(&ray, |number| self.front(number, &ray))?;
-        Some((*self.rows.get(number)? as usize, front))
+        Some((*self.tree.rows().get(number)? as usize, front))
     }
 
     /// Where a line of sight leaves ball `number`, metres from its target, if that ball blocks it.

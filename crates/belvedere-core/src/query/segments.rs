@@ -86,7 +86,7 @@ impl MedialScene {
         for (piece, passed) in &pieces {
             if let Some((number, from_observer)) = self.first_on(piece, whole) {
                 let place = piece.ray.at(piece.ray.ranges[1] - from_observer);
-                let ball = self.rows.get(number).map_or(usize::MAX, |&row| row as usize);
+                let ball = self.tree().rows().get(number).map_or(usize::MAX, |&row| row as usize);
                 let block = Block { range: passed + from_observer, ball, place };
                 return Some(LineOfSight { answer: Answer::Blocked, first_block: Some(block), unproven_length: 0.0 });
             }
@@ -168,7 +168,7 @@ impl MedialScene {
                 let Some([enters, leaves]) = inside else { return };
                 let ranges = [enters.max(0.0), leaves.min(piece)];
                 if ranges[0] < ranges[1] {
-                    let ball = self.rows.get(number).map_or(usize::MAX, |&row| row as usize);
+                    let ball = self.tree().rows().get(number).map_or(usize::MAX, |&row| row as usize);
                     crossings.push(Crossing { ball, ranges: ranges.map(|range| passed + range) });
                 }
             });

@@ -84,7 +84,7 @@ impl MedialScene {
                 let mut skyline = vec![EMPTY; count];
                 for (i, &ball) in balls.iter().enumerate() {
                     let Some((offset, radius)) = self.before(eye, ball, earth) else { continue };
-                    let ball = self.rows.get(chunk * CHUNK + i).map(|&row| row as usize);
+                    let ball = self.tree().rows().get(chunk * CHUNK + i).map(|&row| row as usize);
                     each_azimuth(offset, radius, [first, step], count, |azimuth| {
                         if let Some((elevation, range)) = top(offset, radius, directions[azimuth]) {
                             skyline[azimuth] = skyline[azimuth].or(SkylinePoint { elevation, range, ball });

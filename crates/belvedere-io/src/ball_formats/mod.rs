@@ -39,7 +39,7 @@ fn as_cloud(parts: &ModelParts) -> (PointCloud, Vec<Column<'_>>) {
         column("radius".into(), "in the unit of x and y".into(), Values::F32(radii)),
         column("separation_angle".into(), "radians".into(), Values::F32((&parts.balls.separation_angles).into())),
         column("source".into(), "index of the tangent point".into(), signed(&parts.balls.source)),
-        column("touch".into(), "second point, -1 none, -2 pulse".into(), signed(&parts.balls.touch)),
+        column("touch".into(), "point q, -2 pulse, -3 limit".into(), signed(&parts.balls.touch)),
     ];
     if !parts.transmission.is_empty() {
         columns.push(column(

@@ -2,7 +2,7 @@
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::control::Control;
-use belvedere::medial::{KindBounds, MedialBalls, NO_TOUCH, PULSE_TOUCH, RadiusBounds, carve, kinds};
+use belvedere::medial::{KindBounds, LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH, RadiusBounds, carve, kinds};
 use belvedere::neighbors::Tangent;
 use belvedere::normals::{Normals, Orientation, orient};
 use belvedere::pulses::{NeedleParams, Needles};
@@ -176,9 +176,10 @@ fn kinds_of_points_bound_their_balls_and_carving_twice_changes_nothing() {
     let report =
         carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, cloud.len()), &Control::none())
             .unwrap();
-    assert_eq!(balls.radii, [5.0, 1.0, 2.0, 0.3, 5.0]);
-    assert_eq!((report.carved, report.limited, report.grown), (0, 3, 0));
-    assert_eq!(balls.touch, [NO_TOUCH, PULSE_TOUCH, PULSE_TOUCH, PULSE_TOUCH, NO_TOUCH]);
+    // what nothing bounds is cut to half a metre
+    assert_eq!(balls.radii, [0.5, 1.0, 2.0, 0.3, 0.5]);
+    assert_eq!((report.carved, report.limited, report.grown), (0, 5, 0));
+    assert_eq!(balls.touch, [LIMIT_TOUCH; 5]);
     let once = balls.clone();
     carve(&mut balls, &oriented, &needles, PENETRATION, &bounds(&cloud.attributes, cloud.len()), &Control::none())
         .unwrap();

@@ -112,25 +112,43 @@ fn directions_gathered_in_cells_shade_as_single_instants_do() {
     let (scene, targets) = surrounded();
     // a sixth of the year's steps, whose suns are as far apart as in the whole
     let instants: Vec<Instant> = clear_year().into_iter().step_by(6).collect();
-    let radiation = PeriodRadiation::gather(&instants, &IrradianceParams::default()).unwrap();
+    for degrees in [1.0, 3.0_f64] {
+        let params = IrradianceParams::default().with_sun_cell(degrees.to_radians());
+        shades_as_single_instants_do(&scene, &targets, &instants, &params, degrees);
+    }
+}
+
+fn shades_as_single_instants_do(
+    scene: &MedialScene,
+    targets: &[[f32; 3]],
+    instants: &[Instant],
+    params: &IrradianceParams,
+    degrees: f64,
+) {
+    let radiation = PeriodRadiation::gather(instants, params).unwrap();
     let normals = vec![facing(30.0, 160.0); targets.len()];
-    let sums = scene_irradiation(&scene, &targets, Some(&normals), &radiation, &Control::none()).unwrap();
+    let sums = scene_irradiation(scene, targets, Some(&normals), &radiation, &Control::none()).unwrap();
     let normal = normals[0].map(f64::from);
     let mut error = 0.0;
-    for (sum, target) in sums.iter().zip(&targets) {
+    for (sum, target) in sums.iter().zip(targets) {
         let mut beam = 0.0;
-        for instant in &instants {
+        for instant in instants {
             let cosine = dot(instant.sun, normal);
             if cosine > 0.0 && scene.answer(target.map(f64::from), instant.sun, f64::INFINITY) == Answer::Visible {
                 beam += cosine * instant.irradiance.dni * instant.hours / 1000.0;
             }
         }
         error += (sum.beam - beam).abs() / targets.len() as f64;
-        // a cell of one degree moves the rim of a shadow by half of that: of 40 rims in a year's way few are crossed at once
-        assert!((sum.beam - beam).abs() < 0.02 * sum.unshaded, "{} {beam}", sum.beam);
+        // a cell moves the edge of a shadow by half its side: of 40 edges in a year's way few are crossed at once
+        assert!((sum.beam - beam).abs() < 0.02 * degrees * sum.unshaded, "{} {beam}", sum.beam);
     }
-    assert!(error < 0.005 * sums[0].unshaded, "{error} of {}", sums[0].unshaded);
+    assert!(error < 0.005 * degrees * sums[0].unshaded, "{degrees}: {error} of {}", sums[0].unshaded);
     assert!(sums.iter().any(|sum| sum.loss() > 0.2) && sums.iter().any(|sum| sum.loss() < 0.2));
+}
+
+/// Suns in cells of 1 degree.
+fn fine() -> IrradianceParams {
+    IrradianceParams::default().with_sun_cell(1f64.to_radians())
 }
 
 #[test]
@@ -161,8 +179,8 @@ fn an_even_sky_gives_the_sky_view_factor() {
 fn months_add_up_to_the_year() {
     let (scene, targets) = surrounded();
     let instants: Vec<Instant> = clear_year().into_iter().step_by(12).collect();
-    let whole = PeriodRadiation::gather(&instants, &IrradianceParams::default()).unwrap();
-    let params = IrradianceParams::default().with_grouping(Grouping::Months);
+    let whole = PeriodRadiation::gather(&instants, &fine()).unwrap();
+    let params = fine().with_grouping(Grouping::Months);
     let months = PeriodRadiation::gather(&instants, &params).unwrap();
     assert_eq!(months.group_count(), 12);
     let normals = vec![facing(40.0, 200.0); targets.len()];

@@ -47,6 +47,7 @@ fn params(setting: &str) -> ShrinkParams {
         },
         initial_radius,
         max_radius: f32::INFINITY,
+        max_spacings: f32::INFINITY,
     }
 }
 

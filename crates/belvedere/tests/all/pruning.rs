@@ -22,7 +22,7 @@ fn direction(index: u64) -> [f32; 3] {
 fn balls_of(cloud: &OrientedCloud, initial_radius: f32) -> (MedialBalls, NeighborIndex) {
     let index = NeighborIndex::new(cloud.positions(), &Control::none()).unwrap();
     let method = ShrinkMethod::Tau { penetration: 1e-3 };
-    let params = ShrinkParams { method, initial_radius, max_radius: f32::INFINITY };
+    let params = ShrinkParams { method, initial_radius, max_radius: f32::INFINITY, max_spacings: f32::INFINITY };
     let (balls, _) = shrink(cloud, &index, Side::Interior, &params, &Control::none()).unwrap();
     (balls, index)
 }

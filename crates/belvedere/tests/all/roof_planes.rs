@@ -97,6 +97,50 @@ fn area_is_that_of_a_turned_rectangle() {
     }
 }
 
+/// A flat roof of 12 m by 9 m with a parapet 0.5 m high and 0.4 m wide around it, and two chimneys of 1.2 m.
+fn flat_roof() -> Vec<[f32; 3]> {
+    let chimneys = [[3.0, 3.0], [8.0, 5.5]];
+    sheet(6, 12.0, [0.0, 12.0], [0.0, 9.0], |x, y| {
+        let is_parapet = x < 0.4 || x > 11.6 || y < 0.4 || y > 8.6;
+        let is_chimney = chimneys.iter().any(|[cx, cy]| (x - cx).abs() < 0.6 && (y - cy).abs() < 0.6);
+        match (is_parapet, is_chimney) {
+            (true, _) => 5.5,
+            (_, true) => 6.2,
+            _ => 5.0,
+        }
+    })
+}
+
+#[test]
+fn no_panel_lies_on_chimneys_parapets_or_beyond_an_edge() {
+    let planes = roof_planes(&flat_roof(), &RoofPlaneParams::default().with_cell(0.5), &Control::none()).unwrap();
+    let flat = &planes[0];
+    assert!((flat.middle[2] - 5.0).abs() < 0.01, "{:?}", flat.middle);
+    for (middle, _) in flat.cells.middles() {
+        let [x, y, _] = middle;
+        assert!((0.4..11.6).contains(&x) && (0.4..8.6).contains(&y), "on the parapet: {middle:?}");
+        for [cx, cy] in [[3.0, 3.0], [8.0, 5.5]] {
+            // the edge of a chimney is known to the distance between points, 0.29 m
+            assert!((x - cx).abs() > 0.31 || (y - cy).abs() > 0.31, "on a chimney: {middle:?}");
+        }
+    }
+    // of 11.2 m x 8.2 m less two chimneys; cells of half a metre beside something that stands are lost, a third of a metre on the mean
+    let free = 11.2 * 8.2 - 2.0 * 1.44;
+    let lost = 0.35 * (2.0 * (11.2 + 8.2) + 2.0 * 4.8);
+    assert!(flat.panel_area() < free && flat.panel_area() > free - 1.5 * lost, "{} of {free}", flat.panel_area());
+}
+
+#[test]
+fn cells_cover_the_area_of_a_plain_roof() {
+    for density in [4.0, 12.0, 40.0] {
+        for plane in roof_planes(&house(density), &RoofPlaneParams::default(), &Control::none()).unwrap() {
+            // middles of cells of a metre in and out of planes 5 m wide, whose points end half their distance before the edge
+            let ratio = plane.panel_area() / plane.area;
+            assert!((0.75..1.15).contains(&ratio), "{density}: {} {}", plane.panel_area(), plane.area);
+        }
+    }
+}
+
 #[test]
 fn crowns_and_walls_are_no_roofs() {
     #[expect(clippy::cast_possible_truncation, reason = "local metres")]

@@ -2,7 +2,7 @@
 
 use belvedere::control::Control;
 use belvedere::medial::feature_size::{Cells, SimplifyParams, simplify};
-use belvedere::medial::{MedialBalls, NO_TOUCH, ShrinkMethod, ShrinkParams, ShrinkReport, Side, shrink};
+use belvedere::medial::{LIMIT_TOUCH, MedialBalls, NO_TOUCH, ShrinkMethod, ShrinkParams, ShrinkReport, Side, shrink};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::OrientedCloud;
 use proptest::prelude::*;
@@ -10,7 +10,12 @@ use proptest::prelude::*;
 const PENETRATION: f32 = 0.05;
 
 fn tau(initial_radius: f32) -> ShrinkParams {
-    ShrinkParams { method: ShrinkMethod::Tau { penetration: PENETRATION }, initial_radius, max_radius: f32::INFINITY }
+    ShrinkParams {
+        method: ShrinkMethod::Tau { penetration: PENETRATION },
+        initial_radius,
+        max_radius: f32::INFINITY,
+        max_spacings: f32::INFINITY,
+    }
 }
 
 fn balls_of(
@@ -132,9 +137,15 @@ fn a_limited_ball_lies_within_the_unlimited_one_and_is_tangent_at_the_same_point
         let (full, report) = balls_of(&points, &normals, Side::Interior, &params);
         let (limited, same) =
             balls_of(&points, &normals, Side::Interior, &ShrinkParams { max_radius: limit, ..params });
-        assert_eq!((report, &full.touch), (same, &limited.touch));
+        assert_eq!((report.shrunk, report.never_shrunk), (same.shrunk, same.never_shrunk + same.limited));
         let mut cut = 0;
         for (i, p) in points.iter().enumerate() {
+            if full.touch[i] == NO_TOUCH && limited.touch[i] == LIMIT_TOUCH {
+                // nothing bounds it, but the limit does
+                assert_eq!(limited.radii[i], limit);
+                continue;
+            }
+            assert_eq!(full.touch[i], limited.touch[i]);
             if full.touch[i] == NO_TOUCH || full.radii[i] <= limit {
                 assert_eq!(full.radii[i], limited.radii[i]);
                 continue;
@@ -155,7 +166,7 @@ fn points_without_a_normal_get_no_ball_but_still_shrink_others() {
     let points = vec![[0.0, 0.0, 0.0], [0.0, 0.0, -2.0], [1.0, 0.0, 50.0]];
     let normals = vec![[0.0, 0.0, 1.0], [0.0; 3], [0.0, 0.0, 1.0]];
     let (balls, report) = balls_of(&points, &normals, Side::Interior, &tau(10.0));
-    assert_eq!(report, ShrinkReport { shrunk: 1, never_shrunk: 1, without_normal: 1 });
+    assert_eq!(report, ShrinkReport { shrunk: 1, never_shrunk: 1, without_normal: 1, ..ShrinkReport::default() });
     // from the penetration below p down to the second point: a ball of that diameter, plus the penetration
     let expected = (2.0 - PENETRATION) / 2.0 + PENETRATION;
     assert!((balls.radii[0] - expected).abs() < 1e-6 && balls.touch[0] == 1, "{} {}", balls.radii[0], balls.touch[0]);
@@ -183,6 +194,7 @@ fn parameters_out_of_range_are_refused() {
         method: ShrinkMethod::Angles { first_separation_angle: first, next_separation_angle: 0.3 },
         initial_radius: 200.0,
         max_radius: f32::INFINITY,
+        max_spacings: f32::INFINITY,
     };
     for bad in [tau(0.0), tau(f32::NAN), tau(f32::INFINITY), tau(0.01), angles(-0.1), angles(f64::NAN)] {
         assert!(shrink(&cloud, &index, Side::Interior, &bad, &Control::none()).is_err(), "{bad:?}");

@@ -11,7 +11,7 @@ use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::apps::irradiance::{
-    MONTH_COLUMNS, RoofIrradiation, RoofsReport, SeasonRadiation, above_roof, roof_irradiation,
+    MONTH_COLUMNS, RoofIrradiation, RoofsReport, SeasonRadiation, horizon_places, roof_irradiation,
 };
 use belvedere::apps::roof_planes::{RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use belvedere::apps::rows::Obstacles;
@@ -108,8 +108,9 @@ pub(super) fn measure(
     }
     summary.add("planes_written", arguments.planes.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     if let Some(folder) = &arguments.horizons {
-        write_horizons(folder, roofs, obstacles.scene, site, stages)?;
+        let enclosed = write_horizons(folder, roofs, obstacles.scene, site, stages)?;
         summary.add("horizons_written", folder.display().to_string());
+        summary.add("horizons_inside_obstacles", enclosed);
     }
     Ok(())
 }
@@ -127,12 +128,17 @@ fn figures(roofs: &Roofs, rows: &[RoofIrradiation], site: &Site) -> Vec<(&'stati
         let scale = roofs.frame.frame.crs.metres_per_unit_xyz();
         of_planes(&|plane| (plane.middle[axis] + roofs.frame.frame.origin[axis]) / scale[axis])
     };
-    let energy = roofs.planes.iter().zip(rows).map(|(plane, row)| plane.area * row.mean.total()).collect();
+    let of_both = |value: &dyn Fn(&RoofPlane, &RoofIrradiation) -> f64| -> Vec<f64> {
+        roofs.planes.iter().zip(rows).map(|(plane, row)| value(plane, row)).collect()
+    };
+    let panel_area = of_both(&|plane, row| row.panel_area(plane));
+    let energy = of_both(&|plane, row| row.panel_area(plane) * row.mean.total());
     let mut columns = vec![
         ("x", middle(0), 3),
         ("y", middle(1), 3),
         ("z", middle(2), 3),
         ("area_m2", of_planes(&|plane| plane.area), 2),
+        ("panel_area_m2", panel_area, 2),
         ("tilt_deg", of_planes(&|plane| plane.tilt().to_degrees()), 2),
         ("azimuth_deg", of_planes(&|plane| azimuth_deg(plane, site)), 2),
         ("roughness_m", of_planes(&|plane| plane.roughness), 3),
@@ -155,7 +161,7 @@ fn figures(roofs: &Roofs, rows: &[RoofIrradiation], site: &Site) -> Vec<(&'stati
 
 fn write_rows(output: &std::path::Path, roofs: &Roofs, rows: &[RoofIrradiation], site: &Site) -> Result<()> {
     let numbers: Vec<Option<u64>> = (1..).take(rows.len()).map(Some).collect();
-    let cells: Vec<Option<u64>> = roofs.planes.iter().map(|plane| Some(plane.cells.middles().len() as u64)).collect();
+    let cells: Vec<Option<u64>> = rows.iter().map(|row| Some(row.cell_count as u64)).collect();
     let columns = figures(roofs, rows, site);
     let mut table = vec![("plane", Cells::Whole(&numbers)), ("cells", Cells::Whole(&cells))];
     table.extend(columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))));
@@ -188,21 +194,22 @@ fn write_outlines(output: &std::path::Path, roofs: &Roofs, rows: &[RoofIrradiati
     Ok(())
 }
 
+/// Writes the horizon of each plane, and gives how many are measured inside an obstacle, for want of a better place.
 fn write_horizons(
     folder: &std::path::Path,
     roofs: &Roofs,
     blockers: &MedialScene,
     site: &Site,
     stages: &mut Stages,
-) -> Result<()> {
+) -> Result<usize> {
     atomic::make_folder(folder)?;
-    let eyes: Vec<[f64; 3]> =
-        roofs.planes.iter().map(|plane| above_roof(plane.middle, plane.normal).map(f64::from)).collect();
+    let places = horizon_places(&roofs.planes, blockers);
+    let eyes: Vec<[f64; 3]> = places.iter().map(|(place, _)| place.map(f64::from)).collect();
     let params = HorizonParams::default().with_azimuth_count(AZIMUTHS).with_turn(site.convergence);
     let found = stages.run("computing ranges", eyes.len(), |control| horizons(blockers, &eyes, &params, control))?;
     for (number, skyline) in found.iter().enumerate() {
         let path = folder.join(format!("plane_{}.txt", number + 1));
         write_lines(&path, skyline.iter().map(|point| format!("{:.2}", point.elevation.to_degrees().max(0.0))))?;
     }
-    Ok(())
+    Ok(places.iter().filter(|(_, is_open)| !is_open).count())
 }

@@ -31,6 +31,12 @@ fn piece(columns: &NeedleColumns, row: usize) -> Option<([f64; 3], [f64; 3], f64
 }
 
 impl Needles {
+    /// Lower end, unit vector upward and length of each, local metres, in the order of the index.
+    pub(crate) fn lines(&self) -> impl IndexedParallelIterator<Item = ([f64; 3], [f64; 3], f64)> + '_ {
+        let line = |needle: &Needle| (needle.start.map(f64::from), needle.up.map(f64::from), f64::from(needle.length));
+        self.needles.par_iter().map(line)
+    }
+
     /// The needles as columns, in the order of the index. Directions are rounded, so that what [`Needles::from_columns`] makes of
     /// them lies up to 5 mm in 100 m off these; it gives the same columns again, in another order.
     #[must_use]

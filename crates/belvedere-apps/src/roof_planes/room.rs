@@ -1,0 +1,77 @@
+//! Where on a plane a panel can lie.
+
+use super::RoofPlaneParams;
+use super::cells::PlaneCells;
+use super::fit::PlaneFit;
+use belvedere_core::neighbors::NeighborIndex;
+use belvedere_data::vector::{dot, sub};
+use std::f64::consts::{PI, TAU};
+
+/// How far above its plane something must lie to be in the way of a panel, metres: twice the distance up to which points count as on the
+/// plane. Parapets, chimneys and dormers are higher.
+const CLEARANCE: f64 = 0.25;
+/// A point of no plane.
+const NO_PLANE: u32 = u32::MAX;
+
+/// Which point of a roof lies on which plane.
+pub(super) struct Room<'a> {
+    points: &'a [[f32; 3]],
+    index: &'a NeighborIndex,
+    /// Number of the plane of each point.
+    owner: Vec<u32>,
+    /// How far around a middle points are looked at, metres.
+    reach: f64,
+}
+
+impl<'a> Room<'a> {
+    pub(super) fn new(
+        points: &'a [[f32; 3]],
+        index: &'a NeighborIndex,
+        planes: &[(Vec<u32>, PlaneFit)],
+        params: &RoofPlaneParams,
+    ) -> Self {
+        let mut owner = vec![NO_PLANE; points.len()];
+        for (number, (rows, _)) in (0..).zip(planes) {
+            rows.iter().filter_map(|&row| usize::try_from(row).ok()).for_each(|row| owner[row] = number);
+        }
+        Self { points, index, owner, reach: params.reach.max(params.cell) }
+    }
+
+    /// Whether a panel can lie on the cell of plane `number` with this middle: points of the plane lie all around the middle, so that
+    /// it is not beyond the edge, and nothing stands on the cell.
+    pub(super) fn fits(&self, number: u32, cells: &PlaneCells, normal: [f64; 3], middle: [f64; 3]) -> bool {
+        let (mut around, mut is_clear) = (Vec::new(), true);
+        #[expect(clippy::cast_possible_truncation, reason = "local metres")]
+        self.index.within_radius(middle.map(|v| v as f32), self.reach as f32, |found| {
+            let row = found.index as usize;
+            let offset = sub(self.points[row].map(f64::from), middle);
+            let [u, v, height] = [cells.along, cells.up, normal].map(|axis| dot(offset, axis));
+            if self.owner[row] == number {
+                around.push(v.atan2(u));
+            } else if height > CLEARANCE && u.abs().max(v.abs()) < cells.cell / 2.0 {
+                is_clear = false;
+            }
+        });
+        is_clear && is_all_around(around)
+    }
+}
+
+/// Whether directions leave no half circle empty.
+fn is_all_around(mut angles: Vec<f64>) -> bool {
+    angles.sort_by(f64::total_cmp);
+    let (Some(first), Some(last)) = (angles.first(), angles.last()) else { return false };
+    let over_the_end = first + TAU - last;
+    angles.windows(2).map(|pair| pair[1] - pair[0]).fold(over_the_end, f64::max) < PI
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_middle_is_among_points_where_no_half_circle_is_empty() {
+        let degrees = |list: &[f64]| is_all_around(list.iter().map(|v| v.to_radians()).collect());
+        assert!(degrees(&[0.0, 120.0, -120.0]) && degrees(&[10.0, 80.0, 175.0, -100.0]));
+        assert!(!degrees(&[0.0, 90.0, 175.0]) && !degrees(&[-179.0, 179.0]) && !degrees(&[30.0]) && !degrees(&[]));
+    }
+}
