@@ -10,6 +10,9 @@ use std::f64::consts::{PI, TAU};
 /// How far above its plane something must lie to be in the way of a panel, metres: twice the distance up to which points count as on the
 /// plane. Parapets, chimneys and dormers are higher.
 const CLEARANCE: f64 = 0.25;
+/// Height above a plane up to which something over a cell is in the way, metres: chimneys and the walls of higher parts are lower, or have points
+/// below that height.
+const OVERHEAD: f64 = 6.0;
 /// A point of no plane.
 const NO_PLANE: u32 = u32::MAX;
 
@@ -40,19 +43,31 @@ impl<'a> Room<'a> {
     /// Whether a panel can lie on the cell of plane `number` with this middle: points of the plane lie all around the middle, so that
     /// it is not beyond the edge, and nothing stands on the cell.
     pub(super) fn fits(&self, number: u32, cells: &PlaneCells, normal: [f64; 3], middle: [f64; 3]) -> bool {
-        let (mut around, mut is_clear) = (Vec::new(), true);
-        #[expect(clippy::cast_possible_truncation, reason = "local metres")]
-        self.index.within_radius(middle.map(|v| v as f32), self.reach as f32, |found| {
-            let row = found.index as usize;
+        let offset = |row: usize| {
             let offset = sub(self.points[row].map(f64::from), middle);
-            let [u, v, height] = [cells.along, cells.up, normal].map(|axis| dot(offset, axis));
+            [cells.along, cells.up, normal].map(|axis| dot(offset, axis))
+        };
+        #[expect(clippy::cast_possible_truncation, reason = "local metres")]
+        let near = |center: [f64; 3], radius: f64, visit: &mut dyn FnMut(usize)| {
+            self.index.within_radius(center.map(|v| v as f32), radius as f32, |found| visit(found.index as usize));
+        };
+        let mut around = Vec::new();
+        near(middle, self.reach, &mut |row| {
             if self.owner[row] == number {
+                let [u, v, _] = offset(row);
                 around.push(v.atan2(u));
-            } else if height > CLEARANCE && u.abs().max(v.abs()) < cells.cell / 2.0 {
-                is_clear = false;
             }
         });
-        is_clear && is_all_around(around)
+        if !is_all_around(around) {
+            return false;
+        }
+        let mut is_clear = true;
+        let above = [0, 1, 2].map(|i| middle[i] + OVERHEAD / 2.0 * normal[i]);
+        near(above, OVERHEAD / 2.0 + cells.cell, &mut |row| {
+            let [u, v, height] = offset(row);
+            is_clear &= self.owner[row] == number || height <= CLEARANCE || u.abs().max(v.abs()) >= cells.cell / 2.0;
+        });
+        is_clear
     }
 }
 

@@ -101,7 +101,7 @@ fn area_is_that_of_a_turned_rectangle() {
 fn flat_roof() -> Vec<[f32; 3]> {
     let chimneys = [[3.0, 3.0], [8.0, 5.5]];
     sheet(6, 12.0, [0.0, 12.0], [0.0, 9.0], |x, y| {
-        let is_parapet = x < 0.4 || x > 11.6 || y < 0.4 || y > 8.6;
+        let is_parapet = !(0.4..=11.6).contains(&x) || !(0.4..=8.6).contains(&y);
         let is_chimney = chimneys.iter().any(|[cx, cy]| (x - cx).abs() < 0.6 && (y - cy).abs() < 0.6);
         match (is_parapet, is_chimney) {
             (true, _) => 5.5,

@@ -83,7 +83,7 @@ fn least_heights_are_where_answers_change() {
             match tried {
                 None => assert!(found.is_infinite() || found > ceiling - 0.1, "{foot:?} {found}"),
                 Some(_) if found == 0.0 => {
-                    assert!(seen(0.0) || (1..=50).any(|mm| seen(0.001 * f64::from(mm))), "{foot:?}")
+                    assert!(seen(0.0) || (1..=50).any(|mm| seen(0.001 * f64::from(mm))), "{foot:?}");
                 }
                 Some(0.0) => panic!("{foot:?}: seen at 0, but {found}"),
                 Some(tried) => {
