@@ -32,7 +32,7 @@ impl SensorPositions {
     /// Positions at the times of `pulses` on `trajectory`; unknown where it has no position.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] where it has none at any of the times.
+    /// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) where it has none at any of the times.
     pub fn from_trajectory(
         cloud: &PointCloud,
         pulses: &Pulses,
@@ -55,7 +55,7 @@ impl SensorPositions {
     /// is sure enough. Parts whose estimate is not fit for use are unknown; [`SensorReport::parts`] says why.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a parameter outside its range.
+    /// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) for a parameter outside its range.
     ///
     /// # Source
     /// The idea: Gatziolis & McGaughey 2019; Roussel, Bourdon & Achim 2020. Weights: Huber 1964. One least-squares problem
