@@ -1,8 +1,7 @@
-//! Text in pictures, in DejaVu Sans.
+//! Text in pictures, in Roboto.
 //!
-//! The font is built in, so that legends need no font file. It has Latin, Greek, Cyrillic, Armenian, Georgian, Hebrew, Arabic and more, and mathematical
-//! signs. A character that it lacks, such as a Chinese one, is drawn as a box. Letters are set one after the other from left to right; scripts whose
-//! letters join or run to the left are not shaped.
+//! The font is built in, so that legends need no font file. It has Latin, Greek and Cyrillic letters and common signs. A character that it lacks, such
+//! as an Arabic or a Chinese one, is drawn as a box.
 
 use crate::picture::Picture;
 use ab_glyph::{Font, FontRef, Glyph, PxScale, ScaleFont, point};
@@ -10,10 +9,10 @@ use ab_glyph::{Font, FontRef, Glyph, PxScale, ScaleFont, point};
 /// Rows of a line of text at scale 1, pixels: capitals and what hangs below them.
 pub(crate) const HEIGHT: usize = 8;
 
-/// DejaVu Sans 2.37, see `fonts/LICENSE`.
-const FONT: &[u8] = include_bytes!("../fonts/DejaVuSans.ttf");
+/// Roboto, see `fonts/LICENSE`.
+const FONT: &[u8] = include_bytes!("../fonts/Roboto-Regular.ttf");
 /// Height of the font at scale 1, from the top of the highest letters to the bottom of the lowest, pixels: its capitals are then 7 pixels high.
-const FONT_HEIGHT: f32 = 11.2;
+const FONT_HEIGHT: f32 = 11.5;
 /// Where letters stand at scale 1, pixels below the upper edge of a line.
 const BASELINE: f32 = 7.0;
 
@@ -91,8 +90,8 @@ mod tests {
 
     #[test]
     fn letters_of_many_scripts_differ_and_what_the_font_lacks_is_a_box() {
-        // capitals of Latin, Greek, Cyrillic, Armenian, Georgian, Hebrew, Arabic, and signs
-        let letters = ["A", "É", "ß", "Ω", "Ж", "Ա", "ა", "א", "ب", "°", "²", "€", "−"];
+        // letters of Latin, Greek and Cyrillic, and signs
+        let letters = ["A", "É", "ß", "ő", "ệ", "Ω", "Ж", "ї", "°", "²", "€", "−"];
         let pictures = letters.map(drawn);
         let boxed = drawn("\u{4e2d}");
         for (i, picture) in pictures.iter().enumerate() {

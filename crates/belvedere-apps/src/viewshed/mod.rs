@@ -302,7 +302,7 @@ fn add(result: &mut Viewshed, band: Band, masks: Masks) {
 
 /// How high above the ground a thing must reach in each cell for its top to be seen by one of the observers, metres: 0 where the
 /// ground is seen, +∞ where nothing up to `ceiling` metres is, NaN where no ground is known or no observer is turned to the
-/// cell. At most 2 mm above the exact figure for the balls, and 0 up to [`GROUND_TOLERANCE`]; pulses are not used. Limits of elevation are
+/// cell. At most 2 mm above the exact figure for the balls, and 0 where targets on the ground are visible ([`GROUND_TOLERANCE`]); pulses are not used. Limits of elevation are
 /// those of the ground.
 ///
 /// # Errors
@@ -333,8 +333,10 @@ pub fn least_visible_heights(
             }
             // another observer sees it lower already, or nobody looked yet
             let bound = if height.is_finite() { f64::from(*height) } else { ceiling };
-            let seen = scene.least_visible_height(observer.eye, foot, bound, earth);
-            let seen = seen.map(|height| if height > GROUND_TOLERANCE { height } else { 0.0 });
+            // from where targets on the ground are tested, so that 0 is what a viewshed calls visible
+            let lowest = [foot[0], foot[1], foot[2] + GROUND_TOLERANCE];
+            let seen = scene.least_visible_height(observer.eye, lowest, (bound - GROUND_TOLERANCE).max(0.0), earth);
+            let seen = seen.map(|above| if above > 0.0 { above + GROUND_TOLERANCE } else { 0.0 });
             #[expect(clippy::cast_possible_truncation, reason = "metres above the ground")]
             let seen = seen.map_or(f32::INFINITY, |seen| seen as f32);
             if !(*height <= seen) {

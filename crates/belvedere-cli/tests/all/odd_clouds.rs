@@ -77,14 +77,19 @@ fn a_cloud_that_cleaning_empties_names_the_flags_that_keep_it() {
 #[test]
 fn a_ball_file_without_balls_shows_nothing() {
     let place = Workplace::new();
-    // a plane has no inside: no ball meets a second point
+    // a plane has no inside: no ball meets a second point, and the paper's method uses none that does not
     let rows: Vec<String> = (0..400).map(|i| format!("{},{},0,0,0,1\n", i % 20, i / 20)).collect();
     place.write("plane.csv", format!("x,y,z,nx,ny,nz\n{}", rows.concat()));
-    let summary = place.summary("balls plane.csv -o balls.npz");
+    let summary = place.summary("balls plane.csv --method angles -o balls.npz");
     assert_eq!(summary["interior_balls"]["balls_shrunk"], 0);
     // the file knows where its scene is
     let summary = place.summary("depth-map balls.npz --direction 0,0,-1 -o out.npy");
     assert_eq!(summary["pixels_hit_percent"], 0.0);
+    // by default its surface blocks: balls of half a metre, a metre apart, cover three quarters of it
+    let summary = place.summary("balls plane.csv -o skin.npz");
+    assert_eq!(summary["interior_balls"]["balls_limited"], 400);
+    let summary = place.summary("depth-map skin.npz --direction 0,0,-1 -o out.npy");
+    assert!(summary["pixels_hit_percent"].as_f64().unwrap() > 70.0, "{summary}");
 }
 
 #[test]
