@@ -61,8 +61,8 @@ impl TextRows {
 
     /// Name and cells of each column, of these rows only.
     #[must_use]
-    pub fn columns(&self, rows: &[usize]) -> Vec<(&str, Vec<&str>)> {
-        let cells = |column: usize| rows.iter().map(|&row| self.cell(row, column)).collect();
+    pub fn columns(&self, rows: impl IntoIterator<Item = usize> + Clone) -> Vec<(&str, Vec<&str>)> {
+        let cells = |column: usize| rows.clone().into_iter().map(|row| self.cell(row, column)).collect();
         self.names.iter().enumerate().map(|(column, name)| (name.as_str(), cells(column))).collect()
     }
 }

@@ -119,9 +119,8 @@ impl Targets {
 
     /// Leaves out targets that lie beside or below the cloud; returns how many.
     pub fn leave_out_outside(&mut self, coverage: &Coverage) -> usize {
-        let is_outside =
-            |position: &[f32; 3]| position.iter().all(|v| v.is_finite()) && !coverage.holds(position.map(f64::from));
-        let outside = self.positions.par_iter_mut().with_min_len(CHUNK).filter(|position| is_outside(position));
+        let positions = self.positions.par_iter_mut().with_min_len(CHUNK);
+        let outside = positions.filter(|position| coverage.is_outside(**position));
         outside.map(|position| *position = [f32::NAN; 3]).count()
     }
 

@@ -140,7 +140,7 @@ fn write_groups(output: &Path, places: &Places, found: &Exposure) -> Result<()> 
     }
     cells.extend(places.group_columns.iter().map(|(name, values, d)| (*name, Cells::Real(values, *d))));
     cells.extend(columns.iter().map(|(name, values, d)| (name.as_str(), Cells::Real(values, *d))));
-    let read = places.given.columns(&(0..places.given.row_count()).collect::<Vec<_>>());
+    let read = places.given.columns(0..places.given.row_count());
     Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], &cells))?)
 }
 

@@ -147,7 +147,7 @@ fn write_rows(output: &Path, rows: &[Row], given: &TextRows) -> belvedere::Resul
         .zip(&columns)
         .map(|(&(name, _, decimals), values)| (name, Cells::Real(values, decimals)))
         .collect();
-    let read = given.columns(&(0..given.row_count()).collect::<Vec<_>>());
+    let read = given.columns(0..given.row_count());
     write_table(output, &with_columns_read(&read, &["x", "y", "z"], &named))
 }
 

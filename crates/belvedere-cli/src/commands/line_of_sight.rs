@@ -161,7 +161,7 @@ fn write(
     columns.extend(["block_x", "block_y", "block_z"].into_iter().zip(&place).map(|(n, v)| (n, Cells::Real(v, 3))));
     columns.push(("block_ball", Cells::Whole(&balls)));
     columns.push(("block_source", Cells::Whole(&sources)));
-    let read = rows.columns(&(0..rows.row_count()).collect::<Vec<_>>());
+    let read = rows.columns(0..rows.row_count());
     Ok(write_table(output, &with_columns_read(&read, &ENDS, &columns))?)
 }
 

@@ -66,7 +66,6 @@ fn grids_and_pictures_beyond_memory_are_refused_before_they_are_made() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
     place.summary("balls house.laz -o balls.npz");
-    let start = std::time::Instant::now();
     for (arguments, words) in [
         (format!("viewshed house.laz --observer {EAST},{NORTH} --cell 1e-3 -o o.tif"), ["--cell", "100 million"]),
         ("sky-view house.laz --cell 1e-3 -o o.tif".to_owned(), ["--cell", "100 million"]),
@@ -75,6 +74,5 @@ fn grids_and_pictures_beyond_memory_are_refused_before_they_are_made() {
     ] {
         place.refusal(2, &arguments, &words);
     }
-    assert!(start.elapsed().as_secs() < 60);
     assert_eq!(place.names(), ["balls.npz", "house.laz"]);
 }

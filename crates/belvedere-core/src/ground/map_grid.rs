@@ -4,9 +4,6 @@ use belvedere_data::{Error, Result};
 
 /// Most cells of a grid: what a few bytes each still fit into the memory of a usual machine.
 const MOST_CELLS: f64 = 1e8;
-/// Larger cells, metres, are slips: their middle lies far from anything surveyed.
-const LARGEST_CELL: f64 = 1e4;
-
 /// Cells up to this side may be larger than the area that they divide, metres: a small area still is one cell.
 const LEAST_SIDE: f64 = 100.0;
 
@@ -28,11 +25,11 @@ impl MapGrid {
     /// from where `origin`, metres, counts from: grids of neighbouring surveys fit together.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a cell that is not above zero or longer than the box and than 100 m, a box that is not finite, and more than 4e8 cells.
+    /// [`Error::InvalidParameter`] for a cell that is not above zero or longer than the box and than 100 m, a box that is not finite, and more than 100 million cells.
     pub fn covering(low: [f64; 2], high: [f64; 2], cell: f64, origin: [f64; 2]) -> Result<Self> {
         let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
-        if !(cell > 0.0 && cell <= LARGEST_CELL) {
-            return invalid("cell", cell.to_string(), "above 0 and at most 10000 metres");
+        if !(cell.is_finite() && cell > 0.0) {
+            return invalid("cell", cell.to_string(), "above zero metres");
         }
         if !low.iter().chain(&high).all(|v| v.is_finite()) || low[0] > high[0] || low[1] > high[1] {
             return invalid("box of the grid", format!("{low:?} to {high:?}"), "finite");

@@ -55,7 +55,9 @@ impl Coverage {
         positions.par_iter().with_min_len(CHUNK).filter(|&&position| self.is_outside(position)).count()
     }
 
-    fn is_outside(&self, position: [f32; 3]) -> bool {
+    /// Whether a finite `position`, local metres, does not lie over the cloud.
+    #[must_use]
+    pub fn is_outside(&self, position: [f32; 3]) -> bool {
         position.iter().all(|v| v.is_finite()) && !self.holds(position.map(f64::from))
     }
 
@@ -70,7 +72,7 @@ impl Coverage {
         let pairs = answers.par_iter_mut().zip(targets).enumerate().with_min_len(CHUNK);
         pairs.for_each(|(row, (answer, &target))| {
             let is_finite = target.iter().all(|v| v.is_finite());
-            if is_finite && (is_eye_outside(row) || !self.holds(target.map(f64::from))) {
+            if is_finite && (is_eye_outside(row) || self.is_outside(target)) {
                 *answer = Answer::OutsideCloud;
             }
         });

@@ -57,7 +57,7 @@ pub(super) fn write_rows(
     }
     let named: Vec<(&'static str, Cells<'_>)> =
         columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))).collect();
-    let read = given.columns(&rows);
+    let read = given.columns(rows.iter().copied());
     Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z"], &named))?)
 }
 
