@@ -35,14 +35,14 @@ mod vector;
 
 pub use lod1::blocks;
 pub use queries::{QuerySet, QuerySite, Targets};
-pub use scan::airborne::{AirborneParams, scan_airborne};
+pub use scan::airborne::{AirborneParams, DENSITY, scan_airborne};
 pub use scan::beam::BeamParams;
 pub use scan::scan_pattern::{MirrorMotion, ScanPattern};
 pub use scan::terrestrial::{Stations, TerrestrialParams, scan_terrestrial};
 pub use scan::{Scan, ScanReport, SensorPath};
 pub use scene::{Material, Part, Scene};
 pub use solids::{Placement, extruded, l_shaped_ridged, ridged};
-pub use town::preset::Preset;
+pub use town::preset::{EXTENT, Preset};
 pub use town::terrain::Terrain;
 pub use town::trees::Crowns;
 pub use town::{BlockPlan, StreetTrees, TownParams, town};

@@ -1,7 +1,9 @@
 //! Isovists: the space that an eye sees, measured.
 
+mod figures;
 mod plan;
 
+pub use figures::IsovistFigure;
 pub use plan::PlanIsovist;
 
 use belvedere_core::query::MedialScene;

@@ -1,9 +1,11 @@
 //! Landmark visibility: how much of one thing is seen from many places.
 
 mod extent;
+mod measures;
 mod points;
 mod report;
 
+pub use measures::{LandmarkMeasure, MEASURES};
 pub use points::{LandmarkPoints, landmark_points};
 pub use report::{BestView, LandmarkReport};
 

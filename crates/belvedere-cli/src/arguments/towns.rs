@@ -1,6 +1,6 @@
 //! Flags of `simulate`, and what towns are given by.
 
-use belvedere_scenes::Preset;
+use belvedere_scenes::{EXTENT, Preset};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ pub(crate) struct Simulate {
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
     /// Side of the town in metres, 60 to 5000
-    #[arg(long, value_name = "M", default_value_t = 150.0, value_parser = within::<60, 5000>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", default_value_t = EXTENT, value_parser = within::<60, 5000>, allow_negative_numbers = true)]
     pub(crate) extent: f64,
     /// Type of laser scanner
     #[arg(long, value_enum, default_value_t = ScannerChoice::Airborne)]

@@ -9,7 +9,7 @@ use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::PointCloud;
-use belvedere::apps::isovist::{self, IsovistParams, RadialStatistics};
+use belvedere::apps::isovist::{self, IsovistParams};
 use belvedere::figures::{panorama_picture, write_png};
 use belvedere::io::{Cells, TextRows, atomic, with_columns_read, write_table};
 use serde_json::{Map, Value, json};
@@ -104,37 +104,8 @@ fn rows(cloud: &PointCloud, places: &[[f64; 3]], isovists: &[Option<isovist::Iso
 
 fn row(cloud: &PointCloud, eye: [f64; 3], isovist: &isovist::Isovist, grid_north: f64) -> Row {
     let [x, y, z] = cloud.frame.file_from_local(eye);
-    let plan = &isovist.plan;
-    let mut row: Row = vec![
-        ("x", x, 3),
-        ("y", y, 3),
-        ("z", z, 3),
-        ("volume_m3", isovist.volume, 2),
-        ("openness", isovist.openness, 5),
-        ("sky_openness", isovist.sky_openness, 5),
-    ];
-    let mut statistics = |names: [&'static str; 5], ranges: &RadialStatistics| {
-        let values = [ranges.least, ranges.mean, ranges.greatest, ranges.variance, ranges.skewness];
-        row.extend(names.into_iter().zip(values).map(|(name, value)| (name, value, 4)));
-    };
-    statistics(["range_min_m", "range_mean_m", "range_max_m", "range_variance_m2", "range_skewness"], &isovist.ranges);
-    statistics(
-        ["plan_range_min_m", "plan_range_mean_m", "plan_range_max_m", "plan_range_variance_m2", "plan_range_skewness"],
-        &plan.ranges,
-    );
-    let [east, north, up] = isovist.drift;
-    row.extend([
-        ("drift_east_m", east, 4),
-        ("drift_north_m", north, 4),
-        ("drift_up_m", up, 4),
-        ("plan_area_m2", plan.area, 2),
-        ("plan_perimeter_m", plan.perimeter, 2),
-        ("plan_compactness", plan.compactness(), 5),
-        ("plan_openness", plan.openness, 5),
-        ("plan_occlusivity_m", plan.occlusivity, 2),
-        ("plan_drift_m", plan.drift_length(), 4),
-        ("plan_drift_azimuth_deg", (plan.drift[0].atan2(plan.drift[1]) + grid_north).to_degrees().rem_euclid(360.0), 2),
-    ]);
+    let mut row: Row = vec![("x", x, 3), ("y", y, 3), ("z", z, 3)];
+    row.extend(isovist.figures(grid_north).map(|figure| (figure.name, figure.value, figure.decimals)));
     row
 }
 

@@ -10,13 +10,11 @@ use belvedere::io::{ExtraColumn, ExtraValues, Heading, atomic, write_cloud, writ
 use belvedere::trajectory::Trajectory;
 use belvedere::view::to_sun;
 use belvedere_scenes::{
-    AirborneParams, BeamParams, MirrorMotion, Scan, ScanPattern, Scene, Stations, TerrestrialParams, Truth, blocks,
-    scan_airborne, scan_terrestrial, town,
+    AirborneParams, BeamParams, DENSITY, MirrorMotion, Scan, ScanPattern, Scene, Stations, TerrestrialParams, Truth,
+    blocks, scan_airborne, scan_terrestrial, town,
 };
 use std::path::Path;
 
-/// Pulses per m² where none are asked for: what national surveys have.
-const DENSITY: f64 = 10.0;
 /// Most pulses: a scan of more would fill the memory of most machines, so that a slipped digit is an error and no crash.
 const MOST_PULSES: f64 = 5e8;
 

@@ -11,6 +11,9 @@ use crate::scan::scan_pattern::{ScanPattern, Sweep};
 use crate::scene::Scene;
 use crate::truth::Truth;
 
+/// Pulses per m² where no number is wanted: what national surveys have.
+pub const DENSITY: f64 = 10.0;
+
 /// How a scene is flown. Values outside their ranges that leave nothing to fly (a height, speed, density or angle that is not
 /// positive) give a scan without points.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,6 +3,9 @@
 use crate::town::trees::Crowns;
 use crate::town::{BlockPlan, StreetTrees, TownParams};
 
+/// Side of a town where none is wanted, metres: a few blocks, and a scan of a few hundred thousand points.
+pub const EXTENT: f64 = 150.0;
+
 /// A kind of town, at any size and seed.
 ///
 /// ```

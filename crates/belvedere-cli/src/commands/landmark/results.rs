@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use belvedere::PointCloud;
-use belvedere::apps::landmark::LandmarkView;
+use belvedere::apps::landmark::{LandmarkMeasure, LandmarkView, MEASURES};
 use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp_colors, write_png};
 use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{Cells, TextRows, atomic, with_columns_read, write_table, write_tif_f32};
@@ -14,29 +14,6 @@ use std::path::Path;
 const NO_VALUE: f32 = -9999.0;
 /// Colours of shares on a map.
 const COLORS: usize = 101;
-
-/// A measure: its name, what it is, its decimals in tables and how it is had.
-type Measure = (&'static str, &'static str, usize, fn(&LandmarkView) -> f64);
-
-const MEASURES: [Measure; 9] = [
-    ("visible_share", "visible share of the surface of the landmark, 0 to 1", 5, LandmarkView::visible_share),
-    ("visible_area_m2", "visible area of the landmark, square metres", 3, |view| view.visible_area),
-    ("unproven_area_m2", "area that nothing blocks but is not proven, square metres", 3, |view| view.unproven_area),
-    ("solid_angle_sr", "solid angle of the visible part, steradians", 7, |view| view.solid_angle),
-    ("horizon_share", "share of all azimuths in which a part is visible, 0 to 1", 6, |view| view.horizon_share),
-    ("horizontal_extent_deg", "horizontal angle between the outermost visible parts, degrees", 4, |view| {
-        view.horizontal_extent.to_degrees()
-    }),
-    ("vertical_extent_deg", "vertical angle between the lowest and highest visible part, degrees", 4, |view| {
-        view.vertical_extent.to_degrees()
-    }),
-    ("nearest_m", "range of the nearest visible part, metres", 3, |view| {
-        view.ranges.map_or(f64::NAN, |ranges| ranges[0])
-    }),
-    ("farthest_m", "range of the farthest visible part, metres", 3, |view| {
-        view.ranges.map_or(f64::NAN, |ranges| ranges[1])
-    }),
-];
 
 /// A row for each observer that stands somewhere, with what a table said of it; one that was skipped has its coordinates alone.
 pub(super) fn write_rows(
@@ -51,9 +28,8 @@ pub(super) fn write_rows(
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         columns.push((name, rows.iter().map(|&row| cloud.frame.file_from_local(places[row])[axis]).collect(), 3));
     }
-    for (name, _, decimals, value) in MEASURES {
-        let of_view = |&row: &usize| if views[row].area > 0.0 { value(&views[row]) } else { f64::NAN };
-        columns.push((name, rows.iter().map(of_view).collect(), decimals));
+    for measure in &MEASURES {
+        columns.push((measure.name, rows.iter().map(|&row| measure.of(&views[row])).collect(), measure.decimals));
     }
     let named: Vec<(&'static str, Cells<'_>)> =
         columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))).collect();
@@ -76,7 +52,7 @@ pub(super) fn write_measures(
     atomic::make_folder(folder)?;
     let mut written = Vec::new();
     for measure in &MEASURES {
-        let path = folder.join(format!("{}.tif", measure.0));
+        let path = folder.join(format!("{}.tif", measure.name));
         write_measure(&path, measure, views, ground, cloud)?;
         written.push(path.display().to_string());
     }
@@ -85,18 +61,17 @@ pub(super) fn write_measures(
 
 fn write_measure(
     output: &Path,
-    (_, what, _, value): &Measure,
+    measure: &LandmarkMeasure,
     views: &[LandmarkView],
     ground: &Ground,
     cloud: &PointCloud,
 ) -> Result<()> {
     let grid = ground.grid;
-    let standing = |view: &LandmarkView| if view.area > 0.0 { value(view) } else { f64::NAN };
     #[expect(clippy::cast_possible_truncation, reason = "rasters of measures are f32")]
-    let values = views.iter().map(|view| standing(view) as f32).collect();
+    let values = views.iter().map(|view| measure.of(view) as f32).collect();
     let raster = Raster::from_values(grid.width, grid.height, values)?;
     let place = georeference(&grid, &cloud.frame);
-    Ok(write_tif_f32(output, &raster, Some(&place), Some(NO_VALUE), Some(what))?)
+    Ok(write_tif_f32(output, &raster, Some(&place), Some(NO_VALUE), Some(measure.description))?)
 }
 
 /// The share seen as a map; where nothing is seen the bare relief shows.

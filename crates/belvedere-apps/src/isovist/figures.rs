@@ -1,0 +1,54 @@
+//! Isovists as named numbers.
+
+use super::{Isovist, RadialStatistics};
+
+/// A number that describes an isovist.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IsovistFigure {
+    /// Name of its column, with its unit.
+    pub name: &'static str,
+    /// The number.
+    pub value: f64,
+    /// Decimals in tables.
+    pub decimals: usize,
+}
+
+impl Isovist {
+    /// All numbers that describe it. `grid_north` is the azimuth of grid north from the north that azimuths are counted from, radians.
+    pub fn figures(&self, grid_north: f64) -> impl Iterator<Item = IsovistFigure> {
+        let plan = &self.plan;
+        let [east, north, up] = self.drift;
+        let drift_azimuth = (plan.drift[0].atan2(plan.drift[1]) + grid_north).to_degrees().rem_euclid(360.0);
+        let figure = |(name, value, decimals)| IsovistFigure { name, value, decimals };
+        let space =
+            [("volume_m3", self.volume, 2), ("openness", self.openness, 5), ("sky_openness", self.sky_openness, 5)];
+        let names = ["range_min_m", "range_mean_m", "range_max_m", "range_variance_m2", "range_skewness"];
+        let ranges = statistics(names, &self.ranges);
+        let names = [
+            "plan_range_min_m",
+            "plan_range_mean_m",
+            "plan_range_max_m",
+            "plan_range_variance_m2",
+            "plan_range_skewness",
+        ];
+        let plan_ranges = statistics(names, &plan.ranges);
+        let others = [
+            ("drift_east_m", east, 4),
+            ("drift_north_m", north, 4),
+            ("drift_up_m", up, 4),
+            ("plan_area_m2", plan.area, 2),
+            ("plan_perimeter_m", plan.perimeter, 2),
+            ("plan_compactness", plan.compactness(), 5),
+            ("plan_openness", plan.openness, 5),
+            ("plan_occlusivity_m", plan.occlusivity, 2),
+            ("plan_drift_m", plan.drift_length(), 4),
+            ("plan_drift_azimuth_deg", drift_azimuth, 2),
+        ];
+        space.into_iter().chain(ranges).chain(plan_ranges).chain(others).map(figure)
+    }
+}
+
+fn statistics(names: [&'static str; 5], ranges: &RadialStatistics) -> [(&'static str, f64, usize); 5] {
+    let values = [ranges.least, ranges.mean, ranges.greatest, ranges.variance, ranges.skewness];
+    std::array::from_fn(|i| (names[i], values[i], 4))
+}

@@ -1,0 +1,299 @@
+"""Point clouds."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._errors import BelvedereWarning, wrong
+from ._inputs import Places, Progress, Source, native_source, places, reporter
+
+#: Attributes of points: their types, and their columns where there are several.
+ATTRIBUTES: Mapping[str, tuple[Any, int]] = {
+    "classification": (np.uint8, 0),
+    "gps_time": (np.float64, 0),
+    "return_number": (np.uint8, 0),
+    "return_count": (np.uint8, 0),
+    "scan_angle": (np.float32, 0),
+    "point_source_id": (np.uint16, 0),
+    "scanner_channel": (np.uint8, 0),
+    "flags": (np.uint8, 0),
+    "intensity": (np.uint16, 0),
+    "color": (np.uint16, 3),
+    "normals": (np.float32, 3),
+}
+
+
+class Cloud:
+    """A point cloud from arrays.
+
+    Parameters
+    ----------
+    xyz : array_like, shape (N, 3)
+        Coordinates in the unit of `crs`: east, north, up. 32 or 64 bit, with any strides; other numbers are converted.
+    crs : str, optional
+        Coordinate reference system: ``"EPSG:28992"``, well-known text, or a PROJ string. Without one, coordinates are metres.
+    classification : array_like, shape (N,), uint8, optional
+        ASPRS classes: 2 ground, 3 to 5 vegetation, 6 building, 7 and 18 noise.
+    gps_time : array_like, shape (N,), float64, optional
+        Seconds. Needed, with `return_number` and `return_count`, to find the scanner.
+    adjusted_gps_time : bool, optional
+        Whether `gps_time` counts from 1e9 s of GPS time (bit 0 of the LAS global encoding) rather than from Sunday midnight.
+    return_number, return_count : array_like, shape (N,), uint8, optional
+        Which return of its pulse a point is, from 1, and how many returns the pulse had.
+    scan_angle : array_like, shape (N,), float32, optional
+        Radians.
+    point_source_id : array_like, shape (N,), uint16, optional
+        Flight line.
+    scanner_channel, flags : array_like, shape (N,), uint8, optional
+        Channel of the scanner; LAS flags (1 synthetic, 2 key point, 4 withheld, 8 overlap).
+    intensity : array_like, shape (N,), uint16, optional
+    color : array_like, shape (N, 3), uint16, optional
+        Red, green, blue.
+    normals : array_like, shape (N, 3), float32, optional
+        Outward unit normals.
+
+    Raises
+    ------
+    BelvedereError
+        Without points, for coordinates that are not finite or in degrees, and for attributes of another length.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rng = np.random.default_rng(1)
+    >>> xyz = np.column_stack([rng.uniform(0, 20, (500, 2)), np.zeros(500)])
+    >>> belvedere.Cloud(xyz, crs="EPSG:28992", classification=np.full(500, 2))
+    <belvedere.Cloud: 500 points, EPSG:28992 (Amersfoort / RD New), metres; classification>
+    """
+
+    def __init__(
+        self,
+        xyz: Places,
+        *,
+        crs: str | None = None,
+        classification: npt.ArrayLike | None = None,
+        gps_time: npt.ArrayLike | None = None,
+        adjusted_gps_time: bool = False,
+        return_number: npt.ArrayLike | None = None,
+        return_count: npt.ArrayLike | None = None,
+        scan_angle: npt.ArrayLike | None = None,
+        point_source_id: npt.ArrayLike | None = None,
+        scanner_channel: npt.ArrayLike | None = None,
+        flags: npt.ArrayLike | None = None,
+        intensity: npt.ArrayLike | None = None,
+        color: npt.ArrayLike | None = None,
+        normals: npt.ArrayLike | None = None,
+    ) -> None:
+        rows = places(xyz, "xyz")
+        given = {
+            "classification": classification,
+            "gps_time": gps_time,
+            "return_number": return_number,
+            "return_count": return_count,
+            "scan_angle": scan_angle,
+            "point_source_id": point_source_id,
+            "scanner_channel": scanner_channel,
+            "flags": flags,
+            "intensity": intensity,
+            "color": color,
+            "normals": normals,
+        }
+        columns = {name: _column(name, values, len(rows)) for name, values in given.items() if values is not None}
+        system = None if crs is None else _core.Crs(crs)
+        self._core = _core.Cloud(rows, columns, adjusted_gps_time, system)
+        #: What reading the cloud found; empty for a cloud from arrays.
+        self.report: dict[str, Any] = {}
+
+    @classmethod
+    def _of(cls, core: _core.Cloud, report: dict[str, Any]) -> Cloud:
+        cloud = cls.__new__(cls)
+        cloud._core = core
+        cloud.report = report
+        return cloud
+
+    @property
+    def xyz(self) -> npt.NDArray[np.float64]:
+        """Coordinates in the unit of the file, shape (N, 3).
+
+        Examples
+        --------
+        >>> cloud.xyz.shape == (len(cloud), 3)
+        True
+        """
+        return self._core.xyz
+
+    @property
+    def attributes(self) -> dict[str, npt.NDArray[Any]]:
+        """The attributes that the cloud has, by name, as copies.
+
+        Examples
+        --------
+        >>> cloud.attributes["classification"].dtype
+        dtype('uint8')
+        """
+        return self._core.attributes
+
+    @property
+    def crs(self) -> str | None:
+        """The coordinate reference system as well-known text or ``EPSG:CODE``; None where it is not known.
+
+        Examples
+        --------
+        >>> "Amersfoort" in cloud.crs
+        True
+        """
+        return self._core.crs.text
+
+    @property
+    def bounds(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Lowest and highest corner in the coordinates of the file.
+
+        Examples
+        --------
+        >>> low, high = cloud.bounds
+        >>> bool((low <= high).all())
+        True
+        """
+        low, high = self._core.bounds
+        return np.array(low), np.array(high)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the cloud; the extension selects the format: ``.laz .las .ply .csv .xyz .txt``.
+
+        Warns of attributes that the format has no place for.
+
+        Examples
+        --------
+        >>> cloud.save(folder / "cloud.laz")
+        >>> len(belvedere.read(folder / "cloud.laz")) == len(cloud)
+        True
+        """
+        left_out = self._core.write(os.fspath(path))
+        if left_out:
+            _warn(f"{os.fspath(path)}: the format has no place for {', '.join(left_out)}")
+
+    def __len__(self) -> int:
+        return len(self._core)
+
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        if copy is False:
+            raise ValueError("the coordinates of a Cloud are computed, and cannot be given without a copy")
+        return self.xyz.astype(np.float64 if dtype is None else dtype, copy=False)
+
+    def __repr__(self) -> str:
+        names = ", ".join(sorted(self.attributes)) or "no attributes"
+        return f"<belvedere.Cloud: {len(self)} points, {self._core.crs.description}; {names}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        core = self._core
+        state = (
+            core.origin,
+            core.positions,
+            core.attributes,
+            core.adjusted_gps_time,
+            core.scanner_positions,
+            core.crs.state,
+        )
+        return _unpickled, (state, self.report)
+
+
+def read(
+    source: Source | list[Source],
+    *,
+    crs: str | None = None,
+    up: str = "z",
+    name: str | None = None,
+    progress: Progress = None,
+) -> Cloud:
+    """Reads a point cloud.
+
+    Parameters
+    ----------
+    source : path, bytes, binary file, laspy object, or a list of these
+        ``.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy``, or a folder of them. Several become one cloud.
+    crs : str, optional
+        Coordinate reference system in place of what the file says, such as ``"EPSG:28992"``.
+    up : {'z', 'y'}
+        Which axis of the file is up.
+    name : str, optional
+        Name of bytes or of a file without a name, such as ``"tile.laz"``; its extension selects the format.
+    progress : bool or callable, optional
+        True shows a bar; a function is called with stage, items done and items in all, and stops the work by raising.
+
+    Returns
+    -------
+    Cloud
+        Feet become metres for all work, and feet again in results.
+
+    Raises
+    ------
+    BelvedereError
+        For a format that is not known, a damaged file, a file without points, and coordinates in degrees.
+    FileNotFoundError
+        For a file that is missing.
+
+    Warns
+    -----
+    BelvedereWarning
+        Of points that were left out and of what is odd about a file.
+
+    Examples
+    --------
+    >>> belvedere.read(tile)
+    <belvedere.Cloud: ... points, EPSG:7415 (Amersfoort / RD New + NAP height), metres; ...>
+    >>> with open(tile, "rb") as file:
+    ...     again = belvedere.read(file)
+    """
+    sources = source if isinstance(source, (list, tuple)) else [source]
+    if not sources:
+        raise wrong("source", "an empty list", "give at least one file")
+    inputs = [native_source(one, name) for one in sources]
+    core, text = _core.read(inputs, crs, up, reporter(progress))
+    report = json.loads(text)
+    for note in _notes(report):
+        _warn(note)
+    return Cloud._of(core, report)
+
+
+def _notes(report: dict[str, Any]) -> list[str]:
+    """What a report on reading says is lost or odd."""
+    found = [f"points left out: {reason}" for reason in report.get("left_out", [])]
+    lost = report.get("attributes_not_in_every_file", [])
+    if lost:
+        found.append(f"attributes that only some of the files have are left out: {', '.join(lost)}")
+    return found + list(report.get("notes", []))
+
+
+def _warn(text: str) -> None:
+    warnings.warn(text, BelvedereWarning, stacklevel=3)
+
+
+def _column(name: str, values: npt.ArrayLike, count: int) -> npt.NDArray[Any]:
+    kind, columns = ATTRIBUTES[name]
+    shape = (count, columns) if columns else (count,)
+    try:
+        array = np.asarray(values)
+    except (TypeError, ValueError):
+        raise wrong(name, f"a {type(values).__name__}", f"give an array of shape {shape}") from None
+    if array.shape != shape:
+        raise wrong(name, f"an array of shape {array.shape}", f"give one of shape {shape}, a row for each point")
+    if array.dtype.kind not in "iufb":
+        raise wrong(name, f"an array of {array.dtype}", f"give numbers that fit {np.dtype(kind).name}")
+    converted = array.astype(kind, copy=False)
+    if np.dtype(kind).kind == "u" and not np.array_equal(converted, array):
+        raise wrong(name, "out of range", f"give whole numbers that fit {np.dtype(kind).name}")
+    return converted
+
+
+def _unpickled(state: tuple[Any, Any, Any, bool, Any, Any], report: dict[str, Any]) -> Cloud:
+    origin, positions, attributes, adjusted, scanners, system = state
+    crs = _core.Crs.from_state(system)
+    return Cloud._of(_core.Cloud.from_state(origin, positions, attributes, adjusted, scanners, crs), report)

@@ -1,0 +1,165 @@
+import os
+from collections.abc import Callable, Sequence
+from typing import Any, final
+
+import numpy as np
+import numpy.typing as npt
+
+_Progress = Callable[[str, int, int], object] | None
+_Grid = tuple[int, int, Sequence[float]]
+_Columns = list[tuple[str, str, npt.NDArray[Any]]]
+_CrsState = tuple[str | None, int | None, int | None, float, float, int]
+
+__all__ = ["Cloud", "Crs", "NO_VALUE", "Scene", "__version__", "read", "simulate", "write_geotiff"]
+
+__version__: str
+NO_VALUE: float
+
+@final
+class Crs:
+    def __new__(cls, text: str) -> Crs: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    @staticmethod
+    def from_state(state: _CrsState) -> Crs: ...
+    @property
+    def state(self) -> _CrsState: ...
+    @property
+    def text(self) -> str | None: ...
+    @property
+    def description(self) -> str: ...
+    @property
+    def metres_per_unit(self) -> float: ...
+
+@final
+class Cloud:
+    def __new__(
+        cls, xyz: npt.NDArray[Any], attributes: dict[str, npt.NDArray[Any]], adjusted_gps_time: bool, crs: Crs | None
+    ) -> Cloud: ...
+    @staticmethod
+    def from_state(
+        origin: Sequence[float],
+        positions: npt.NDArray[np.float32],
+        attributes: dict[str, npt.NDArray[Any]],
+        adjusted_gps_time: bool,
+        scanner_positions: npt.NDArray[np.float32],
+        crs: Crs,
+    ) -> Cloud: ...
+    @property
+    def positions(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def scanner_positions(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def xyz(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def attributes(self) -> dict[str, npt.NDArray[Any]]: ...
+    @property
+    def adjusted_gps_time(self) -> bool: ...
+    @property
+    def origin(self) -> list[float]: ...
+    @property
+    def crs(self) -> Crs: ...
+    @property
+    def bounds(self) -> list[list[float]]: ...
+    def write(self, path: str | os.PathLike[str]) -> list[str]: ...
+    def __len__(self) -> int: ...
+
+@final
+class Scene:
+    @staticmethod
+    def build(cloud: Cloud, choices: dict[str, Any], progress: _Progress) -> tuple[Scene, str]: ...
+    @staticmethod
+    def load(input: object, cloud: Cloud | None, progress: _Progress) -> Scene: ...
+    def save(self, path: str | os.PathLike[str]) -> None: ...
+    def to_bytes(self) -> bytes: ...
+    @property
+    def cloud(self) -> Cloud | None: ...
+    @property
+    def ball_count(self) -> int: ...
+    @property
+    def pulse_count(self) -> int | None: ...
+    @property
+    def is_carved(self) -> bool: ...
+    @property
+    def bounds(self) -> list[list[float]]: ...
+    @property
+    def crs(self) -> Crs: ...
+    @property
+    def provenance(self) -> list[tuple[str, str]]: ...
+    def visible(
+        self, eye: Sequence[float], targets: dict[str, Any], unproven: str, progress: _Progress
+    ) -> npt.NDArray[np.uint8]: ...
+    def lines_of_sight(
+        self,
+        observers: npt.NDArray[Any],
+        targets: npt.NDArray[Any],
+        unproven: str,
+        curvature: str | None,
+        refraction: float | None,
+        progress: _Progress,
+    ) -> dict[str, npt.NDArray[Any]]: ...
+    def shadow(
+        self,
+        suns: Sequence[Any],
+        place: dict[str, Any],
+        targets: dict[str, Any],
+        edges: str,
+        trees: dict[str, Any],
+        progress: _Progress,
+    ) -> tuple[list[npt.NDArray[np.float32]], _Grid | None]: ...
+    def sun_hours(
+        self,
+        days: dict[str, Any],
+        rules: list[str],
+        place: dict[str, Any],
+        targets: dict[str, Any],
+        trees: dict[str, Any],
+        progress: _Progress,
+    ) -> tuple[_Columns, _Grid | None]: ...
+    def sky_view(
+        self,
+        directions: int | None,
+        patches: str | None,
+        targets: dict[str, Any],
+        trees: dict[str, Any],
+        progress: _Progress,
+    ) -> tuple[_Columns, _Grid | None]: ...
+    def viewshed(
+        self,
+        observers: npt.NDArray[np.float64],
+        looking: dict[str, Any],
+        place: dict[str, Any],
+        unproven: str,
+        progress: _Progress,
+    ) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint32], _Grid, list[str]]: ...
+    def horizon(
+        self,
+        observers: npt.NDArray[np.float64],
+        angle_step: float | None,
+        looking: dict[str, Any],
+        place: dict[str, Any],
+        progress: _Progress,
+    ) -> tuple[npt.NDArray[np.float64], int, list[str]]: ...
+    def isovist(
+        self,
+        observers: npt.NDArray[np.float64],
+        angle_step: float | None,
+        min_jump: float | None,
+        looking: dict[str, Any],
+        place: dict[str, Any],
+        progress: _Progress,
+    ) -> tuple[dict[str, npt.NDArray[Any]], list[npt.NDArray[np.float32]], list[str]]: ...
+    def sun_positions(self, times: list[str], place: dict[str, Any]) -> list[tuple[float, float]]: ...
+
+def read(inputs: list[Any], crs: str | None, up: str, progress: _Progress) -> tuple[Cloud, str]: ...
+def simulate(
+    preset: str, extent: float | None, density: float | None, seed: int
+) -> dict[str, npt.NDArray[Any]]: ...
+def write_geotiff(
+    path: str | os.PathLike[str],
+    values: npt.NDArray[Any],
+    transform: Sequence[float],
+    crs: Crs,
+    nodata: float | None,
+    description: str | None,
+) -> None: ...

@@ -1,0 +1,57 @@
+"""What goes wrong, and what is lost."""
+
+from __future__ import annotations
+
+
+class BelvedereError(ValueError):
+    """An argument, a file or a cloud that Belvedere cannot use.
+
+    Files that the operating system refuses raise `OSError`, one that is missing `FileNotFoundError`.
+
+    Attributes
+    ----------
+    what : str
+        What is wrong, such as the name of a parameter.
+    value : str
+        The value at fault.
+    advice : str
+        What to do about it.
+
+    Examples
+    --------
+    >>> try:
+    ...     scene.shadow(sun=(180, 95))
+    ... except belvedere.BelvedereError as error:
+    ...     print(error.what, error.value)
+    sun (180, 95)
+    """
+
+    def __init__(self, message: str, what: str = "", value: str = "", advice: str = "") -> None:
+        super().__init__(message)
+        self.what = what
+        self.value = value
+        self.advice = advice
+
+    def __reduce__(self) -> tuple[type[BelvedereError], tuple[str, str, str, str]]:
+        return type(self), (str(self), self.what, self.value, self.advice)
+
+
+class BelvedereWarning(UserWarning):
+    """Something is lost or uncertain, such as points that were left out.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> warnings.simplefilter("error", belvedere.BelvedereWarning)  # make them errors
+    """
+
+
+def wrong(what: str, value: object, advice: str) -> BelvedereError:
+    """The error of an argument."""
+    return BelvedereError(f"{what} is {value}: {advice}", what, str(value), advice)
+
+
+def missing(package: str, needed_for: str) -> BelvedereError:
+    """The error of an optional package that is not installed."""
+    advice = f"install it: pip install {package}"
+    return BelvedereError(f"{needed_for} needs the package {package}; {advice}", package, "missing", advice)

@@ -1,0 +1,219 @@
+"""From what users give to what the native part takes."""
+
+from __future__ import annotations
+
+import datetime
+import os
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, BinaryIO, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from ._errors import wrong
+
+#: A path, bytes, a file that is open for reading in binary mode, or an object of laspy.
+Source = Union[str, "os.PathLike[str]", bytes, BinaryIO, Any]
+#: An instant: a `datetime` or a pandas `Timestamp` with a time zone, or ISO 8601 text with an offset.
+Time = Union[datetime.datetime, str]
+#: A day: a `date`, or ISO 8601 text.
+Day = Union[datetime.date, str]
+#: Called with the name of the stage, the items that are done, and their number (0 where it is not known).
+Progress = Union[bool, Callable[[str, int, int], object], None]
+#: Places, (N, 3), in the coordinates of the cloud's file.
+Places = npt.ArrayLike
+
+
+def native_source(source: Source, name: str | None) -> object:
+    """A path, or a pair of a name and bytes."""
+    if isinstance(source, (bytes, bytearray, memoryview)):
+        if name is None:
+            raise wrong("name", "missing", "bytes have no name: give name='tile.laz', whose extension says the format")
+        return name, bytes(source)
+    if isinstance(source, (str, os.PathLike)):
+        return os.fspath(source)
+    if hasattr(source, "point_format") and hasattr(source, "write"):
+        import io
+
+        buffer = io.BytesIO()
+        writer: Any = source
+        writer.write(buffer, do_compress=False)
+        return "laspy.las", buffer.getvalue()
+    if hasattr(source, "read"):
+        content = source.read()
+        if not isinstance(content, bytes):
+            raise wrong("source", "a file in text mode", "open it in binary mode: open(path, 'rb')")
+        given = name if name is not None else getattr(source, "name", None)
+        if not isinstance(given, str):
+            raise wrong("name", "missing", "this file has no name: give name='tile.laz', whose extension says the format")
+        return given, content
+    raise wrong("source", f"a {type(source).__name__}", "give a path, bytes, a binary file, or an object of laspy")
+
+
+def place(value: object, what: str) -> tuple[float, float, float]:
+    """Three finite numbers."""
+    try:
+        array = np.asarray(value, np.float64)
+    except (TypeError, ValueError):
+        raise wrong(what, repr(value), "give three numbers: x, y, z") from None
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise wrong(what, repr(value), "give three finite numbers: x, y, z")
+    return float(array[0]), float(array[1]), float(array[2])
+
+
+def places(value: Places, what: str) -> npt.NDArray[Any]:
+    """Rows of three numbers, 32 or 64 bit, without a copy where they are that already."""
+    try:
+        array = np.asarray(value)
+        if array.dtype not in (np.float32, np.float64):
+            if array.dtype.kind not in "iufb":
+                raise TypeError
+            array = array.astype(np.float64)
+    except (TypeError, ValueError):
+        raise wrong(what, f"a {type(value).__name__}", "give numbers of shape (N, 3)") from None
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise wrong(what, f"an array of shape {array.shape}", "give x, y and z in three columns, shape (N, 3)")
+    return array
+
+
+def time_text(time: Time, what: str = "time") -> str:
+    """ISO 8601 with an offset."""
+    if isinstance(time, str):
+        return time
+    if isinstance(time, datetime.datetime):
+        if time.tzinfo is None or time.utcoffset() is None:
+            raise wrong(
+                what,
+                time.isoformat(),
+                "it has no time zone, so the instant is not known; give one, such as "
+                "datetime(2026, 6, 21, 15, tzinfo=ZoneInfo('Europe/Amsterdam'))",
+            )
+        return time.isoformat()
+    if isinstance(time, np.datetime64):
+        raise wrong(what, time, "numpy times have no time zone; use datetime or pandas with one, such as tz='UTC'")
+    raise wrong(what, repr(time), "give a datetime with a time zone")
+
+
+def times(value: Time | Iterable[Time], what: str = "time") -> tuple[list[str], bool]:
+    """Times as text, and whether one time was given rather than several."""
+    if isinstance(value, (str, datetime.datetime, np.datetime64)):
+        return [time_text(value, what)], True
+    try:
+        texts = [time_text(one, what) for one in value]
+    except TypeError:
+        raise wrong(what, repr(value), "give a datetime with a time zone, or several") from None
+    if not texts:
+        raise wrong(what, "empty", "give at least one")
+    return texts, False
+
+
+def day_text(day: Day, what: str = "date") -> str:
+    """A day as text."""
+    if isinstance(day, str):
+        return day
+    if isinstance(day, datetime.date) and not isinstance(day, datetime.datetime):
+        return day.isoformat()
+    raise wrong(what, repr(day), "give a day, such as datetime.date(2026, 6, 21) or '2026-06-21'")
+
+
+def day_texts(value: Day | Iterable[Day]) -> list[str]:
+    """Days as text."""
+    if isinstance(value, (str, datetime.date)):
+        return [day_text(value)]
+    try:
+        texts = [day_text(one) for one in value]
+    except TypeError:
+        raise wrong("date", repr(value), "give a day, such as datetime.date(2026, 6, 21), or several") from None
+    if not texts:
+        raise wrong("date", "empty", "give at least one day")
+    return texts
+
+
+def moments(value: object) -> list[str]:
+    """Two days, or two times."""
+    if not isinstance(value, (tuple, list)) or len(value) != 2:
+        raise wrong("period", repr(value), "give its first and its last day, or two times")
+    return [time_text(one, "period") if isinstance(one, datetime.datetime) else day_text(one, "period") for one in value]
+
+
+def zone_text(zone: str | datetime.tzinfo | None) -> str | None:
+    """The name of a time zone."""
+    if zone is None or isinstance(zone, str):
+        return zone
+    key = getattr(zone, "key", None) or getattr(zone, "zone", None)
+    if isinstance(key, str):
+        return key
+    offset = zone.utcoffset(None)
+    if offset is None:
+        raise wrong("zone", repr(zone), "give a name such as 'Europe/Amsterdam'")
+    minutes = int(offset.total_seconds() // 60)
+    return f"{'-' if minutes < 0 else '+'}{abs(minutes) // 60:02}:{abs(minutes) % 60:02}"
+
+
+def number_pair(value: object, what: str, advice: str) -> tuple[float, float]:
+    """Two finite numbers."""
+    try:
+        array = np.asarray(value, np.float64)
+    except (TypeError, ValueError):
+        raise wrong(what, repr(value), advice) from None
+    if array.shape != (2,) or not np.isfinite(array).all():
+        raise wrong(what, repr(value), advice)
+    return float(array[0]), float(array[1])
+
+
+def check_finite(**values: float | None) -> None:
+    """Refuses numbers that are none."""
+    for name, value in values.items():
+        if value is None:
+            continue
+        if isinstance(value, (str, bytes)) or not np.isscalar(value):
+            raise wrong(name, repr(value), "give a number")
+        if not np.isfinite(value):
+            raise wrong(name, value, "give a finite number")
+
+
+def reporter(progress: Progress) -> Callable[[str, int, int], object] | None:
+    """What the native part calls with the progress."""
+    if progress is None or progress is False:
+        return None
+    if progress is True:
+        return _bar()
+    if callable(progress):
+        return progress
+    raise wrong("progress", repr(progress), "give True, None, or a function of stage, done and total")
+
+
+def _bar() -> Callable[[str, int, int], object]:
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        return _lines()
+    bars: list[Any] = []
+
+    def show(stage: str, done: int, total: int) -> None:
+        if not bars or bars[-1].desc != stage:
+            if bars:
+                bars[-1].close()
+            bars.append(tqdm(desc=stage, total=total or None))
+        bars[-1].update(done - bars[-1].n)
+
+    return show
+
+
+def _lines() -> Callable[[str, int, int], object]:
+    last = [""]
+
+    def show(stage: str, done: int, total: int) -> None:
+        if stage != last[0]:
+            last[0] = stage
+            print(f"belvedere: {stage}", file=sys.stderr)
+
+    return show
+
+
+def as_list(value: str | Sequence[str]) -> list[str]:
+    """One text, or several."""
+    return [value] if isinstance(value, str) else list(value)
+
+

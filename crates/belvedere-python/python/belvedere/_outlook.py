@@ -1,0 +1,277 @@
+"""Questions about what observers see around themselves."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._errors import BelvedereWarning, wrong
+from ._inputs import Progress, check_finite, number_pair, reporter
+from ._raster import Raster
+from ._sunlight import _place
+from ._table import Table
+from ._targets import raster
+
+_OBSERVERS = "give x and y, or x, y and z: shape (2,), (3,), (N, 2) or (N, 3)"
+
+
+class Outlook:
+    """What observers see around themselves."""
+
+    _core: _core.Scene
+
+    def viewshed(
+        self,
+        observers: npt.ArrayLike,
+        *,
+        observer_height: float | None = None,
+        target_height: float | None = None,
+        cell: float | None = None,
+        ground: str | None = None,
+        azimuth_range_deg: npt.ArrayLike | None = None,
+        elevation_range_deg: npt.ArrayLike | None = None,
+        min_distance: float | None = None,
+        max_distance: float | None = None,
+        unproven: str = "report",
+        curvature: str | None = None,
+        refraction: float | None = None,
+        grid_north: bool = False,
+        progress: Progress = None,
+    ) -> Raster:
+        """What one or many observers see of the ground.
+
+        Parameters
+        ----------
+        observers : array_like, shape (2,), (3,), (N, 2) or (N, 3)
+            Places in the coordinates of the file. Without z, eyes are `observer_height` above the ground.
+        observer_height : float, optional
+            Height of eyes above the ground, metres; 1.7 if not given.
+        target_height : float, optional
+            Height of what is looked at above the ground, metres; 0 if not given.
+        cell : float, optional
+            Side of a cell, metres; 0.5 if not given, more for large scenes.
+        ground : {'auto', 'class', 'found'}, optional
+            Which points are ground: class 2 where there is one (default), always class 2, or those that are found.
+        azimuth_range_deg, elevation_range_deg : array_like, shape (2,), optional
+            Where observers look: azimuths clockwise from true north (from 300 to 60 runs through north), and elevations.
+        min_distance, max_distance : float, optional
+            How far they look on the map, metres.
+        unproven : {'report', 'as-visible', 'as-blocked'}
+            What to make of lines that nothing blocks but that cross space that no pulse came near.
+        curvature : {'auto', 'on', 'off'}, optional
+        refraction : float, optional
+            As for `line_of_sight`.
+        grid_north : bool, optional
+            Whether azimuths are counted from grid north.
+        progress : bool or callable, optional
+
+        Returns
+        -------
+        Raster
+            Of one observer uint8: an `Answer`, 255 where there is none. Of several uint16: how many observers see a cell, 65535 where
+            none looks.
+
+        Raises
+        ------
+        BelvedereError
+            Where no observer is left, and for parameters out of range.
+
+        Warns
+        -----
+        BelvedereWarning
+            Of observers that cannot look: inside an obstacle, below the ground, outside the cloud.
+
+        References
+        ----------
+        docs/methods/viewshed.md
+
+        Examples
+        --------
+        >>> seen = scene.viewshed(standing, max_distance=50)
+        >>> seen.values.dtype, bool((seen.values == belvedere.Answer.VISIBLE).any())
+        (dtype('uint8'), True)
+        """
+        looking = _looking(
+            observer_height=observer_height,
+            target_height=target_height,
+            cell=cell,
+            ground=ground,
+            azimuth_range=_range(azimuth_range_deg, "azimuth_range_deg"),
+            elevation_range=_range(elevation_range_deg, "elevation_range_deg"),
+            min_distance=min_distance,
+            max_distance=max_distance,
+            curvature=curvature,
+            refraction=refraction,
+        )
+        places = _places(observers)
+        answers, counts, grid, skipped = self._core.viewshed(
+            places, looking, _place(None, grid_north=grid_north), unproven, reporter(progress)
+        )
+        _warn(skipped)
+        nothing = answers >= 3
+        if len(places) == 1:
+            text = "1 visible, 0 blocked, 2 unproven, 255 nodata"
+            values = np.where(nothing, np.uint8(255), answers)
+            return raster(values, grid, self._core.crs, name="visible", description=text, nodata=255.0)
+        text = "number of observers that see the cell, 65535 nodata"
+        values = np.where(nothing, 65535, np.minimum(counts, 65534)).astype(np.uint16)
+        return raster(values, grid, self._core.crs, name="observers", description=text, nodata=65535.0)
+
+    def horizon(
+        self,
+        observers: npt.ArrayLike,
+        *,
+        observer_height: float | None = None,
+        angle_step_deg: float | None = None,
+        ground: str | None = None,
+        curvature: str | None = None,
+        refraction: float | None = None,
+        grid_north: bool = False,
+        progress: Progress = None,
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Above which elevation the sky is free around observers.
+
+        Parameters
+        ----------
+        observers : array_like, shape (2,), (3,), (N, 2) or (N, 3)
+            Places in the coordinates of the file. Without z, eyes are `observer_height` above the ground.
+        observer_height : float, optional
+            Metres; 1.7 if not given.
+        angle_step_deg : float, optional
+            Degrees between azimuths; 1 if not given.
+        ground, curvature, refraction, grid_north, progress : optional
+            As for `viewshed`.
+
+        Returns
+        -------
+        azimuths_deg : ndarray, shape (A,)
+            Clockwise from true north.
+        elevations_deg : ndarray, shape (A,) for one observer, (N, A) for several
+            -90 where nothing stands; NaN for observers that are skipped.
+
+        Raises
+        ------
+        BelvedereError
+            Where no observer is left, and for parameters out of range.
+
+        Examples
+        --------
+        >>> azimuths, elevations = scene.horizon(standing)
+        >>> len(azimuths), bool((elevations <= 90).all())
+        (360, True)
+        """
+        looking = _looking(
+            observer_height=observer_height, ground=ground, curvature=curvature, refraction=refraction
+        )
+        check_finite(angle_step_deg=angle_step_deg)
+        places = _places(observers)
+        found, count, skipped = self._core.horizon(
+            places, angle_step_deg, looking, _place(None, grid_north=grid_north), reporter(progress)
+        )
+        _warn(skipped)
+        azimuths = 360.0 * np.arange(count) / count
+        elevations = found.reshape(len(places), count)
+        return azimuths, elevations[0] if np.ndim(observers) == 1 else elevations
+
+    def isovist(
+        self,
+        observers: npt.ArrayLike,
+        *,
+        observer_height: float | None = None,
+        max_distance: float | None = None,
+        angle_step_deg: float | None = None,
+        min_jump: float | None = None,
+        ground: str | None = None,
+        grid_north: bool = False,
+        progress: Progress = None,
+    ) -> Table:
+        """The space that observers see, in numbers: its volume, how open it is, and its plan.
+
+        Parameters
+        ----------
+        observers : array_like, shape (2,), (3,), (N, 2) or (N, 3)
+            Places in the coordinates of the file. Without z, eyes are `observer_height` above the ground.
+        observer_height : float, optional
+            Metres; 1.7 if not given.
+        max_distance : float, optional
+            Range at which sight ends where nothing blocks, metres; 100 if not given.
+        angle_step_deg : float, optional
+            Degrees between rays; 1 if not given.
+        min_jump : float, optional
+            Smallest jump of range that is an edge of the plan, metres; 0.25 if not given.
+        ground, grid_north, progress : optional
+            As for `viewshed`.
+
+        Returns
+        -------
+        Table
+            ``volume_m3``, ``openness``, ``sky_openness``, ranges, drift, area and perimeter of the plan; a row for each observer, NaN
+            for one that is skipped. The attribute `panoramas` has the ranges in all directions.
+
+        Raises
+        ------
+        BelvedereError
+            Where no observer is left, and for parameters out of range.
+
+        References
+        ----------
+        docs/methods/isovists.md
+
+        Examples
+        --------
+        >>> space = scene.isovist(standing)
+        >>> bool(space["volume_m3"][0] > 0), space.panoramas[0].shape
+        (True, (180, 360))
+        """
+        looking = _looking(observer_height=observer_height, max_distance=max_distance, ground=ground)
+        check_finite(angle_step_deg=angle_step_deg, min_jump=min_jump)
+        columns, panoramas, skipped = self._core.isovist(
+            _places(observers),
+            angle_step_deg,
+            min_jump,
+            looking,
+            _place(None, grid_north=grid_north),
+            reporter(progress),
+        )
+        _warn(skipped)
+        places = columns.pop("place")
+        return Table(columns, places=places, crs=self._core.crs.text, panoramas=panoramas)
+
+
+def _looking(**given: Any) -> dict[str, Any]:
+    """How observers look, as the native part takes it."""
+    names = ("observer_height", "target_height", "cell", "ground", "azimuth_range", "elevation_range")
+    more = ("min_distance", "max_distance", "curvature", "refraction")
+    numbers = ("observer_height", "target_height", "cell", "min_distance", "refraction")
+    check_finite(**{name: given.get(name) for name in numbers})
+    return {name: given.get(name) for name in names + more}
+
+
+def _range(value: npt.ArrayLike | None, what: str) -> tuple[float, float] | None:
+    return None if value is None else number_pair(value, what, "give two angles in degrees, such as (300, 60)")
+
+
+def _places(value: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Rows of x, y, z; z is NaN where it follows from the ground."""
+    try:
+        array = np.asarray(value, np.float64)
+    except (TypeError, ValueError):
+        raise wrong("observers", repr(value), _OBSERVERS) from None
+    if array.ndim == 1:
+        array = array[np.newaxis]
+    if array.ndim != 2 or array.shape[1] not in (2, 3) or not len(array):
+        raise wrong("observers", f"an array of shape {np.shape(value)}", _OBSERVERS)
+    if not np.isfinite(array).all():
+        raise wrong("observers", "not finite", "leave z out where it is not known")
+    if array.shape[1] == 2:
+        array = np.column_stack([array, np.full(len(array), np.nan)])
+    return np.ascontiguousarray(array)
+
+
+def _warn(sentences: list[str]) -> None:
+    for sentence in sentences:
+        warnings.warn(sentence, BelvedereWarning, stacklevel=3)

@@ -1,0 +1,212 @@
+"""Grids of values on the map."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._errors import missing, wrong
+
+if TYPE_CHECKING:
+    import xarray
+
+
+class Raster:
+    """A grid of values on the map, rows from the north.
+
+    Attributes
+    ----------
+    values : ndarray, shape (height, width)
+        float32 with NaN, or unsigned integers with `nodata`, where there is no value.
+    transform : tuple of 6 floats
+        Affine transform from columns and rows to coordinates, in the order of `affine.Affine` and rasterio:
+        ``x = a * column + b * row + c``, ``y = d * column + e * row + f``.
+    nodata : float or None
+        The value where there is none; NaN for float32.
+    name, description : str
+        What the values are.
+
+    Examples
+    --------
+    >>> lit = scene.shadow(sun=(180, 30))
+    >>> lit
+    <belvedere.Raster 'lit': ... rows x ... columns of 0.5 m, EPSG:7415 (Amersfoort / RD New + NAP height), metres>
+    >>> round(float(np.nanmean(lit)), 1) <= 1.0
+    True
+    """
+
+    def __init__(
+        self,
+        values: npt.NDArray[Any],
+        transform: tuple[float, float, float, float, float, float],
+        crs: _core.Crs,
+        *,
+        nodata: float | None = None,
+        name: str = "",
+        description: str = "",
+    ) -> None:
+        self.values = values
+        self.transform = transform
+        self.nodata = nodata
+        self.name = name
+        self.description = description
+        self._crs = crs
+
+    @property
+    def crs(self) -> str | None:
+        """The coordinate reference system as well-known text or ``EPSG:CODE``; None where it is not known."""
+        return self._crs.text
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of rows and columns."""
+        rows, columns = self.values.shape
+        return rows, columns
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """West, south, east and north in the coordinates of the file.
+
+        Examples
+        --------
+        >>> west, south, east, north = scene.shadow(sun=(180, 30)).bounds
+        >>> west < east and south < north
+        True
+        """
+        a, _, west, _, e, north = self.transform
+        rows, columns = self.shape
+        return west, north + e * rows, west + a * columns, north
+
+    @property
+    def x(self) -> npt.NDArray[np.float64]:
+        """East coordinates of the middles of the columns."""
+        a, _, west, *_ = self.transform
+        return np.asarray(west + a * (np.arange(self.shape[1]) + 0.5), np.float64)
+
+    @property
+    def y(self) -> npt.NDArray[np.float64]:
+        """North coordinates of the middles of the rows, from the north."""
+        *_, e, north = self.transform
+        return np.asarray(north + e * (np.arange(self.shape[0]) + 0.5), np.float64)
+
+    def to_geotiff(self, path: str | os.PathLike[str]) -> None:
+        """Writes a GeoTIFF, as the command line does: -9999 where a float raster has no value.
+
+        Examples
+        --------
+        >>> scene.shadow(sun=(180, 30)).to_geotiff(folder / "shadow.tif")
+        """
+        values = np.ascontiguousarray(self.values)
+        if values.dtype not in (np.float32, np.uint8, np.uint16):
+            values = values.astype(np.float32)
+        nodata = _core.NO_VALUE if values.dtype == np.float32 else self.nodata
+        _core.write_geotiff(os.fspath(path), values, self.transform, self._crs, nodata, self.description or None)
+
+    def to_xarray(self) -> xarray.DataArray:
+        """An `xarray.DataArray` by the conventions of rioxarray.
+
+        Examples
+        --------
+        >>> scene.shadow(sun=(180, 30)).to_xarray().dims
+        ('y', 'x')
+        """
+        try:
+            import xarray
+        except ImportError:
+            raise missing("xarray", "to_xarray") from None
+        a, b, c, d, e, f = self.transform
+        grid_mapping = {"GeoTransform": f"{c} {a} {b} {f} {d} {e}"}
+        if self.crs is not None:
+            grid_mapping |= {"crs_wkt": self.crs, "spatial_ref": self.crs}
+        reference = xarray.DataArray(0, attrs=grid_mapping)
+        attributes: dict[str, Any] = {"long_name": self.description} if self.description else {}
+        if self.nodata is not None and np.isfinite(self.nodata):
+            attributes["_FillValue"] = self.nodata
+        return xarray.DataArray(
+            self.values,
+            dims=("y", "x"),
+            coords={"y": self.y, "x": self.x, "spatial_ref": reference},
+            name=self.name or None,
+            attrs=attributes,
+        )
+
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        if copy:
+            return np.array(self.values, dtype)
+        return np.asarray(self.values, dtype)
+
+    def __repr__(self) -> str:
+        rows, columns = self.shape
+        name = f" '{self.name}'" if self.name else ""
+        side = f"{self.transform[0] * self._crs.metres_per_unit:g} m"
+        return f"<belvedere.Raster{name}: {rows} rows x {columns} columns of {side}, {self._crs.description}>"
+
+    def _repr_html_(self) -> str:
+        from ._picture import png_tag
+
+        return f"{png_tag(self.values, self.nodata)}<br>{escaped(repr(self))}"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        state = (self.values, self.transform, self._crs.state, self.nodata, self.name, self.description)
+        return _unpickled, state
+
+
+class Rasters(Mapping[str, Raster]):
+    """Several rasters on one grid, by name.
+
+    Examples
+    --------
+    >>> sky = scene.sky_view(cell=2)
+    >>> sorted(sky)
+    ['sky_openness', 'sky_view_factor']
+    >>> sky["sky_view_factor"].shape == sky["sky_openness"].shape
+    True
+    """
+
+    def __init__(self, rasters: Mapping[str, Raster]) -> None:
+        if not rasters:
+            raise wrong("rasters", "empty", "give at least one")
+        self._rasters = dict(rasters)
+
+    def __getitem__(self, name: str) -> Raster:
+        return self._rasters[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._rasters)
+
+    def __len__(self) -> int:
+        return len(self._rasters)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """An `xarray.Dataset` by the conventions of rioxarray.
+
+        Examples
+        --------
+        >>> sorted(scene.sky_view(cell=2).to_xarray())
+        ['sky_openness', 'sky_view_factor']
+        """
+        try:
+            import xarray
+        except ImportError:
+            raise missing("xarray", "to_xarray") from None
+        return xarray.Dataset({name: raster.to_xarray() for name, raster in self.items()})
+
+    def __repr__(self) -> str:
+        first = next(iter(self.values()))
+        return f"<belvedere.Rasters {', '.join(self)}: {repr(first).split(': ', 1)[1]}"
+
+
+def escaped(text: str) -> str:
+    """Text in HTML."""
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+
+
+def _unpickled(
+    values: npt.NDArray[Any], transform: Any, system: Any, nodata: float | None, name: str, description: str
+) -> Raster:
+    return Raster(values, transform, _core.Crs.from_state(system), nodata=nodata, name=name, description=description)

@@ -1,0 +1,240 @@
+"""Scenes: what is asked about visibility."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._core import Scene as NativeScene
+from ._cloud import Cloud
+from ._errors import BelvedereWarning, wrong
+from ._inputs import Progress, Source, as_list, check_finite, native_source, place, reporter
+from ._outlook import Outlook
+from ._raster import escaped
+from ._sights import Sights
+from ._sunlight import Sunlight
+
+
+class Scene(Sights, Outlook, Sunlight):
+    """A scene that answers what can be seen: medial balls, cut with the space that laser pulses prove empty.
+
+    Parameters
+    ----------
+    cloud : Cloud
+        The points.
+    trees : {'measured', 'opaque', 'porous'}, optional
+        What crowns are taken for: as the pulses found them (default), solid as in full leaf, or twigs as in winter.
+    orient : {'auto', 'pulses', 'scanner', 'given', 'up'}, optional
+        How normals are turned outward: by what the cloud has (default), by the pulses, towards the scanner positions of the file,
+        as the file says, or upward.
+    scanner : array_like, shape (3,), optional
+        Place of the one scanner, in the coordinates of the cloud, in place of `orient`.
+    trajectory : path, optional
+        Trajectory of the scanner, in place of `orient`.
+    mesh : path, optional
+        Mesh whose faces say which side is outside, in place of `orient`.
+    method : {'carved', 'tau', 'angles'}, optional
+        How balls are made: carved with pulses where that is possible (default), from points alone, or as published in 2015.
+    without : str or list of str, optional
+        Rules of carving to leave out, such as ``'crowns'``.
+    keep_noise, keep_duplicates, keep_isolated : bool, optional
+        Points that cleaning would leave out.
+    neighbors : int, optional
+        Points that a normal is estimated from.
+    initial_radius, max_radius, penetration : float, optional
+        Radius in metres that balls start with, their greatest radius, and how deep a point may lie in a ball.
+    progress : bool or callable, optional
+        True shows a bar; a function is called with stage, items done and items in all, and stops the work by raising.
+
+    Attributes
+    ----------
+    cloud : Cloud or None
+        The points; None for a scene from a ball file without them.
+    report : dict
+        What became of the points on the way.
+
+    Raises
+    ------
+    BelvedereError
+        For parameters out of range, and for a cloud that lacks what they need.
+
+    Notes
+    -----
+    The numbers that are not given are those of the library, and of the command line: ``belvedere balls --help`` shows them. Results
+    are the same, bit by bit, for any number of threads.
+
+    References
+    ----------
+    Peters, Ledoux & Biljecki 2015, "Visibility analysis in a point cloud based on the medial axis transform".
+
+    Examples
+    --------
+    >>> scene = belvedere.Scene(cloud)
+    >>> scene
+    <belvedere.Scene: ... balls, carved with ... pulses, EPSG:7415 ...>
+    """
+
+    def __init__(
+        self,
+        cloud: Cloud,
+        *,
+        trees: str | None = None,
+        orient: str | None = None,
+        scanner: npt.ArrayLike | None = None,
+        trajectory: str | os.PathLike[str] | None = None,
+        mesh: str | os.PathLike[str] | None = None,
+        method: str | None = None,
+        without: str | list[str] = [],
+        keep_noise: bool = False,
+        keep_duplicates: bool = False,
+        keep_isolated: bool = False,
+        neighbors: int | None = None,
+        initial_radius: float | None = None,
+        max_radius: float | None = None,
+        penetration: float | None = None,
+        progress: Progress = None,
+    ) -> None:
+        if not isinstance(cloud, Cloud):
+            raise wrong("cloud", f"a {type(cloud).__name__}", "give a Cloud: belvedere.read(path) or belvedere.Cloud(xyz)")
+        ways = {"orient": orient, "scanner": scanner, "trajectory": trajectory, "mesh": mesh}
+        given = [name for name, value in ways.items() if value is not None]
+        if len(given) > 1:
+            raise wrong(" and ".join(given), "given together", "give one of them")
+        check_finite(initial_radius=initial_radius, penetration=penetration)
+        choices = {
+            "trees": trees,
+            "orient": orient,
+            "scanner": None if scanner is None else place(scanner, "scanner"),
+            "trajectory": None if trajectory is None else os.fspath(trajectory),
+            "mesh": None if mesh is None else os.fspath(mesh),
+            "method": method,
+            "without": as_list(without),
+            "keep_noise": keep_noise,
+            "keep_duplicates": keep_duplicates,
+            "keep_isolated": keep_isolated,
+            "neighbors": neighbors,
+            "initial_radius": initial_radius,
+            "max_radius": max_radius,
+            "penetration": penetration,
+        }
+        self._core, text = _core.Scene.build(cloud._core, choices, reporter(progress))
+        self.cloud: Cloud | None = cloud
+        self.report: dict[str, Any] = json.loads(text)
+        remark = self.report.get("pulses", {}).get("remark")
+        if remark:
+            warnings.warn(str(remark), BelvedereWarning, stacklevel=2)
+
+    @classmethod
+    def load(
+        cls, source: Source, *, cloud: Cloud | None = None, name: str | None = None, progress: Progress = None
+    ) -> Scene:
+        """The scene of a ball file.
+
+        Parameters
+        ----------
+        source : path, bytes or binary file
+            ``.npz`` holds everything; ``.ply``, ``.las`` and ``.laz`` hold the balls without the pulses.
+        cloud : Cloud, optional
+            The points, which show the ground below cells and observers.
+        name : str, optional
+            Name of bytes, such as ``"balls.npz"``.
+        progress : bool or callable, optional
+
+        Examples
+        --------
+        >>> scene.save(folder / "balls.npz")
+        >>> again = belvedere.Scene.load(folder / "balls.npz", cloud=scene.cloud)
+        >>> bool((again.visible(eye, targets) == scene.visible(eye, targets)).all())
+        True
+        """
+        if cloud is not None and not isinstance(cloud, Cloud):
+            raise wrong("cloud", f"a {type(cloud).__name__}", "give a Cloud: belvedere.read(path)")
+        core = _core.Scene.load(native_source(source, name), None if cloud is None else cloud._core, reporter(progress))
+        return cls._of(core, {} if cloud is None else cloud.report, {})
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes a ball file: ``.npz`` keeps every bit; ``.ply .laz .las`` are for looking at.
+
+        Examples
+        --------
+        >>> scene.save(folder / "balls.npz")
+        """
+        self._core.save(os.fspath(path))
+
+    @classmethod
+    def _of(cls, core: NativeScene, of_cloud: dict[str, Any], report: dict[str, Any]) -> Scene:
+        scene = cls.__new__(cls)
+        scene._core = core
+        points = core.cloud
+        scene.cloud = None if points is None else Cloud._of(points, of_cloud)
+        scene.report = report
+        return scene
+
+    @property
+    def crs(self) -> str | None:
+        """The coordinate reference system as well-known text or ``EPSG:CODE``; None where it is not known."""
+        return self._core.crs.text
+
+    @property
+    def bounds(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Lowest and highest corner of the points that the balls were made from.
+
+        Examples
+        --------
+        >>> low, high = scene.bounds
+        >>> bool((low <= high).all())
+        True
+        """
+        low, high = self._core.bounds
+        return np.array(low), np.array(high)
+
+    @property
+    def provenance(self) -> dict[str, str]:
+        """How the balls were made.
+
+        Examples
+        --------
+        >>> scene.provenance["method"]
+        'carved'
+        """
+        return dict(self._core.provenance)
+
+    def __repr__(self) -> str:
+        pulses = self._core.pulse_count
+        how = f"carved with {pulses} pulses" if pulses is not None else "without pulses"
+        return f"<belvedere.Scene: {self._core.ball_count} balls, {how}, {self._core.crs.description}>"
+
+    def _repr_html_(self) -> str:
+        from ._picture import png_tag
+
+        text = f"<pre>{escaped(json.dumps(self.report, indent=1))}</pre>"
+        details = f"<details><summary>{escaped(repr(self))}</summary>{text}</details>"
+        if self.cloud is None:
+            return details
+        return png_tag(_relief(self.cloud)) + details
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _unpickled, (self._core.to_bytes(), self.cloud, self.report)
+
+
+def _relief(cloud: Cloud) -> npt.NDArray[np.float64]:
+    """Heights of the highest points, on a small grid for a picture."""
+    xyz = cloud.xyz
+    low = xyz[:, :2].min(axis=0)
+    span = max(float((xyz[:, :2].max(axis=0) - low).max()), 1e-9)
+    size = 160
+    columns, rows = ((xyz[:, :2] - low) / span * (size - 1)).astype(np.intp).T
+    heights = np.full((rows.max() + 1, columns.max() + 1), -np.inf)
+    np.maximum.at(heights, (rows.max() - rows, columns), xyz[:, 2])
+    return np.where(np.isfinite(heights), heights, np.nan)
+
+
+def _unpickled(balls: bytes, cloud: Cloud | None, report: dict[str, Any]) -> Scene:
+    core = _core.Scene.load(("scene.npz", balls), None if cloud is None else cloud._core, None)
+    return Scene._of(core, {} if cloud is None else cloud.report, report)

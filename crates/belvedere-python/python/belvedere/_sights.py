@@ -1,0 +1,149 @@
+"""Questions about what is seen from where."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._answer import Answer
+from ._inputs import Places, Progress, check_finite, place, places, reporter
+from ._table import Table
+from ._targets import Targets, wanted
+
+
+class Sight(NamedTuple):
+    """What is known of one line of sight.
+
+    Attributes
+    ----------
+    answer : Answer
+        Whether the target can be seen.
+    first_block_range_m : float
+        Distance from the observer to what blocks first, metres; NaN where nothing does.
+    unproven_m : float
+        How much of the line no laser pulse came near to, metres; NaN where it is blocked or pulses are not known.
+    block : tuple of 3 floats
+        Where the line is blocked first, in the coordinates of the file.
+
+    Examples
+    --------
+    >>> sight = scene.line_of_sight(eye, targets[0])
+    >>> sight.answer in belvedere.Answer
+    True
+    """
+
+    answer: Answer
+    first_block_range_m: float
+    unproven_m: float
+    block: tuple[float, float, float]
+
+
+class Sights:
+    """What is seen from where."""
+
+    _core: _core.Scene
+
+    def visible(
+        self,
+        eye: npt.ArrayLike,
+        targets: Targets,
+        *,
+        unproven: str = "report",
+        progress: Progress = None,
+    ) -> npt.NDArray[np.uint8]:
+        """Which targets one eye can see.
+
+        Parameters
+        ----------
+        eye : array_like, shape (3,)
+            Place of the eye in the coordinates of the file: x, y, z.
+        targets : array_like, shape (N, 3), or Cloud
+            Places in the coordinates of the file. None asks about the cells of a grid, as `shadow` does.
+        unproven : {'report', 'as-visible', 'as-blocked'}
+            What to make of lines that nothing blocks but that cross space that no pulse came near.
+        progress : bool or callable, optional
+
+        Returns
+        -------
+        ndarray, shape (N,), uint8
+            An `Answer` for each target.
+
+        Raises
+        ------
+        BelvedereError
+            For places that are not finite or not of shape (N, 3).
+
+        Examples
+        --------
+        >>> seen = scene.visible(eye, targets)
+        >>> seen.dtype, len(seen) == len(targets)
+        (dtype('uint8'), True)
+        """
+        asked = wanted(targets, None, {})
+        return self._core.visible(place(eye, "eye"), asked, unproven, reporter(progress))
+
+    def line_of_sight(
+        self,
+        observer: Places,
+        target: Places,
+        *,
+        unproven: str = "report",
+        curvature: str | None = None,
+        refraction: float | None = None,
+        progress: Progress = None,
+    ) -> Sight | Table:
+        """What is known of lines of sight between pairs of places.
+
+        Parameters
+        ----------
+        observer, target : array_like, shape (3,) or (N, 3)
+            Ends of the lines in the coordinates of the file: x, y, z. One observer can have many targets, and the other way round.
+        unproven : {'report', 'as-visible', 'as-blocked'}
+            What to make of lines that nothing blocks but that cross space that no pulse came near.
+        curvature : {'auto', 'on', 'off'}, optional
+            Whether lines follow the curvature of the earth; those of more than 2 km if not given.
+        refraction : float, optional
+            Share of the curvature that light follows, 0 to below 1; 1/7 if not given.
+        progress : bool or callable, optional
+
+        Returns
+        -------
+        Sight or Table
+            A `Sight` for one pair. For several a `Table` with ``answer``, ``first_block_range_m``, ``unproven_m`` (where pulses are
+            known), ``block`` (N, 3), ``block_ball`` and ``block_source`` (-1 where nothing blocks).
+
+        Raises
+        ------
+        BelvedereError
+            For places that are not finite, and where there are not as many observers as targets.
+
+        Examples
+        --------
+        >>> scene.line_of_sight(eye, targets)
+        <belvedere.Table: ... rows of answer, first_block_range_m, unproven_m, block, block_ball, block_source>
+        """
+        check_finite(refraction=refraction)
+        ends = [np.asarray(end, np.float64) if np.ndim(end) == 1 else end for end in (observer, target)]
+        is_one = all(np.ndim(end) == 1 for end in ends)
+        observers, targets = (
+            np.array([place(end, name)]) if np.ndim(end) == 1 else places(end, name)
+            for end, name in zip(ends, ("observer", "target"))
+        )
+        if len(observers) == 1 and len(targets) > 1:
+            observers = np.repeat(observers, len(targets), axis=0)
+        elif len(targets) == 1 and len(observers) > 1:
+            targets = np.repeat(targets, len(observers), axis=0)
+        columns = self._core.lines_of_sight(observers, targets, unproven, curvature, refraction, reporter(progress))
+        if not is_one:
+            return Table(columns, places=np.asarray(targets, np.float64), crs=self._core.crs.text)
+        nan = float("nan")
+        block = columns["block"][0]
+        return Sight(
+            Answer(int(columns["answer"][0])),
+            float(columns["first_block_range_m"][0]),
+            float(columns["unproven_m"][0]) if "unproven_m" in columns else nan,
+            (float(block[0]), float(block[1]), float(block[2])),
+        )

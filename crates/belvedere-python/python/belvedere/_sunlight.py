@@ -1,0 +1,350 @@
+"""Questions about sun and sky."""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._errors import wrong
+from ._inputs import (
+    Day,
+    Progress,
+    Time,
+    as_list,
+    check_finite,
+    day_texts,
+    moments,
+    number_pair,
+    reporter,
+    times,
+    zone_text,
+)
+from ._raster import Raster, Rasters
+from ._table import Table
+from ._targets import Cells, Targets, measures, raster, wanted
+
+_DIRECTION = "give azimuth and elevation in degrees, such as (180, 30)"
+
+
+class Sunlight:
+    """Sun and sky."""
+
+    _core: _core.Scene
+
+    def shadow(
+        self,
+        *,
+        sun: npt.ArrayLike | None = None,
+        time: Time | Iterable[Time] | None = None,
+        targets: Targets = None,
+        normals: npt.ArrayLike | None = None,
+        cell: float | None = None,
+        target_height: float | None = None,
+        surface: bool = False,
+        ground: str | None = None,
+        soft: bool = False,
+        through_trees: str | float | None = None,
+        leaves: str | None = None,
+        location: npt.ArrayLike | None = None,
+        grid_north: bool = False,
+        progress: Progress = None,
+    ) -> Any:
+        """The share of the sun that reaches targets: 1 in the sun, 0 in shadow.
+
+        Parameters
+        ----------
+        sun : array_like, shape (2,) or (K, 2), optional
+            Azimuth, clockwise from true north, and elevation of the sun, degrees. Several give several results.
+        time : datetime, pandas Timestamp, ISO text, or several, optional
+            When, in place of `sun`; with a time zone.
+        targets : array_like, shape (N, 3), or Cloud, optional
+            Places in the coordinates of the file. Without any, the cells of a grid over the scene are asked about.
+        normals : array_like, shape (N, 3), optional
+            Unit vectors that targets face; what the sun meets from behind is in shadow.
+        cell : float, optional
+            Side of a cell, metres; 0.5 if not given, more for large scenes.
+        target_height : float, optional
+            Height of cells above the ground, metres; 0.1 if not given.
+        surface : bool, optional
+            Whether cells lie on roofs, crowns and the ground between, instead of on the ground.
+        ground : {'auto', 'class', 'found'}, optional
+            Which points are ground: class 2 where there is one (default), always class 2, or those that are found.
+        soft : bool, optional
+            Whether the sun is a disc, of which places see a share.
+        through_trees : {'none', 'seasons', 'pulses'} or float, optional
+            Share of light that passes through crowns; none if not given.
+        leaves : {'auto', 'on', 'off'}, optional
+            Whether trees have leaves, with ``through_trees='seasons'``.
+        location : array_like, shape (2,), optional
+            Latitude and longitude, degrees, where the reference system does not say where the scene lies.
+        grid_north : bool, optional
+            Whether azimuths are counted from grid north.
+        progress : bool or callable, optional
+
+        Returns
+        -------
+        Raster, or ndarray of shape (N,), float32; a list of these for several suns
+            NaN for what is not asked about: cells under a cover or without ground, and targets outside the cloud.
+
+        Raises
+        ------
+        BelvedereError
+            For a time without a zone, a scene without a place on earth, and parameters out of range.
+
+        References
+        ----------
+        docs/methods/shadow.md
+
+        Examples
+        --------
+        >>> from datetime import datetime, timezone
+        >>> scene.shadow(time=datetime(2026, 6, 21, 13, tzinfo=timezone.utc))
+        <belvedere.Raster 'lit': ...>
+        >>> lit = scene.shadow(sun=(180, 30), targets=targets)
+        >>> lit.shape == (len(targets),)
+        True
+        """
+        suns, is_one = _suns(sun, time)
+        asked = wanted(
+            targets,
+            normals,
+            _cells(cell, target_height, surface, ground),
+        )
+        shares, grid = self._core.shadow(
+            suns,
+            _place(location, grid_north=grid_north),
+            asked,
+            "soft" if soft else "hard",
+            {"share": through_trees, "leaves": leaves},
+            reporter(progress),
+        )
+        description = "share of the sun, 0 in shadow"
+        results: list[Raster | npt.NDArray[np.float32]] = [
+            values
+            if grid is None
+            else raster(values, grid, self._core.crs, name="lit", description=description, nodata=float("nan"))
+            for values in shares
+        ]
+        return results[0] if is_one else results
+
+    def sun_hours(
+        self,
+        *,
+        date: Day | Iterable[Day] | None = None,
+        period: tuple[Day | Time, Day | Time] | None = None,
+        rule: str | list[str] = [],
+        year: int | None = None,
+        time_step_min: float | None = None,
+        min_sun_elevation_deg: float | None = None,
+        sun_tolerance_deg: float | None = None,
+        targets: Targets = None,
+        normals: npt.ArrayLike | None = None,
+        cell: float | None = None,
+        target_height: float | None = None,
+        surface: bool = False,
+        ground: str | None = None,
+        through_trees: str | float | None = None,
+        leaves: str | None = None,
+        location: npt.ArrayLike | None = None,
+        zone: str | datetime.tzinfo | None = None,
+        sun_elevation: str = "apparent",
+        air: npt.ArrayLike | None = None,
+        progress: Progress = None,
+    ) -> Rasters | Table:
+        """Hours of sun on days, and when.
+
+        Parameters
+        ----------
+        date : datetime.date, ISO text, or several, optional
+            Days; ``'longest-day'``, ``'shortest-day'`` and ``'equinox'`` with `year`.
+        period : pair of days or of times, optional
+            First and last day, or begin and end, in place of `date`. Results are means of the days.
+        rule : str or list of str, optional
+            Daylight rules such as ``'nl-light'`` or ``'1.5@03-21'``, with `year`.
+        year : int, optional
+            Year of days that are given without one.
+        time_step_min : float, optional
+            Minutes between two suns; 10 if not given.
+        min_sun_elevation_deg : float, optional
+            Lower suns do not count.
+        sun_tolerance_deg : float, optional
+            Greatest angle between a sun and the direction that is tested for it; 0 for few suns and 1 for many if not given.
+        targets, normals, cell, target_height, surface, ground, through_trees, leaves, location
+            As for `shadow`.
+        zone : str or tzinfo, optional
+            How clocks run; mean solar time if not given.
+        sun_elevation : {'apparent', 'geometric'}
+            Whether the air lifts the sun.
+        air : array_like, shape (2,), optional
+            Pressure in hPa and temperature in degrees Celsius.
+        progress : bool or callable, optional
+
+        Returns
+        -------
+        Rasters or Table
+            ``sun_hours``, ``sun_share``, ``first_light``, ``last_light``, ``longest``, of several days also ``min_sun_hours`` and
+            ``total_hours``, and for each rule whether it is met.
+
+        Raises
+        ------
+        BelvedereError
+            Without days, for a scene without a place on earth, and parameters out of range.
+
+        References
+        ----------
+        docs/methods/sun.md
+
+        Examples
+        --------
+        >>> sun = scene.sun_hours(date="2026-06-21", zone="Europe/Amsterdam", cell=2)
+        >>> list(sun)
+        ['sun_hours', 'sun_share', 'first_light', 'last_light', 'longest']
+        >>> bool(np.nanmax(sun["sun_hours"]) < 17)
+        True
+        """
+        check_finite(
+            time_step_min=time_step_min,
+            min_sun_elevation_deg=min_sun_elevation_deg,
+            sun_tolerance_deg=sun_tolerance_deg,
+        )
+        days = {
+            "dates": [] if date is None else day_texts(date),
+            "between": None if period is None else moments(period),
+            "year": year,
+            "step": time_step_min,
+            "min_sun_elevation": min_sun_elevation_deg,
+            "tolerance": sun_tolerance_deg,
+        }
+        if date is not None and period is not None:
+            raise wrong("date and period", "given together", "give one of them")
+        columns, grid = self._core.sun_hours(
+            days,
+            as_list(rule),
+            _place(location, zone=zone, sun_elevation=sun_elevation, air=air),
+            wanted(targets, normals, _cells(cell, target_height, surface, ground)),
+            {"share": through_trees, "leaves": leaves},
+            reporter(progress),
+        )
+        return measures(columns, grid, self._core.crs, targets)
+
+    def sky_view(
+        self,
+        *,
+        directions: int | None = None,
+        patches: str | None = None,
+        targets: Targets = None,
+        normals: npt.ArrayLike | None = None,
+        cell: float | None = None,
+        target_height: float | None = None,
+        surface: bool = False,
+        ground: str | None = None,
+        through_trees: str | float | None = None,
+        progress: Progress = None,
+    ) -> Rasters | Table:
+        """How much of the sky places see.
+
+        Parameters
+        ----------
+        directions : int, optional
+            Number of directions of the sky; 577 if not given.
+        patches : {'tregenza', 'reinhart'}, optional
+            Patches of the sky in place of even directions.
+        targets, normals, cell, target_height, surface, ground, through_trees
+            As for `shadow`.
+        progress : bool or callable, optional
+
+        Returns
+        -------
+        Rasters or Table
+            ``sky_view_factor`` (cosine-weighted) and ``sky_openness`` (unweighted), 0 to 1.
+
+        References
+        ----------
+        docs/methods/sky-view.md
+
+        Examples
+        --------
+        >>> sky = scene.sky_view(targets=targets)
+        >>> sky["sky_view_factor"].shape == (len(targets),)
+        True
+        """
+        columns, grid = self._core.sky_view(
+            directions,
+            patches,
+            wanted(targets, normals, _cells(cell, target_height, surface, ground)),
+            {"share": through_trees, "leaves": None},
+            reporter(progress),
+        )
+        return measures(columns, grid, self._core.crs, targets)
+
+    def sun_position(
+        self, time: Time | Iterable[Time], *, location: npt.ArrayLike | None = None
+    ) -> npt.NDArray[np.float64]:
+        """Azimuth, clockwise from true north, and elevation of the sun above the scene, degrees.
+
+        Parameters
+        ----------
+        time : datetime, pandas Timestamp, ISO text, or several
+            With a time zone.
+        location : array_like, shape (2,), optional
+            Latitude and longitude, degrees, where the reference system does not say where the scene lies.
+
+        Returns
+        -------
+        ndarray, shape (2,) or (N, 2)
+
+        Examples
+        --------
+        >>> scene.sun_position("2026-06-21T12:00+02:00").round(1)
+        array([...])
+        """
+        texts, is_one = times(time)
+        positions = np.array(self._core.sun_positions(texts, _place(location)))
+        return positions[0] if is_one else positions
+
+
+def _cells(cell: float | None, target_height: float | None, surface: bool, ground: str | None) -> Cells:
+    return {"cell": cell, "target_height": target_height, "surface": surface, "ground": ground}
+
+
+def _suns(sun: npt.ArrayLike | None, time: Time | Iterable[Time] | None) -> tuple[Any, bool]:
+    """Directions or times, and whether there is one that was not given in a list."""
+    if (sun is None) == (time is None):
+        raise wrong("sun and time", "both given" if sun is not None else "missing", "give one of them")
+    if time is not None:
+        return times(time)
+    try:
+        array = np.asarray(sun, np.float64)
+    except (TypeError, ValueError):
+        raise wrong("sun", repr(sun), _DIRECTION) from None
+    if array.ndim == 1:
+        return [number_pair(array, "sun", _DIRECTION)], True
+    if array.ndim != 2 or array.shape[1] != 2 or not len(array):
+        raise wrong("sun", f"an array of shape {array.shape}", _DIRECTION)
+    return [number_pair(one, "sun", _DIRECTION) for one in array], False
+
+
+def _place(
+    location: npt.ArrayLike | None,
+    *,
+    zone: str | datetime.tzinfo | None = None,
+    grid_north: bool = False,
+    sun_elevation: str = "apparent",
+    air: npt.ArrayLike | None = None,
+) -> dict[str, Any]:
+    if sun_elevation not in ("apparent", "geometric"):
+        raise wrong("sun_elevation", repr(sun_elevation), "use 'apparent' or 'geometric'")
+    where = "give latitude and longitude in degrees, such as (52.0, 4.4)"
+    what = "give pressure in hPa and temperature in degrees Celsius"
+    return {
+        "location": None if location is None else number_pair(location, "location", where),
+        "zone": zone_text(zone),
+        "grid_north": grid_north,
+        "geometric": sun_elevation == "geometric",
+        "air": None if air is None else number_pair(air, "air", what),
+    }

@@ -1,0 +1,127 @@
+"""Columns of values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._errors import missing, wrong
+
+if TYPE_CHECKING:
+    import geopandas
+    import pandas
+
+
+class Table(Mapping[str, "npt.NDArray[Any]"]):
+    """Columns of values, a row for each thing that was asked about.
+
+    Columns of two dimensions, such as places of shape (N, 3), become one column for each of their own in `to_pandas`.
+
+    Attributes
+    ----------
+    crs : str or None
+        Coordinate reference system of the places.
+    places : ndarray, shape (N, 3), or None
+        Where the rows lie, in the coordinates of the file.
+    panoramas : list of ndarray
+        Of an isovist: ranges in metres for each observer that looks, infinite where nothing blocks. Columns run clockwise from south over
+        west, north and east, rows from the zenith down.
+
+    Examples
+    --------
+    >>> sights = scene.line_of_sight(eye, targets)
+    >>> sights["answer"].dtype
+    dtype('uint8')
+    >>> len(sights.to_pandas()) == sights.row_count
+    True
+    """
+
+    def __init__(
+        self,
+        columns: Mapping[str, npt.NDArray[Any]],
+        *,
+        places: npt.NDArray[np.float64] | None = None,
+        crs: str | None = None,
+        panoramas: list[npt.NDArray[np.float32]] | None = None,
+    ) -> None:
+        lengths = {len(values) for values in columns.values()}
+        if len(lengths) > 1:
+            raise wrong("columns", f"of {sorted(lengths)} rows", "give columns of one length")
+        self._columns = dict(columns)
+        self._count = lengths.pop() if lengths else 0
+        self.places = places
+        self.crs = crs
+        self.panoramas = [] if panoramas is None else panoramas
+
+    def __getitem__(self, name: str) -> npt.NDArray[Any]:
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    @property
+    def row_count(self) -> int:
+        """Number of rows.
+
+        Examples
+        --------
+        >>> scene.line_of_sight(eye, targets).row_count == len(targets)
+        True
+        """
+        return self._count
+
+    def _flat(self) -> dict[str, npt.NDArray[Any]]:
+        flat: dict[str, npt.NDArray[Any]] = {}
+        for name, values in self._columns.items():
+            if values.ndim == 1:
+                flat[name] = values
+            else:
+                names = ("x", "y", "z") if values.shape[1] == 3 else tuple(map(str, range(values.shape[1])))
+                flat |= {f"{name}_{part}": values[:, i] for i, part in enumerate(names)}
+        return flat
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A `pandas.DataFrame`.
+
+        Examples
+        --------
+        >>> scene.line_of_sight(eye, targets).to_pandas().columns[:2].tolist()
+        ['answer', 'first_block_range_m']
+        """
+        try:
+            import pandas
+        except ImportError:
+            raise missing("pandas", "to_pandas") from None
+        return pandas.DataFrame(self._flat())
+
+    def to_geodataframe(self) -> geopandas.GeoDataFrame:
+        """A `geopandas.GeoDataFrame` of points.
+
+        Examples
+        --------
+        >>> scene.line_of_sight(eye, targets).to_geodataframe().crs.name
+        'Amersfoort / RD New + NAP height'
+        """
+        try:
+            import geopandas
+        except ImportError:
+            raise missing("geopandas", "to_geodataframe") from None
+        if self.places is None:
+            raise wrong("places", "missing", "these rows lie nowhere on the map; use to_pandas")
+        points = geopandas.points_from_xy(self.places[:, 0], self.places[:, 1], self.places[:, 2])
+        return geopandas.GeoDataFrame(self._flat(), geometry=points, crs=self.crs)
+
+    def __repr__(self) -> str:
+        return f"<belvedere.Table: {self._count} rows of {', '.join(self)}>"
+
+    def _repr_html_(self) -> str:
+        try:
+            return str(self.to_pandas().to_html(max_rows=10))
+        except ValueError:
+            return f"<pre>{repr(self)}</pre>".replace("<belvedere", "&lt;belvedere")

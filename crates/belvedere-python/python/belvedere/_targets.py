@@ -1,0 +1,85 @@
+"""What is asked about, and how answers come back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, TypedDict, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._cloud import Cloud
+from ._errors import wrong
+from ._inputs import Places, check_finite, places
+from ._raster import Raster, Rasters
+from ._table import Table
+
+#: Cells of a grid (None), places of shape (N, 3), or the points of a cloud.
+Targets = Union[Places, Cloud, None]
+
+
+class Cells(TypedDict, total=False):
+    """How cells are laid."""
+
+    cell: float | None
+    target_height: float | None
+    surface: bool
+    ground: str | None
+
+
+def wanted(targets: Targets, normals: npt.ArrayLike | None, cells: Cells) -> dict[str, Any]:
+    """Targets as the native part takes them."""
+    if targets is not None:
+        for name in ("cell", "target_height", "ground"):
+            if cells.get(name) is not None:
+                raise wrong(name, cells.get(name), "it applies only to a grid; leave out targets, or leave this out")
+        if cells.get("surface"):
+            raise wrong("surface", True, "it applies only to a grid; leave out targets, or leave this out")
+    elif normals is not None:
+        raise wrong("normals", "given", "cells are level; give targets, or leave this out")
+    check_finite(cell=cells.get("cell"), target_height=cells.get("target_height"))
+    turned = None
+    if normals is not None:
+        turned = np.asarray(places(normals, "normals"), np.float32)
+        if not np.isfinite(turned).all():
+            raise wrong("normals", "not finite", "give unit vectors of shape (N, 3)")
+    is_cloud = isinstance(targets, Cloud)
+    return {
+        "places": None if targets is None or is_cloud else places(targets, "targets"),
+        "cloud": targets._core if isinstance(targets, Cloud) else None,
+        "normals": turned,
+        "surface": bool(cells.get("surface")),
+        "cell": cells.get("cell"),
+        "height": cells.get("target_height"),
+        "ground": cells.get("ground"),
+    }
+
+
+Grid = tuple[int, int, Sequence[float]]
+
+
+def raster(values: npt.NDArray[Any], grid: Grid, crs: _core.Crs, **named: Any) -> Raster:
+    """Values of cells, row by row from the north, as a raster."""
+    width, height, (a, b, c, d, e, f) = grid
+    return Raster(values.reshape(height, width), (a, b, c, d, e, f), crs, **named)
+
+
+def measures(
+    columns: list[tuple[str, str, npt.NDArray[Any]]], grid: Grid | None, crs: _core.Crs, targets: Targets
+) -> Rasters | Table:
+    """Columns of values as rasters where targets are cells, and as a table elsewhere."""
+    if grid is not None:
+        nan = float("nan")
+        made = {
+            name: raster(values, grid, crs, name=name, description=text, nodata=nan) for name, text, values in columns
+        }
+        return Rasters(made)
+    return Table({name: values for name, _, values in columns}, places=coordinates(targets), crs=crs.text)
+
+
+def coordinates(targets: Targets) -> npt.NDArray[np.float64] | None:
+    """Places of targets that are no cells."""
+    if targets is None:
+        return None
+    return targets.xyz if isinstance(targets, Cloud) else np.asarray(targets, np.float64)

@@ -1,0 +1,222 @@
+//! Point clouds.
+
+use crate::arrays::{Places, column, fixed_rows, to_1d, to_2d};
+use crate::errors::{belvedere_error, exception, wrong};
+use crate::system::System;
+use crate::work::run;
+use belvedere::io::{ReadOptions, Source, UpAxis, read_cloud, write_cloud};
+use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::prelude::*;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A point cloud.
+#[pyclass(frozen, module = "belvedere._core")]
+pub(crate) struct Cloud(pub(crate) Arc<PointCloud>);
+
+/// A path, or a name and the bytes of what would be there.
+#[derive(FromPyObject)]
+pub(crate) enum Input {
+    Bytes(PathBuf, Vec<u8>),
+    Path(PathBuf),
+}
+
+impl Input {
+    pub(crate) fn source(&self) -> Source<'_> {
+        match self {
+            Self::Path(path) => Source::path(path),
+            Self::Bytes(name, bytes) => Source::bytes(name, bytes),
+        }
+    }
+}
+
+/// The cloud of some inputs, and the report on reading it as JSON.
+#[pyfunction]
+#[pyo3(signature = (inputs, crs, up, progress))]
+pub(crate) fn read(
+    py: Python<'_>,
+    inputs: Vec<Input>,
+    crs: Option<String>,
+    up: &str,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(Cloud, String)> {
+    let up = match up {
+        "z" => UpAxis::Z,
+        "y" => UpAxis::Y,
+        _ => return Err(wrong("up", &format!("'{up}'"), "use 'z' or 'y'")),
+    };
+    let mut options = ReadOptions::new().with_up(up);
+    options.crs = crs;
+    let (cloud, report) = run(py, progress, move |control| {
+        let sources = inputs.iter().map(Input::source);
+        control.stage("reading", 0, || read_cloud(sources, &options, control))
+    })?;
+    Ok((Cloud(Arc::new(cloud)), json(&report)?))
+}
+
+/// A report of the library as JSON.
+pub(crate) fn json(report: &impl serde::Serialize) -> PyResult<String> {
+    serde_json::to_string(report).map_err(|error| pyo3::exceptions::PyRuntimeError::new_err(error.to_string()))
+}
+
+#[pymethods]
+impl Cloud {
+    /// A cloud from coordinates in the unit of `crs` and columns of attributes.
+    #[new]
+    #[pyo3(signature = (xyz, attributes, adjusted_gps_time, crs))]
+    fn new(
+        xyz: Places<'_>,
+        attributes: &Bound<'_, PyDict>,
+        adjusted_gps_time: bool,
+        crs: Option<System>,
+    ) -> PyResult<Self> {
+        let mut rows = xyz.rows("xyz")?;
+        let Some(&first) = rows.first() else {
+            return Err(wrong("xyz", "an array without rows", "give at least one point"));
+        };
+        let crs = crs.map_or_else(Default::default, |crs| crs.0);
+        if let Some(refusal) = crs.refusal(first) {
+            return Err(belvedere_error(&format!("crs: {refusal}"), "crs", &crs.describe(), &refusal));
+        }
+        let scale = crs.metres_per_unit_xyz();
+        rows.par_iter_mut().for_each(|row| *row = std::array::from_fn(|i| row[i] * scale[i]));
+        let (mut cloud, _) = PointCloud::from_coordinates(&rows);
+        cloud.frame.crs = crs;
+        cloud.attributes = columns(attributes, adjusted_gps_time)?;
+        cloud.validate().map_err(exception)?;
+        Ok(Self(Arc::new(cloud)))
+    }
+
+    #[staticmethod]
+    fn from_state(
+        origin: [f64; 3],
+        positions: PyReadonlyArray2<'_, f32>,
+        attributes: &Bound<'_, PyDict>,
+        adjusted_gps_time: bool,
+        scanner_positions: PyReadonlyArray2<'_, f32>,
+        crs: System,
+    ) -> PyResult<Self> {
+        let cloud = PointCloud {
+            frame: Frame { origin, crs: crs.0 },
+            positions: fixed_rows(&positions, "positions")?,
+            attributes: columns(attributes, adjusted_gps_time)?,
+            scanner_positions: fixed_rows(&scanner_positions, "scanner positions")?,
+        };
+        cloud.validate().map_err(exception)?;
+        Ok(Self(Arc::new(cloud)))
+    }
+
+    #[getter]
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(to_2d(py, &self.0.positions)?.into_any())
+    }
+
+    #[getter]
+    fn scanner_positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(to_2d(py, &self.0.scanner_positions)?.into_any())
+    }
+
+    #[getter]
+    fn xyz<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let cloud = Arc::clone(&self.0);
+        let to_file = move || -> Vec<[f64; 3]> {
+            cloud.positions.par_iter().map(|&position| cloud.frame.to_file_coordinates(position)).collect()
+        };
+        Ok(to_2d(py, &py.detach(to_file))?.into_any())
+    }
+
+    /// The attributes that the cloud has, by name.
+    #[getter]
+    fn attributes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        let of = &self.0.attributes;
+        macro_rules! add {
+            ($make:ident: $($name:ident),*) => {$(
+                if let Some(values) = &of.$name {
+                    dict.set_item(stringify!($name), $make(py, values))?;
+                }
+            )*};
+        }
+        fn one<'py, T: numpy::Element + Copy>(py: Python<'py>, values: &[T]) -> Bound<'py, PyAny> {
+            to_1d(py, values.to_vec()).into_any()
+        }
+        add!(one: classification, gps_time, return_number, return_count, scan_angle, point_source_id);
+        add!(one: scanner_channel, flags, intensity, scanner_index);
+        if let Some(values) = &of.normals {
+            dict.set_item("normals", to_2d(py, values)?)?;
+        }
+        if let Some(values) = &of.color {
+            dict.set_item("color", to_2d(py, values)?)?;
+        }
+        Ok(dict)
+    }
+
+    #[getter]
+    fn adjusted_gps_time(&self) -> bool {
+        self.0.attributes.gps_time_kind == GpsTimeKind::AdjustedStandard
+    }
+
+    #[getter]
+    fn origin(&self) -> [f64; 3] {
+        self.0.frame.origin
+    }
+
+    #[getter]
+    fn crs(&self) -> System {
+        System(self.0.frame.crs.clone())
+    }
+
+    /// Lowest and highest corner in the coordinates of the file.
+    #[getter]
+    fn bounds(&self) -> [[f64; 3]; 2] {
+        let bounds = self.0.bounds().unwrap_or_default();
+        [bounds.low, bounds.high].map(|corner| self.0.frame.to_file_coordinates(corner))
+    }
+
+    fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<Vec<String>> {
+        let cloud = Arc::clone(&self.0);
+        let report = run(py, None, move |_| write_cloud(&path, &cloud, &[]))?;
+        Ok(report.left_out.into_iter().map(Into::into).collect())
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.len()
+    }
+}
+
+/// The columns of a dictionary, whose types Python has made right.
+fn columns(given: &Bound<'_, PyDict>, adjusted_gps_time: bool) -> PyResult<Attributes> {
+    let mut attributes = Attributes::default();
+    if adjusted_gps_time {
+        attributes.gps_time_kind = GpsTimeKind::AdjustedStandard;
+    }
+    for (name, values) in given {
+        let name: String = name.extract()?;
+        macro_rules! take {
+            ($($column:ident),*) => {
+                match name.as_str() {
+                    $(stringify!($column) => attributes.$column = Some(column(&values.extract::<PyReadonlyArray1<'_, _>>()?)),)*
+                    "normals" => attributes.normals = Some(fixed_rows(&values.extract::<PyReadonlyArray2<'_, _>>()?, "normals")?),
+                    "color" => attributes.color = Some(fixed_rows(&values.extract::<PyReadonlyArray2<'_, _>>()?, "color")?),
+                    _ => return Err(wrong("attribute", &format!("'{name}'"), "use a name that Cloud documents")),
+                }
+            };
+        }
+        take!(
+            classification,
+            gps_time,
+            return_number,
+            return_count,
+            scan_angle,
+            point_source_id,
+            scanner_channel,
+            flags,
+            intensity,
+            scanner_index
+        );
+    }
+    Ok(attributes)
+}

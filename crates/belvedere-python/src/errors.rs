@@ -1,0 +1,69 @@
+//! Errors of the library as Python exceptions: one place.
+
+use belvedere::Error;
+use pyo3::exceptions::PyOSError;
+use pyo3::prelude::*;
+use std::io::ErrorKind;
+
+/// The exception for an error of the library.
+///
+/// What the operating system refuses becomes `OSError` or its subclass; all else `belvedere.BelvedereError` with what is wrong, the
+/// offending value, and what to do about it.
+pub(crate) fn exception(error: Error) -> PyErr {
+    let message = error.to_string();
+    let (what, value, advice) = match error {
+        Error::Io { path, source } => return refused(&path.display().to_string(), &source),
+        Error::Malformed { path, what } | Error::UnusableCrs { path, what } => {
+            (what.clone(), path.display().to_string(), what)
+        }
+        Error::UnknownFormat { path, kind, supported } => {
+            (format!("{kind} format"), path.display().to_string(), format!("use one of {supported}"))
+        }
+        Error::MissingFeature { path, feature } => {
+            (format!("feature {feature}"), path.display().to_string(), format!("build the package with `{feature}`"))
+        }
+        Error::NoPoints { what } => ("points".to_owned(), "0".to_owned(), what),
+        Error::NoSurface { count, what } => (format!("points {what}"), count.to_string(), message.clone()),
+        Error::InvalidParameter { name, value, expected } => (name.to_owned(), value, format!("must be {expected}")),
+        Error::LengthMismatch { what, expected, found } => {
+            (what.to_owned(), found.to_string(), format!("give {expected} values"))
+        }
+        Error::MissingAttribute { attribute, advice, .. } => {
+            (attribute.to_owned(), "missing".to_owned(), advice.to_owned())
+        }
+        Error::UnsupportedTargets { method, what } | Error::UnsupportedViewer { method, what } => {
+            (method.to_owned(), String::new(), what.to_owned())
+        }
+        _ => (message.clone(), String::new(), message.clone()),
+    };
+    belvedere_error(&message, &what, &value, &advice)
+}
+
+/// A `BelvedereError` about an argument.
+pub(crate) fn belvedere_error(message: &str, what: &str, value: &str, advice: &str) -> PyErr {
+    let made = Python::attach(|py| {
+        let class = py.import("belvedere._errors")?.getattr("BelvedereError")?;
+        Ok::<_, PyErr>(PyErr::from_value(class.call1((message, what, value, advice))?))
+    });
+    made.unwrap_or_else(|error| error)
+}
+
+/// An argument outside its range.
+pub(crate) fn wrong(what: &str, value: &str, advice: &str) -> PyErr {
+    belvedere_error(&format!("{what} is {value}: {advice}"), what, value, advice)
+}
+
+/// The exception that Python itself raises for such a file, which chooses its class by the number.
+fn refused(path: &str, source: &std::io::Error) -> PyErr {
+    if source.kind() == ErrorKind::NotFound {
+        return pyo3::exceptions::PyFileNotFoundError::new_err((
+            source.raw_os_error(),
+            "there is no such file or folder; check the path".to_owned(),
+            path.to_owned(),
+        ));
+    }
+    match source.raw_os_error() {
+        Some(number) => PyOSError::new_err((number, source.to_string(), path.to_owned())),
+        None => PyOSError::new_err(format!("{path}: {source}")),
+    }
+}

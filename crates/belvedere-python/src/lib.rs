@@ -1,0 +1,37 @@
+//! The native part of the Python package `belvedere`: calls the library, decides and computes nothing itself.
+//!
+//! The package in `python/belvedere` has the documentation and everything that does not need the library. Here arrays become columns, work
+//! is done without the interpreter, and results become arrays.
+
+mod arrays;
+mod cloud;
+mod errors;
+mod observers;
+mod outlook;
+mod raster;
+mod scene;
+mod shadow;
+mod sights;
+mod simulate;
+mod sky;
+mod sun;
+mod system;
+mod targets;
+mod trees;
+mod work;
+
+use pyo3::prelude::*;
+
+/// What the package is made of.
+#[pymodule]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("NO_VALUE", belvedere::results::NO_VALUE)?;
+    module.add_class::<cloud::Cloud>()?;
+    module.add_class::<scene::Scene>()?;
+    module.add_class::<system::System>()?;
+    module.add_function(wrap_pyfunction!(cloud::read, module)?)?;
+    module.add_function(wrap_pyfunction!(raster::write_geotiff, module)?)?;
+    module.add_function(wrap_pyfunction!(simulate::simulate, module)?)?;
+    Ok(())
+}

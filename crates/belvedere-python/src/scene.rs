@@ -1,0 +1,273 @@
+//! Scenes: from clouds and ball files.
+
+use crate::cloud::{Cloud, Input, json};
+use crate::errors::{belvedere_error, exception, wrong};
+use crate::system::System;
+use crate::work::run;
+use belvedere::clean::{CleanParams, Treatment};
+use belvedere::control::Control;
+use belvedere::io::{Output, is_ball_file, read_balls, read_mesh, read_trajectory, write_balls};
+use belvedere::medial::{CarvedParams, CrownParams, Rule, ShrinkMethod, ShrinkParams, Trees};
+use belvedere::model::{BallParams, ModelParams, OrientBy, SceneModel};
+use belvedere::normals::estimate::Neighborhood;
+use belvedere::query::{MedialScene, UnprovenAs};
+use belvedere::{Frame, PointCloud};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::io::Cursor;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A scene: balls, pulses, and the cloud that they were made from.
+#[pyclass(frozen, module = "belvedere._core")]
+pub(crate) struct Scene(pub(crate) Arc<Inner>);
+
+pub(crate) struct Inner {
+    pub(crate) model: SceneModel,
+    /// In the frame of the model; without points where there is only a ball file.
+    pub(crate) cloud: Arc<PointCloud>,
+    /// The balls, with pulses and without: made when first needed.
+    proving: Mutex<Option<Arc<MedialScene>>>,
+    plain: Mutex<Option<Arc<MedialScene>>>,
+}
+
+impl Inner {
+    fn new(model: SceneModel, cloud: Arc<PointCloud>) -> Self {
+        Self { model, cloud, proving: Mutex::default(), plain: Mutex::default() }
+    }
+
+    pub(crate) fn frame(&self) -> &Frame {
+        self.model.frame()
+    }
+
+    /// What lines of sight are asked of. Pulses are left out where they make no difference.
+    pub(crate) fn blockers(&self, unproven: UnprovenAs, control: &Control<'_>) -> belvedere::Result<Arc<MedialScene>> {
+        let kept = if unproven == UnprovenAs::Visible { &self.plain } else { &self.proving };
+        if let Some(scene) = &*kept.lock().unwrap_or_else(PoisonError::into_inner) {
+            return Ok(Arc::clone(scene));
+        }
+        let made = Arc::new(self.model.scene(&self.model.rule(), unproven, control)?);
+        *kept.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&made));
+        Ok(made)
+    }
+}
+
+/// What to make of targets that nothing blocks but that are not proven visible.
+pub(crate) fn unproven_as(text: &str) -> PyResult<UnprovenAs> {
+    match text {
+        "report" => Ok(UnprovenAs::Reported),
+        "as-visible" => Ok(UnprovenAs::Visible),
+        "as-blocked" => Ok(UnprovenAs::Blocked),
+        _ => Err(wrong("unproven", &format!("'{text}'"), "use 'report', 'as-visible' or 'as-blocked'")),
+    }
+}
+
+/// How balls are made; what is not given is the library's default.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Choices {
+    trees: Option<String>,
+    orient: Option<String>,
+    scanner: Option<[f64; 3]>,
+    trajectory: Option<PathBuf>,
+    mesh: Option<PathBuf>,
+    method: Option<String>,
+    without: Vec<String>,
+    keep_noise: bool,
+    keep_duplicates: bool,
+    keep_isolated: bool,
+    neighbors: Option<usize>,
+    initial_radius: Option<f32>,
+    max_radius: Option<f32>,
+    penetration: Option<f32>,
+}
+
+impl Choices {
+    fn clean(&self) -> CleanParams {
+        let mut params = CleanParams::default();
+        if self.keep_noise {
+            params.dropped_classes = Vec::new();
+            params.withheld = Treatment::Keep;
+        }
+        if self.keep_duplicates {
+            params.exact_duplicates = Treatment::Keep;
+            params.near_duplicate_distance = None;
+        }
+        if self.keep_isolated {
+            params.isolated = None;
+        }
+        params
+    }
+
+    fn orient(&self, frame: &Frame) -> PyResult<OrientBy> {
+        if let Some(place) = self.scanner {
+            return Ok(OrientBy::ScannerAt(place));
+        }
+        if let Some(path) = &self.trajectory {
+            return Ok(OrientBy::Trajectory(read_trajectory(path, &frame.crs).map_err(exception)?.0));
+        }
+        if let Some(path) = &self.mesh {
+            return Ok(OrientBy::Mesh(read_mesh(path).map_err(exception)?.0.scaled_to_metres(&frame.crs)));
+        }
+        match self.orient.as_deref() {
+            None | Some("auto") => Ok(OrientBy::Auto),
+            Some("given") => Ok(OrientBy::Given),
+            Some("up") => Ok(OrientBy::Up),
+            Some("scanner") => Ok(OrientBy::Scanner),
+            Some("pulses") => Ok(OrientBy::Pulses),
+            Some(other) => {
+                Err(wrong("orient", &format!("'{other}'"), "use 'auto', 'pulses', 'scanner', 'given' or 'up'"))
+            }
+        }
+    }
+
+    fn carved(&self) -> PyResult<CarvedParams> {
+        let mut params = CarvedParams::default();
+        params.penetration = self.penetration.unwrap_or(params.penetration);
+        params.initial_radius = self.initial_radius.unwrap_or(params.initial_radius);
+        params.max_radius = self.max_radius.unwrap_or(params.max_radius);
+        if let Some(trees) = self.trees.as_deref() {
+            let trees = match trees {
+                "opaque" => Trees::Opaque,
+                "porous" => Trees::Porous,
+                "measured" => Trees::Measured,
+                _ => return Err(wrong("trees", &format!("'{trees}'"), "use 'measured', 'opaque' or 'porous'")),
+            };
+            params.crowns = params.crowns.map(|crowns| CrownParams { trees, ..crowns });
+        }
+        for name in &self.without {
+            let Some(rule) = Rule::ALL.into_iter().find(|rule| rule.name() == name) else {
+                let names: Vec<&str> = Rule::ALL.into_iter().map(Rule::name).collect();
+                return Err(wrong("without", &format!("'{name}'"), &format!("use {}", names.join(", "))));
+            };
+            params = params.without(rule);
+        }
+        Ok(params)
+    }
+
+    fn shrunk(&self, mut params: ShrinkParams) -> ShrinkParams {
+        params.initial_radius = self.initial_radius.unwrap_or(params.initial_radius);
+        params.max_radius = self.max_radius.unwrap_or(params.max_radius);
+        if let ShrinkMethod::Tau { penetration } = &mut params.method {
+            *penetration = self.penetration.unwrap_or(*penetration);
+        }
+        params
+    }
+
+    fn balls(&self) -> PyResult<BallParams> {
+        let is_plain = self.trees.is_none() && self.without.is_empty();
+        let balls = match self.method.as_deref() {
+            None => BallParams::CarvedIfPossible(self.carved()?, self.shrunk(ShrinkParams::tau_by_spacing())),
+            Some("carved") => BallParams::Carved(self.carved()?),
+            Some("tau") if is_plain => BallParams::Shrunk(self.shrunk(ShrinkParams::tau())),
+            Some("angles") if is_plain => BallParams::Shrunk(self.shrunk(ShrinkParams::angles())),
+            Some(method @ ("tau" | "angles")) => {
+                return Err(wrong("method", &format!("'{method}'"), "trees and without need method 'carved'"));
+            }
+            Some(other) => return Err(wrong("method", &format!("'{other}'"), "use 'carved', 'tau' or 'angles'")),
+        };
+        balls.check().map_err(exception)?;
+        Ok(balls)
+    }
+
+    fn params(&self, frame: &Frame) -> PyResult<ModelParams> {
+        let neighborhood = self.neighbors.map_or_else(Neighborhood::default, |k| Neighborhood::Fixed { k });
+        neighborhood.check().map_err(exception)?;
+        let params = ModelParams::default().with_clean(self.clean()).with_neighborhood(neighborhood);
+        Ok(params.with_orient(self.orient(frame)?).with_balls(self.balls()?))
+    }
+}
+
+#[pymethods]
+impl Scene {
+    /// The scene of a cloud, and the report on making it as JSON.
+    #[staticmethod]
+    fn build(py: Python<'_>, cloud: &Cloud, choices: Choices, progress: Option<Py<PyAny>>) -> PyResult<(Self, String)> {
+        let cloud = Arc::clone(&cloud.0);
+        let params = choices.params(&cloud.frame)?;
+        let given = Arc::clone(&cloud);
+        let (model, report) = run(py, progress, move |control| SceneModel::build(&given, &params, control))?;
+        Ok((Self(Arc::new(Inner::new(model, cloud))), json(&report)?))
+    }
+
+    /// The scene of a ball file, with the cloud that shows its ground if there is one.
+    #[staticmethod]
+    fn load(py: Python<'_>, input: Input, cloud: Option<&Cloud>, progress: Option<Py<PyAny>>) -> PyResult<Self> {
+        let cloud = cloud.map(|cloud| Arc::clone(&cloud.0));
+        let (name, system) = (input.source().name().display().to_string(), cloud.as_ref().map(|c| c.frame.clone()));
+        let model = run(py, progress, move |control| {
+            if !is_ball_file(input.source())? {
+                return Ok(None);
+            }
+            control.stage("reading balls", 0, || read_balls(input.source())).and_then(SceneModel::from_parts).map(Some)
+        })?;
+        let Some(model) = model else {
+            let advice = "make a scene of a cloud: Scene(read(path))";
+            return Err(belvedere_error(&format!("{name}: is no ball file; {advice}"), "ball file", &name, advice));
+        };
+        let frame = model.frame().clone();
+        if let Some(given) = system.filter(|given| given.crs.contradicts(&frame.crs)) {
+            let systems = format!("{}, but the scene is in {}", given.crs.describe(), frame.crs.describe());
+            return Err(wrong("reference system of the cloud", &systems, "convert one of them"));
+        }
+        let cloud = match cloud {
+            None => Arc::new(PointCloud::in_frame(frame)),
+            Some(cloud) if cloud.frame == frame => cloud,
+            Some(cloud) => Arc::new(PointCloud::clone(&cloud).moved_to(&frame)),
+        };
+        Ok(Self(Arc::new(Inner::new(model, cloud))))
+    }
+
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let inner = Arc::clone(&self.0);
+        run(py, None, move |_| write_balls(&path, inner.model.parts()))
+    }
+
+    /// The bytes of an `.npz` ball file.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let inner = Arc::clone(&self.0);
+        let bytes = run(py, None, move |_| {
+            let mut bytes = Cursor::new(Vec::new());
+            write_balls(Output::writer("scene.npz", &mut bytes), inner.model.parts())?;
+            Ok(bytes.into_inner())
+        })?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// The cloud, if the scene has its points.
+    #[getter]
+    fn cloud(&self) -> Option<Cloud> {
+        (!self.0.cloud.is_empty()).then(|| Cloud(Arc::clone(&self.0.cloud)))
+    }
+
+    #[getter]
+    fn ball_count(&self) -> usize {
+        self.0.model.balls().len()
+    }
+
+    #[getter]
+    fn pulse_count(&self) -> Option<usize> {
+        self.0.model.pulses().map(|pulses| pulses.starts.len())
+    }
+
+    #[getter]
+    fn is_carved(&self) -> bool {
+        self.0.model.is_carved()
+    }
+
+    #[getter]
+    fn bounds(&self) -> [[f64; 3]; 2] {
+        let bounds = self.0.model.bounds();
+        [bounds.low, bounds.high].map(|corner| self.0.frame().to_file_coordinates(corner))
+    }
+
+    #[getter]
+    fn crs(&self) -> System {
+        System(self.0.frame().crs.clone())
+    }
+
+    #[getter]
+    fn provenance(&self) -> Vec<(String, String)> {
+        self.0.model.parts().provenance.iter().map(|(name, value)| (name.clone(), value.clone())).collect()
+    }
+}

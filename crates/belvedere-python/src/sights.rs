@@ -1,0 +1,113 @@
+//! Who sees what: pairs, and many targets of one eye.
+
+use crate::arrays::{Places, to_1d, to_2d};
+use crate::errors::wrong;
+use crate::scene::{Scene, unproven_as};
+use crate::targets::{Asked, Wanted};
+use crate::work::run;
+use belvedere::query::{Answer, Curvature, EarthParams, UnprovenAs, Viewer};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::Arc;
+
+/// How lines of sight run over the earth; what is not given is the library's default.
+pub(crate) fn earth(curvature: Option<&str>, refraction: Option<f64>) -> PyResult<EarthParams> {
+    let usual = EarthParams::default();
+    let curvature = match curvature {
+        None => usual.curvature,
+        Some("auto") => Curvature::Auto,
+        Some("on") => Curvature::On,
+        Some("off") => Curvature::Off,
+        Some(other) => return Err(wrong("curvature", &format!("'{other}'"), "use 'auto', 'on' or 'off'")),
+    };
+    let params = EarthParams { curvature, refraction: refraction.unwrap_or(usual.refraction), ..usual };
+    params.validate().map_err(crate::errors::exception)?;
+    Ok(params)
+}
+
+#[pymethods]
+impl Scene {
+    /// An answer for each target of one eye.
+    fn visible<'py>(
+        &self,
+        py: Python<'py>,
+        eye: [f64; 3],
+        targets: Wanted<'py>,
+        unproven: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let unproven = unproven_as(unproven)?;
+        let inner = Arc::clone(&self.0);
+        let asked = targets.owned(py)?;
+        let answers = run(py, progress, move |control| {
+            let positions = match asked {
+                Asked::Points { places, .. } => crate::arrays::local(inner.frame(), &places),
+                Asked::Cloud { cloud, .. } => crate::targets::moved(&cloud, inner.frame())?,
+                Asked::Cells(_) => asked.targets(&inner, control)?.positions,
+            };
+            let scene = inner.blockers(unproven, control)?;
+            let eye = Viewer::Eye(inner.frame().local_from_file(eye));
+            let answers =
+                control.stage("testing targets", positions.len(), || scene.visible_from(eye, &positions, control))?;
+            Ok(answers.into_iter().map(|answer| unproven.settle(answer) as u8).collect::<Vec<u8>>())
+        })?;
+        Ok(to_1d(py, answers).into_any())
+    }
+
+    /// What is known of the line of sight of each pair.
+    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
+    fn lines_of_sight<'py>(
+        &self,
+        py: Python<'py>,
+        observers: Places<'py>,
+        targets: Places<'py>,
+        unproven: &str,
+        curvature: Option<&str>,
+        refraction: Option<f64>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let unproven = unproven_as(unproven)?;
+        let earth = earth(curvature, refraction)?;
+        let [observers, targets] = [observers.rows("observers")?, targets.rows("targets")?];
+        if observers.len() != targets.len() {
+            let value = format!("an array of {} rows", targets.len());
+            return Err(wrong("targets", &value, &format!("give a row for each of the {} observers", observers.len())));
+        }
+        let inner = Arc::clone(&self.0);
+        let of_work = Arc::clone(&inner);
+        let sights = run(py, progress, move |control| {
+            let frame = of_work.frame();
+            let local = |place: [f64; 3]| frame.local_from_file(place);
+            let pairs: Vec<[[f64; 3]; 2]> =
+                observers.into_iter().zip(targets).map(|(a, b)| [local(a), local(b)]).collect();
+            let scene = of_work.blockers(unproven, control)?;
+            control.stage("testing lines of sight", pairs.len(), || scene.lines_of_sight(&pairs, &earth, control))
+        })?;
+        let dict = PyDict::new(py);
+        let answer = |sight: &Option<belvedere::query::LineOfSight>| {
+            sight.map_or(Answer::OutsideView, |sight| unproven.settle(sight.answer)) as u8
+        };
+        dict.set_item("answer", to_1d(py, sights.iter().map(answer).collect()))?;
+        let block = |i: usize| sights[i].and_then(|sight| sight.first_block);
+        let each = || 0..sights.len();
+        dict.set_item(
+            "first_block_range_m",
+            to_1d(py, each().map(|i| block(i).map_or(f64::NAN, |block| block.range)).collect()),
+        )?;
+        if inner.model.pulses().is_some() && unproven != UnprovenAs::Visible {
+            let free = |i: usize| sights[i].filter(|sight| sight.first_block.is_none());
+            dict.set_item(
+                "unproven_m",
+                to_1d(py, each().map(|i| free(i).map_or(f64::NAN, |sight| sight.unproven_length)).collect()),
+            )?;
+        }
+        let place = |i: usize| block(i).map_or([f64::NAN; 3], |block| inner.frame().file_from_local(block.place));
+        dict.set_item("block", to_2d(py, &each().map(place).collect::<Vec<_>>())?)?;
+        let ball = |i: usize| block(i).map_or(-1, |block| i64::try_from(block.ball).unwrap_or(-1));
+        dict.set_item("block_ball", to_1d(py, each().map(ball).collect()))?;
+        let source =
+            |i: usize| block(i).and_then(|b| inner.model.balls().source.get(b.ball)).map_or(-1, |&row| i64::from(row));
+        dict.set_item("block_source", to_1d(py, each().map(source).collect()))?;
+        Ok(dict)
+    }
+}

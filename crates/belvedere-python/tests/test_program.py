@@ -1,0 +1,138 @@
+"""Results are those of the command line, bit by bit."""
+
+from __future__ import annotations
+
+import belvedere
+import numpy as np
+import pytest
+
+rasterio = pytest.importorskip("rasterio")
+
+
+def values_of(path):
+    with rasterio.open(path) as file:
+        return file.read(1), file.transform, file.nodata, file.crs
+
+
+def assert_same_raster(raster, path, folder):
+    values, transform, nodata, crs = values_of(path)
+    ours = folder / f"python_{path.name}"
+    raster.to_geotiff(ours)
+    written = values_of(ours)
+    assert np.array_equal(written[0], values), path
+    assert (written[1], written[2], written[3]) == (transform, nodata, crs)
+    assert tuple(transform)[:6] == raster.transform
+    expected = np.where(values == nodata, np.nan, values) if raster.values.dtype == np.float32 else values
+    assert np.array_equal(raster.values, expected, equal_nan=True)
+
+
+def test_ball_files_are_the_same_bytes(scene, run_program, folder):
+    run_program("balls", "tile.laz", "-o", "cli.npz")
+    scene.save(folder / "python.npz")
+    ours, theirs = np.load(folder / "python.npz"), np.load(folder / "cli.npz")
+    assert sorted(ours) == sorted(theirs)
+    for name in set(ours) - {"metadata"}:
+        assert ours[name].tobytes() == theirs[name].tobytes(), name
+
+
+@pytest.mark.parametrize(
+    ("name", "flags", "arguments"),
+    [
+        ("time", ["--time", "2026-06-21T15:00+02:00"], {"time": "2026-06-21T15:00+02:00"}),
+        ("sun", ["--sun", "200,25"], {"sun": (200, 25)}),
+        ("soft", ["--sun", "200,25", "--soft"], {"sun": (200, 25), "soft": True}),
+        ("top", ["--sun", "120,40", "--surface", "--cell", "1"], {"sun": (120, 40), "surface": True, "cell": 1}),
+        (
+            "trees",
+            ["--time", "2026-01-21T12:00Z", "--through-trees", "seasons"],
+            {"time": "2026-01-21T12:00Z", "through_trees": "seasons"},
+        ),
+    ],
+)
+def test_shadow(scene, run_program, folder, name, flags, arguments):
+    run_program("shadow", "tile.laz", *flags, "-o", f"shadow_{name}.tif")
+    assert_same_raster(scene.shadow(**arguments), folder / f"shadow_{name}.tif", folder)
+
+
+@pytest.mark.parametrize(
+    ("name", "flags", "arguments"),
+    [
+        ("day", ["--date", "2026-03-21", "--zone", "Europe/Amsterdam"], {"date": "2026-03-21", "zone": "Europe/Amsterdam"}),
+        (
+            "days",
+            ["--from", "2026-06-01", "--to", "2026-06-05", "--time-step-min", "30", "--rule", "nl-light"],
+            {"period": ("2026-06-01", "2026-06-05"), "time_step_min": 30, "rule": "nl-light", "year": 2026},
+        ),
+    ],
+)
+def test_sun_hours(scene, run_program, folder, name, flags, arguments):
+    run_program("sun-hours", "tile.laz", *flags, "--cell", 2, "-o", f"sun_{name}.tif", "--measures", f"sun_{name}")
+    rasters = scene.sun_hours(**arguments, cell=2)
+    assert {path.stem for path in (folder / f"sun_{name}").iterdir()} == set(rasters)
+    for measure, raster in rasters.items():
+        assert_same_raster(raster, folder / f"sun_{name}" / f"{measure}.tif", folder)
+
+
+def test_sky_view(scene, run_program, folder):
+    run_program("sky-view", "tile.laz", "--cell", 2, "-o", "sky.tif", "--measures", "sky")
+    for measure, raster in scene.sky_view(cell=2).items():
+        assert_same_raster(raster, folder / "sky" / f"{measure}.tif", folder)
+
+
+def test_viewsheds(scene, run_program, folder, standing):
+    x, y = standing
+    others = [(x, y), (x + 1, y + 1)]
+    run_program("viewshed", "tile.laz", "--observer", f"{x},{y}", "--max-distance", 40, "-o", "one.tif")
+    assert_same_raster(scene.viewshed((x, y), max_distance=40), folder / "one.tif", folder)
+    limits = ["--azimuth-range", "300,60", "--observer-height", "3", "--cell", "1"]
+    typed = [part for place in others for part in ("--observer", f"{place[0]},{place[1]}")]
+    run_program("viewshed", "tile.laz", *typed, *limits, "-o", "two.tif")
+    ours = scene.viewshed(others, azimuth_range_deg=(300, 60), observer_height=3, cell=1)
+    assert_same_raster(ours, folder / "two.tif", folder)
+
+
+def test_horizons_and_isovists(scene, run_program, folder, standing):
+    pandas = pytest.importorskip("pandas")
+    x, y = standing
+    run_program("horizon", "tile.laz", "--observer", f"{x},{y}", "-o", "horizon.csv")
+    theirs = pandas.read_csv(folder / "horizon.csv")
+    azimuths, elevations = scene.horizon((x, y))
+    assert np.array_equal(azimuths, theirs["azimuth"])
+    assert np.abs(np.maximum(elevations, 0) - theirs["elevation"]).max() < 6e-5
+    run_program("isovist", "tile.laz", "--observer", f"{x},{y}", "-o", "isovist.csv")
+    theirs = pandas.read_csv(folder / "isovist.csv")
+    ours = scene.isovist((x, y))
+    assert list(theirs.columns[3:]) == list(ours)
+    for name in ours:
+        assert ours[name][0] == pytest.approx(theirs[name][0], abs=6e-3), name
+
+
+def test_visible_targets(scene, cloud, run_program, folder, eye):
+    x, y, z = eye
+    np.save(folder / "targets.npy", cloud.xyz)
+    run_program("query", "tile.laz", "--panorama", f"{x},{y},{z}", "--self", "-o", "seen.npy")
+    assert np.array_equal(scene.visible(eye, cloud), np.load(folder / "seen.npy"))
+    assert np.array_equal(scene.visible(eye, cloud.xyz), np.load(folder / "seen.npy"))
+
+
+def test_lines_of_sight(scene, run_program, folder, eye, targets):
+    pandas = pytest.importorskip("pandas")
+    table = pandas.DataFrame(np.column_stack([np.tile(eye, (len(targets), 1)), targets]))
+    table.to_csv(folder / "pairs.csv", header=["ax", "ay", "az", "bx", "by", "bz"], index=False)
+    run_program("line-of-sight", "tile.laz", "--pairs", "pairs.csv", "-o", "sights.csv")
+    theirs = pandas.read_csv(folder / "sights.csv")
+    ours = scene.line_of_sight(eye, targets).to_pandas()
+    assert (ours["answer"] == theirs["answer"]).all()
+    for name in ("first_block_range_m", "unproven_m", "block_x", "block_y", "block_z"):
+        assert np.allclose(ours[name], theirs[name], rtol=0, atol=6e-4, equal_nan=True), name
+    assert (ours["block_ball"] == theirs["block_ball"].fillna(-1)).all()
+
+
+def test_simulated_points_are_those_of_the_program(run_program, folder):
+    run_program("simulate", "town", "--extent", 80, "--density", 6, "--seed", 3, "-o", "town")
+    with pytest.warns(belvedere.BelvedereWarning, match="extra bytes"):
+        theirs = belvedere.read(folder / "town" / "cloud.laz")
+    ours = belvedere.read(folder / "tile.laz")
+    assert len(ours) == len(theirs)
+    assert np.array_equal(ours.attributes["gps_time"], theirs.attributes["gps_time"])
+    assert np.abs(ours.xyz - theirs.xyz).max() < 2e-3

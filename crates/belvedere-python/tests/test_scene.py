@@ -1,0 +1,141 @@
+"""Scenes and clouds against closed forms and against themselves."""
+
+from __future__ import annotations
+
+import io
+import pickle
+
+import belvedere
+import numpy as np
+import pytest
+from belvedere import Answer
+
+
+def wall_on_a_plain():
+    """A level ground of 40 m and a wall of 6 m along y = 0, both with normals."""
+    step = 0.25
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(-20, 20, step), np.arange(-20, 20, step)))
+    ground = np.column_stack([x, y, np.zeros_like(x)])
+    x, z = (axis.ravel() for axis in np.meshgrid(np.arange(-20, 20, step), np.arange(0, 6, step)))
+    sides = [(np.column_stack([x, np.full_like(x, side * 0.5), z]), (0, side, 0)) for side in (-1, 1)]
+    y, x = (axis.ravel() for axis in np.meshgrid(np.arange(-0.5, 0.75, step), np.arange(-20, 20, step)))
+    top = np.column_stack([x, y, np.full_like(x, 6.0)])
+    parts = [(ground[np.abs(ground[:, 1]) > 0.5], (0, 0, 1)), *sides, (top, (0, 0, 1))]
+    xyz = np.vstack([part for part, _ in parts]) + [155000, 463000, 5]
+    normals = np.vstack([np.broadcast_to(normal, part.shape) for part, normal in parts])
+    return belvedere.Cloud(xyz, normals=normals, crs="EPSG:28992")
+
+
+@pytest.fixture(scope="module")
+def wall():
+    return belvedere.Scene(wall_on_a_plain(), method="tau", orient="given", keep_isolated=True)
+
+
+def test_the_shadow_of_a_wall_is_as_long_as_the_tangent_says(wall):
+    # the sun stands in the grid's south at 45 degrees: shade reaches 6 m beyond the north face at y = 0.5
+    y = np.arange(0.8, 15, 0.1)
+    places = np.column_stack([np.full_like(y, 155000.0), 463000 + y, np.full_like(y, 5.1)])
+    lit = wall.shadow(sun=(180, 45), targets=places, grid_north=True)
+    reach = 0.5 + 6 - 0.1
+    assert (lit[y < reach - 0.2] == 0).all() and (lit[y > reach + 0.3] == 1).all()
+
+
+def test_a_wall_blocks_what_stands_behind_it_and_nothing_before_it(wall):
+    eye = (155000, 463000 - 10, 6.5)
+    x = np.linspace(-8, 8, 40)
+    before = np.column_stack([155000 + x, np.full(40, 463000 - 2.0), np.full(40, 6.0)])
+    behind = before + [0, 4, 0]
+    assert (wall.visible(eye, before) == Answer.VISIBLE).all()
+    assert (wall.visible(eye, behind) == Answer.BLOCKED).all()
+    sight = wall.line_of_sight(eye, behind[20])
+    assert sight.answer is Answer.BLOCKED
+    # the south face at y = -0.5 is met after 9.5 m of 12 on the map
+    length = np.linalg.norm(behind[20] - eye)
+    assert sight.first_block_range_m == pytest.approx(length * 9.5 / 12, abs=0.1)
+    assert sight.block[1] == pytest.approx(463000 - 0.5, abs=0.1)
+    table = wall.line_of_sight(eye, np.vstack([before, behind]))
+    assert table["answer"].tolist() == [1] * 40 + [0] * 40 and table.row_count == 80
+
+
+def test_bytes_files_paths_and_laspy_give_the_same_cloud(tile, cloud):
+    laspy = pytest.importorskip("laspy")
+    with open(tile, "rb") as file:
+        read = [belvedere.read(file)]
+    content = tile.read_bytes()
+    read += [
+        belvedere.read(str(tile)),
+        belvedere.read(content, name="tile.laz"),
+        belvedere.read(io.BytesIO(content), name="x.laz"),
+        belvedere.read(laspy.read(tile)),
+    ]
+    for other in read:
+        assert (other.xyz == cloud.xyz).all() and other.crs == cloud.crs
+        assert other.attributes.keys() == cloud.attributes.keys()
+        for name, values in cloud.attributes.items():
+            assert np.array_equal(other.attributes[name], values), name
+
+
+def test_a_cloud_from_arrays_answers_as_its_file_does(cloud, scene, eye, targets):
+    copied = belvedere.Cloud(cloud.xyz, crs=cloud.crs, adjusted_gps_time=True, **cloud.attributes)
+    assert np.abs(copied.xyz - cloud.xyz).max() == 0
+    again = belvedere.Scene(copied)
+    assert (again.visible(eye, targets) == scene.visible(eye, targets)).all()
+
+
+@pytest.mark.parametrize("make", [
+    lambda xyz: xyz.astype(np.float32).astype(np.float64),
+    lambda xyz: xyz.astype(np.float32),
+    lambda xyz: np.asfortranarray(xyz.astype(np.float32)),
+    lambda xyz: np.repeat(xyz.astype(np.float32), 2, axis=0)[::2],
+    lambda xyz: xyz.astype(np.float32)[::-1][::-1],
+    lambda xyz: xyz.astype(np.float32).tolist(),
+])  # fmt: skip
+def test_arrays_of_any_layout_are_taken_and_left_alone(scene, cloud, make):
+    targets = make(cloud.xyz[::500])
+    if isinstance(targets, np.ndarray):
+        targets.flags.writeable = False
+    usual = scene.visible(cloud.xyz[7], cloud.xyz[::500].astype(np.float32))
+    assert (scene.visible(cloud.xyz[7], targets) == usual).all()
+
+
+def test_pickled_scenes_and_clouds_answer_the_same(scene, cloud, eye, targets):
+    again = pickle.loads(pickle.dumps(cloud))
+    assert (again.xyz == cloud.xyz).all() and again.report == cloud.report
+    again = pickle.loads(pickle.dumps(scene))
+    assert repr(again) == repr(scene) and again.report == scene.report
+    assert (again.visible(eye, targets) == scene.visible(eye, targets)).all()
+    lit = scene.shadow(sun=(180, 30))
+    assert np.array_equal(again.shadow(sun=(180, 30)).values, lit.values, equal_nan=True)
+    assert np.array_equal(pickle.loads(pickle.dumps(lit)).values, lit.values, equal_nan=True)
+
+
+def test_a_saved_scene_without_its_cloud_answers_points_and_refuses_cells(scene, folder, eye, targets):
+    scene.save(folder / "saved.npz")
+    loaded = belvedere.Scene.load(folder / "saved.npz")
+    assert loaded.cloud is None
+    assert (loaded.visible(eye, targets) == scene.visible(eye, targets)).all()
+    with pytest.raises(belvedere.BelvedereError, match="cloud="):
+        loaded.shadow(sun=(180, 30))
+
+
+def test_trees_let_light_through_and_soft_edges_lie_between(scene):
+    hard = scene.shadow(sun=(180, 30)).values
+    through = scene.shadow(sun=(180, 30), through_trees=0.5).values
+    soft = scene.shadow(sun=(180, 30), soft=True).values
+    known = np.isfinite(hard)
+    assert (through[known] >= hard[known]).all() and (through[known] > hard[known]).any()
+    assert ((soft[known] > 0) & (soft[known] < 1)).any()
+    assert abs(np.nanmean(soft) - np.nanmean(hard)) < 0.02
+
+
+def test_lists_of_suns_give_lists_of_results(scene, targets):
+    several = scene.shadow(sun=[(120, 20), (180, 60)], targets=targets)
+    assert len(several) == 2
+    for result, sun in zip(several, [(120, 20), (180, 60)]):
+        assert np.array_equal(result, scene.shadow(sun=sun, targets=targets), equal_nan=True)
+
+
+def test_a_notebook_shows_a_picture(scene):
+    for thing in (scene, scene.shadow(sun=(180, 30))):
+        html = thing._repr_html_()
+        assert "data:image/png;base64," in html and "&lt;belvedere." in html
