@@ -13,16 +13,9 @@ use belvedere::depth::Profile;
 use belvedere::io::{ReadOptions, ReadReport, UpAxis, is_ball_file, read_balls, read_cloud};
 use belvedere::model::SceneModel;
 use belvedere::query::UnprovenAs;
-use belvedere::view::{View, default_pixel_size, to_sun};
+use belvedere::view::{CAMERA_FOV, CAMERA_SIZE, PANORAMA_WIDTH, View, default_pixel_size, to_sun};
 use belvedere::{Bounds, Error, PointCloud};
 use std::path::Path;
-
-/// Picture of a camera that nobody gave a size: what screens show.
-const DEFAULT_CAMERA: [usize; 2] = [1280, 720];
-/// Field of view of a camera that nobody gave one, degrees: a little wider than what people look at.
-const DEFAULT_FOV_DEG: f64 = 60.0;
-/// Width of a panorama in pixels: 0.18 degrees each.
-const DEFAULT_PANORAMA: usize = 2048;
 
 /// Makes a parameter out of range an error about the flag that gave it, which is wrong usage.
 pub(crate) fn flagged<T>(flag: &str, result: belvedere::Result<T>) -> Result<T> {
@@ -270,7 +263,7 @@ impl ViewChoice {
     /// Width of a panorama in pixels.
     pub(crate) fn panorama_width(&self) -> Result<usize> {
         match self.size {
-            None => Ok(DEFAULT_PANORAMA),
+            None => Ok(PANORAMA_WIDTH),
             Some(SizeChoice::Width(width)) => Ok(width),
             Some(SizeChoice::WidthAndHeight([width, height])) if height * 2 == width => Ok(width),
             Some(SizeChoice::WidthAndHeight(_)) => {
@@ -282,13 +275,13 @@ impl ViewChoice {
     fn camera(&self, eye: [f64; 3], to_local: impl Fn([f64; 3]) -> [f64; 3]) -> Result<View> {
         let Some(look_at) = self.look_at else { return Err(Usage("--eye needs --look-at".to_owned()).into()) };
         let size = match self.size {
-            None => DEFAULT_CAMERA,
+            None => CAMERA_SIZE,
             Some(SizeChoice::WidthAndHeight(size)) => size,
             Some(SizeChoice::Width(_)) => {
                 return Err(Usage("--size: --eye needs width and height, such as 1280x720".to_owned()).into());
             }
         };
-        let fov = self.fov.unwrap_or(DEFAULT_FOV_DEG).to_radians();
+        let fov = self.fov.map_or(CAMERA_FOV, f64::to_radians);
         let (near, far) = (self.near.map_or(0.0, f64::from), self.far.unwrap_or(f64::INFINITY));
         let [eye, look_at] = [eye, look_at.0].map(to_local);
         flagged("--eye, --look-at, --fov, --size, --near, --far", View::perspective(eye, look_at, fov, size, near, far))

@@ -5,9 +5,13 @@
 
 mod arrays;
 mod cloud;
+mod energy;
 mod errors;
+mod landmark;
 mod observers;
 mod outlook;
+mod pictures;
+mod planning;
 mod raster;
 mod scene;
 mod shadow;

@@ -24,15 +24,15 @@ use std::sync::Arc;
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Looking {
-    observer_height: Option<f64>,
+    pub(crate) observer_height: Option<f64>,
     target_height: Option<f64>,
-    cell: Option<f64>,
-    ground: Option<String>,
+    pub(crate) cell: Option<f64>,
+    pub(crate) ground: Option<String>,
     /// Degrees from the north that `Place` says.
     azimuth_range: Option<[f64; 2]>,
     elevation_range: Option<[f64; 2]>,
     min_distance: Option<f64>,
-    max_distance: Option<f64>,
+    pub(crate) max_distance: Option<f64>,
     curvature: Option<String>,
     refraction: Option<f64>,
 }

@@ -37,6 +37,12 @@ impl Watcher for Watch {
 }
 
 impl Watch {
+    /// The work is over: items that had nothing to do are done too.
+    fn finish(&self) {
+        let (_, total) = *self.stage.lock().unwrap_or_else(PoisonError::into_inner);
+        self.done.fetch_max(total, Ordering::Relaxed);
+    }
+
     /// Hands stage, items done and items in all to `progress`, if there is one; what it raises cancels the work.
     fn report(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
         let Some(progress) = progress else { return Ok(()) };
@@ -72,6 +78,7 @@ pub(crate) fn run<T: Send + 'static>(
         match py.detach(|| wait(POLL)) {
             Ok(result) => {
                 let value = result.map_err(exception)?;
+                watch.finish();
                 watch.report(py, progress.as_ref())?;
                 return Ok(value);
             }

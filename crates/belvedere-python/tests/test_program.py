@@ -136,3 +136,64 @@ def test_simulated_points_are_those_of_the_program(run_program, folder):
     assert len(ours) == len(theirs)
     assert np.array_equal(ours.attributes["gps_time"], theirs.attributes["gps_time"])
     assert np.abs(ours.xyz - theirs.xyz).max() < 2e-3
+
+
+def test_landmarks(scene, run_program, folder, standing):
+    x, y = standing
+    run_program("landmark", "tile.laz", "--target-class", 6, "--cell", 16, "--max-distance", 60, "-o", "share.tif", "--measures", "landmark")
+    rasters = scene.landmark(target_class=6, cell=16, max_distance=60)
+    assert {path.stem for path in (folder / "landmark").iterdir()} == set(rasters)
+    for measure, raster in rasters.items():
+        assert_same_raster(raster, folder / "landmark" / f"{measure}.tif", folder)
+
+
+def test_irradiance(scene, run_program, folder):
+    run_program(
+        *("irradiance", "tile.laz", "--clear-sky", "ineichen", "--cell", 8, "--through-trees", "seasons"),
+        *("-o", "energy.tif", "--measures", "energy"),
+    )
+    rasters = scene.irradiance(clear_sky="ineichen", cell=8, through_trees="seasons")
+    assert {path.stem for path in (folder / "energy").iterdir()} == set(rasters)
+    for measure, raster in rasters.items():
+        assert_same_raster(raster, folder / "energy" / f"{measure}.tif", folder)
+
+
+def test_depth_maps(scene, run_program, folder, eye):
+    x, y, z = eye
+    views = [
+        (["--sun", "200,40", "--pixel", "0.5"], {"sun": (200, 40), "pixel": 0.5}),
+        (["--panorama", f"{x},{y},{z}", "--size", "256"], {"eye": eye, "width": 256}),
+        (
+            ["--eye", f"{x},{y},{z}", "--look-at", f"{x + 20},{y},{z - 9}", "--size", "320x200"],
+            {"eye": eye, "look_at": (x + 20, y, z - 9), "size": (320, 200)},
+        ),
+    ]
+    for number, (flags, arguments) in enumerate(views):
+        run_program("depth-map", "tile.laz", *flags, "-o", f"depth_{number}.npy")
+        theirs = np.load(folder / f"depth_{number}.npy")
+        assert scene.depth_map(**arguments).tobytes() == theirs.tobytes(), flags
+
+
+def test_comfort_and_envelopes(scene, run_program, folder, standing):
+    pandas = pytest.importorskip("pandas")
+    x, y = standing
+    route, end = f"{x},{y} {x + 15},{y + 5}", (x + 15, y + 5)
+    run_program("comfort", "tile.laz", "--route", route, "--date", "2026-06-21", "-o", "walk.csv")
+    theirs = pandas.read_csv(folder / "walk.csv")
+    ours = scene.comfort(route=[(x, y), end], date="2026-06-21")
+    for name in ours:
+        assert np.allclose(ours[name], theirs[name], rtol=0, atol=6e-3, equal_nan=True), name
+    assert set(theirs.columns) - {"x", "y", "z"} == set(ours)
+
+    ring = [(x, y), (x + 8, y), (x + 8, y + 8), (x, y + 8)]
+    line = [(x - 2, y + 12), (x + 10, y + 12)]
+
+    def typed(corners):
+        return " ".join(f"{x},{y}" for x, y in corners)
+
+    run_program(
+        *("envelope", "tile.laz", "--parcel", typed(ring), "--protect", typed(line), "--date", "2026-03-21"),
+        *("--between", "10,14", "--max-height", 25, "-o", "envelope.tif"),
+    )
+    ours = scene.envelope(ring, protect=line, date="2026-03-21", between=(10, 14), max_height=25)
+    assert_same_raster(ours, folder / "envelope.tif", folder)

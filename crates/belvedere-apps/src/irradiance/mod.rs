@@ -35,5 +35,5 @@ pub use measures::{MONTH_COLUMNS, irradiation_measures};
 pub use patch_sky::patch_radiation;
 pub use period::{Grouping, Instant, IrradianceParams, PeriodRadiation, PeriodReport, Surroundings};
 pub use roofs::{PANEL_HEIGHT, RoofIrradiation, RoofsReport, above_roof, horizon_places, roof_irradiation};
-pub use seasons::{RadiationSource, SeasonRadiation, look_count, period_seasons, season_irradiation};
+pub use seasons::{CLEAR_SKY_YEAR, RadiationSource, SeasonRadiation, look_count, period_seasons, season_irradiation};
 pub use strings::{PlaneIrradiation, plane_irradiation};

@@ -12,6 +12,8 @@ use belvedere_data::control::Control;
 use belvedere_data::weather::Weather;
 use belvedere_data::{Error, Result};
 
+/// Year of a clear sky where none is given; the sun's way differs by less than half a degree from year to year.
+pub const CLEAR_SKY_YEAR: i16 = 2026;
 /// Steps of a clear sky, seconds.
 const CLEAR_STEP: f64 = 600.0;
 

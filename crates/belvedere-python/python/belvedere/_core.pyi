@@ -149,6 +149,26 @@ class Scene:
         place: dict[str, Any],
         progress: _Progress,
     ) -> tuple[dict[str, npt.NDArray[Any]], list[npt.NDArray[np.float32]], list[str]]: ...
+    def landmark(
+        self,
+        landmark: dict[str, Any],
+        observers: npt.NDArray[np.float64] | None,
+        looking: dict[str, Any],
+        unproven: str,
+        progress: _Progress,
+    ) -> tuple[_Columns, _Grid | None, list[str]]: ...
+    def irradiance(
+        self, radiation: dict[str, Any], targets: dict[str, Any], trees: dict[str, Any], progress: _Progress
+    ) -> tuple[_Columns, _Grid | None, str]: ...
+    def depth_map(
+        self, camera: dict[str, Any], place: dict[str, Any], progress: _Progress
+    ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32] | None]: ...
+    def comfort(
+        self, walks: dict[str, Any], days: dict[str, Any], place: dict[str, Any], progress: _Progress
+    ) -> dict[str, npt.NDArray[Any]]: ...
+    def envelope(
+        self, build: dict[str, Any], days: dict[str, Any], place: dict[str, Any], progress: _Progress
+    ) -> tuple[tuple[str, str, npt.NDArray[np.float32]], _Grid, float]: ...
     def sun_positions(self, times: list[str], place: dict[str, Any]) -> list[tuple[float, float]]: ...
 
 def read(inputs: list[Any], crs: str | None, up: str, progress: _Progress) -> tuple[Cloud, str]: ...

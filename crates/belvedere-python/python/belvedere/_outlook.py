@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import BelvedereWarning, wrong
-from ._inputs import Progress, check_finite, number_pair, reporter
+from ._inputs import Progress, check_finite, number_pair, place, reporter
 from ._raster import Raster
 from ._sunlight import _place
 from ._table import Table
@@ -120,6 +120,79 @@ class Outlook:
         text = "number of observers that see the cell, 65535 nodata"
         values = np.where(nothing, 65535, np.minimum(counts, 65534)).astype(np.uint16)
         return raster(values, grid, self._core.crs, name="observers", description=text, nodata=65535.0)
+
+    def depth_map(
+        self,
+        *,
+        sun: npt.ArrayLike | None = None,
+        direction: npt.ArrayLike | None = None,
+        eye: npt.ArrayLike | None = None,
+        look_at: npt.ArrayLike | None = None,
+        pixel: float | None = None,
+        fov_deg: float | None = None,
+        size: tuple[int, int] | None = None,
+        width: int | None = None,
+        grid_north: bool = False,
+        progress: Progress = None,
+    ) -> npt.NDArray[np.float32]:
+        """What a view shows: the distance to what is hit first in each pixel.
+
+        Parameters
+        ----------
+        sun : array_like, shape (2,), optional
+            Azimuth and elevation, degrees: the view of the sun on the scene.
+        direction : array_like, shape (3,), optional
+            Direction of a parallel view, such as (0, 0, -1) for a view from above.
+        eye : array_like, shape (3,), optional
+            Place of a camera in the coordinates of the file; without `look_at` a panorama of all directions.
+        look_at : array_like, shape (3,), optional
+            Place that the camera looks at.
+        pixel : float, optional
+            Side of a pixel of a parallel view, metres.
+        fov_deg : float, optional
+            Field of view of a camera, degrees; 60 if not given.
+        size : tuple of 2 ints, optional
+            Width and height of the picture of a camera, pixels; (1280, 720) if not given.
+        width : int, optional
+            Width of a panorama, pixels; 2048 if not given.
+        grid_north : bool, optional
+            Whether the azimuth of the sun is counted from grid north.
+        progress : bool or callable, optional
+
+        Returns
+        -------
+        ndarray, shape (height, width), float32
+            Metres, infinite where nothing is hit. Along the axis of the view; from the eye in panoramas, whose columns run from south over
+            west, north and east.
+
+        References
+        ----------
+        docs/methods/depth-maps.md
+
+        Examples
+        --------
+        >>> depth = scene.depth_map(direction=(0, 0, -1), pixel=1)
+        >>> depth.dtype, bool(np.isfinite(depth).any())
+        (dtype('float32'), True)
+        >>> scene.depth_map(eye=eye, width=256).shape
+        (128, 256)
+        """
+        given = [name for name, v in (("sun", sun), ("direction", direction), ("eye", eye)) if v is not None]
+        if len(given) != 1:
+            raise wrong("view", " and ".join(given) or "missing", "give one of sun, direction and eye")
+        check_finite(pixel=pixel, fov_deg=fov_deg)
+        camera = {
+            "sun": None if sun is None else number_pair(sun, "sun", "give azimuth and elevation in degrees"),
+            "direction": None if direction is None else place(direction, "direction"),
+            "eye": None if eye is None else place(eye, "eye"),
+            "look_at": None if look_at is None else place(look_at, "look_at"),
+            "pixel": pixel,
+            "fov": fov_deg,
+            "size": None if size is None else list(size),
+            "width": width,
+        }
+        depth, _ = self._core.depth_map(camera, _place(None, grid_north=grid_north), reporter(progress))
+        return depth
 
     def horizon(
         self,

@@ -13,15 +13,17 @@ import numpy.typing as npt
 from . import _core
 from ._core import Scene as NativeScene
 from ._cloud import Cloud
+from ._energy import Energy
 from ._errors import BelvedereWarning, wrong
 from ._inputs import Progress, Source, as_list, check_finite, native_source, place, reporter
 from ._outlook import Outlook
+from ._planning import Planning
 from ._raster import escaped
 from ._sights import Sights
 from ._sunlight import Sunlight
 
 
-class Scene(Sights, Outlook, Sunlight):
+class Scene(Sights, Outlook, Sunlight, Energy, Planning):
     """A scene that answers what can be seen: medial balls, cut with the space that laser pulses prove empty.
 
     Parameters

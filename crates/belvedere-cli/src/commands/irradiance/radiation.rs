@@ -6,16 +6,14 @@ use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Context, Result};
 use belvedere::apps::irradiance::{
-    BirdParams, ClearSky, Grouping, IrradianceParams, PARTS, RadiationSource, SeasonRadiation, Surroundings,
-    period_seasons,
+    BirdParams, CLEAR_SKY_YEAR, ClearSky, Grouping, IrradianceParams, PARTS, RadiationSource, SeasonRadiation,
+    Surroundings, period_seasons,
 };
 use belvedere::apps::sun::{Site, SiteFrom};
 use belvedere::apps::tree_light::TreeLight;
 use belvedere::io::read_weather;
 use belvedere::weather::Weather;
 
-/// Year of a clear sky that nobody chose; the sun's way differs by less than half a degree from year to year.
-const USUAL_YEAR: i16 = 2026;
 /// Distance from which on a weather file is told to be that of another place, metres.
 const FAR: f64 = 50_000.0;
 
@@ -98,7 +96,7 @@ pub(super) fn gather(
             RadiationSource::Weather { weather, parts: arguments.parts.unwrap_or(PARTS) }
         }
         None => {
-            let year = arguments.year.unwrap_or(USUAL_YEAR);
+            let year = arguments.year.unwrap_or(CLEAR_SKY_YEAR);
             let clear_sky = match arguments.radiation.clear_sky {
                 Some(ClearSkyChoice::Haurwitz) => ClearSky::Haurwitz,
                 Some(ClearSkyChoice::Bird) => {

@@ -1,0 +1,352 @@
+"""Questions of planners: landmarks, comfort, and how high one may build."""
+
+from __future__ import annotations
+
+import datetime
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._errors import wrong
+from ._inputs import (
+    Day,
+    Progress,
+    Time,
+    as_list,
+    check_finite,
+    day_texts,
+    moments,
+    number_pair,
+    reporter,
+)
+from ._outlook import _looking, _places, _warn
+from ._raster import Raster, Rasters
+from ._sunlight import _DIRECTION, _place
+from ._table import Table
+from ._targets import measures, raster
+
+_LINE = "give corners of shape (N, 2) or (N, 3)"
+
+
+class Planning:
+    """Landmarks, comfort, and how high one may build."""
+
+    _core: _core.Scene
+
+    def landmark(
+        self,
+        mesh: str | os.PathLike[str] | None = None,
+        *,
+        target_class: int | None = None,
+        target_polygon: npt.ArrayLike | None = None,
+        objects: str | list[str] = [],
+        observers: npt.ArrayLike | None = None,
+        observer_height: float | None = None,
+        cell: float | None = None,
+        ground: str | None = None,
+        spacing: float | None = None,
+        seed: int = 0,
+        max_distance: float | None = None,
+        unproven: str = "report",
+        curvature: str | None = None,
+        refraction: float | None = None,
+        progress: Progress = None,
+    ) -> Rasters | Table:
+        """From where a landmark is seen, and how much of it.
+
+        Parameters
+        ----------
+        mesh : path, optional
+            The landmark as a mesh: ``.obj``, ``.ply`` or CityJSON.
+        target_class : int, optional
+            The points of this ASPRS class, in place of a mesh.
+        target_polygon : array_like, shape (N, 2), optional
+            The points above this polygon that are not ground, in place of a mesh.
+        objects : str or list of str, optional
+            Objects of the mesh; all if not given.
+        observers : array_like, shape (2,), (3,), (N, 2) or (N, 3), optional
+            Who looks. Without any, the cells of a grid over the scene.
+        observer_height : float, optional
+            Metres; 1.7 if not given.
+        cell : float, optional
+            Side of a cell, metres; 2 if not given, more for large scenes.
+        spacing, seed : optional
+            Distance of samples on the mesh, metres, and the seed of their places.
+        max_distance : float, optional
+            How far observers look, metres.
+        ground, unproven, curvature, refraction, progress : optional
+            As for `viewshed`.
+
+        Returns
+        -------
+        Rasters or Table
+            ``visible_share``, ``visible_area_m2``, ``solid_angle_sr``, angles and ranges.
+
+        Raises
+        ------
+        BelvedereError
+            Unless one landmark is given, and for parameters out of range.
+
+        References
+        ----------
+        docs/methods/landmarks.md
+
+        Examples
+        --------
+        >>> views = scene.landmark(target_class=6, observers=standing)
+        >>> bool(0 <= views["visible_share"][0] <= 1)
+        True
+        """
+        check_finite(spacing=spacing)
+        ring = None
+        if target_polygon is not None:
+            ring = [[(x, y) for x, y, _ in _line(target_polygon, "target_polygon")]]
+        what: dict[str, Any] = {
+            "mesh": None if mesh is None else os.fspath(mesh),
+            "objects": as_list(objects),
+            "spacing": spacing,
+            "seed": seed,
+            "class": target_class,
+            "polygon": ring,
+        }
+        looking = _looking(
+            observer_height=observer_height,
+            cell=cell,
+            ground=ground,
+            max_distance=max_distance,
+            curvature=curvature,
+            refraction=refraction,
+        )
+        if observers is not None and cell is not None:
+            raise wrong("cell", cell, "it applies only to a grid; leave out observers, or leave this out")
+        places = None if observers is None else _places(observers)
+        columns, grid, skipped = self._core.landmark(what, places, looking, unproven, reporter(progress))
+        _warn(skipped)
+        return measures(columns, grid, self._core.crs, places)
+
+    def comfort(
+        self,
+        *,
+        route: npt.ArrayLike | None = None,
+        windows: Mapping[str, npt.ArrayLike] | None = None,
+        date: Day | Iterable[Day] | None = None,
+        period: tuple[Day | Time, Day | Time] | None = None,
+        year: int | None = None,
+        distance_step_m: float | None = None,
+        target_height: float | None = None,
+        time_step_min: float | None = None,
+        directions: int | None = None,
+        ground: str | None = None,
+        location: npt.ArrayLike | None = None,
+        zone: str | datetime.tzinfo | None = None,
+        grid_north: bool = False,
+        progress: Progress = None,
+    ) -> Table:
+        """Sun and sky along a walk, or at windows.
+
+        Parameters
+        ----------
+        route : array_like, shape (N, 2) or (N, 3), optional
+            Corners of a walk in the coordinates of the file; without z it runs on the ground.
+        windows : mapping of str to array_like, optional
+            Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt`` (degrees, 90 upright), ``width`` and ``height`` (metres), in
+            place of a walk.
+        date, period, year, time_step_min, zone : optional
+            As for `sun_hours`.
+        distance_step_m : float, optional
+            Metres between places of a walk; 2 if not given.
+        target_height : float, optional
+            Height above the ground, metres; 1.1 if not given.
+        directions : int, optional
+            Number of directions of the sky; 577 if not given.
+        ground, location, grid_north, progress : optional
+            As for `shadow`.
+
+        Returns
+        -------
+        Table
+            A row for each place of the walk or each window: ``sky_view_factor``, ``sky_openness``, ``sun_hours``, ``sun_share``,
+            ``first_light``, ``last_light``, ``longest``; for walks also ``route`` and ``distance_m``, for windows ``sky_component``.
+
+        Raises
+        ------
+        BelvedereError
+            Unless a walk or windows and days are given.
+
+        References
+        ----------
+        docs/methods/comfort.md
+
+        Examples
+        --------
+        >>> x, y = standing
+        >>> walk = scene.comfort(route=[(x, y), (x + 10, y)], date="2026-06-21", zone="Europe/Amsterdam")
+        >>> walk["distance_m"].tolist()
+        [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]
+        """
+        if (route is None) == (windows is None):
+            raise wrong("route and windows", "both given" if route is not None else "missing", "give one of them")
+        check_finite(distance_step_m=distance_step_m, target_height=target_height, time_step_min=time_step_min)
+        walks: dict[str, Any] = {
+            "routes": [] if route is None else [_line(route, "route", least=2)],
+            "windows": [] if windows is None else _windows(windows),
+            "step": distance_step_m,
+            "height": target_height,
+            "directions": directions,
+            "ground": ground,
+        }
+        place = _place(location, zone=zone, grid_north=grid_north)
+        columns = self._core.comfort(walks, _days(date, period, year, time_step_min), place, reporter(progress))
+        places = columns.pop("place")
+        return Table(columns, places=places, crs=self._core.crs.text)
+
+    def envelope(
+        self,
+        parcel: npt.ArrayLike,
+        *,
+        protect: npt.ArrayLike | Sequence[npt.ArrayLike],
+        sun: npt.ArrayLike | None = None,
+        date: Day | Iterable[Day] | None = None,
+        period: tuple[Day, Day] | None = None,
+        year: int | None = None,
+        between: npt.ArrayLike | None = None,
+        time_step_min: float | None = None,
+        fence_height: float | None = None,
+        spacing: float | None = None,
+        max_height: float | None = None,
+        credit_shade: bool = False,
+        cell: float | None = None,
+        ground: str | None = None,
+        location: npt.ArrayLike | None = None,
+        zone: str | datetime.tzinfo | None = None,
+        grid_north: bool = False,
+        progress: Progress = None,
+    ) -> Raster:
+        """How high one may build on a parcel without taking protected sun from others.
+
+        Parameters
+        ----------
+        parcel : array_like, shape (N, 2)
+            Corners in the coordinates of the file.
+        protect : array_like, shape (N, 2) or (N, 3), or a list of these
+            Lines that keep their sun; one corner is a point. Without z they run on the ground.
+        sun : array_like, shape (2,) or (K, 2), optional
+            Azimuth and elevation of protected suns, degrees, in place of days.
+        date, period, year, time_step_min, zone : optional
+            As for `sun_hours`.
+        between : array_like, shape (2,), optional
+            Hours of the day that are protected.
+        fence_height : float, optional
+            Height up to which protected lines may be in shade, metres; 0 if not given.
+        spacing : float, optional
+            Length of pieces of protected lines, metres; 0.5 if not given.
+        max_height : float, optional
+            Greatest height above the ground, metres. Without it, columns that no sun bounds are infinite.
+        credit_shade : bool, optional
+            Whether sun that the scene takes already needs no protection.
+        cell : float, optional
+            Side of a column, metres; 0.5 if not given.
+        ground, location, grid_north, progress : optional
+            As for `shadow`.
+
+        Returns
+        -------
+        Raster
+            Height above the ground, metres; NaN beside the parcel.
+
+        Raises
+        ------
+        BelvedereError
+            Without suns, for a parcel that is no polygon, and where no ground is known.
+
+        References
+        ----------
+        docs/methods/solar-envelope.md
+
+        Examples
+        --------
+        >>> x, y = standing
+        >>> parcel = [(x, y), (x + 8, y), (x + 8, y + 8), (x, y + 8)]
+        >>> height = scene.envelope(parcel, protect=[(x, y + 12), (x + 8, y + 12)], sun=(180, 30), max_height=20)
+        >>> bool(np.nanmax(height) <= 20)
+        True
+        """
+        check_finite(
+            time_step_min=time_step_min, fence_height=fence_height, spacing=spacing, max_height=max_height, cell=cell
+        )
+        suns: list[tuple[float, float]] = []
+        if sun is not None:
+            if date is not None or period is not None:
+                raise wrong("sun and days", "given together", "give one of them")
+            suns = [number_pair(one, "sun", _DIRECTION) for one in np.atleast_2d(np.asarray(sun, np.float64))]
+            for azimuth, elevation in suns:
+                if not 0 < elevation <= 90:
+                    raise wrong("sun", (azimuth, elevation), "the elevation must be above 0 and at most 90 degrees")
+        is_one = all(np.ndim(corner) == 1 for corner in protect)  # type: ignore[union-attr]
+        lines = [protect] if is_one else list(protect)  # type: ignore[arg-type]
+        build: dict[str, Any] = {
+            "parcel": [[(x, y) for x, y, _ in _line(parcel, "parcel", least=3)]],
+            "protect": [_line(line, "protect") for line in lines],
+            "suns": suns,
+            "between": None if between is None else number_pair(between, "between", "give two hours, such as (9, 15)"),
+            "fence_height": fence_height,
+            "spacing": spacing,
+            "max_height": max_height,
+            "credit_shade": credit_shade,
+            "cell": cell,
+            "ground": ground,
+        }
+        place = _place(location, zone=zone, grid_north=grid_north)
+        column, grid, _ = self._core.envelope(
+            build, _days(date, period, year, time_step_min), place, reporter(progress)
+        )
+        name, text, values = column
+        return raster(values, grid, self._core.crs, name=name, description=text, nodata=float("nan"))
+
+
+def _line(value: Any, what: str, least: int = 1) -> list[tuple[float, float, float]]:
+    """Corners; z is NaN where it follows from the ground."""
+    try:
+        array = np.asarray(value, np.float64)
+    except (TypeError, ValueError):
+        raise wrong(what, repr(value), _LINE) from None
+    if array.ndim != 2 or array.shape[1] not in (2, 3) or len(array) < least:
+        raise wrong(what, f"an array of shape {array.shape}", f"{_LINE}, {least} at least")
+    if not np.isfinite(array).all():
+        raise wrong(what, "not finite", "leave z out where it is not known")
+    nan = float("nan")
+    return [(float(row[0]), float(row[1]), float(row[2]) if len(row) == 3 else nan) for row in array]
+
+
+def _windows(columns: Mapping[str, npt.ArrayLike]) -> list[list[float]]:
+    known = ("x", "y", "z", "azimuth", "tilt", "width", "height")
+    for name in columns:
+        if name not in known:
+            raise wrong("windows", f"a column '{name}'", f"use {', '.join(known)}")
+    missing = [name for name in known[:4] if name not in columns]
+    if missing:
+        raise wrong("windows", f"without {', '.join(missing)}", "give x, y, z and azimuth")
+    count = len(np.asarray(columns["x"]))
+    usual = {"tilt": 90.0}
+    full = {name: np.full(count, usual.get(name, float("nan"))) for name in known}
+    full |= {name: np.asarray(values, np.float64) for name, values in columns.items()}
+    if {values.shape for values in full.values()} != {(count,)} or not count:
+        raise wrong("windows", "columns of different lengths, or empty", "give a value for each window")
+    return [[float(value) for value in row] for row in np.column_stack([full[name] for name in known])]
+
+
+def _days(date: Any, period: Any, year: int | None, time_step_min: float | None) -> dict[str, Any]:
+    if date is not None and period is not None:
+        raise wrong("date and period", "given together", "give one of them")
+    return {
+        "dates": [] if date is None else day_texts(date),
+        "between": None if period is None else moments(period),
+        "year": year,
+        "step": time_step_min,
+        "min_sun_elevation": None,
+        "tolerance": None,
+    }

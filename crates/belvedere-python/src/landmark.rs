@@ -1,0 +1,168 @@
+//! From where a landmark is seen, and how much of it.
+
+use crate::arrays::to_1d;
+use crate::errors::wrong;
+use crate::observers::{eyes, places, skip, skipped};
+use crate::outlook::Looking;
+use crate::scene::{Inner, Scene, unproven_as};
+use crate::targets::{Cells, Column, Grid, ground_cloud, ground_points};
+use crate::work::run;
+use belvedere::apps::eyes::EyesReport;
+use belvedere::apps::landmark::{
+    LandmarkParams, LandmarkPoints, LandmarkView, MEASURES, landmark_points, landmark_views, observer_cell_for,
+    spacing_for,
+};
+use belvedere::apps::targets::{CellLevel, CellParams, CoveredCells, Targets};
+use belvedere::apps::viewshed::OBSERVER_HEIGHT;
+use belvedere::io::read_mesh;
+use belvedere::query::SurfacePieces;
+use belvedere::{Error, Mesh};
+use numpy::PyReadonlyArray2;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// What the landmark is.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Landmark {
+    mesh: Option<PathBuf>,
+    objects: Vec<String>,
+    spacing: Option<f64>,
+    seed: u64,
+    class: Option<u8>,
+    /// Rings of (x, y) in the coordinates of the file.
+    polygon: Option<Vec<Vec<[f64; 2]>>>,
+}
+
+/// A mesh in the metres of a scene.
+pub(crate) fn mesh_of(path: &PathBuf, inner: &Inner) -> belvedere::Result<Mesh> {
+    let (mesh, _) = read_mesh(path)?;
+    let crs = &inner.frame().crs;
+    if mesh.crs.contradicts(crs) {
+        return Err(Error::UnusableCrs {
+            path: path.clone(),
+            what: format!(
+                "the mesh is in {}, but the scene is in {}; convert one of them",
+                mesh.crs.describe(),
+                crs.describe()
+            ),
+        });
+    }
+    Ok(mesh.scaled_to_metres(crs))
+}
+
+/// A ring in local metres.
+pub(crate) fn local_ring(inner: &Inner, ring: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let local = |&[x, y]: &[f64; 2]| {
+        let [x, y, _] = inner.frame().local_from_file([x, y, 0.0]);
+        [x, y]
+    };
+    ring.iter().map(local).collect()
+}
+
+impl Landmark {
+    fn check(&self) -> PyResult<()> {
+        let given =
+            usize::from(self.mesh.is_some()) + usize::from(self.class.is_some()) + usize::from(self.polygon.is_some());
+        if given != 1 {
+            let value = format!("{given} given");
+            return Err(wrong("landmark", &value, "give one of mesh, target_class and target_polygon"));
+        }
+        Ok(())
+    }
+
+    fn surface(&self, inner: &Inner) -> belvedere::Result<SurfacePieces> {
+        if let Some(path) = &self.mesh {
+            let mut mesh = mesh_of(path, inner)?;
+            if let Some(missing) = self.objects.iter().find(|name| !mesh.object_names.contains(name)) {
+                return Err(Error::InvalidParameter {
+                    name: "object",
+                    value: format!("'{missing}'"),
+                    expected: "the name of an object of the mesh",
+                });
+            }
+            if !self.objects.is_empty() {
+                mesh = mesh.of_objects(&self.objects);
+            }
+            let spacing = self.spacing.unwrap_or_else(|| spacing_for(mesh.area()));
+            return SurfacePieces::of_mesh(&mesh, inner.frame().origin, spacing, self.seed);
+        }
+        let polygons: Vec<Vec<Vec<[f64; 2]>>>;
+        let which = match (self.class, &self.polygon) {
+            (Some(class), _) => LandmarkPoints::Class(class),
+            (None, rings) => {
+                polygons = vec![rings.iter().flatten().map(|ring| local_ring(inner, ring)).collect()];
+                LandmarkPoints::Inside(&polygons)
+            }
+        };
+        Ok(landmark_points(ground_cloud(inner)?, &which)?.1)
+    }
+}
+
+/// Columns, the grid of observers, their places and what was skipped.
+type Views<'py> = (Vec<Column<'py>>, Option<Grid>, Vec<String>);
+
+#[pymethods]
+impl Scene {
+    fn landmark<'py>(
+        &self,
+        py: Python<'py>,
+        landmark: Landmark,
+        observers: Option<PyReadonlyArray2<'py, f64>>,
+        looking: Looking,
+        unproven: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Views<'py>> {
+        landmark.check()?;
+        let unproven = unproven_as(unproven)?;
+        let earth = looking.earth()?;
+        let points = ground_points(looking.ground.as_deref())?;
+        let usual = LandmarkParams::default();
+        let params = usual
+            .with_unproven(unproven)
+            .with_earth(earth)
+            .with_max_range(looking.max_distance.unwrap_or(usual.max_range));
+        let given = observers.as_ref().map(places).transpose()?;
+        let inner = Arc::clone(&self.0);
+        let of_work = Arc::clone(&inner);
+        let (views, grid, report) = run(py, progress, move |control| {
+            let inner = of_work;
+            let surface = control.stage("sampling landmark", 0, || landmark.surface(&inner))?;
+            let scene = inner.blockers(unproven, control)?;
+            let (stand, grid, report): (Vec<[f64; 3]>, Option<Grid>, EyesReport) = match given {
+                Some(places) => {
+                    let mut stand = eyes(&inner, &places, looking.observer_height, points, control)?;
+                    let report = skip(&scene, None, &mut stand, control)?;
+                    (stand, None, report)
+                }
+                None => {
+                    let (low, high) = inner.model.bounds().on_map();
+                    let side = Some(looking.cell.unwrap_or_else(|| observer_cell_for(low, high)));
+                    let cells = Cells { side, height: None, level: CellLevel::Ground, ground: points };
+                    let ground = cells.ground_within(&inner, (low, high), control)?;
+                    let grid = crate::targets::grid_of(&ground.grid, inner.frame());
+                    let height = looking.observer_height.unwrap_or(OBSERVER_HEIGHT);
+                    let cells = CellParams::default().with_height(height).with_covered(CoveredCells::Kept);
+                    let (mut targets, _) = Targets::of_cells(&inner.cloud, ground, &cells, control)?;
+                    targets.leave_out_enclosed(&scene, control)?;
+                    let stand: Vec<[f64; 3]> = targets.positions.iter().map(|eye| eye.map(f64::from)).collect();
+                    let count = stand.len();
+                    (stand, Some(grid), EyesReport::none_skipped(count))
+                }
+            };
+            let views = control.stage("testing landmark", stand.len(), || {
+                landmark_views(&scene, &surface, &stand, &params, control)
+            })?;
+            Ok((views, grid, report))
+        })?;
+        let skipped = skipped(&inner, &report)?;
+        #[expect(clippy::cast_possible_truncation, reason = "measures are f32")]
+        let of = |value: &dyn Fn(&LandmarkView) -> f64| views.iter().map(|view| value(view) as f32).collect();
+        let columns = MEASURES.iter().map(|measure| {
+            let values = to_1d(py, of(&|view| measure.of(view))).into_any();
+            (measure.name.to_owned(), measure.description, values)
+        });
+        Ok((columns.collect(), grid, skipped))
+    }
+}

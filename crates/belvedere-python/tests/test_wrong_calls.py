@@ -1,0 +1,145 @@
+"""Wrong calls raise the right error, which says what is wrong and what to do."""
+
+from __future__ import annotations
+
+import datetime
+
+import belvedere
+import numpy as np
+import pytest
+
+NAIVE = datetime.datetime(2026, 6, 21, 15)
+PLACES = np.array([[155000.0, 463000.0, 5.0]])
+
+
+def hole(array):
+    array = np.array(array, np.float64)
+    array[0, 0] = np.nan
+    return array
+
+
+#: What is called with a scene, its cloud and a folder; the argument at fault, and a word of the advice.
+WRONG = {
+    "naive time": (lambda s, c, f: s.shadow(time=NAIVE), "time", "tzinfo"),
+    "numpy time": (lambda s, c, f: s.shadow(time=np.datetime64("2026-06-21T15:00")), "time", "UTC"),
+    "several naive times": (lambda s, c, f: s.shadow(time=[NAIVE]), "time", "tzinfo"),
+    "number as time": (lambda s, c, f: s.shadow(time=15), "time", "datetime"),
+    "text without offset": (lambda s, c, f: s.shadow(time="2026-06-21T15:00"), "time", "+02:00"),
+    "naive period": (lambda s, c, f: s.sun_hours(period=(NAIVE, NAIVE)), "period", "tzinfo"),
+    "time as date": (lambda s, c, f: s.sun_hours(date=NAIVE), "date", "datetime.date"),
+    "no days": (lambda s, c, f: s.sun_hours(), "period", "date"),
+    "days without year": (lambda s, c, f: s.sun_hours(date="longest-day"), "year", "year="),
+    "no sun": (lambda s, c, f: s.shadow(), "sun and time", "one of them"),
+    "two suns": (lambda s, c, f: s.shadow(sun=(1, 2), time="2026-06-21T15:00Z"), "sun and time", "one of them"),
+    "sun in radians as one number": (lambda s, c, f: s.shadow(sun=1.2), "sun", "degrees"),
+    "sun too high": (lambda s, c, f: s.shadow(sun=(180, 95)), "sun", "-90 to 90"),
+    "sun that is no number": (lambda s, c, f: s.shadow(sun=(180, float("nan"))), "sun", "degrees"),
+    "targets of two columns": (lambda s, c, f: s.visible((1, 2, 3), PLACES[:, :2]), "targets", "(N, 3)"),
+    "targets of one row without brackets": (lambda s, c, f: s.visible((1, 2, 3), PLACES[0]), "targets", "(N, 3)"),
+    "targets with a hole": (lambda s, c, f: s.visible((1, 2, 3), hole(PLACES)), "targets", "remove"),
+    "targets of text": (lambda s, c, f: s.visible((1, 2, 3), [["a", "b", "c"]]), "targets", "(N, 3)"),
+    "an eye of two numbers": (lambda s, c, f: s.visible((1, 2), PLACES), "eye", "x, y, z"),
+    "an eye that is not finite": (lambda s, c, f: s.visible((1, 2, np.inf), PLACES), "eye", "finite"),
+    "pairs of different numbers": (
+        lambda s, c, f: s.line_of_sight(np.repeat(PLACES, 2, 0), np.repeat(PLACES, 3, 0)),
+        "targets",
+        "row for each",
+    ),
+    "a word that is not known": (lambda s, c, f: s.visible((1, 2, 3), PLACES, unproven="no"), "unproven", "as-visible"),
+    "trees": (lambda s, c, f: belvedere.Scene(c, trees="bare"), "trees", "porous"),
+    "orient": (lambda s, c, f: belvedere.Scene(c, orient="down"), "orient", "pulses"),
+    "two ways to orient": (
+        lambda s, c, f: belvedere.Scene(c, orient="up", scanner=(1, 2, 3)), "orient and scanner", "one of them"),
+    "method": (lambda s, c, f: belvedere.Scene(c, method="best"), "method", "carved"),
+    "rule": (lambda s, c, f: belvedere.Scene(c, without="houses"), "without", "crowns"),
+    "radius": (lambda s, c, f: belvedere.Scene(c, max_radius=-1), None, "above"),
+    "array as cloud": (lambda s, c, f: belvedere.Scene(PLACES), "cloud", "belvedere.Cloud"),
+    "cell": (lambda s, c, f: s.shadow(sun=(180, 30), cell=0), "cell", "above zero"),
+    "cell as text": (lambda s, c, f: s.shadow(sun=(180, 30), cell="1"), "cell", "number"),
+    "cell with targets": (lambda s, c, f: s.shadow(sun=(180, 30), cell=1, targets=PLACES), "cell", "grid"),
+    "normals of cells": (lambda s, c, f: s.shadow(sun=(180, 30), normals=PLACES), "normals", "targets"),
+    "normals of another length": (
+        lambda s, c, f: s.shadow(sun=(180, 30), targets=PLACES, normals=np.ones((2, 3))), "normals", "1 rows"),
+    "share of light": (lambda s, c, f: s.shadow(sun=(180, 30), through_trees=2.0), "transmissivity", "0 (opaque)"),
+    "leaves alone": (lambda s, c, f: s.shadow(sun=(180, 30), leaves="on"), "leaves", "seasons"),
+    "location in the wrong order": (
+        lambda s, c, f: s.shadow(time="2026-06-21T15:00Z", location=(140, 52)), "latitude", "-90"),
+    "progress": (lambda s, c, f: s.shadow(sun=(180, 30), progress="yes"), "progress", "function"),
+    "cloud without points": (lambda s, c, f: belvedere.Cloud(np.empty((0, 3))), "xyz", "at least one"),
+    "cloud with a hole": (lambda s, c, f: belvedere.Cloud(hole(PLACES)), "xyz", "remove"),
+    "cloud of two columns": (lambda s, c, f: belvedere.Cloud(PLACES[:, :2]), "xyz", "(N, 3)"),
+    "cloud in degrees": (lambda s, c, f: belvedere.Cloud([[5.0, 52.0, 1.0]], crs="EPSG:4326"), "crs", "convert"),
+    "system that is not known": (lambda s, c, f: belvedere.Cloud(PLACES, crs="EPSG:99999999"), None, ""),
+    "attribute of another length": (
+        lambda s, c, f: belvedere.Cloud(PLACES, classification=[1, 2]), "classification", "row for each point"),
+    "classes that do not fit": (
+        lambda s, c, f: belvedere.Cloud(PLACES, classification=[300]), "classification", "uint8"),
+    "bytes without a name": (lambda s, c, f: belvedere.read(b"1 2 3"), "name", "extension"),
+    "damaged bytes": (lambda s, c, f: belvedere.read(b"no LAS file", name="x.laz"), None, ""),
+    "format": (lambda s, c, f: belvedere.read(b"", name="x.docx"), "point cloud format", ".laz"),
+    "axis": (lambda s, c, f: belvedere.read(b"1 2 3", name="x.xyz", up="x"), "up", "'y'"),
+    "list without files": (lambda s, c, f: belvedere.read([]), "source", "at least one"),
+    "cloud as balls": (lambda s, c, f: belvedere.Scene.load(f / "tile.laz"), "ball file", "Scene(read"),
+    "town": (lambda s, c, f: belvedere.simulate("city"), "town", "village"),
+    "extent": (lambda s, c, f: belvedere.simulate(extent=5), "extent", "60"),
+    "observers": (lambda s, c, f: s.viewshed([[1.0]]), "observers", "(N, 2)"),
+    "observer far away": (lambda s, c, f: s.viewshed((0, 0, 0)), "observers", "coordinates"),
+    "two landmarks": (lambda s, c, f: s.landmark("a.obj", target_class=6), "landmark", "one of"),
+    "radiation": (lambda s, c, f: s.irradiance(), "radiation", "weather="),
+    "albedo": (lambda s, c, f: s.irradiance(clear_sky="ineichen", albedo=2), "albedo", "0 to 1"),
+    "view": (lambda s, c, f: s.depth_map(), "view", "one of"),
+    "route of one corner": (lambda s, c, f: s.comfort(route=[(1, 2)], date="2026-06-21"), "route", "2 at least"),
+    "windows without azimuth": (
+        lambda s, c, f: s.comfort(windows={"x": [1], "y": [1], "z": [1]}, date="2026-06-21"), "windows", "azimuth"),
+    "parcel of two corners": (
+        lambda s, c, f: s.envelope([(1, 2), (3, 4)], protect=[(1, 2)], sun=(180, 30)), "parcel", "3 at least"),
+    "protected sun below the horizon": (
+        lambda s, c, f: s.envelope([(1, 2), (3, 4), (5, 0)], protect=[(1, 2)], sun=(180, -3)), "sun", "above 0"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_call(name, scene, cloud, folder):
+    call, what, advice = WRONG[name]
+    with pytest.raises(belvedere.BelvedereError) as caught:
+        call(scene, cloud, folder)
+    error = caught.value
+    assert isinstance(error, ValueError)
+    if what is not None:
+        assert error.what == what, error.what
+    assert advice in error.advice or advice in str(error), f"{error} | {error.advice}"
+    assert error.advice and str(error)
+
+
+def test_files_that_are_missing_or_refused_raise_what_python_raises(folder, scene):
+    for call in (belvedere.read, belvedere.Scene.load):
+        with pytest.raises(FileNotFoundError) as caught:
+            call(folder / "nothing.laz")
+        assert "nothing.laz" in str(caught.value) and caught.value.filename.endswith("nothing.laz")
+    with pytest.raises(OSError):
+        scene.shadow(sun=(180, 30)).to_geotiff(folder / "no folder" / "x.tif")
+    (folder / "a_file").write_text("x")
+    with pytest.raises(OSError):
+        scene.save(folder / "a_file" / "x.npz")
+
+
+def test_a_scene_without_a_place_on_earth_says_how_to_give_one(scene, cloud):
+    nowhere = belvedere.Scene(belvedere.Cloud(cloud.xyz), method="tau", orient="up")
+    with pytest.raises(belvedere.BelvedereError, match="location="):
+        nowhere.shadow(time="2026-06-21T15:00Z")
+    assert nowhere.shadow(time="2026-06-21T15:00Z", location=(52, 5)).values.size
+
+
+def test_errors_can_be_pickled():
+    import pickle
+
+    error = pickle.loads(pickle.dumps(belvedere.BelvedereError("m", "w", "v", "a")))
+    assert (str(error), error.what, error.value, error.advice) == ("m", "w", "v", "a")
+
+
+def test_points_left_out_and_observers_skipped_are_warned_of(scene, standing):
+    with pytest.warns(belvedere.BelvedereWarning, match="left out"):
+        belvedere.read(b"x y z\n1 2 3\nnan 2 3\n4 5 6\n", name="x.csv")
+    x, y = standing
+    with pytest.warns(belvedere.BelvedereWarning, match="observer 1 .* is skipped"):
+        scene.viewshed([(x, y), (0.0, 0.0)], cell=2)
