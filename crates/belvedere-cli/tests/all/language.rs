@@ -46,6 +46,7 @@ fn files(folder: &Path, extension: &str, found: &mut Vec<PathBuf>) {
 fn pages() -> Vec<PathBuf> {
     let mut pages = vec![root().join("README.md"), root().join("CONTRIBUTING.md")];
     files(&root().join("docs"), "md", &mut pages);
+    files(&root().join("crates/belvedere-python/python"), "py", &mut pages);
     pages
 }
 

@@ -1,4 +1,4 @@
-"""Scenes: what is asked about visibility."""
+"""Scenes: questions about visibility."""
 
 from __future__ import annotations
 

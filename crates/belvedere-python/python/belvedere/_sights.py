@@ -61,7 +61,7 @@ class Sights:
         eye : array_like, shape (3,)
             Place of the eye in the coordinates of the file: x, y, z.
         targets : array_like, shape (N, 3), or Cloud
-            Places in the coordinates of the file. None asks about the cells of a grid, as `shadow` does.
+            Places in the coordinates of the file. None means the cells of a grid, as for `shadow`.
         unproven : {'report', 'as-visible', 'as-blocked'}
             What to make of lines that nothing blocks but that cross space that no pulse came near.
         progress : bool or callable, optional

@@ -63,7 +63,7 @@ class Sunlight:
         time : datetime, pandas Timestamp, ISO text, or several, optional
             When, in place of `sun`; with a time zone.
         targets : array_like, shape (N, 3), or Cloud, optional
-            Places in the coordinates of the file. Without any, the cells of a grid over the scene are asked about.
+            Places in the coordinates of the file. Without any, the cells of a grid over the scene.
         normals : array_like, shape (N, 3), optional
             Unit vectors that targets face; what the sun meets from behind is in shadow.
         cell : float, optional
@@ -89,7 +89,7 @@ class Sunlight:
         Returns
         -------
         Raster, or ndarray of shape (N,), float32; a list of these for several suns
-            NaN for what is not asked about: cells under a cover or without ground, and targets outside the cloud.
+            NaN for what is not tested: cells under a cover or without ground, and targets outside the cloud.
 
         Raises
         ------

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Table(Mapping[str, "npt.NDArray[Any]"]):
-    """Columns of values, a row for each thing that was asked about.
+    """Columns of values, a row for each target.
 
     Columns of two dimensions, such as places of shape (N, 3), become one column for each of their own in `to_pandas`.
 

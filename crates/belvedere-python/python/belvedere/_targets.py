@@ -1,4 +1,4 @@
-"""What is asked about, and how answers come back."""
+"""Targets, and how results come back."""
 
 from __future__ import annotations
 

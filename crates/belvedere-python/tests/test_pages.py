@@ -1,0 +1,45 @@
+"""The code of the pages and notebooks runs."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+DOCS = Path(__file__).parents[3] / "docs"
+
+
+def run(code: str, folder: Path) -> str:
+    told = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env={**__import__("os").environ, "MPLBACKEND": "agg"},
+    )
+    assert told.returncode == 0, told.stderr
+    return told.stdout
+
+
+def test_the_page_on_python_runs_from_top_to_bottom(tmp_path):
+    page = (DOCS / "python.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    assert len(blocks) > 10
+    printed = run("\n".join(blocks), tmp_path)
+    assert "of the ground is in the sun" in printed
+    assert (tmp_path / "shadow.tif").exists() and (tmp_path / "sun_hours.tif").exists()
+
+
+@pytest.mark.parametrize("path", sorted((DOCS / "notebooks").glob("*.ipynb")), ids=lambda path: path.stem)
+def test_notebook_runs(path, tmp_path):
+    for package in ("matplotlib", "pvlib"):
+        pytest.importorskip(package)
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    assert len(code) > 3
+    run("\n\n".join(code), tmp_path)
