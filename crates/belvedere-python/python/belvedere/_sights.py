@@ -82,8 +82,8 @@ class Sights:
         >>> seen.dtype, len(seen) == len(targets)
         (dtype('uint8'), True)
         """
-        asked = wanted(targets, None, {})
-        return self._core.visible(place(eye, "eye"), asked, unproven, reporter(progress))
+        chosen = wanted(targets, None, {})
+        return self._core.visible(place(eye, "eye"), chosen, unproven, reporter(progress))
 
     def line_of_sight(
         self,

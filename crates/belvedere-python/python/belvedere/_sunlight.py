@@ -110,7 +110,7 @@ class Sunlight:
         True
         """
         suns, is_one = _suns(sun, time)
-        asked = wanted(
+        chosen = wanted(
             targets,
             normals,
             _cells(cell, target_height, surface, ground),
@@ -118,7 +118,7 @@ class Sunlight:
         shares, grid = self._core.shadow(
             suns,
             _place(location, grid_north=grid_north),
-            asked,
+            chosen,
             "soft" if soft else "hard",
             {"share": through_trees, "leaves": leaves},
             reporter(progress),
