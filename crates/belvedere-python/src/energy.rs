@@ -113,7 +113,7 @@ impl Scene {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(Vec<Column<'py>>, Option<Grid>, String)> {
         let params = radiation.params()?;
-        let source = radiation.source(&params)?;
+        let source = py.detach(|| radiation.source(&params))?;
         let inner = Arc::clone(&self.0);
         let given = radiation.location.map(|place| place.map(f64::to_radians));
         let station = match &source {

@@ -184,7 +184,7 @@ impl Scene {
     #[staticmethod]
     fn build(py: Python<'_>, cloud: &Cloud, choices: Choices, progress: Option<Py<PyAny>>) -> PyResult<(Self, String)> {
         let cloud = Arc::clone(&cloud.0);
-        let params = choices.params(&cloud.frame)?;
+        let params = py.detach(|| choices.params(&cloud.frame))?;
         let given = Arc::clone(&cloud);
         let (model, report) = run(py, progress, move |control| SceneModel::build(&given, &params, control))?;
         Ok((Self(Arc::new(Inner::new(model, cloud))), json(&report)?))

@@ -2,6 +2,7 @@
 
 use crate::arrays::to_1d;
 use crate::errors::wrong;
+use crate::work::run;
 use belvedere_scenes::{AirborneParams, DENSITY, EXTENT, Preset, scan_airborne, town};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -31,10 +32,10 @@ pub(crate) fn simulate<'py>(
     if !DENSITIES.contains(&density) {
         return Err(wrong("density", &density.to_string(), "give 0.1 to 200 pulses per square metre"));
     }
-    let scan = py.detach(|| {
+    let scan = run(py, None, move |_| {
         let scene = town(&preset.params(extent, seed));
-        scan_airborne(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, density) })
-    });
+        Ok(scan_airborne(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, density) }))
+    })?;
     let dict = PyDict::new(py);
     dict.set_item("x", to_1d(py, scan.x))?;
     dict.set_item("y", to_1d(py, scan.y))?;

@@ -141,5 +141,8 @@ def test_points_left_out_and_observers_skipped_are_warned_of(scene, standing):
     with pytest.warns(belvedere.BelvedereWarning, match="left out"):
         belvedere.read(b"x y z\n1 2 3\nnan 2 3\n4 5 6\n", name="x.csv")
     x, y = standing
+    with pytest.warns(belvedere.BelvedereWarning, match="1 of 2 targets are outside the cloud"):
+        lit = scene.shadow(sun=(180, 30), targets=[(x, y, 30.0), (0.0, 0.0, 0.0)])
+    assert np.isfinite(lit[0]) and np.isnan(lit[1])
     with pytest.warns(belvedere.BelvedereWarning, match="observer 1 .* is skipped"):
         scene.viewshed([(x, y), (0.0, 0.0)], cell=2)

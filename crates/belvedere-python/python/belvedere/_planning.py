@@ -126,7 +126,9 @@ class Planning:
         places = None if observers is None else _places(observers)
         columns, grid, skipped = self._core.landmark(what, places, looking, unproven, reporter(progress))
         _warn(skipped)
-        return measures(columns, grid, self._core.crs, places)
+        if places is not None:
+            return Table({name: values for name, _, values in columns}, places=places, crs=self._core.crs.text)
+        return measures(columns, grid, self._core.crs, None)
 
     def comfort(
         self,

@@ -26,7 +26,7 @@ from ._inputs import (
 )
 from ._raster import Raster, Rasters
 from ._table import Table
-from ._targets import Cells, Targets, measures, raster, wanted
+from ._targets import Cells, Targets, measures, raster, wanted, warn_of_nothing
 
 _DIRECTION = "give azimuth and elevation in degrees, such as (180, 30)"
 
@@ -124,6 +124,8 @@ class Sunlight:
             reporter(progress),
         )
         description = "share of the sun, 0 in shadow"
+        if grid is None:
+            warn_of_nothing(shares[0])
         results: list[Raster | npt.NDArray[np.float32]] = [
             values
             if grid is None

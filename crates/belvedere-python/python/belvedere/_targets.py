@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from typing import Any, TypedDict, Union
 
@@ -10,7 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._cloud import Cloud
-from ._errors import wrong
+from ._errors import BelvedereWarning, wrong
 from ._inputs import Places, check_finite, places
 from ._raster import Raster, Rasters
 from ._table import Table
@@ -75,7 +76,16 @@ def measures(
             name: raster(values, grid, crs, name=name, description=text, nodata=nan) for name, text, values in columns
         }
         return Rasters(made)
+    warn_of_nothing(columns[0][2])
     return Table({name: values for name, _, values in columns}, places=coordinates(targets), crs=crs.text)
+
+
+def warn_of_nothing(values: npt.NDArray[Any]) -> None:
+    """Warns of targets that have no value because they lie outside the cloud."""
+    count = int(np.isnan(values).sum())
+    if count:
+        text = f"{count} of {len(values)} targets are outside the cloud, where nothing is known, and have no value"
+        warnings.warn(text, BelvedereWarning, stacklevel=4)
 
 
 def coordinates(targets: Targets) -> npt.NDArray[np.float64] | None:
