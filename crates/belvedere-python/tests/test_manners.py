@@ -70,7 +70,7 @@ def test_ctrl_c_stops_within_a_fifth_of_a_second(tile):
 
 def test_progress_counts_to_the_end_and_what_it_raises_stops_the_work(scene):
     calls = []
-    scene.sky_view(directions=600, cell=0.5, progress=lambda *call: calls.append(call))
+    scene.sky_view(directions=600, cell=1, progress=lambda *call: calls.append(call))
     stages = {stage for stage, _, _ in calls}
     assert "testing sky" in stages
     assert all(isinstance(done, int) and 0 <= done and (total == 0 or done <= total) for _, done, total in calls)
@@ -91,7 +91,7 @@ def test_progress_counts_to_the_end_and_what_it_raises_stops_the_work(scene):
 
 def test_a_bar_is_shown_where_it_is_wanted(scene, capfd):
     pytest.importorskip("tqdm")
-    scene.sky_view(directions=600, cell=0.5, progress=True)
+    scene.sky_view(directions=600, cell=1, progress=True)
     assert "testing sky" in capfd.readouterr().err
 
 

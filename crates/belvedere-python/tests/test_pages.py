@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -20,7 +21,7 @@ def run(code: str, folder: Path) -> str:
         capture_output=True,
         text=True,
         timeout=300,
-        env={**__import__("os").environ, "MPLBACKEND": "agg"},
+        env={**os.environ, "MPLBACKEND": "agg"},
     )
     assert told.returncode == 0, told.stderr
     return told.stdout
@@ -37,9 +38,9 @@ def test_the_page_on_python_runs_from_top_to_bottom(tmp_path):
 
 @pytest.mark.parametrize("path", sorted((DOCS / "notebooks").glob("*.ipynb")), ids=lambda path: path.stem)
 def test_notebook_runs(path, tmp_path):
-    for package in ("matplotlib", "pvlib"):
+    for package in ("laspy", "matplotlib", "pandas", "pvlib"):
         pytest.importorskip(package)
     cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
     code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
-    assert len(code) > 3
+    assert len(code) >= 3
     run("\n\n".join(code), tmp_path)

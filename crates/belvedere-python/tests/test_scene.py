@@ -139,3 +139,26 @@ def test_a_notebook_shows_a_picture(scene):
     for thing in (scene, scene.shadow(sun=(180, 30))):
         html = thing._repr_html_()
         assert "data:image/png;base64," in html and "&lt;belvedere." in html
+
+
+def test_rasters_and_tables_are_understood_by_other_packages(scene, folder, eye, targets):
+    pytest.importorskip("rioxarray")
+    rasterio = pytest.importorskip("rasterio")
+    lit = scene.shadow(sun=(180, 30), cell=2)
+    array = lit.to_xarray()
+    lit.to_geotiff(folder / "other.tif")
+    with rasterio.open(folder / "other.tif") as file:
+        assert array.rio.transform() == file.transform and array.rio.bounds() == pytest.approx(tuple(file.bounds))
+        assert tuple(array.rio.bounds()) == pytest.approx(lit.bounds)
+        # a raster on the map has the horizontal part of the system
+        assert (array.rio.crs.to_epsg(confidence_threshold=20), file.crs.to_epsg()) == (7415, 28992)
+    dataset = scene.sky_view(cell=4).to_xarray()
+    assert dataset["sky_openness"].rio.crs == array.rio.crs
+    pytest.importorskip("geopandas")
+    frame = scene.line_of_sight(eye, targets[:5]).to_geodataframe()
+    assert frame.crs.is_projected and np.allclose(frame.geometry.x, targets[:5, 0])
+
+
+def test_laspy_objects_and_paths_become_scenes(tile, scene):
+    laspy = pytest.importorskip("laspy")
+    assert repr(belvedere.Scene(laspy.read(tile))) == repr(belvedere.Scene(tile)) == repr(scene)

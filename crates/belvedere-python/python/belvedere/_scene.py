@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._core import Scene as NativeScene
-from ._cloud import Cloud
+from ._cloud import Cloud, read
 from ._energy import Energy
 from ._errors import BelvedereWarning, wrong
 from ._inputs import Progress, Source, as_list, check_finite, native_source, place, reporter
@@ -28,7 +28,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
 
     Parameters
     ----------
-    cloud : Cloud
+    cloud : Cloud, or what `read` takes
         The points.
     trees : {'measured', 'opaque', 'porous'}, optional
         What crowns are taken for: as the pulses found them (default), solid as in full leaf, or twigs as in winter.
@@ -84,7 +84,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
 
     def __init__(
         self,
-        cloud: Cloud,
+        cloud: Cloud | Source,
         *,
         trees: str | None = None,
         orient: str | None = None,
@@ -102,8 +102,10 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
         penetration: float | None = None,
         progress: Progress = None,
     ) -> None:
+        if isinstance(cloud, np.ndarray):
+            raise wrong("cloud", "an array", "make a cloud of it: belvedere.Cloud(xyz, crs='EPSG:CODE')")
         if not isinstance(cloud, Cloud):
-            raise wrong("cloud", f"a {type(cloud).__name__}", "give a Cloud: belvedere.read(path) or belvedere.Cloud(xyz)")
+            cloud = read(cloud)
         ways = {"orient": orient, "scanner": scanner, "trajectory": trajectory, "mesh": mesh}
         given = [name for name, value in ways.items() if value is not None]
         if len(given) > 1:
