@@ -17,45 +17,56 @@ pub(crate) enum Places<'py> {
 }
 
 impl Places<'_> {
+    /// The rows as local positions, in one pass and without a copy between.
+    ///
+    /// # Errors
+    /// As [`Places::rows`].
+    pub(crate) fn local(&self, what: &str, frame: &Frame) -> PyResult<Vec<[f32; 3]>> {
+        let positions = match self {
+            Self::Double(array) => converted(array, what, |row| frame.from_file_coordinates(row)),
+            Self::Single(array) => converted(array, what, |row| frame.from_file_coordinates(row.map(f64::from))),
+        }?;
+        check_finite(&positions, what)?;
+        Ok(positions)
+    }
+
     /// The rows as numbers of 64 bits.
     ///
     /// # Errors
     /// Unless there are three columns of finite numbers; `what` names the argument.
     pub(crate) fn rows(&self, what: &str) -> PyResult<Vec<[f64; 3]>> {
         match self {
-            Self::Double(array) => rows(array, what, |v| v),
-            Self::Single(array) => rows(array, what, f64::from),
+            Self::Double(array) => converted(array, what, |row| row),
+            Self::Single(array) => converted(array, what, |row| row.map(f64::from)),
         }
+        .and_then(|rows| check_finite(&rows, what).map(|()| rows))
     }
 }
 
-fn rows<T: Element + Copy + Sync>(
+/// Each row of three columns by a rule.
+fn converted<T: Element + Copy + Sync, R: Send>(
     array: &PyReadonlyArray2<'_, T>,
     what: &str,
-    to_f64: impl Fn(T) -> f64 + Sync,
-) -> PyResult<Vec<[f64; 3]>> {
+    rule: impl Fn([T; 3]) -> R + Sync,
+) -> PyResult<Vec<R>> {
     let view = array.as_array();
     if view.ncols() != 3 {
         let shape = format!("an array of shape ({}, {})", view.nrows(), view.ncols());
         return Err(wrong(what, &shape, "give x, y and z in three columns, shape (N, 3)"));
     }
-    let row = |i: usize| [to_f64(view[[i, 0]]), to_f64(view[[i, 1]]), to_f64(view[[i, 2]])];
-    let rows: Vec<[f64; 3]> = match view.as_slice() {
-        Some(slice) => {
-            let place = |row: &[T; 3]| row.map(&to_f64);
-            slice.as_chunks::<3>().0.par_iter().with_min_len(CHUNK).map(place).collect()
-        }
+    let row = |i: usize| rule([view[[i, 0]], view[[i, 1]], view[[i, 2]]]);
+    Ok(match view.as_slice() {
+        Some(slice) => slice.as_chunks::<3>().0.par_iter().with_min_len(CHUNK).map(|&row| rule(row)).collect(),
         None => (0..view.nrows()).into_par_iter().with_min_len(CHUNK).map(row).collect(),
-    };
-    match rows.par_iter().position_first(|row| !row.iter().all(|v| v.is_finite())) {
-        None => Ok(rows),
-        Some(at) => Err(wrong(what, &format!("{:?} in row {at}", rows[at]), "remove rows that are not finite numbers")),
-    }
+    })
 }
 
-/// Local positions of places of the file.
-pub(crate) fn local(frame: &Frame, places: &[[f64; 3]]) -> Vec<[f32; 3]> {
-    places.par_iter().with_min_len(CHUNK).map(|&place| frame.from_file_coordinates(place)).collect()
+fn check_finite<T: Copy + Into<f64> + Sync>(rows: &[[T; 3]], what: &str) -> PyResult<()> {
+    let is_finite = |row: &[T; 3]| row.iter().all(|&v| v.into().is_finite());
+    match rows.par_iter().with_min_len(CHUNK).position_first(|row| !is_finite(row)) {
+        None => Ok(()),
+        Some(at) => Err(wrong(what, &format!("not finite in row {at}"), "remove rows that are not finite numbers")),
+    }
 }
 
 /// The values of a column; a copy, because the work does not hold the interpreter.

@@ -131,7 +131,7 @@ impl Scene {
                 }
                 other => exception(other),
             })?;
-        let asked = targets.owned(py)?;
+        let asked = targets.owned(py, &inner)?;
         let (measures, grid, report) = run(py, progress, move |control| {
             let trees = trees.of(&inner, control)?;
             let source = match &source {

@@ -33,7 +33,7 @@ impl Scene {
             _ => return Err(wrong("edges", &format!("'{edges}'"), "use 'hard' or 'soft'")),
         };
         let inner = Arc::clone(&self.0);
-        let asked = targets.owned(py)?;
+        let asked = targets.owned(py, &inner)?;
         let suns = suns.suns(&inner, &place)?;
         let (lit, grid) = run(py, progress, move |control| {
             let targets = asked.targets(&inner, control)?;

@@ -38,10 +38,10 @@ impl Scene {
     ) -> PyResult<Bound<'py, PyAny>> {
         let unproven = unproven_as(unproven)?;
         let inner = Arc::clone(&self.0);
-        let asked = targets.owned(py)?;
+        let asked = targets.owned(py, &inner)?;
         let answers = run(py, progress, move |control| {
             let positions = match asked {
-                Asked::Points { places, .. } => crate::arrays::local(inner.frame(), &places),
+                Asked::Points { positions, .. } => positions,
                 Asked::Cloud { cloud, .. } => crate::targets::moved(&cloud, inner.frame())?,
                 Asked::Cells(_) => asked.targets(&inner, control)?.positions,
             };

@@ -131,7 +131,7 @@ impl Scene {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(Vec<Column<'py>>, Option<Grid>)> {
         let inner = Arc::clone(&self.0);
-        let asked = targets.owned(py)?;
+        let asked = targets.owned(py, &inner)?;
         let (plan, site) = days.plan(&inner, &place, &rules)?;
         let (measures, grid) = run(py, progress, move |control| {
             let targets = asked.targets(&inner, control)?;
@@ -163,7 +163,7 @@ impl Scene {
         };
         let sky = sky.map_err(exception)?;
         let inner = Arc::clone(&self.0);
-        let asked = targets.owned(py)?;
+        let asked = targets.owned(py, &inner)?;
         let (seen, grid) = run(py, progress, move |control| {
             let targets = asked.targets(&inner, control)?;
             let scene = inner.blockers(UnprovenAs::Visible, control)?;

@@ -1,6 +1,6 @@
 //! What is asked about: cells of a grid, points, or a cloud.
 
-use crate::arrays::{Places, fixed_rows, local, to_1d};
+use crate::arrays::{Places, fixed_rows, to_1d};
 use crate::cloud::Cloud;
 use crate::errors::wrong;
 use crate::scene::Inner;
@@ -28,9 +28,9 @@ pub(crate) struct Wanted<'py> {
     ground: Option<String>,
 }
 
-/// The same, owned, so that it can be worked on without the interpreter.
+/// The same in the frame of the scene, owned, so that it can be worked on without the interpreter.
 pub(crate) enum Asked {
-    Points { places: Vec<[f64; 3]>, normals: Option<Vec<[f32; 3]>> },
+    Points { positions: Vec<[f32; 3]>, normals: Option<Vec<[f32; 3]>> },
     Cloud { cloud: Arc<PointCloud>, normals: Option<Vec<[f32; 3]>> },
     Cells(Cells),
 }
@@ -55,7 +55,7 @@ pub(crate) fn ground_points(text: Option<&str>) -> PyResult<GroundPoints> {
 }
 
 impl Wanted<'_> {
-    pub(crate) fn owned(&self, py: Python<'_>) -> PyResult<Asked> {
+    pub(crate) fn owned(&self, py: Python<'_>, inner: &Inner) -> PyResult<Asked> {
         let normals: Option<Vec<[f32; 3]>> = self.normals.as_ref().map(|n| fixed_rows(n, "normals")).transpose()?;
         let check = |count: usize| match &normals {
             Some(normals) if normals.len() != count => {
@@ -64,9 +64,9 @@ impl Wanted<'_> {
             _ => Ok(()),
         };
         if let Some(places) = &self.places {
-            let places = places.rows("targets")?;
-            check(places.len())?;
-            return Ok(Asked::Points { places, normals });
+            let positions = places.local("targets", inner.frame())?;
+            check(positions.len())?;
+            return Ok(Asked::Points { positions, normals });
         }
         if let Some(cloud) = &self.cloud {
             let cloud = Arc::clone(&cloud.borrow(py).0);
@@ -89,7 +89,7 @@ impl Asked {
         };
         let mut targets = match self {
             Self::Cells(cells) => return cells.targets(inner, control),
-            Self::Points { places, normals } => of(local(frame, &places), normals),
+            Self::Points { positions, normals } => of(positions, normals),
             Self::Cloud { cloud, normals } => of(moved(&cloud, frame)?, normals),
         };
         if let Some(coverage) = inner.model.coverage() {

@@ -6,17 +6,17 @@ import re
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 
 def main() -> None:
+    import belvedere
     import numpy as np
 
-    begun = time.perf_counter()
-    import belvedere
-
-    seconds = time.perf_counter() - begun
+    # the least of several: other programs may run
+    timed = "import numpy, time; t = time.perf_counter(); import belvedere; print(time.perf_counter() - t)"
+    runs = [subprocess.run([sys.executable, "-c", timed], capture_output=True, check=True) for _ in range(5)]
+    seconds = min(float(run.stdout) for run in runs)
     assert seconds < 0.1, f"importing took {seconds:.3f} s beyond numpy"
 
     package = Path(__file__).parents[1]
