@@ -56,7 +56,9 @@ def public_members():
                     yield f"{name}.{member}", value
 
 
-@pytest.mark.parametrize(("name", "thing"), list(public_members()), ids=lambda value: value if isinstance(value, str) else "")
+@pytest.mark.parametrize(
+    ("name", "thing"), list(public_members()), ids=lambda value: value if isinstance(value, str) else ""
+)
 def test_public_name_is_documented_with_an_example(name, thing):
     text = inspect.getdoc(thing) or ""
     assert text, f"{name} has no docstring"

@@ -57,7 +57,11 @@ def test_shadow(scene, run_program, folder, name, flags, arguments):
 @pytest.mark.parametrize(
     ("name", "flags", "arguments"),
     [
-        ("day", ["--date", "2026-03-21", "--zone", "Europe/Amsterdam"], {"date": "2026-03-21", "zone": "Europe/Amsterdam"}),
+        (
+            "day",
+            ["--date", "2026-03-21", "--zone", "Europe/Amsterdam"],
+            {"date": "2026-03-21", "zone": "Europe/Amsterdam"},
+        ),
         (
             "days",
             ["--from", "2026-06-01", "--to", "2026-06-05", "--time-step-min", "30", "--rule", "nl-light"],
@@ -140,7 +144,20 @@ def test_simulated_points_are_those_of_the_program(run_program, folder):
 
 def test_landmarks(scene, run_program, folder, standing):
     x, y = standing
-    run_program("landmark", "tile.laz", "--target-class", 6, "--cell", 16, "--max-distance", 60, "-o", "share.tif", "--measures", "landmark")
+    run_program(
+        "landmark",
+        "tile.laz",
+        "--target-class",
+        6,
+        "--cell",
+        16,
+        "--max-distance",
+        60,
+        "-o",
+        "share.tif",
+        "--measures",
+        "landmark",
+    )
     rasters = scene.landmark(target_class=6, cell=16, max_distance=60)
     assert {path.stem for path in (folder / "landmark").iterdir()} == set(rasters)
     for measure, raster in rasters.items():

@@ -39,13 +39,15 @@ class Cloud:
     xyz : array_like, shape (N, 3)
         Coordinates in the unit of `crs`: east, north, up. 32 or 64 bit, with any strides; other numbers are converted.
     crs : str, optional
-        Coordinate reference system: ``"EPSG:28992"``, well-known text, or a PROJ string. Without one, coordinates are metres.
+        Coordinate reference system: ``"EPSG:28992"``, well-known text, or a PROJ string. Without one, coordinates are
+        metres.
     classification : array_like, shape (N,), uint8, optional
         ASPRS classes: 2 ground, 3 to 5 vegetation, 6 building, 7 and 18 noise.
     gps_time : array_like, shape (N,), float64, optional
         Seconds. Needed, with `return_number` and `return_count`, to find the scanner.
     adjusted_gps_time : bool, optional
-        Whether `gps_time` counts from 1e9 s of GPS time (bit 0 of the LAS global encoding) rather than from Sunday midnight.
+        Whether `gps_time` counts from 1e9 s of GPS time (bit 0 of the LAS global encoding) rather than from Sunday
+        midnight.
     return_number, return_count : array_like, shape (N,), uint8, optional
         Which return of its pulse a point is, from 1, and how many returns the pulse had.
     scan_angle : array_like, shape (N,), float32, optional

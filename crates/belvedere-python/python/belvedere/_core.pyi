@@ -10,7 +10,7 @@ _Grid = tuple[int, int, Sequence[float]]
 _Columns = list[tuple[str, str, npt.NDArray[Any]]]
 _CrsState = tuple[str | None, int | None, int | None, float, float, int]
 
-__all__ = ["Cloud", "Crs", "NO_VALUE", "Scene", "__version__", "read", "simulate", "write_geotiff"]
+__all__ = ["NO_VALUE", "Cloud", "Crs", "Scene", "__version__", "read", "simulate", "write_geotiff"]
 
 __version__: str
 NO_VALUE: float
@@ -172,9 +172,7 @@ class Scene:
     def sun_positions(self, times: list[str], place: dict[str, Any]) -> list[tuple[float, float]]: ...
 
 def read(inputs: list[Any], crs: str | None, up: str, progress: _Progress) -> tuple[Cloud, str]: ...
-def simulate(
-    preset: str, extent: float | None, density: float | None, seed: int
-) -> dict[str, npt.NDArray[Any]]: ...
+def simulate(preset: str, extent: float | None, density: float | None, seed: int) -> dict[str, npt.NDArray[Any]]: ...
 def write_geotiff(
     path: str | os.PathLike[str],
     values: npt.NDArray[Any],

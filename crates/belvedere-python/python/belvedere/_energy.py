@@ -81,7 +81,8 @@ class Energy:
         Returns
         -------
         Rasters or Table
-            ``kwh_m2`` (all), the share that obstacles take, and direct, diffuse and reflected parts, kWh per square metre.
+            ``kwh_m2`` (all), the share that obstacles take, and direct, diffuse and reflected parts, kWh per square
+            metre.
 
         Raises
         ------

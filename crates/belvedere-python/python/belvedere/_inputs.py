@@ -46,7 +46,9 @@ def native_source(source: Source, name: str | None) -> object:
             raise wrong("source", "a file in text mode", "open it in binary mode: open(path, 'rb')")
         given = name if name is not None else getattr(source, "name", None)
         if not isinstance(given, str):
-            raise wrong("name", "missing", "this file has no name: give name='tile.laz', whose extension says the format")
+            raise wrong(
+                "name", "missing", "this file has no name: give name='tile.laz', whose extension says the format"
+            )
         return given, content
     raise wrong("source", f"a {type(source).__name__}", "give a path, bytes, a binary file, or an object of laspy")
 
@@ -134,7 +136,9 @@ def moments(value: object) -> list[str]:
     """Two days, or two times."""
     if not isinstance(value, (tuple, list)) or len(value) != 2:
         raise wrong("period", repr(value), "give its first and its last day, or two times")
-    return [time_text(one, "period") if isinstance(one, datetime.datetime) else day_text(one, "period") for one in value]
+    return [
+        time_text(one, "period") if isinstance(one, datetime.datetime) else day_text(one, "period") for one in value
+    ]
 
 
 def zone_text(zone: str | datetime.tzinfo | None) -> str | None:
@@ -215,5 +219,3 @@ def _lines() -> Callable[[str, int, int], object]:
 def as_list(value: str | Sequence[str]) -> list[str]:
     """One text, or several."""
     return [value] if isinstance(value, str) else list(value)
-
-

@@ -57,7 +57,8 @@ class Outlook:
         ground : {'auto', 'class', 'found'}, optional
             Which points are ground: class 2 where there is one (default), always class 2, or those that are found.
         azimuth_range_deg, elevation_range_deg : array_like, shape (2,), optional
-            Where observers look: azimuths clockwise from true north (from 300 to 60 runs through north), and elevations.
+            Where observers look: azimuths clockwise from true north (from 300 to 60 runs through north), and
+            elevations.
         min_distance, max_distance : float, optional
             How far they look on the map, metres.
         unproven : {'report', 'as-visible', 'as-blocked'}
@@ -72,8 +73,8 @@ class Outlook:
         Returns
         -------
         Raster
-            Of one observer uint8: an `Answer`, 255 where there is none. Of several uint16: how many observers see a cell, 65535 where
-            none looks.
+            Of one observer uint8: an `Answer`, 255 where there is none. Of several uint16: how many observers see a
+            cell, 65535 where none looks.
 
         Raises
         ------
@@ -162,8 +163,8 @@ class Outlook:
         Returns
         -------
         ndarray, shape (height, width), float32
-            Metres, infinite where nothing is hit. Along the axis of the view; from the eye in panoramas, whose columns run from south over
-            west, north and east.
+            Metres, infinite where nothing is hit. Along the axis of the view; from the eye in panoramas, whose
+            columns run from south over west, north and east.
 
         References
         ----------
@@ -237,9 +238,7 @@ class Outlook:
         >>> len(azimuths), bool((elevations <= 90).all())
         (360, True)
         """
-        looking = _looking(
-            observer_height=observer_height, ground=ground, curvature=curvature, refraction=refraction
-        )
+        looking = _looking(observer_height=observer_height, ground=ground, curvature=curvature, refraction=refraction)
         check_finite(angle_step_deg=angle_step_deg)
         places = _places(observers)
         found, count, skipped = self._core.horizon(
@@ -282,8 +281,8 @@ class Outlook:
         Returns
         -------
         Table
-            ``volume_m3``, ``openness``, ``sky_openness``, ranges, drift, area and perimeter of the plan; a row for each observer, NaN
-            for one that is skipped. The attribute `panoramas` has the ranges in all directions.
+            ``volume_m3``, ``openness``, ``sky_openness``, ranges, drift, area and perimeter of the plan; a row for
+            each observer, NaN for one that is skipped. The attribute `panoramas` has the ranges in all directions.
 
         Raises
         ------

@@ -155,8 +155,8 @@ class Planning:
         route : array_like, shape (N, 2) or (N, 3), optional
             Corners of a walk in the coordinates of the file; without z it runs on the ground.
         windows : mapping of str to array_like, optional
-            Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt`` (degrees, 90 upright), ``width`` and ``height`` (metres), in
-            place of a walk.
+            Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt`` (degrees, 90 upright), ``width`` and
+            ``height`` (metres), in place of a walk.
         date, period, year, time_step_min, zone : optional
             As for `sun_hours`.
         distance_step_m : float, optional
@@ -171,8 +171,9 @@ class Planning:
         Returns
         -------
         Table
-            A row for each place of the walk or each window: ``sky_view_factor``, ``sky_openness``, ``sun_hours``, ``sun_share``,
-            ``first_light``, ``last_light``, ``longest``; for walks also ``route`` and ``distance_m``, for windows ``sky_component``.
+            A row for each place of the walk or each window: ``sky_view_factor``, ``sky_openness``, ``sun_hours``,
+            ``sun_share``, ``first_light``, ``last_light``, ``longest``; for walks also ``route`` and ``distance_m``,
+            for windows ``sky_component``.
 
         Raises
         ------

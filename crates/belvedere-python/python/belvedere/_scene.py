@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._core import Scene as NativeScene
 from ._cloud import Cloud, read
+from ._core import Scene as NativeScene
 from ._energy import Energy
 from ._errors import BelvedereWarning, wrong
 from ._inputs import Progress, Source, as_list, check_finite, native_source, place, reporter
@@ -33,8 +33,8 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
     trees : {'measured', 'opaque', 'porous'}, optional
         What crowns are taken for: as the pulses found them (default), solid as in full leaf, or twigs as in winter.
     orient : {'auto', 'pulses', 'scanner', 'given', 'up'}, optional
-        How normals are turned outward: by what the cloud has (default), by the pulses, towards the scanner positions of the file,
-        as the file says, or upward.
+        How normals are turned outward: by what the cloud has (default), by the pulses, towards the scanner positions
+        of the file, as the file says, or upward.
     scanner : array_like, shape (3,), optional
         Place of the one scanner, in the coordinates of the cloud, in place of `orient`.
     trajectory : path, optional
@@ -42,7 +42,8 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
     mesh : path, optional
         Mesh whose faces say which side is outside, in place of `orient`.
     method : {'carved', 'tau', 'angles'}, optional
-        How balls are made: carved with pulses where that is possible (default), from points alone, or as published in 2015.
+        How balls are made: carved with pulses where that is possible (default), from points alone, or as published in
+        2015.
     without : str or list of str, optional
         Rules of carving to leave out, such as ``'crowns'``.
     keep_noise, keep_duplicates, keep_isolated : bool, optional
@@ -68,8 +69,8 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
 
     Notes
     -----
-    The numbers that are not given are those of the library, and of the command line: ``belvedere balls --help`` shows them. Results
-    are the same, bit by bit, for any number of threads.
+    The numbers that are not given are those of the library, and of the command line: ``belvedere balls --help`` shows
+    them. Results are the same, bit by bit, for any number of threads.
 
     References
     ----------

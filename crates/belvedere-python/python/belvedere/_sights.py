@@ -100,7 +100,8 @@ class Sights:
         Parameters
         ----------
         observer, target : array_like, shape (3,) or (N, 3)
-            Ends of the lines in the coordinates of the file: x, y, z. One observer can have many targets, and the other way round.
+            Ends of the lines in the coordinates of the file: x, y, z. One observer can have many targets, and the
+            other way round.
         unproven : {'report', 'as-visible', 'as-blocked'}
             What to make of lines that nothing blocks but that cross space that no pulse came near.
         curvature : {'auto', 'on', 'off'}, optional
@@ -112,8 +113,8 @@ class Sights:
         Returns
         -------
         Sight or Table
-            A `Sight` for one pair. For several a `Table` with ``answer``, ``first_block_range_m``, ``unproven_m`` (where pulses are
-            known), ``block`` (N, 3), ``block_ball`` and ``block_source`` (-1 where nothing blocks).
+            A `Sight` for one pair. For several a `Table` with ``answer``, ``first_block_range_m``, ``unproven_m``
+            (where pulses are known), ``block`` (N, 3), ``block_ball`` and ``block_source`` (-1 where nothing blocks).
 
         Raises
         ------

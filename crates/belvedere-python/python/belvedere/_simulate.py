@@ -12,9 +12,7 @@ from ._inputs import check_finite
 _SYSTEM = "EPSG:7415"
 
 
-def simulate(
-    town: str = "town", *, extent: float | None = None, density: float | None = None, seed: int = 1
-) -> Cloud:
+def simulate(town: str = "town", *, extent: float | None = None, density: float | None = None, seed: int = 1) -> Cloud:
     """An airborne laser scan of a simulated town: a cloud to try things with.
 
     `belvedere simulate` writes the same scan with its exact mesh, and has more choices.

@@ -175,7 +175,8 @@ class Sunlight:
         min_sun_elevation_deg : float, optional
             Lower suns do not count.
         sun_tolerance_deg : float, optional
-            Greatest angle between a sun and the direction that is tested for it; 0 for few suns and 1 for many if not given.
+            Greatest angle between a sun and the direction that is tested for it; 0 for few suns and 1 for many if not
+            given.
         targets, normals, cell, target_height, surface, ground, through_trees, leaves, location
             As for `shadow`.
         zone : str or tzinfo, optional
@@ -189,8 +190,8 @@ class Sunlight:
         Returns
         -------
         Rasters or Table
-            ``sun_hours``, ``sun_share``, ``first_light``, ``last_light``, ``longest``, of several days also ``min_sun_hours`` and
-            ``total_hours``, and for each rule whether it is met.
+            ``sun_hours``, ``sun_share``, ``first_light``, ``last_light``, ``longest``, of several days also
+            ``min_sun_hours`` and ``total_hours``, and for each rule whether it is met.
 
         Raises
         ------

@@ -27,8 +27,8 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
     places : ndarray, shape (N, 3), or None
         Where the rows lie, in the coordinates of the file.
     panoramas : list of ndarray
-        Of an isovist: ranges in metres for each observer that looks, infinite where nothing blocks. Columns run clockwise from south over
-        west, north and east, rows from the zenith down.
+        Of an isovist: ranges in metres for each observer that looks, infinite where nothing blocks. Columns run
+        clockwise from south over west, north and east, rows from the zenith down.
 
     Examples
     --------
@@ -124,4 +124,4 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
         try:
             return str(self.to_pandas().to_html(max_rows=10))
         except ValueError:
-            return f"<pre>{repr(self)}</pre>".replace("<belvedere", "&lt;belvedere")
+            return f"<pre>{self!r}</pre>".replace("<belvedere", "&lt;belvedere")
