@@ -3,12 +3,20 @@
 use crate::model::{FARTHEST, is_near};
 use crate::{Error, Result};
 
-/// The empty piece of each pulse above its first return, one per row: 16 bytes each where all reach the same height, 20 otherwise.
+/// Ways that a pulse may go: along three axes, to both sides.
+const WAYS: u8 = 6;
+
+/// The empty piece of each pulse before its first return, one per row: 16 bytes each where all are upright and reach the same height,
+/// up to 21 otherwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NeedleColumns {
-    /// Lower ends, (P, 3), local metres.
+    /// Ends at the first returns, (P, 3), local metres.
     pub starts: Vec<[f32; 3]>,
-    /// Shift to the east and to the north for each metre of height, in steps of 0.0001, (P, 2).
+    /// The way that a pulse gets on most towards the scanner, (P): 0 up, 1 east, 2 north, 3 down, 4 west, 5 south; empty where all go
+    /// up.
+    pub ways: Vec<u8>,
+    /// Shift to the east and to the north for each metre of height, in steps of 0.0001, (P, 2). Of pulses that go east or west the shift
+    /// to the north and up, of those that go north or south up and to the east, for each metre of that way.
     pub slopes: Vec<[i16; 2]>,
     /// Lengths, (P), metres, infinite for a pulse that reaches `top`; empty where all do.
     pub lengths: Vec<f32>,
@@ -23,14 +31,20 @@ impl NeedleColumns {
     /// [`Error::LengthMismatch`] or [`Error::InvalidParameter`] for the first fault.
     pub fn validate(&self) -> Result<()> {
         let expected = self.starts.len();
-        for (what, found) in [("slopes of pulses", self.slopes.len()), ("lengths of pulses", self.lengths.len())] {
-            if found != expected && !(found == 0 && what.starts_with("lengths")) {
+        let (slopes, lengths, ways) = (self.slopes.len(), self.lengths.len(), self.ways.len());
+        for (what, found, may_be_empty) in
+            [("slopes of pulses", slopes, false), ("lengths of pulses", lengths, true), ("ways of pulses", ways, true)]
+        {
+            if found != expected && !(found == 0 && may_be_empty) {
                 return Err(Error::LengthMismatch { what, expected, found });
             }
         }
         let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
         if let Some(start) = self.starts.iter().find(|start| !is_near(**start)) {
             return invalid("lower end of a pulse", format!("{start:?}"), "within 10000 km of the origin");
+        }
+        if let Some(way) = self.ways.iter().find(|way| **way >= WAYS) {
+            return invalid("way of a pulse", way.to_string(), "0 to 5");
         }
         if let Some(length) = self.lengths.iter().find(|length| !(**length > 0.0)) {
             return invalid("length of a pulse", length.to_string(), "above zero");

@@ -15,7 +15,8 @@ pub(crate) const SUPPORTED: &str = ".npz .ply .laz .las";
 /// f32 metres, `source` and `touch` (B) u32, `separation_angles` (B) f32 radians, and `metadata`, JSON text as u8, which
 /// holds reference system, bounds and provenance; where known also `transmission` (B) f32, and the pulses that prove what
 /// is visible: `pulse_starts` (P, 3) f32 metres relative to the origin, `pulse_slopes` (P, 2) i16 in steps of 0.0001,
-/// `pulse_top` (1) f32 metres, and `pulse_lengths` (P) f32 metres unless all reach the top: 16 or 20 bytes each.
+/// `pulse_top` (1) f32 metres, `pulse_lengths` (P) f32 metres unless all reach the top, and `pulse_ways` (P) u8 unless all go up: 16 to
+/// 21 bytes each.
 ///
 /// `.ply`, `.las` and `.laz` files are point clouds of the centres in the reference system and unit of the cloud (doubles
 /// in PLY, steps of at most a millimetre in LAS) with the columns `radius`, in the horizontal unit of the file,

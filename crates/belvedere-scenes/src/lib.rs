@@ -3,7 +3,7 @@
 //! Tests and demonstrations need scenes whose answers are known. This crate makes a town out of triangles ([`town`], from a
 //! description or a [`Preset`]) or a scene with a formula ([`closed_forms`]), generalises it to the blocks of a city model
 //! ([`blocks`]), answers exactly what blocks what in it ([`Truth`]), knows what is worth asking ([`QuerySite`]), and scans it
-//! from the air ([`scan_airborne`]) or from tripods ([`scan_terrestrial`]). It knows no other crate of the project: what comes out are plain columns and meshes.
+//! from the air ([`scan_airborne`]), from tripods ([`scan_terrestrial`]) or from a car ([`scan_mobile`]). It knows no other crate of the project: what comes out are plain columns and meshes.
 //!
 //! ```
 //! use belvedere_scenes::{AirborneParams, TownParams, Truth, scan_airborne, town};
@@ -37,6 +37,7 @@ pub use lod1::blocks;
 pub use queries::{QuerySet, QuerySite, Targets};
 pub use scan::airborne::{AirborneParams, DENSITY, scan_airborne};
 pub use scan::beam::BeamParams;
+pub use scan::mobile::{MobileParams, scan_mobile};
 pub use scan::scan_pattern::{MirrorMotion, ScanPattern};
 pub use scan::terrestrial::{Stations, TerrestrialParams, scan_terrestrial};
 pub use scan::{Scan, ScanReport, SensorPath};

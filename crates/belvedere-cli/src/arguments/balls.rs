@@ -103,7 +103,7 @@ fn rule(name: &str) -> Result<Rule, String> {
 pub(crate) struct Shrinking {
     /// Method that limits the balls [default: carved if pulses are known, else tau; angles for a folder]
     ///
-    /// Scans from the ground and --side exterior use tau, because their pulses cannot carve.
+    /// --side exterior uses tau.
     #[arg(long, value_enum)]
     pub(crate) method: Option<MethodChoice>,
     /// How carved balls represent the crowns of trees [default: measured]

@@ -3,6 +3,7 @@
 use super::bounds::{KindBounds, RadiusBounds, kinds};
 use super::carve::{CarveReport, carve};
 use super::cells::lowest_near;
+use super::close_range::{CloseRangeBalls, CloseRangeParams};
 use super::crowns::{self, CrownParams, Crowns};
 use super::prune::{PruneParams, prune};
 use super::relief::{Relief, ReliefParams};
@@ -50,6 +51,9 @@ pub struct CarvedParams {
     pub relief: Option<ReliefParams>,
     /// Cuts balls below the edges of roofs, where walls stand that no pulse reached.
     pub roof_edges: Option<RoofEdgeParams>,
+    /// Sizes for scanners on the ground, which replace those above and leave no other rule but pruning. `None` treats all scanners as
+    /// if they flew.
+    pub close_range: Option<CloseRangeParams>,
 }
 
 impl Default for CarvedParams {
@@ -66,6 +70,7 @@ impl Default for CarvedParams {
             thin_surfaces: Some(ThinSurfaceParams::default()),
             relief: Some(ReliefParams::default()),
             roof_edges: Some(RoofEdgeParams::default()),
+            close_range: Some(CloseRangeParams::default()),
         }
     }
 }
@@ -221,6 +226,15 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
     let CarvedInput { oriented, index, attributes, needles, pulses } = *input;
     let positions = oriented.positions();
     let mut report = CarvedReport::default();
+    if let Some(sizes) = params.close_range.filter(|_| CloseRangeParams::fits(input)) {
+        let CloseRangeBalls { balls, shrinking, carving, pruned } =
+            sizes.balls(input, params.pruning.as_ref(), control)?;
+        return Ok(CarvedBalls {
+            balls: balls.shrunk(),
+            transmission: Vec::new(),
+            report: CarvedReport { shrinking, carving, pruned, ..report },
+        });
+    }
     let mut kinds = kinds(attributes, oriented.len());
     if let Some(vegetation) = &params.vegetation {
         report.told_vegetation = control.stage("finding vegetation", oriented.len(), || {

@@ -5,6 +5,7 @@ pub mod carve;
 pub mod carved;
 mod cells;
 mod chains;
+pub mod close_range;
 pub mod crowns;
 pub mod feature_size;
 mod layers;
@@ -22,6 +23,7 @@ pub use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH,
 pub use bounds::{Kind, KindBounds, RadiusBounds, kinds};
 pub use carve::{CarveReport, carve};
 pub use carved::{CarvedBalls, CarvedInput, CarvedParams, CarvedReport, Rule, carved_balls};
+pub use close_range::CloseRangeParams;
 pub use crowns::{CrownParams, Trees};
 pub use orient_by_carving::{OrientByCarvingParams, OrientByCarvingReport, orient_by_carving};
 pub use prune::{PruneParams, prune};

@@ -76,7 +76,7 @@ impl ShrinkParams {
         Self { method, initial_radius: 30.0, max_radius: 0.5, max_spacings: f32::INFINITY }
     }
 
-    /// The same for clouds that no pulse can carve. Scans from the ground are such, whose points lie millimetres apart near the scanner and decimetres far from it: balls of at most
+    /// The same for clouds that no pulse can carve. Among them are scans from the ground without the place of the scanner, whose points lie millimetres apart near the scanner and decimetres far from it: balls of at most
     /// three spacings, which overlap also where scan lines are ten times farther apart than the points on them.
     #[must_use]
     pub fn tau_by_spacing() -> Self {
@@ -258,7 +258,7 @@ const LIMITED_PENETRATION: f32 = 0.25;
 const SPACING_NEIGHBORS: usize = 12;
 
 /// Distance between points at `p`, metres, if those around it lay in squares.
-fn spacing_at(index: &NeighborIndex, p: [f32; 3], near: &mut Vec<Neighbor>) -> f32 {
+pub(super) fn spacing_at(index: &NeighborIndex, p: [f32; 3], near: &mut Vec<Neighbor>) -> f32 {
     index.k_nearest(p, SPACING_NEIGHBORS + 1, near);
     let farthest = near.last().map_or(f32::INFINITY, |found| found.distance_squared.sqrt());
     farthest / (SPACING_NEIGHBORS as f32 / std::f32::consts::PI).sqrt()

@@ -75,7 +75,7 @@ pub enum BallParams {
     Shrunk(ShrinkParams),
     /// From points and pulses. Building fails where the scanner is not known.
     Carved(CarvedParams),
-    /// From points and pulses, or from the points alone where pulses cannot carve: scans from the ground.
+    /// From points and pulses, or from the points alone where pulses cannot carve: where they are only assumed, and few.
     CarvedIfPossible(CarvedParams, ShrinkParams),
 }
 

@@ -14,9 +14,6 @@ use std::borrow::Cow;
 
 /// Points no farther from a line than this lie on it, metres: the step of coordinates in most files.
 const LINE_WIDTH: f64 = 1e-3;
-/// Share of pulses that run flatter than 17° from which on a scanner is taken to stand on the ground: those of aircraft are steeper than
-/// 40°. What carving leaves where only part of the pulses count is neither what the points say nor what the pulses say.
-const MOST_FLAT_SHARE: f64 = 0.05;
 /// Share of the points with nothing above them from which on vertical pulses are a fair assumption. Clouds of aircraft have three
 /// quarters or more; where the scanner stood among walls it is a fifth, and carving by pulses that never were blocks most of what is visible.
 const LEAST_ASSUMED_SHARE: f64 = 0.5;
@@ -222,7 +219,7 @@ fn find_scanner(
     Ok((Scanner { positions, is_assumed }, report))
 }
 
-/// What carving needs of a cloud, and how that was found; `None` where pulses are too flat to carve and need not.
+/// What carving needs of a cloud, and how that was found; `None` where they are only assumed, too few, and need not carve.
 fn carving_input(
     cloud: &PointCloud,
     scanner: &Scanner,
@@ -234,14 +231,7 @@ fn carving_input(
         Needles::of_cloud(cloud, &scanner.positions, &params.needles, control)
     })?;
     let mut report = PulsesReport { needles: report, ..PulsesReport::default() };
-    let (used, flat) = (report.needles.used as f64, report.needles.too_flat as f64);
-    if flat >= MOST_FLAT_SHARE * (used + flat) && carving == Carving::IfPossible {
-        report.remark = Some(
-            "pulses do not carve here: many are too flat, as from a scanner on the ground; balls are as thin as the points are close"
-                .to_owned(),
-        );
-        return Ok((None, report));
-    }
+    let used = report.needles.used as f64;
     if scanner.is_assumed && used < LEAST_ASSUMED_SHARE * cloud.len() as f64 && carving == Carving::IfPossible {
         report.remark = Some(format!(
             "pulses do not carve here: they are only assumed to be vertical, and {:.0} % of the points have something above them; give \

@@ -74,7 +74,7 @@ impl SeenSpace {
         let room = self.reach + self.side;
         let low = [0, 1].map(|axis| self.low[axis] + first[axis] as f64 * self.side - room);
         let high = low.map(|low| low + TILE as f64 * self.side + 2.0 * room);
-        needles.each_over([low, high], |ends| self.mark(ends, [low, high], first, &mut boxes));
+        needles.each_upright_over([low, high], |ends| self.mark(ends, [low, high], first, &mut boxes));
         boxes
     }
 

@@ -17,8 +17,18 @@ const UNITS: &str = "metres relative to origin, radians; coordinates in the crs 
 /// Arrays that files with pulses have.
 const PULSE_ARRAYS: [&str; 3] = ["pulse_starts", "pulse_slopes", "pulse_top"];
 /// Arrays that all or some files have beside these.
-const OTHER_ARRAYS: [&str; 9] =
-    ["centers", "origin", "radii", "source", "touch", "separation_angles", "transmission", "pulse_lengths", "metadata"];
+const OTHER_ARRAYS: [&str; 10] = [
+    "centers",
+    "origin",
+    "radii",
+    "source",
+    "touch",
+    "separation_angles",
+    "transmission",
+    "pulse_lengths",
+    "pulse_ways",
+    "metadata",
+];
 /// Metadata longer than this is not ours.
 const MAX_METADATA_BYTES: u64 = 1 << 24;
 
@@ -38,13 +48,16 @@ fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, parts: &ModelParts)
     if !parts.transmission.is_empty() {
         array(archive, "transmission", &[n], parts.transmission.iter().copied())?;
     }
-    if let Some(NeedleColumns { starts, slopes, lengths, top }) = &parts.pulses {
+    if let Some(NeedleColumns { starts, ways, slopes, lengths, top }) = &parts.pulses {
         let p = starts.len() as u64;
         array(archive, "pulse_starts", &[p, 3], starts.iter().flatten().copied())?;
         array(archive, "pulse_slopes", &[p, 2], slopes.iter().flatten().copied())?;
         array(archive, "pulse_top", &[1], [*top].into_iter())?;
         if !lengths.is_empty() {
             array(archive, "pulse_lengths", &[p], lengths.iter().copied())?;
+        }
+        if !ways.is_empty() {
+            array(archive, "pulse_ways", &[p], ways.iter().copied())?;
         }
     }
     array(archive, "metadata", &[metadata.len() as u64], metadata.bytes())
@@ -86,9 +99,11 @@ pub(crate) fn read_npz(input: Input<'_>) -> Result<ModelParts> {
 fn pulses<R: Read + Seek>(archive: &mut NpzArchive<R>) -> io::Result<NeedleColumns> {
     let lengths =
         if has(archive, "pulse_lengths") { values(archive, "pulse_lengths", u64::MAX)?.0 } else { Vec::new() };
+    let ways = if has(archive, "pulse_ways") { values(archive, "pulse_ways", u64::MAX)?.0 } else { Vec::new() };
     let top = values::<f32, _>(archive, "pulse_top", 1)?.0;
     Ok(NeedleColumns {
         starts: rows::<f32, 3, _>(archive, "pulse_starts")?,
+        ways,
         slopes: rows::<i16, 2, _>(archive, "pulse_slopes")?,
         lengths,
         top: top.first().copied().ok_or_else(|| invalid("pulse_top is empty".to_owned()))?,

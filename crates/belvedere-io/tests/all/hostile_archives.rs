@@ -81,6 +81,7 @@ fn full_archive() -> (ModelParts, Vec<u8>) {
         transmission: vec![0.25; count],
         pulses: Some(NeedleColumns {
             starts: vec![[0.5; 3]; 3],
+            ways: vec![0, 4, 5],
             slopes: vec![[10, -20]; 3],
             lengths: vec![4.0; 3],
             top: 12.0,

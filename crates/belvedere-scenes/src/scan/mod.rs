@@ -3,6 +3,7 @@
 pub(crate) mod airborne;
 pub(crate) mod beam;
 pub(crate) mod flight;
+pub(crate) mod mobile;
 pub(crate) mod recording;
 pub(crate) mod scan_pattern;
 pub(crate) mod stations;
@@ -32,9 +33,9 @@ pub struct Scan {
     /// How many returns its pulse has.
     pub return_count: Vec<u8>,
     /// Angle of the pulse from nadir in degrees (LAS 1.4): across the flight and negative to its left for an airborne scanner;
-    /// 0 to 180, where 90 is level, for one on a tripod.
+    /// 0 to 180, where 90 is level, for one on a tripod; −180 to 180 about the axis of the mirror for one on a car.
     pub scan_angle_deg: Vec<f32>,
-    /// Strip or tripod position, from 1.
+    /// Strip, tripod position or run of a car, from 1.
     pub point_source_id: Vec<u16>,
     /// ASPRS class of the surface, see [`crate::Material::asprs_class`].
     pub classification: Vec<u8>,

@@ -21,6 +21,9 @@ use crate::town::site::{Clearance, Site};
 use crate::town::terrain::Terrain;
 use crate::town::trees::Crowns;
 
+/// Lanes that a street has room for.
+const LANES_ACROSS: f64 = 4.5;
+
 /// What a block of a town holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BlockPlan {
@@ -137,6 +140,19 @@ impl TownParams {
     pub fn terrain(&self) -> Terrain {
         Terrain::new(self.origin, self.slope, self.hill_height, self.seed)
             .with_canal(Layout::new(&self.within_limits()).trench())
+    }
+
+    /// A lane along each street between the blocks, from one end of the town to the other, (R, 2, 2), metres, absolute: beside the
+    /// trees and clear of parked cars and masts.
+    #[must_use]
+    pub fn lanes(&self) -> Vec<[[f64; 2]; 2]> {
+        let params = self.within_limits();
+        let layout = Layout::new(&params);
+        let (half, beside) = (layout.side / 2.0, params.street_width / LANES_ACROSS);
+        let along_u = layout.streets_along_u.iter().map(|v| [-half, half].map(|u| layout.centre.at(u, v + beside)));
+        // along v a side further left is one of lower u
+        let along_v = layout.streets_along_v.iter().map(|u| [-half, half].map(|v| layout.centre.at(u - beside, v)));
+        along_u.chain(along_v).collect()
     }
 
     /// The same description with everything that shapes the plan brought to values that can be built.

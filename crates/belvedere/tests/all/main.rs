@@ -10,6 +10,7 @@ mod blocking;
 mod carving;
 mod certified;
 mod cleaning;
+mod close_range;
 mod closed_form_shadows;
 mod closed_form_skies;
 mod common;

@@ -24,6 +24,14 @@ fn survey(count: u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
         .unzip()
 }
 
+/// First returns in the same place, and scanners in their midst: pulses in all directions.
+fn survey_from_the_ground(count: u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
+    let stations = [[10.0, 20.0, 1.5], [45.0, 30.0, 5.0], [30.0, 55.0, 1.0]];
+    let (returns, _) = survey(count);
+    let scanner = (0..returns.len()).map(|i| stations[i % 3]).collect();
+    (returns, scanner)
+}
+
 fn needles(returns: &[[f32; 3]], scanner: &[[f32; 3]]) -> Needles {
     Needles::new(returns, scanner, &NEEDLES, &Control::none()).unwrap().0
 }
@@ -36,7 +44,8 @@ fn segments(returns: &[[f32; 3]], scanner: &[[f32; 3]]) -> Vec<[[f64; 3]; 2]> {
         let sight: [f64; 3] = std::array::from_fn(|i| s[i] - p[i]);
         let range = sight.iter().map(|v| v * v).sum::<f64>().sqrt();
         let on = |t: f64| std::array::from_fn(|i| p[i] + t * sight[i] / range);
-        [on(f64::from(NEEDLES.end_margin)), on((f64::from(top) - p[2]) / sight[2] * range)]
+        let to_top = if sight[2] > 0.0 { (f64::from(top) - p[2]) / sight[2] * range } else { range };
+        [on(f64::from(NEEDLES.end_margin)), on(to_top.min(range))]
     };
     returns.iter().zip(scanner).map(piece).collect()
 }
@@ -71,21 +80,24 @@ fn proof(needles: Needles, nearness: f64, beside: Beside) -> Proof {
 
 #[test]
 fn nearness_of_pulses_equals_that_of_every_pulse_tried_in_turn() {
-    let (returns, scanner) = survey(700);
-    let (index, segments) = (needles(&returns, &scanner), segments(&returns, &scanner));
-    let mut near = 0;
-    for i in 0..1500 {
-        let point = random_point(8, i);
-        let expected = distance(point, &segments);
-        // needles are kept as f32, which moves their ends by micrometres
-        for (reach, is_near) in [(expected + 1e-4, true), (expected - 1e-4, false), (1.2, expected < 1.2)] {
-            assert_eq!(index.passes_within(point, reach), is_near, "{point:?} at {reach}, distance {expected}");
+    for (returns, scanner) in [survey(700), survey_from_the_ground(900)] {
+        let (index, segments) = (needles(&returns, &scanner), segments(&returns, &scanner));
+        let mut near = 0;
+        for i in 0..1500 {
+            let point = random_point(8, i);
+            let expected = distance(point, &segments);
+            // needles are kept as f32, which moves their ends by micrometres
+            for (reach, is_near) in [(expected + 1e-4, true), (expected - 1e-4, false), (1.2, expected < 1.2)] {
+                assert_eq!(index.passes_within(point, reach), is_near, "{point:?} at {reach}, distance {expected}");
+            }
+            let found = index.nearest_distance(point, 1.2);
+            assert!(found.map_or(expected >= 1.2, |found| (found - expected).abs() < 1e-4), "{found:?} {expected}");
+            near += usize::from(expected < 1.2);
         }
-        let found = index.nearest_distance(point, 1.2);
-        assert!(found.map_or(expected >= 1.2, |found| (found - expected).abs() < 1e-4), "{found:?} {expected}");
-        near += usize::from(expected < 1.2);
+        assert!((300..1200).contains(&near), "both must occur: {near}");
     }
-    assert!((300..1200).contains(&near), "both must occur: {near}");
+    let (returns, scanner) = survey(700);
+    let index = needles(&returns, &scanner);
     assert!(!index.passes_within([f64::NAN, 0.0, 0.0], 1.0) && !index.passes_within([30.0; 3], f64::NAN));
     assert!(!needles(&[], &[]).passes_within([0.0; 3], 1e9));
 }
@@ -94,7 +106,15 @@ fn nearness_of_pulses_equals_that_of_every_pulse_tried_in_turn() {
 fn unproven_lengths_are_those_of_dense_samples() {
     const SPACING: f64 = 0.02;
     // pulses so sparse that lines have many gaps, and so dense that few are left and most boxes of space are near some
-    for (count, nearness, lines) in [(500, 1.2, 12), (2500, 0.7, 12), (25_000, 0.7, 6)] {
+    type Survey = fn(u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>);
+    let (above, ground): (Survey, Survey) = (survey, survey_from_the_ground);
+    for (survey, count, nearness, lines) in [
+        (above, 500, 1.2, 12),
+        (above, 2500, 0.7, 12),
+        (above, 25_000, 0.7, 6),
+        (ground, 500, 1.2, 12),
+        (ground, 5000, 0.7, 6),
+    ] {
         let (returns, scanner) = survey(count);
         let segments = segments(&returns, &scanner);
         let top = returns.iter().map(|p| f64::from(p[2])).fold(0.0, f64::max) + 2.0;
@@ -248,31 +268,31 @@ fn answers_depend_on_neither_threads_nor_the_order_of_pulses() {
 
 #[test]
 fn pulses_as_columns_come_back_within_millimetres_and_then_the_same() {
-    let (returns, mut scanner) = survey(900);
-    for low in [false, true] {
-        if low {
-            // some scanners lower than the highest return: their needles end early
-            scanner
-                .iter_mut()
-                .step_by(7)
-                .zip(returns.iter().step_by(7))
-                .for_each(|(s, p)| *s = [p[0], p[1] + 1.0, p[2] + 3.0]);
-        }
-        let first = needles(&returns, &scanner);
+    let (returns, scanner) = survey(900);
+    // some scanners lower than the highest return: their needles end early
+    let mut low = scanner.clone();
+    low.iter_mut().step_by(7).zip(returns.iter().step_by(7)).for_each(|(s, p)| *s = [p[0], p[1] + 1.0, p[2] + 3.0]);
+    let ground = survey_from_the_ground(900);
+    for (returns, scanner, all_reach_the_top, all_go_up) in
+        [(&returns, &scanner, true, true), (&returns, &low, false, true), (&ground.0, &ground.1, false, false)]
+    {
+        let first = needles(returns, scanner);
         let columns = first.to_columns();
-        assert_eq!(columns.lengths.is_empty(), !low);
+        assert_eq!((columns.lengths.is_empty(), columns.ways.is_empty()), (all_reach_the_top, all_go_up));
         let again = Needles::from_columns(&columns, &Control::none()).unwrap();
         assert_eq!((again.len(), again.top()), (first.len(), first.top()));
         for i in 0..500 {
             let point = random_point(30, i);
             let [a, b] = [&first, &again].map(|index| index.nearest_distance(point, 50.0).unwrap());
-            // half a step of the slope, over 14 m of height, in two directions
-            assert!((a - b).abs() < 14.0 * 0.5e-4 * 1.5, "{a} {b}");
+            // half a step of the slope, over 14 m of height or 60 m of ground, in two directions
+            let along = if all_go_up { 14.0 } else { 60.0 };
+            assert!((a - b).abs() < along * 0.5e-4 * 1.5, "{a} {b}");
         }
         let sorted = |columns: NeedleColumns| {
             let length = |i: usize| columns.lengths.get(i).map_or(0, |v| v.to_bits());
+            let way = |i: usize| columns.ways.get(i).copied();
             let mut rows: Vec<_> = (0..columns.starts.len())
-                .map(|i| (columns.starts[i].map(f32::to_bits), columns.slopes[i], length(i)))
+                .map(|i| (columns.starts[i].map(f32::to_bits), columns.slopes[i], way(i), length(i)))
                 .collect();
             rows.sort_unstable();
             rows
@@ -280,7 +300,7 @@ fn pulses_as_columns_come_back_within_millimetres_and_then_the_same() {
         assert!(sorted(columns) == sorted(again.to_columns()));
     }
     let broken = |change: fn(&mut NeedleColumns)| {
-        let mut columns = needles(&returns, &scanner).to_columns();
+        let mut columns = needles(&returns, &low).to_columns();
         change(&mut columns);
         Needles::from_columns(&columns, &Control::none()).map(|_| ())
     };
@@ -292,6 +312,8 @@ fn pulses_as_columns_come_back_within_millimetres_and_then_the_same() {
     ));
     assert!(matches!(broken(|c| c.starts[3][1] = f32::NAN), Err(Error::InvalidParameter { .. })));
     assert!(matches!(broken(|c| c.lengths[3] = -1.0), Err(Error::InvalidParameter { .. })));
+    assert!(matches!(broken(|c| c.ways = vec![0; 2]), Err(Error::LengthMismatch { .. })));
+    assert!(matches!(broken(|c| c.ways = vec![6; 900]), Err(Error::InvalidParameter { .. })));
     assert!(matches!(broken(|c| c.top = f32::INFINITY), Err(Error::InvalidParameter { .. })));
     assert!(needles(&[], &[]).to_columns().starts.is_empty());
 }

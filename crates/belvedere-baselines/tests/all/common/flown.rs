@@ -3,11 +3,15 @@
 use belvedere::cloud::{centre_rounded, to_local};
 use belvedere::trajectory::Trajectory;
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud, Result};
-use belvedere_scenes::{AirborneParams, Scene, scan_airborne};
+use belvedere_scenes::{AirborneParams, Scan, Scene, scan_airborne};
 
 /// The cloud of a survey, and where the scanner was at each of its points, (N, 3) local metres.
 pub(crate) fn flown(scene: &Scene, params: &AirborneParams) -> Result<(PointCloud, Vec<[f32; 3]>)> {
-    let scan = scan_airborne(scene, params);
+    surveyed(&scan_airborne(scene, params))
+}
+
+/// The same for any scan.
+pub(crate) fn surveyed(scan: &Scan) -> Result<(PointCloud, Vec<[f32; 3]>)> {
     let coordinates = || (0..scan.len()).map(|i| [scan.x[i], scan.y[i], scan.z[i]]);
     let origin = centre_rounded(coordinates());
     let cloud = PointCloud {

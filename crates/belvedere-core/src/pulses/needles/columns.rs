@@ -1,39 +1,49 @@
 //! Needles as columns of numbers, as short as what is asked of them allows.
 
-use super::{Item, Needle, Needles};
+use super::tree::{Item, Way};
+use super::{ItemsByWay, Needle, Needles, compared_at, planes_around};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::needles::NeedleColumns;
 use rayon::prelude::*;
 
-/// Steps of a slope, metres of shift per metre of height: a needle 60 m long is off by 3 mm at its far end.
+/// Steps of a slope, metres of shift across a needle's way for each metre along it: a needle 60 m long is off by 3 mm at its far end.
 const SLOPE_STEP: f64 = 1e-4;
 /// A needle that ends within this of the top of all, metres, reaches it.
 const REACHES_TOP: f64 = 1e-3;
 /// Pulses handed to a thread at once.
 const CHUNK: usize = 1 << 14;
 
-/// Lower ends of those pulses that [`Needles::from_columns`] makes needles of, local metres.
+/// First ends of those pulses that [`Needles::from_columns`] makes needles of, local metres.
 pub(crate) fn lower_ends(columns: &NeedleColumns) -> impl Iterator<Item = [f32; 3]> + '_ {
     let rows = (0..columns.starts.len()).filter(|&row| piece(columns, row).is_some());
     rows.filter_map(|row| columns.starts.get(row).copied())
 }
 
-/// Start, unit vector upward and length of a pulse; `None` without length.
-fn piece(columns: &NeedleColumns, row: usize) -> Option<([f64; 3], [f64; 3], f64)> {
-    let [east, north] = columns.slopes.get(row)?.map(|steps| f64::from(steps) * SLOPE_STEP);
-    let stretch = (east * east + north * north + 1.0).sqrt();
-    let up = [east / stretch, north / stretch, 1.0 / stretch];
+/// Way, start, unit vector and length of a pulse; `None` without length.
+fn piece(columns: &NeedleColumns, row: usize) -> Option<(Way, [f64; 3], [f64; 3], f64)> {
+    let way = match columns.ways.get(row) {
+        Some(&number) => *Way::ALL.get(usize::from(number))?,
+        None => Way::UP,
+    };
+    let slopes = columns.slopes.get(row)?.map(|steps| f64::from(steps) * SLOPE_STEP);
+    let stretch = (slopes[0] * slopes[0] + slopes[1] * slopes[1] + 1.0).sqrt();
+    let mut direction = [0.0; 3];
+    direction[way.axis] = if way.is_backward { -1.0 } else { 1.0 } / stretch;
+    for (axis, slope) in way.across().into_iter().zip(slopes) {
+        direction[axis] = slope / stretch;
+    }
     let start = columns.starts.get(row)?.map(f64::from);
-    let to_top = (f64::from(columns.top) - start[2]) / up[2];
+    let to_top = if direction[2] > 0.0 { (f64::from(columns.top) - start[2]) / direction[2] } else { f64::INFINITY };
     let length = columns.lengths.get(row).map_or(to_top, |&length| f64::from(length).min(to_top));
-    (length > 0.0).then_some((start, up, length))
+    (length > 0.0 && length.is_finite()).then_some((way, start, direction, length))
 }
 
 impl Needles {
-    /// Lower end, unit vector upward and length of each, local metres, in the order of the index.
+    /// First end, unit vector towards the scanner and length of each, local metres, in the order of the index.
     pub(crate) fn lines(&self) -> impl IndexedParallelIterator<Item = ([f64; 3], [f64; 3], f64)> + '_ {
-        let line = |needle: &Needle| (needle.start.map(f64::from), needle.up.map(f64::from), f64::from(needle.length));
+        let line =
+            |needle: &Needle| (needle.start.map(f64::from), needle.direction.map(f64::from), f64::from(needle.length));
         self.needles.par_iter().map(line)
     }
 
@@ -41,23 +51,34 @@ impl Needles {
     /// them lies up to 5 mm in 100 m off these; it gives the same columns again, in another order.
     #[must_use]
     pub fn to_columns(&self) -> NeedleColumns {
-        let top = self.planes[1];
+        let top = self.top;
         #[expect(clippy::cast_possible_truncation, reason = "`as` saturates; the flattest needle has a slope of 3.2")]
-        let slope = |needle: &Needle| {
-            [0, 1].map(|i| (f64::from(needle.up[i]) / f64::from(needle.up[2]) / SLOPE_STEP).round() as i16)
+        let slope = |way: Way, needle: &Needle| {
+            let along = f64::from(needle.direction[way.axis]).abs();
+            way.across().map(|axis| (f64::from(needle.direction[axis]) / along / SLOPE_STEP).round() as i16)
         };
+        #[expect(clippy::cast_possible_truncation, reason = "one of six")]
+        let number = |way: Way| way.number() as u8;
         let reaches_top = |needle: &Needle| {
-            let end = f64::from(needle.start[2]) + f64::from(needle.length) * f64::from(needle.up[2]);
+            let end = f64::from(needle.start[2]) + f64::from(needle.length) * f64::from(needle.direction[2]);
             (f64::from(top) - end).abs() < REACHES_TOP
         };
         let length = |needle: &Needle| if reaches_top(needle) { f32::INFINITY } else { needle.length };
         let all_reach = self.needles.iter().all(reaches_top);
+        let all_upright = self.trees.iter().all(|tree| tree.way == Way::UP);
         NeedleColumns {
             starts: self.lower_ends().collect(),
-            slopes: self.needles.iter().map(slope).collect(),
+            slopes: self.ways().zip(&self.needles).map(|(way, needle)| slope(way, needle)).collect(),
             lengths: if all_reach { Vec::new() } else { self.needles.iter().map(length).collect() },
+            ways: if all_upright { Vec::new() } else { self.ways().map(number).collect() },
             top: if top.is_finite() { top } else { 0.0 },
         }
+    }
+
+    /// The way of each needle.
+    fn ways(&self) -> impl Iterator<Item = Way> + '_ {
+        let ends = self.trees.iter().skip(1).map(|tree| tree.first).chain([self.needles.len()]);
+        self.trees.iter().zip(ends).flat_map(|(tree, end)| std::iter::repeat_n(tree.way, end - tree.first))
     }
 
     /// The needles of `columns`, indexed. What begins above the top, or has no length, is left out.
@@ -66,11 +87,20 @@ impl Needles {
     /// Those of [`NeedleColumns::validate`], and [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub fn from_columns(columns: &NeedleColumns, control: &Control<'_>) -> Result<Self> {
         columns.validate()?;
-        let low = columns.starts.iter().map(|start| start[2]).fold(columns.top, f32::min);
-        let planes = [low, columns.top];
-        let item = |row| piece(columns, row).map(|(start, up, length)| Item::new(start, up, length, planes));
-        let items: Vec<Item> = (0..columns.starts.len()).into_par_iter().with_min_len(CHUNK).filter_map(item).collect();
-        control.check()?;
-        Self::index(items, planes, control)
+        let planes = planes_around(columns.starts.iter().copied());
+        let mut items = ItemsByWay::default();
+        for (way, items) in Way::ALL.into_iter().zip(&mut items) {
+            if columns.ways.is_empty() && way != Way::UP {
+                continue;
+            }
+            let compared_at = compared_at(way, planes, columns.top);
+            let item = |row| {
+                let (own, start, direction, length) = piece(columns, row)?;
+                (own == way).then(|| Item::new(way, start, direction, length, compared_at))
+            };
+            *items = (0..columns.starts.len()).into_par_iter().with_min_len(CHUNK).filter_map(item).collect();
+            control.check()?;
+        }
+        Self::index(items, columns.top, control)
     }
 }

@@ -1,6 +1,7 @@
 //! How near pulses come to places and to lines.
 
-use super::{Needle, Needles, Node};
+use super::tree::{Node, Way};
+use super::{Needle, Needles};
 use belvedere_data::vector::{dot, sub};
 use std::ops::ControlFlow;
 
@@ -20,69 +21,43 @@ impl Needles {
         self.needles.is_empty()
     }
 
+    /// How many of them rise by 0.3 m or more for each metre of their length, as all pulses of aircraft do.
+    #[must_use]
+    pub fn upright_count(&self) -> usize {
+        match &self.trees[..] {
+            [first, rest @ ..] if first.way == Way::UP => rest.first().map_or(self.needles.len(), |next| next.first),
+            _ => 0,
+        }
+    }
+
     /// Height that no needle rises above, local metres.
     #[must_use]
     pub fn top(&self) -> f32 {
-        self.planes[1]
+        self.top
     }
 
-    /// Lower ends of the needles, local metres, in no particular order: just above the first returns.
+    /// Where needles begin, local metres, in no particular order: just before the first returns. For pulses from above these are the
+    /// lower ends.
     pub fn lower_ends(&self) -> impl ExactSizeIterator<Item = [f32; 3]> + '_ {
         self.needles.iter().map(|needle| needle.start)
     }
 
-    /// Calls `visit` with the lower and upper end, local metres, of every needle that may pass over the level rectangle between the
-    /// corners `low` and `high`, in no particular order.
-    pub(crate) fn each_over(&self, [low, high]: [[f64; 2]; 2], mut visit: impl FnMut([[f64; 3]; 2])) {
-        if self.needles.is_empty() {
-            return;
+    /// Calls `visit` with the lower and upper end, local metres, of every upright needle that may pass over the level rectangle
+    /// between the corners `low` and `high`, in no particular order.
+    pub(crate) fn each_upright_over(&self, over: [[f64; 2]; 2], mut visit: impl FnMut([[f64; 3]; 2])) {
+        for tree in self.trees.iter().filter(|tree| tree.way == Way::UP) {
+            let _ = tree.walk(
+                &mut (),
+                |node, ()| may_pass_over(node, over),
+                |numbers, ()| {
+                    for needle in &self.needles[numbers] {
+                        let (start, up) = (needle.start.map(f64::from), needle.direction.map(f64::from));
+                        visit([start, std::array::from_fn(|i| start[i] + f64::from(needle.length) * up[i])]);
+                    }
+                    ControlFlow::Continue(())
+                },
+            );
         }
-        let mut stack = [0_u32; 64];
-        let mut depth = 1;
-        while depth > 0 {
-            depth -= 1;
-            let index = stack[depth] as usize;
-            let node: &Node = &self.nodes[index];
-            if !self.may_pass_over(node, [low, high]) {
-                continue;
-            }
-            if node.count == 0 {
-                #[expect(clippy::cast_possible_truncation, reason = "nodes are numbered with 32 bits")]
-                let first = index as u32 + 1;
-                (stack[depth], stack[depth + 1]) = (node.next, first);
-                depth += 2;
-                continue;
-            }
-            let first = node.next as usize;
-            for needle in &self.needles[first..first + node.count as usize] {
-                let (start, up) = (needle.start.map(f64::from), needle.up.map(f64::from));
-                visit([start, std::array::from_fn(|i| start[i] + f64::from(needle.length) * up[i])]);
-            }
-        }
-    }
-
-    /// Whether the box of a node lies over a rectangle at some height.
-    fn may_pass_over(&self, node: &Node, [low, high]: [[f64; 2]; 2]) -> bool {
-        // shares of the way between the planes, with room for what f32 rounds
-        let span = f64::from(self.planes[1] - self.planes[0]).max(1e-3);
-        let mut shares = node.heights.map(|z| f64::from(z - self.planes[0]) / span);
-        shares = [shares[0] - 1e-4, shares[1] + 1e-4];
-        for axis in 0..2 {
-            let ends = |side: usize| [f64::from(node.below[side]), f64::from(node.above[side])];
-            let ([west, to_west], [east, to_east]) = (ends(axis), ends(axis + 2));
-            // west ≤ high and −east ≤ −low, both linear in the share
-            for [at, slope, most] in [[west, to_west - west, high[axis]], [-east, east - to_east, -low[axis]]] {
-                let left = most + 1e-2 - at;
-                if slope > 0.0 {
-                    shares[1] = shares[1].min(left / slope);
-                } else if slope < 0.0 {
-                    shares[0] = shares[0].max(left / slope);
-                } else if left < 0.0 {
-                    return false;
-                }
-            }
-        }
-        shares[0] <= shares[1]
     }
 
     /// Whether a needle passes nearer than `distance` metres to `point`, local metres. The distance to the piece of a line is
@@ -151,40 +126,57 @@ impl Needles {
         let up = |reach: f64| (reach as f32).next_up();
         #[expect(clippy::cast_possible_truncation, reason = "local coordinates")]
         let center = point.map(|v| v as f32);
-        if self.needles.is_empty() || !(reach > 0.0) || !center.iter().all(|v| v.is_finite()) {
+        if !(reach > 0.0) || !center.iter().all(|v| v.is_finite()) {
             return None;
         }
-        let mut reach = up(reach);
-        let mut stack = [0_u32; 64];
-        let mut depth = 1;
-        while depth > 0 {
-            depth -= 1;
-            let index = stack[depth] as usize;
-            let node: &Node = &self.nodes[index];
-            if !self.may_enter(node, center, reach) {
-                continue;
-            }
-            if node.count == 0 {
-                #[expect(clippy::cast_possible_truncation, reason = "nodes are numbered with 32 bits")]
-                let first = index as u32 + 1;
-                (stack[depth], stack[depth + 1]) = (node.next, first);
-                depth += 2;
-                continue;
-            }
-            let first = node.next as usize;
-            match visit(&self.needles[first..first + node.count as usize]) {
-                ControlFlow::Break(found) => return Some(found),
-                ControlFlow::Continue(shorter) => reach = up(shorter),
+        let mut state = (up(reach), None);
+        for tree in &self.trees {
+            let may_enter = |node: &Node, (reach, _): &(f32, Option<T>)| tree.may_enter(node, center, *reach);
+            let flow =
+                tree.walk(&mut state, may_enter, |numbers, (reach, found)| match visit(&self.needles[numbers]) {
+                    ControlFlow::Break(value) => {
+                        *found = Some(value);
+                        ControlFlow::Break(())
+                    }
+                    ControlFlow::Continue(shorter) => {
+                        *reach = up(shorter);
+                        ControlFlow::Continue(())
+                    }
+                });
+            if flow.is_break() {
+                break;
             }
         }
-        None
+        state.1
     }
+}
+
+/// Whether the box of a node of upright needles lies over a rectangle at some height.
+fn may_pass_over(node: &Node, [low, high]: [[f64; 2]; 2]) -> bool {
+    // shares of the way between the planes, with room for what f32 rounds
+    let mut shares: [f64; 2] = [-1e-4, 1.0 + 1e-4];
+    for axis in 0..2 {
+        let ends = |side: usize| [f64::from(node.below[side]), f64::from(node.above[side])];
+        let ([west, to_west], [east, to_east]) = (ends(axis), ends(axis + 2));
+        // west ≤ high and −east ≤ −low, both linear in the share
+        for [at, slope, most] in [[west, to_west - west, high[axis]], [-east, east - to_east, -low[axis]]] {
+            let left = most + 1e-2 - at;
+            if slope > 0.0 {
+                shares[1] = shares[1].min(left / slope);
+            } else if slope < 0.0 {
+                shares[0] = shares[0].max(left / slope);
+            } else if left < 0.0 {
+                return false;
+            }
+        }
+    }
+    shares[0] <= shares[1]
 }
 
 impl Needle {
     /// Squared distance of a point to the needle, m².
     fn square_distance(&self, point: [f64; 3]) -> f64 {
-        let (from, up) = (sub(point, self.start.map(f64::from)), self.up.map(f64::from));
+        let (from, up) = (sub(point, self.start.map(f64::from)), self.direction.map(f64::from));
         let along = dot(from, up).clamp(0.0, f64::from(self.length));
         let off: [f64; 3] = std::array::from_fn(|i| from[i] - along * up[i]);
         dot(off, off)
@@ -193,7 +185,7 @@ impl Needle {
     /// The piece of a line nearer than `distance` to the needle: what it cuts from the union of a cylinder and two spheres, which
     /// is convex.
     fn near_piece(&self, origin: [f64; 3], direction: [f64; 3], distance: f64) -> Option<[f64; 2]> {
-        let up = self.up.map(f64::from);
+        let up = self.direction.map(f64::from);
         let length = f64::from(self.length);
         let from = sub(origin, self.start.map(f64::from));
         let square = distance * distance;

@@ -1,0 +1,149 @@
+//! Balls for scanners that stand among the things they measure: tripods, cars, rooms.
+//!
+//! Such a scanner sees a wall, a car or a trunk from one side, from near by, and nothing of what lies behind. Balls as thick as those of
+//! surveys from the air would fill that space, through which lines of sight run that never meet the surface. Here balls are only as
+//! thick as it takes to close the surface; what no pulse has seen is left for the pulses to call unproven.
+
+use super::carve::CarveReport;
+use super::carved::CarvedInput;
+use super::prune::{PruneParams, prune};
+use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink, spacing_at};
+use crate::neighbors::Tangent;
+use belvedere_data::Result;
+use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH, Side};
+use belvedere_data::control::Control;
+use rayon::prelude::*;
+
+/// Share of pulses that are not upright from which on a scanner is taken to stand on the ground: those of aircraft are steeper than
+/// 40°.
+const LEAST_FLAT_SHARE: f64 = 0.05;
+/// Balls handed to a thread at once; their searches share the cache.
+const CHUNK: usize = 512;
+/// Distance that cut balls keep from the pulse that cut them, metres: beyond what single precision rounds, so that it stays free.
+const GRAZING: f32 = 1e-3;
+/// Balls of less than this are left out, metres: pulses passed on all sides, and what is left is noise.
+const LEAST_RADIUS: f32 = 1e-3;
+
+/// Sizes of balls for scanners that stand among the things they measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CloseRangeParams {
+    /// Most radius in spacings of the points around, above 0.5: below that there are gaps between points in squares. Default 1.5, since
+    /// scan lines are often twice as far apart as the points on them.
+    pub most_spacings: f32,
+    /// Most radius, metres, above 0. Default 0.15: 0.25 blocks twice as much of what is visible behind cars and fences.
+    pub most_radius: f32,
+    /// Depth to which points and pulses may enter a ball before it gives way to them, as a share of the most radius, 0 to 0.5. Default
+    /// 0.25. A ball that pulses enter ends as deep below the surface, so that none enters what is left of it.
+    pub penetration_share: f32,
+    /// The same in metres, at most. Default 0.02: four times the noise of such scanners.
+    pub most_penetration: f32,
+    /// How far a point may lie from the ball that stands in for its own, metres. Default 0.01.
+    pub deviation: f32,
+}
+
+impl Default for CloseRangeParams {
+    fn default() -> Self {
+        Self { most_spacings: 1.5, most_radius: 0.15, penetration_share: 0.25, most_penetration: 0.02, deviation: 0.01 }
+    }
+}
+
+/// Balls that close the surfaces, and what became of them.
+pub(super) struct CloseRangeBalls {
+    pub(super) balls: MedialBalls,
+    pub(super) shrinking: ShrinkReport,
+    pub(super) carving: CarveReport,
+    pub(super) pruned: usize,
+}
+
+impl CloseRangeParams {
+    /// Whether these sizes are those for the pulses of a survey: many are too flat for an aircraft.
+    pub(super) fn fits(input: &CarvedInput<'_>) -> bool {
+        let needles = input.needles;
+        (needles.len() - needles.upright_count()) as f64 >= LEAST_FLAT_SHARE * needles.len() as f64
+            && !needles.is_empty()
+    }
+
+    /// The balls of a survey.
+    ///
+    /// # Errors
+    /// Those of [`shrink`] and [`prune`].
+    pub(super) fn balls(
+        &self,
+        input: &CarvedInput<'_>,
+        pruning: Option<&PruneParams>,
+        control: &Control<'_>,
+    ) -> Result<CloseRangeBalls> {
+        let CarvedInput { oriented, index, .. } = *input;
+        let shrinking = ShrinkParams {
+            method: ShrinkMethod::Tau { penetration: self.most_penetration.min(0.5 * self.most_radius) },
+            initial_radius: self.most_radius,
+            max_radius: f32::INFINITY,
+            max_spacings: self.most_spacings,
+        };
+        let (mut balls, mut shrinking) = control.stage("shrinking balls", oriented.len(), || {
+            shrink(oriented, index, Side::Interior, &shrinking, control)
+        })?;
+        let carving = control.stage("carving balls", oriented.len(), || self.carve(&mut balls, input, control))?;
+        // what no point bounds is bounded by these sizes
+        shrinking.limited += std::mem::take(&mut shrinking.never_shrunk);
+        let pruned = match pruning {
+            Some(_) => control.stage("pruning balls", oriented.len(), || {
+                prune(&mut balls, oriented, index, &PruneParams { deviation: self.deviation }, control)
+            })?,
+            None => 0,
+        };
+        Ok(CloseRangeBalls { balls, shrinking, carving, pruned })
+    }
+
+    /// Cuts balls down to where no pulse enters them.
+    fn carve(&self, balls: &mut MedialBalls, input: &CarvedInput<'_>, control: &Control<'_>) -> Result<CarveReport> {
+        let CarvedInput { oriented, index, needles, .. } = *input;
+        let (positions, normals) = (oriented.positions(), oriented.normals());
+        let order = index.tree_order();
+        let mut cut: Vec<(f32, f32, bool)> = vec![(0.0, 0.0, false); order.len()];
+        cut.par_chunks_mut(CHUNK).zip(order.par_chunks(CHUNK)).try_for_each(|(cut, rows)| {
+            control.check()?;
+            let mut near = Vec::new();
+            for (cut, &row) in cut.iter_mut().zip(rows) {
+                let row = row as usize;
+                let most = self.most_radius.min(self.most_spacings * spacing_at(index, positions[row], &mut near));
+                let radius = balls.radii[row].min(most);
+                let margin = self.most_penetration.min(self.penetration_share * most);
+                if !(radius > margin) {
+                    continue;
+                }
+                let at = |margin| Tangent { point: positions[row], inward: normals[row].map(|v| -v), margin };
+                *cut = match needles.smallest_tangent_ball(&at(0.0), radius) {
+                    None => (radius, 0.0, false),
+                    // noise and roughness are not to cut it down to nothing
+                    Some(_) => {
+                        let empty = needles.smallest_tangent_ball(&at(margin), radius - margin);
+                        (empty.unwrap_or(radius - margin) - GRAZING, margin + GRAZING, true)
+                    }
+                };
+            }
+            control.advance(rows.len());
+            Ok(())
+        })?;
+        let mut report = CarveReport::default();
+        for (&row, (radius, margin, is_cut)) in order.iter().zip(cut) {
+            let row = row as usize;
+            if !(radius >= LEAST_RADIUS) {
+                (balls.radii[row], balls.touch[row]) = (0.0, NO_TOUCH);
+                continue;
+            }
+            let deep = radius + margin;
+            balls.centers[row] = std::array::from_fn(|axis| positions[row][axis] - normals[row][axis] * deep);
+            balls.radii[row] = radius;
+            if is_cut {
+                report.carved += 1;
+                balls.touch[row] = PULSE_TOUCH;
+                balls.separation_angles[row] = f32::NAN;
+            } else if balls.touch[row] == NO_TOUCH {
+                report.limited += 1;
+                balls.touch[row] = LIMIT_TOUCH;
+            }
+        }
+        Ok(report)
+    }
+}

@@ -1,0 +1,81 @@
+//! Scanners on the ground in a simulated street, against the exact town.
+
+use crate::common::simulated::cloud_of;
+use belvedere::control::Control;
+use belvedere::model::{ModelParams, OrientBy, SceneModel};
+use belvedere::query::{Answer, UnprovenAs, Viewer, Visibility};
+use belvedere::trajectory::Trajectory;
+use belvedere::{Bounds, PointCloud};
+use belvedere_scenes::{
+    MobileParams, Preset, QuerySet, QuerySite, Scan, Scene, Stations, TerrestrialParams, Truth, scan_mobile,
+    scan_terrestrial, town,
+};
+
+/// Side of the town, metres.
+const EXTENT: f64 = 100.0;
+const SEED: u64 = 5;
+
+/// The model of a scan, and the cloud.
+fn built(scan: &Scan) -> (PointCloud, SceneModel) {
+    let cloud = cloud_of(scan);
+    let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
+    let (trajectory, _) = Trajectory::from_records(path.collect());
+    let params = ModelParams::default().with_orient(OrientBy::Trajectory(trajectory));
+    let (model, report) = SceneModel::build(&cloud, &params, &Control::none()).unwrap();
+    let pulses = report.pulses.unwrap();
+    assert!(pulses.needles.used > cloud.len() / 2, "{pulses:?}");
+    assert!(pulses.blocked.unwrap().percent < 0.1, "{pulses:?}");
+    (cloud, model)
+}
+
+/// Shares of what people in streets truly see that is called blocked, and of what they truly do not see that is called visible.
+fn errors_in_streets(scene: &Scene, cloud: &PointCloud, model: &SceneModel) -> [f64; 2] {
+    let medial = model.scene(&model.rule(), UnprovenAs::Reported, &Control::none()).unwrap();
+    let truth = Truth::new(scene);
+    let origin = cloud.frame.origin;
+    let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
+    let Bounds { low, high } = cloud.bounds().unwrap();
+    let site = QuerySite { scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
+    let people = site.targets(QuerySet::Pedestrians, 800, SEED).positions;
+    let people: Vec<[f32; 3]> = people.iter().map(|&p| belvedere::cloud::to_local(p, origin)).collect();
+    let (mut wrong, mut count) = ([0, 0], [0, 0]);
+    for eye in site.street_observers(20, SEED) {
+        let local = std::array::from_fn(|i| eye[i] - origin[i]);
+        let answers = medial.visible(Viewer::Eye(local), &people).unwrap();
+        for (&place, answer) in people.iter().zip(answers) {
+            let is_blocked = truth.occluded(absolute(place), eye);
+            count[usize::from(is_blocked)] += 1;
+            let error = if is_blocked { Answer::Visible } else { Answer::Blocked };
+            wrong[usize::from(is_blocked)] += usize::from(answer == error);
+        }
+    }
+    assert!(count.iter().all(|&count| count > 1000), "{count:?}");
+    [0, 1].map(|i| 100.0 * wrong[i] as f64 / count[i] as f64)
+}
+
+#[test]
+fn streets_scanned_from_a_car_are_seen_as_they_are() {
+    let params = Preset::Town.params(EXTENT, SEED);
+    let scene = town(&params);
+    let runs = params.lanes();
+    assert!(runs.len() >= 2);
+    // a tenth of the pulses of such a scanner
+    let scan = scan_mobile(
+        &scene,
+        &MobileParams { seed: SEED, runs, line_rate: 50.0, pulses_per_line: 400, ..MobileParams::default() },
+    );
+    let (cloud, model) = built(&scan);
+    let [false_blocked, false_visible] = errors_in_streets(&scene, &cloud, &model);
+    assert!(false_blocked < 4.0 && false_visible < 2.0, "{false_blocked} {false_visible}");
+}
+
+#[test]
+fn streets_scanned_from_tripods_are_seen_as_they_are() {
+    let scene = town(&Preset::Town.params(EXTENT, SEED));
+    let params = TerrestrialParams { seed: SEED, stations: Stations::Chosen(12), ..TerrestrialParams::default() };
+    // a sixteenth of the pulses of such a scanner
+    let scan = scan_terrestrial(&scene, &TerrestrialParams { angular_step: 4.0 * params.angular_step, ..params });
+    let (cloud, model) = built(&scan);
+    let [false_blocked, false_visible] = errors_in_streets(&scene, &cloud, &model);
+    assert!(false_blocked < 8.0 && false_visible < 2.0, "{false_blocked} {false_visible}");
+}
