@@ -63,6 +63,7 @@ mod rows;
 #[cfg(feature = "npy")]
 mod saved_matrix;
 mod source;
+mod stations;
 mod table;
 mod text_rows;
 mod trajectory;
@@ -104,6 +105,7 @@ pub use saved_matrix::{
     MatrixHead, RowSink, SavedMatrix, read_matrix, read_matrix_head, read_matrix_rows, write_matrix, write_matrix_rows,
 };
 pub use source::{ReadSeek, Source};
+pub use stations::read_stations;
 pub use table::{Cells, Table, read_table, write_table};
 pub use text_rows::{TextRows, read_text_rows, with_columns_read, write_text_rows};
 pub use trajectory::{TrajectoryReport, read_trajectory};

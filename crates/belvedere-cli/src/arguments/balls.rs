@@ -81,11 +81,12 @@ pub(crate) struct Orienting {
     /// The paper uses 6; masbcpp uses 10.
     #[arg(long, value_name = "K", default_value = "16", allow_negative_numbers = true)]
     pub(crate) neighbors: NeighborChoice,
-    /// How normals are oriented: auto, given, up, scanner, scanner=X,Y,Z, trajectory=FILE, pulses or mesh=FILE
+    /// How normals are oriented: auto, given, up, scanner, scanner=X,Y,Z, stations=FILE, trajectory=FILE, pulses or mesh=FILE
     ///
     /// auto: the normals of the file if it has them, else the scanner positions of the file, else up; `normals` always estimates new ones.
     /// given: the normals of the file. up: toward the sky. scanner: toward the scanner positions of the file. scanner=X,Y,Z: toward one
-    /// position. trajectory=FILE: toward the scanner positions in a table or SBET file (.csv .txt .sbet). pulses: toward scanner positions
+    /// position. stations=FILE: toward the station of each point, from a table with the columns station (the point source id), x, y and z
+    /// (.csv .txt). trajectory=FILE: toward the scanner positions in a table or SBET file (.csv .txt .sbet). pulses: toward scanner positions
     /// estimated from pulses with several returns. mesh=FILE: as the nearest face of a mesh (.obj .ply .json).
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub(crate) orient: OrientChoice,
@@ -183,6 +184,7 @@ pub(crate) enum OrientChoice {
     Up,
     Scanner,
     ScannerAt([f64; 3]),
+    Stations(PathBuf),
     Trajectory(PathBuf),
     Pulses,
     Mesh(PathBuf),
@@ -199,14 +201,16 @@ impl FromStr for OrientChoice {
                 "up" => Ok(Self::Up),
                 "scanner" => Ok(Self::Scanner),
                 "pulses" => Ok(Self::Pulses),
-                _ => {
-                    Err("use auto, given, up, scanner, scanner=X,Y,Z, trajectory=FILE, pulses or mesh=FILE".to_owned())
-                }
+                _ => Err(
+                    "use auto, given, up, scanner, scanner=X,Y,Z, stations=FILE, trajectory=FILE, pulses or mesh=FILE"
+                        .to_owned(),
+                ),
             },
             Some(("scanner", position)) => Ok(Self::ScannerAt(position.parse::<Numbers<3>>()?.0)),
+            Some(("stations", file)) => Ok(Self::Stations(file.into())),
             Some(("trajectory", file)) => Ok(Self::Trajectory(file.into())),
             Some(("mesh", file)) => Ok(Self::Mesh(file.into())),
-            Some(_) => Err("use scanner=X,Y,Z, trajectory=FILE or mesh=FILE".to_owned()),
+            Some(_) => Err("use scanner=X,Y,Z, stations=FILE, trajectory=FILE or mesh=FILE".to_owned()),
         }
     }
 }

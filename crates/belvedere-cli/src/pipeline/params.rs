@@ -9,7 +9,7 @@ use anyhow::Result;
 use belvedere::Error;
 use belvedere::clean::{CleanParams, Treatment};
 use belvedere::crs::Crs;
-use belvedere::io::{read_mesh, read_trajectory};
+use belvedere::io::{read_mesh, read_stations, read_trajectory};
 use belvedere::medial::{CarvedParams, CrownParams, ShrinkMethod, ShrinkParams, Trees};
 use belvedere::model::{BallParams, ModelParams, OrientBy};
 use belvedere::normals::estimate::Neighborhood;
@@ -34,6 +34,9 @@ pub(crate) fn model(
         OrientChoice::Scanner => OrientBy::Scanner,
         OrientChoice::ScannerAt(position) => OrientBy::ScannerAt(*position),
         OrientChoice::Pulses => OrientBy::Pulses,
+        OrientChoice::Stations(path) => {
+            OrientBy::Stations(stages.run("reading stations", 0, |_| read_stations(path, crs))?)
+        }
         OrientChoice::Trajectory(path) => {
             let (trajectory, _) = stages.run("reading trajectory", 0, |_| read_trajectory(path, crs))?;
             OrientBy::Trajectory(trajectory)

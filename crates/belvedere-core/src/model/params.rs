@@ -60,6 +60,8 @@ pub enum OrientBy {
     ScannerAt([f64; 3]),
     /// Towards the scanner position of each point, (N, 3), local metres, NaN where it is not known.
     ScannerOfEachPoint(Vec<[f32; 3]>),
+    /// Towards the station of each point: point source ids, and positions in the metres of the cloud's reference system.
+    Stations(Vec<(u16, [f64; 3])>),
     /// Towards the scanner's place on this trajectory.
     Trajectory(Trajectory),
     /// Towards where the pulses say that the scanner was.

@@ -100,8 +100,8 @@ pub(super) fn prepare(
     check_surface(kept.iter().filter_map(|&row| cloud.positions.get(row as usize)))?;
     let mut cloud = if kept.len() == read_count { cloud } else { Cow::Owned(cloud.select(&kept)) };
     let carving = params.balls.carving();
-    let wants_scanner =
-        carving != Carving::Unwanted || matches!(params.orient, OrientBy::Pulses | OrientBy::ScannerOfEachPoint(_));
+    let wants_scanner = carving != Carving::Unwanted
+        || matches!(params.orient, OrientBy::Pulses | OrientBy::ScannerOfEachPoint(_) | OrientBy::Stations(_));
     let scanner = if wants_scanner {
         let (scanner, found) = find_scanner(&cloud, &kept, read_count, params, control)?;
         report.scanner = Some(found);
@@ -179,7 +179,9 @@ fn orientation<'a>(
             let scale = cloud.frame.crs.metres_per_unit_xyz();
             Orientation::ScannerAt(vec![std::array::from_fn(|i| position[i] * scale[i])])
         }
-        OrientBy::ScannerOfEachPoint(_) | OrientBy::Pulses => Orientation::Pulses(&scanner.positions),
+        OrientBy::ScannerOfEachPoint(_) | OrientBy::Stations(_) | OrientBy::Pulses => {
+            Orientation::Pulses(&scanner.positions)
+        }
         // heights of the trajectory were checked by the pulses where these carve
         OrientBy::Trajectory(_) if is_carved => Orientation::Pulses(&scanner.positions),
         OrientBy::Trajectory(trajectory) => Orientation::Trajectory(trajectory),
@@ -209,6 +211,7 @@ fn find_scanner(
         }
         OrientBy::Trajectory(trajectory) => Means::Trajectory(trajectory),
         OrientBy::ScannerAt(position) => Means::Position(cloud.frame.from_file_coordinates(*position)),
+        OrientBy::Stations(stations) => Means::Stations(stations),
         OrientBy::Scanner => Means::Poses,
         OrientBy::Pulses => Means::Pulses,
         _ => Means::Automatic,

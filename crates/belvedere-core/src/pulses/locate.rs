@@ -1,7 +1,7 @@
 //! Where the scanner was for each point, by the best means at hand.
 
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::SensorPositions;
 use super::estimate::{self, height_offset, paths_from_angles, paths_from_returns};
@@ -28,6 +28,8 @@ pub enum Means<'a> {
     Poses,
     /// One scanner here, local metres.
     Position([f32; 3]),
+    /// Stations by the point source id of their points, metres in the cloud's reference system.
+    Stations(&'a [(u16, [f64; 3])]),
     /// A path known from elsewhere. Its heights are corrected by a constant where pulses with several returns say so.
     Trajectory(&'a Trajectory),
 }
@@ -67,6 +69,7 @@ pub fn locate(
             vec![*position; cloud.len()]
         }
         Means::Poses => by_poses(cloud, &mut report),
+        Means::Stations(stations) => by_stations(cloud, stations, &mut report)?,
         Means::Trajectory(trajectory) => by_trajectory(cloud, trajectory, &mut report, control)?,
         Means::Automatic if !cloud.scanner_positions.is_empty() => by_poses(cloud, &mut report),
         Means::Automatic | Means::Pulses => by_pulses(cloud, params, &mut report, control)?,
@@ -115,6 +118,26 @@ fn by_poses(cloud: &PointCloud, report: &mut ScannerReport) -> Vec<[f32; 3]> {
     };
     report.count(FoundBy::Pose, positions.iter().filter(|p| is_known(p)).count());
     positions
+}
+
+fn by_stations(cloud: &PointCloud, stations: &[(u16, [f64; 3])], report: &mut ScannerReport) -> Result<Vec<[f32; 3]>> {
+    let Some(ids) = &cloud.attributes.point_source_id else {
+        return Err(Error::MissingAttribute {
+            attribute: "point source id",
+            needed_for: "finding the station of each point",
+            advice: "give the position of the scanner, or write each station as a file of its own with its number as point source id",
+        });
+    };
+    let places: BTreeMap<u16, [f32; 3]> =
+        stations.iter().map(|&(id, place)| (id, to_local(place, cloud.frame.origin))).collect();
+    let unknown: BTreeSet<u16> = ids.iter().copied().filter(|id| !places.contains_key(id)).collect();
+    if !unknown.is_empty() {
+        let some: Vec<String> = unknown.iter().take(8).map(u16::to_string).collect();
+        report.remarks.push(format!("no station is given for point source id {}", some.join(", ")));
+    }
+    let positions: Vec<[f32; 3]> = ids.iter().map(|id| places.get(id).copied().unwrap_or([f32::NAN; 3])).collect();
+    report.count(FoundBy::Station, positions.iter().filter(|p| is_known(p)).count());
+    Ok(positions)
 }
 
 fn by_trajectory(

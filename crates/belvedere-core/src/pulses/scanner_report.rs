@@ -15,6 +15,8 @@ pub enum FoundBy {
     Pose,
     /// A position that was given.
     Position,
+    /// Stations that were given.
+    Station,
     /// A trajectory that was given.
     Trajectory,
     /// Pulses with several returns.
@@ -32,6 +34,7 @@ impl FoundBy {
         match self {
             Self::Pose => "poses in the file",
             Self::Position => "the position given",
+            Self::Station => "the stations given",
             Self::Trajectory => "trajectory",
             Self::Returns => "pulses with several returns",
             Self::ScanAngle => "scan angles",
@@ -44,6 +47,7 @@ impl FoundBy {
         match self {
             Self::Pose => "poses_in_the_file_percent",
             Self::Position => "position_given_percent",
+            Self::Station => "stations_given_percent",
             Self::Trajectory => "trajectory_percent",
             Self::Returns => "pulses_with_several_returns_percent",
             Self::ScanAngle => "scan_angles_percent",

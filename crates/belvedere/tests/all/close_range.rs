@@ -3,9 +3,10 @@
 use crate::common::simulated::cloud_of;
 use belvedere::control::Control;
 use belvedere::model::{ModelParams, OrientBy, SceneModel};
+use belvedere::pulses::{FoundBy, LocateParams, Means, locate};
 use belvedere::query::{Answer, UnprovenAs, Viewer, Visibility};
 use belvedere::trajectory::Trajectory;
-use belvedere::{Bounds, PointCloud};
+use belvedere::{Bounds, Error, PointCloud};
 use belvedere_scenes::{
     MobileParams, Preset, QuerySet, QuerySite, Scan, Scene, Stations, TerrestrialParams, Truth, scan_mobile,
     scan_terrestrial, town,
@@ -15,12 +16,16 @@ use belvedere_scenes::{
 const EXTENT: f64 = 100.0;
 const SEED: u64 = 5;
 
-/// The model of a scan, and the cloud.
+/// The model of a scan whose stations are known, or whose trajectory is; and the cloud.
 fn built(scan: &Scan) -> (PointCloud, SceneModel) {
     let cloud = cloud_of(scan);
     let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
-    let (trajectory, _) = Trajectory::from_records(path.collect());
-    let params = ModelParams::default().with_orient(OrientBy::Trajectory(trajectory));
+    let orient = if scan.stations.is_empty() {
+        OrientBy::Trajectory(Trajectory::from_records(path.collect()).0)
+    } else {
+        OrientBy::Stations((1..).zip(scan.stations.iter().copied()).collect())
+    };
+    let params = ModelParams::default().with_orient(orient);
     let (model, report) = SceneModel::build(&cloud, &params, &Control::none()).unwrap();
     let pulses = report.pulses.unwrap();
     assert!(pulses.needles.used > cloud.len() / 2, "{pulses:?}");
@@ -67,6 +72,27 @@ fn streets_scanned_from_a_car_are_seen_as_they_are() {
     let (cloud, model) = built(&scan);
     let [false_blocked, false_visible] = errors_in_streets(&scene, &cloud, &model);
     assert!(false_blocked < 4.0 && false_visible < 2.0, "{false_blocked} {false_visible}");
+}
+
+#[test]
+fn stations_of_points_are_found_by_their_ids_and_missing_ones_are_reported() {
+    let mut cloud = PointCloud {
+        positions: (0..40_u16).map(|i| [f32::from(i % 7), f32::from(i / 7), 0.0]).collect(),
+        ..PointCloud::default()
+    };
+    cloud.frame.origin = [100.0, 200.0, 0.0];
+    let stations = [(3, [102.0, 203.0, 1.5]), (8, [95.0, 200.0, 1.6])];
+    let found =
+        |cloud: &PointCloud| locate(cloud, &Means::Stations(&stations), &LocateParams::default(), &Control::none());
+    assert!(matches!(found(&cloud), Err(Error::MissingAttribute { .. })), "points without ids");
+    cloud.attributes.point_source_id = Some((0..40).map(|i| [3, 8, 9][i % 3]).collect());
+    let (positions, report) = found(&cloud).unwrap();
+    assert_eq!(positions[..2], [[2.0, 3.0, 1.5], [-5.0, 0.0, 1.6]]);
+    assert!(positions[2].iter().all(|v| v.is_nan()));
+    assert_eq!((report.found[&FoundBy::Station], report.known_count()), (27, 27));
+    assert!(report.remarks.iter().any(|remark| remark.contains("point source id 9")), "{:?}", report.remarks);
+    cloud.attributes.point_source_id = Some(vec![9; 40]);
+    assert!(found(&cloud).is_err(), "no point has a station");
 }
 
 #[test]
