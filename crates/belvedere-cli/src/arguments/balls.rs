@@ -81,7 +81,7 @@ pub(crate) struct Orienting {
     /// The paper uses 6; masbcpp uses 10.
     #[arg(long, value_name = "K", default_value = "16", allow_negative_numbers = true)]
     pub(crate) neighbors: NeighborChoice,
-    /// How normals are oriented: auto, given, up, scanner, scanner=X,Y,Z, stations=FILE, trajectory=FILE, pulses or mesh=FILE
+    /// Orientation: auto, given, up, scanner, scanner=X,Y,Z, stations=FILE, trajectory=FILE, pulses or mesh=FILE
     ///
     /// auto: the normals of the file if it has them, else the scanner positions of the file, else up; `normals` always estimates new ones.
     /// given: the normals of the file. up: toward the sky. scanner: toward the scanner positions of the file. scanner=X,Y,Z: toward one

@@ -51,7 +51,7 @@ pub struct CarvedParams {
     pub relief: Option<ReliefParams>,
     /// Cuts balls below the edges of roofs, where walls stand that no pulse reached.
     pub roof_edges: Option<RoofEdgeParams>,
-    /// Sizes for scanners on the ground, which replace those above and leave no other rule but pruning. `None` treats all scanners as
+    /// Sizes for scanners on the ground, which replace those above and leave none of these rules. `None` treats all scanners as
     /// if they flew.
     pub close_range: Option<CloseRangeParams>,
 }
@@ -227,12 +227,11 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
     let positions = oriented.positions();
     let mut report = CarvedReport::default();
     if let Some(sizes) = params.close_range.filter(|_| CloseRangeParams::fits(input)) {
-        let CloseRangeBalls { balls, shrinking, carving, pruned } =
-            sizes.balls(input, params.pruning.as_ref(), control)?;
+        let CloseRangeBalls { balls, shrinking, carving } = sizes.balls(input, control)?;
         return Ok(CarvedBalls {
             balls: balls.shrunk(),
             transmission: Vec::new(),
-            report: CarvedReport { shrinking, carving, pruned, ..report },
+            report: CarvedReport { shrinking, carving, ..report },
         });
     }
     let mut kinds = kinds(attributes, oriented.len());
