@@ -1,7 +1,8 @@
 //! A model of a cloud, held against the exact town.
 
 use belvedere::control::{Control, Watcher};
-use belvedere::model::{BallsReport, BuildReport, ModelParams, OrientBy, SceneModel};
+use belvedere::medial::CarvedParams;
+use belvedere::model::{BallParams, BallsReport, BuildReport, ModelParams, OrientBy, SceneModel};
 use belvedere::query::{Answer, MedialScene, UnprovenAs, Viewer, Visibility};
 use belvedere::{Bounds, PointCloud, Result};
 use belvedere_scenes::{QuerySet, QuerySite, Scene, Truth};
@@ -34,7 +35,9 @@ pub(crate) struct Found {
 
 /// Builds the default model of `cloud`, whose points were measured from `scanner`, and asks what people in streets see.
 pub(crate) fn judge(scene: &Scene, cloud: &PointCloud, scanner: &[[f32; 3]], seed: u64) -> Result<Found> {
-    let params = ModelParams::default().with_orient(OrientBy::ScannerOfEachPoint(scanner.to_vec()));
+    let params = ModelParams::default()
+        .with_orient(OrientBy::ScannerOfEachPoint(scanner.to_vec()))
+        .with_balls(BallParams::Carved(CarvedParams::default()));
     let start = Instant::now();
     let (model, report) = SceneModel::build(cloud, &params, &Control::new(&Clock::default()))?;
     let build_seconds = start.elapsed().as_secs_f64();

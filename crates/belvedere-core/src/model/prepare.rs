@@ -14,6 +14,9 @@ use std::borrow::Cow;
 
 /// Points no farther from a line than this lie on it, metres: the step of coordinates in most files.
 const LINE_WIDTH: f64 = 1e-3;
+/// Share of pulses that are not upright from which on a scanner is taken to stand on the ground, and carves only where that is asked for:
+/// carved balls leak at the edges of rooms.
+const MOST_FLAT_SHARE: f64 = 0.05;
 /// Share of the points with nothing above them from which on vertical pulses are a fair assumption. Clouds of aircraft have three
 /// quarters or more; where the scanner stood among walls it is a fifth, and carving by pulses that never were blocks most of what is visible.
 const LEAST_ASSUMED_SHARE: f64 = 0.5;
@@ -235,6 +238,14 @@ fn carving_input(
     })?;
     let mut report = PulsesReport { needles: report, ..PulsesReport::default() };
     let used = report.needles.used as f64;
+    let flat = needles.len() - needles.upright_count();
+    if flat > 0 && flat as f64 >= MOST_FLAT_SHARE * used && carving == Carving::IfPossible {
+        report.remark = Some(
+            "pulses do not carve here unless asked to: many are too flat, as from a scanner on the ground; balls are as thin as the points are close"
+                .to_owned(),
+        );
+        return Ok((None, report));
+    }
     if scanner.is_assumed && used < LEAST_ASSUMED_SHARE * cloud.len() as f64 && carving == Carving::IfPossible {
         report.remark = Some(format!(
             "pulses do not carve here: they are only assumed to be vertical, and {:.0} % of the points have something above them; give \

@@ -2,7 +2,8 @@
 
 use crate::common::simulated::cloud_of;
 use belvedere::control::Control;
-use belvedere::model::{ModelParams, OrientBy, SceneModel};
+use belvedere::medial::CarvedParams;
+use belvedere::model::{BallParams, ModelParams, OrientBy, SceneModel};
 use belvedere::pulses::{FoundBy, LocateParams, Means, locate};
 use belvedere::query::{Answer, UnprovenAs, Viewer, Visibility};
 use belvedere::trajectory::Trajectory;
@@ -25,7 +26,8 @@ fn built(scan: &Scan) -> (PointCloud, SceneModel) {
     } else {
         OrientBy::Stations((1..).zip(scan.stations.iter().copied()).collect())
     };
-    let params = ModelParams::default().with_orient(orient);
+    let carved = BallParams::Carved(CarvedParams::default());
+    let params = ModelParams::default().with_orient(orient).with_balls(carved);
     let (model, report) = SceneModel::build(&cloud, &params, &Control::none()).unwrap();
     let pulses = report.pulses.unwrap();
     assert!(pulses.needles.used > cloud.len() / 2, "{pulses:?}");

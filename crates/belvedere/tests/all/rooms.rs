@@ -42,11 +42,10 @@ fn walls_of_a_scanned_room_block_and_the_room_is_as_large_as_it_is() {
     for spacing in [0.1, 0.04] {
         let cloud = scanned(spacing);
         let (model, report) = SceneModel::build(&cloud, &ModelParams::default(), &Control::none()).unwrap();
-        let Some(BallsReport::Carved(balls)) = report.interior_balls else { panic!("{report:?}") };
-        // nothing lies behind any wall: hardly a ball meets a point or a pulse, and every one blocks
-        assert_eq!(balls.shrinking.never_shrunk, 0);
-        assert!(balls.carving.carved < cloud.len() / 20 && model.balls().len() > cloud.len() * 99 / 100);
-        assert_eq!(report.pulses.unwrap().blocked.unwrap().count, 0);
+        let Some(BallsReport::Shrunk(balls)) = report.interior_balls else { panic!("{report:?}") };
+        // nothing lies behind any wall: hardly a ball meets a point, and every one is used
+        assert_eq!(balls.never_shrunk, 0);
+        assert_eq!(model.balls().len(), balls.shrunk + balls.limited);
         let scene = model.scene(&model.rule(), UnprovenAs::Reported, &Control::none()).unwrap();
         for eye in [[2.5, 3.0, 1.5], [5.0, 3.0, 1.0], [8.5, 4.5, 2.0]] {
             let seen = isovist(&scene, eye, &IsovistParams::default(), &Control::none()).unwrap();

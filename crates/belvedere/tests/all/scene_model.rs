@@ -3,7 +3,7 @@
 use crate::common::simulated::cloud_of;
 use belvedere::control::{Control, Watcher};
 use belvedere::io::{read_balls, write_balls};
-use belvedere::medial::{CarvedInput, CarvedParams, ShrinkParams, carved_balls};
+use belvedere::medial::{CarvedInput, CarvedParams, ShrinkParams, Side, carved_balls, shrink};
 use belvedere::model::{BallParams, BallsReport, BuildReport, ModelParams, OrientBy, SceneModel};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
@@ -126,15 +126,21 @@ fn normals_and_scanner_positions_of_the_cloud_come_before_up() {
 }
 
 #[test]
-fn pulses_of_a_scanner_on_the_ground_carve_thin_balls_that_none_of_them_enters() {
+fn pulses_that_cannot_carve_give_way_to_the_points_alone_and_say_so() {
     let (_, _, cloud) = simulated();
-    // as low as the ground, far away: all its pulses are flat
+    // a scanner as low as the ground, far away: all its pulses are flat
     let low = [cloud.frame.origin[0] + 5000.0, cloud.frame.origin[1], cloud.frame.origin[2]];
     let params = ModelParams::default().with_orient(OrientBy::ScannerAt(low));
     let (model, report) = built(&cloud, &params);
-    assert!(matches!(report.interior_balls, Some(BallsReport::Carved(_))) && model.pulses().is_some());
-    assert_eq!(report.pulses.unwrap().blocked.unwrap().count, 0);
-    assert!(model.balls().radii.iter().all(|&radius| radius <= 0.15));
+    assert!(matches!(report.interior_balls, Some(BallsReport::Shrunk(_))) && model.pulses().is_none());
+    assert!(report.pulses.unwrap().remark.unwrap().contains("too flat"));
+    assert_eq!(model.parts().provenance["method"], "tau");
+    let (index, none) = (NeighborIndex::new(&cloud.positions, &Control::none()).unwrap(), Control::none());
+    let normals = estimate(&cloud.positions, &index, Neighborhood::default(), &none).unwrap();
+    let by = Orientation::ScannerAt(vec![low]);
+    let (oriented, _) = orient(&cloud, normals, &by, &none).unwrap();
+    let (balls, _) = shrink(&oriented, &index, Side::Interior, &ShrinkParams::tau(), &none).unwrap();
+    assert!(model.balls().len().abs_diff(balls.shrunk().len()) < cloud.len() / 100);
 }
 
 #[test]
