@@ -241,7 +241,7 @@ fn carving_input(
     let flat = needles.len() - needles.upright_count();
     if flat > 0 && flat as f64 >= MOST_FLAT_SHARE * used && carving == Carving::IfPossible {
         report.remark = Some(
-            "pulses do not carve here unless asked to: many are too flat, as from a scanner on the ground; balls are as thin as the points are close"
+            "pulses do not carve here without --method carved: many are too flat, as from a scanner on the ground; balls are as thin as the points are close"
                 .to_owned(),
         );
         return Ok((None, report));
