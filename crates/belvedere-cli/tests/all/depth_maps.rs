@@ -118,6 +118,8 @@ fn the_item_buffer_names_rows_of_the_ball_file() {
         assert!((expected - f64::from(depth)).abs() < 0.01, "ball {id}: {depth} for {expected}");
     }
     // a cloud names the rows of the ball file it would give
+    place.summary("balls house.laz -o all.npz");
+    place.summary_with("depth-map all.npz -o depth.npy --ball-ids ids.npy --viewport", &[FROM_ABOVE]);
     place.summary_with("depth-map house.laz -o cloud.npy --ball-ids cloud-ids.npy --viewport", &[FROM_ABOVE]);
     assert_eq!(place.bytes("ids.npy"), place.bytes("cloud-ids.npy"));
     assert_eq!(place.bytes("depth.npy"), place.bytes("cloud.npy"));

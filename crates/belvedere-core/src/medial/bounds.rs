@@ -1,4 +1,4 @@
-//! Least and most radius that balls may have, by what is known of their points.
+//! Most radius that balls may have, by what is known of their points.
 
 use belvedere_data::Attributes;
 
@@ -8,13 +8,11 @@ pub struct KindBounds {
     /// Most radius at a point of vegetation (class 3 to 5). Default 1.
     pub vegetation_radius: f32,
     /// Most radius at a point that is not the first return of its pulse. Something before it let the pulse through, so that it
-    /// mostly lies in or under a crown, where neither its normal nor the side it was seen from says much. Default 0.3.
-    pub later_return_radius: f32,
+    /// mostly lies in or under a crown, where neither its normal nor the side it was seen from says much. In spacings of pulses; default
+    /// 0.95.
+    pub later_return_spacings: f32,
     /// Most radius at a point of the ground (class 2). Default 2.
     pub ground_radius: f32,
-    /// Least radius at any other point, to which carved balls are grown again: a wall is at least this thick. Default
-    /// 0.15.
-    pub least_radius: f32,
     /// Most radius of a ball that neither a point nor a pulse bounds: one of the ground, or behind a wall that nothing was seen
     /// behind. Default 0.5, as thick as balls from points alone are at most.
     pub unbounded_radius: f32,
@@ -22,13 +20,7 @@ pub struct KindBounds {
 
 impl Default for KindBounds {
     fn default() -> Self {
-        Self {
-            vegetation_radius: 1.0,
-            later_return_radius: 0.3,
-            ground_radius: 2.0,
-            least_radius: 0.15,
-            unbounded_radius: 0.5,
-        }
+        Self { vegetation_radius: 1.0, later_return_spacings: 0.95, ground_radius: 2.0, unbounded_radius: 0.5 }
     }
 }
 
@@ -58,33 +50,31 @@ pub fn kinds(attributes: &Attributes, count: usize) -> Vec<Kind> {
     (0..count).map(kind).collect()
 }
 
-/// Least and most radius of each ball, metres. Rules only ever tighten them.
+/// Most radius of each ball, metres. Rules only ever tighten it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RadiusBounds {
-    /// To which a carved ball is grown again, (N).
-    pub least: Vec<f32>,
-    /// To which a ball is cut, (N); +∞ for no limit. It wins over the least.
+    /// To which a ball is cut, (N); +∞ for no limit.
     pub most: Vec<f32>,
     /// To which a ball is cut that neither a point nor a pulse bounds, metres.
     pub unbounded: f32,
 }
 
 impl RadiusBounds {
-    /// Bounds by kind of point.
+    /// Bounds by kind of point, for points about which pulses are `spacing` apart, (N), metres.
     #[must_use]
-    pub fn by_kind(kinds: &[Kind], attributes: &Attributes, params: &KindBounds) -> Self {
+    pub fn by_kind(kinds: &[Kind], attributes: &Attributes, spacing: &[f32], params: &KindBounds) -> Self {
         let is_later = |row: usize| {
             attributes.return_number.as_ref().and_then(|numbers| numbers.get(row)).is_some_and(|&number| number > 1)
         };
-        let bounds = |(row, kind): (usize, &Kind)| match kind {
-            Kind::Ground => (0.0, params.ground_radius),
-            Kind::Vegetation if is_later(row) => (0.0, params.vegetation_radius.min(params.later_return_radius)),
-            Kind::Vegetation => (0.0, params.vegetation_radius),
-            Kind::Later => (0.0, params.later_return_radius),
-            Kind::Other => (params.least_radius, f32::INFINITY),
+        let most = |(row, (kind, &spacing)): (usize, (&Kind, &f32))| match kind {
+            Kind::Ground => params.ground_radius,
+            Kind::Vegetation if is_later(row) => params.vegetation_radius.min(params.later_return_spacings * spacing),
+            Kind::Vegetation => params.vegetation_radius,
+            Kind::Later => params.later_return_spacings * spacing,
+            Kind::Other => f32::INFINITY,
         };
-        let (least, most) = kinds.iter().enumerate().map(bounds).unzip();
-        Self { least, most, unbounded: params.unbounded_radius }
+        let most = kinds.iter().zip(spacing).enumerate().map(most).collect();
+        Self { most, unbounded: params.unbounded_radius }
     }
 
     /// Cuts the most radius of point `row` down to `most`.

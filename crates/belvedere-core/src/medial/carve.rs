@@ -3,7 +3,7 @@
 use super::bounds::RadiusBounds;
 use crate::neighbors::Tangent;
 use crate::normals::OrientedCloud;
-use crate::pulses::Needles;
+use crate::pulses::{GAP_M, Needles};
 use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
@@ -22,13 +22,9 @@ pub struct CarveReport {
     /// Balls that were cut to the most radius for their kind of point.
     #[serde(rename = "balls_limited")]
     pub limited: usize,
-    /// Balls grown again to the least radius.
-    #[serde(rename = "balls_grown_to_least_radius")]
-    pub grown: usize,
 }
 
-/// Cuts each of `balls` until no needle enters it by more than `penetration` metres, 0 or more, then brings its radius within
-/// `bounds`. Row i of `balls` must be the interior ball of point i of `oriented`, as [`super::shrink`] makes it; so must
+/// Cuts each of `balls` until no needle comes nearer than a millimetre, then brings its radius within `bounds`. Row i of `balls` must be the interior ball of point i of `oriented`, as [`super::shrink`] makes it; so must
 /// row i of the bounds.
 ///
 /// A ball that had met no point but meets a pulse gets [`PULSE_TOUCH`]. One that meets neither gets [`LIMIT_TOUCH`] and at most
@@ -44,23 +40,19 @@ pub fn carve(
     balls: &mut MedialBalls,
     oriented: &OrientedCloud,
     needles: &Needles,
-    penetration: f32,
     bounds: &RadiusBounds,
     control: &Control<'_>,
 ) -> Result<CarveReport> {
     let expected = oriented.positions().len();
-    for (what, found) in
-        [("balls", balls.len()), ("least radii", bounds.least.len()), ("most radii", bounds.most.len())]
-    {
+    for (what, found) in [("balls", balls.len()), ("most radii", bounds.most.len())] {
         if found != expected {
             return Err(Error::LengthMismatch { what, expected, found });
         }
     }
     let (positions, normals) = (oriented.positions(), oriented.normals());
     let ball = |row: usize, radius: f32| {
-        let tangent = Tangent { point: positions[row], inward: normals[row].map(|v| -v), margin: penetration };
-        let empty = needles.smallest_tangent_ball(&tangent, radius - penetration);
-        empty.map(|empty| empty + penetration)
+        let tangent = Tangent { point: positions[row], inward: normals[row].map(|v| -v), margin: 0.0 };
+        needles.smallest_tangent_ball(&tangent, radius)
     };
     // what is larger than its limit is cut to that first: the search is shorter
     let mut carved: Vec<Option<f32>> = vec![None; expected];
@@ -82,19 +74,20 @@ pub fn carve(
             report.carved += 1;
             radius = carved;
         }
-        let (least, mut most) = (bounds.least[row], bounds.most[row]);
+        let mut most = bounds.most[row];
         let is_unbounded = carved.is_none() && balls.touch[row] == NO_TOUCH;
         if is_unbounded && most.is_infinite() {
             most = bounds.unbounded;
         }
         report.limited += usize::from(radius > most);
-        report.grown += usize::from(radius < least);
-        radius = radius.max(least).min(most);
+        radius = radius.min(most);
         if radius < balls.radii[row] || carved.is_some() {
             balls.radii[row] = radius;
             balls.centers[row] = std::array::from_fn(|i| positions[row][i] - normals[row][i] * radius);
             if carved.is_some() {
-                balls.touch[row] = PULSE_TOUCH;
+                balls.radii[row] = (radius - GAP_M).max(0.0);
+                // what the pulses leave nothing of blocks nothing
+                balls.touch[row] = if radius > GAP_M { PULSE_TOUCH } else { NO_TOUCH };
                 balls.separation_angles[row] = f32::NAN;
             }
         }

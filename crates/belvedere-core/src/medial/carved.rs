@@ -10,6 +10,7 @@ use super::relief::{Relief, ReliefParams};
 use super::roof_edges::{RoofEdgeParams, RoofEdges};
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 use super::slender::{Slender, SlenderParams};
+use super::spacing::pulse_spacing;
 use super::thin_surfaces::{ThinSurfaceParams, on_thin_surfaces};
 use super::vegetation::{VegetationParams, tell_vegetation};
 use crate::neighbors::NeighborIndex;
@@ -27,14 +28,17 @@ const FACE_NORMAL_Z: f32 = 0.3;
 /// of docs/methods/carving.md shows to earn their place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CarvedParams {
-    /// Depth to which a point or a pulse may enter a ball, metres, above 0. Default 0.02: a penetration of 0.05 m costs 1.3
-    /// points on facades.
+    /// Depth to which a point may enter a ball, metres, above 0. Default 0.02: a penetration of 0.05 m costs 1.3 points on facades. Pulses
+    /// enter none.
     pub penetration: f32,
     /// Radius every ball starts with, metres. Default 5: 15 m answer the same, cost 40 % more a query and bulge farther where
     /// no pulse passes; 3 m let 1.2 points more of the shade of streets through.
     pub initial_radius: f32,
     /// Most radius of any ball, metres, above 0; +∞, the default, for no limit but those that pulses and rules set.
     pub max_radius: f32,
+    /// Whether points are moved onto the surface that they scatter about before balls are made ([`crate::normals::Scatter`]). The model does
+    /// that, with the normals; [`carved_balls`] takes points as they are.
+    pub smoothing: bool,
     /// Bounds by kind of point.
     pub kind_bounds: KindBounds,
     /// How vegetation is told in clouds without its classes.
@@ -62,6 +66,7 @@ impl Default for CarvedParams {
             penetration: 0.02,
             initial_radius: 5.0,
             max_radius: f32::INFINITY,
+            smoothing: true,
             kind_bounds: KindBounds::default(),
             vegetation: Some(VegetationParams::default()),
             crowns: Some(CrownParams::default()),
@@ -78,6 +83,8 @@ impl Default for CarvedParams {
 /// A rule that can be left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
+    /// [`CarvedParams::smoothing`].
+    Smoothing,
     /// [`CarvedParams::vegetation`].
     Vegetation,
     /// [`CarvedParams::crowns`].
@@ -96,7 +103,8 @@ pub enum Rule {
 
 impl Rule {
     /// Every rule.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
+        Self::Smoothing,
         Self::Vegetation,
         Self::Crowns,
         Self::Slender,
@@ -110,6 +118,7 @@ impl Rule {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Self::Smoothing => "smoothing",
             Self::Vegetation => "vegetation",
             Self::Crowns => "crowns",
             Self::Slender => "slender",
@@ -126,6 +135,7 @@ impl CarvedParams {
     #[must_use]
     pub fn without(mut self, rule: Rule) -> Self {
         match rule {
+            Rule::Smoothing => self.smoothing = false,
             Rule::Vegetation => self.vegetation = None,
             Rule::Crowns => self.crowns = None,
             Rule::Slender => self.slender = None,
@@ -179,6 +189,9 @@ pub struct CarvedReport {
     /// Points in crowns with gaps.
     #[serde(rename = "points_in_crowns_with_gaps")]
     pub in_crowns_with_gaps: usize,
+    /// Balls about returns within crowns.
+    #[serde(rename = "balls_centred_in_crowns")]
+    pub centred: usize,
     /// Balls that fill solid crowns.
     #[serde(rename = "balls_in_crowns")]
     pub crown_fills: usize,
@@ -226,7 +239,7 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
     let CarvedInput { oriented, index, attributes, needles, pulses } = *input;
     let positions = oriented.positions();
     let mut report = CarvedReport::default();
-    if let Some(sizes) = params.close_range.filter(|_| CloseRangeParams::fits(input)) {
+    if let Some(sizes) = params.close_range.filter(|_| needles.are_from_the_ground()) {
         let CloseRangeBalls { balls, shrinking, carving } = sizes.balls(input, control)?;
         return Ok(CarvedBalls {
             balls: balls.shrunk(),
@@ -240,7 +253,8 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
             tell_vegetation(&mut kinds, oriented, index, attributes, vegetation, control)
         })?;
     }
-    let mut bounds = RadiusBounds::by_kind(&kinds, attributes, &params.kind_bounds);
+    let spacing = pulse_spacing(positions, attributes);
+    let mut bounds = RadiusBounds::by_kind(&kinds, attributes, &spacing, &params.kind_bounds);
     let lowest = lowest_near(positions);
     let through = match (&params.crowns, pulses) {
         (Some(crowns), Some(pulses)) => control.stage("measuring crowns", 0, || {
@@ -257,7 +271,7 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
     });
     let find_slender = |params| {
         control.stage("finding thin objects", oriented.len(), || {
-            Slender::find(positions, &kinds, attributes, &lowest, needles, params, control)
+            Slender::find(positions, &kinds, attributes, (&lowest, &spacing), needles, params, control)
         })
     };
     let slender = params.slender.as_ref().map(find_slender).transpose()?;
@@ -269,7 +283,7 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
             on_thin_surfaces(positions, &kinds, index, needles, params, control)
         })?;
         for row in (0..thin.len()).filter(|&row| thin[row]) {
-            bounds.limit(row, params.radius);
+            bounds.limit(row, params.radius_spacings * spacing[row]);
             report.thin += 1;
         }
     }
@@ -278,9 +292,14 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
     (balls, report.shrinking) = control.stage("shrinking balls", oriented.len(), || {
         shrink(oriented, index, Side::Interior, &params.shrinking(), control)
     })?;
-    report.carving = control.stage("carving balls", oriented.len(), || {
-        carve(&mut balls, oriented, needles, params.penetration, &bounds, control)
-    })?;
+    report.carving =
+        control.stage("carving balls", oriented.len(), || carve(&mut balls, oriented, needles, &bounds, control))?;
+    // what is only found to be vegetation may be anything that is not flat: better neither centred nor filled
+    let known_crowns = crowns.as_ref().filter(|_| report.told_vegetation == 0);
+    if let Some(crowns) = known_crowns {
+        report.centred =
+            control.stage("centring balls in crowns", 0, || crowns.centre(&mut balls, index, needles, control))?;
+    }
     if let Some(params) = &params.roof_edges {
         report.cut_at_edges = control.stage("cutting at roof edges", 0, || {
             let edges = RoofEdges::find(oriented, &kinds, index, &lowest, params, control)?;
@@ -301,14 +320,13 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
                 || oriented.normals()[row][2].abs() < FACE_NORMAL_Z
         };
         control.stage("finding thin relief", oriented.len(), || {
-            Relief::find(positions, &kinds, is_left_out, &balls, index, params, control)
+            Relief::find(positions, &kinds, is_left_out, (&balls, &spacing), index, params, control)
         })
     };
     let relief = params.relief.as_ref().map(find_relief).transpose()?;
     report.relief = relief.as_ref().map_or(0, Relief::len);
     control.stage("filling", 0, || {
-        // what is only found to be vegetation may be anything that is not flat, and is better not filled
-        if let Some(crowns) = crowns.as_ref().filter(|_| report.told_vegetation == 0) {
+        if let Some(crowns) = known_crowns {
             report.crown_fills = crowns.fill(&mut balls, needles, control)?;
         }
         if let Some(relief) = &relief {

@@ -2,8 +2,8 @@
 
 use crate::pulses::Needles;
 
-/// Least radius of a ball worth keeping, metres.
-const LEAST_RADIUS_M: f32 = 0.04;
+/// Least radius of a ball worth keeping, as a share of the most.
+const LEAST_SHARE: f32 = 0.25;
 /// Most balls below each other, so that odd parameters cannot fill the memory.
 const MOST_BELOW: usize = 64;
 
@@ -32,6 +32,6 @@ impl Chain {
             .take(MOST_BELOW)
             .take_while(move |center| center[2] > bottom)
             .map(move |center| (center, needles.clearance(center, radius)))
-            .filter(|&(_, radius)| radius >= LEAST_RADIUS_M)
+            .filter(move |&(_, left)| left >= LEAST_SHARE * radius)
     }
 }

@@ -8,18 +8,14 @@ use super::carve::CarveReport;
 use super::carved::CarvedInput;
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink, spacing_at};
 use crate::neighbors::Tangent;
+use crate::pulses::GAP_M;
 use belvedere_data::Result;
 use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH, Side};
 use belvedere_data::control::Control;
 use rayon::prelude::*;
 
-/// Share of pulses that are not upright from which on a scanner is taken to stand on the ground: those of aircraft are steeper than
-/// 40°.
-const LEAST_FLAT_SHARE: f64 = 0.05;
 /// Balls handed to a thread at once; their searches share the cache.
 const CHUNK: usize = 512;
-/// Distance that cut balls keep from the pulse that cut them, metres: beyond what single precision rounds, so that it stays free.
-const GRAZING: f32 = 1e-3;
 /// Balls of less than this are left out, metres: pulses passed on all sides, and what is left is noise.
 const LEAST_RADIUS: f32 = 1e-3;
 
@@ -53,13 +49,6 @@ pub(super) struct CloseRangeBalls {
 }
 
 impl CloseRangeParams {
-    /// Whether these sizes are those for the pulses of a survey: many are too flat for an aircraft.
-    pub(super) fn fits(input: &CarvedInput<'_>) -> bool {
-        let needles = input.needles;
-        (needles.len() - needles.upright_count()) as f64 >= LEAST_FLAT_SHARE * needles.len() as f64
-            && !needles.is_empty()
-    }
-
     /// The balls of a survey.
     ///
     /// # Errors
@@ -100,7 +89,7 @@ impl CloseRangeParams {
                 }
                 let tangent = Tangent { point: positions[row], inward: normals[row].map(|v| -v), margin };
                 *cut = match needles.smallest_tangent_ball(&tangent, radius - margin) {
-                    Some(empty) => (empty - GRAZING, margin + GRAZING, true),
+                    Some(empty) => (empty - GAP_M, margin + GAP_M, true),
                     None => (radius - margin, margin, false),
                 };
             }

@@ -15,6 +15,7 @@ pub mod relief;
 pub mod roof_edges;
 pub mod shrinking_ball;
 pub mod slender;
+mod spacing;
 pub mod thin_surfaces;
 pub mod vegetation;
 pub mod vegetation_balls;

@@ -28,9 +28,9 @@ pub struct ReliefParams {
     /// Radius above which the ball at a point represents it well enough, metres, above 0. Default 0.75: 0.4 gains 0.5 points
     /// less on roofs; 1.5 gains another 0.1 of twice as many points.
     pub well_represented: f32,
-    /// Most radius of the balls that fill, metres, above 0. Default 0.15: 0.25 gains another 0.3 points on roofs and loses 0.6 on
-    /// walls, beside which no pulse passes near enough.
-    pub radius: f32,
+    /// Most radius of the balls that fill, in spacings of pulses, above 0. Default 0.47: 0.8 gains another 0.3 points on roofs and
+    /// loses 0.6 on walls, beside which no pulse passes near enough.
+    pub radius_spacings: f32,
     /// Distance of these balls below each other, metres, above 0. Default 0.15; 0.2 saves a fifth of them and lets
     /// 0.1 points more through, on roofs and streets.
     pub spacing: f32,
@@ -38,7 +38,7 @@ pub struct ReliefParams {
 
 impl Default for ReliefParams {
     fn default() -> Self {
-        Self { reach: 0.75, heights: [0.2, 1.5], well_represented: 0.75, radius: 0.15, spacing: 0.15 }
+        Self { reach: 0.75, heights: [0.2, 1.5], well_represented: 0.75, radius_spacings: 0.47, spacing: 0.15 }
     }
 }
 
@@ -51,6 +51,8 @@ pub(super) struct Relief<'a> {
     params: &'a ReliefParams,
     /// Rows of its points, and the height of the next lower level at each.
     points: Vec<(usize, f32)>,
+    /// As [`super::spacing::pulse_spacing`] gives it.
+    spacing: &'a [f32],
 }
 
 impl<'a> Relief<'a> {
@@ -61,7 +63,7 @@ impl<'a> Relief<'a> {
         positions: &'a [[f32; 3]],
         kinds: &[Kind],
         is_left_out: impl Fn(usize) -> bool + Sync,
-        balls: &MedialBalls,
+        (balls, spacing): (&MedialBalls, &'a [f32]),
         index: &NeighborIndex,
         params: &'a ReliefParams,
         control: &Control<'_>,
@@ -88,7 +90,7 @@ impl<'a> Relief<'a> {
         let points = rows.filter(|&row| !stop.is_set() && is_wanted(row)).filter_map(point).collect();
         stop.check()?;
         control.advance(positions.len());
-        Ok(Self { positions, params, points })
+        Ok(Self { positions, params, points, spacing })
     }
 
     /// Number of its points.
@@ -102,9 +104,9 @@ impl<'a> Relief<'a> {
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &Needles, control: &Control<'_>) -> Result<usize> {
         let stop = Stop::new(control);
-        let chain = Chain { radius: self.params.radius, spacing: self.params.spacing };
         let points = self.points.par_iter().with_min_len(CHUNK);
         let below = |&(row, level): &(usize, f32)| {
+            let chain = Chain { radius: self.params.radius_spacings * self.spacing[row], spacing: self.params.spacing };
             chain.below(self.positions[row], level, needles).map(move |ball| (row, ball))
         };
         let found: Vec<_> = points.filter(|_| !stop.is_set()).flat_map_iter(below).collect();

@@ -24,16 +24,16 @@ pub struct SlenderParams {
     /// How far below its point the balls touch, metres, 0 or more; above the lowest point near by in any case. Default
     /// 0.7: more than the gap, so that pulses that end beside the point, on the same roof, do not count.
     pub lowering: f32,
-    /// Most radius of the balls at its points, metres, above 0. Default 0.1.
-    pub radius: f32,
+    /// Most radius of the balls at its points, in spacings of pulses, above 0. Default 0.32: pulses pass closer on both sides.
+    pub radius_spacings: f32,
     /// Least height above the lowest point near by, metres, 0 or more. Default 0.3: kerbs and noise are lower.
     pub least_height: f32,
     /// Height up to which it stands on the ground, rather than hang in the air, metres. Default 2.5: higher fences are rare, lower
     /// wires too.
     pub standing_height: f32,
-    /// Most radius of the balls that fill what stands, metres, above 0. Default 0.15: what pulses passed by cannot be blocked,
-    /// and 0.1 lets more through.
-    pub standing_radius: f32,
+    /// Most radius of the balls that fill what stands, in spacings of pulses, above 0. Default 0.47: what pulses passed by cannot be
+    /// blocked, and 0.32 lets more through.
+    pub standing_spacings: f32,
     /// Distance of these balls below each other, metres, above 0. Default 0.2.
     pub spacing: f32,
     /// Most distance of two points of one thing between which it is filled as well, metres, 0 or more. Default 1: twice the
@@ -46,10 +46,10 @@ impl Default for SlenderParams {
         Self {
             gap: 0.5,
             lowering: 0.7,
-            radius: 0.1,
+            radius_spacings: 0.32,
             least_height: 0.3,
             standing_height: 2.5,
-            standing_radius: 0.15,
+            standing_spacings: 0.47,
             spacing: 0.2,
             reach: 1.0,
         }
@@ -69,6 +69,8 @@ pub(super) struct Slender<'a> {
     params: &'a SlenderParams,
     /// Height above the lowest point near by, NaN for points of anything else.
     heights: Vec<f32>,
+    /// As [`super::spacing::pulse_spacing`] gives it.
+    spacing: &'a [f32],
 }
 
 impl<'a> Slender<'a> {
@@ -78,7 +80,7 @@ impl<'a> Slender<'a> {
         positions: &'a [[f32; 3]],
         kinds: &[Kind],
         attributes: &Attributes,
-        lowest: &Cells<f32>,
+        (lowest, spacing): (&Cells<f32>, &'a [f32]),
         needles: &Needles,
         params: &'a SlenderParams,
         control: &Control<'_>,
@@ -109,13 +111,13 @@ impl<'a> Slender<'a> {
         let heights = positions.par_iter().zip(kinds).enumerate().with_min_len(CHUNK).map(height).collect();
         stop.check()?;
         control.advance(positions.len());
-        Ok(Self { positions, params, heights })
+        Ok(Self { positions, params, heights, spacing })
     }
 
     /// Cuts the radii at slender things, and says of how many balls.
     pub(super) fn limit(&self, bounds: &mut RadiusBounds) -> usize {
         let rows = (0..self.heights.len()).filter(|&row| !self.heights[row].is_nan());
-        rows.map(|row| bounds.limit(row, self.params.radius)).count()
+        rows.map(|row| bounds.limit(row, self.params.radius_spacings * self.spacing[row])).count()
     }
 
     /// Adds balls that fill what stands on the ground, and says how many.
@@ -130,7 +132,11 @@ impl<'a> Slender<'a> {
         let places: Vec<[f32; 3]> = rows.iter().map(|&row| self.positions[row]).collect();
         let index = NeighborIndex::new(&places, control)?;
         let stop = Stop::new(control);
-        let place = |number: usize| Place { position: places[number], height: self.heights[rows[number]] };
+        let place = |number: usize| Place {
+            position: places[number],
+            height: self.heights[rows[number]],
+            spacing: self.spacing[rows[number]],
+        };
         let fills = |number: usize| {
             let mut near = Vec::new();
             index.within_radius(places[number], self.params.reach, |found| near.push(place(found.index as usize)));
@@ -176,7 +182,7 @@ impl<'a> Slender<'a> {
         let beside = near.iter().map(|other| other.position).filter(|q| apart(p, *q) < TOP_REACH_M);
         let top = beside.fold(p[2], |top, q| top.max(q[2]));
         let ground = p[2] - place.height;
-        let chain = Chain { radius: self.params.standing_radius, spacing: self.params.spacing };
+        let chain = Chain { radius: self.params.standing_spacings * place.spacing, spacing: self.params.spacing };
         let mut balls: Vec<_> = chain.below([p[0], p[1], top], ground, needles).collect();
         for (number, other) in near.iter().enumerate() {
             let q = other.position;
@@ -196,8 +202,10 @@ impl<'a> Slender<'a> {
     }
 }
 
-/// A point of something that stands, and its height above the ground.
+/// A point of something that stands.
 struct Place {
     position: [f32; 3],
     height: f32,
+    /// Between pulses about it, metres.
+    spacing: f32,
 }

@@ -29,8 +29,8 @@ const CHECK_EACH: usize = 64;
 /// decks, a quarter of those on balconies, and take 0.5 % of the points of roofs (1.2 % in one town) and of walls for such.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinSurfaceParams {
-    /// Most radius at a point of a thin surface, metres, above 0. Default 0.3: twice that stands for the thickness.
-    pub radius: f32,
+    /// Most radius at a point of a thin surface, in spacings of pulses, above 0. Default 0.95.
+    pub radius_spacings: f32,
     /// Least and most depth below a surface at which a pulse proves it thin, metres. Default 1 to 5: nearer is noise and relief,
     /// farther the arcade of a house, whose roof is not thin.
     pub depths: [f32; 2],
@@ -54,7 +54,7 @@ pub struct ThinSurfaceParams {
 impl Default for ThinSurfaceParams {
     fn default() -> Self {
         Self {
-            radius: 0.3,
+            radius_spacings: 0.95,
             depths: [1.0, 5.0],
             around: 0.75,
             widest_gap: 2.0,

@@ -107,6 +107,11 @@ impl BallParams {
         }
     }
 
+    /// Whether points that are carved are moved onto their surface first.
+    pub(super) fn smooths(&self) -> bool {
+        matches!(self, Self::Carved(carved) | Self::CarvedIfPossible(carved, _) if carved.smoothing)
+    }
+
     /// Checks the parameters of shrinking, before a cloud is there.
     ///
     /// # Errors

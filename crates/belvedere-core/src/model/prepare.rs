@@ -1,11 +1,11 @@
 //! From a cloud to a cleaned cloud with outward normals, and what its pulses prove empty.
 
 use super::params::{Carving, ModelParams, OrientBy};
-use super::report::{BuildReport, NormalsReport, PulsesReport};
+use super::report::{BuildReport, NormalsReport, PulsesReport, SmoothingReport};
 use crate::clean::clean;
 use crate::neighbors::NeighborIndex;
-use crate::normals::estimate::estimate;
-use crate::normals::{Normals, Orientation, OrientedCloud, orient};
+use crate::normals::estimate::estimate_with_scatter;
+use crate::normals::{Normals, Orientation, OrientedCloud, Scatter, orient};
 use crate::pulses::{FoundBy, Means, NeedleColumns, Needles, Pulses, ScannerReport, group, locate};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, length, sub, unit};
@@ -14,16 +14,13 @@ use std::borrow::Cow;
 
 /// Points no farther from a line than this lie on it, metres: the step of coordinates in most files.
 const LINE_WIDTH: f64 = 1e-3;
-/// Share of pulses that are not upright from which on a scanner is taken to stand on the ground, and carves only where that is asked for:
-/// carved balls leak at the edges of rooms.
-const MOST_FLAT_SHARE: f64 = 0.05;
 /// Share of the points with nothing above them from which on vertical pulses are a fair assumption. Clouds of aircraft have three
 /// quarters or more; where the scanner stood among walls it is a fifth, and carving by pulses that never were blocks most of what is visible.
 const LEAST_ASSUMED_SHARE: f64 = 0.5;
 
 /// A cloud that is ready for balls: cleaned, with outward normals, an index, and what its pulses prove empty.
 pub struct OrientedSurvey {
-    /// The points that were kept, with outward normals.
+    /// The points that were kept, with outward normals; where they are to be carved, on the surface that they scatter about.
     pub oriented: OrientedCloud,
     /// Index of these points.
     pub index: NeighborIndex,
@@ -134,15 +131,25 @@ pub(super) fn prepare(
     }
     let index = control.stage("indexing points", cloud.len(), || NeighborIndex::new(&cloud.positions, control))?;
     let by = orientation(&cloud, params, &scanner, wants_scanner, carving.is_some());
-    let normals = match by {
-        Orientation::Given => Normals::default(),
+    let (normals, scatter) = match by {
+        Orientation::Given => (Normals::default(), Scatter::default()),
         _ => control.stage("estimating normals", cloud.len(), || {
-            estimate(&cloud.positions, &index, params.neighborhood, control)
+            estimate_with_scatter(&cloud.positions, &index, params.neighborhood, control)
         })?,
     };
-    let (oriented, orientation) =
+    // balls of scanners on the ground have sizes of their own, which noise is part of
+    let is_flown = carving.as_ref().is_some_and(|input| !input.needles.are_from_the_ground());
+    let scatter = (is_flown && params.balls.smooths() && !scatter.roughness.is_empty()).then_some(scatter);
+    let (mut oriented, orientation) =
         control.stage("orienting normals", cloud.len(), || orient(&cloud, normals, &by, control))?;
     report.normals = NormalsReport::new(&by, orientation);
+    let mut index = index;
+    if let Some(scatter) = scatter {
+        let (positions, moved) = scatter.smoothed(oriented.positions());
+        index = index.moved_to(&positions)?;
+        oriented = oriented.moved_to(positions);
+        report.smoothing = Some(SmoothingReport { noise: scatter.noise().unwrap_or_default(), moved });
+    }
     let bounds = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?;
     Ok((OrientedSurvey { oriented, index, kept, bounds, classification, carving }, report))
 }
@@ -238,8 +245,7 @@ fn carving_input(
     })?;
     let mut report = PulsesReport { needles: report, ..PulsesReport::default() };
     let used = report.needles.used as f64;
-    let flat = needles.len() - needles.upright_count();
-    if flat > 0 && flat as f64 >= MOST_FLAT_SHARE * used && carving == Carving::IfPossible {
+    if needles.are_from_the_ground() && carving == Carving::IfPossible {
         report.remark = Some(
             "pulses do not carve here without --method carved: many are too flat, as from a scanner on the ground; balls are as thin as the points are close"
                 .to_owned(),

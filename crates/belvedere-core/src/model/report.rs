@@ -20,9 +20,23 @@ pub struct BuildReport {
     pub pulses: Option<PulsesReport>,
     /// How normals were turned outward.
     pub normals: NormalsReport,
+    /// How points were moved onto their surface, where that was done.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothing: Option<SmoothingReport>,
     /// The balls, where they were made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interior_balls: Option<BallsReport>,
+}
+
+/// How points were moved onto the surface that they scatter about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct SmoothingReport {
+    /// Noise of the cloud along its normals, metres.
+    #[serde(rename = "noise_m")]
+    pub noise: f32,
+    /// Points that were moved: those with flat surroundings.
+    #[serde(rename = "points_moved_onto_surface")]
+    pub moved: usize,
 }
 
 /// What the pulses of a cloud are good for.

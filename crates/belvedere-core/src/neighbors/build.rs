@@ -23,6 +23,19 @@ pub(super) fn build(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<N
     let mut items: Vec<Item> = points.iter().zip(0..).map(|(&point, index)| Item { point, index }).collect();
     sort_to_leaves(&mut items, &stop, control);
     stop.check()?;
+    let (nodes, blocks) = fit(&items);
+    control.check()?;
+    Ok((nodes, blocks, items.iter().map(|item| item.index).collect()))
+}
+
+/// Nodes and blocks for points that moved a little: `order` is that of the tree they were in, which stays.
+pub(super) fn refit(points: &[[f32; 3]], order: &[u32]) -> (Vec<Node>, Vec<Block>) {
+    let items: Vec<Item> = order.iter().map(|&index| Item { point: points[index as usize], index }).collect();
+    fit(&items)
+}
+
+/// Nodes and blocks of points in tree order.
+fn fit(items: &[Item]) -> (Vec<Node>, Vec<Block>) {
     let blocks = items
         .chunks(LANES)
         .map(|chunk| {
@@ -33,9 +46,8 @@ pub(super) fn build(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<N
         })
         .collect();
     let mut nodes = Vec::with_capacity(items.len() / (LEAF_POINTS * 4) + 1);
-    add_node(&items, 0, &mut nodes);
-    control.check()?;
-    Ok((nodes, blocks, items.iter().map(|item| item.index).collect()))
+    add_node(items, 0, &mut nodes);
+    (nodes, blocks)
 }
 
 /// Where a run of points is cut: into two runs of whole leaves, as equal as can be.

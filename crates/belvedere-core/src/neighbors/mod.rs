@@ -92,13 +92,24 @@ impl NeighborIndex {
                 expected: "below 2^32; split the cloud into tiles",
             });
         }
-        // a squared distance must not overflow: (2e18)² · 3 < f32::MAX
-        if let Some(p) = points.iter().find(|p| !p.iter().all(|v| v.abs() < 1e18)) {
-            return Err(Error::InvalidParameter { name: "position", value: format!("{p:?}"), expected: "finite" });
-        }
+        check_positions(points)?;
         let instructions = if instructions == Instructions::detect() { instructions } else { Instructions::Scalar };
         let (nodes, blocks, order) = build::build(points, control)?;
         Ok(Self { nodes, blocks, order, instructions })
+    }
+
+    /// The index of the same points after each moved a little: faster to make than a new one, as fast to search.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] for another number of points, [`Error::InvalidParameter`] for a coordinate that is not finite or beyond
+    /// 1e18.
+    pub fn moved_to(self, points: &[[f32; 3]]) -> Result<Self> {
+        if points.len() != self.len() {
+            return Err(Error::LengthMismatch { what: "moved points", expected: self.len(), found: points.len() });
+        }
+        check_positions(points)?;
+        let (nodes, blocks) = build::refit(points, &self.order);
+        Ok(Self { nodes, blocks, ..self })
     }
 
     /// Number of points.
@@ -161,5 +172,13 @@ impl NeighborIndex {
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::smallest_tangent_ball(self, tangent, max_radius),
         }
+    }
+}
+
+/// A squared distance must not overflow: (2e18)² · 3 is below the largest f32.
+fn check_positions(points: &[[f32; 3]]) -> Result<()> {
+    match points.iter().find(|p| !p.iter().all(|v| v.abs() < 1e18)) {
+        Some(p) => Err(Error::InvalidParameter { name: "position", value: format!("{p:?}"), expected: "finite" }),
+        None => Ok(()),
     }
 }

@@ -1,8 +1,9 @@
 //! Normals by principal components of the nearest neighbours.
 
-use super::Normals;
+use super::{Normals, Scatter};
 use crate::neighbors::{Neighbor, NeighborIndex};
 use belvedere_data::control::Control;
+use belvedere_data::vector::dot;
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 
@@ -80,32 +81,62 @@ pub fn estimate(
     neighborhood: Neighborhood,
     control: &Control<'_>,
 ) -> Result<Normals> {
+    Ok(estimate_with_scatter(positions, index, neighborhood, control)?.0)
+}
+
+/// As [`estimate`], and how points scatter about the planes that the normals belong to.
+///
+/// # Errors
+/// Those of [`estimate`].
+pub fn estimate_with_scatter(
+    positions: &[[f32; 3]],
+    index: &NeighborIndex,
+    neighborhood: Neighborhood,
+    control: &Control<'_>,
+) -> Result<(Normals, Scatter)> {
     if index.len() != positions.len() {
         return Err(Error::LengthMismatch { what: "neighbour index", expected: positions.len(), found: index.len() });
     }
     let k = neighborhood.largest()?;
     let order = index.tree_order();
-    let mut in_tree_order = vec![([0.0; 3], 0.0); positions.len()];
-    in_tree_order.par_chunks_mut(CHUNK).zip(order.par_chunks(CHUNK)).try_for_each(|(normals, points)| {
+    let mut in_tree_order = vec![Plane::NONE; positions.len()];
+    in_tree_order.par_chunks_mut(CHUNK).zip(order.par_chunks(CHUNK)).try_for_each(|(planes, points)| {
         control.check()?;
         let mut found = Vec::with_capacity(k + 2);
-        for (normal, &i) in normals.iter_mut().zip(points) {
+        for (plane, &i) in planes.iter_mut().zip(points) {
             // the point itself is its own nearest neighbour, or a duplicate of it stands in
             index.k_nearest(positions[i as usize], k + 1, &mut found);
-            *normal = match neighborhood {
-                Neighborhood::Fixed { .. } => normal_of(positions, &found),
-                Neighborhood::Adaptive { flatness } => adaptive_normal_of(positions, &found, flatness),
+            *plane = match neighborhood {
+                Neighborhood::Fixed { .. } => plane_of(positions, &found),
+                Neighborhood::Adaptive { flatness } => adaptive_plane_of(positions, &found, flatness),
             };
         }
         control.advance(points.len());
         Ok(())
     })?;
     let mut normals = Normals { vectors: vec![[0.0; 3]; positions.len()], quality: vec![0.0; positions.len()] };
-    for (&i, (vector, quality)) in order.iter().zip(in_tree_order) {
-        normals.vectors[i as usize] = vector;
-        normals.quality[i as usize] = quality;
+    let mut scatter =
+        Scatter { to_plane: vec![[0.0; 3]; positions.len()], roughness: vec![f32::INFINITY; positions.len()] };
+    for (&i, plane) in order.iter().zip(in_tree_order) {
+        let i = i as usize;
+        normals.vectors[i] = plane.normal;
+        normals.quality[i] = plane.quality;
+        scatter.to_plane[i] = plane.normal.map(|v| v * plane.offset);
+        scatter.roughness[i] = plane.roughness;
     }
-    Ok(normals)
+    Ok((normals, scatter))
+}
+
+/// The plane through a neighbourhood.
+#[derive(Clone, Copy)]
+struct Plane {
+    normal: [f32; 3],
+    /// As [`Normals::quality`].
+    quality: f32,
+    /// From the point to the plane along the normal, metres.
+    offset: f32,
+    /// Root mean square distance of the neighbourhood from it, metres.
+    roughness: f32,
 }
 
 /// Sums over a neighbourhood, relative to its first point, from which its covariance follows at any size.
@@ -129,8 +160,12 @@ impl Moments {
         }
     }
 
+    fn mean(&self) -> [f64; 3] {
+        self.sum.map(|s| s / self.count)
+    }
+
     fn covariance(&self) -> [f64; 6] {
-        let mean = self.sum.map(|s| s / self.count);
+        let mean = self.mean();
         let product = |i: usize, a: usize, b: usize| self.products[i] / self.count - mean[a] * mean[b];
         [product(0, 0, 0), product(1, 1, 1), product(2, 2, 2), product(3, 0, 1), product(4, 1, 2), product(5, 2, 0)]
     }
@@ -141,21 +176,21 @@ fn relative(positions: &[[f32; 3]], neighbor: &Neighbor, base: [f32; 3]) -> [f64
     std::array::from_fn(|i| f64::from(p[i]) - f64::from(base[i]))
 }
 
-fn normal_of(positions: &[[f32; 3]], found: &[Neighbor]) -> ([f32; 3], f32) {
-    let Some(first) = found.first() else { return ([0.0; 3], 0.0) };
+fn plane_of(positions: &[[f32; 3]], found: &[Neighbor]) -> Plane {
+    let Some(first) = found.first() else { return Plane::NONE };
     let base = positions[first.index as usize];
     let mut moments = Moments::default();
     found.iter().for_each(|n| moments.add(relative(positions, n, base)));
     let (values, normal) = least_component(moments.covariance());
-    graded(values, normal)
+    Plane::new(values, normal, moments.mean())
 }
 
-fn adaptive_normal_of(positions: &[[f32; 3]], found: &[Neighbor], flatness: f32) -> ([f32; 3], f32) {
-    let Some(first) = found.first() else { return ([0.0; 3], 0.0) };
+fn adaptive_plane_of(positions: &[[f32; 3]], found: &[Neighbor], flatness: f32) -> Plane {
+    let Some(first) = found.first() else { return Plane::NONE };
     let base = positions[first.index as usize];
     let mut moments = Moments::default();
     let mut largest_flat = None;
-    let mut most_ordered: Option<(f64, [f64; 3], [f64; 3])> = None;
+    let mut most_ordered: Option<(f64, Plane)> = None;
     for (i, neighbor) in found.iter().enumerate() {
         moments.add(relative(positions, neighbor, base));
         let is_last = i + 1 == found.len();
@@ -163,16 +198,16 @@ fn adaptive_normal_of(positions: &[[f32; 3]], found: &[Neighbor], flatness: f32)
             continue;
         }
         let (values, normal) = least_component(moments.covariance());
+        let plane = Plane::new(values, normal, moments.mean());
         if values[0].max(0.0).sqrt() <= f64::from(flatness) {
-            largest_flat = Some((values, normal));
+            largest_flat = Some(plane);
         }
         let entropy = eigenentropy(values);
         if most_ordered.as_ref().is_none_or(|(least, ..)| entropy < *least) {
-            most_ordered = Some((entropy, values, normal));
+            most_ordered = Some((entropy, plane));
         }
     }
-    let chosen = largest_flat.or(most_ordered.map(|(_, values, normal)| (values, normal)));
-    chosen.map_or(([0.0; 3], 0.0), |(values, normal)| graded(values, normal))
+    largest_flat.or(most_ordered.map(|(_, plane)| plane)).unwrap_or(Plane::NONE)
 }
 
 /// −Σ e ln e over the eigenvalues as shares of their sum.
@@ -184,13 +219,27 @@ fn eigenentropy(values: [f64; 3]) -> f64 {
 /// A line is thinner than a hundredth of its length: its eigenvalues differ by the square.
 const LINE: f64 = 1e-4;
 
-#[expect(clippy::cast_possible_truncation, reason = "unit vectors and ratios below one")]
-fn graded(values: [f64; 3], normal: [f64; 3]) -> ([f32; 3], f32) {
-    let [least, middle, largest] = values;
-    if !(middle > LINE * largest && largest > 0.0 && normal.iter().all(|v| v.is_finite())) {
-        return ([0.0; 3], 0.0);
+impl Plane {
+    /// That of a spot or a line.
+    const NONE: Self = Self { normal: [0.0; 3], quality: 0.0, offset: 0.0, roughness: f32::INFINITY };
+
+    /// The plane of a neighbourhood with these eigenvalues, this component of the least one and this mean, from the point.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "unit vectors, ratios below one and lengths within a neighbourhood"
+    )]
+    fn new(values: [f64; 3], normal: [f64; 3], mean: [f64; 3]) -> Self {
+        let [least, middle, largest] = values;
+        if !(middle > LINE * largest && largest > 0.0 && normal.iter().all(|v| v.is_finite())) {
+            return Self::NONE;
+        }
+        Self {
+            normal: normal.map(|v| v as f32),
+            quality: (1.0 - least.max(0.0) / middle) as f32,
+            offset: dot(mean, normal) as f32,
+            roughness: least.max(0.0).sqrt() as f32,
+        }
     }
-    (normal.map(|v| v as f32), (1.0 - least.max(0.0) / middle) as f32)
 }
 
 /// Eigenvalues in ascending order and the unit eigenvector of the least, of the symmetric matrix xx, yy, zz, xy, yz, zx.

@@ -4,10 +4,12 @@ pub mod estimate;
 pub mod orient;
 pub mod oriented;
 mod reference_mesh;
+mod scatter;
 mod surroundings;
 
 pub use orient::{OrientReport, Orientation, orient};
 pub use oriented::OrientedCloud;
+pub use scatter::Scatter;
 
 /// Unit normals of the points of a cloud, not yet oriented.
 #[derive(Clone, Debug, Default)]

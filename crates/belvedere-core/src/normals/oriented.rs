@@ -68,6 +68,14 @@ impl OrientedCloud {
         Self { origin, crs, ..self }
     }
 
+    /// The same normals at other places, local metres; the cloud as it was where these are not one finite place for each point.
+    pub(crate) fn moved_to(mut self, positions: Vec<[f32; 3]>) -> Self {
+        if positions.len() == self.len() && positions.iter().flatten().all(|v| v.is_finite()) {
+            self.positions = positions;
+        }
+        self
+    }
+
     /// Number of points.
     #[must_use]
     pub fn len(&self) -> usize {

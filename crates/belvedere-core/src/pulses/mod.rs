@@ -26,7 +26,7 @@ pub use flight_parts::{
 pub use group::{PulseReport, Pulses, group};
 pub use line_path::{LinePath, Stretch};
 pub use locate::{LocateParams, Means, locate};
-pub(crate) use needles::lower_ends;
+pub(crate) use needles::{GAP_M, lower_ends};
 pub use needles::{NeedleColumns, NeedleParams, NeedleReport, Needles};
 pub use path_samples::path_samples;
 pub use scanner_report::{FlightLine, FoundBy, ScannerReport, TypicalFlight};

@@ -15,6 +15,8 @@ use serde::Serialize;
 use std::ops::ControlFlow;
 use tree::{Item, Tree, Way};
 
+/// How far balls stay clear of pulses, metres: the step of coordinates in most files, and more than f32 rounds.
+pub(crate) const GAP_M: f32 = 1e-3;
 /// Pulses between two looks at whether to go on.
 const CHECK_EACH: usize = 4096;
 

@@ -129,15 +129,15 @@ fn a_solid_crown_is_filled_down_to_its_lowest_returns_and_no_farther() {
     assert!(!inside(&without, middle));
     assert!(inside(&filled, middle));
     for (center, radius) in filled.balls.centers.iter().zip(&filled.balls.radii).skip(without.balls.len()) {
-        // from 8 m with a radius of at most 2 m: not below 4 m, nor beside the crown but for the penetration
-        assert!(center[2] - radius > 4.0 - 1e-4 && *radius <= 2.0, "{center:?} {radius}");
-        assert!(center[0] - radius > 1.75 - 0.03 && center[0] + radius < 10.0 + 0.03, "{center:?} {radius}");
+        // from 8 m with a radius of at most 2 m and a millimetre: not below 4 m, nor beside the crown
+        assert!(center[2] - radius > 4.0 - 2e-3 && *radius <= 2.0, "{center:?} {radius}");
+        assert!(center[0] - radius > 1.75 - 1e-3 && center[0] + radius < 10.0 + 1e-3, "{center:?} {radius}");
     }
     // with returns at 6 m as the lowest there is room for a metre
     let shallow = carved(&tree(100_000, 6.0), &trees(Trees::Opaque));
     let fills = shallow.balls.len() - shallow.report.crown_fills;
     let lowest = (fills..shallow.balls.len()).map(|i| shallow.balls.centers[i][2] - shallow.balls.radii[i]);
-    assert!(lowest.fold(f32::INFINITY, f32::min) > 6.0 - 1e-4);
+    assert!(lowest.fold(f32::INFINITY, f32::min) > 6.0 - 2e-3);
 }
 
 #[test]

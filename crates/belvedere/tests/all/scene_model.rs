@@ -6,8 +6,8 @@ use belvedere::io::{read_balls, write_balls};
 use belvedere::medial::{CarvedInput, CarvedParams, ShrinkParams, Side, carved_balls, shrink};
 use belvedere::model::{BallParams, BallsReport, BuildReport, ModelParams, OrientBy, SceneModel};
 use belvedere::neighbors::NeighborIndex;
-use belvedere::normals::estimate::{Neighborhood, estimate};
-use belvedere::normals::{Orientation, orient};
+use belvedere::normals::estimate::{Neighborhood, estimate, estimate_with_scatter};
+use belvedere::normals::{Orientation, OrientedCloud, orient};
 use belvedere::pulses::{LocateParams, Means, NeedleParams, Needles, group, locate};
 use belvedere::query::UnprovenAs;
 use belvedere::trajectory::Trajectory;
@@ -42,8 +42,15 @@ fn a_model_is_what_the_stages_make_one_after_the_other() {
     let (scanner, _) = locate(&clean, &Means::Automatic, &LocateParams::default(), &none).unwrap();
     let (needles, _) = Needles::of_cloud(&clean, &scanner, &NeedleParams::default(), &none).unwrap();
     let index = NeighborIndex::new(&clean.positions, &none).unwrap();
-    let normals = estimate(&clean.positions, &index, Neighborhood::default(), &none).unwrap();
+    let (normals, scatter) = estimate_with_scatter(&clean.positions, &index, Neighborhood::default(), &none).unwrap();
     let (oriented, _) = orient(&clean, normals, &Orientation::Pulses(&scanner), &none).unwrap();
+    let (smoothed, moved) = scatter.smoothed(oriented.positions());
+    assert_eq!(report.smoothing.map(|found| found.moved), Some(moved));
+    let index = index.moved_to(&smoothed).unwrap();
+    let [quality, confidence] = [oriented.quality(), oriented.confidence()].map(<[f32]>::to_vec);
+    let oriented = OrientedCloud::new(smoothed, oriented.normals().to_vec(), quality, confidence)
+        .unwrap()
+        .with_place(oriented.origin(), oriented.crs().clone());
     let (pulses, _) = group(&clean, &none).unwrap();
     let attributes = &clean.attributes;
     let input =
@@ -189,7 +196,7 @@ fn reports_use_keys_with_units_and_rounded_numbers() {
     let report = serde_json::to_value(built(&cloud, &ModelParams::default()).1).unwrap();
     let mut sections: Vec<&String> = report.as_object().unwrap().keys().collect();
     sections.sort();
-    assert_eq!(sections, ["interior_balls", "normals", "pulses", "removed_by_cleaning", "scanner"]);
+    assert_eq!(sections, ["interior_balls", "normals", "pulses", "removed_by_cleaning", "scanner", "smoothing"]);
     let known = report["scanner"]["scanner_known_percent"].as_f64().unwrap();
     assert!(known > 99.0 && (known * 100.0).fract().abs() < 1e-6, "{known}");
     for (section, key) in [

@@ -124,7 +124,7 @@ fn the_order_of_points_does_not_matter() {
 }
 
 #[test]
-fn the_clearance_is_the_distance_to_the_nearest_of_all_needles() {
+fn the_clearance_is_a_millimetre_less_than_the_distance_to_the_nearest_of_all_needles() {
     let (cloud, scanner) = survey(0.0, 1.5, 0.06);
     let params = NeedleParams::default();
     let (needles, _) = Needles::of_cloud(&cloud, &scanner, &params, &Control::none()).unwrap();
@@ -133,7 +133,7 @@ fn the_clearance_is_the_distance_to_the_nearest_of_all_needles() {
         let at = |k: u64, low: f64, high: f64| low + (high - low) * uniform(7, 3 * i + k);
         let center = [at(0, -1.0, 21.0), at(1, -6.0, 6.0), at(2, -0.5, 5.0)];
         // distance to each needle in f64, its ends included
-        let mut least = 0.5_f64;
+        let mut least = 0.501_f64;
         for (p, s) in cloud.positions.iter().zip(&scanner) {
             let (p, s) = (p.map(f64::from), s.map(f64::from));
             let sight: [f64; 3] = std::array::from_fn(|k| s[k] - p[k]);
@@ -145,8 +145,10 @@ fn the_clearance_is_the_distance_to_the_nearest_of_all_needles() {
             let square: f64 = (0..3).map(|k| (from[k] - along * up[k]).powi(2)).sum();
             least = least.min(square.sqrt());
         }
+        // balls stay a millimetre clear of pulses
+        let expected = least - 0.001;
         let found = needles.clearance(center.map(|v| v as f32), 0.5);
         // ends and directions of needles are f32: a hundredth of a millimetre at these distances
-        assert!((f64::from(found) - least).abs() < 1e-4, "{center:?}: {found} instead of {least}");
+        assert!((f64::from(found) - expected.max(0.0)).abs() < 1e-4, "{center:?}: {found} instead of {expected}");
     }
 }

@@ -1,12 +1,16 @@
 //! How near pulses come to places and to lines.
 
 use super::tree::{Node, Way};
-use super::{Needle, Needles};
+use super::{GAP_M, Needle, Needles};
 use belvedere_data::vector::{dot, sub};
 use std::ops::ControlFlow;
 
 /// Pieces of a line shorter than this are not worth a step, metres.
 const LEAST_PIECE: f64 = 1e-3;
+
+/// Share of pulses that are not upright from which on a scanner is taken to stand on the ground: those of aircraft are steeper than
+/// 40°.
+const LEAST_FLAT_SHARE: f64 = 0.05;
 
 impl Needles {
     /// Number of needles.
@@ -28,6 +32,13 @@ impl Needles {
             [first, rest @ ..] if first.way == Way::UP => rest.first().map_or(self.needles.len(), |next| next.first),
             _ => 0,
         }
+    }
+
+    /// Whether they come from a scanner on the ground: many are too flat for an aircraft.
+    #[must_use]
+    pub fn are_from_the_ground(&self) -> bool {
+        let flat_count = self.len() - self.upright_count();
+        !self.is_empty() && flat_count as f64 >= LEAST_FLAT_SHARE * self.len() as f64
     }
 
     /// Height that no needle rises above, local metres.
@@ -88,11 +99,13 @@ impl Needles {
         found.then(|| least.sqrt())
     }
 
-    /// Distance of `center`, local metres, to the nearest needle, or `most` metres where none is nearer.
+    /// Largest radius of a ball about `center`, local metres, that no needle comes nearer to than a millimetre, at most `most` metres; 0 where
+    /// there is none.
     #[must_use]
     pub fn clearance(&self, center: [f32; 3], most: f32) -> f32 {
         #[expect(clippy::cast_possible_truncation, reason = "below `most`")]
-        self.nearest_distance(center.map(f64::from), most.into()).map_or(most, |distance| distance as f32)
+        self.nearest_distance(center.map(f64::from), (most + GAP_M).into())
+            .map_or(most, |distance| (distance as f32 - GAP_M).max(0.0))
     }
 
     /// A piece of the line through `origin` along the unit vector `direction` on which one needle is nearer than `distance`
