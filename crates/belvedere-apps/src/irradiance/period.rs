@@ -25,7 +25,7 @@ pub struct IrradianceParams {
     /// Division of the sky into patches, 1 to 26: 145 patches for 1, 577 for 2, the default, whose sky view factor errs by 0.004.
     pub patch_division: usize,
     /// Side of the cells that directions of the sun are gathered in, radians, above 0 to a tenth of a circle. Default 3 degrees: against 1
-    /// degree the energy of a year on cells in Delft differs by 0.02 % on the mean and 0.9 % (RMS) of it, in a quarter of the time.
+    /// degree the energy of a year on cells in Delft differs by 0.02 % on the mean and 0.9 % (RMS) of it, in a third of the time.
     pub sun_cell: f64,
     /// Share of the global radiation that the ground reflects, 0 to 1. Default 0.2: grass, and what PVGIS and GRASS take.
     pub albedo: f64,
