@@ -59,7 +59,7 @@ impl OrientedSurvey {
     /// turns them outward.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves fewer than four or all on one line; those of [`clean`], [`locate`], [`estimate`] and [`orient()`];
+    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves fewer than four or all on one line; those of [`clean`], [`locate`], [`estimate_with_scatter`] and [`orient()`];
     /// [`Error::Cancelled`].
     pub fn prepare(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
         prepare(Cow::Borrowed(cloud), params, control)
