@@ -103,7 +103,7 @@ pub(crate) struct Global {
 pub(crate) enum ProgressChoice {
     /// A bar, if standard error is a terminal
     Bar,
-    /// One line of JSON for each finished stage: stage, item_count (null if unknown), seconds
+    /// Lines of JSON for each stage: stage, done, total (null if unknown), seconds, finished
     Json,
     /// Nothing
     None,

@@ -2,11 +2,14 @@
 
 use crate::arguments::{Global, ProgressChoice};
 use crate::interrupt;
-use crate::summary::note;
+use crate::summary::{note, rounded};
 use belvedere::control::{Control, Watcher};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
+
+/// Least time between two lines of JSON about one stage.
+const BETWEEN_LINES: Duration = Duration::from_millis(200);
 
 /// The stages of a command, one after the other: what the library reports to, and where it learns of Ctrl-C.
 pub(crate) struct Stages {
@@ -37,6 +40,24 @@ struct Open {
     total: usize,
     done: usize,
     bar: ProgressBar,
+    /// When the last line of JSON was written.
+    last_line: Instant,
+}
+
+impl Open {
+    /// A line of JSON: how far this stage is.
+    fn line(&mut self, is_finished: bool) {
+        self.last_line = Instant::now();
+        let seconds = rounded(self.start.elapsed().saturating_sub(self.within).as_secs_f64(), 3);
+        // a stage that does not count is done when it ends
+        let total = if is_finished { self.total.max(self.done) } else { self.total };
+        let done = if is_finished { total } else { self.done };
+        let total = (total > 0).then_some(total);
+        note(
+            &serde_json::json!({ "stage": self.name, "done": done, "total": total, "seconds": seconds, "finished": is_finished })
+                .to_string(),
+        );
+    }
 }
 
 impl Run {
@@ -64,20 +85,31 @@ impl Watcher for Run {
         if let Some(waiting) = state.open.last() {
             waiting.bar.set_draw_target(ProgressDrawTarget::hidden());
         }
-        state.open.push(Open { name: stage, start: Instant::now(), within: Duration::ZERO, total, done: 0, bar });
+        let start = Instant::now();
+        let mut open = Open { name: stage, start, within: Duration::ZERO, total, done: 0, bar, last_line: start };
+        if self.json {
+            open.line(false);
+        }
+        state.open.push(open);
     }
 
     fn advance(&self, count: usize) {
         if let Some(open) = self.state().open.last_mut() {
             open.done += count;
             open.bar.inc(count as u64);
+            if self.json && open.last_line.elapsed() >= BETWEEN_LINES {
+                open.line(false);
+            }
         }
     }
 
     fn end(&self, stage: &'static str) {
         let mut state = self.state();
         let Some(place) = state.open.iter().rposition(|open| open.name == stage) else { return };
-        let open = state.open.remove(place);
+        let mut open = state.open.remove(place);
+        if self.json {
+            open.line(true);
+        }
         open.bar.finish_and_clear();
         let whole = open.start.elapsed();
         if let Some(outer) = state.open.last_mut() {
@@ -91,12 +123,6 @@ impl Watcher for Run {
             None => state.seconds.push((stage, seconds)),
         }
         drop(state);
-        if self.json {
-            let item_count = if open.done > 0 { open.done } else { open.total };
-            let item_count = (item_count > 0).then_some(item_count);
-            let line = serde_json::json!({ "stage": stage, "item_count": item_count, "seconds": (seconds * 1000.0).round() / 1000.0 });
-            note(&line.to_string());
-        }
         if self.verbose {
             note(&format!("{stage}: {seconds:.3} s"));
         }

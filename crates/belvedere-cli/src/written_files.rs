@@ -80,7 +80,21 @@ fn files_named(argument: &Arg, value: &OsStr) -> Vec<PathBuf> {
 
 /// Whether an argument names a file to write. Folders hold files of other names than their command reads.
 fn is_output(argument: &Arg) -> bool {
-    argument.get_value_names().is_some_and(|names| names.iter().any(|name| name == "OUT"))
+    is_called(argument, "OUT")
+}
+
+/// Whether an argument names a folder to write into.
+pub(crate) fn is_folder(argument: &Arg) -> bool {
+    is_called(argument, "DIR")
+}
+
+/// Whether an argument names a file or a folder to write.
+pub(crate) fn is_written(argument: &Arg) -> bool {
+    is_output(argument) || is_folder(argument)
+}
+
+fn is_called(argument: &Arg, name: &str) -> bool {
+    argument.get_value_names().is_some_and(|names| names.iter().any(|own| own == name))
 }
 
 fn flag(argument: &Arg) -> String {

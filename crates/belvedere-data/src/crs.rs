@@ -130,6 +130,12 @@ impl Crs {
         Some(crs)
     }
 
+    /// What names the system for other programs: the well-known text of the file, else the code as `EPSG:28992`; `None` where no system is known.
+    #[must_use]
+    pub fn definition(&self) -> Option<String> {
+        self.wkt.clone().or_else(|| self.epsg.map(|code| format!("EPSG:{code}")))
+    }
+
     /// The system in a few words, such as "EPSG:28992 (Amersfoort / RD New), metres".
     #[must_use]
     pub fn describe(&self) -> String {

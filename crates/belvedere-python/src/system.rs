@@ -42,7 +42,7 @@ impl System {
     /// Well-known text, or `EPSG:CODE`, or nothing where no system is known.
     #[getter]
     fn text(&self) -> Option<String> {
-        self.0.wkt.clone().or_else(|| Some(format!("EPSG:{}", self.0.epsg?)))
+        self.0.definition()
     }
 
     #[getter]

@@ -66,9 +66,9 @@ pub(crate) struct Envelope {
     /// Parcel: polygons (GeoJSON), a table of corners with columns x and y (.csv), or "X,Y X,Y X,Y ..."
     #[arg(long, value_name = "FILE|CORNERS", required = true, allow_hyphen_values = true, help_heading = "Land")]
     pub(crate) parcel: Corners,
-    /// Lines, polygon outlines, points or facades that stay free of new shadows; repeatable
+    /// Lines, polygon outlines, points (GeoJSON) or facades that stay free of new shadows; repeatable
     ///
-    /// GeoJSON; a line from a table with columns x, y and optionally z (.csv) or as "X,Y X,Y ..."; or facades as a mesh (.obj .json .ply
+    /// Also a line from a table with columns x, y and optionally z (.csv) or as "X,Y X,Y ..."; or facades as a mesh (.obj .json .ply
     /// with faces).
     #[arg(long, value_name = "FILE|CORNERS", required = true, allow_hyphen_values = true, help_heading = "Land")]
     pub(crate) protect: Vec<Corners>,
@@ -100,7 +100,7 @@ pub(crate) struct Envelope {
     /// See --grid-north.
     #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, conflicts_with_all = ["date", "between"], help_heading = "Period")]
     pub(crate) sun: Vec<Numbers<2>>,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Period")]
     pub(crate) north: North,
     /// Hours of each day in which sun is protected, on the clocks of --zone, both included [default: sunrise to sunset]
     #[arg(long, value_name = "HH:MM,HH:MM", help_heading = "Period")]
@@ -127,7 +127,7 @@ pub(crate) struct Envelope {
 pub(crate) struct Comfort {
     #[command(flatten)]
     pub(crate) places: ComfortPlaces,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Targets")]
     pub(crate) north: North,
     /// Distance between targets along a route, in metres [default: 2]
     #[arg(long = "distance-step-m", value_name = "M", requires = "route", value_parser = above_zero::<f64>, allow_negative_numbers = true,

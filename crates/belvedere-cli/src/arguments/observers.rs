@@ -12,6 +12,8 @@ pub(crate) struct LineOfSight {
     #[command(flatten)]
     pub(crate) lines: Lines,
     #[command(flatten)]
+    pub(crate) heights: EndHeights,
+    #[command(flatten)]
     pub(crate) earth: Earth,
     #[command(flatten)]
     pub(crate) giving_way: GivingWay,
@@ -22,12 +24,15 @@ pub(crate) struct LineOfSight {
     #[arg(long = "distance-step-m", value_name = "M", requires = "profile_out", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Result")]
     pub(crate) profile_step: Option<f64>,
-    /// Source of the ground heights of the profile: auto, classed, found or cloud=FILE
+    /// Source of the ground heights: auto, classed, found or cloud=FILE
+    ///
+    /// For the profile, and for ends without a height. auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found:
+    /// detected from the shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Result")]
     pub(crate) ground: GroundChoice,
     /// Table with a row for each pair, in their order (.csv)
     ///
-    /// Columns: ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line), first_block_range_m from A, unproven_m (not with
+    /// Columns: ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line, 4 outside the cloud), first_block_range_m from A, unproven_m (not with
     /// --unproven as-visible, which is faster), block_x, block_y, block_z, and block_ball and block_source: the rows of the first
     /// blocking ball and of the point that it touches.
     #[arg(short, long, value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
@@ -40,18 +45,33 @@ pub(crate) struct LineOfSight {
 #[command(next_help_heading = "Lines of sight (one of)")]
 #[group(id = "lines", required = true, multiple = true)]
 pub(crate) struct Lines {
-    /// Table with columns ax,ay,az,bx,by,bz in file coordinates: observer A, target B
-    #[arg(long, value_name = "CSV", conflicts_with_all = ["from", "to", "random"])]
+    /// Table with columns ax,ay,az,bx,by,bz in file coordinates: observer A, target B (.csv), or lines (.geojson)
+    ///
+    /// Of a line the first corner is the observer, and the last the target. An end without a height is --observer-height or --target-height
+    /// above the ground.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["from", "to", "random"])]
     pub(crate) pairs: Option<PathBuf>,
     /// N random pairs, at most 10 million, uniform in the bounding box of the cloud (see --seed)
     #[arg(long, value_name = "N", value_parser = at_most::<MOST_RANDOM_PAIRS>, conflicts_with_all = ["from", "to"])]
     pub(crate) random: Option<usize>,
-    /// Observer of one line, in file coordinates
-    #[arg(long = "observer", value_name = "X,Y,Z", requires = "to", allow_hyphen_values = true)]
-    pub(crate) from: Option<Numbers<3>>,
-    /// Target of one line, in file coordinates
-    #[arg(long = "target", value_name = "X,Y,Z", requires = "from", allow_hyphen_values = true)]
-    pub(crate) to: Option<Numbers<3>>,
+    /// Observer of one line, in file coordinates; without Z it is --observer-height above the ground
+    #[arg(long = "observer", value_name = "X,Y[,Z]", requires = "to", allow_hyphen_values = true)]
+    pub(crate) from: Option<Place>,
+    /// Target of one line, in file coordinates; without Z it is --target-height above the ground
+    #[arg(long = "target", value_name = "X,Y[,Z]", requires = "from", allow_hyphen_values = true)]
+    pub(crate) to: Option<Place>,
+}
+
+/// Heights of ends that have none of their own.
+#[derive(Args)]
+#[command(next_help_heading = "Lines of sight (one of)")]
+pub(crate) struct EndHeights {
+    /// Height of observers without Z above the ground in metres [default: 1.7]
+    #[arg(long, value_name = "M", value_parser = finite::<f64>, conflicts_with = "random", allow_negative_numbers = true)]
+    pub(crate) observer_height: Option<f64>,
+    /// Height of targets without Z above the ground in metres [default: 0]
+    #[arg(long, value_name = "M", value_parser = finite::<f64>, conflicts_with = "random", allow_negative_numbers = true)]
+    pub(crate) target_height: Option<f64>,
 }
 
 #[derive(Args)]

@@ -3,6 +3,7 @@
 use crate::arguments::Numbers;
 use crate::help::{self, BALL_FLAGS};
 use crate::summary::Summary;
+use crate::written_files;
 use clap::builder::StyledStr;
 use clap::{Arg, ArgAction, Command};
 use serde_json::{Value, json};
@@ -65,6 +66,8 @@ fn parameter(argument: &Arg) -> Value {
         "type": kind(argument),
         "value_name": argument.get_value_names().filter(|_| takes_value).and_then(<[_]>::first).map(|name| name.as_str()),
         "unit": unit(argument),
+        "written": takes_value && written_files::is_written(argument),
+        "formats": formats(&short_text),
         "choices": choices,
         "required": argument.is_required_set(),
         "repeatable": matches!(argument.get_action(), ArgAction::Append),
@@ -106,10 +109,22 @@ fn kind(argument: &Arg) -> &'static str {
     } else if is(&[TypeId::of::<Numbers<2>>(), TypeId::of::<Numbers<3>>()]) {
         "numbers"
     } else if is(&[TypeId::of::<PathBuf>()]) {
-        "path"
+        if written_files::is_folder(argument) { "folder" } else { "path" }
     } else {
         "text"
     }
+}
+
+/// The extensions of the files that a parameter names, by its text.
+fn formats(text: &str) -> Vec<String> {
+    let word = |c: char| c.is_whitespace() || "(),;:".contains(c);
+    let format = |word: &str| match word {
+        "GeoJSON" => Some(".geojson".to_owned()),
+        _ => {
+            word.strip_prefix('.').is_some_and(|rest| rest.starts_with(char::is_alphanumeric)).then(|| word.to_owned())
+        }
+    };
+    text.split(word).filter_map(format).collect()
 }
 
 /// The unit of a number, by the name of its value in the help.

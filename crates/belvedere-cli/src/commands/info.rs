@@ -4,13 +4,20 @@ use crate::arguments::{Global, Info};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded, sections, whole};
 use anyhow::Result;
-use belvedere::io::{ReadOptions, read_cloud};
+use belvedere::io::{ReadOptions, is_ball_file, read_balls, read_cloud};
+use belvedere::model::ModelParts;
 use belvedere::pulses::{FoundBy, LocateParams, Means, ScannerReport, locate};
 use belvedere::summary::{CloudSummary, FacadeSummary};
 use belvedere::{Error, PointCloud};
 
 pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
+    if let [path] = &arguments.input.clouds[..]
+        && path.is_file()
+        && is_ball_file(path)?
+    {
+        return Ok(of_balls(&stages.run("reading balls", 0, |_| read_balls(path))?));
+    }
     let mut summary = Summary::default();
     let mut options = ReadOptions::new();
     options.crs = arguments.input.crs.clone();
@@ -38,6 +45,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     if cloud.frame.crs.vertical_metres_per_unit != cloud.frame.crs.metres_per_unit {
         summary.add("metres_per_vertical_unit", cloud.frame.crs.vertical_metres_per_unit);
     }
+    summary.add("crs", cloud.frame.crs.definition());
     summary.add("covered_ground_m2", rounded(facts.occupied_area, 1));
     summary.add("points_per_m2_of_covered_ground", rounded(facts.density, 2));
     if let Some(facades) = stages.run("measuring facades", 0, |control| FacadeSummary::of(&cloud, control))? {
@@ -75,6 +83,27 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     summary.add("usable_for", can_serve(&cloud, &facts, &scanner));
     summary.add("duplicate_points", facts.duplicate_count);
     Ok(summary)
+}
+
+/// What a ball file holds.
+fn of_balls(model: &ModelParts) -> Summary {
+    let mut summary = Summary::default();
+    let (low, high) = model.bounds.corners();
+    let corner = |place| model.frame.file_from_local(place).map(|v| rounded(v, 3)).to_vec();
+    let mut made = Summary::default();
+    model.provenance.iter().for_each(|(name, value)| {
+        made.add(name, value.clone());
+    });
+    summary
+        .add("balls", model.balls.len())
+        .add("pulses", model.pulses.as_ref().map_or(0, |pulses| pulses.starts.len()))
+        .add("min_corner", corner(low))
+        .add("max_corner", corner(high))
+        .add("metres_per_unit", model.frame.crs.metres_per_unit)
+        .add("crs", model.frame.crs.definition())
+        .add("reference_system", model.frame.crs.describe())
+        .add("made", made);
+    summary
 }
 
 fn attributes(cloud: &PointCloud, facts: &CloudSummary) -> Summary {

@@ -2,16 +2,18 @@
 
 use super::sights::{Proving, blockers, enclosure_note, ground, ground_cloud};
 use super::{check_output, extension};
-use crate::arguments::{Global, GroundChoice, LineOfSight, Usage};
+use crate::arguments::{Global, GroundChoice, LineOfSight, Place, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
-use anyhow::Result;
+use anyhow::{Result, bail};
 use belvedere::apps::eyes::skip_unfit_eyes;
 use belvedere::apps::profile::{SightProfile, sight_profile};
+use belvedere::apps::targets::{grid_around, set_on_ground};
+use belvedere::apps::viewshed::{OBSERVER_HEIGHT, TARGET_HEIGHT};
 use belvedere::figures::{profile_picture, write_png};
 use belvedere::ground::{Ground, MapGrid};
-use belvedere::io::{Cells, TextRows, read_table, with_columns_read, write_table};
+use belvedere::io::{Cells, GeojsonFeature, Shape, TextRows, read_geojson, read_table, with_columns_read, write_table};
 use belvedere::query::{Answer, AnswerCounts, EarthParams, MedialScene, UnprovenAs, random_pairs};
 use std::path::Path;
 
@@ -29,9 +31,11 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     let earth = arguments.earth.params()?;
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
-    let points = if arguments.profile_out.is_some() { Points::Keep } else { Points::LetGo };
+    // ends may need the ground
+    let points = if arguments.lines.random.is_some() { Points::LetGo } else { Points::Keep };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
-    let (pairs, rows) = pairs(arguments, &scene, global.seed, &mut stages)?;
+    let (mut pairs, rows) = pairs(arguments, &scene, global.seed, &mut stages)?;
+    set_ends_on_ground(&mut pairs, arguments, &mut scene, &mut stages, &mut summary)?;
     let mut section = Summary::default();
     let (blockers, unproven_as) = blockers(
         &scene,
@@ -97,8 +101,8 @@ fn pairs(
 ) -> Result<(Vec<[[f64; 3]; 2]>, TextRows)> {
     let lines = &arguments.lines;
     if let (Some(from), Some(to)) = (&lines.from, &lines.to) {
-        let pair = [from.0, to.0].map(|place| scene.cloud.frame.local_from_file(place));
-        return Ok((vec![pair], TextRows::default()));
+        let local = |&Place([x, y], z): &Place| scene.cloud.frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]);
+        return Ok((vec![[local(from), local(to)]], TextRows::default()));
     }
     if let Some(count) = lines.random {
         let pairs = random_pairs(scene.model.bounds().low, scene.model.bounds().high, count, seed);
@@ -109,10 +113,15 @@ fn pairs(
             Usage("lines of sight are missing: give --pairs, --random, or --observer and --target".to_owned()).into()
         );
     };
+    if ["geojson", "json"].contains(&extension(path).as_str()) {
+        let features = stages.run("reading pairs", 0, |_| read_geojson(path, &scene.cloud.frame.crs))?;
+        return Ok((ends_of_lines(path, &features, scene.cloud.frame.origin)?, TextRows::default()));
+    }
     let table = stages.run("reading pairs", 0, |_| read_table(path))?;
     let mut columns: [&[f64]; 6] = [&[]; 6];
     for (column, name) in columns.iter_mut().zip(ENDS) {
-        *column = table.full_column(path, name)?;
+        let is_height = name.ends_with('z');
+        *column = if is_height { table.column(path, name)?.unwrap_or(&[]) } else { table.full_column(path, name)? };
     }
     let end = |row: usize, first: usize| {
         scene
@@ -122,6 +131,49 @@ fn pairs(
     };
     let pairs = (0..table.row_count()).map(|row| [end(row, 0), end(row, 3)]).collect();
     Ok((pairs, table.into_text()))
+}
+
+/// The first and the last corner of each line, local metres.
+fn ends_of_lines(path: &Path, features: &[GeojsonFeature], origin: [f64; 3]) -> Result<Vec<[[f64; 3]; 2]>> {
+    let local = |corner: &[f64; 3]| std::array::from_fn(|axis| corner[axis] - origin[axis]);
+    let ends = |(number, feature): (usize, &GeojsonFeature)| match &feature.shape {
+        Shape::Line(corners) if corners.len() > 1 => Ok([&corners[0], &corners[corners.len() - 1]].map(local)),
+        _ => bail!("{}: feature {} is not a line; lines of sight need lines", path.display(), number + 1),
+    };
+    let pairs: Vec<_> = features.iter().enumerate().map(ends).collect::<Result<_>>()?;
+    if pairs.is_empty() {
+        bail!("{}: the file has no line", path.display());
+    }
+    Ok(pairs)
+}
+
+/// Gives ends without a height one above the ground.
+fn set_ends_on_ground(
+    pairs: &mut [[[f64; 3]; 2]],
+    arguments: &LineOfSight,
+    scene: &mut Scene,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<()> {
+    let coverage = scene.model.coverage();
+    // ground is made where there are points: one end far away would make its cells large for all
+    let over = |place: &[f64; 3]| coverage.is_none_or(|coverage| coverage.holds_on_map(*place));
+    let grid = grid_around(pairs.iter().flatten().copied().filter(over), scene.cloud.frame.origin);
+    if let Some(grid) = flagged("--pairs", grid)? {
+        let (cloud, points) = ground_cloud(&arguments.ground, scene, stages)?;
+        let ground = ground(&cloud, points, grid, stages, summary)?;
+        if matches!(arguments.ground, GroundChoice::OfScene(_)) {
+            // a profile needs it again
+            scene.cloud = cloud;
+        }
+        let heights = &arguments.heights;
+        let heights =
+            [heights.observer_height.unwrap_or(OBSERVER_HEIGHT), heights.target_height.unwrap_or(TARGET_HEIGHT)];
+        set_on_ground(pairs.iter_mut().flat_map(|pair| pair.iter_mut().zip(heights)), &ground);
+    }
+    let unknown = pairs.iter().flatten().filter(|end| end[2].is_nan()).count();
+    summary.warn_of_share(unknown, 2 * pairs.len(), "ends of lines", "have no height and no known ground below");
+    Ok(())
 }
 
 fn write(

@@ -82,16 +82,32 @@ fn a_file_of_ball_parameters_is_the_same_as_their_flags_and_flags_override_it() 
 }
 
 #[test]
-fn progress_as_json_is_a_line_for_each_stage() {
+fn progress_as_json_follows_each_stage_from_its_beginning_to_its_end() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
     let run = place.run("balls house.laz --orient given --method tau --progress json -o a.npz");
     assert_eq!(run.status, 0);
-    let stages: Vec<Value> = run.stderr.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    assert!(stages.len() >= 3, "{}", run.stderr);
-    for stage in stages {
-        assert!(stage["stage"].is_string() && stage["seconds"].as_f64().unwrap() >= 0.0, "{stage}");
+    let lines: Vec<Value> = run.stderr.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let mut open: Vec<(&str, u64)> = Vec::new();
+    let mut finished = 0;
+    for line in &lines {
+        let (stage, done) = (line["stage"].as_str().unwrap(), line["done"].as_u64().unwrap());
+        assert!(line["seconds"].as_f64().unwrap() >= 0.0, "{line}");
+        assert!(line["total"].as_u64().is_none_or(|total| done <= total), "{line}");
+        match open.iter().position(|(name, _)| *name == stage) {
+            None => open.push((stage, done)),
+            Some(at) => {
+                assert!(open[at].1 <= done, "{line}");
+                open[at].1 = done;
+                if line["finished"] == true {
+                    assert!(line["total"].is_null() || line["total"] == done, "{line}");
+                    finished += 1;
+                    open.remove(at);
+                }
+            }
+        }
     }
+    assert!(open.is_empty() && finished >= 3, "{}", run.stderr);
 }
 
 #[test]
@@ -110,7 +126,7 @@ fn every_parameter_is_described_in_one_short_line_with_its_type() {
             assert!(!text.ends_with('.'), "{name} {flag}: {text}");
             let kind = parameter["type"].as_str().unwrap();
             assert!(
-                ["flag", "choice", "number", "integer", "numbers", "path", "text"].contains(&kind),
+                ["flag", "choice", "number", "integer", "numbers", "path", "folder", "text"].contains(&kind),
                 "{name} {flag}"
             );
         }
@@ -126,6 +142,11 @@ fn every_parameter_is_described_in_one_short_line_with_its_type() {
     assert_eq!(parameter("viewshed", "--max-height")["default"], "100");
     assert_eq!(parameter("query", "--orient")["builds_balls"], true);
     assert_eq!(parameter("balls", "--trees")["choices"][0]["name"], "opaque");
+    let output = parameter("viewshed", "--output");
+    assert_eq!((&output["written"], output["formats"].as_array().unwrap().len()), (&true.into(), 7), "{output}");
+    assert_eq!(parameter("shadow", "--measures")["type"], "folder");
+    let parcel = parameter("envelope", "--parcel");
+    assert_eq!((&parcel["written"], &parcel["formats"][0]), (&false.into(), &".geojson".into()), "{parcel}");
     let view = commands.iter().find(|one| one["name"] == "query").unwrap()["required_one_of"].to_string();
     assert!(view.contains("--sun") && view.contains("--self"), "{view}");
 }

@@ -116,3 +116,23 @@ fn duplicates_and_left_out_points_are_counted() {
         "{left_out}"
     );
 }
+
+#[test]
+fn info_of_a_ball_file_says_where_it_is_and_how_it_was_built() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let built = place.summary("balls house.laz --orient given --method tau -o balls.npz");
+    let (facts, cloud) = (place.summary("info balls.npz"), place.summary("info house.laz"));
+    let counted = &built["interior_balls"];
+    let count = counted["balls_shrunk"].as_u64().unwrap() + counted["balls_of_maximum_radius"].as_u64().unwrap();
+    assert_eq!(facts["balls"], count, "{built}");
+    assert_eq!(facts["pulses"], 0);
+    assert!(cloud["crs"].as_str().unwrap().contains("28992"), "{cloud}");
+    assert_eq!(facts["crs"], cloud["crs"]);
+    assert_eq!(facts["made"]["input"], "house.laz");
+    // isolated points are left out before balls are built
+    for (of_balls, of_cloud) in ["min_corner", "max_corner"].map(|name| (numbers(&facts[name]), numbers(&cloud[name])))
+    {
+        assert!(of_balls.iter().zip(&of_cloud).all(|(a, b)| (a - b).abs() < 2.0), "{of_balls:?} {of_cloud:?}");
+    }
+}

@@ -47,6 +47,54 @@ fn pairs_around_a_house_are_blocked_where_its_walls_stand() {
 }
 
 #[test]
+fn lines_without_heights_run_from_the_eye_of_a_person_to_the_ground() {
+    let place = place();
+    // through the house, and past its north side; once as lines, and once as a table with the heights that follow from the ground
+    let lines = [[[-12.0, 0.0], [12.0, 0.0]], [[-12.0, 7.0], [12.0, 7.0]]];
+    let corner = |[x, y]: [f64; 2]| format!("[{}, {}]", EAST + x, NORTH + y);
+    let feature = |&[a, b]: &[[f64; 2]; 2]| {
+        let middle = corner([(a[0] + b[0]) / 2.0, 9.0]);
+        let corners = [corner(a), middle, corner(b)].join(",");
+        format!(
+            r#"{{"type":"Feature","properties":null,"geometry":{{"type":"LineString","coordinates":[{corners}]}}}}"#
+        )
+    };
+    let features: Vec<String> = lines.iter().map(feature).collect();
+    place.write("lines.geojson", format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, features.join(",")));
+    let summary =
+        place.summary(&format!("line-of-sight {HOUSE} --pairs lines.geojson --target-height 0.5 -o lines.csv"));
+    assert_eq!(summary["lines_of_sight"]["blocked"], 1);
+    let text = place.text("lines.csv");
+    assert_eq!(column(&text, "answer"), ["0", "1"]);
+    // the corner in the middle is no end; the ground lies at 0, as rough as its points
+    for (name, expected) in [("az", 1.7), ("bz", 0.5)] {
+        assert!(numbers(&text, name).iter().all(|z| (z - expected).abs() <= f64::from(ROUGHNESS)), "{text}");
+    }
+    let rows = lines.iter().map(|[a, b]| {
+        let [ax, ay, bx, by] = [EAST + a[0], NORTH + a[1], EAST + b[0], NORTH + b[1]];
+        format!("{ax},{ay},{bx},{by}\n")
+    });
+    place.write("pairs.csv", format!("ax,ay,bx,by\n{}", rows.collect::<String>()));
+    place.summary(&format!("line-of-sight {HOUSE} --pairs pairs.csv --target-height 0.5 -o pairs-out.csv"));
+    let table = place.text("pairs-out.csv");
+    for name in ["ax", "ay", "az", "bx", "by", "bz", "answer", "block_ball"] {
+        let (of_lines, of_table) = (numbers(&text, name), numbers(&table, name));
+        assert!(of_lines.iter().zip(&of_table).all(|(a, b)| a == b || a.is_nan() && b.is_nan()), "{name}: {table}");
+    }
+    // the same line typed, with its profile
+    let typed = format!("--observer {},{} --target {},{}", EAST - 12.0, NORTH, EAST + 12.0, NORTH);
+    let one = place.summary(&format!("line-of-sight {HOUSE} {typed} --target-height 0.5 --profile-out profile.csv"));
+    assert_eq!(one["line"]["answer"], "blocked");
+    let point = r#"{"type":"Point","coordinates":[84990, 446000]}"#;
+    place.write("point.geojson", point);
+    place.refusal(
+        1,
+        &format!("line-of-sight {HOUSE} --pairs point.geojson -o x.csv"),
+        &["point.geojson", "not a line"],
+    );
+}
+
+#[test]
 fn a_profile_shows_the_house_between() {
     let place = place();
     let line = format!("--observer {},{},2 --target {},{},2", EAST - 12.0, NORTH, EAST + 12.0, NORTH);
@@ -165,8 +213,8 @@ fn what_cannot_be_is_refused_with_advice() {
         &["--azimuth-range"],
     );
     place.refusal(1, "viewshed house.laz --method tau --ground classed --observer 85000,446000 -o a.tif", &["class 2"]);
-    place.write("pairs.csv", "ax,ay,az,bx,by\n1,2,3,4,5\n");
-    place.refusal(1, "line-of-sight house.laz --method tau --pairs pairs.csv -o out.csv", &["bz", "ax, ay"]);
+    place.write("pairs.csv", "ax,ay,az,bx\n1,2,3,4\n");
+    place.refusal(1, "line-of-sight house.laz --method tau --pairs pairs.csv -o out.csv", &["by", "ax, ay"]);
     place.write("pairs.csv", "ax,ay,az,bx,by,bz\n1,2,3,4,5,six\n");
     place.refusal(1, "line-of-sight house.laz --method tau --pairs pairs.csv -o out.csv", &["row 1", "six", "bz"]);
     place.write("pairs.csv", "ax,ay,az,bx,by,bz\n1,2,3,4,5\n");

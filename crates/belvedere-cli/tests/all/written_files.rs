@@ -84,7 +84,10 @@ fn every_path_of_a_result_is_known_as_an_output() {
         for parameter in command["parameters"].as_array().unwrap() {
             let is_result = parameter["heading"] == "Result" || parameter["name"] == "--output";
             // a page gets tables between two of its lines
-            if parameter["type"] == "path" && is_result && parameter["name"] != "--page" {
+            if ["path", "folder"].iter().any(|kind| parameter["type"] == *kind)
+                && is_result
+                && parameter["name"] != "--page"
+            {
                 let name = parameter["value_name"].as_str().unwrap();
                 assert!(["OUT", "DIR"].contains(&name), "{} {}: {name}", command["name"], parameter["name"]);
                 count += 1;
