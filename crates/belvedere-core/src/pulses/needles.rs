@@ -13,7 +13,7 @@ use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, PointCloud, Result};
 use serde::Serialize;
 use std::ops::ControlFlow;
-use tree::{Item, Tree, Way};
+use tree::{Tree, Way};
 
 /// How far balls stay clear of pulses, metres: the step of coordinates in most files, and more than f32 rounds.
 pub(crate) const GAP_M: f32 = 1e-3;
@@ -110,10 +110,10 @@ impl Needles {
                 found: scanner.len(),
             });
         }
-        let planes = planes_around(first_returns.iter().filter(|p| p.iter().all(|v| v.is_finite())).copied());
-        let top = planes[2][1] + params.headroom;
+        let finite = first_returns.iter().filter(|p| p.iter().all(|v| v.is_finite()));
+        let top = finite.map(|p| p[2]).fold(f32::NEG_INFINITY, f32::max) + params.headroom;
         let mut report = NeedleReport::default();
-        let mut items = ItemsByWay::default();
+        let mut by_way = NeedlesByWay::default();
         for (number, (p, s)) in first_returns.iter().zip(scanner).enumerate() {
             if number % CHECK_EACH == 0 {
                 control.check()?;
@@ -131,20 +131,20 @@ impl Needles {
             let to_top = if towards[2] > 0.0 { (f64::from(top) - start[2]) / towards[2] } else { f64::INFINITY };
             let length = to_top.min(range - margin);
             if length > 0.0 {
-                items[way.number()].push(Item::new(way, start, towards, length, compared_at(way, planes, top)));
+                by_way[way.number()].push(Needle::new(start, towards, length));
             }
         }
-        report.used = items.iter().map(Vec::len).sum();
-        Ok((Self::index(items, top, control)?, report))
+        report.used = by_way.iter().map(Vec::len).sum();
+        Ok((Self::index(by_way, top, control)?, report))
     }
 
-    /// The needles of `items`, none of which rises above `top`.
-    fn index(items: ItemsByWay, top: f32, control: &Control<'_>) -> Result<Self> {
+    /// The needles of each way, none of which rises above `top`.
+    fn index(by_way: NeedlesByWay, top: f32, control: &Control<'_>) -> Result<Self> {
         let stop = Stop::new(control);
-        let (mut needles, mut trees) = (Vec::with_capacity(items.iter().map(Vec::len).sum()), Vec::new());
-        for (way, mut items) in Way::ALL.into_iter().zip(items).filter(|(_, items)| !items.is_empty()) {
-            trees.push(Tree::new(way, &mut items, needles.len(), &stop, control));
-            needles.extend(items.into_iter().map(|item| item.needle));
+        let (mut needles, mut trees) = (Vec::with_capacity(by_way.iter().map(Vec::len).sum()), Vec::new());
+        for (way, mut own) in Way::ALL.into_iter().zip(by_way).filter(|(_, own)| !own.is_empty()) {
+            trees.push(Tree::new(way, &mut own, needles.len(), &stop, control));
+            needles.append(&mut own);
             stop.check()?;
         }
         Ok(Self { needles, trees, top })
@@ -191,23 +191,14 @@ impl Needles {
 }
 
 /// Needles to be, by the number of their way.
-type ItemsByWay = [Vec<Item>; 6];
-
-/// Least and most of `points` along each axis.
-fn planes_around(points: impl Iterator<Item = [f32; 3]>) -> [[f32; 2]; 3] {
-    points.fold([[f32::INFINITY, f32::NEG_INFINITY]; 3], |planes, p| {
-        std::array::from_fn(|axis| [planes[axis][0].min(p[axis]), planes[axis][1].max(p[axis])])
-    })
-}
-
-/// The two planes that all needles of a way are compared at, when a tree is made of them: around the scene.
-fn compared_at(way: Way, planes: [[f32; 2]; 3], top: f32) -> [f32; 2] {
-    let [least, most] = planes[way.axis];
-    // a scene may be as flat as a wall
-    if way.axis == 2 { [least, top] } else { [least, most.max(least + 1.0)] }
-}
+type NeedlesByWay = [Vec<Needle>; 6];
 
 impl Needle {
+    #[expect(clippy::cast_possible_truncation, reason = "local coordinates")]
+    fn new(start: [f64; 3], direction: [f64; 3], length: f64) -> Self {
+        Self { start: start.map(|v| v as f32), direction: direction.map(|v| v as f32), length: length as f32 }
+    }
+
     /// Radius of the ball of the pencil through `touching` along `inward` that this needle touches, or `None` where it touches
     /// none.
     fn tangent_radius(&self, touching: [f32; 3], inward: [f32; 3]) -> Option<f64> {

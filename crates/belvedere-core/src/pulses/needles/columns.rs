@@ -1,7 +1,7 @@
 //! Needles as columns of numbers, as short as what is asked of them allows.
 
-use super::tree::{Item, Way};
-use super::{ItemsByWay, Needle, Needles, compared_at, planes_around};
+use super::tree::Way;
+use super::{Needle, Needles, NeedlesByWay};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::needles::NeedleColumns;
@@ -87,20 +87,18 @@ impl Needles {
     /// Those of [`NeedleColumns::validate`], and [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub fn from_columns(columns: &NeedleColumns, control: &Control<'_>) -> Result<Self> {
         columns.validate()?;
-        let planes = planes_around(columns.starts.iter().copied());
-        let mut items = ItemsByWay::default();
-        for (way, items) in Way::ALL.into_iter().zip(&mut items) {
+        let mut by_way = NeedlesByWay::default();
+        for (way, needles) in Way::ALL.into_iter().zip(&mut by_way) {
             if columns.ways.is_empty() && way != Way::UP {
                 continue;
             }
-            let compared_at = compared_at(way, planes, columns.top);
-            let item = |row| {
+            let needle = |row| {
                 let (own, start, direction, length) = piece(columns, row)?;
-                (own == way).then(|| Item::new(way, start, direction, length, compared_at))
+                (own == way).then(|| Needle::new(start, direction, length))
             };
-            *items = (0..columns.starts.len()).into_par_iter().with_min_len(CHUNK).filter_map(item).collect();
+            *needles = (0..columns.starts.len()).into_par_iter().with_min_len(CHUNK).filter_map(needle).collect();
             control.check()?;
         }
-        Self::index(items, columns.top, control)
+        Self::index(by_way, columns.top, control)
     }
 }

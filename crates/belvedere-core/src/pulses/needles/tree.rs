@@ -10,6 +10,10 @@ const LEAF: usize = 8;
 const PARALLEL: usize = 8192;
 /// Least distance of the two planes of a node, metres: rounding must not tilt what lies between them.
 const LEAST_SPAN: f32 = 0.01;
+/// Needles that a way of parting a node is judged by.
+const SAMPLE: usize = 32;
+/// Radius of the balls that the boxes of a tree are made for, metres.
+const TYPICAL_RADIUS: f32 = 0.1;
 /// An upright needle rises at least so much per metre of its length. Those of aircraft do, and make one tree.
 const UPRIGHT_RISE: f64 = 0.3;
 
@@ -79,38 +83,12 @@ pub(super) struct Tree {
     nodes: Vec<Node>,
 }
 
-/// A needle on its way into a tree, with where its line meets two planes that are the same for all.
-#[derive(Clone, Copy)]
-pub(super) struct Item {
-    pub(super) needle: Needle,
-    at: [f32; 4],
-}
-
-impl Item {
-    /// A needle from `start` along the unit vector `direction`, compared with others of its way at two `planes` across that.
-    #[expect(clippy::cast_possible_truncation, reason = "local coordinates")]
-    pub(super) fn new(way: Way, start: [f64; 3], direction: [f64; 3], length: f64, planes: [f32; 2]) -> Self {
-        let at = |plane: f32, axis: usize| {
-            (start[axis] + (f64::from(plane) - start[way.axis]) / direction[way.axis] * direction[axis]) as f32
-        };
-        let [u, v] = way.across();
-        Self {
-            needle: Needle {
-                start: start.map(|v| v as f32),
-                direction: direction.map(|v| v as f32),
-                length: length as f32,
-            },
-            at: [at(planes[0], u), at(planes[0], v), at(planes[1], u), at(planes[1], v)],
-        }
-    }
-}
-
 impl Tree {
-    /// The tree over `items`, which it puts in order; their first will be needle number `first`. What is left when the work is
+    /// The tree over `needles`, which it puts in order; their first will be needle number `first`. What is left when the work is
     /// cancelled is no tree.
-    pub(super) fn new(way: Way, items: &mut [Item], first: usize, stop: &Stop<'_>, control: &Control<'_>) -> Self {
-        let mut nodes = vec![Node::EMPTY; node_count(items.len())];
-        Build { way, stop, control }.node(items, first, &mut nodes, 0);
+    pub(super) fn new(way: Way, needles: &mut [Needle], first: usize, stop: &Stop<'_>, control: &Control<'_>) -> Self {
+        let mut nodes = vec![Node::EMPTY; node_count(needles.len())];
+        Build { way, stop, control }.node(needles, first, &mut nodes, 0);
         Self { way, first, nodes }
     }
 
@@ -181,16 +159,16 @@ impl Node {
         count: 0,
     };
 
-    /// The box around `items`.
-    fn around(items: &[Item], way: Way) -> Self {
+    /// The box around `needles`.
+    fn around(needles: &[Needle], way: Way) -> Self {
         let mut node = Self::EMPTY;
-        for Item { needle, .. } in items {
+        for needle in needles {
             let start = needle.start[way.axis];
             let end = start + needle.direction[way.axis] * needle.length;
             node.planes = [node.planes[0].min(start.min(end)), node.planes[1].max(start.max(end))];
         }
         node.planes[1] = node.planes[1].max(node.planes[0] + LEAST_SPAN);
-        for Item { needle, .. } in items {
+        for needle in needles {
             let per_metre = 1.0 / needle.direction[way.axis];
             for (side, axis) in way.across().into_iter().enumerate() {
                 let slope = needle.direction[axis] * per_metre;
@@ -204,6 +182,36 @@ impl Node {
         }
         node
     }
+
+    /// Volume in which the centre of a ball of [`TYPICAL_RADIUS`] may lie that the node must be opened for, m³.
+    fn volume(&self) -> f32 {
+        let margin = 2.0 * TYPICAL_RADIUS;
+        let area = |side: [f32; 4]| (side[2] - side[0] + margin) * (side[3] - side[1] + margin);
+        (self.planes[1] - self.planes[0] + margin) * (area(self.below) + area(self.above)) / 2.0
+    }
+}
+
+/// What needles are put in order by: a coordinate of one of their ends.
+#[derive(Clone, Copy)]
+struct Key {
+    axis: usize,
+    is_far_end: bool,
+}
+
+impl Key {
+    const ALL: [Self; 6] = [
+        Self { axis: 0, is_far_end: false },
+        Self { axis: 1, is_far_end: false },
+        Self { axis: 2, is_far_end: false },
+        Self { axis: 0, is_far_end: true },
+        Self { axis: 1, is_far_end: true },
+        Self { axis: 2, is_far_end: true },
+    ];
+
+    fn of(self, needle: &Needle) -> f32 {
+        let start = needle.start[self.axis];
+        if self.is_far_end { start + needle.direction[self.axis] * needle.length } else { start }
+    }
 }
 
 /// Nodes of the tree over `count` needles.
@@ -216,17 +224,6 @@ fn cut(count: usize) -> usize {
     count.div_ceil(LEAF) / 2 * LEAF
 }
 
-/// How far apart `items` are at each of the four places that their lines are compared at.
-fn extents(items: &[Item]) -> [f32; 4] {
-    let mut ranges = [[f32::INFINITY, f32::NEG_INFINITY]; 4];
-    for item in items {
-        for (range, at) in ranges.iter_mut().zip(item.at) {
-            *range = [range[0].min(at), range[1].max(at)];
-        }
-    }
-    ranges.map(|[least, most]| most - least)
-}
-
 #[derive(Clone, Copy)]
 struct Build<'a> {
     way: Way,
@@ -235,8 +232,25 @@ struct Build<'a> {
 }
 
 impl Build<'_> {
+    /// What `needles` are parted by, so that the boxes around both parts are least. Judged by a sample, in their order.
+    fn best_key(self, needles: &[Needle]) -> Key {
+        let step = needles.len().div_ceil(SAMPLE);
+        let mut sample: Vec<Needle> = needles.iter().step_by(step).copied().collect();
+        let middle = sample.len() / 2;
+        let mut best = (f32::INFINITY, Key::ALL[0]);
+        for key in Key::ALL {
+            sample.select_nth_unstable_by(middle, |a, b| key.of(a).total_cmp(&key.of(b)));
+            let (near, far) = sample.split_at(middle);
+            let cost = Node::around(near, self.way).volume() + Node::around(far, self.way).volume();
+            if cost < best.0 {
+                best = (cost, key);
+            }
+        }
+        best.1
+    }
+
     /// Builds the node over `items`, whose first needle is number `first`, into `nodes[0]`, and what is below it behind.
-    fn node(self, items: &mut [Item], first: usize, nodes: &mut [Node], index: usize) {
+    fn node(self, items: &mut [Needle], first: usize, nodes: &mut [Node], index: usize) {
         if items.len() > PARALLEL && self.stop.is_set() {
             return;
         }
@@ -249,10 +263,9 @@ impl Build<'_> {
             *own = node;
             return;
         }
-        let extents = extents(items);
-        let widest = (1..4).fold(0, |widest, k| if extents[k] > extents[widest] { k } else { widest });
+        let key = self.best_key(items);
         let middle = cut(items.len());
-        items.select_nth_unstable_by(middle, |a, b| a.at[widest].total_cmp(&b.at[widest]));
+        items.select_nth_unstable_by(middle, |a, b| key.of(a).total_cmp(&key.of(b)));
         let (left, right) = items.split_at_mut(middle);
         let left_nodes = node_count(left.len());
         node.next = number(index + 1 + left_nodes);
