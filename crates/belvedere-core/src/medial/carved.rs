@@ -302,7 +302,7 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
     }
     if let Some(params) = &params.roof_edges {
         report.cut_at_edges = control.stage("cutting at roof edges", 0, || {
-            let edges = RoofEdges::find(oriented, &kinds, index, &lowest, params, control)?;
+            let edges = RoofEdges::find(oriented, &kinds, index, (&lowest, &spacing), params, control)?;
             edges.cut(&mut balls, oriented, params, control)
         })?;
     }

@@ -28,17 +28,17 @@ const ENDS: f32 = 0.3;
 /// How balls are cut below the edges of roofs. Defaults were chosen on three simulated towns of seed 7 at 8 pulses per m².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoofEdgeParams {
-    /// Distance within which a point on a roof has no neighbour on one side if it lies at the edge, metres, above 0. Default
-    /// 1: three times the spacing of points. 1.5 finds fewer edges and loses a third of the gain.
-    pub around: f32,
+    /// Distance within which a point on a roof has no neighbour on one side if it lies at the edge, in spacings of pulses, above 0. Default
+    /// 3. 4.5 finds fewer edges and loses a third of the gain.
+    pub around_spacings: f32,
     /// Least angle without a neighbour at an edge, radians. Default 2.6: a straight edge leaves π less what the raggedness
     /// of its points takes.
     pub least_gap: f32,
     /// Least height of an edge above the lowest point near by, metres, above 0. Default 2.
     pub least_height: f32,
-    /// How far beyond its outermost points a roof is taken to reach, metres, 0 or more. Default 0.1: a third of their spacing. 0.3
-    /// gains nothing more on facades and lets more through houses.
-    pub outside: f32,
+    /// How far beyond its outermost points a roof is taken to reach, in spacings of pulses, 0 or more. Default 0.3. 0.9 gains nothing
+    /// more on facades and lets more through houses.
+    pub outside_spacings: f32,
     /// Distance of the places on a wall below each other, metres, above 0. Default 0.5.
     pub spacing: f32,
     /// How far a ball may reach beyond these places, metres, above 0. Default 0.05.
@@ -53,10 +53,10 @@ pub struct RoofEdgeParams {
 impl Default for RoofEdgeParams {
     fn default() -> Self {
         Self {
-            around: 1.0,
+            around_spacings: 3.0,
             least_gap: 2.6,
             least_height: 2.0,
-            outside: 0.1,
+            outside_spacings: 0.3,
             spacing: 0.5,
             penetration: 0.05,
             least_cosine: 0.85,
@@ -74,7 +74,8 @@ pub(super) struct RoofEdges {
 }
 
 impl RoofEdges {
-    /// Those of `oriented`, whose points are of these `kinds` and held by `index`; `lowest` are the lowest points near by.
+    /// Those of `oriented`, whose points are of these `kinds` and held by `index`; `lowest` are the lowest points near by,
+    /// and `spacing` is that of the pulses at each point.
     ///
     /// # Errors
     /// Those of [`NeighborIndex::new`].
@@ -82,7 +83,7 @@ impl RoofEdges {
         oriented: &OrientedCloud,
         kinds: &[Kind],
         index: &NeighborIndex,
-        lowest: &Cells<f32>,
+        (lowest, spacing): (&Cells<f32>, &[f32]),
         params: &RoofEdgeParams,
         control: &Control<'_>,
     ) -> Result<Self> {
@@ -101,12 +102,12 @@ impl RoofEdges {
                 let solid = matches!(kinds.get(other), Some(Kind::Other | Kind::Later));
                 solid && up > -SAME_ROOF && x.hypot(y) > LEAST_DISTANCE
             };
-            let (gap, middle) = widest_gap(positions, index, p, params.around, is_beside);
+            let (gap, middle) = widest_gap(positions, index, p, params.around_spacings * spacing[row], is_beside);
             if !(params.least_gap..=WIDEST_GAP).contains(&gap) {
                 return Vec::new();
             }
             let outward = [middle.cos(), middle.sin()];
-            let [x, y] = [0, 1].map(|axis| p[axis] + params.outside * outward[axis]);
+            let [x, y] = [0, 1].map(|axis| p[axis] + params.outside_spacings * spacing[row] * outward[axis]);
             let heights = (0u16..).map(|k| p[2] - ENDS - f32::from(k) * params.spacing);
             heights.take_while(|&z| z > low + ENDS).map(|z| ([x, y, z], outward)).collect()
         };
@@ -207,7 +208,8 @@ mod tests {
     fn edges(oriented: &OrientedCloud, kinds: &[Kind]) -> RoofEdges {
         let index = NeighborIndex::new(oriented.positions(), &Control::none()).unwrap();
         let lowest = lowest_near(oriented.positions());
-        RoofEdges::find(oriented, kinds, &index, &lowest, &RoofEdgeParams::default(), &Control::none()).unwrap()
+        RoofEdges::find(oriented, kinds, &index, (&lowest, &[0.33; 6401]), &RoofEdgeParams::default(), &Control::none())
+            .unwrap()
     }
 
     /// One ball at the first point, of this radius.
