@@ -4,7 +4,8 @@ use crate::clean::CleanReport;
 use crate::medial::{CarvedReport, ShrinkReport};
 use crate::normals::{OrientReport, Orientation};
 use crate::pulses::{NeedleReport, ScannerReport};
-use serde::Serialize;
+use belvedere_data::report::rounded;
+use serde::{Serialize, Serializer};
 
 /// What became of a cloud on the way to a scene model, by stage.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -32,11 +33,16 @@ pub struct BuildReport {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct SmoothingReport {
     /// Noise of the cloud along its normals, metres.
-    #[serde(rename = "noise_m")]
+    #[serde(rename = "noise_m", serialize_with = "in_tenths_of_millimetres")]
     pub noise: f32,
     /// Points that were moved: those with flat surroundings.
     #[serde(rename = "points_moved_onto_surface")]
     pub moved: usize,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
+fn in_tenths_of_millimetres<S: Serializer>(length: &f32, serializer: S) -> Result<S::Ok, S::Error> {
+    rounded(f64::from(*length), 4).serialize(serializer)
 }
 
 /// What the pulses of a cloud are good for.
