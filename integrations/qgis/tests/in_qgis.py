@@ -1,0 +1,273 @@
+"""The eight algorithms in QGIS: `in_qgis.py QGIS_PROCESS PLUGINS_FOLDER MAPS_FOLDER`; called by `integrations/qgis/test`."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+PROCESS, PLUGINS, MAPS = sys.argv[1:]
+PROGRAM = os.environ["BELVEDERE_PROGRAM"]
+ROOT = Path(__file__).parents[3]
+DATA = Path(os.environ.get("BELVEDERE_TEST_DATA", ROOT.parent / "shared")) / "data" / "delft_ahn3" / "ahn3_cropped_2.laz"
+FOLDER = Path(tempfile.mkdtemp())
+
+from qgis.core import (  # noqa: E402
+    QgsApplication,
+    QgsCategorizedSymbolRenderer,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsFeature,
+    QgsGeometry,
+    QgsGraduatedSymbolRenderer,
+    QgsMapRendererParallelJob,
+    QgsMapSettings,
+    QgsPalettedRasterRenderer,
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProcessingFeedback,
+    QgsProject,
+    QgsRasterLayer,
+    QgsSingleBandPseudoColorRenderer,
+    QgsVectorFileWriter,
+    QgsVectorLayer,
+)
+from qgis.PyQt.QtCore import QSize  # noqa: E402
+from qgis.PyQt.QtGui import QColor  # noqa: E402
+
+
+def geojson(name, shapes, crs="EPSG:28992"):
+    """A layer of shapes, given in the system of the scene, as a file in `crs`."""
+    scene, own = QgsCoordinateReferenceSystem("EPSG:28992"), QgsCoordinateReferenceSystem(crs)
+    transform = QgsCoordinateTransform(scene, own, QgsProject.instance())
+    layer = QgsVectorLayer(f"{shapes[0].split()[0]}?crs={crs}", name, "memory")
+    for shape in shapes:
+        feature, geometry = QgsFeature(), QgsGeometry.fromWkt(shape)
+        geometry.transform(transform)
+        feature.setGeometry(geometry)
+        layer.dataProvider().addFeatures([feature])
+    path = str(FOLDER / f"{name}.gpkg")
+    options = QgsVectorFileWriter.SaveVectorOptions()
+    QgsVectorFileWriter.writeAsVectorFormatV3(layer, path, QgsProject.instance().transformContext(), options)
+    return path
+
+
+def run(algorithm, **parameters):
+    """Runs an algorithm in a process of its own; its exit status and what it printed."""
+    typed = [f"{name}={value}" for name, value in parameters.items()]
+    done = subprocess.run([PROCESS, "run", f"belvedere:{algorithm}", "--", *typed], capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+def loaded(name):
+    path = str(FOLDER / name)
+    layer = QgsRasterLayer(path, name) if name.endswith(".tif") else QgsVectorLayer(path, name, "ogr")
+    assert layer.isValid(), path
+    assert layer.crs().authid() == "EPSG:28992", (name, layer.crs().authid())
+    if name.endswith(".tif"):
+        assert layer.dataProvider().sourceHasNoDataValue(1), f"{name} has no nodata"
+    return layer
+
+
+def draw(name, *layers):
+    settings = QgsMapSettings()
+    settings.setLayers(list(layers))
+    settings.setBackgroundColor(QColor("white"))
+    settings.setOutputSize(QSize(420, 900))
+    settings.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:28992"))
+    extent = layers[-1].extent()
+    extent.scale(1.04)
+    settings.setExtent(extent)
+    job = QgsMapRendererParallelJob(settings)
+    job.start()
+    job.waitForFinished()
+    image = job.renderedImage()
+    colors = {image.pixel(x, y) for x in range(0, 420, 7) for y in range(0, 900, 9)}
+    assert len(colors) >= 3, f"the map of {name} is empty"
+    image.save(os.path.join(MAPS, f"{name}.png"))
+
+
+def values(layer):
+    provider = layer.dataProvider()
+    block = provider.block(1, layer.extent(), layer.width(), layer.height())
+    return [None if block.isNoData(row, column) else block.value(row, column) for row in range(layer.height()) for column in range(layer.width())]
+
+
+def check_algorithms():
+    eye = "85036,447527"
+    scene = {"CLOUDS": str(DATA), "CRS": "EPSG:28992"}
+    fan = [
+        f"LINESTRING(85036 447527, {x} {y})"
+        for x, y in (
+            (85020, 447600),
+            (85050, 447620),
+            (85065, 447540),
+            (85010, 447450),
+            (85050, 447430),
+            (85031, 447550),
+        )
+    ]
+    parcel = "POLYGON((85030 447550, 85050 447550, 85050 447570, 85030 447570, 85030 447550))"
+    building = "POLYGON((85015 447465, 85045 447465, 85045 447500, 85015 447500, 85015 447465))"
+    runs = {
+        "viewshed": {
+            "OBSERVER": f"{eye} [EPSG:28992]",
+            "CELL": 1,
+            "OUTPUT": "viewshed.tif",
+            "OUTPUT_AREAS": "areas.gpkg",
+        },
+        "line_of_sight": {"PAIRS": geojson("lines", fan), "OUTPUT": "sights.gpkg"},
+        "landmark": {"TARGET_POLYGON": geojson("building", [building]), "CELL": 8, "OUTPUT": "landmark.tif"},
+        "shadow": {"TIME": "2026-06-21T18:00+02:00", "SURFACE": "true", "OUTPUT": "shadow.tif"},
+        "sun_hours": {"DATE": "2026-03-21", "CELL": 1, "OUTPUT": "sun_hours.tif"},
+        "sky_view": {"CELL": 1, "DIRECTIONS": 145, "OUTPUT": "sky_view.tif"},
+        "irradiance": {
+            "CLEAR_SKY": 0,
+            "SURFACE": "true",
+            "CELL": 2,
+            "PATCH_DIVISION": 1,
+            "OUTPUT": "energy.tif",
+            "PLANES": "roofs.gpkg",
+        },
+        "envelope": {
+            "PARCEL": geojson("parcel", [parcel], "EPSG:4326"),
+            "PROTECT": geojson("protect", ["LINESTRING(85025 447575, 85055 447575)"]),
+            "DATE": "2026-03-21",
+            "MAX_HEIGHT": 25,
+            "OUTPUT": "envelope.tif",
+        },
+    }
+    for algorithm, given in runs.items():
+        start = time.monotonic()
+        files = {key: FOLDER / value if key.startswith(("OUTPUT", "PLANES")) else value for key, value in given.items()}
+        status, printed = run(algorithm, **scene, **files)
+        assert status == 0, f"{algorithm}: {printed}"
+        print(f"{algorithm}: {time.monotonic() - start:.1f} s")
+
+
+def check_results():
+    rasters = {
+        "viewshed.tif": QgsPalettedRasterRenderer,
+        "landmark.tif": QgsSingleBandPseudoColorRenderer,
+        "shadow.tif": QgsSingleBandPseudoColorRenderer,
+        "sun_hours.tif": QgsSingleBandPseudoColorRenderer,
+        "sky_view.tif": QgsSingleBandPseudoColorRenderer,
+        "energy.tif": QgsSingleBandPseudoColorRenderer,
+        "envelope.tif": QgsSingleBandPseudoColorRenderer,
+    }
+    vectors = {
+        "areas.gpkg": QgsCategorizedSymbolRenderer,
+        "sights.gpkg": QgsCategorizedSymbolRenderer,
+        "roofs.gpkg": QgsGraduatedSymbolRenderer,
+    }
+    layers = {}
+    for name, renderer in {**rasters, **vectors}.items():
+        layers[name] = loaded(name)
+        assert isinstance(layers[name].renderer(), renderer), (name, layers[name].renderer())
+        draw(name.split(".")[0], layers[name])
+    draw("visibility", layers["sights.gpkg"], layers["viewshed.tif"])
+
+    # lines keep their order, and their ends are where they were drawn, on the ground and 1.7 m above it
+    sights = list(layers["sights.gpkg"].getFeatures())
+    assert len(sights) == 6 and {feature["answer"] for feature in sights} >= {0, 1}, [f["answer"] for f in sights]
+    for feature in sights:
+        first = feature.geometry().constGet().startPoint()
+        assert abs(first.x() - 85036) < 1e-3 and abs(first.y() - 447527) < 1e-3 and -2 < first.z() < 4, first.asWkt()
+
+    # what the program writes itself is the same
+    direct = FOLDER / "direct.tif"
+    typed = ["viewshed", str(DATA), "--crs=EPSG:28992", "--observer=85036,447527", "--cell=1", "-o", str(direct)]
+    subprocess.run([PROGRAM, *typed], check=True, capture_output=True)
+    assert direct.read_bytes() == (FOLDER / "viewshed.tif").read_bytes()
+
+    # areas lie on the visible cells of the raster: brought back from longitude and latitude they may be off by the rounding of degrees
+    cells = values(layers["viewshed.tif"])
+    visible = [feature for feature in layers["areas.gpkg"].getFeatures() if feature["answer"] == "visible"]
+    assert len(visible) == 1 and abs(visible[0].geometry().area() - cells.count(1)) < 0.01 * cells.count(1)
+
+    # an observer of a layer in degrees is the observer that was typed
+    status, printed = run(
+        "viewshed",
+        CLOUDS=DATA,
+        CRS="EPSG:28992",
+        OBSERVERS=geojson("eye", ["POINT(85036 447527)"], "EPSG:4326"),
+        CELL=1,
+        OUTPUT=FOLDER / "layer.tif",
+    )
+    assert status == 0, printed
+    again = values(loaded("layer.tif"))
+    assert sum(a != b for a, b in zip(cells, again)) < 0.005 * len(cells)
+
+    # the parcel was drawn in degrees: its columns are there and nowhere else
+    heights = [height for height in values(layers["envelope.tif"]) if height is not None]
+    assert abs(len(heights) * 0.25 - 400) < 25 and 0 < min(heights) <= max(heights) <= 25, (len(heights), min(heights))
+
+
+def check_errors():
+    given = {"CLOUDS": DATA, "OUTPUT": FOLDER / "x.tif"}
+    status, printed = run("shadow", TIME="2026-06-21T18:00", **given)
+    assert status != 0 and "zone" in printed, printed
+    assert not (FOLDER / "x.tif").exists()
+    os.environ["BELVEDERE_PROGRAM"] = "/nowhere/belvedere"
+    status, printed = run("shadow", TIME="2026-06-21T18:00+02:00", **given)
+    # the description that was packed keeps the algorithm in the list
+    assert status != 0 and "/nowhere/belvedere" in printed and "BELVEDERE_PROGRAM" in printed, printed
+    os.environ["BELVEDERE_PROGRAM"] = PROGRAM
+
+
+def check_cancelling():
+    sys.path[:0] = [PLUGINS, "/usr/share/qgis/python/plugins"]
+    from processing.core.Processing import Processing
+
+    from belvedere_qgis.provider import BelvedereProvider
+
+    Processing.initialize()
+    provider = BelvedereProvider()
+    QgsApplication.processingRegistry().addProvider(provider)
+    algorithm = QgsApplication.processingRegistry().createAlgorithmById("belvedere:sky_view")
+
+    class Impatient(QgsProcessingFeedback):
+        steps = 0
+
+        def setProgress(self, progress):
+            self.steps += 1
+
+        def isCanceled(self):
+            return self.steps > 3
+
+    out = FOLDER / "cancelled.tif"
+    given = {
+        "CLOUDS": [str(DATA)],
+        "CRS": QgsCoordinateReferenceSystem("EPSG:28992"),
+        "CELL": 0.25,
+        "DIRECTIONS": 20000,
+        "OUTPUT": str(out),
+    }
+    start, feedback = time.monotonic(), Impatient()
+    try:
+        results, _ = algorithm.run(given, QgsProcessingContext(), feedback)
+    except QgsProcessingException as error:
+        results = {"error": str(error)}
+    assert feedback.steps > 3 and "OUTPUT" not in results, results
+    assert not out.exists() and time.monotonic() - start < 60
+    texts = [provider.algorithm(name).shortHelpString() for name in ("viewshed", "envelope")]
+    assert all("<b>Input</b>" in text for text in texts), texts[0]
+
+
+def main():
+    if not DATA.is_file():
+        print(f"SKIPPED: {DATA} is missing, so the QGIS plugin was not run on a real tile")
+        return
+    application = QgsApplication([], False)
+    application.initQgis()
+    for check in (check_algorithms, check_results, check_errors, check_cancelling):
+        check()
+        print(f"{check.__name__.replace('_', ' ')}: passed")
+
+
+if __name__ == "__main__":
+    main()
+    # what QGIS tears down when Python ends is not ours to test
+    sys.stdout.flush()
+    os._exit(0)
