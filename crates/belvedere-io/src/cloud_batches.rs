@@ -58,9 +58,12 @@ pub fn read_batches<'a, S: Into<Source<'a>>>(
         let value = "y".to_owned();
         return Err(Error::InvalidParameter { name: "axis that is up", value, expected: "z for clouds in batches" });
     }
+    let forced = options.forced_crs()?;
+    let reading = Reading { options, forced: forced.as_ref(), control };
+    let pending = files_of(sources.into_iter().map(Into::into), &reading)?.0.into();
     Ok(CloudBatches {
-        pending: files_of(sources.into_iter().map(Into::into))?.0.into(),
-        forced: options.forced_crs()?,
+        pending,
+        forced,
         systems: Systems::new(options),
         options: options.clone(),
         control: *control,

@@ -1,4 +1,5 @@
-//! LAS 1.0 to 1.4 and LAZ (also COPC, whose points are read in file order), all point formats.
+//! LAS 1.0 to 1.4 and LAZ (also COPC), all point formats. Points come in the order of the file. Of a box only those chunks of a COPC
+//! file are read that may hold points of it, and nothing of a file whose bounds do not meet it.
 
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -6,14 +7,15 @@ use std::path::{Path, PathBuf};
 use ::las::point::Format;
 use ::las::{PointData, PointDataBuilder, Transform, Vector};
 
+use super::copc::{self, ChunkPlace};
 use super::las_columns::Columns;
 use super::las_extra::{ExtraField, ExtraNormals, find_columns, find_extra_normals};
 use super::las_header::{LasHeader, read_header};
 use super::laz::{ExtraBytes, LazReader, is_chunked};
 use super::part::{Coordinates, Part};
-use super::read_options::{PassedOver, Reading, RowNumbers, Selection};
-use super::source::{Input, Reader};
-use belvedere_data::cloud::Attributes;
+use super::read_options::{FileBox, PassedOver, Reading, RowNumbers, Selection};
+use super::source::{Input, Reader, Source};
+use belvedere_data::cloud::{Attributes, GpsTimeKind};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
 
@@ -57,16 +59,40 @@ impl<'a> LasFile<'a> {
         self.header.points.min(room)
     }
 
-    /// The points in file order, many at a time.
+    /// All points in file order, many at a time.
     pub(super) fn batches(self, extra: ExtraBytes) -> Result<Batches<'a>> {
         let left = self.points_in_file();
+        self.batches_of(extra, left, None)
+    }
+
+    /// The points that may lie in `wanted`, many at a time in file order, and how many are passed over because they cannot.
+    fn batches_within(mut self, extra: ExtraBytes, wanted: &FileBox) -> Result<(Batches<'a>, u64)> {
+        let all = self.points_in_file();
+        let bounds = self.header.bounds;
+        let room = room(self.header.scale);
+        let low = std::array::from_fn(|i| bounds[i][0] - room[i]);
+        let high = std::array::from_fn(|i| bounds[i][1] + room[i]);
+        if are_given(&bounds) && !wanted.meets(low, high) {
+            return Ok((self.batches_of(extra, 0, None)?, all));
+        }
+        let chunks = if self.header.compressed && all > 0 {
+            copc::chunks_within(&self.name, &mut self.reader, &self.header, self.size, wanted)?
+        } else {
+            None
+        };
+        let Some(chunks) = chunks else { return Ok((self.batches_of(extra, all, None)?, 0)) };
+        let within = chunks.iter().fold(0_u64, |sum, chunk| sum.saturating_add(chunk.points));
+        Ok((self.batches_of(extra, within, Some(chunks))?, all.saturating_sub(within)))
+    }
+
+    fn batches_of(self, extra: ExtraBytes, left: u64, places: Option<Vec<ChunkPlace>>) -> Result<Batches<'a>> {
         let Self { name, mut reader, size, header, format } = self;
         let transform = |i: usize| Transform { scale: header.scale[i], offset: header.offset[i] };
         let transforms = Vector { x: transform(0), y: transform(1), z: transform(2) };
         let batch = PointDataBuilder::new().with_format(format).with_transforms(transforms).build();
         // Without points there need be no chunk table either.
         let records = if header.compressed && left > 0 {
-            Records::Laz(Box::new(LazReader::new(&name, reader, &header, size, extra)?))
+            Records::Laz(Box::new(LazReader::new(&name, reader, &header, size, extra, places)?))
         } else {
             reader.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(&name))?;
             Records::Plain { reader, left }
@@ -84,7 +110,7 @@ pub(super) struct Batches<'a> {
 
 enum Records<'a> {
     Plain { reader: Reader<'a>, left: u64 },
-    Laz(Box<LazReader<Reader<'a>>>),
+    Laz(Box<LazReader<'a>>),
 }
 
 impl Batches<'_> {
@@ -139,13 +165,22 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
     check_bounds(part, points.bounds, points.scale)
 }
 
+/// Whether bounds of a header say anything.
+fn are_given(bounds: &[[f64; 2]; 3]) -> bool {
+    bounds.iter().all(|[low, high]| low <= high) && bounds.iter().flatten().any(|&v| v != 0.0)
+}
+
+/// How far points with coordinates in steps of `scale` may lie outside the bounds of their header.
+fn room(scale: [f64; 3]) -> [f64; 3] {
+    scale.map(|scale| (10.0 * scale.abs()).max(LEAST_ROOM))
+}
+
 /// Compares the points of a file with the bounds of its header, which follow from the same scale and offset: notes points outside, refuses a file
 /// all of whose points are.
 fn check_bounds(mut part: Part, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> Result<Part> {
-    let is_given = bounds.iter().all(|[low, high]| low <= high) && bounds.iter().flatten().any(|&v| v != 0.0);
     let mut found = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
     let mut outside = 0_usize;
-    let room = scale.map(|scale| (10.0 * scale.abs()).max(LEAST_ROOM));
+    let room = room(scale);
     for place in part.coordinates.positions() {
         for (own, &v) in found.iter_mut().zip(&place) {
             *own = [own[0].min(v), own[1].max(v)];
@@ -154,7 +189,7 @@ fn check_bounds(mut part: Part, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> Resul
         outside += usize::from(!(0..3).all(is_in));
     }
     let count = part.coordinates.len();
-    if !is_given || count == 0 || outside == 0 {
+    if !are_given(&bounds) || count == 0 || outside == 0 {
         return Ok(part);
     }
     let told = |bounds: [[f64; 2]; 3]| bounds.map(|[low, high]| format!("{low:.2} to {high:.2}")).join(", ");
@@ -201,18 +236,33 @@ pub(super) fn open<'a>(input: Input<'a>, reading: &Reading<'_>) -> Result<(Part,
         let missing = usize::try_from(announced - present).unwrap_or(usize::MAX);
         part.leave_out(missing, "announced by the header but not in the file");
     }
+    let selection = reading.selection(&part.crs);
+    // rows are counted in whole files
+    let wanted = selection.as_ref().filter(|_| reading.options.row_numbers == RowNumbers::Dropped);
+    let wanted = wanted.and_then(Selection::file_box);
+    let (likely, format, scale, offset) = (announced.min(source.size), source.format, header.scale, header.offset);
+    let (bounds, adjusted_gps_time) = (header.bounds, header.adjusted_gps_time);
+    let mut passed_over = PassedOver::default();
+    let batches = match wanted {
+        Some(wanted) => {
+            let (batches, outside) = source.batches_within(extra, &wanted)?;
+            passed_over.outside(outside);
+            batches
+        }
+        None => source.batches(extra)?,
+    };
     let points = LasPoints {
-        likely: announced.min(source.size),
-        format: source.format,
-        scale: header.scale,
-        offset: header.offset,
-        bounds: header.bounds,
-        adjusted_gps_time: header.adjusted_gps_time,
+        likely,
+        format,
+        scale,
+        offset,
+        bounds,
+        adjusted_gps_time,
         normals,
-        selection: reading.selection(&part.crs),
-        passed_over: PassedOver::default(),
+        selection,
+        passed_over,
         next_row: 0,
-        batches: source.batches(extra)?,
+        batches,
     };
     Ok((part, points))
 }
@@ -354,4 +404,46 @@ impl LasHeader {
         let values = raw.as_chunks::<4>().0;
         Ok(std::array::from_fn(|i| f64::from(i32::from_le_bytes(values[i])) * self.scale[i] + self.offset[i]))
     }
+}
+
+/// What the header of a LAS or LAZ file says of its points.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LasHead {
+    /// Number of points.
+    pub points: u64,
+    /// Size of the file, bytes.
+    pub bytes: u64,
+    /// Lowest and highest corner of the points, in the coordinates of the file.
+    pub bounds: [[f64; 3]; 2],
+    /// Reference system; of kind unknown where the file names none.
+    pub crs: Crs,
+    /// What GPS times count from; `None` for points without them.
+    pub gps_times: Option<GpsTimeKind>,
+    /// Whether points name the channel of their scanner: point formats 6 to 10.
+    pub has_channels: bool,
+}
+
+/// What the header of a LAS, LAZ or COPC file says, without a look at its points.
+///
+/// # Errors
+/// [`Error::Io`], and [`Error::Malformed`] for a damaged header and for one without usable bounds.
+pub fn read_las_head<'a>(source: impl Into<Source<'a>>) -> Result<LasHead> {
+    let file = LasFile::open(source.into().open()?)?;
+    let header = &file.header;
+    let bounds = header.bounds;
+    if header.points > 0 && (!are_given(&bounds) || !bounds.as_flattened().iter().all(|v| v.is_finite())) {
+        return Err(Error::malformed(&file.name, "has no bounds in its header; write it again, for example with PDAL"));
+    }
+    let mut part = Part::new(&file.name, "");
+    find_crs(&mut part, header);
+    let kind = if header.adjusted_gps_time { GpsTimeKind::AdjustedStandard } else { GpsTimeKind::SecondsOfWeek };
+    Ok(LasHead {
+        points: file.points_in_file(),
+        bytes: file.size,
+        bounds: [0, 1].map(|end| std::array::from_fn(|axis| bounds[axis][end])),
+        crs: part.crs,
+        gps_times: file.format.has_gps_time.then_some(kind),
+        has_channels: file.format.is_extended,
+    })
 }

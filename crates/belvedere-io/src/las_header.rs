@@ -157,7 +157,9 @@ fn read_record(file: &mut impl Read, length: Length, room: u64) -> Option<(Optio
         Length::Long => u64::from_le_bytes(*head.get(20..)?.first_chunk()?),
     };
     let total = head_length.checked_add(data_length).filter(|&total| total <= room)?;
-    if data_length > MAX_EXTENDED {
+    let user = String::from_utf8_lossy(user).trim_end_matches(['\0', ' ']).to_owned();
+    // the hierarchy of a COPC file is read page by page where it is needed
+    if data_length > MAX_EXTENDED || length == Length::Long && user == "copc" {
         return Some((None, total));
     }
     let mut data = Vec::new();
@@ -165,7 +167,6 @@ fn read_record(file: &mut impl Read, length: Length, room: u64) -> Option<(Optio
     if data.len() as u64 != data_length {
         return None;
     }
-    let user = String::from_utf8_lossy(user).trim_end_matches(['\0', ' ']).to_owned();
     Some((Some(Record { user, id, data }), total))
 }
 

@@ -5,6 +5,9 @@
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
+use super::copc::ChunkPlace;
+use super::source::{ReadSeek, Reader};
+
 use ::laz::laszip::{ChunkTable, ChunkTableEntry, CompressorType, LazItemType};
 use ::laz::{DecompressionSelection, LazVlr};
 
@@ -27,19 +30,36 @@ pub(super) enum ExtraBytes {
 }
 
 /// Decompresses the points of a file batch by batch.
-pub(super) struct LazReader<R> {
-    file: R,
+pub(super) struct LazReader<'a> {
+    /// Without a buffer: chunks are read whole, and what is read ahead beyond one may never be needed.
+    file: Box<dyn ReadSeek + 'a>,
+    /// Where the file is read next; `None` before the first chunk.
+    place: Option<u64>,
     vlr: LazVlr,
-    chunks: std::vec::IntoIter<ChunkTableEntry>,
+    chunks: std::vec::IntoIter<Chunk>,
     layers: Option<usize>,
     selection: DecompressionSelection,
     record_length: usize,
     compressed: Vec<u8>,
 }
 
-impl<R: Read + Seek + Send> LazReader<R> {
-    /// A reader of the points that `header` announces in a file of `size` bytes.
-    pub(super) fn new(path: &Path, mut file: R, header: &LasHeader, size: u64, extra: ExtraBytes) -> Result<Self> {
+/// A chunk and the byte of the file that it begins at.
+#[derive(Clone, Copy)]
+struct Chunk {
+    start: u64,
+    entry: ChunkTableEntry,
+}
+
+impl<'a> LazReader<'a> {
+    /// A reader of the points that `header` announces in a file of `size` bytes; only of the chunks at `places` where these are given.
+    pub(super) fn new(
+        path: &Path,
+        mut file: Reader<'a>,
+        header: &LasHeader,
+        size: u64,
+        extra: ExtraBytes,
+        places: Option<Vec<ChunkPlace>>,
+    ) -> Result<Self> {
         let damaged = |what: String| Error::malformed(path, what);
         let record = header.record(LazVlr::USER_ID, LazVlr::RECORD_ID);
         let record = record.ok_or_else(|| damaged("lacks the LAZ record that describes its compression".to_owned()))?;
@@ -53,15 +73,20 @@ impl<R: Read + Seek + Send> LazReader<R> {
             )));
         }
         let layers = layer_count(&vlr);
-        file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
-        check_chunk_count(path, &mut file, header, size)?;
-        let table = ChunkTable::read_from(&mut file, &vlr)
-            .map_err(|e| damaged(format!("has no readable LAZ chunk table: {e}")))?;
-        let chunks = checked_chunks(path, &table, &vlr, header, size)?;
+        let chunks = if let Some(places) = places {
+            chunks_at(path, &places, header)?
+        } else {
+            file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
+            check_chunk_count(path, &mut file, header, size)?;
+            let table = ChunkTable::read_from(&mut file, &vlr)
+                .map_err(|e| damaged(format!("has no readable LAZ chunk table: {e}")))?;
+            checked_chunks(path, &table, &vlr, header, size)?
+        };
         let selection = DecompressionSelection::all().skip_user_data().skip_nir().skip_wavepacket();
         let selection = if extra == ExtraBytes::Skip { selection.skip_extra_bytes() } else { selection };
         Ok(Self {
-            file,
+            file: file.into_inner(),
+            place: None,
             vlr,
             chunks: chunks.into_iter(),
             layers,
@@ -81,21 +106,25 @@ impl<R: Read + Seek + Send> LazReader<R> {
     ) -> Result<usize> {
         let damaged = |what: &str| Error::malformed(path, what);
         let mut batch: Vec<ChunkTableEntry> = Vec::new();
-        let (mut points, mut bytes) = (0, 0);
+        let mut points = 0;
+        self.compressed.clear();
         while points < wanted {
-            let Some(chunk) = self.chunks.next() else { break };
-            points += chunk.point_count;
-            bytes += chunk.byte_count;
-            batch.push(chunk);
+            let Some(Chunk { start, entry }) = self.chunks.next() else { break };
+            if self.place != Some(start) {
+                self.file.seek(SeekFrom::Start(start)).map_err(Error::io(path))?;
+            }
+            let before = self.compressed.len() as u64;
+            (&mut self.file).take(entry.byte_count).read_to_end(&mut self.compressed).map_err(Error::io(path))?;
+            if self.compressed.len() as u64 - before != entry.byte_count {
+                return Err(damaged("ends within its points"));
+            }
+            self.place = Some(start.saturating_add(entry.byte_count));
+            points += entry.point_count;
+            batch.push(entry);
         }
         let points = usize::try_from(points).map_err(|_| damaged("has more points than memory can address"))?;
         if points == 0 {
             return Ok(0);
-        }
-        self.compressed.clear();
-        (&mut self.file).take(bytes).read_to_end(&mut self.compressed).map_err(Error::io(path))?;
-        if self.compressed.len() as u64 != bytes {
-            return Err(damaged("ends within its points"));
         }
         if !self.streams_are_sound(&batch) {
             return Err(damaged("has a LAZ chunk whose sizes or streams are damaged"));
@@ -168,10 +197,10 @@ fn layer_count(vlr: &LazVlr) -> Option<usize> {
 }
 
 /// Every chunk begins with an uncompressed point, so the file bounds the number of chunks.
-fn check_chunk_count(path: &Path, file: &mut (impl Read + Seek), header: &LasHeader, size: u64) -> Result<()> {
+fn check_chunk_count(path: &Path, file: &mut Reader<'_>, header: &LasHeader, size: u64) -> Result<()> {
     let broken = || Error::malformed(path, "has no LAZ chunk table: the file is cut off or was not finished");
     let mut bytes = [0; 8];
-    let mut table_start = |file: &mut dyn ReadSeek, from: SeekFrom| -> Result<u64> {
+    let mut table_start = |file: &mut Reader<'_>, from: SeekFrom| -> Result<u64> {
         file.seek(from).and_then(|_| file.read_exact(&mut bytes)).map_err(|_| broken())?;
         Ok(u64::from_le_bytes(bytes))
     };
@@ -192,18 +221,11 @@ fn check_chunk_count(path: &Path, file: &mut (impl Read + Seek), header: &LasHea
     Ok(())
 }
 
-trait ReadSeek: Read + Seek {}
-impl<T: Read + Seek> ReadSeek for T {}
-
 /// The chunks that hold the points `header` announces, each held against the size of the file.
-fn checked_chunks(
-    path: &Path,
-    table: &ChunkTable,
-    vlr: &LazVlr,
-    header: &LasHeader,
-    size: u64,
-) -> Result<Vec<ChunkTableEntry>> {
-    let mut chunks: Vec<ChunkTableEntry> = Vec::new();
+fn checked_chunks(path: &Path, table: &ChunkTable, vlr: &LazVlr, header: &LasHeader, size: u64) -> Result<Vec<Chunk>> {
+    let mut chunks: Vec<Chunk> = Vec::new();
+    // the offset of the chunk table comes before the first chunk
+    let mut start = header.points_start.saturating_add(8);
     let (mut points, mut bytes) = (0_u64, 0_u64);
     for entry in table {
         let mut chunk = *entry;
@@ -215,23 +237,46 @@ fn checked_chunks(
             chunk.point_count = chunk.point_count.min(left);
         }
         bytes = bytes.saturating_add(chunk.byte_count);
-        let decompressed = chunk.point_count.saturating_mul(u64::from(header.record_length));
-        let most = FREE_CHUNK_BYTES.max(chunk.byte_count.saturating_mul(MAX_RATIO)).min(MAX_CHUNK_BYTES);
-        if bytes > size || chunk.point_count > left || decompressed > most {
-            let what = format!(
-                "has a LAZ chunk of {} points in {} bytes, which does not fit the {} points of its header",
-                chunk.point_count, chunk.byte_count, header.points
-            );
-            return Err(Error::malformed(path, what));
+        if bytes > size || chunk.point_count > left {
+            return Err(unfit(path, &chunk, header));
         }
+        check_size(path, &chunk, header)?;
         points += chunk.point_count;
-        chunks.push(chunk);
+        chunks.push(Chunk { start, entry: chunk });
+        start = start.saturating_add(chunk.byte_count);
     }
     if points < header.points {
         let what = format!("announces {} points, but its LAZ chunks hold {points}; it is cut off", header.points);
         return Err(Error::malformed(path, what));
     }
     Ok(chunks)
+}
+
+/// The chunks at `places`, which lie in the file and do not overlap.
+fn chunks_at(path: &Path, places: &[ChunkPlace], header: &LasHeader) -> Result<Vec<Chunk>> {
+    let mut left = header.points;
+    let chunk = |place: &ChunkPlace| {
+        let entry = ChunkTableEntry { point_count: place.points, byte_count: place.bytes };
+        left = left.checked_sub(place.points).ok_or_else(|| unfit(path, &entry, header))?;
+        check_size(path, &entry, header)?;
+        Ok(Chunk { start: place.start, entry })
+    };
+    places.iter().map(chunk).collect()
+}
+
+/// Refuses a chunk that would decompress to more than its bytes can be believed to hold.
+fn check_size(path: &Path, chunk: &ChunkTableEntry, header: &LasHeader) -> Result<()> {
+    let decompressed = chunk.point_count.saturating_mul(u64::from(header.record_length));
+    let most = FREE_CHUNK_BYTES.max(chunk.byte_count.saturating_mul(MAX_RATIO)).min(MAX_CHUNK_BYTES);
+    if decompressed > most { Err(unfit(path, chunk, header)) } else { Ok(()) }
+}
+
+fn unfit(path: &Path, chunk: &ChunkTableEntry, header: &LasHeader) -> Error {
+    let what = format!(
+        "has a LAZ chunk of {} points in {} bytes, which does not fit the {} points of its header",
+        chunk.point_count, chunk.byte_count, header.points
+    );
+    Error::malformed(path, what)
 }
 
 /// Whether `vlr` is of a kind that can be read; old files of one single chunk cannot.

@@ -18,12 +18,16 @@ mod cityjson;
 mod cloud_batches;
 pub mod colors;
 mod columns;
+#[cfg(feature = "las")]
+mod copc;
 #[cfg(feature = "e57")]
 mod e57;
 mod geojson;
 mod geojson_read;
 #[cfg(feature = "tiff")]
 mod geotiff;
+#[cfg(feature = "tiff")]
+mod geotiff_read;
 #[cfg(feature = "las")]
 mod las;
 #[cfg(feature = "las")]
@@ -67,6 +71,7 @@ mod stations;
 mod table;
 mod text_rows;
 mod trajectory;
+mod vpc;
 mod weather;
 mod write_cloud;
 mod write_faces;
@@ -93,12 +98,16 @@ pub use geotiff::{
     Georeference, write_f32 as write_tif_f32, write_u8 as write_tif_u8, write_u16 as write_tif_u16,
     write_u32 as write_tif_u32,
 };
+#[cfg(feature = "tiff")]
+pub use geotiff_read::{read_f32 as read_tif_f32, read_u8 as read_tif_u8};
+#[cfg(feature = "las")]
+pub use las::{LasHead, read_las_head};
 pub use mesh::read_mesh;
 pub use observers::{ObserverRow, RowsAre, read_observers};
 pub use outline::{GridPolygon, outlines};
 pub use output::{Output, WriteSeek};
 pub use polygons::MeshReport;
-pub use read_cloud::{CLOUD_EXTENSIONS, FileReport, LeftOut, ReadReport, read_cloud};
+pub use read_cloud::{CLOUD_EXTENSIONS, FileReport, LeftOut, ReadReport, cloud_files, read_cloud};
 pub use read_options::{ReadOptions, RowNumbers, UpAxis, Within};
 #[cfg(feature = "npy")]
 pub use saved_matrix::{

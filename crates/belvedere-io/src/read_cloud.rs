@@ -11,7 +11,7 @@ use super::part::Part;
 use super::ply;
 use super::read_options::{ReadOptions, Reading, UpAxis};
 use super::source::{Source, extension, unusable};
-use super::{assemble, pcd, ptx, xyz};
+use super::{assemble, pcd, ptx, vpc, xyz};
 #[cfg(feature = "npy")]
 use super::{masbcpp, npy};
 use belvedere_data::cloud::PointCloud;
@@ -23,7 +23,7 @@ use belvedere_data::{Error, Result};
 pub const CLOUD_EXTENSIONS: &[&str] = &["las", "laz", "ply", "xyz", "txt", "csv", "pcd", "e57", "npy", "ptx"];
 
 /// The same for messages.
-const SUPPORTED: &str = ".las, .laz, .ply, .xyz, .txt, .csv, .pcd, .e57, .npy, .ptx";
+const SUPPORTED: &str = ".las, .laz, .ply, .xyz, .txt, .csv, .pcd, .e57, .npy, .ptx, .vpc";
 
 /// What reading a cloud found.
 #[derive(Clone, Debug, Default)]
@@ -86,7 +86,9 @@ impl ReadReport {
 /// One cloud from `sources`, in that order and the order of their points, with a report.
 ///
 /// A path to a folder means all files in it with one of [`CLOUD_EXTENSIONS`], sorted by name; a folder with `coords.npy`
-/// has the layout of masbcpp and is one cloud with its normals. The extension selects the format, in upper or lower case.
+/// has the layout of masbcpp and is one cloud with its normals. A catalogue of tiles (`.vpc`) means its files. Of a box ([`ReadOptions::within`])
+/// only those files of a catalogue are opened, those LAS and LAZ files are read beyond their header, and those chunks of COPC files are
+/// read, whose bounds meet it. The extension selects the format, in upper or lower case.
 ///
 /// Coordinates become metres by the unit of the reference system and f32 relative to a near origin: that of
 /// [`ReadOptions::frame`], or else the middle, in whole metres, of the points within 10 km of the median point of all files.
@@ -108,7 +110,7 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
     let reading = Reading { options, forced: forced.as_ref(), control };
     let mut systems = Systems::new(options);
     let mut parts: Vec<Part> = Vec::new();
-    let (sources, skipped_files) = files_of(sources.into_iter().map(Into::into))?;
+    let (sources, skipped_files) = files_of(sources.into_iter().map(Into::into), &reading)?;
     for source in sources {
         control.check()?;
         let mut part = read_one(source, &reading)?;
@@ -165,10 +167,35 @@ impl Systems {
     }
 }
 
-/// The sources with folders replaced by their files, and the files of folders that are tables of something else.
-pub(super) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>) -> Result<(Vec<Source<'a>>, Vec<PathBuf>)> {
+/// The files that `paths` mean: folders and catalogues of tiles (`.vpc`) replaced by their files, in the order that [`read_cloud`] has.
+///
+/// # Errors
+/// Those of [`read_cloud`] about folders and catalogues.
+pub fn cloud_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    let (options, control) = (ReadOptions::default(), Control::none());
+    let reading = Reading { options: &options, forced: None, control: &control };
+    let (sources, _) = files_of(paths.iter().map(Source::from), &reading)?;
+    Ok(sources.iter().map(|source| source.name().to_owned()).collect())
+}
+
+/// The sources with folders and catalogues replaced by their files, and the files of folders that are tables of something else. Tiles of
+/// catalogues that cannot have a point that `reading` asks for are left out.
+pub(super) fn files_of<'a>(
+    sources: impl Iterator<Item = Source<'a>>,
+    reading: &Reading<'_>,
+) -> Result<(Vec<Source<'a>>, Vec<PathBuf>)> {
     let (mut found, mut skipped) = (Vec::new(), Vec::new());
     for source in sources {
+        if source.extension() == "vpc" {
+            let name = source.name().to_owned();
+            let files = vpc::files_within(source, reading.box_of_unopened().as_ref())?;
+            if files.is_empty() {
+                let what = format!("no file of {} lies in the box to read", name.display());
+                return Err(Error::NoPoints { what });
+            }
+            found.extend(files.into_iter().map(Source::path));
+            continue;
+        }
         let Some(folder) = source.folder().filter(|folder| !is_masbcpp(folder)) else {
             found.push(source);
             continue;

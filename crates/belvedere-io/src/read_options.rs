@@ -2,7 +2,7 @@
 
 use belvedere_data::cloud::{Attributes, to_local};
 use belvedere_data::control::Control;
-use belvedere_data::crs::Crs;
+use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Bounds, Error, Frame, Result};
 
 use super::part::{Coordinates, Part};
@@ -162,6 +162,18 @@ impl Reading<'_> {
         if done.is_multiple_of(POINTS_PER_CHECK) { self.control.check() } else { Ok(()) }
     }
 
+    /// A box that holds every point asked for, in the coordinates of files that were not opened yet; `None` without a box, and where the
+    /// unit of the files is not known.
+    pub(super) fn box_of_unopened(&self) -> Option<FileBox> {
+        let of_frame = self.options.frame.as_ref().map(|frame| &frame.crs).filter(|crs| crs.kind != CrsKind::Unknown);
+        let known = self.forced.or(of_frame);
+        match self.options.within? {
+            // the unit does not matter
+            Within::File { .. } => self.selection(&Crs::default())?.file_box(),
+            Within::Local(_) => self.selection(known?)?.file_box(),
+        }
+    }
+
     /// Which points of a file in the system `crs` are read, or `None` for all.
     pub(super) fn selection(&self, crs: &Crs) -> Option<Selection> {
         let crs = self.forced.unwrap_or(crs);
@@ -193,6 +205,9 @@ enum Place {
     Local { bounds: Bounds, origin: [f64; 3], units: [f64; 3] },
 }
 
+/// By how much a box in local coordinates is widened at least when files are looked through for it, metres.
+const LEAST_BOX_ROOM: f64 = 1e-3;
+
 /// Points that a selection passed over.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PassedOver {
@@ -201,6 +216,12 @@ pub(super) struct PassedOver {
 }
 
 impl PassedOver {
+    /// Counts points that need not even be looked at, because their piece of the file lies outside.
+    #[cfg(feature = "las")]
+    pub(super) fn outside(&mut self, count: u64) {
+        self.outside = self.outside.saturating_add(usize::try_from(count).unwrap_or(usize::MAX));
+    }
+
     /// Counts them in the report of `part`.
     pub(super) fn report(self, part: &mut Part) {
         part.leave_out(self.outside, "outside the box to read");
@@ -208,7 +229,37 @@ impl PassedOver {
     }
 }
 
+/// A box in the coordinates of a file that holds every point of a selection.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FileBox {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl FileBox {
+    /// Whether the box from `low` to `high` shares a point with this one.
+    pub(super) fn meets(&self, low: [f64; 3], high: [f64; 3]) -> bool {
+        (0..3).all(|i| low[i] <= self.high[i] && self.low[i] <= high[i])
+    }
+}
+
 impl Selection {
+    /// A box that every point of the selection lies in; `None` where points are not chosen by their place.
+    pub(super) fn file_box(&self) -> Option<FileBox> {
+        match self.place.as_ref()? {
+            Place::File { low, high } => Some(FileBox { low: *low, high: *high }),
+            Place::Local { bounds, origin, units } => {
+                // local positions are rounded to f32 before they are compared
+                let room = |v: f32| LEAST_BOX_ROOM + f64::from(v.abs()) * f64::from(f32::EPSILON);
+                let file = |i: usize, v: f64| (v + origin[i]) / units[i];
+                Some(FileBox {
+                    low: std::array::from_fn(|i| file(i, f64::from(bounds.low[i]) - room(bounds.low[i]))),
+                    high: std::array::from_fn(|i| file(i, f64::from(bounds.high[i]) + room(bounds.high[i]))),
+                })
+            }
+        }
+    }
+
     fn holds(&self, p: [f64; 3]) -> bool {
         match &self.place {
             None => true,

@@ -10,8 +10,8 @@ use belvedere_data::{Error, Result};
 pub trait ReadSeek: Read + Seek + Send {}
 impl<T: Read + Seek + Send> ReadSeek for T {}
 
-/// Bytes read ahead of the parser.
-const BUFFER_BYTES: usize = 1 << 16;
+/// Bytes read ahead of the parser: more than a header, and little beside a window of a large file.
+const BUFFER_BYTES: usize = 1 << 14;
 
 /// One input with a name. The extension of the name selects the format; messages about the input begin with the name.
 ///

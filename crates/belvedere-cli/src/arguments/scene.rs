@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 #[derive(Args)]
 pub(crate) struct CloudInput {
-    /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy), or a folder of them
+    /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy), a catalogue of tiles (.vpc), or a folder of clouds
     ///
     /// Several files, or a folder, are read as one cloud. A folder with coords.npy is read in the layout of masbcpp.
     #[arg(value_name = "CLOUD", required = true, help_heading = None::<&'static str>)]

@@ -8,3 +8,4 @@ mod hostile_laz;
 mod hostile_side_files;
 mod outputs;
 mod sources;
+mod windows;

@@ -41,7 +41,7 @@ const ONE_HOME: [(&str, &str); 20] = [
     ("npyz::", "io/src/"),
     ("csv::", "io/src/table.rs"),
     ("e57::", "io/src/e57.rs"),
-    ("tiff::", "io/src/geotiff.rs"),
+    ("tiff::", "io/src/geotiff"),
     ("geojson::", "io/src/geojson"),
     ("tobj::", "io/src/obj.rs"),
     ("earcut::", "io/src/"),

@@ -1,0 +1,58 @@
+//! Catalogues of tiles (`.vpc`, virtual point clouds): which files belong to a cloud, and where each of them lies.
+//!
+//! # Source
+//! Virtual point cloud specification 1.0.0 (PDAL wrench, QGIS): a STAC collection of items with the asset `data` and the property
+//! `proj:bbox`.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::read_options::FileBox;
+use super::source::Source;
+use belvedere_data::{Error, Result};
+
+/// Largest catalogue that is read, bytes: a million tiles, and far below the memory of any machine.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// The files of the catalogue `source` that may have points in `wanted`, in its order; all of them without a box. Paths are those of
+/// the catalogue, from the folder that it lies in.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Malformed`] for what is no catalogue, and for tiles that are addresses of the web.
+pub(super) fn files_within(source: Source<'_>, wanted: Option<&FileBox>) -> Result<Vec<PathBuf>> {
+    let input = source.open()?;
+    let (name, size) = (input.name, input.size);
+    let damaged = |what: String| Error::malformed(&name, what);
+    if size > MOST_BYTES {
+        return Err(damaged(format!("has {size} bytes, more than a catalogue of tiles; give the folder of the tiles")));
+    }
+    let catalogue: Value = serde_json::from_reader(input.reader)
+        .map_err(|e| damaged(format!("is no catalogue of tiles (virtual point cloud): {e}")))?;
+    let tiles = catalogue.get("features").and_then(Value::as_array);
+    let tiles = tiles.ok_or_else(|| damaged("is no catalogue of tiles: it has no `features`".to_owned()))?;
+    let folder = name.parent().unwrap_or(Path::new(""));
+    let mut files = Vec::new();
+    for (number, tile) in tiles.iter().enumerate() {
+        let path = tile.pointer("/assets/data/href").and_then(Value::as_str);
+        let path = path.ok_or_else(|| damaged(format!("has no file for tile {} (assets, data, href)", number + 1)))?;
+        if path.contains("://") {
+            return Err(damaged(format!("names {path}, which is not a file; download it first")));
+        }
+        if wanted.is_none_or(|wanted| bounds(tile).is_none_or(|(low, high)| wanted.meets(low, high))) {
+            files.push(folder.join(path));
+        }
+    }
+    Ok(files)
+}
+
+/// Bounds of a tile in the coordinates of its file, unlimited in height where the catalogue gives none; `None` where it gives no bounds.
+fn bounds(tile: &Value) -> Option<([f64; 3], [f64; 3])> {
+    let numbers = tile.pointer("/properties/proj:bbox")?.as_array()?;
+    let numbers: Vec<f64> = numbers.iter().map(Value::as_f64).collect::<Option<_>>()?;
+    match numbers[..] {
+        [a, b, c, d] => Some(([a, b, f64::NEG_INFINITY], [c, d, f64::INFINITY])),
+        [a, b, c, d, e, f] => Some(([a, b, c], [d, e, f])),
+        _ => None,
+    }
+}
