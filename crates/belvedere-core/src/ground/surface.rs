@@ -27,11 +27,13 @@ pub struct SurfaceParams {
     /// Root mean squared distance in height of the points of a layer from their plane beyond which it is no plane, metres, 0 or more.
     /// Default 0.12: ranging noise and a ridge stay below it, crowns and shrubs do not.
     pub roughness: f64,
+    /// How far from the middle a point may lie and still be looked at, metres, above 0. Default: any distance.
+    pub farthest: f32,
 }
 
 impl Default for SurfaceParams {
     fn default() -> Self {
-        Self { neighbors: 12, step: 0.4, roughness: 0.12 }
+        Self { neighbors: 12, step: 0.4, roughness: 0.12, farthest: f32::INFINITY }
     }
 }
 
@@ -84,6 +86,7 @@ pub fn top_surface(
                 #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
                 let query = [middle[0] as f32, middle[1] as f32, 0.0];
                 index.k_nearest(query, params.neighbors, found);
+                found.retain(|near| near.distance_squared <= params.farthest * params.farthest);
                 if found.first().is_none_or(|nearest| f64::from(nearest.distance_squared).sqrt() > reach) {
                     continue;
                 }

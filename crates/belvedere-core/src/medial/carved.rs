@@ -1,18 +1,19 @@
 //! The model that Belvedere answers from: balls cut by pulses, and the rules for what balls alone represent badly.
 
-use super::bounds::{KindBounds, RadiusBounds, kinds};
+use super::bounds::{Kind, KindBounds, RadiusBounds, kinds};
 use super::carve::{CarveReport, carve};
 use super::cells::lowest_near;
 use super::close_range::{CloseRangeBalls, CloseRangeParams};
 use super::crowns::{self, CrownParams, Crowns};
-use super::prune::{PruneParams, prune};
+use super::prune::{PruneParams, prune_in_blocks_of};
 use super::relief::{Relief, ReliefParams};
 use super::roof_edges::{RoofEdgeParams, RoofEdges};
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 use super::slender::{Slender, SlenderParams};
 use super::spacing::pulse_spacing;
-use super::thin_surfaces::{ThinSurfaceParams, on_thin_surfaces};
+use super::thin_surfaces::{ThinSurfaceParams, on_thin_surfaces, on_thin_surfaces_of_part};
 use super::vegetation::{VegetationParams, tell_vegetation};
+use super::whole_survey::{SurveyPart, WholeSurvey};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use crate::pulses::{Needles, Pulses};
@@ -236,21 +237,55 @@ pub struct CarvedBalls {
 /// # Errors
 /// Those of [`shrink`] and [`carve`]. Each rule is a stage of `control`.
 pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Control<'_>) -> Result<CarvedBalls> {
+    Ok(carve_survey(input, None, params, control)?.0)
+}
+
+/// The same for a part of a survey. The balls of points that lie far enough from its edge are those of any other part that holds them
+/// so, bit by bit; how far that is follows from the rules ([`crate::model::SurveyFacts::halo`]).
+///
+/// # Errors
+/// Those of [`carved_balls`].
+pub fn carved_balls_of_part(
+    input: &CarvedInput<'_>,
+    part: &SurveyPart<'_>,
+    params: &CarvedParams,
+    control: &Control<'_>,
+) -> Result<CarvedBalls> {
+    Ok(carve_survey(input, Some(part), params, control)?.0)
+}
+
+/// The balls of a survey or of a part of one, and what rules took from the whole of it.
+pub(crate) fn carve_survey(
+    input: &CarvedInput<'_>,
+    part: Option<&SurveyPart<'_>>,
+    params: &CarvedParams,
+    control: &Control<'_>,
+) -> Result<(CarvedBalls, WholeSurvey)> {
     let CarvedInput { oriented, index, attributes, needles, pulses } = *input;
     let positions = oriented.positions();
     let mut report = CarvedReport::default();
     if let Some(sizes) = params.close_range.filter(|_| needles.are_from_the_ground()) {
         let CloseRangeBalls { balls, shrinking, carving } = sizes.balls(input, control)?;
-        return Ok(CarvedBalls {
+        let carved = CarvedBalls {
             balls: balls.shrunk(),
             transmission: Vec::new(),
             report: CarvedReport { shrinking, carving, ..report },
-        });
+        };
+        return Ok((carved, WholeSurvey::default()));
     }
     let mut kinds = kinds(attributes, oriented.len());
-    if let Some(vegetation) = &params.vegetation {
+    let given = part.map(|part| part.whole);
+    let mut whole = given.copied().unwrap_or_else(|| WholeSurvey {
+        has_ground: kinds.contains(&Kind::Ground),
+        has_vegetation: kinds.contains(&Kind::Vegetation),
+        ..WholeSurvey::default()
+    });
+    let measured = part.map_or(positions, |part| part.measured);
+    let farthest = part.map_or(f32::INFINITY, |part| part.farthest);
+    // with its classes, vegetation need not be told
+    if let Some(vegetation) = params.vegetation.as_ref().filter(|_| !whole.has_vegetation) {
         report.told_vegetation = control.stage("finding vegetation", oriented.len(), || {
-            tell_vegetation(&mut kinds, oriented, index, attributes, vegetation, control)
+            tell_vegetation(&mut kinds, oriented, index, attributes, vegetation, farthest, control)
         })?;
     }
     let spacing = pulse_spacing(positions, attributes);
@@ -258,7 +293,9 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
     let lowest = lowest_near(positions);
     let through = match (&params.crowns, pulses) {
         (Some(crowns), Some(pulses)) => control.stage("measuring crowns", 0, || {
-            crowns::transmission(positions, &kinds, &lowest, pulses, crowns, control)
+            let (through, share) = crowns::transmission(positions, &kinds, &lowest, pulses, crowns, given, control)?;
+            whole.transmission = share;
+            Ok(through)
         })?,
         _ => Vec::new(),
     };
@@ -280,7 +317,11 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
     let mut thin = Vec::new();
     if let Some(params) = &params.thin_surfaces {
         thin = control.stage("finding thin surfaces", 0, || {
-            on_thin_surfaces(positions, &kinds, index, needles, params, control)
+            if part.is_some() {
+                on_thin_surfaces_of_part((positions, measured), &kinds, index, needles, params, control)
+            } else {
+                on_thin_surfaces(positions, &kinds, index, needles, params, control)
+            }
         })?;
         for row in (0..thin.len()).filter(|&row| thin[row]) {
             bounds.limit(row, params.radius_spacings * spacing[row]);
@@ -297,8 +338,8 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
     // what is only found to be vegetation may be anything that is not flat: better neither centred nor filled
     let known_crowns = crowns.as_ref().filter(|_| report.told_vegetation == 0);
     if let Some(crowns) = known_crowns {
-        report.centred =
-            control.stage("centring balls in crowns", 0, || crowns.centre(&mut balls, index, needles, control))?;
+        (report.centred, whole.crown_spacing) = control
+            .stage("centring balls in crowns", 0, || crowns.centre(&mut balls, index, needles, given, control))?;
     }
     if let Some(params) = &params.roof_edges {
         report.cut_at_edges = control.stage("cutting at roof edges", 0, || {
@@ -307,8 +348,9 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
         })?;
     }
     if let Some(pruning) = &params.pruning {
-        report.pruned =
-            control.stage("pruning balls", oriented.len(), || prune(&mut balls, oriented, index, pruning, control))?;
+        report.pruned = control.stage("pruning balls", oriented.len(), || {
+            prune_in_blocks_of(measured, &mut balls, oriented, index, pruning, control)
+        })?;
     }
     // before anything is added: the ball of a point is still in its row
     let find_relief = |params| {
@@ -341,5 +383,5 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
     let balls = balls.shrunk();
     let of = |&source: &u32| through.get(source as usize).copied();
     let transmission = balls.source.iter().filter_map(of).collect();
-    Ok(CarvedBalls { balls, transmission, report })
+    Ok((CarvedBalls { balls, transmission, report }, whole))
 }

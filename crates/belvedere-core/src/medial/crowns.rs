@@ -2,6 +2,7 @@
 
 use super::bounds::{Kind, RadiusBounds};
 use super::cells::{Cell, Cells, cell};
+use super::whole_survey::WholeSurvey;
 use crate::neighbors::{NeighborIndex, Tangent};
 use crate::pulses::{GAP_M, Needles, Pulses};
 use belvedere_data::balls::{MedialBalls, NO_TOUCH, PULSE_TOUCH};
@@ -81,7 +82,8 @@ impl Default for CrownParams {
 ///
 /// A pulse counts where its first return is vegetation; it got through where another of its returns lies deeper by
 /// [`CrownParams::through_depth`] and near the ground. Pulses are counted by cells of 1 m and their neighbours, and
-/// [`CrownParams::prior_pulses`] pulses with the share of the whole cloud are added. `lowest` is [`super::cells::lowest_near`].
+/// [`CrownParams::prior_pulses`] pulses with the share of the whole cloud are added, which is given where the cloud is a part of another, and
+/// returned. `lowest` is [`super::cells::lowest_near`].
 ///
 /// A beam is as wide as a hand: many that got through in part would have been stopped were they thin. This is therefore more
 /// than the share of straight lines that get through.
@@ -95,11 +97,12 @@ pub(super) fn transmission(
     lowest: &Cells<f32>,
     pulses: &Pulses,
     params: &CrownParams,
+    whole: Option<&WholeSurvey>,
     control: &Control<'_>,
-) -> Result<Vec<f32>> {
+) -> Result<(Vec<f32>, f64)> {
     let stop = Stop::new(control);
     let place = |row: u32| positions.get(row as usize).copied();
-    let has_ground = kinds.contains(&Kind::Ground);
+    let has_ground = whole.map_or_else(|| kinds.contains(&Kind::Ground), |whole| whole.has_ground);
     let is_below = |top: [f32; 3], row: u32| {
         // where the ground has its class, the lowest returns under a wide crown may still be its own
         let may_be_below = !has_ground || kinds.get(row as usize) != Some(&Kind::Vegetation);
@@ -122,7 +125,8 @@ pub(super) fn transmission(
     let cells = Cells::new((0..pulses.len()).into_par_iter().filter_map(met).collect(), add);
     stop.check()?;
     let [all, through] = cells.all(add).unwrap_or_default().map(f64::from);
-    let whole = if all > 0.0 { through / all } else { 0.0 };
+    let own = if all > 0.0 { through / all } else { 0.0 };
+    let whole = whole.map_or(own, |whole| whole.transmission);
     let near = cells.with_neighbors(add);
     let prior = f64::from(params.prior_pulses);
     let of = |(&p, kind): (&[f32; 3], &Kind)| {
@@ -136,7 +140,7 @@ pub(super) fn transmission(
     };
     let transmission = positions.par_iter().zip(kinds).map(of).collect();
     stop.check()?;
-    Ok(transmission)
+    Ok((transmission, whole))
 }
 
 /// What is known of the crowns of a cloud.
@@ -182,7 +186,8 @@ impl Crowns<'_> {
     ///
     /// Within a crown neither the normal of a point nor the side it was seen from says where the crown lies: a ball that is tangent there
     /// stands out of it as often as not. Row i of `balls` must be that of point i, which `index` holds. A return that
-    /// lies alone, on a trunk, has no larger a ball than most.
+    /// lies alone, on a trunk, has no larger a ball than one of the typical spacing, which is given where the cloud is a part of another, and
+    /// returned.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -191,8 +196,9 @@ impl Crowns<'_> {
         balls: &mut MedialBalls,
         index: &NeighborIndex,
         needles: &Needles,
+        whole: Option<&WholeSurvey>,
         control: &Control<'_>,
-    ) -> Result<usize> {
+    ) -> Result<(usize, Option<f32>)> {
         let stop = Stop::new(control);
         let numbers = self.attributes.return_number.as_deref().unwrap_or_default();
         let is_later = |row: usize| numbers.get(row).is_some_and(|&number| number > 1);
@@ -211,10 +217,9 @@ impl Crowns<'_> {
         let spacings: Vec<f32> = rows.par_iter().with_min_len(CHUNK).map(spacing).collect();
         let mut sorted = spacings.clone();
         let middle = sorted.len() / 2;
-        let Some(typical) = (!sorted.is_empty()).then(|| *sorted.select_nth_unstable_by(middle, f32::total_cmp).1)
-        else {
-            return Ok(0);
-        };
+        let own = (!sorted.is_empty()).then(|| *sorted.select_nth_unstable_by(middle, f32::total_cmp).1);
+        let typical = whole.map_or(own, |whole| whole.crown_spacing);
+        let (Some(_), Some(typical)) = (own, typical) else { return Ok((0, typical)) };
         let radius = |(&row, &spacing): (&usize, &f32)| {
             let most =
                 self.most_radius(row).unwrap_or(f32::INFINITY).min(self.params.later_spacings * spacing.min(typical));
@@ -229,7 +234,7 @@ impl Crowns<'_> {
             // what the pulses leave nothing of blocks nothing
             balls.touch[row] = if radius > 0.0 { PULSE_TOUCH } else { NO_TOUCH };
         }
-        Ok(rows.len())
+        Ok((rows.len(), Some(typical)))
     }
 
     /// Adds balls that fill solid crowns, and says how many.

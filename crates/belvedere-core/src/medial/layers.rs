@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 /// Side of a cell, metres: two points of a survey of 8 pulses a square metre fall into one on the mean.
-const CELL: f32 = 0.5;
+pub(super) const CELL: f32 = 0.5;
 /// Height of a voxel, metres.
 const STEP: f32 = 0.4;
 /// Voxels up and down that count as of the same height, which allows for slopes up to 45° and for the parapet of a balcony.
@@ -14,9 +14,20 @@ const MOST_CELLS: f32 = 5e8;
 /// East and north number of a cell.
 type Cell = [i32; 2];
 
+/// Where cells begin.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum CellsFrom {
+    /// At the outermost points.
+    Cloud,
+    /// At the origin of local coordinates: clouds that share it have the same cells.
+    Origin,
+}
+
 /// The voxels that hold points, column by column.
 pub(super) struct Layers {
     low: [f32; 2],
+    /// Number of the first cell east and north of the origin, where cells are those of the origin and not of the cloud.
+    first_cell: Option<Cell>,
     size: [i32; 2],
     /// Where the voxels of each cell begin, and one more.
     first: Vec<u32>,
@@ -31,7 +42,7 @@ pub(super) struct Layers {
 impl Layers {
     /// Voxels of `positions`, local metres, and which of them hold a point whose row is `solid`; `None` for no points, or for a
     /// place too wide.
-    pub(super) fn new(positions: &[[f32; 3]], solid: impl Fn(usize) -> bool) -> Option<Self> {
+    pub(super) fn new(positions: &[[f32; 3]], from: CellsFrom, solid: impl Fn(usize) -> bool) -> Option<Self> {
         let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
         for p in positions {
             for axis in 0..2 {
@@ -39,13 +50,18 @@ impl Layers {
                 high[axis] = high[axis].max(p[axis]);
             }
         }
+        let first_cell = (from == CellsFrom::Origin).then(|| low.map(cell_from_origin));
+        if let Some(first) = first_cell {
+            low = first.map(|number| number as f32 * CELL);
+        }
         let [width, height] = [0, 1].map(|axis| ((high[axis] - low[axis]) / CELL).floor() + 1.0);
         if !(width > 0.0 && height > 0.0 && width * height < MOST_CELLS) {
             return None;
         }
         #[expect(clippy::cast_possible_truncation, reason = "checked to be small")]
         let size = [width as i32, height as i32];
-        let mut layers = Self { low, size, first: Vec::new(), level: Vec::new(), cell: Vec::new(), solid: Vec::new() };
+        let mut layers =
+            Self { low, first_cell, size, first: Vec::new(), level: Vec::new(), cell: Vec::new(), solid: Vec::new() };
         let voxel = |(row, &p): (usize, &[f32; 3])| {
             Some((u32::try_from(layers.number(layers.cell(p))?).ok()?, level(p[2]), !solid(row)))
         };
@@ -167,7 +183,17 @@ impl Layers {
     /// Cell of a point, which may lie beyond the raster.
     #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
     fn cell(&self, point: [f32; 3]) -> Cell {
+        if let Some(first) = self.first_cell {
+            return [0, 1].map(|axis| cell_from_origin(point[axis]).saturating_sub(first[axis]));
+        }
         [0, 1].map(|axis| ((point[axis] - self.low[axis]) / CELL).floor() as i32)
+    }
+
+    /// Number east and north of the block of `cells` by `cells` cells that a voxel lies in; the same for all where cells are those of the
+    /// cloud.
+    pub(super) fn block(&self, voxel: usize, cells: i32) -> Cell {
+        let own = self.cell_of(voxel);
+        self.first_cell.map_or([0; 2], |first| [0, 1].map(|axis| (first[axis] + own[axis]).div_euclid(cells)))
     }
 
     fn number(&self, cell: Cell) -> Option<usize> {
@@ -175,6 +201,12 @@ impl Layers {
         let number = i64::from(cell[1]) * i64::from(self.size[0]) + i64::from(cell[0]);
         if inside { usize::try_from(number).ok() } else { None }
     }
+}
+
+/// Number of a cell from the origin on.
+#[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
+fn cell_from_origin(coordinate: f32) -> i32 {
+    (coordinate / CELL).floor() as i32
 }
 
 /// Number upward of the voxel of height `z`.

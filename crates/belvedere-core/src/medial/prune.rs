@@ -50,9 +50,24 @@ pub fn prune(
     params: &PruneParams,
     control: &Control<'_>,
 ) -> Result<usize> {
+    prune_in_blocks_of(oriented.positions(), balls, oriented, index, params, control)
+}
+
+/// The same with points in the blocks of other places, `placed`, such as those before they were moved.
+///
+/// # Errors
+/// Those of [`prune`].
+pub(super) fn prune_in_blocks_of(
+    placed: &[[f32; 3]],
+    balls: &mut MedialBalls,
+    oriented: &OrientedCloud,
+    index: &NeighborIndex,
+    params: &PruneParams,
+    control: &Control<'_>,
+) -> Result<usize> {
     let stop = Stop::new(control);
     let expected = oriented.len();
-    for (what, found) in [("balls", balls.len()), ("neighbour index", index.len())] {
+    for (what, found) in [("balls", balls.len()), ("neighbour index", index.len()), ("places", placed.len())] {
         if found != expected {
             return Err(Error::LengthMismatch { what, expected, found });
         }
@@ -60,7 +75,7 @@ pub fn prune(
     let (positions, normals) = (oriented.positions(), oriented.normals());
     let origin = oriented.origin();
     let block = |row: u32| -> [i64; 2] {
-        let p = positions[row as usize];
+        let p = placed[row as usize];
         #[expect(clippy::cast_possible_truncation, reason = "positions of a cloud are far below 2^63 blocks")]
         [0, 1].map(|axis| ((f64::from(p[axis]) + origin[axis]) / BLOCK).floor() as i64)
     };

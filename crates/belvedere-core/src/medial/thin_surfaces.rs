@@ -1,7 +1,8 @@
 //! Surfaces with open space close below them, told by the pulses that run there: decks, canopies, balconies, bridges.
 
 use super::bounds::Kind;
-use super::layers::Layers;
+use super::layers::{CELL, CellsFrom, Layers};
+use super::whole_survey::BLOCK;
 use crate::neighbors::NeighborIndex;
 use crate::pulses::Needles;
 use belvedere_data::Result;
@@ -79,9 +80,39 @@ pub fn on_thin_surfaces(
     params: &ThinSurfaceParams,
     control: &Control<'_>,
 ) -> Result<Vec<bool>> {
+    find(positions, positions, CellsFrom::Cloud, kinds, index, needles, params, control)
+}
+
+/// The same for a part of a survey. `measured` are the points before they were moved onto their surface. Surfaces end at blocks of 64 m counted
+/// from the origin, so that those of a block are the same in every part that holds all of it and what lies about it.
+///
+/// # Errors
+/// Those of [`on_thin_surfaces`].
+pub(super) fn on_thin_surfaces_of_part(
+    (positions, measured): (&[[f32; 3]], &[[f32; 3]]),
+    kinds: &[Kind],
+    index: &NeighborIndex,
+    needles: &Needles,
+    params: &ThinSurfaceParams,
+    control: &Control<'_>,
+) -> Result<Vec<bool>> {
+    find(positions, measured, CellsFrom::Origin, kinds, index, needles, params, control)
+}
+
+#[expect(clippy::too_many_arguments, reason = "what the two above have in common")]
+fn find(
+    positions: &[[f32; 3]],
+    in_layers: &[[f32; 3]],
+    from: CellsFrom,
+    kinds: &[Kind],
+    index: &NeighborIndex,
+    needles: &Needles,
+    params: &ThinSurfaceParams,
+    control: &Control<'_>,
+) -> Result<Vec<bool>> {
     let stop = Stop::new(control);
     let solid = |row: usize| matches!(kinds.get(row), Some(Kind::Other | Kind::Later));
-    let Some(layers) = Layers::new(positions, solid) else { return Ok(vec![false; positions.len()]) };
+    let Some(layers) = Layers::new(in_layers, from, solid) else { return Ok(vec![false; positions.len()]) };
     control.check()?;
     let beside: Vec<usize> = (0..layers.len())
         .into_par_iter()
@@ -105,7 +136,7 @@ pub fn on_thin_surfaces(
     control.check()?;
     Ok((0..positions.len())
         .into_par_iter()
-        .map(|row| solid(row) && layers.voxel_of(positions[row]).is_some_and(|voxel| thin[voxel]))
+        .map(|row| solid(row) && layers.voxel_of(in_layers[row]).is_some_and(|voxel| thin[voxel]))
         .collect())
 }
 
@@ -179,6 +210,8 @@ fn surfaces(layers: &Layers, beside: &[usize], proven: &[bool], least_proof: f32
     let mut seen = vec![false; layers.len()];
     let mut thin = vec![false; layers.len()];
     let mut surface = Vec::new();
+    #[expect(clippy::cast_possible_truncation, reason = "128")]
+    let block = |voxel: usize| layers.block(voxel, (BLOCK / CELL) as i32);
     for first in (0..layers.len()).filter(|&voxel| proven[voxel]) {
         if seen[first] {
             continue;
@@ -190,7 +223,7 @@ fn surfaces(layers: &Layers, beside: &[usize], proven: &[bool], least_proof: f32
         while let Some(&voxel) = surface.get(next) {
             next += 1;
             layers.adjoining(voxel, |other| {
-                if (beside[other] == 8 || proven[other]) && !seen[other] {
+                if (beside[other] == 8 || proven[other]) && !seen[other] && block(other) == block(first) {
                     seen[other] = true;
                     surface.push(other);
                 }
@@ -198,7 +231,9 @@ fn surfaces(layers: &Layers, beside: &[usize], proven: &[bool], least_proof: f32
         }
         let count = surface.iter().filter(|&&voxel| proven[voxel]).count();
         if count as f64 >= f64::from(least_proof) * (surface.len() as f64).sqrt() {
-            surface.iter().for_each(|&voxel| layers.around(voxel, |other| thin[other] = true));
+            for &voxel in &surface {
+                layers.around(voxel, |other| thin[other] |= block(other) == block(first));
+            }
         }
     }
     thin

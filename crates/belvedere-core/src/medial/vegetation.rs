@@ -29,8 +29,8 @@ impl Default for VegetationParams {
 const CHUNK: usize = 512;
 
 /// Turns points of no particular class (0, 1 or none) whose neighbourhood is not flat or lets pulses through into
-/// [`Kind::Vegetation`], and says how many: trees, hedges, and with them cars and other small things. Does nothing where
-/// `kinds` has vegetation already, since then the cloud has its classes. `index` holds the points of `cloud`.
+/// [`Kind::Vegetation`], and says how many: trees, hedges, and with them cars and other small things. For clouds without the classes of
+/// vegetation. `index` holds the points of `cloud`; those beyond `farthest` metres are no neighbours.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a number of neighbours out of range.
@@ -40,6 +40,7 @@ pub(super) fn tell_vegetation(
     index: &NeighborIndex,
     attributes: &Attributes,
     params: &VegetationParams,
+    farthest: f32,
     control: &Control<'_>,
 ) -> Result<usize> {
     let stop = Stop::new(control);
@@ -50,9 +51,6 @@ pub(super) fn tell_vegetation(
             value,
             expected: "1 to 256",
         });
-    }
-    if kinds.contains(&Kind::Vegetation) {
-        return Ok(0);
     }
     let class = |row: usize| attributes.classification.as_ref().and_then(|classes| classes.get(row)).copied();
     let count = |row: usize| attributes.return_count.as_ref().and_then(|counts| counts.get(row)).copied();
@@ -71,6 +69,7 @@ pub(super) fn tell_vegetation(
             }
             for &row in rows.iter().filter(|row| open(**row as usize)) {
                 index.k_nearest(positions[row as usize], params.neighbors, &mut found);
+                found.retain(|neighbor| neighbor.distance_squared <= farthest * farthest);
                 let (mut split, mut flat) = (0.0, 0.0);
                 for neighbor in &found {
                     split += f32::from(u8::from(several(neighbor.index as usize)));

@@ -6,8 +6,8 @@ use super::prepare::{OrientedSurvey, prepare};
 use super::report::{BallsReport, BuildReport};
 use super::{ModelParts, SceneModel};
 use crate::medial::{
-    CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, carved_balls, shrink, vegetation_of_classes,
-    vegetation_of_transmission,
+    CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, SurveyPart, carved_balls, carved_balls_of_part, shrink,
+    vegetation_of_classes, vegetation_of_transmission,
 };
 use crate::query::{BallTree, BlockRule};
 use belvedere_data::control::Control;
@@ -51,6 +51,7 @@ fn of_survey(
     control: &Control<'_>,
 ) -> Result<(SceneModel, BuildReport)> {
     let (mut balls, transmission);
+    let facts = params.facts.as_deref();
     let settled = match params.balls {
         BallParams::CarvedIfPossible(carved, _) if survey.carving.is_some() => BallParams::Carved(carved),
         BallParams::CarvedIfPossible(_, shrunk) => BallParams::Shrunk(shrunk),
@@ -60,8 +61,16 @@ fn of_survey(
         (BallParams::Carved(params), Some(input)) => {
             let (attributes, needles, pulses) = (&input.attributes, &input.needles, input.pulses.as_ref());
             let input = CarvedInput { oriented: &survey.oriented, index: &survey.index, attributes, needles, pulses };
+            let part = facts.map(|facts| SurveyPart {
+                whole: &facts.whole,
+                measured: &survey.measured,
+                farthest: facts.farthest(),
+            });
             let found;
-            CarvedBalls { balls, transmission, report: found } = carved_balls(&input, params, control)?;
+            CarvedBalls { balls, transmission, report: found } = match &part {
+                Some(part) => carved_balls_of_part(&input, part, params, control)?,
+                None => carved_balls(&input, params, control)?,
+            };
             report.interior_balls = Some(BallsReport::Carved(found));
         }
         (BallParams::Shrunk(params), _) => {
@@ -92,7 +101,9 @@ fn of_survey(
         ("parameters".to_owned(), format!("{settled:?}")),
     ]);
     let mut tree = None;
-    if let (BallParams::Carved(_), Some(input), Some(pulses)) = (&settled, &survey.carving, &mut report.pulses) {
+    // pulses at the edge of a part lack the balls beyond
+    let checked = report.pulses.as_mut().filter(|_| facts.is_none());
+    if let (BallParams::Carved(_), Some(input), Some(pulses)) = (&settled, &survey.carving, checked) {
         let own = control.stage("indexing balls", balls.len(), || BallTree::new(&balls, &BlockRule::carved()))?;
         let needles = &input.needles;
         pulses.blocked =

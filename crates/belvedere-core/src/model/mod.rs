@@ -8,12 +8,14 @@
 
 mod blocked_pulses;
 mod build;
+mod facts;
 mod params;
 mod prepare;
 mod questions;
 mod report;
 
 pub use belvedere_data::model::ModelParts;
+pub use facts::{SurveyExtremes, SurveyFacts};
 pub use params::{BallParams, ModelParams, OrientBy};
 pub use prepare::OrientedSurvey;
 pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesReport};

@@ -1,11 +1,13 @@
 //! How a scene model is built.
 
+use super::facts::SurveyFacts;
 use crate::clean::CleanParams;
 use crate::medial::{CarvedParams, ShrinkMethod, ShrinkParams};
 use crate::normals::estimate::Neighborhood;
 use crate::pulses::{LocateParams, NeedleParams};
 use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{Mesh, Result};
+use std::sync::Arc;
 
 /// How a scene model is built. [`ModelParams::default`] is what Belvedere does without being asked for anything else.
 ///
@@ -31,6 +33,8 @@ pub struct ModelParams {
     pub needles: NeedleParams,
     /// How balls are made.
     pub balls: BallParams,
+    /// What is known of the survey that the cloud is a part of. Default: none, and the cloud is a whole.
+    pub facts: Option<Arc<SurveyFacts>>,
 }
 
 belvedere_data::setters!(ModelParams {
@@ -40,6 +44,7 @@ belvedere_data::setters!(ModelParams {
     with_locate(locate: LocateParams),
     with_needles(needles: NeedleParams),
     with_balls(balls: BallParams),
+    with_facts(facts: Option<Arc<SurveyFacts>>),
 });
 
 /// How the outward side of normals is found. Ways that know where the scanner was also say where pulses came from.
@@ -130,6 +135,14 @@ impl BallParams {
         match self {
             Self::Shrunk(shrunk) | Self::CarvedIfPossible(_, shrunk) => *shrunk,
             Self::Carved(carved) => carved.shrinking(),
+        }
+    }
+
+    /// How balls are made from the points where these facts decide whether pulses carve.
+    pub(super) fn shrinking_by(&self, facts: &SurveyFacts) -> ShrinkParams {
+        match self {
+            Self::CarvedIfPossible(carved, _) if facts.carves => carved.shrinking(),
+            other => other.shrinking(),
         }
     }
 

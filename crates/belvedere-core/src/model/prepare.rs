@@ -1,10 +1,11 @@
 //! From a cloud to a cleaned cloud with outward normals, and what its pulses prove empty.
 
+use super::facts::SurveyFacts;
 use super::params::{Carving, ModelParams, OrientBy};
 use super::report::{BuildReport, NormalsReport, PulsesReport, SmoothingReport};
 use crate::clean::clean;
 use crate::neighbors::NeighborIndex;
-use crate::normals::estimate::estimate_with_scatter;
+use crate::normals::estimate::estimate_within;
 use crate::normals::{Normals, Orientation, OrientedCloud, Scatter, orient};
 use crate::pulses::{FoundBy, Means, NeedleColumns, Needles, Pulses, ScannerReport, group, locate};
 use belvedere_data::control::Control;
@@ -28,6 +29,8 @@ pub struct OrientedSurvey {
     pub kept: Vec<u32>,
     /// The smallest box around them: a stray point that was cleaned away does not widen a view.
     pub bounds: Bounds,
+    /// The points before they were moved onto their surface, where the cloud is a part of a survey; otherwise empty.
+    pub(super) measured: Vec<[f32; 3]>,
     /// Classes of these points, where they have any.
     pub(super) classification: Option<Vec<u8>>,
     /// What carving needs, where it is wanted and possible.
@@ -59,7 +62,7 @@ impl OrientedSurvey {
     /// turns them outward.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves fewer than four or all on one line; those of [`clean`], [`locate`], [`estimate_with_scatter`] and [`orient()`];
+    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves fewer than four or all on one line; those of [`clean`], [`locate`], [`estimate_within`] and [`orient()`];
     /// [`Error::Cancelled`].
     pub fn prepare(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
         prepare(Cow::Borrowed(cloud), params, control)
@@ -92,12 +95,18 @@ pub(super) fn prepare(
 ) -> Result<(OrientedSurvey, BuildReport)> {
     let mut report = BuildReport::default();
     let read_count = cloud.len();
-    let (kept, cleaned) = control.stage("cleaning", read_count, || clean(&cloud, &params.clean, control))?;
+    let facts = params.facts.as_deref();
+    let cleaning = facts.map(|facts| facts.cleaning(&params.clean));
+    let cleaning = cleaning.as_ref().unwrap_or(&params.clean);
+    let (kept, cleaned) = control.stage("cleaning", read_count, || clean(&cloud, cleaning, control))?;
     report.removed_by_cleaning = cleaned;
     if kept.is_empty() {
         return Err(Error::NoPoints { what: format!("{read_count} were read, and cleaning removed all of them") });
     }
-    check_surface(kept.iter().filter_map(|&row| cloud.positions.get(row as usize)))?;
+    // what is no surface on its own may be the edge of one
+    if facts.is_none() {
+        check_surface(kept.iter().filter_map(|&row| cloud.positions.get(row as usize)))?;
+    }
     let mut cloud = if kept.len() == read_count { cloud } else { Cow::Owned(cloud.select(&kept)) };
     let carving = params.balls.carving();
     let wants_scanner = carving != Carving::Unwanted
@@ -134,7 +143,8 @@ pub(super) fn prepare(
     let (normals, scatter) = match by {
         Orientation::Given => (Normals::default(), Scatter::default()),
         _ => control.stage("estimating normals", cloud.len(), || {
-            estimate_with_scatter(&cloud.positions, &index, params.neighborhood, control)
+            let farthest = facts.map_or(f32::INFINITY, SurveyFacts::farthest);
+            estimate_within(&cloud.positions, &index, params.neighborhood, farthest, control)
         })?,
     };
     // balls of scanners on the ground have sizes of their own, which noise is part of
@@ -144,14 +154,16 @@ pub(super) fn prepare(
         control.stage("orienting normals", cloud.len(), || orient(&cloud, normals, &by, control))?;
     report.normals = NormalsReport::new(&by, orientation);
     let mut index = index;
+    let measured = if facts.is_some() { oriented.positions().to_vec() } else { Vec::new() };
     if let Some(scatter) = scatter {
-        let (positions, moved) = scatter.smoothed(oriented.positions());
+        let noise = facts.map_or_else(|| scatter.noise(), |facts| facts.noise);
+        let (positions, moved) = scatter.smoothed_within(noise, oriented.positions());
         index = index.moved_to(&positions)?;
         oriented = oriented.moved_to(positions);
-        report.smoothing = Some(SmoothingReport { noise: scatter.noise().unwrap_or_default(), moved });
+        report.smoothing = Some(SmoothingReport { noise: noise.unwrap_or_default(), moved });
     }
     let bounds = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?;
-    Ok((OrientedSurvey { oriented, index, kept, bounds, classification, carving }, report))
+    Ok((OrientedSurvey { oriented, index, kept, bounds, measured, classification, carving }, report))
 }
 
 /// Refuses points that cannot lie on a surface: fewer than four, or all within a millimetre of one line.
@@ -207,6 +219,14 @@ fn find_scanner(
     params: &ModelParams,
     control: &Control<'_>,
 ) -> Result<(Scanner, ScannerReport)> {
+    if let Some(facts) = &params.facts {
+        let positions = facts.scanner(cloud, control)?;
+        let known_count = positions.iter().filter(|p| p.iter().all(|v| v.is_finite())).count();
+        let mut report = ScannerReport { point_count: cloud.len(), ..ScannerReport::default() };
+        let found_by = if facts.are_pulses_assumed() { FoundBy::Assumed } else { FoundBy::Trajectory };
+        report.found.insert(found_by, known_count);
+        return Ok((Scanner { positions, is_assumed: facts.are_pulses_assumed() }, report));
+    }
     let means = match &params.orient {
         OrientBy::ScannerOfEachPoint(given) => {
             if given.len() != read_count {
@@ -241,10 +261,16 @@ fn carving_input(
     control: &Control<'_>,
 ) -> Result<(Option<CarvingInput>, PulsesReport)> {
     let (needles, report) = control.stage("indexing pulses", cloud.len(), || {
-        Needles::of_cloud(cloud, &scanner.positions, &params.needles, control)
+        let top = params.facts.as_ref().map(|facts| facts.top);
+        Needles::of_cloud_below(cloud, &scanner.positions, top, &params.needles, control)
     })?;
     let mut report = PulsesReport { needles: report, ..PulsesReport::default() };
     let used = report.needles.used as f64;
+    if params.facts.as_ref().is_some_and(|facts| !facts.carves) {
+        return Ok((None, report));
+    }
+    // of a part it was decided with the whole
+    let carving = if params.facts.is_some() { Carving::Wanted } else { carving };
     if needles.are_from_the_ground() && carving == Carving::IfPossible {
         report.remark = Some(
             "pulses do not carve here without --method carved: many are too flat, as from a scanner on the ground; balls are as thin as the points are close"
@@ -267,7 +293,10 @@ fn carving_input(
         ..Attributes::default()
     };
     let pulses = match control.stage("grouping pulses", 0, || group(cloud, control)) {
+        _ if params.facts.as_ref().is_some_and(|facts| !facts.measures_crowns) => None,
         Ok((pulses, _)) => Some(pulses),
+        // here and now none, which says nothing of the whole
+        Err(Error::MissingAttribute { .. }) if params.facts.is_some() => Some(Pulses::default()),
         // without pulses nothing is known of what gets through crowns, and all else is
         Err(error @ Error::MissingAttribute { .. }) => {
             report.crowns_not_measured = Some(error.to_string());

@@ -94,6 +94,20 @@ pub fn estimate_with_scatter(
     neighborhood: Neighborhood,
     control: &Control<'_>,
 ) -> Result<(Normals, Scatter)> {
+    estimate_within(positions, index, neighborhood, f32::INFINITY, control)
+}
+
+/// The same with neighbours no farther than `farthest` metres away.
+///
+/// # Errors
+/// Those of [`estimate`].
+pub fn estimate_within(
+    positions: &[[f32; 3]],
+    index: &NeighborIndex,
+    neighborhood: Neighborhood,
+    farthest: f32,
+    control: &Control<'_>,
+) -> Result<(Normals, Scatter)> {
     if index.len() != positions.len() {
         return Err(Error::LengthMismatch { what: "neighbour index", expected: positions.len(), found: index.len() });
     }
@@ -106,6 +120,7 @@ pub fn estimate_with_scatter(
         for (plane, &i) in planes.iter_mut().zip(points) {
             // the point itself is its own nearest neighbour, or a duplicate of it stands in
             index.k_nearest(positions[i as usize], k + 1, &mut found);
+            found.retain(|neighbor| neighbor.distance_squared <= farthest * farthest);
             *plane = match neighborhood {
                 Neighborhood::Fixed { .. } => plane_of(positions, &found),
                 Neighborhood::Adaptive { flatness } => adaptive_plane_of(positions, &found, flatness),

@@ -35,7 +35,13 @@ impl Scatter {
     /// edges, of twigs and of thin things stay where they are.
     #[must_use]
     pub fn smoothed(&self, positions: &[[f32; 3]]) -> (Vec<[f32; 3]>, usize) {
-        let most = self.noise().map_or(0.0, |noise| MOST_NOISE * noise);
+        self.smoothed_within(self.noise(), positions)
+    }
+
+    /// The same where the noise of the cloud is given: that of a larger one that it is a part of.
+    #[must_use]
+    pub fn smoothed_within(&self, noise: Option<f32>, positions: &[[f32; 3]]) -> (Vec<[f32; 3]>, usize) {
+        let most = noise.map_or(0.0, |noise| MOST_NOISE * noise);
         let planes = self.roughness.par_iter().zip(&self.to_plane);
         let on_plane = |(&p, (&roughness, to_plane)): (&[f32; 3], (&f32, &[f32; 3]))| {
             if roughness <= most { std::array::from_fn(|i| p[i] + to_plane[i]) } else { p }

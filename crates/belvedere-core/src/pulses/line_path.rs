@@ -1,9 +1,15 @@
 //! The path of a scanner along a flight line, from estimates for its parts.
 
 use super::scanner_report::FoundBy;
+use belvedere_data::PointCloud;
+use belvedere_data::cloud::to_local;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// Where the scanner was along a flight line, and when that is known.
-#[derive(Clone, Debug)]
+///
+/// Saved, it keeps where the scanner was, and not how well that is known.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LinePath {
     /// Flight line; 0 where the cloud names none.
     pub source_id: u16,
@@ -15,13 +21,15 @@ pub struct LinePath {
 }
 
 /// A stretch of time over which the scanner's path is known.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stretch {
     /// First and last, seconds.
     pub times: [f64; 2],
     /// Standard deviation of the positions, metres.
+    #[serde(skip)]
     pub position_sd: [f64; 3],
     /// Median angle between the pulses and the directions to the path, radians; NaN where no pulse of this stretch tells.
+    #[serde(skip)]
     pub median_angle: f64,
 }
 
@@ -55,11 +63,23 @@ pub(super) fn position_on(paths: &[LinePath], line: u16, time: f64) -> Option<(&
     of_line.filter_map(|path| Some((path, path.position_at(time)?))).next()
 }
 
+/// Local position of the scanner for each point of `cloud`, (N, 3) metres, by `paths`, which are in order of their lines; NaN where none knows it.
+pub(crate) fn positions_on_paths(paths: &[LinePath], cloud: &PointCloud) -> Vec<[f32; 3]> {
+    let unknown = [f32::NAN; 3];
+    let Some(times) = &cloud.attributes.gps_time else { return vec![unknown; cloud.len()] };
+    let lines = cloud.attributes.point_source_id.as_deref().unwrap_or_default();
+    let position = |(row, &time): (usize, &f64)| {
+        let line = lines.get(row).copied().unwrap_or(0);
+        position_on(paths, line, time).map_or(unknown, |(_, place)| to_local(place, [0.0; 3]))
+    };
+    times.par_iter().enumerate().map(position).collect()
+}
+
 /// Parts farther apart than this are smoothed apart, seconds: aircraft do not hold their course for longer.
 pub(super) const LONGEST_BRIDGE_S: f64 = 30.0;
 
 /// Where a scanner was, and how it moved.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Knot {
     /// Seconds.
     pub(super) time: f64,

@@ -24,6 +24,7 @@ pub use flight_parts::{
     AngleVerdict, HeightOffset, ScanAngleParams, ScanAnglePart, SensorEstimateParams, SensorPart, Verdict,
 };
 pub use group::{PulseReport, Pulses, group};
+pub(crate) use line_path::positions_on_paths;
 pub use line_path::{LinePath, Stretch};
 pub use locate::{LocateParams, Means, locate};
 pub(crate) use needles::{GAP_M, lower_ends};

@@ -77,6 +77,20 @@ impl Needles {
         params: &NeedleParams,
         control: &Control<'_>,
     ) -> Result<(Self, NeedleReport)> {
+        Self::of_cloud_below(cloud, scanner, None, params, control)
+    }
+
+    /// The same below the highest return of the survey that `cloud` is a part of, local metres, where that is given.
+    ///
+    /// # Errors
+    /// Those of [`Needles::of_cloud`].
+    pub(crate) fn of_cloud_below(
+        cloud: &PointCloud,
+        scanner: &[[f32; 3]],
+        highest: Option<f32>,
+        params: &NeedleParams,
+        control: &Control<'_>,
+    ) -> Result<(Self, NeedleReport)> {
         cloud.validate()?;
         if scanner.len() != cloud.len() {
             return Err(Error::LengthMismatch {
@@ -90,7 +104,7 @@ impl Needles {
         let rows = || (0..cloud.len()).filter(is_first);
         let returns: Vec<[f32; 3]> = rows().map(|row| cloud.positions[row]).collect();
         let scanner: Vec<[f32; 3]> = rows().map(|row| scanner[row]).collect();
-        Self::new(&returns, &scanner, params, control)
+        Self::below(&returns, &scanner, highest, params, control)
     }
 
     /// Needles from `first_returns`, (N, 3) local metres, towards `scanner`, (N, 3) local metres, NaN where unknown.
@@ -103,6 +117,16 @@ impl Needles {
         params: &NeedleParams,
         control: &Control<'_>,
     ) -> Result<(Self, NeedleReport)> {
+        Self::below(first_returns, scanner, None, params, control)
+    }
+
+    fn below(
+        first_returns: &[[f32; 3]],
+        scanner: &[[f32; 3]],
+        highest: Option<f32>,
+        params: &NeedleParams,
+        control: &Control<'_>,
+    ) -> Result<(Self, NeedleReport)> {
         if scanner.len() != first_returns.len() {
             return Err(Error::LengthMismatch {
                 what: "scanner positions",
@@ -111,7 +135,8 @@ impl Needles {
             });
         }
         let finite = first_returns.iter().filter(|p| p.iter().all(|v| v.is_finite()));
-        let top = finite.map(|p| p[2]).fold(f32::NEG_INFINITY, f32::max) + params.headroom;
+        let own = || finite.map(|p| p[2]).fold(f32::NEG_INFINITY, f32::max);
+        let top = highest.unwrap_or_else(own) + params.headroom;
         let mut report = NeedleReport::default();
         let mut by_way = NeedlesByWay::default();
         for (number, (p, s)) in first_returns.iter().zip(scanner).enumerate() {

@@ -5,11 +5,12 @@ use super::group::PulseReport;
 use super::line_path::LinePath;
 use belvedere_data::report::{percent, rounded};
 use belvedere_data::trajectory::ClockOffset;
-use serde::{Serialize, Serializer, ser::SerializeMap};
+use serde::{Deserialize, Serialize, Serializer, ser::SerializeMap};
 use std::collections::BTreeMap;
 
 /// What the scanner of a point was found by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum FoundBy {
     /// A pose in the file.
     Pose,

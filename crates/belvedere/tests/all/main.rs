@@ -45,6 +45,7 @@ mod rooms;
 mod rows;
 mod scanner_location;
 mod scene_model;
+mod scene_parts;
 mod simulated_surveys;
 mod slender;
 mod solar_envelope;

@@ -1,0 +1,196 @@
+//! What is estimated once from a whole survey, so that parts of it that are built on their own become one model.
+
+use super::params::{BallParams, ModelParams, OrientBy};
+use super::prepare::{OrientedSurvey, prepare};
+use crate::clean::{CleanParams, IsolatedPoints, IsolationRadius};
+use crate::medial::{CarvedInput, CarvedParams, WholeSurvey, carve_survey};
+use crate::pulses::{LinePath, Means, VerticalParams, locate, positions_on_paths, vertical_pulses};
+use belvedere_data::control::Control;
+use belvedere_data::{Error, PointCloud, Result};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+/// How far away a point may lie and still be a neighbour, metres: more than the usual 16 neighbours take wherever there is a surface.
+const FARTHEST_NEIGHBOR: f32 = 16.0;
+/// How far the rules for balls look beyond a point, metres: edges of roofs within three spacings of pulses, of which the widest is 3 m; cells of a
+/// metre with those about them, crowns and relief less.
+const RULES_REACH: f64 = 12.0;
+/// By how much pulses may lean more than the most of a sample, as a share of that.
+const LEAN_ROOM: f64 = 1.1;
+
+/// What is estimated once from a whole survey. Parts of the survey that are built with these facts ([`ModelParams::facts`]) and lie in one frame, whose
+/// origin is a corner of blocks of 64 m, have the same balls, bit by bit, wherever they overlap by [`SurveyFacts::halo`].
+///
+/// A model of a whole cloud estimates these facts by itself, from all of its points.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct SurveyFacts {
+    /// Radius in which an isolated point has no neighbours, metres; `None` keeps isolated points.
+    pub isolation_radius: Option<f64>,
+    /// Where the scanner was along flight lines, local metres; without any, pulses are assumed to fall straight down.
+    pub paths: Vec<LinePath>,
+    /// Horizontal metres for each metre of height up to which pulses are used; those that lean more are left out.
+    pub most_lean: f64,
+    /// Whether pulses carve.
+    pub carves: bool,
+    /// Highest point of the survey, local metres: pulses prove nothing far above it.
+    pub top: f32,
+    /// Most height of a point above the lowest one within a few hundred metres, metres.
+    pub relief: f64,
+    /// Noise of points along their normals, metres; `None` where they stay where they are.
+    pub noise: Option<f32>,
+    /// Whether crowns of trees are measured: whether returns can be grouped into pulses.
+    pub measures_crowns: bool,
+    /// What rules take from the whole.
+    pub whole: WholeSurvey,
+}
+
+/// What a pass over all points of a survey found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurveyExtremes {
+    /// Highest point, local metres.
+    pub top: f32,
+    /// As [`SurveyFacts::relief`].
+    pub relief: f64,
+    /// Whether any point has class 2, ground.
+    pub has_ground: bool,
+    /// Whether any point has a class of vegetation, 3 to 5.
+    pub has_vegetation: bool,
+}
+
+impl SurveyFacts {
+    /// The facts of a survey of which `along_lines` is a sample that is spread over all of it, whole pulses at random, and `places` are all points of
+    /// some places, both in the frame that its parts will have.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for ways of orienting that need more than the points, and for scanners on the ground; those of
+    /// [`super::SceneModel::build`].
+    pub fn estimate(
+        along_lines: &PointCloud,
+        places: &PointCloud,
+        extremes: &SurveyExtremes,
+        params: &ModelParams,
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        if !matches!(params.orient, OrientBy::Auto | OrientBy::Up | OrientBy::Pulses) {
+            let value = "a scanner, a trajectory or a mesh that is given".to_owned();
+            let expected = "auto, pulses or up where a survey is built in parts";
+            return Err(Error::InvalidParameter { name: "orientation", value, expected });
+        }
+        let means = if matches!(params.orient, OrientBy::Pulses) { Means::Pulses } else { Means::Automatic };
+        let (positions, report) = control.stage("estimating scanner positions", along_lines.len(), || {
+            locate(along_lines, &means, &params.locate, control)
+        })?;
+        let pairs = along_lines.positions.iter().zip(&positions);
+        let most_lean = if report.paths.is_empty() { 0.0 } else { pairs.filter_map(lean).fold(0.0, f64::max) };
+        let mut facts = Self {
+            paths: report.paths,
+            most_lean: LEAN_ROOM * most_lean,
+            carves: true,
+            top: extremes.top,
+            relief: extremes.relief,
+            measures_crowns: true,
+            whole: WholeSurvey {
+                has_ground: extremes.has_ground,
+                has_vegetation: extremes.has_vegetation,
+                ..WholeSurvey::default()
+            },
+            ..Self::default()
+        };
+        // what the model of these places estimates for itself
+        let cloud = places.clone();
+        let free = params.clone().with_orient(OrientBy::ScannerOfEachPoint(facts.scanner(&cloud, control)?));
+        let free = if facts.paths.is_empty() { params.clone() } else { free };
+        let (survey, report) = prepare(Cow::Owned(cloud), &free, control)?;
+        facts.isolation_radius = report.removed_by_cleaning.isolation_radius;
+        facts.noise = report.smoothing.map(|smoothing| smoothing.noise);
+        let Some(input) = &survey.carving else {
+            facts.carves = false;
+            return Ok(facts);
+        };
+        if input.needles.are_from_the_ground() {
+            let value = "a scanner on the ground".to_owned();
+            let expected = "one in the air where a survey is built in parts";
+            return Err(Error::InvalidParameter { name: "scanner", value, expected });
+        }
+        facts.measures_crowns = input.pulses.is_some();
+        if let BallParams::Carved(carved) | BallParams::CarvedIfPossible(carved, _) = &params.balls {
+            let whole = facts.crowns(&survey, carved, control)?;
+            facts.whole =
+                WholeSurvey { transmission: whole.transmission, crown_spacing: whole.crown_spacing, ..facts.whole };
+        }
+        Ok(facts)
+    }
+
+    fn crowns(&self, survey: &OrientedSurvey, params: &CarvedParams, control: &Control<'_>) -> Result<WholeSurvey> {
+        let Some(input) = &survey.carving else { return Ok(WholeSurvey::default()) };
+        let input = CarvedInput {
+            oriented: &survey.oriented,
+            index: &survey.index,
+            attributes: &input.attributes,
+            needles: &input.needles,
+            pulses: input.pulses.as_ref(),
+        };
+        Ok(carve_survey(&input, None, params, control)?.1)
+    }
+
+    /// How far around a place points must be known for its balls to be those of the whole survey, metres.
+    #[must_use]
+    pub fn halo(&self, params: &ModelParams) -> f64 {
+        let isolation = self.isolation_radius.unwrap_or(0.0);
+        let (ball, noise) =
+            (2.0 * f64::from(params.balls.shrinking_by(self).initial_radius), self.noise.unwrap_or(0.0));
+        // a ball ends at points, whose planes and kinds follow from neighbours, and these from theirs
+        let points = ball + 2.0 * f64::from(noise) + 2.0 * f64::from(FARTHEST_NEIGHBOR);
+        // or at pulses that end lower, and these hold other returns
+        let pulses = ball + (self.relief + ball) * self.most_lean;
+        points.max(pulses) + isolation + RULES_REACH
+    }
+
+    /// Whether pulses are assumed to fall straight down.
+    #[must_use]
+    pub fn are_pulses_assumed(&self) -> bool {
+        self.paths.is_empty()
+    }
+
+    /// How far away a point may lie and still be a neighbour, metres.
+    #[must_use]
+    pub fn farthest(&self) -> f32 {
+        FARTHEST_NEIGHBOR
+    }
+
+    /// The way to clean that leaves out what is left out of the whole.
+    #[must_use]
+    pub fn cleaning(&self, params: &CleanParams) -> CleanParams {
+        let with_radius = |isolated: &IsolatedPoints| {
+            let radius = IsolationRadius::Metres(self.isolation_radius?);
+            Some(IsolatedPoints { radius, ..*isolated })
+        };
+        CleanParams { isolated: params.isolated.as_ref().and_then(with_radius), ..params.clone() }
+    }
+
+    /// Local position of the scanner for each point, NaN where it is not known.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub(super) fn scanner(&self, cloud: &PointCloud, control: &Control<'_>) -> Result<Vec<[f32; 3]>> {
+        if self.are_pulses_assumed() {
+            return vertical_pulses(&cloud.positions, &VerticalParams::default(), control);
+        }
+        let mut positions = positions_on_paths(&self.paths, cloud);
+        for (scanner, point) in positions.iter_mut().zip(&cloud.positions) {
+            if lean((point, scanner)).is_none_or(|lean| lean > self.most_lean) {
+                *scanner = [f32::NAN; 3];
+            }
+        }
+        control.check()?;
+        Ok(positions)
+    }
+}
+
+/// How far the pulse from a scanner to a point leans: horizontal metres for each metre of height; `None` where it is not known or does not come
+/// from above.
+fn lean((point, scanner): (&[f32; 3], &[f32; 3])) -> Option<f64> {
+    let [x, y, z] = std::array::from_fn(|i| f64::from(scanner[i]) - f64::from(point[i]));
+    (z > 0.0).then(|| x.hypot(y) / z).filter(|lean| lean.is_finite())
+}

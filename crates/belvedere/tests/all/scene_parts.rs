@@ -1,0 +1,104 @@
+//! Parts of a survey that are built on their own, with what is known of the whole, have the balls of the whole.
+
+use crate::common::simulated::cloud_of;
+use belvedere::cloud::to_local;
+use belvedere::control::Control;
+use belvedere::model::{ModelParams, SceneModel, SurveyExtremes, SurveyFacts};
+use belvedere::{Frame, PointCloud};
+use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
+use std::sync::Arc;
+
+/// Blocks that pruning and thin surfaces work in, metres.
+const BLOCK: f32 = 64.0;
+
+/// A flown town in a frame whose origin is a corner of blocks.
+fn survey() -> PointCloud {
+    let scene = town(&TownParams { extent: 240.0, seed: 5, ..TownParams::default() });
+    let scan = scan_airborne(&scene, &AirborneParams { pulses_per_m2: 2.0, ..AirborneParams::default() });
+    let cloud = cloud_of(&scan);
+    let origin = [0, 1, 2].map(|axis| (cloud.frame.origin[axis] / 1024.0).floor() * 1024.0);
+    let positions = (0..scan.len()).map(|i| to_local([scan.x[i], scan.y[i], scan.z[i]], origin)).collect();
+    PointCloud { frame: Frame { origin, ..cloud.frame.clone() }, positions, ..cloud }
+}
+
+fn facts(cloud: &PointCloud) -> SurveyFacts {
+    let bounds = cloud.bounds().unwrap();
+    let has = |classes: std::ops::RangeInclusive<u8>| {
+        cloud.attributes.classification.iter().flatten().any(|class| classes.contains(class))
+    };
+    let extremes = SurveyExtremes {
+        top: bounds.high[2],
+        relief: f64::from(bounds.high[2] - bounds.low[2]),
+        has_ground: has(2..=2),
+        has_vegetation: has(3..=5),
+    };
+    SurveyFacts::estimate(cloud, cloud, &extremes, &ModelParams::default(), &Control::none()).unwrap()
+}
+
+/// Centres and radii of the balls of points in the rectangle, as bits, sorted.
+fn balls_of(cloud: &PointCloud, params: &ModelParams, low: [f32; 2], high: [f32; 2]) -> Vec<[u32; 4]> {
+    let (model, _) = SceneModel::build(cloud, params, &Control::none()).unwrap();
+    let balls = model.balls();
+    let is_in = |row: &usize| {
+        let p = cloud.positions[balls.source[*row] as usize];
+        (0..2).all(|axis| low[axis] <= p[axis] && p[axis] < high[axis])
+    };
+    let bits = |row: usize| {
+        let [x, y, z] = balls.centers[row];
+        [x, y, z, balls.radii[row]].map(f32::to_bits)
+    };
+    let mut found: Vec<[u32; 4]> = (0..balls.len()).filter(is_in).map(bits).collect();
+    found.sort_unstable();
+    found
+}
+
+fn check(cloud: &PointCloud) {
+    let facts = facts(cloud);
+    // through text and back, as parts elsewhere get them
+    let text = serde_json::to_string(&facts).unwrap();
+    let facts: SurveyFacts = serde_json::from_str(&text).unwrap();
+    let params = ModelParams::default();
+    #[expect(clippy::cast_possible_truncation, reason = "tens of metres")]
+    let halo = facts.halo(&params) as f32;
+    assert!((40.0..120.0).contains(&halo), "{halo}");
+    let params = params.with_facts(Some(Arc::new(facts)));
+    let bounds = cloud.bounds().unwrap();
+    let corner = |share: f32| [0, 1].map(|axis| bounds.low[axis] + share * (bounds.high[axis] - bounds.low[axis]));
+    for (low, size) in [(corner(0.0), 50.0), (corner(0.37), 64.0), (corner(0.55), 33.0)] {
+        let high = low.map(|v| v + size);
+        let from = low.map(|v| (v / BLOCK).floor() * BLOCK - halo);
+        let to = high.map(|v| (v / BLOCK).ceil() * BLOCK + halo);
+        let is_near = |p: &[f32; 3]| (0..2).all(|axis| from[axis] <= p[axis] && p[axis] <= to[axis]);
+        let rows: Vec<u32> = (0..).zip(&cloud.positions).filter(|(_, p)| is_near(p)).map(|(row, _)| row).collect();
+        assert!(rows.len() < cloud.len());
+        let (whole, part) = (balls_of(cloud, &params, low, high), balls_of(&cloud.select(&rows), &params, low, high));
+        assert!(whole.len() > 500, "{}", whole.len());
+        let different = whole.iter().filter(|ball| part.binary_search(ball).is_err()).count();
+        assert!(whole == part, "{different} of {} balls differ, {} in the part", whole.len(), part.len());
+    }
+}
+
+#[test]
+fn a_part_of_a_survey_has_the_balls_of_the_whole() {
+    check(&survey());
+}
+
+#[test]
+fn a_part_of_a_survey_without_classes_and_pulses_has_the_balls_of_the_whole() {
+    let mut cloud = survey();
+    cloud.attributes.classification = None;
+    cloud.attributes.gps_time = None;
+    check(&cloud);
+}
+
+#[test]
+fn a_whole_that_is_built_as_its_own_part_is_nearly_what_it_is_without_facts() {
+    let cloud = survey();
+    let with = ModelParams::default().with_facts(Some(Arc::new(facts(&cloud))));
+    let far = [[-1e6; 2], [1e6; 2]];
+    let part = balls_of(&cloud, &with, far[0], far[1]);
+    let whole = balls_of(&cloud, &ModelParams::default(), far[0], far[1]);
+    let same = whole.iter().filter(|ball| part.binary_search(ball).is_ok()).count();
+    // blocks end surfaces and are those of points as measured
+    assert!(same > whole.len() * 99 / 100, "{same} of {}", whole.len());
+}
