@@ -146,8 +146,27 @@ pub fn viewshed(
     params: &ViewshedParams,
     control: &Control<'_>,
 ) -> Result<Viewshed> {
+    viewshed_among(scene, observers, targets, &TargetTree::new(targets), params, control)
+}
+
+/// The same for targets that are ordered in a tree already, which saves most of the time where the same ones are asked about again and again.
+///
+/// # Errors
+/// Those of [`viewshed`], and [`Error::LengthMismatch`] for a tree of other targets.
+pub fn viewshed_among(
+    scene: &MedialScene,
+    observers: &[Observer],
+    targets: &[[f32; 3]],
+    tree: &TargetTree,
+    params: &ViewshedParams,
+    control: &Control<'_>,
+) -> Result<Viewshed> {
     check(observers, &params.earth)?;
-    let asked = Asked { scene, tree: TargetTree::new(targets), targets, params };
+    let (expected, found) = (targets.len(), tree.len());
+    if expected != found {
+        return Err(Error::LengthMismatch { what: "tree of targets", expected, found });
+    }
+    let asked = Asked { scene, tree, targets, params };
     let mut result = Viewshed {
         answers: asked.before_anybody_sees(observers),
         counts: vec![0; targets.len()],
@@ -174,7 +193,7 @@ const BAND: usize = 32;
 /// Targets in a tree, and how they are asked about.
 struct Asked<'a> {
     scene: &'a MedialScene,
-    tree: TargetTree,
+    tree: &'a TargetTree,
     targets: &'a [[f32; 3]],
     params: &'a ViewshedParams,
 }
@@ -234,7 +253,7 @@ impl Asked<'_> {
                 let answers = self.seen_by(observer, control)?;
                 answers.into_iter().enumerate().for_each(|(row, answer)| note(row, answer));
             } else {
-                self.scene.visible_among(Viewer::Eye(observer.eye), &self.tree, control, |place| {
+                self.scene.visible_among(Viewer::Eye(observer.eye), self.tree, control, |place| {
                     let target = self.tree.positions()[place].map(f64::from);
                     if observer.limits.allow(observer.eye, target) {
                         let answer = match self.params.unproven {
@@ -260,7 +279,7 @@ impl Asked<'_> {
     fn seen_by(&self, observer: &Observer, control: &Control<'_>) -> Result<Vec<Answer>> {
         let allowed = |target: [f32; 3]| observer.limits.allow(observer.eye, target.map(f64::from));
         if !self.bends(observer) {
-            let mut answers = self.scene.answer_among(Viewer::Eye(observer.eye), &self.tree, control)?;
+            let mut answers = self.scene.answer_among(Viewer::Eye(observer.eye), self.tree, control)?;
             let targets = self.targets.par_iter().with_min_len(CHUNK);
             answers.par_iter_mut().zip(targets).filter(|(_, target)| !allowed(**target)).for_each(|(answer, _)| {
                 *answer = Answer::Blocked;
