@@ -16,6 +16,8 @@ mod surroundings;
 mod towns;
 mod vegetation;
 mod view;
+#[cfg(feature = "view")]
+mod view_page;
 
 pub(crate) use balls::{
     Balls, Cleaning, MethodChoice, NeighborChoice, Normals, OrientChoice, Orienting, Shrinking, SideChoice, TreesChoice,
@@ -36,6 +38,8 @@ pub(crate) use surroundings::{BelowChoice, Eyes, Horizon, Isovist, Landmark, Mes
 pub(crate) use towns::{PatternChoice, ScannerChoice, Simulate};
 pub(crate) use vegetation::{LeavesChoice, ThroughTrees, ThroughTreesChoice};
 pub(crate) use view::{North, SizeChoice, ViewChoice};
+#[cfg(feature = "view")]
+pub(crate) use view_page::ViewPage;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -153,6 +157,9 @@ pub(crate) enum Command {
     Envelope(Envelope),
     /// Measure sun, shade and sky along walking routes and at windows
     Comfort(Comfort),
+    /// Show clouds in the browser, and ask there what is seen, lit and shaded
+    #[cfg(feature = "view")]
+    View(ViewPage),
     /// Compare the accuracy and cost of visibility methods against ground truth
     #[cfg(feature = "compare")]
     Compare(Compare),

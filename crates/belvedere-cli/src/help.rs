@@ -42,6 +42,8 @@ const TEXTS: &[(&str, &str)] = &[
     ("sun-hours", include_str!("help/sun-hours.txt")),
     ("envelope", include_str!("help/envelope.txt")),
     ("comfort", include_str!("help/comfort.txt")),
+    #[cfg(feature = "view")]
+    ("view", include_str!("help/view.txt")),
     #[cfg(feature = "compare")]
     ("compare", include_str!("help/compare.txt")),
     ("describe", include_str!("help/describe.txt")),

@@ -21,6 +21,8 @@ struct Run {
     shown: bool,
     json: bool,
     verbose: bool,
+    /// What else is told of all this.
+    also: Option<Box<dyn Watcher + Send>>,
     state: Mutex<State>,
 }
 
@@ -73,6 +75,9 @@ impl Run {
 
 impl Watcher for Run {
     fn begin(&self, stage: &'static str, total: usize) {
+        if let Some(also) = &self.also {
+            also.begin(stage, total);
+        }
         let bar = ProgressBar::with_draw_target((total > 0).then_some(total as u64), self.target());
         let template =
             if total > 0 { "{msg:24} [{bar:30}] {human_pos}/{human_len} {eta}" } else { "{msg:24} {spinner}" };
@@ -94,6 +99,9 @@ impl Watcher for Run {
     }
 
     fn advance(&self, count: usize) {
+        if let Some(also) = &self.also {
+            also.advance(count);
+        }
         if let Some(open) = self.state().open.last_mut() {
             open.done += count;
             open.bar.inc(count as u64);
@@ -104,6 +112,9 @@ impl Watcher for Run {
     }
 
     fn end(&self, stage: &'static str) {
+        if let Some(also) = &self.also {
+            also.end(stage);
+        }
         let mut state = self.state();
         let Some(place) = state.open.iter().rposition(|open| open.name == stage) else { return };
         let mut open = state.open.remove(place);
@@ -137,7 +148,14 @@ impl Stages {
     pub(crate) fn new(global: &Global) -> Self {
         let json = global.progress == ProgressChoice::Json;
         let shown = global.progress == ProgressChoice::Bar && !global.quiet;
-        Self { run: Run { shown, verbose: global.verbose, json, state: Mutex::default() } }
+        Self { run: Run { shown, verbose: global.verbose, json, also: None, state: Mutex::default() } }
+    }
+
+    /// The same, of which `also` is told too.
+    #[cfg(feature = "view")]
+    pub(crate) fn told_also(mut self, also: impl Watcher + Send + 'static) -> Self {
+        self.run.also = Some(Box::new(also));
+        self
     }
 
     /// What functions of the library report their stages to.

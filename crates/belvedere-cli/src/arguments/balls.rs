@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(crate) struct Normals {
     #[command(flatten)]
     pub(crate) cleaning: Cleaning,
@@ -21,7 +21,7 @@ pub(crate) struct Normals {
     pub(crate) config: SceneConfig,
 }
 
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(crate) struct Balls {
     #[command(flatten)]
     pub(crate) cleaning: Cleaning,
@@ -59,7 +59,7 @@ pub(crate) struct Balls {
     pub(crate) config: SceneConfig,
 }
 
-#[derive(Args)]
+#[derive(Args, Clone)]
 #[command(next_help_heading = "Cleaning")]
 pub(crate) struct Cleaning {
     /// Keep noise points (classes 7 and 18) and withheld points
@@ -73,7 +73,7 @@ pub(crate) struct Cleaning {
     pub(crate) keep_isolated: bool,
 }
 
-#[derive(Args)]
+#[derive(Args, Clone)]
 #[command(next_help_heading = "Normals")]
 pub(crate) struct Orienting {
     /// Number of neighbours for a normal, 3 to 256, or `adaptive`
@@ -99,7 +99,7 @@ fn rule(name: &str) -> Result<Rule, String> {
         .ok_or_else(|| format!("unknown rule; the rules are {}", Rule::ALL.map(Rule::name).join(", ")))
 }
 
-#[derive(Args)]
+#[derive(Args, Clone)]
 #[command(next_help_heading = "Balls")]
 pub(crate) struct Shrinking {
     /// Method that limits the balls [default: carved if pulses are known, else tau; angles for a folder]

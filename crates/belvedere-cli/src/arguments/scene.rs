@@ -4,7 +4,7 @@ use super::{Cleaning, Orienting, Shrinking, known_crs};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(crate) struct CloudInput {
     /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy), a catalogue of tiles (.vpc), or a folder of clouds
     ///
@@ -30,7 +30,7 @@ pub(crate) enum UpChoice {
 }
 
 /// Clouds to build balls from, or a ball file.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(crate) struct SceneInput {
     #[command(flatten)]
     pub(crate) input: CloudInput,
@@ -48,7 +48,7 @@ pub(crate) struct SceneInput {
 }
 
 /// The parameters of balls in a file.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(crate) struct SceneConfig {
     /// JSON file with the parameters of balls, instead of the flags that `belvedere balls --help` lists
     ///

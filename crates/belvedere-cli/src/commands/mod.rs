@@ -29,6 +29,8 @@ mod surroundings;
 mod targets;
 mod trajectory;
 mod tree_light;
+#[cfg(feature = "view")]
+mod view;
 mod viewshed;
 
 use crate::arguments::{Cli, Command, Usage};
@@ -66,6 +68,8 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::SunHours(arguments) => sun_hours::run(arguments, global),
         Command::Envelope(arguments) => envelope::run(arguments, global),
         Command::Comfort(arguments) => comfort::run(arguments, global),
+        #[cfg(feature = "view")]
+        Command::View(arguments) => view::run(arguments, global),
         #[cfg(feature = "compare")]
         Command::Compare(arguments) => compare::run(arguments, global),
         Command::Describe => Ok(describe::run()),

@@ -32,4 +32,6 @@ mod surroundings;
 mod trajectory;
 mod tree_light;
 mod usage;
+#[cfg(feature = "view")]
+mod view;
 mod written_files;

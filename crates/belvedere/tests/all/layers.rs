@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The crates of the library, and the crates of ours that each may import.
-const CRATES: [(&str, &[&str]); 10] = [
+const CRATES: [(&str, &[&str]); 11] = [
     ("data", &[]),
     ("io", &["data"]),
     ("figures", &["data", "io"]),
@@ -12,7 +12,8 @@ const CRATES: [(&str, &[&str]); 10] = [
     ("", &["data", "io", "figures", "core", "apps"]),
     ("scenes", &[]),
     ("baselines", &[""]),
-    ("cli", &["", "scenes", "baselines"]),
+    ("viewer", &[""]),
+    ("cli", &["", "scenes", "baselines", "viewer"]),
     ("python", &["", "scenes"]),
 ];
 
@@ -33,7 +34,7 @@ const LEVELS: [(&str, u8); 12] = [
 ];
 
 /// Crates of others that only one file or folder may name.
-const ONE_HOME: [(&str, &str); 20] = [
+const ONE_HOME: [(&str, &str); 26] = [
     ("ab_glyph::", "figures/src/font.rs"),
     ("colorous::", "io/src/colors.rs"),
     ("las::", "io/src/"),
@@ -54,6 +55,12 @@ const ONE_HOME: [(&str, &str); 20] = [
     ("proj_wkt::", "data/src/crs"),
     ("solar_positioning::", "apps/src/sun/position.rs"),
     ("jiff::", "apps/src/sun/time.rs"),
+    ("axum::", "viewer/src/"),
+    ("tokio::", "viewer/src/"),
+    ("hyper::", "viewer/src/server.rs"),
+    ("hyper_util::", "viewer/src/server.rs"),
+    ("open::", "viewer/src/server.rs"),
+    ("getrandom::", "viewer/src/guard.rs"),
 ];
 
 fn level(module: &str) -> Option<u8> {

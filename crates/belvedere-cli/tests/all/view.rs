@@ -1,0 +1,329 @@
+//! `belvedere view`: what the page is answered is what the commands that it shows give. No browser is needed.
+
+use crate::common::{Workplace, column};
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+/// A program that serves a page; ended when the test is over.
+struct Page {
+    program: Child,
+    host: String,
+    token: String,
+}
+
+impl Drop for Page {
+    fn drop(&mut self) {
+        let _ = self.program.kill();
+        let _ = self.program.wait();
+    }
+}
+
+impl Page {
+    fn open(place: &Workplace, arguments: &str) -> Self {
+        let mut program = place
+            .command(&format!("view {arguments} --no-browser"))
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut url = String::new();
+        BufReader::new(program.stdout.take().unwrap()).read_line(&mut url).unwrap();
+        let (host, token) = url.trim().strip_prefix("http://").unwrap().split_once('/').unwrap();
+        let page = Self { program, host: host.to_owned(), token: token.trim_end_matches('/').to_owned() };
+        let start = Instant::now();
+        while page.state()["scene"].is_null() {
+            assert!(start.elapsed() < Duration::from_secs(120), "{}", page.state());
+            std::thread::sleep(Duration::from_millis(30));
+        }
+        page
+    }
+
+    /// Status and body of a request.
+    fn request(&self, method: &str, path: &str, body: &str) -> (u16, Vec<u8>) {
+        let mut stream = TcpStream::connect(&self.host).unwrap();
+        let (host, token) = (&self.host, &self.token);
+        write!(
+            stream,
+            "{method} /{token}/{path} HTTP/1.1\r\nHost: {host}\r\nContent-Type: application/json\r\nContent-Length: {}\r\n\
+             Connection: close\r\n\r\n{body}",
+            body.len()
+        )
+        .unwrap();
+        let mut reply = Vec::new();
+        stream.read_to_end(&mut reply).unwrap();
+        let end = reply.windows(4).position(|four| four == b"\r\n\r\n").unwrap() + 4;
+        let status = std::str::from_utf8(&reply[9..12]).unwrap().parse().unwrap();
+        (status, reply.split_off(end))
+    }
+
+    fn state(&self) -> Value {
+        serde_json::from_slice(&self.request("GET", "state", "").1).unwrap()
+    }
+
+    /// Named values of an answer, and its bytes.
+    fn ask(&self, question: &str, values: &Value) -> (Value, Vec<u8>) {
+        let (status, mut reply) = self.request("POST", &format!("ask/{question}"), &values.to_string());
+        assert_eq!(status, 200, "{question}: {}", String::from_utf8_lossy(&reply));
+        let length = u32::from_le_bytes(reply[..4].try_into().unwrap()) as usize;
+        let body = reply.split_off(4 + length);
+        (serde_json::from_slice(&reply[4..]).unwrap(), body)
+    }
+
+    fn refusal(&self, question: &str, values: &Value) -> String {
+        let (status, reply) = self.request("POST", &format!("ask/{question}"), &values.to_string());
+        assert_eq!(status, 422, "{question}");
+        serde_json::from_slice::<Value>(&reply).unwrap()["error"].as_str().unwrap().to_owned()
+    }
+
+    /// Coordinates of the points in the order in which they are sent.
+    fn points(&self) -> Vec<[f64; 3]> {
+        let shown = &self.state()["shown"];
+        let number = |value: &Value| value.as_f64().unwrap();
+        let mut points = Vec::new();
+        for (i, chunk) in shown["chunks"].as_array().unwrap().iter().enumerate() {
+            let (status, bytes) = self.request("GET", &format!("points/{i}"), "");
+            assert_eq!((status, bytes.len()), (200, 8 * chunk["count"].as_u64().unwrap() as usize));
+            for point in bytes.chunks(8) {
+                points.push([0, 1, 2].map(|axis| {
+                    let steps = f64::from(u16::from_le_bytes([point[2 * axis], point[2 * axis + 1]]));
+                    number(&chunk["low"][axis]) + steps * number(&chunk["step"][axis]) + number(&shown["origin"][axis])
+                }));
+            }
+        }
+        points
+    }
+}
+
+/// Runs the command lines of an answer as a shell would, the table of places written by the test.
+fn run_shown(place: &Workplace, answer: &Value) {
+    for line in answer["command"].as_str().unwrap().lines() {
+        if let Some(table) = line.strip_prefix("printf '") {
+            let (text, name) = table.split_once("' > ").unwrap();
+            place.write(name, text.replace("\\n", "\n"));
+        } else {
+            place.summary(line.strip_prefix("belvedere ").unwrap());
+        }
+    }
+}
+
+/// A town of 60 m, its page, and a place on a street of it.
+fn town(place: &Workplace) -> (Page, [f64; 3]) {
+    assert_eq!(place.run("simulate town -o town --extent 60").status, 0);
+    let page = Page::open(place, "town/cloud.laz");
+    let points = page.points();
+    let middle = [0, 1].map(|i| points.iter().map(|p| p[i]).sum::<f64>() / points.len() as f64);
+    // low points near the middle lie on the ground
+    let near = |p: &&[f64; 3]| (p[0] - middle[0]).hypot(p[1] - middle[1]) < 12.0;
+    let low = points.iter().filter(near).min_by(|a, b| a[2].total_cmp(&b[2])).unwrap();
+    (page, low.map(|v| (v * 1000.0).round() / 1000.0))
+}
+
+/// Whether a place lies in the inner part of the cloud, where roofs are whole.
+fn is_in_the_middle(place: &[f64; 3], points: &[[f64; 3]]) -> bool {
+    let middle = [0, 1].map(|i| points.iter().map(|p| p[i]).sum::<f64>() / points.len() as f64);
+    (0..2).all(|i| (place[i] - middle[i]).abs() < 20.0)
+}
+
+/// The values that the command line wrote for points, in the order in which the page gets points.
+fn as_sent(page: &Page, place: &Workplace, table: &str, name: &str) -> Vec<u8> {
+    let [x, y, z] = ["x", "y", "z"].map(|axis| column(place, table, axis));
+    let values = column(place, table, name);
+    let mut rows: Vec<([i64; 3], u8)> =
+        (0..x.len()).map(|i| (millimetres([x[i], y[i], z[i]]), values[i] as u8)).collect();
+    rows.sort_unstable();
+    let find = |point: [f64; 3]| {
+        let key = millimetres(point);
+        // what is sent is rounded to the steps of its chunk
+        let near = |row: &&([i64; 3], u8)| (0..3).all(|i| (row.0[i] - key[i]).abs() <= 3);
+        let from = rows.partition_point(|row| row.0[0] < key[0] - 3);
+        rows[from..].iter().take_while(|row| row.0[0] <= key[0] + 3).find(near).unwrap_or_else(|| panic!("{point:?}")).1
+    };
+    page.points().into_iter().map(find).collect()
+}
+
+fn millimetres(point: [f64; 3]) -> [i64; 3] {
+    point.map(|v| (v * 1000.0).round() as i64)
+}
+
+#[test]
+fn each_answer_of_the_page_is_that_of_the_command_it_shows() {
+    let place = Workplace::new();
+    let (page, ground) = town(&place);
+    let eye = [ground[0], ground[1], ground[2] + 1.7];
+    let same = |sent: &[u8], table: &str, name: &str| {
+        let written = as_sent(&page, &place, table, name);
+        assert_eq!(sent.len(), written.len());
+        let differing = sent.iter().zip(&written).filter(|(a, b)| a != b).count();
+        // points nearer to each other than the steps in which they are sent may be taken for one another
+        assert!(differing * 10_000 <= sent.len(), "{differing} of {}", sent.len());
+    };
+
+    let (head, answers) = page.ask("seen", &json!({ "place": eye }));
+    let as_table =
+        |head: &Value, from: &str, to: &str| json!({ "command": head["command"].as_str().unwrap().replace(from, to) });
+    run_shown(&place, &as_table(&head, "seen.laz", "seen.csv"));
+    same(&answers, "seen.csv", "answer");
+    assert!(head["visible"].as_u64().unwrap() > 100 && head["blocked"].as_u64().unwrap() > 100, "{head}");
+    assert_eq!(head["visible"].as_u64().unwrap() as usize, answers.iter().filter(|&&code| code == 1).count());
+
+    let (head, answers) = page.ask("shadow", &json!({ "time": "2026-06-21T17:00", "zone": "Europe/Amsterdam" }));
+    run_shown(&place, &as_table(&head, "shadow.laz", "shadow.csv"));
+    same(&answers, "shadow.csv", "lit");
+
+    let target = [ground[0] + 20.0, ground[1] + 9.0, ground[2] + 2.0];
+    let (head, _) = page.ask("line", &json!({ "observer": eye, "target": target }));
+    run_shown(&place, &json!({ "command": head["command"].as_str().unwrap().replace("profile.png", "profile.csv") }));
+    let codes = ["blocked", "visible", "unproven"];
+    assert_eq!(head["answer"], codes[column(&place, "line.csv", "answer")[0] as usize]);
+    let range = column(&place, "line.csv", "first_block_range_m")[0];
+    assert!(head["first_block"]["range_m"].as_f64().is_none_or(|v| (v - range).abs() < 1e-9), "{range}");
+    let heights: Vec<f64> = head["profile"]["line"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+    let written = column(&place, "profile.csv", "line");
+    assert!(heights.len() == written.len() && heights.iter().zip(&written).all(|(a, b)| (a - b).abs() < 0.006));
+
+    let (head, _) = page.ask("sun", &json!({ "place": eye, "date": "2026-03-21", "zone": "Europe/Amsterdam" }));
+    run_shown(&place, &head);
+    for (key, name) in [("sun_hours", "sun_hours"), ("first_light", "first_light"), ("last_light", "last_light")] {
+        let written = column(&place, "sun.csv", name)[0];
+        // the page shows three decimals
+        assert!((head[key].as_f64().unwrap() - written).abs() < 0.000_51, "{name}: {written}, {}", head[key]);
+    }
+    // the dots of the diagram add up to the hours
+    let lit = head["lit"].as_array().unwrap().iter().filter(|lit| lit.as_bool().unwrap()).count() as f64 / 6.0;
+    assert!((lit - head["sun_hours"].as_f64().unwrap()).abs() < 0.34, "{lit}");
+
+    let (head, _) = page.ask("around", &json!({ "place": eye }));
+    run_shown(&place, &head);
+    let written = column(&place, "sky.csv", "sky_view_factor")[0];
+    assert!(
+        (head["sky_view_factor"].as_f64().unwrap() - written).abs() < 0.000_051,
+        "{written} {}",
+        head["sky_view_factor"]
+    );
+    let isovist: Value = serde_json::from_str(&place.text("isovist.json")).unwrap();
+    let volume = isovist["isovists"][0]["volume_m3"].as_f64().unwrap();
+    assert!((head["isovist"]["volume_m3"].as_f64().unwrap() - volume).abs() < 0.0051, "{volume}");
+
+    let (head, body) = page.ask("who", &json!({ "place": eye }));
+    let command = head["command"].as_str().unwrap().strip_prefix("belvedere ").unwrap();
+    let run = place.summary(command);
+    for name in ["visible", "blocked", "unproven"] {
+        assert_eq!(head[name], run["cells"][name], "{name}");
+    }
+    let cells = head["grid"]["columns"].as_u64().unwrap() * head["grid"]["rows"].as_u64().unwrap();
+    assert_eq!(body.len() as u64, 5 * cells);
+
+    // one of the highest places of the town is a roof
+    let points = page.points();
+    let mut high: Vec<&[f64; 3]> = points.iter().filter(|p| is_in_the_middle(p, &points)).collect();
+    high.sort_by(|a, b| b[2].total_cmp(&a[2]));
+    let is_roof =
+        |place: &&&[f64; 3]| page.request("POST", "ask/roof", &json!({ "place": place }).to_string()).0 == 200;
+    let roof = high.iter().step_by(20).find(is_roof).unwrap();
+    let (head, _) = page.ask("roof", &json!({ "place": roof }));
+    run_shown(&place, &head);
+    let row = head["plane"].as_u64().unwrap() as usize - 1;
+    for name in ["kwh_m2", "max_loss", "tilt_deg", "azimuth_deg", "kwh"] {
+        let written = column(&place, "roofs.csv", name)[row];
+        assert!((head[name].as_f64().unwrap() - written).abs() < 1e-9, "{name}: {written}, {}", head[name]);
+    }
+
+    let corners = [[-6.0, -6.0], [6.0, -6.0], [6.0, 6.0], [-6.0, 6.0]].map(|[x, y]| [ground[0] + x, ground[1] + y]);
+    let (head, body) =
+        page.ask("sun_area", &json!({ "corners": corners, "date": "2026-06-21", "zone": "Europe/Amsterdam" }));
+    run_shown(&place, &as_table(&head, "sun.tif", "cells.csv"));
+    let [x, y, hours] = ["x", "y", "sun_hours"].map(|name| column(&place, "cells.csv", name));
+    let inside = |i: &usize| (x[*i] - ground[0]).abs() < 6.0 && (y[*i] - ground[1]).abs() < 6.0;
+    let inside: Vec<usize> = (0..x.len()).filter(inside).collect();
+    assert_eq!(head["cells"].as_u64().unwrap() as usize, inside.len());
+    let mean = inside.iter().map(|&i| hours[i]).sum::<f64>() / inside.len() as f64;
+    assert!((head["mean_hours"].as_f64().unwrap() - mean).abs() < 0.0011, "{mean}");
+    assert_eq!(body.len(), 16 * inside.len());
+}
+
+#[test]
+fn what_cannot_be_answered_is_refused_in_words() {
+    let place = Workplace::new();
+    let (page, ground) = town(&place);
+    let far = [ground[0] + 5000.0, ground[1], ground[2]];
+    assert!(page.refusal("seen", &json!({ "place": far })).contains("outside the cloud"));
+    assert!(
+        page.refusal("seen", &json!({ "place": [ground[0], ground[1], ground[2] - 0.5] })).contains("below the ground")
+    );
+    assert!(
+        page.refusal("sun", &json!({ "place": ground, "date": "2026-02-30", "zone": "UTC" })).contains("2026-02-30")
+    );
+    assert!(page.refusal("shadow", &json!({ "time": "2026-06-21T12:00", "zone": "Mars" })).contains("Mars"));
+    assert!(page.refusal("line", &json!({ "observer": ground, "target": ground })).contains("same place"));
+    assert!(page.refusal("nothing", &json!({})).contains("no such question"));
+    assert!(page.refusal("seen", &json!({ "place": ground, "and": 1 })).contains("and"));
+
+    place.refusal(1, "view missing.laz --no-browser", &["missing.laz"]);
+    place.refusal(2, "view town/cloud.laz --port 99999 --no-browser", &["--port"]);
+    // two tabs are served alike
+    assert_eq!(page.request("GET", "", "").0, 200);
+    assert_eq!(page.request("GET", "page.js", "").0, 200);
+}
+
+#[test]
+fn a_ball_file_and_its_cloud_are_ready_without_building() {
+    let place = Workplace::new();
+    assert_eq!(place.run("simulate town -o town --extent 60").status, 0);
+    place.summary("balls town/cloud.laz -o balls.npz");
+    let page = Page::open(&place, "balls.npz town/cloud.laz");
+    let state = page.state();
+    let count = state["shown"]["point_count"].as_u64().unwrap();
+    assert!(count > 1000 && state["scene"]["tells_unproven"] == true, "{state}");
+    let balls = page.request("GET", "balls", "").1;
+    assert_eq!(balls.len() as u64, 16 * state["scene"]["ball_count"].as_u64().unwrap());
+
+    let alone = Page::open(&place, "balls.npz");
+    assert_eq!(alone.state()["shown"]["point_count"], 0);
+    assert!(alone.refusal("seen", &json!({ "place": [0, 0, 0] })).contains("together with its cloud"));
+}
+
+#[test]
+fn a_page_is_written_as_one_file_with_the_shadows_of_a_day() {
+    let place = Workplace::new();
+    assert_eq!(place.run("simulate town -o town --extent 60").status, 0);
+    let run = place.summary("view town/cloud.laz --export page.html --date 2026-06-21 --zone Europe/Amsterdam");
+    let text = place.text("page.html");
+    // the sun rises at 5:18 and sets at 22:03 there
+    assert_eq!(run["suns"], 17);
+    assert!(!text.contains("src=\"page.js\"") && !text.contains("href=\"style.css\""));
+    let data = text.split("id=\"exported\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let data: Value = serde_json::from_str(data).unwrap();
+    assert_eq!(data["state"]["shown"]["point_count"], run["points"]);
+    // the shadow of a sun is that of the command: as many points are lit
+    let sun = &data["suns"][10];
+    let command = sun["command"].as_str().unwrap().replace("shadow.laz", "shadow.csv");
+    place.summary(command.strip_prefix("belvedere ").unwrap());
+    let lit = column(&place, "shadow.csv", "lit").iter().filter(|lit| **lit > 0.0).count();
+    let digit = |c: u8| match c {
+        b'A'..=b'Z' => c - b'A',
+        b'a'..=b'z' => c - b'a' + 26,
+        b'0'..=b'9' => c - b'0' + 52,
+        b'+' => 62,
+        b'/' => 63,
+        _ => 0,
+    };
+    let bits: u32 = sun["bits"].as_str().unwrap().bytes().map(|c| digit(c).count_ones()).sum();
+    assert_eq!(bits as usize, lit);
+    place.refusal(2, "view town/cloud.laz --export page.txt", &["--export", "html"]);
+    place.refusal(2, "view town/cloud.laz --export page.html --date yesterday", &["--date"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_the_page_with_success() {
+    let place = Workplace::new();
+    assert_eq!(place.run("simulate town -o town --extent 60").status, 0);
+    let mut page = Page::open(&place, "town/cloud.laz");
+    let id = page.program.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+    assert_eq!(page.program.wait().unwrap().code(), Some(0));
+    assert!(TcpStream::connect(&page.host).is_err(), "nobody listens any more");
+}

@@ -1,0 +1,108 @@
+// Ways of moving: around a place, on foot, and through the air.
+import { PerspectiveCamera, Vector3 } from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+
+const EYE = 1.7;
+const STEP = 4;
+
+export class Mover {
+  constructor(canvas, changed) {
+    this.camera = new PerspectiveCamera(50, 1, 0.1, 5000);
+    this.camera.up.set(0, 0, 1);
+    this.orbit = new OrbitControls(this.camera, canvas);
+    Object.assign(this.orbit, { zoomToCursor: true, screenSpacePanning: false, maxPolarAngle: 1.75, enableDamping: false });
+    this.orbit.addEventListener("change", changed);
+    this.changed = changed;
+    this.kind = "orbit";
+    this.keys = new Set();
+    this.groundAt = () => undefined;
+    canvas.addEventListener("pointermove", (event) => {
+      if (this.kind === "orbit" || !(event.buttons & 1)) return;
+      this.turn(-event.movementX * 0.004, -event.movementY * 0.004);
+    });
+  }
+
+  show(low, high, flat = false) {
+    const middle = low.map((v, i) => (v + high[i]) / 2);
+    const size = Math.hypot(...low.map((v, i) => high[i] - v)) || 10;
+    this.size = size;
+    const away = flat ? [0, -0.001, 1.05] : [-0.4, -0.62, 0.56];
+    // towers make boxes high: most of what is seen lies on the ground
+    if (!flat) middle[2] = low[2] + 0.12 * (high[2] - low[2]);
+    this.camera.position.set(...middle.map((v, i) => v + away[i] * size));
+    this.orbit.target.set(...middle);
+    this.camera.near = Math.max(size / 5000, 0.05);
+    this.camera.far = size * 8;
+    this.camera.updateProjectionMatrix();
+    this.kind = "orbit";
+    this.orbit.enabled = true;
+    this.camera.lookAt(this.orbit.target);
+    this.orbit.update();
+    this.changed();
+  }
+
+  setKind(kind) {
+    this.kind = kind;
+    this.orbit.enabled = kind === "orbit";
+    const forward = this.camera.getWorldDirection(new Vector3());
+    if (kind === "orbit") {
+      this.orbit.target.copy(this.camera.position).addScaledVector(forward, Math.max(20, this.camera.position.z));
+      this.orbit.update();
+    } else if (kind === "walk") {
+      const { x, y } = this.orbit.target;
+      this.camera.position.set(x, y, (this.groundAt(x, y) ?? this.orbit.target.z) + EYE);
+      forward.z = 0;
+      this.camera.lookAt(this.camera.position.clone().add(forward.lengthSq() > 1e-6 ? forward : new Vector3(0, 1, 0)));
+    }
+    this.changed();
+  }
+
+  // Turns by angles: around the middle of the scene, or the head.
+  turn(aside, up) {
+    if (this.kind === "orbit") {
+      this.orbit._rotateLeft(-aside);
+      this.orbit._rotateUp(-up);
+      this.orbit.update();
+      return;
+    }
+    const forward = this.camera.getWorldDirection(new Vector3());
+    const azimuth = Math.atan2(forward.y, forward.x) + aside;
+    const elevation = Math.max(-1.5, Math.min(1.5, Math.asin(forward.z) + up));
+    const look = new Vector3(Math.cos(azimuth) * Math.cos(elevation), Math.sin(azimuth) * Math.cos(elevation), Math.sin(elevation));
+    this.camera.lookAt(this.camera.position.clone().add(look));
+    this.changed();
+  }
+
+  zoom(factor) {
+    const { position } = this.camera;
+    position.sub(this.orbit.target).multiplyScalar(factor).add(this.orbit.target);
+    this.orbit.update();
+    this.changed();
+  }
+
+  // Goes ahead, aside and up by steps.
+  go(ahead, aside, up) {
+    const forward = this.camera.getWorldDirection(new Vector3());
+    if (this.kind !== "fly") forward.setZ(0).normalize();
+    const right = new Vector3().crossVectors(forward, this.camera.up).normalize();
+    const length = this.kind === "orbit" ? this.size / 60 : STEP / 4;
+    const by = forward.multiplyScalar(ahead * length).addScaledVector(right, aside * length).add(new Vector3(0, 0, up * length));
+    this.camera.position.add(by);
+    if (this.kind === "orbit") this.orbit.target.add(by);
+    if (this.kind === "walk") {
+      const { x, y, z } = this.camera.position;
+      const ground = this.groundAt(x, y);
+      if (ground !== undefined) this.camera.position.z = z + (ground + EYE - z) * 0.5;
+    }
+    if (this.kind === "orbit") this.orbit.update();
+    this.changed();
+  }
+
+  // Stands at a local place.
+  stand([x, y, z]) {
+    const forward = this.camera.getWorldDirection(new Vector3()).setZ(0);
+    this.camera.position.set(x, y, z);
+    this.camera.lookAt(this.camera.position.clone().add(forward));
+    this.changed();
+  }
+}

@@ -1,0 +1,225 @@
+// Points on the screen: chunks in random order drawn up to a budget, and shading by depth (eye-dome lighting).
+import {
+  BufferAttribute, BufferGeometry, Color, DataTexture, GLSL3, Mesh, NearestFilter, OrthographicCamera, Points, RawShaderMaterial, RGBAFormat, Scene,
+  Sphere, UnsignedByteType, Vector2, Vector3, WebGLRenderTarget,
+} from "three";
+
+const PACK = `
+vec4 packed(float d) { float v = clamp(d, 0.0, 0.9999999) * 16777215.0; float h = floor(v / 65536.0); float m = floor((v - h * 65536.0) / 256.0);
+  return vec4(h, m, v - h * 65536.0 - m * 256.0, 255.0) / 255.0; }`;
+
+const VERTEX = `precision highp float; precision highp int;
+in uvec4 place; in uint value; in uint rgb565;
+uniform mat4 modelViewMatrix, projectionMatrix; uniform vec3 low, step3; uniform vec2 heights; uniform int mode; uniform float size, pixels, far, most;
+uniform sampler2D table; out vec3 color; out float depth;
+void main() {
+  vec3 local = low + vec3(place.xyz) * step3;
+  vec4 view = modelViewMatrix * vec4(local, 1.0);
+  gl_Position = projectionMatrix * view;
+  depth = -view.z / far;
+  gl_PointSize = clamp(size * pixels / max(-view.z, 0.01), 1.6, most);
+  float index = 0.0;
+  if (mode == 0) index = float(place.w & 255u); else if (mode == 1) index = float(place.w >> 8u);
+  else if (mode == 2) index = clamp((local.z - heights.x) / max(heights.y - heights.x, 0.001), 0.0, 1.0) * 255.0; else index = float(value);
+  color = mode == 3 ? vec3(float(rgb565 >> 11u) / 31.0, float((rgb565 >> 5u) & 63u) / 63.0, float(rgb565 & 31u) / 31.0)
+    : texture(table, vec2((index + 0.5) / 256.0, 0.5)).rgb;
+}`;
+const FRAGMENT = `precision highp float; in vec3 color; in float depth; layout(location = 0) out vec4 shown; layout(location = 1) out vec4 far24;${PACK}
+void main() { vec2 o = gl_PointCoord - 0.5; if (dot(o, o) > 0.26) discard; shown = vec4(color, 1.0); far24 = packed(depth); }`;
+
+const BALL_VERTEX = `precision highp float; in vec4 ball; uniform mat4 modelViewMatrix, projectionMatrix; uniform float pixels;
+out vec3 middle; out float radius;
+void main() { vec4 view = modelViewMatrix * vec4(ball.xyz, 1.0); middle = view.xyz; radius = ball.w;
+  gl_Position = projectionMatrix * view; gl_PointSize = clamp(2.15 * ball.w * pixels / max(-view.z, 0.01), 1.5, 1000.0); }`;
+const BALL_FRAGMENT = `precision highp float; in vec3 middle; in float radius; uniform mat4 projectionMatrix; uniform float far; uniform vec3 tint;
+layout(location = 0) out vec4 shown; layout(location = 1) out vec4 far24;${PACK}
+void main() { vec2 o = (gl_PointCoord - 0.5) * 2.15; o.y = -o.y; float h = 1.0 - dot(o, o); if (h < 0.0) discard; vec3 n = vec3(o, sqrt(h));
+  vec3 at = middle + radius * n; vec4 clip = projectionMatrix * vec4(at, 1.0); gl_FragDepth = clip.z / clip.w * 0.5 + 0.5;
+  shown = vec4(tint * (0.45 + 0.55 * max(dot(n, normalize(vec3(0.3, 0.6, 0.75))), 0.0)), 1.0); far24 = packed(-at.z / far); }`;
+
+const SHADE = `precision highp float; uniform sampler2D shown, far24; uniform vec2 texel; uniform vec3 ground; uniform float far, strength, radius; in vec2 uv; out vec4 color;
+float at(vec2 p) { vec4 t = texture(far24, p); return t.a < 0.5 ? -1.0 : log2(max(dot(t.rgb, vec3(65536.0, 256.0, 1.0)) * 255.0 / 16777215.0 * far, 0.01)); }
+void main() { float d = at(uv); vec3 c = texture(shown, uv).rgb; if (d < -0.99 && texture(far24, uv).a < 0.5) { color = vec4(ground, 1.0); return; }
+  float sum = 0.0; for (int i = 0; i < 8; i++) { float a = float(i) * 0.7853982; vec2 p = uv + vec2(cos(a), sin(a)) * radius * texel; vec4 t = texture(far24, p);
+    if (t.a >= 0.5) sum += clamp(d - at(p), 0.0, 1.0); }
+  color = vec4(c * max(exp(-strength * sum / 8.0), 0.3), 1.0); }`;
+
+const uniforms = (values) => Object.fromEntries(Object.entries(values).map(([name, value]) => [name, { value }]));
+
+export class Cloud {
+  constructor(renderer) {
+    this.renderer = renderer;
+    this.scene = new Scene();
+    this.extra = new Scene();
+    this.chunks = [];
+    this.budget = 3e6;
+    this.table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
+    this.own = uniforms({ table: this.table, mode: 2, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40 });
+    this.target = new WebGLRenderTarget(1, 1, { count: 2, magFilter: NearestFilter, minFilter: NearestFilter });
+    this.shade = new RawShaderMaterial({
+      glslVersion: GLSL3, depthTest: false, depthWrite: false, fragmentShader: SHADE,
+      vertexShader: "precision highp float; in vec3 position; out vec2 uv; void main() { uv = position.xy * 0.5 + 0.5; gl_Position = vec4(position.xy, 0.0, 1.0); }",
+      uniforms: uniforms({ shown: this.target.textures[0], far24: this.target.textures[1], texel: new Vector2(), ground: new Color(), far: 1000, strength: 40, radius: 1.6 }),
+    });
+    const screen = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
+    this.screen = new Mesh(screen, this.shade);
+    this.screen.frustumCulled = false;
+    this.flat = new OrthographicCamera();
+    this.drawn = 0;
+  }
+
+  // Adds points: four numbers of 16 bits each, steps along the axes from `low`, class and intensity.
+  add(low, step, places, values, shared = this.own, scene = this.scene) {
+    const geometry = new BufferGeometry();
+    const integers = (array, size) => Object.assign(new BufferAttribute(array, size), { gpuType: 1013 });
+    geometry.setAttribute("place", integers(places, 4));
+    geometry.setAttribute("value", integers(values ?? new Uint8Array(places.length / 4), 1));
+    geometry.setAttribute("rgb565", integers(new Uint16Array(1), 1));
+    // without an attribute called position, three.js does not know how many points there are
+    geometry.setDrawRange(0, places.length / 4);
+    const high = low.map((v, i) => v + step[i] * 65535);
+    const middle = new Vector3(...low.map((v, i) => (v + high[i]) / 2));
+    geometry.boundingSphere = new Sphere(middle, middle.distanceTo(new Vector3(...high)));
+    const material = new RawShaderMaterial({
+      glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { ...shared, ...uniforms({ low: new Vector3(...low), step3: new Vector3(...step) }) },
+    });
+    const object = new Points(geometry, material);
+    scene.add(object);
+    const chunk = { object, geometry, low, step, places, count: places.length / 4 };
+    geometry.setAttribute("rgb565", integers(new Uint16Array(chunk.count), 1));
+    if (scene === this.scene) this.chunks.push(chunk);
+    return chunk;
+  }
+
+  setValues(bytes) {
+    let first = 0;
+    for (const chunk of this.chunks) {
+      chunk.geometry.getAttribute("value").copyArray(bytes.subarray(first, first + chunk.count)).needsUpdate = true;
+      first += chunk.count;
+    }
+  }
+
+  setColors(chunk, values) {
+    chunk.geometry.getAttribute("rgb565").copyArray(values).needsUpdate = true;
+  }
+
+  paint({ mode, table }, own = this.own) {
+    table.forEach((color, i) => own.table.value.image.data.set([...color.map(Math.round), 255], 4 * i));
+    own.table.value.needsUpdate = true;
+    own.mode.value = mode;
+  }
+
+  // A set of points of its own, such as cells, painted apart.
+  layer(low, step, places, values, size, paint) {
+    this.clearLayer();
+    const table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
+    const shared = { ...this.own, ...uniforms({ table, mode: 4, size }) };
+    this.add(low, step, places, values, shared, this.extra);
+    this.paint(paint, shared);
+    this.layerOwn = shared;
+  }
+
+  clearLayer() {
+    for (const object of [...this.extra.children].filter((object) => object.isPoints && !object.isBalls)) {
+      object.geometry.dispose();
+      this.extra.remove(object);
+    }
+  }
+
+  addBalls(values) {
+    const geometry = new BufferGeometry().setAttribute("ball", new BufferAttribute(values, 4));
+    geometry.boundingSphere = new Sphere(new Vector3(), Infinity);
+    const own = { pixels: this.own.pixels, far: this.own.far, ...uniforms({ tint: new Color(0.42, 0.62, 0.86) }) };
+    this.balls = new Points(geometry, new RawShaderMaterial({ glslVersion: GLSL3, vertexShader: BALL_VERTEX, fragmentShader: BALL_FRAGMENT, uniforms: own }));
+    this.balls.isBalls = true;
+    this.balls.frustumCulled = false;
+    geometry.setDrawRange(0, values.length / 4);
+    this.extra.add(this.balls);
+  }
+
+  resize(width, height) {
+    this.target.setSize(width, height);
+    this.shade.uniforms.texel.value.set(1 / width, 1 / height);
+  }
+
+  render(camera, ground) {
+    const { own, shade, target, renderer } = this;
+    own.far.value = shade.uniforms.far.value = camera.far;
+    own.pixels.value = target.height / (2 * Math.tan((camera.fov * Math.PI) / 360));
+    shade.uniforms.ground.value.setStyle(ground, "");
+    shade.uniforms.radius.value = 1.3 * renderer.getPixelRatio();
+    this.share(camera);
+    renderer.setRenderTarget(target);
+    renderer.setClearColor(0, 0);
+    renderer.clear();
+    renderer.autoClear = false;
+    renderer.render(this.scene, camera);
+    renderer.render(this.extra, camera);
+    renderer.setRenderTarget(null);
+    renderer.render(this.screen, this.flat);
+    renderer.autoClear = true;
+  }
+
+  // Shares the budget of points among the chunks: those that look larger get more.
+  share(camera) {
+    const weights = this.chunks.map(({ geometry: { boundingSphere: { center, radius } } }) => {
+      const range = Math.max(camera.position.distanceTo(center) - radius, 1);
+      return Math.min(1, (radius / range) ** 2 + 0.02);
+    });
+    const want = this.chunks.map((chunk, i) => chunk.count * weights[i]);
+    const whole = want.reduce((a, b) => a + b, 0);
+    const total = this.chunks.reduce((sum, chunk) => sum + chunk.count, 0);
+    this.drawn = 0;
+    this.chunks.forEach((chunk, i) => {
+      const count = total <= this.budget ? chunk.count : Math.min(chunk.count, Math.ceil((want[i] * this.budget) / whole));
+      chunk.geometry.setDrawRange(0, count);
+      this.drawn += count;
+    });
+  }
+
+  // Distance along the view of what is drawn nearest to a pixel, looking around it; null where nothing is.
+  depthAt(x, y, reach = 4) {
+    const side = 2 * reach + 1;
+    const bytes = new Uint8Array(4 * side * side);
+    const corner = [x - reach, this.target.height - 1 - y - reach].map(Math.round);
+    this.renderer.readRenderTargetPixels(this.target, ...corner, side, side, bytes, undefined, 1);
+    let best = null;
+    for (let i = 0; i < side * side; i++) {
+      if (bytes[4 * i + 3] < 128) continue;
+      const away = ((i % side) - reach) ** 2 + (Math.floor(i / side) - reach) ** 2;
+      const depth = ((bytes[4 * i] * 65536 + bytes[4 * i + 1] * 256 + bytes[4 * i + 2]) / 16777215) * this.own.far.value;
+      if (!best || away < best.away) best = { away, depth };
+    }
+    return best?.depth ?? null;
+  }
+
+  // The point nearest to a local place.
+  nearest([x, y, z]) {
+    let best = null;
+    for (const { low, step, places, count } of this.chunks) {
+      const reach = best ? Math.sqrt(best.away) : 3;
+      if ([x, y, z].some((v, i) => v < low[i] - reach || v > low[i] + step[i] * 65535 + reach)) continue;
+      for (let i = 0; i < count; i++) {
+        const dx = low[0] + places[4 * i] * step[0] - x, dy = low[1] + places[4 * i + 1] * step[1] - y, dz = low[2] + places[4 * i + 2] * step[2] - z;
+        const away = dx * dx + dy * dy + dz * dz;
+        if (!best || away < best.away) best = { away, place: [x + dx, y + dy, z + dz], class: places[4 * i + 3] & 255 };
+      }
+    }
+    return best;
+  }
+
+  // The lowest point around a place on the map: what a person who walks stands on.
+  groundAt(x, y) {
+    if (!this.lowest) {
+      this.lowest = new Map();
+      for (const { low, step, places, count } of this.chunks) {
+        for (let i = 0; i < count; i++) {
+          const key = `${Math.floor((low[0] + places[4 * i] * step[0]) / 2)},${Math.floor((low[1] + places[4 * i + 1] * step[1]) / 2)}`;
+          const z = low[2] + places[4 * i + 2] * step[2];
+          if (!(this.lowest.get(key) <= z)) this.lowest.set(key, z);
+        }
+      }
+    }
+    return this.lowest.get(`${Math.floor(x / 2)},${Math.floor(y / 2)}`);
+  }
+}

@@ -1,0 +1,72 @@
+// Tables of 256 colours for the values of points, and their legends.
+
+export const CLASSES = {
+  0: ["never classified", "#9aa0a8"], 1: ["unclassified", "#a7adb5"], 2: ["ground", "#a98f6c"], 3: ["low vegetation", "#a6c96f"],
+  4: ["medium vegetation", "#74b056"], 5: ["high vegetation", "#3d8c47"], 6: ["building", "#d8705a"], 7: ["low noise", "#c04ad0"],
+  9: ["water", "#4d8fd1"], 10: ["rail", "#7c6f9c"], 11: ["road surface", "#84888f"], 14: ["wire", "#e0b040"], 15: ["pylon", "#b08030"],
+  17: ["bridge", "#b79fd6"], 18: ["high noise", "#c04ad0"], 26: ["civil structure", "#c59a7a"],
+};
+
+const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
+const VIRIDIS = ["#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"].map(rgb);
+const SUN = ["#1b2a5a", "#3a3f86", "#6a4c93", "#a4508b", "#d95f69", "#f28e4b", "#f9bf45", "#fdf3a0"].map(rgb);
+const GREY = ["#202328", "#f4f5f7"].map(rgb);
+
+function ramp(stops) {
+  return Array.from({ length: 256 }, (_, i) => {
+    const at = (i / 255) * (stops.length - 1);
+    const k = Math.min(Math.floor(at), stops.length - 2);
+    return stops[k].map((v, c) => v + (stops[k + 1][c] - v) * (at - k));
+  });
+}
+
+const css = (color) => `rgb(${color.map(Math.round).join(",")})`;
+const gradient = (stops) => `linear-gradient(90deg, ${stops.map(css).join(",")})`;
+
+export const ANSWERS = () => {
+  const dark = document.documentElement.dataset.theme === "dark";
+  return {
+    0: ["blocked", dark ? "#59616d" : "#8f969f"], 1: ["visible", "#ffb000"], 2: ["unproven", dark ? "#6ea5ff" : "#3f7be0"],
+    3: ["no answer", "#30343a"], 4: ["outside the cloud", "#30343a"], 255: ["no answer", "#30343a"],
+  };
+};
+export const LIGHT = { 0: ["in shadow", "#33406f"], 1: ["lit", "#ffd36b"], 255: ["no answer", "#777777"] };
+
+const named = (names, others) => {
+  const table = Array.from({ length: 256 }, () => rgb(others));
+  for (const [code, [, color]] of Object.entries(names)) table[code] = rgb(color);
+  return table;
+};
+const keys = (names, codes) => codes.map((code) => ({ color: names[code]?.[1] ?? "#b4b8bd", text: names[code]?.[0] ?? `class ${code}` }));
+
+// A way of colouring: `mode` is the number that the shader knows, `table` its 256 colours, `legend` what they mean.
+export function coloring(name, scene, answer) {
+  switch (name) {
+    case "class":
+      return { mode: 0, table: named(CLASSES, "#b4b8bd"), legend: { title: "Class", keys: keys(CLASSES, scene.classes.map(([code]) => code)) } };
+    case "intensity":
+      return { mode: 1, table: ramp(GREY), legend: { title: "Intensity", gradient: gradient(GREY), ends: ["weak", "strong"] } };
+    case "height": {
+      const [low, high] = scene.heights;
+      const ends = [low, high].map((z) => `${z.toFixed(1)} ${scene.unit}`);
+      return { mode: 2, table: ramp(VIRIDIS), legend: { title: "Height", gradient: gradient(VIRIDIS), ends } };
+    }
+    case "color":
+      return { mode: 3, table: ramp(GREY), legend: null };
+    case "answer":
+      return answer;
+    default:
+      return { mode: 4, table: named({}, "#b9bfc7"), legend: null };
+  }
+}
+
+export const ofAnswers = (counts) => {
+  const names = ANSWERS();
+  const codes = [1, ...(counts.tells_unproven ? [2] : []), 0];
+  return { mode: 4, table: named(names, "#30343a"), legend: { title: "From the clicked place", keys: keys(names, codes) } };
+};
+export const ofLight = () => ({ mode: 4, table: named(LIGHT, "#777777"), legend: { title: "Sun", keys: keys(LIGHT, [1, 0]) } });
+export const ofHours = (low, high) => ({
+  mode: 4, table: ramp(SUN), legend: { title: "Hours of sun on the day", gradient: gradient(SUN), ends: [low, high].map((v) => `${v.toFixed(1)} h`) },
+});
+export const plain = (dark) => ({ mode: 4, table: named({}, dark ? "#5d6570" : "#b3bac3"), legend: null });

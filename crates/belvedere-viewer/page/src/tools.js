@@ -1,0 +1,144 @@
+// The questions: what is clicked, what is asked, and how the answer is shown.
+import * as charts from "./charts.js";
+import { escape, hours } from "./charts.js";
+import * as colors from "./colors.js";
+
+const icon = (d) => `<svg viewBox="0 0 24 24" aria-hidden="true">${d}</svg>`;
+const EYE = '<path d="M2 12s4-7 10-7 10 7 10 7-4 7-10 7S2 12 2 12z"/><circle cx="12" cy="12" r="3"/>';
+const SUN = '<circle cx="12" cy="12" r="4"/><path d="M12 2v3M12 19v3M2 12h3M19 12h3M5 5l2 2M17 17l2 2M19 5l-2 2M7 17l-2 2"/>';
+const count = (n) => n.toLocaleString("en");
+const percent = (part, whole) => `${((100 * part) / Math.max(whole, 1)).toFixed(1)} %`;
+const list = (rows) => `<dl>${rows.map(([name, value]) => `<dt>${escape(name)}</dt><dd>${escape(value)}</dd>`).join("")}</dl>`;
+
+function shares(answer, of) {
+  const names = colors.ANSWERS();
+  const rows = [[1, answer.visible], ...(answer.tells_unproven !== false ? [[2, answer.unproven]] : []), [0, answer.blocked]];
+  const whole = rows.reduce((sum, [, n]) => sum + n, 0);
+  return `<div class="shares">${rows.map(([code, n]) => `<span style="flex:${n} 0 0;background:${names[code][1]}"></span>`).join("")}</div>`
+    + `<div class="key">${rows.map(([code, n]) => `<span><i class="swatch" style="background:${names[code][1]}"></i>${names[code][0]} ${percent(n, whole)}</span>`).join("")}</div>`
+    + list(rows.map(([code, n]) => [`${of} ${names[code][0]}`, count(n)]));
+}
+
+const UNPROVEN = "Nothing blocks what is unproven, but part of the line runs through space that no laser pulse has seen.";
+
+export const TOOLS = [
+  {
+    name: "look", title: "Look around", icon: icon('<path d="M12 3v18M3 12h18M12 3l-2.500 2.500M12 3l2.500 2.500M12 21l-2.500-2.500M12 21l2.500-2.500M3 12l2.500-2.500M3 12l2.500 2.500M21 12l-2.500-2.500M21 12l-2.500 2.500"/>'),
+    hint: "Drag to turn, right drag to move, wheel to zoom. Click a point for its coordinates.", places: 1,
+  },
+  {
+    name: "seen", title: "What is seen from here", icon: icon(EYE), height: ["Eye above the clicked point", 1.7], places: 1,
+    hint: "Click where somebody stands: ground, balcony or roof.",
+    // balls alone answer at once; the pulses then say what of it is proven
+    first: ([place], _, page) => (page.scene.tells_unproven ? ["seen", { place, proven: false }] : null),
+    ask: ([place]) => ["seen", { place }],
+    show(answer, page) {
+      page.answer = colors.ofAnswers(answer);
+      page.values(new Uint8Array(answer.body));
+      const whole = answer.visible + answer.blocked + answer.unproven;
+      return `<p class="verdict">${percent(answer.visible, whole)} is visible</p><p class="note">of the points of the cloud. ${answer.tells_unproven ? UNPROVEN : answer.isFirst ? "Next: how much of it the laser pulses prove …" : ""}</p>${shares(answer, "Points")}`;
+    },
+    rows: (answer) => [["answer", "points"], ["visible", answer.visible], ["unproven", answer.unproven], ["blocked", answer.blocked]],
+    properties: ({ visible, unproven, blocked }) => ({ visible, unproven, blocked }),
+  },
+  {
+    name: "line", title: "Is B seen from A", icon: icon('<circle cx="5" cy="18" r="2.500"/><circle cx="19" cy="6" r="2.500"/><path d="M7 16 17 8"/>'),
+    height: ["Eye above A", 1.7], places: 2, hint: "Click A, where the eye is, then B.",
+    ask: ([observer, target]) => ["line", { observer, target }],
+    show(answer, page) {
+      const block = answer.first_block;
+      page.line(answer);
+      const text = { visible: "B is visible from A", blocked: "B is blocked", unproven: "B is unproven", "outside the cloud": "No answer: outside the cloud" }[answer.answer];
+      const note = block ? `The line meets an obstacle ${block.range_m.toFixed(1)} m from A.` : answer.answer === "unproven" ? UNPROVEN : "Nothing stands in the line.";
+      return `<p class="verdict">${text}</p><p class="note">${note}</p>`
+        + (answer.profile ? `<figure>${charts.profile(answer.profile, page.scene.unit)}<figcaption>Ground (brown), obstacles (grey) and the line of sight</figcaption></figure>` : "")
+        + list([["Length of the line", `${answer.length_m.toFixed(2)} m`], ...(block ? [["Blocked after", `${block.range_m.toFixed(2)} m`], ["Blocked at", block.place.map((v) => v.toFixed(2)).join(", ")]] : []),
+          ...(answer.unproven_m !== null && !block ? [["Unproven length", `${answer.unproven_m.toFixed(2)} m`]] : [])]);
+    },
+    rows: ({ profile }) => profile ? [["distance_m", "ground", "line", "solid"], ...profile.distance_m.map((d, i) => [d, profile.ground[i], profile.line[i], profile.solid[i].map((p) => p.join("..")).join(" ")])] : null,
+    properties: (answer) => ({ answer: answer.answer, length_m: answer.length_m, first_block_range_m: answer.first_block?.range_m ?? null }),
+    geometry: (places) => ["LineString", places],
+  },
+  {
+    name: "sun", title: "Sun here", icon: icon(SUN), height: ["Height above the clicked point", 0.1], places: 1, time: "date",
+    hint: "Click a place to see when the sun reaches it.",
+    ask: ([place], { date, zone }) => ["sun", { place, date, zone }],
+    show: (answer, page) => `<p class="verdict">${answer.sun_hours.toFixed(1)} hours of sun</p><p class="note">on ${escape(page.time.date)}, of ${answer.possible_hours.toFixed(1)} hours between sunrise and sunset.</p>`
+      + `<figure>${charts.sunPaths(answer, page.time.date)}<figcaption><i class="swatch" style="background:#f5a300"></i>lit <i class="swatch" style="background:#2f3d73;margin-left:10px"></i>in shadow <i class="swatch" style="background:#5f6b78;margin-left:10px"></i>horizon; dashed: 21 June, March, December</figcaption></figure>`
+      + list([["First light", hours(answer.first_light)], ["Last light", hours(answer.last_light)], ["Longest stretch", `${answer.longest.toFixed(1)} h`], ["Share of possible sun", percent(answer.sun_share ?? 0, 1)]])
+      + `<h3>Hours of sun on the 21st of each month</h3><figure>${charts.months(answer)}</figure>`,
+    rows: (answer) => [["hour", "azimuth_deg", "elevation_deg", "lit"], ...answer.path.map((p, i) => [...p, answer.lit[i] ? 1 : 0])],
+    properties: (answer) => ({ sun_hours: answer.sun_hours, first_light: answer.first_light, last_light: answer.last_light, possible_hours: answer.possible_hours }),
+  },
+  {
+    name: "shadow", title: "Shadow at a time", icon: icon('<circle cx="17" cy="6" r="3"/><path d="M4 20h16M9 20V10h5v10M9 20l-5-3"/>'), places: 0, time: "hour",
+    hint: "Move the time, or play the day.",
+    ask: (_, { date, clock, zone }) => ["shadow", { time: `${date}T${clock}`, zone }],
+    show(answer, page) {
+      page.answer = colors.ofLight();
+      const bytes = new Uint8Array(answer.body);
+      page.values(bytes);
+      const lit = bytes.reduce((sum, v) => sum + (v === 1 ? 1 : 0), 0);
+      answer.lit_share = lit / Math.max(bytes.length, 1);
+      const up = answer.elevation_deg > 0;
+      return `<p class="verdict">${up ? `${percent(lit, bytes.length)} is lit` : "The sun is below the horizon"}</p><p class="note">of the points of the cloud, ${escape(answer.time)}.</p>`
+        + list([["Azimuth of the sun", `${answer.azimuth_deg.toFixed(1)}°`], ["Elevation of the sun", `${answer.elevation_deg.toFixed(1)}°`]]);
+    },
+    rows: (answer) => [["time", "azimuth_deg", "elevation_deg", "lit_share"], [answer.time, answer.azimuth_deg, answer.elevation_deg, answer.lit_share]],
+  },
+  {
+    name: "around", title: "Sky and space here", icon: icon('<path d="M3 18a9 9 0 0 1 18 0"/><path d="M3 18h4v-5h4v5h3v-8h4v8h3"/>'), height: ["Height above the clicked point", 1.7], places: 1,
+    hint: "Click a place to measure its sky view and the space that is visible from it.",
+    ask: ([place]) => ["around", { place }],
+    show(answer) {
+      const { isovist: v } = answer;
+      return { html: `<p class="verdict">Sky view factor ${answer.sky_view_factor.toFixed(2)}</p><p class="note">1 under a free sky, 0 without any sky.</p><figure id="panorama"><figcaption>Panorama from north to north: sky blue, near dark, far light</figcaption></figure>`
+        + `<figure>${charts.plan(answer)}<figcaption>Plan of the visible space at the height of the eye</figcaption></figure>`
+        + list([["Sky openness", answer.sky_openness.toFixed(3)], ["Visible area in plan", `${count(Math.round(v.plan_area_m2))} m²`], ["Visible volume", `${count(Math.round(v.volume_m3))} m³`], ["Farthest view in plan", `${v.plan_range_max_m.toFixed(1)} m`], ["Nearest obstacle in plan", `${v.plan_range_min_m.toFixed(1)} m`]]),
+        after: (card) => card.querySelector("#panorama").prepend(charts.panorama(new Uint8Array(answer.body), answer.panorama)) };
+    },
+    rows: (answer) => [["measure", "value"], ["sky_view_factor", answer.sky_view_factor], ["sky_openness", answer.sky_openness], ...Object.entries(answer.isovist)],
+    properties: (answer) => ({ sky_view_factor: answer.sky_view_factor, sky_openness: answer.sky_openness, ...answer.isovist }),
+  },
+  {
+    name: "who", title: "Who sees this", icon: icon('<circle cx="12" cy="12" r="2.500"/><path d="M4 7V4h3M20 7V4h-3M4 17v3h3M20 17v3h-3M12 5v3M12 16v3M5 12h3M16 12h3"/>'), height: ["Height above the clicked point", 0], places: 1,
+    hint: "Click a target to see from where people can see it.",
+    ask: ([place]) => ["who", { place }],
+    show(answer, page) {
+      page.cells(answer);
+      return `<p class="verdict">Seen from ${count(Math.round(answer.visible_m2))} m²</p><p class="note">of ground, by eyes 1.7 m above it.</p>${shares(answer, "Cells")}`;
+    },
+    rows: (answer) => [["answer", "cells"], ["visible", answer.visible], ["unproven", answer.unproven], ["blocked", answer.blocked]],
+    properties: ({ visible_m2, visible, unproven, blocked }) => ({ visible_m2, visible, unproven, blocked }),
+  },
+  {
+    name: "roof", title: "Energy of a roof", icon: icon('<path d="M3 19 8 7h13l-5 12z"/><path d="M5.500 13h13M10 19l5-12"/>'), places: 1,
+    hint: "Click a roof to see what sun and sky send to its plane in a year of clear sky.",
+    ask: ([place]) => ["roof", { place }],
+    show(answer, page) {
+      page.plane(answer);
+      return `<p class="verdict">${count(Math.round(answer.kwh / 100) * 100)} kWh a year</p><p class="note">of sun and sky on ${answer.panel_area_m2.toFixed(0)} m² of panels under a sky without clouds: an upper bound. With weather, use the command below and --weather.</p>`
+        + list([["Energy on a square metre", `${count(Math.round(answer.kwh_m2))} kWh`], ["Without any shade", `${count(Math.round(answer.free_kwh_m2))} kWh`], ["Lost by shade, each panel for itself", percent(answer.min_loss, 1)], ["Lost by shade, panels in strings", percent(answer.max_loss, 1)],
+          ["Tilt", `${answer.tilt_deg.toFixed(0)}°`], ["Faces", `${answer.azimuth_deg.toFixed(0)}° from north`], ["Area of the plane", `${answer.area_m2.toFixed(1)} m²`], ["Plane", `${answer.plane} of ${answer.planes}`]])
+        + `<h3>kWh/m² in each month</h3><figure>${charts.energy(answer.months_kwh_m2)}</figure>`;
+    },
+    rows: (answer) => [["month", "kwh_m2"], ...answer.months_kwh_m2.map((v, i) => [i + 1, v])],
+    properties: ({ plane, kwh, kwh_m2, free_kwh_m2, min_loss, max_loss, tilt_deg, azimuth_deg, area_m2 }) => ({ plane, kwh, kwh_m2, free_kwh_m2, min_loss, max_loss, tilt_deg, azimuth_deg, area_m2 }),
+  },
+  {
+    name: "sun_area", title: "Sun hours of an area", icon: icon('<path d="M4 8 13 4l7 8-5 8-9-3z"/><circle cx="12.500" cy="11.500" r="2"/>'), places: Infinity, time: "date",
+    hint: "Click the corners, then press Enter or double-click.",
+    ask: (places, { date, zone }) => ["sun_area", { corners: places.map(([x, y]) => [x, y]), date, zone }],
+    show(answer, page) {
+      page.hourCells(answer);
+      return `<p class="verdict">${answer.mean_hours.toFixed(1)} hours of sun</p><p class="note">on average on ${escape(page.time.date)}, of ${answer.possible_hours.toFixed(1)} possible hours.</p>`
+        + list([["Least", `${answer.min_hours.toFixed(1)} h`], ["Most", `${answer.max_hours.toFixed(1)} h`], ["Ground in the area", `${count(answer.area_m2)} m²`], ["Cells", `${count(answer.cells)} of ${answer.cell_m} m`]]);
+    },
+    rows: (answer, page) => {
+      const v = new Float32Array(answer.body);
+      return [["x", "y", "z", "sun_hours"], ...Array.from({ length: v.length / 4 }, (_, i) => [...page.toFile([v[4 * i], v[4 * i + 1], v[4 * i + 2]]), v[4 * i + 3].toFixed(3)])];
+    },
+    properties: ({ mean_hours, min_hours, max_hours, area_m2 }) => ({ mean_hours, min_hours, max_hours, area_m2 }),
+    geometry: (places) => ["Polygon", [[...places, places[0]]]],
+  },
+];

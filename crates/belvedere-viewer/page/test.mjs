@@ -1,0 +1,212 @@
+// Clicks through the page in Chromium: pictures, each question, files, keyboard, two tabs, bad files, a lost connection.
+import assert from "node:assert/strict";
+import { execFileSync, spawn } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { createInterface } from "node:readline";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+
+const [program, executablePath] = process.argv.slice(2);
+const here = dirname(fileURLToPath(import.meta.url));
+const folder = mkdtempSync(join(tmpdir(), "belvedere-page-"));
+const started = Date.now();
+const done = [];
+const children = [];
+
+async function serve(...files) {
+  const child = spawn(program, ["view", ...files, "--no-browser"], { cwd: folder, stdio: ["ignore", "pipe", "ignore"] });
+  children.push(child);
+  const [url] = await new Promise((found) => createInterface({ input: child.stdout }).once("line", (line) => found([line])));
+  return { child, url };
+}
+const problems = [];
+async function open(browser, url) {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
+  page.on("pageerror", (error) => problems.push(error.message));
+  page.on("request", (request) => { if (!request.url().startsWith(url) && !/^(blob|data):/.test(request.url())) problems.push(`fetches ${request.url()}`); });
+  await page.goto(url);
+  return page;
+}
+const ready = (page) => page.waitForFunction(() => window.belvedere?.isLoaded && window.belvedere.ready && window.belvedere.frames > 1, null, { timeout: 30_000 });
+// Number of pixels of the picture whose colour is near to one.
+const pixels = (page, color) => page.evaluate(([r, g, b]) => {
+  const from = document.getElementById("view");
+  const canvas = Object.assign(document.createElement("canvas"), { width: 320, height: 180 });
+  const context = canvas.getContext("2d");
+  context.drawImage(from, 0, 0, 320, 180);
+  const { data } = context.getImageData(0, 0, 320, 180);
+  let count = 0;
+  for (let i = 0; i < data.length; i += 4) if (Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < 90) count += 1;
+  return count;
+}, color);
+const answered = (page) => page.waitForFunction(() => window.belvedere.last && document.querySelector("#took"), null, { timeout: 20_000 });
+const text = (page) => page.evaluate(() => document.querySelector("#card").innerText);
+async function step(name, work) {
+  await work();
+  done.push(name);
+}
+// A pixel where the page shows a point of a class, away from the panels.
+const pixelOf = (page, code, number = 0) => page.evaluate(([wanted, skip]) => {
+  for (let y = 250; y < 560; y += 7) for (let x = 300; x < 860; x += 7) {
+    const place = belvedere.placeAt(x, y);
+    const found = place && belvedere.cloud.nearest(place);
+    if (found?.class === wanted && found.away < 0.02 && skip-- <= 0) return [x, y];
+  }
+  return null;
+}, [code, number]);
+
+async function main() {
+  execFileSync(program, ["simulate", "town", "--extent", "60", "-o", "town"], { cwd: folder, stdio: "ignore" });
+  const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader"] });
+  const { child, url } = await serve("town/cloud.laz");
+  const page = await open(browser, url);
+  await ready(page);
+  await page.evaluate(() => { belvedere.time.date = "2026-06-21"; belvedere.time.zone = "Europe/Amsterdam"; document.getElementById("date").value = "2026-06-21"; document.getElementById("zone").value = "Europe/Amsterdam"; });
+
+  await step("the first picture is that of the stored one", async () => {
+    await page.waitForTimeout(800);
+    const expected = join(here, "expected.png");
+    const shown = await page.evaluate(() => {
+      const canvas = Object.assign(document.createElement("canvas"), { width: 320, height: 180 });
+      canvas.getContext("2d").drawImage(document.getElementById("view"), 0, 0, 320, 180);
+      return canvas.toDataURL("image/png");
+    });
+    if (!existsSync(expected) || process.env.STORE) writeFileSync(expected, Buffer.from(shown.split(",")[1], "base64"));
+    const difference = await page.evaluate(async ([a, b]) => {
+      const data = await Promise.all([a, b].map(async (source) => {
+        const image = Object.assign(new Image(), { src: source });
+        await image.decode();
+        const canvas = Object.assign(document.createElement("canvas"), { width: 320, height: 180 });
+        const context = canvas.getContext("2d");
+        context.drawImage(image, 0, 0);
+        return context.getImageData(0, 0, 320, 180).data;
+      }));
+      return data[0].reduce((sum, v, i) => sum + Math.abs(v - data[1][i]), 0) / data[0].length;
+    }, [shown, `data:image/png;base64,${readFileSync(expected).toString("base64")}`]);
+    // steps of 8 bits: other drivers round points to other pixels; an empty picture differs by 30
+    assert.ok(difference < 6, `the picture differs by ${difference}`);
+  });
+  const ground = await pixelOf(page, 2, 40);
+  const roof = await pixelOf(page, 6, 3);
+  assert.ok(ground && roof, "ground and roofs are in the picture");
+
+  await step("coordinates under the pointer", async () => {
+    await page.mouse.move(...ground);
+    await page.waitForFunction(() => /\d+\.\d\d {2}\d+\.\d\d/.test(document.getElementById("where").textContent), null, { timeout: 5000 });
+  });
+  const ask = async (tool, places, expected) => {
+    await page.click(`#tools [data-tool=${tool}]`);
+    for (const place of places) await page.mouse.click(...place);
+    await answered(page);
+    const said = await text(page);
+    assert.match(said, expected, said);
+    assert.match(said, /belvedere [a-z-]+ town\/cloud\.laz/);
+    return said;
+  };
+  await step("what is seen from here", async () => {
+    const before = await pixels(page, [255, 176, 0]);
+    await ask("seen", [ground], /\d+\.\d % is visible/);
+    await page.waitForTimeout(300);
+    assert.ok(await pixels(page, [255, 176, 0]) > before + 300, "what is visible is orange");
+    assert.match(await page.evaluate(() => document.getElementById("legend").innerText), /visible[\s\S]*blocked/);
+  });
+  await step("a table is saved", async () => {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.click("[data-save=csv]")]);
+    assert.match(readFileSync(await download.path(), "utf8"), /^answer,points\nvisible,\d+\n/);
+    const [map] = await Promise.all([page.waitForEvent("download"), page.click("[data-save=geojson]")]);
+    assert.equal(JSON.parse(readFileSync(await map.path(), "utf8")).features[0].geometry.type, "Point");
+    const [picture] = await Promise.all([page.waitForEvent("download"), page.click("#picture")]);
+    assert.equal(readFileSync(await picture.path()).subarray(1, 4).toString(), "PNG");
+  });
+  await step("is B seen from A", async () => {
+    await ask("line", [ground, roof], /B is (visible|blocked|unproven)[\s\S]*Length of the line/);
+    assert.equal(await page.evaluate(() => document.querySelectorAll("#card figure svg").length), 1);
+    assert.ok(await page.evaluate(() => document.querySelectorAll("#marks path").length) >= 1);
+  });
+  await step("sun here", () => ask("sun", [roof], /\d+\.\d hours of sun[\s\S]*First light/));
+  await step("shadow at a time", async () => {
+    await ask("shadow", [], /% is lit/);
+    const noon = await page.evaluate(() => belvedere.last.lit_share);
+    await page.evaluate(() => { const hour = document.getElementById("hour"); hour.value = 1230; hour.dispatchEvent(new Event("input")); });
+    await page.waitForFunction((before) => belvedere.last.lit_share < before - 0.1, noon, { timeout: 10_000 });
+    assert.ok(await pixels(page, [51, 64, 111]) > 300, "what is in shadow is blue");
+    await page.click("#play");
+    await page.waitForFunction(() => belvedere.time.minutes !== 1230, null, { timeout: 10_000 });
+    await page.click("#play");
+  });
+  await step("sky and space here", async () => {
+    await ask("around", [ground], /Sky view factor 0\.\d\d/);
+    assert.equal(await page.evaluate(() => document.querySelectorAll("#card canvas").length), 1);
+  });
+  await step("who sees this", async () => {
+    await ask("who", [roof], /Seen from [\d,]+ m²/);
+    await page.waitForTimeout(300);
+    assert.ok(await page.evaluate(() => belvedere.cloud.extra.children.length) === 1);
+  });
+  await step("energy of a roof", () => ask("roof", [roof], /[\d,]+ kWh a year[\s\S]*Faces/));
+  await step("sun hours of an area", async () => {
+    const [x, y] = ground;
+    await page.click("#tools [data-tool=sun_area]");
+    for (const place of [[x, y], [x + 60, y], [x + 40, y + 40]]) await page.mouse.click(...place);
+    await page.keyboard.press("Enter");
+    await answered(page);
+    assert.match(await text(page), /hours of sun[\s\S]*Ground in the area/);
+  });
+  await step("everything by keyboard", async () => {
+    await page.keyboard.press("Escape");
+    await page.keyboard.press("t");
+    await page.keyboard.press("2");
+    await page.waitForTimeout(500);
+    await page.keyboard.press("Enter");
+    await answered(page);
+    await page.keyboard.press("l");
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "dark");
+    for (const press of ["ArrowLeft", "ArrowUp", "+", "-", "w", "a", "m", "w", "ArrowRight", "m", "e", "m", "c", "b", "b", "h", "?"]) await page.keyboard.press(press);
+    assert.ok(await page.evaluate(() => document.getElementById("keys").open));
+    await page.keyboard.press("Escape");
+    const nameless = await page.evaluate(() => [...document.querySelectorAll("button, select, input")].filter((one) => !(one.innerText?.trim() || one.ariaLabel || one.title || one.labels?.length)).length);
+    assert.equal(nameless, 0, "controls without a name for screen readers");
+  });
+  await step("two tabs", async () => {
+    const other = await open(browser, url);
+    await ready(other);
+    await other.click("#tools [data-tool=seen]");
+    await other.mouse.click(...ground);
+    await answered(other);
+    await other.close();
+  });
+  await step("a refusal is in words", async () => {
+    await page.evaluate(() => { document.getElementById("zone").value = "Mars"; belvedere.time.zone = "Mars"; belvedere.choose("shadow"); });
+    await page.waitForFunction(() => /No answer[\s\S]*Mars/.test(document.getElementById("card").innerText), null, { timeout: 5000 });
+  });
+  await step("a lost connection is in words", async () => {
+    child.kill("SIGKILL");
+    await page.waitForFunction(() => /connection to Belvedere is lost/.test(document.getElementById("message").innerText), null, { timeout: 8000 });
+  });
+  await step("a bad file is in words", async () => {
+    writeFileSync(join(folder, "bad.laz"), "LASF, but no more");
+    const bad = await serve("bad.laz");
+    const shown = await open(browser, bad.url);
+    await shown.waitForFunction(() => /bad\.laz/.test(document.getElementById("message").innerText), null, { timeout: 5000 });
+  });
+  assert.deepEqual(problems, []);
+  await browser.close();
+}
+
+let failure;
+try {
+  await main();
+} catch (error) {
+  failure = error;
+}
+children.forEach((child) => child.kill("SIGKILL"));
+rmSync(folder, { recursive: true, force: true });
+console.log(done.map((name) => `ok: ${name}`).join("\n"));
+if (failure) {
+  console.error(`failed after "${done.at(-1)}": ${failure.message}\n${problems.join("\n")}`);
+  process.exit(1);
+}
+console.log(`the page was tested in ${((Date.now() - started) / 1000).toFixed(0)} s`);
+process.exit(0);

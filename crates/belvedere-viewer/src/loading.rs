@@ -1,0 +1,65 @@
+//! What happens to the files while the page is open already: reading, building, and what the page is told of it.
+
+use crate::scene::{Scene, Shown};
+use belvedere::PointCloud;
+use belvedere::control::Watcher;
+use belvedere::model::SceneModel;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Takes what is read and built, and shows it on the page. As a [`Watcher`] it shows progress there.
+#[derive(Clone, Default)]
+pub struct Loading(Arc<Mutex<State>>);
+
+/// What there is so far.
+#[derive(Clone, Default)]
+pub(crate) struct State {
+    /// Name of the stage under way, its items and how many of them are done.
+    pub(crate) stage: (&'static str, usize, usize),
+    pub(crate) shown: Option<Arc<Shown>>,
+    pub(crate) scene: Option<Arc<Scene>>,
+    pub(crate) failure: Option<String>,
+}
+
+impl Loading {
+    /// Shows a cloud whose balls are not built yet.
+    pub fn show(&self, cloud: &Arc<PointCloud>) {
+        let shown = Arc::new(Shown::new(Arc::clone(cloud)));
+        self.state().shown = Some(shown);
+    }
+
+    /// Takes the model of the cloud shown, or of a ball file: questions are answered from now on.
+    pub fn finish(&self, model: SceneModel) {
+        let shown = self.state().shown.clone();
+        let shown =
+            shown.unwrap_or_else(|| Arc::new(Shown::new(Arc::new(PointCloud::in_frame(model.frame().clone())))));
+        let scene = Arc::new(Scene::new(model, Arc::clone(&shown)));
+        let mut state = self.state();
+        state.shown = Some(shown);
+        state.scene = Some(Arc::clone(&scene));
+        drop(state);
+        // what the first questions need is made while people still look; not on a thread of the pool, which must not wait for locks
+        std::thread::spawn(move || scene.prepare());
+    }
+
+    /// Says why nothing can be shown or asked.
+    pub fn fail(&self, message: String) {
+        self.state().failure = Some(message);
+    }
+
+    pub(crate) fn now(&self) -> State {
+        self.state().clone()
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Watcher for Loading {
+    fn begin(&self, stage: &'static str, total: usize) {
+        self.state().stage = (stage, total, 0);
+    }
+    fn advance(&self, count: usize) {
+        self.state().stage.2 += count;
+    }
+}

@@ -1,0 +1,51 @@
+//! One file for each question. Each calls the library as the command line does, and says which command gives the same.
+
+mod around;
+mod line;
+mod places;
+mod roof;
+mod seen;
+mod shadow;
+mod sun;
+mod sun_area;
+mod who;
+
+use crate::replies::{Answer, Refusal};
+use crate::scene::Scene;
+use belvedere::control::Control;
+pub(crate) use roof::Roofs;
+use serde::de::DeserializeOwned;
+
+/// What every question knows.
+pub(crate) struct Asked<'a> {
+    pub(crate) scene: &'a Scene,
+    /// Files and flags of the scene, for command lines.
+    pub(crate) input: &'a str,
+    pub(crate) control: &'a Control<'a>,
+}
+
+/// Answers the question of that name.
+pub(crate) fn answer(name: &str, body: &[u8], asked: &Asked<'_>) -> Result<Answer, Refusal> {
+    match name {
+        "seen" => seen::answer(&parsed(body)?, asked),
+        "line" => line::answer(&parsed(body)?, asked),
+        "sun" => sun::answer(&parsed(body)?, asked),
+        "shadow" => shadow::answer(&parsed(body)?, asked),
+        "around" => around::answer(&parsed(body)?, asked),
+        "who" => who::answer(&parsed(body)?, asked),
+        "roof" => roof::answer(&parsed(body)?, asked),
+        "sun_area" => sun_area::answer(&parsed(body)?, asked),
+        _ => Err(Refusal("there is no such question".to_owned())),
+    }
+}
+
+fn parsed<T: DeserializeOwned>(body: &[u8]) -> Result<T, Refusal> {
+    serde_json::from_slice(body).map_err(|error| Refusal(format!("the question cannot be read: {error}")))
+}
+
+/// Centres and radii of the balls, local metres: four f32 each, little endian.
+pub(crate) fn balls(scene: &Scene) -> Vec<u8> {
+    let balls = scene.model.balls();
+    let rows = balls.centers.iter().zip(&balls.radii);
+    rows.flat_map(|(&[x, y, z], &r)| [x, y, z, r]).flat_map(f32::to_le_bytes).collect()
+}

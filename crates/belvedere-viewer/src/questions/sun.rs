@@ -1,0 +1,122 @@
+//! Sun here: the sun's path over the horizon of a place, its hours, and the first and last light.
+
+use super::Asked;
+use super::places::{command_at, local, number, rounded};
+use crate::replies::{Answer, Refusal};
+use belvedere::PointCloud;
+use belvedere::apps::horizon::{HorizonParams, horizons};
+use belvedere::apps::sun::{
+    Binning, Date, DayParams, Period, Refraction, Site, SunSchedule, Zone, sun_days, sun_position_with,
+};
+use belvedere::apps::sun_hours::{SunPlan, scene_sun_hours};
+use belvedere::apps::targets::Targets;
+use belvedere::query::{Answer as Sight, MedialScene, UnprovenAs, Viewer};
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Question {
+    place: [f64; 3],
+    /// Such as 2026-06-21.
+    date: String,
+    zone: String,
+}
+
+/// Day of the months whose suns are shown: near both solstices.
+const DAY_OF_MONTH: i8 = 21;
+
+pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {
+    let (scene, control) = (asked.scene, asked.control);
+    let place = local(asked, question.place)?;
+    let site = scene.site()?;
+    let zone = Zone::parse(&question.zone)?;
+    let date = Date::parse(&question.date)?;
+    let blockers = scene.blockers(UnprovenAs::Visible, control)?;
+    if blockers.is_outside_cloud(place) {
+        return Err(Refusal("This place is outside the cloud, where nothing is known.".to_owned()));
+    }
+    let targets = at(asked, place);
+    let day = sun_days(&site, &zone, &Period::Days(vec![date]), &DayParams::default())?;
+    let plan = SunPlan::new(SunSchedule::new(&day, Binning::Auto)?, Vec::new());
+    let sums = scene_sun_hours(&*blockers, &targets, &plan, Some(&site), control)?;
+    let possible = plan.period().possible_hours();
+    let first = |values: &[f32]| values.first().map_or(Value::Null, |&v| number(f64::from(v), 3));
+    let of_day = &sums.period;
+    let months: Result<Vec<Value>, Refusal> = (1..=12)
+        .map(|month| {
+            let dates = vec![Date::new(date.year(), month, DAY_OF_MONTH)?];
+            let days = sun_days(&site, &zone, &Period::Days(dates), &DayParams::default())?;
+            let plan = SunPlan::new(SunSchedule::new(&days, Binning::Auto)?, Vec::new());
+            let sums = scene_sun_hours(&*blockers, &targets, &plan, Some(&site), control)?;
+            Ok(json!({
+                "month": month,
+                "sun_hours": first(&sums.period.hours),
+                "possible_hours": rounded(plan.period().possible_hours(), 3),
+                "path": days.iter().flat_map(|day| path(&site, &zone, day)).collect::<Vec<_>>(),
+            }))
+        })
+        .collect();
+    let skyline =
+        horizons(&blockers, &[place], &HorizonParams::default().with_turn(scene.grid_north(Some(place))), control)?;
+    let horizon: Vec<Value> = skyline.iter().flatten().map(|point| number(point.elevation.to_degrees(), 3)).collect();
+    let lit = lit(&blockers, &targets, &day);
+    let path: Vec<Value> = day.iter().flat_map(|day| path(&site, &zone, day)).collect();
+    let flags = format!("--date {} --zone {} -o sun.csv", question.date, zone.name());
+    let head = json!({
+        "sun_hours": first(&of_day.hours),
+        "sun_share": first(&of_day.share),
+        "first_light": first(&of_day.first),
+        "last_light": first(&of_day.last),
+        "longest": first(&of_day.longest),
+        "possible_hours": rounded(possible, 3),
+        "horizon_deg": horizon,
+        "path": path,
+        "lit": lit,
+        "months": months?,
+        "zone": zone.name(),
+        "latitude_deg": rounded(site.latitude.to_degrees(), 5),
+        "longitude_deg": rounded(site.longitude.to_degrees(), 5),
+        "command": command_at(asked, question.place, "sun-hours", &flags),
+    });
+    Ok(Answer::of(head))
+}
+
+/// The place as the only target.
+pub(super) fn at(asked: &Asked<'_>, place: [f64; 3]) -> Targets {
+    let mut cloud = PointCloud::in_frame(asked.scene.model.frame().clone());
+    cloud.positions = vec![belvedere::cloud::to_local(place, [0.0; 3])];
+    Targets::of_points(&cloud, None)
+}
+
+/// Time of day, azimuth and elevation of the sun halfway through each step of a day.
+fn path(site: &Site, zone: &Zone, day: &belvedere::apps::sun::SunDay) -> Vec<Value> {
+    let _ = zone;
+    day.steps
+        .iter()
+        .filter_map(|step| {
+            let middle = f64::midpoint(step.start, step.end);
+            let position = sun_position_with(site, middle, Refraction::default()).ok()?;
+            Some(json!([
+                rounded(day.clock_hours(middle), 3),
+                rounded(position.azimuth.to_degrees(), 2),
+                rounded(position.elevation.to_degrees(), 2),
+            ]))
+        })
+        .collect()
+}
+
+/// Whether the sun of each step reaches the place.
+fn lit(blockers: &MedialScene, targets: &Targets, days: &[belvedere::apps::sun::SunDay]) -> Vec<bool> {
+    let steps = days.iter().flat_map(|day| &day.steps);
+    steps
+        .map(|step| {
+            let answers = blockers.visible_from(
+                Viewer::Direction(step.direction),
+                &targets.positions,
+                &belvedere::control::Control::none(),
+            );
+            answers.is_ok_and(|answers| answers.first() == Some(&Sight::Visible))
+        })
+        .collect()
+}

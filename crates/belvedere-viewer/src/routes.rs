@@ -1,0 +1,185 @@
+//! What can be asked for below the token: the page, its points, and questions.
+
+use crate::guard::Guard;
+use crate::loading::Loading;
+use crate::page;
+use crate::questions::{self, Asked};
+use crate::replies::{Refusal, binary, refused};
+use crate::server::ViewerParams;
+use axum::body::Bytes;
+use axum::extract::{DefaultBodyLimit, Path, Request, State};
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::middleware::{Next, from_fn, from_fn_with_state};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use axum::{Json, Router};
+use belvedere::control::{Control, Watcher};
+use serde_json::{Value, json};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use tokio::sync::Semaphore;
+
+/// Most bytes of a question: a polygon with a thousand corners.
+const MOST_BYTES: usize = 65_536;
+/// How long the rest of a request may take.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// Questions that wait or are answered; more are refused.
+const MOST_QUESTIONS: usize = 24;
+/// The page may load what is its own, and nothing else; nobody may show it in a frame.
+const POLICY: &str = "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+
+/// What all requests share.
+struct Shared {
+    loading: Loading,
+    input: String,
+    title: String,
+    /// One question at a time has all threads.
+    turn: Arc<Semaphore>,
+    places: Arc<Semaphore>,
+}
+
+pub(crate) fn app(guard: Arc<Guard>, loading: Loading, params: &ViewerParams) -> Router {
+    let shared = Shared {
+        loading,
+        input: params.input.clone(),
+        title: params.title.clone(),
+        turn: Arc::new(Semaphore::new(1)),
+        places: Arc::new(Semaphore::new(MOST_QUESTIONS)),
+    };
+    Router::new()
+        .route("/{token}/", get(|| async { file("index.html") }))
+        .route("/{token}/{file}", get(|Path((_, path)): Path<(String, String)>| async move { file(&path) }))
+        .route("/{token}/state", get(state))
+        .route("/{token}/points/{chunk}", get(points))
+        .route("/{token}/colors/{chunk}", get(colors))
+        .route("/{token}/balls", get(balls))
+        .route("/{token}/ask/{question}", post(ask))
+        .fallback(|| async { refused(StatusCode::NOT_FOUND, "there is nothing at this address") })
+        .layer(DefaultBodyLimit::max(MOST_BYTES))
+        .layer(from_fn_with_state(guard, check))
+        .layer(from_fn(with_headers))
+        .with_state(Arc::new(shared))
+}
+
+async fn check(State(guard): State<Arc<Guard>>, request: Request, next: Next) -> Response {
+    match guard.refusal(request.headers(), request.uri().path()) {
+        Some((status, message)) => refused(status, message),
+        None => next.run(request).await,
+    }
+}
+
+async fn with_headers(request: Request, next: Next) -> Response {
+    let mut response = next.run(request).await;
+    let headers = [
+        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::REFERRER_POLICY, "no-referrer"),
+        (header::CACHE_CONTROL, "no-store"),
+    ];
+    response.headers_mut().extend(headers.map(|(name, value)| (name, HeaderValue::from_static(value))));
+    response
+}
+
+fn file(path: &str) -> Response {
+    match page::file(path) {
+        Some((kind, bytes)) => ([(header::CONTENT_TYPE, kind)], bytes).into_response(),
+        None => refused(StatusCode::NOT_FOUND, "the page has no such file"),
+    }
+}
+
+async fn state(State(shared): State<Arc<Shared>>) -> Json<Value> {
+    let now = shared.loading.now();
+    let (stage, total, done) = now.stage;
+    Json(json!({
+        "title": shared.title,
+        "stage": stage, "total": total, "done": done,
+        "failure": now.failure,
+        "shown": now.shown.map(|shown| shown.describe()),
+        "scene": now.scene.map(|scene| scene.describe()),
+    }))
+}
+
+async fn points(State(shared): State<Arc<Shared>>, Path((_, chunk)): Path<(String, usize)>) -> Response {
+    let shown = shared.loading.now().shown;
+    off_thread(move || shown.and_then(|shown| shown.chunks.points(chunk, &shown.cloud))).await
+}
+
+async fn colors(State(shared): State<Arc<Shared>>, Path((_, chunk)): Path<(String, usize)>) -> Response {
+    let shown = shared.loading.now().shown;
+    off_thread(move || shown.and_then(|shown| shown.chunks.colors(chunk, &shown.cloud))).await
+}
+
+async fn balls(State(shared): State<Arc<Shared>>) -> Response {
+    let scene = shared.loading.now().scene;
+    off_thread(move || scene.map(|scene| questions::balls(&scene))).await
+}
+
+async fn off_thread(work: impl FnOnce() -> Option<Vec<u8>> + Send + 'static) -> Response {
+    match tokio::task::spawn_blocking(work).await {
+        Ok(Some(bytes)) => binary(bytes),
+        Ok(None) => refused(StatusCode::NOT_FOUND, "there is no such part of the cloud"),
+        Err(_) => failed(),
+    }
+}
+
+fn failed() -> Response {
+    refused(StatusCode::INTERNAL_SERVER_ERROR, "Belvedere failed in a way that it should not; please report this")
+}
+
+/// Whether anybody still waits for an answer.
+#[derive(Default)]
+struct Waiting(AtomicBool);
+
+impl Watcher for Waiting {
+    fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Stops the work on a question when the browser gives it up.
+struct StopWhenDropped(Arc<Waiting>);
+
+impl Drop for StopWhenDropped {
+    fn drop(&mut self) {
+        self.0.0.store(true, Ordering::Relaxed);
+    }
+}
+
+async fn ask(State(shared): State<Arc<Shared>>, Path((_, name)): Path<(String, String)>, request: Request) -> Response {
+    let is_json = request
+        .headers()
+        .get(header::CONTENT_TYPE)
+        .is_some_and(|kind| kind.as_bytes().starts_with(b"application/json"));
+    if !is_json {
+        return refused(StatusCode::UNSUPPORTED_MEDIA_TYPE, "questions must be sent as application/json");
+    }
+    let body = tokio::time::timeout(PATIENCE, axum::body::to_bytes(request.into_body(), MOST_BYTES)).await;
+    let body: Bytes = match body {
+        Ok(Ok(body)) => body,
+        Ok(Err(_)) => return refused(StatusCode::PAYLOAD_TOO_LARGE, "the question is too long"),
+        Err(_) => return refused(StatusCode::REQUEST_TIMEOUT, "the question took too long to arrive"),
+    };
+    let Some(scene) = shared.loading.now().scene else {
+        return refused(StatusCode::SERVICE_UNAVAILABLE, "the scene is not ready yet");
+    };
+    let Ok(_place) = shared.places.try_acquire() else {
+        return refused(StatusCode::TOO_MANY_REQUESTS, "too many questions at once; try again");
+    };
+    let Ok(turn) = Arc::clone(&shared.turn).acquire_owned().await else { return failed() };
+    let waiting = Arc::new(Waiting::default());
+    let of_work = Arc::clone(&waiting);
+    let _stop = StopWhenDropped(waiting);
+    let input = shared.input.clone();
+    let work = move || {
+        let control = Control::new(&*of_work);
+        let answer = questions::answer(&name, &body, &Asked { scene: &scene, input: &input, control: &control });
+        drop(turn);
+        answer
+    };
+    match tokio::task::spawn_blocking(work).await {
+        Ok(Ok(answer)) => answer.into_response(),
+        Ok(Err(Refusal(message))) => Refusal(message).into_response(),
+        Err(_) => failed(),
+    }
+}

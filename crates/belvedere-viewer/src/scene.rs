@@ -1,0 +1,223 @@
+//! What is shown and asked about, with what takes long to make made once.
+
+use crate::chunks::Chunks;
+use crate::questions::Roofs;
+use belvedere::apps::eyes::{EyeFault, fault_of};
+use belvedere::apps::horizon::convergence;
+use belvedere::apps::sun::Site;
+use belvedere::apps::targets::Targets;
+use belvedere::apps::viewshed::cell_for;
+use belvedere::control::Control;
+use belvedere::ground::{Ground, GroundParams, MapGrid};
+use belvedere::model::SceneModel;
+use belvedere::query::target_tree::TargetTree;
+use belvedere::query::{EarthParams, MedialScene, UnprovenAs};
+use belvedere::{Bounds, Error, PointCloud, Result};
+use serde_json::{Value, json};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// A cloud, and its points as the page gets them.
+pub(crate) struct Shown {
+    pub(crate) cloud: Arc<PointCloud>,
+    pub(crate) chunks: Chunks,
+}
+
+/// What questions are asked of.
+pub(crate) struct Scene {
+    pub(crate) model: SceneModel,
+    pub(crate) shown: Arc<Shown>,
+    proving: Kept<MedialScene>,
+    plain: Kept<MedialScene>,
+    ground: Kept<Ground>,
+    tree: OnceLock<TargetTree>,
+    points: OnceLock<Targets>,
+    roofs: Kept<Roofs>,
+}
+
+/// Something that is made when first needed, and can fail.
+struct Kept<T>(Mutex<Option<Arc<T>>>);
+
+impl<T> Kept<T> {
+    fn new() -> Self {
+        Self(Mutex::new(None))
+    }
+
+    fn get(&self, make: impl FnOnce() -> Result<T>) -> Result<Arc<T>> {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(made) = &*kept {
+            return Ok(Arc::clone(made));
+        }
+        let made = Arc::new(make()?);
+        *kept = Some(Arc::clone(&made));
+        Ok(made)
+    }
+}
+
+impl Shown {
+    pub(crate) fn new(cloud: Arc<PointCloud>) -> Self {
+        let chunks = Chunks::new(&cloud);
+        Self { cloud, chunks }
+    }
+
+    /// What the page must know before it draws.
+    pub(crate) fn describe(&self) -> Value {
+        let cloud = &self.cloud;
+        let frame = &cloud.frame;
+        let bounds = cloud.bounds().unwrap_or_default();
+        let size = bounds.size().map(f64::from);
+        let chunks: Vec<Value> = self.chunks.chunks.iter().map(|chunk| {
+            json!({ "low": chunk.low, "step": chunk.step, "count": chunk.points.len(), "first": chunk.points.start })
+        }).collect();
+        let mut classes = [0_usize; 256];
+        cloud.attributes.classification.iter().flatten().for_each(|&class| classes[usize::from(class)] += 1);
+        let classes: Vec<[usize; 2]> = classes
+            .into_iter()
+            .enumerate()
+            .filter(|(_, count)| *count > 0)
+            .map(|(class, count)| [class, count])
+            .collect();
+        json!({
+            "point_count": cloud.len(),
+            "origin": frame.origin,
+            "metres_per_unit": frame.crs.metres_per_unit_xyz(),
+            "crs": frame.crs.describe(),
+            "low": bounds.low,
+            "high": bounds.high,
+            // as if points lay evenly on the map
+            "spacing": (size[0] * size[1] / cloud.len().max(1) as f64).sqrt(),
+            "chunks": chunks,
+            "classes": classes,
+            "has_intensity": cloud.attributes.intensity.is_some(),
+            "has_color": cloud.attributes.color.is_some(),
+        })
+    }
+}
+
+impl Scene {
+    pub(crate) fn new(model: SceneModel, shown: Arc<Shown>) -> Self {
+        Self {
+            model,
+            shown,
+            proving: Kept::new(),
+            plain: Kept::new(),
+            ground: Kept::new(),
+            tree: OnceLock::new(),
+            points: OnceLock::new(),
+            roofs: Kept::new(),
+        }
+    }
+
+    /// Makes what most questions need. What fails here is said by the question that needs it.
+    pub(crate) fn prepare(&self) {
+        let control = Control::none();
+        let _ = self.blockers(UnprovenAs::Visible, &control);
+        if !self.shown.cloud.is_empty() {
+            let _ = self.ground(&control);
+            self.tree();
+            self.points();
+        }
+        if let Ok(proving) = self.blockers(UnprovenAs::Reported, &control) {
+            // the first line of sight that nothing blocks indexes the pulses
+            let (low, high) = self.model.bounds().corners();
+            let middle = std::array::from_fn(|i| f64::midpoint(low[i], high[i]));
+            let _ = proving.line_of_sight([low[0], low[1], high[2]], middle, &EarthParams::default());
+        }
+    }
+
+    /// What the page must know before it asks.
+    pub(crate) fn describe(&self) -> Value {
+        let bounds: Bounds = self.model.bounds();
+        let site = self.site().ok();
+        json!({
+            "ball_count": self.model.balls().len(),
+            "low": bounds.low,
+            "high": bounds.high,
+            "tells_unproven": self.model.pulses().is_some(),
+            "latitude_deg": site.map(|site| site.latitude.to_degrees()),
+            "longitude_deg": site.map(|site| site.longitude.to_degrees()),
+            "grid_north_deg": self.grid_north(None).to_degrees(),
+        })
+    }
+
+    /// What lines of sight are asked of. Pulses are left out where they make no difference.
+    pub(crate) fn blockers(&self, unproven: UnprovenAs, control: &Control<'_>) -> Result<Arc<MedialScene>> {
+        let kept = if unproven == UnprovenAs::Visible { &self.plain } else { &self.proving };
+        kept.get(|| self.model.scene(&self.model.rule(), unproven, control))
+    }
+
+    /// The points of the cloud, which the questions about all of it need.
+    pub(crate) fn cloud(&self) -> Result<&PointCloud> {
+        if self.shown.cloud.is_empty() {
+            return Err(Error::NoPoints { what: "a ball file has none; open it together with its cloud".to_owned() });
+        }
+        Ok(&self.shown.cloud)
+    }
+
+    /// The points ordered for viewers.
+    pub(crate) fn tree(&self) -> &TargetTree {
+        self.tree.get_or_init(|| TargetTree::new(&self.shown.cloud.positions))
+    }
+
+    /// The points as targets of the sun.
+    pub(crate) fn points(&self) -> &Targets {
+        self.points.get_or_init(|| Targets::of_points(&self.shown.cloud, None))
+    }
+
+    /// Side of the cells of the ground, metres: that of the command line.
+    pub(crate) fn cell(&self) -> f64 {
+        let (low, high) = self.model.bounds().on_map();
+        cell_for(low, high)
+    }
+
+    /// The ground of the cloud on the grid that the command line takes.
+    pub(crate) fn ground(&self, control: &Control<'_>) -> Result<Arc<Ground>> {
+        let cloud = self.cloud()?;
+        let (low, high) = self.model.bounds().on_map();
+        let [x, y, _] = cloud.frame.origin;
+        self.ground.get(|| {
+            let grid = MapGrid::covering(low, high, self.cell(), [x, y])?;
+            Ok(Ground::of_cloud(cloud, grid, &GroundParams::default(), control)?.0)
+        })
+    }
+
+    /// The planes of roofs.
+    pub(crate) fn roofs(&self, control: &Control<'_>) -> Result<Arc<Roofs>> {
+        self.roofs.get(|| Roofs::of(self, control))
+    }
+
+    /// Where the scene lies on earth.
+    pub(crate) fn site(&self) -> Result<Site> {
+        Ok(Site::of_scene(self.model.frame(), &self.model.bounds(), None, None)?.0)
+    }
+
+    /// Azimuth of grid north from true north at a local place, or at the middle of the scene; grid north counts where true north is
+    /// unknown.
+    pub(crate) fn grid_north(&self, place: Option<[f64; 3]>) -> f64 {
+        let (low, high) = self.model.bounds().corners();
+        let [x, y] = place.map_or_else(|| [0, 1].map(|i| f64::midpoint(low[i], high[i])), |place| [place[0], place[1]]);
+        let frame = self.model.frame();
+        convergence(&frame.crs, [frame.origin[0] + x, frame.origin[1] + y]).unwrap_or(0.0)
+    }
+
+    /// Refuses an eye that cannot look, in words.
+    pub(crate) fn check_eye(
+        &self,
+        blockers: &MedialScene,
+        ground: Option<&Ground>,
+        eye: [f64; 3],
+        inside: Inside,
+    ) -> std::result::Result<(), String> {
+        match fault_of(blockers, ground, eye) {
+            None => Ok(()),
+            Some(EyeFault::InsideObstacle(_)) if inside == Inside::Allowed => Ok(()),
+            Some(fault) => Err(format!("Nobody can look from this place: {fault}.")),
+        }
+    }
+}
+
+/// Whether a place may lie inside an obstacle: what is seen of a target often is its inside.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Inside {
+    Allowed,
+    Refused,
+}

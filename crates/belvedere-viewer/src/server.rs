@@ -1,0 +1,113 @@
+//! The server: one address of this computer, few connections, and none that waits for ever.
+
+use crate::guard::Guard;
+use crate::loading::Loading;
+use crate::routes;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::net::TcpListener;
+use tokio::runtime::Runtime;
+use tokio::sync::Semaphore;
+
+/// Connections at once: a browser opens six for each tab. Others wait.
+const MOST_CONNECTIONS: usize = 256;
+/// How long the head of a request may take, and a connection may rest before the next.
+const PATIENCE: Duration = Duration::from_secs(15);
+/// Threads that serve; questions have their own.
+const THREADS: usize = 2;
+
+/// How a page is served.
+#[derive(Clone, Debug, Default)]
+pub struct ViewerParams {
+    /// Port to listen on. Default 0: any that is free.
+    pub port: u16,
+    /// The files and the flags of the scene as they were typed: a part of the command lines that the page shows.
+    pub input: String,
+    /// What the page is called.
+    pub title: String,
+}
+
+/// A running server. It ends when it is dropped.
+#[derive(Debug)]
+pub struct Viewer {
+    guard: Arc<Guard>,
+    loading: Loading,
+    runtime: Option<Runtime>,
+}
+
+impl std::fmt::Debug for Loading {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Loading")
+    }
+}
+
+impl Viewer {
+    /// Begins to serve a page without a scene on 127.0.0.1.
+    ///
+    /// # Errors
+    /// What the operating system says of the port.
+    pub fn start(params: &ViewerParams) -> std::io::Result<Self> {
+        let mut builder = tokio::runtime::Builder::new_multi_thread();
+        let runtime = builder.worker_threads(THREADS).thread_name("belvedere-page").enable_all().build()?;
+        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, params.port));
+        let listener = runtime.block_on(TcpListener::bind(address))?;
+        let guard = Arc::new(Guard::new(listener.local_addr()?.port())?);
+        let loading = Loading::default();
+        let app = routes::app(Arc::clone(&guard), loading.clone(), params);
+        runtime.spawn(accept(listener, app));
+        Ok(Self { guard, loading, runtime: Some(runtime) })
+    }
+
+    /// The address of the page, with its token.
+    #[must_use]
+    pub fn url(&self) -> String {
+        self.guard.url()
+    }
+
+    /// What takes the scene.
+    #[must_use]
+    pub fn loading(&self) -> Loading {
+        self.loading.clone()
+    }
+
+    /// Opens the page in the default browser.
+    ///
+    /// # Errors
+    /// What the operating system says.
+    pub fn open_browser(&self) -> std::io::Result<()> {
+        open::that_detached(Path::new(&self.url()))
+    }
+}
+
+impl Drop for Viewer {
+    fn drop(&mut self) {
+        // a question under way is left behind: nothing of it is written
+        if let Some(runtime) = self.runtime.take() {
+            runtime.shutdown_background();
+        }
+    }
+}
+
+async fn accept(listener: TcpListener, app: axum::Router) {
+    let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    loop {
+        let Ok(place) = Arc::clone(&places).acquire_owned().await else { return };
+        let Ok((stream, _)) = listener.accept().await else {
+            // too many open files, perhaps: others close soon
+            tokio::time::sleep(Duration::from_millis(50)).await;
+            continue;
+        };
+        let service = TowerToHyperService::new(app.clone());
+        tokio::spawn(async move {
+            let mut server = hyper::server::conn::http1::Builder::new();
+            server.timer(TokioTimer::new()).header_read_timeout(PATIENCE);
+            // a client that breaks off has no answer to be told
+            let _ = server.serve_connection(TokioIo::new(stream), service).await;
+            drop(place);
+        });
+    }
+}

@@ -1,0 +1,186 @@
+//! Hostile requests: each is refused or served without harm, and the page is served afterwards as before.
+
+use belvedere::PointCloud;
+use belvedere::control::Control;
+use belvedere::model::{ModelParams, OrientBy, SceneModel};
+use belvedere_viewer::{Viewer, ViewerParams};
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// A viewer of rough ground with a step, 20 m wide.
+fn viewer() -> Viewer {
+    let mut coordinates = Vec::new();
+    for x in 0..40 {
+        for y in 0..40 {
+            let height = if x > 20 { 3.0 } else { 0.0 } + f64::from((x + y) % 2) * 0.1;
+            coordinates.push([f64::from(x) * 0.5, f64::from(y) * 0.5, height]);
+        }
+    }
+    let cloud = Arc::new(PointCloud::from_coordinates(&coordinates).0);
+    let viewer = Viewer::start(&ViewerParams::default()).unwrap();
+    let loading = viewer.loading();
+    loading.show(&cloud);
+    let params = ModelParams::default().with_orient(OrientBy::Up);
+    loading.finish(SceneModel::build(&cloud, &params, &Control::none()).unwrap().0);
+    viewer
+}
+
+/// Host with port, and token.
+fn address(viewer: &Viewer) -> (String, String) {
+    let url = viewer.url();
+    let (host, token) = url.strip_prefix("http://").unwrap().split_once('/').unwrap();
+    (host.to_owned(), token.trim_end_matches('/').to_owned())
+}
+
+/// Sends bytes, and gives status and text of the reply; 0 where the server hung up without one.
+fn sent(host: &str, request: &[u8]) -> (u16, String) {
+    let mut stream = TcpStream::connect(host).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
+    // a server that has heard enough closes while we still write
+    let _ = stream.write_all(request);
+    let mut reply = Vec::new();
+    let _ = stream.read_to_end(&mut reply);
+    let text = String::from_utf8_lossy(&reply).into_owned();
+    (text.get(9..12).and_then(|status| status.parse().ok()).unwrap_or(0), text)
+}
+
+fn get(host: &str, path: &str, headers: &str) -> (u16, String) {
+    sent(host, format!("GET {path} HTTP/1.1\r\n{headers}Connection: close\r\n\r\n").as_bytes())
+}
+
+fn asked(host: &str, token: &str, body: &str) -> (u16, String) {
+    let length = body.len();
+    let head = format!(
+        "POST /{token}/ask/seen HTTP/1.1\r\nHost: {host}\r\nContent-Type: application/json\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n"
+    );
+    sent(host, format!("{head}{body}").as_bytes())
+}
+
+fn is_well(host: &str, token: &str) {
+    let (status, text) = get(host, &format!("/{token}/state"), &format!("Host: {host}\r\n"));
+    assert!(status == 200 && text.contains("point_count"), "{status} {text}");
+}
+
+#[test]
+fn only_those_who_know_the_token_and_come_from_the_page_are_served() {
+    let viewer = viewer();
+    let (host, token) = address(&viewer);
+    let own = format!("Host: {host}\r\n");
+    let port = host.split(':').nth(1).unwrap();
+    let state = format!("/{token}/state");
+
+    // 1: no token, a wrong one, and one that is right but for its end
+    for path in [
+        "/",
+        "/state",
+        &format!("/{}/state", "0".repeat(32)),
+        &format!("/{token}0/state"),
+        &format!("/{}/state", &token[..31]),
+    ] {
+        assert_eq!(get(&host, path, &own).0, 403, "{path}");
+    }
+    // 2: another origin, also one that only begins like ours
+    for origin in ["http://evil.example", "null", &format!("http://{host}.evil.example"), &format!("https://{host}")] {
+        assert_eq!(get(&host, &state, &format!("{own}Origin: {origin}\r\n")).0, 403, "{origin}");
+    }
+    // 3: another host: a name that leads here
+    for name in ["evil.example", &format!("evil.example:{port}"), "127.0.0.1", "127.0.0.1:1", ""] {
+        assert_eq!(get(&host, &state, &format!("Host: {name}\r\n")).0, 403, "{name}");
+    }
+    assert!([400, 403].contains(&get(&host, &state, "").0), "without any host");
+    // 4: paths that leave the page
+    for path in [
+        "../../../../etc/passwd",
+        "..%2f..%2fetc%2fpasswd",
+        "%2e%2e/%2e%2e/etc/passwd",
+        "page.js/../../Cargo.toml",
+        "points/../state",
+        "points/-1",
+        "points/999999",
+        "points/99999999999999999999999",
+    ] {
+        let (status, text) = get(&host, &format!("/{token}/{path}"), &own);
+        assert!((400..500).contains(&status) && !text.contains("root:"), "{path}: {status} {text}");
+    }
+    // what is ours is served, with a policy that keeps others out
+    let (status, text) = get(&host, &format!("/{token}/"), &format!("{own}Origin: http://localhost:{port}\r\n"));
+    assert_eq!(status, 200);
+    let head = text.to_lowercase();
+    assert!(
+        head.contains("content-security-policy: default-src 'self'")
+            && head.contains("nosniff")
+            && head.contains("no-referrer")
+    );
+    is_well(&host, &token);
+}
+
+#[test]
+fn huge_false_and_slow_requests_do_no_harm() {
+    let viewer = viewer();
+    let (host, token) = address(&viewer);
+    let own = format!("Host: {host}\r\n");
+
+    // 5: a body of 50 MB, and one that only claims to be
+    let huge = format!("{{\"place\":[{}1]}}", "1,".repeat(25_000_000));
+    let (status, _) = asked(&host, &token, &huge);
+    assert!(status == 413 || status == 0, "{status}");
+    let head = format!(
+        "POST /{token}/ask/seen HTTP/1.1\r\n{own}Content-Type: application/json\r\nContent-Length: 99999999999\r\nConnection: close\r\n\r\n{{}}"
+    );
+    let mut stream = TcpStream::connect(&host).unwrap();
+    stream.write_all(head.as_bytes()).unwrap();
+    drop(stream);
+    // 6: numbers that are none
+    for body in [
+        "{\"place\":[NaN,0,0]}",
+        "{\"place\":[1e999,0,0]}",
+        "{\"place\":[null,0,0]}",
+        "{\"place\":[\"a\",0,0]}",
+        "{\"place\":[0,0]}",
+        "",
+        "[",
+        "\u{0}",
+    ] {
+        let (status, text) = asked(&host, &token, body);
+        assert!(status == 422 && text.contains("error"), "{body}: {status} {text}");
+    }
+    let (status, text) = asked(&host, &token, "{\"place\":[1e300,-1e300,1e300]}");
+    assert!(status == 422 && text.contains("outside the cloud"), "{status} {text}");
+    // 7: not JSON, as a form of another page would be, and other methods
+    let form = format!(
+        "POST /{token}/ask/seen HTTP/1.1\r\n{own}Content-Type: text/plain\r\nContent-Length: 2\r\nConnection: close\r\n\r\n{{}}"
+    );
+    assert_eq!(sent(&host, form.as_bytes()).0, 415);
+    let delete = format!("DELETE /{token}/state HTTP/1.1\r\n{own}Connection: close\r\n\r\n");
+    assert_eq!(sent(&host, delete.as_bytes()).0, 405);
+    // 8: deep nesting, and a head without end
+    assert_eq!(asked(&host, &token, &"[".repeat(60_000)).0, 422);
+    let long = format!("GET /{token}/state HTTP/1.1\r\n{own}X: {}\r\n\r\n", "a".repeat(2_000_000));
+    assert!([0, 400, 431].contains(&sent(&host, long.as_bytes()).0));
+    // 9: a client that sends a byte a second holds up nobody
+    let mut slow = TcpStream::connect(&host).unwrap();
+    slow.write_all(b"G").unwrap();
+    let start = Instant::now();
+    is_well(&host, &token);
+    assert!(start.elapsed() < Duration::from_secs(2));
+    drop(slow);
+    is_well(&host, &token);
+}
+
+#[test]
+fn a_thousand_at_once_are_answered_or_refused_and_the_page_lives_on() {
+    let viewer = viewer();
+    let (host, token) = address(&viewer);
+    // 10: a thousand questions, from as many connections
+    let statuses: Vec<u16> = std::thread::scope(|scope| {
+        let ask = |_| scope.spawn(|| asked(&host, &token, "{\"place\":[2,2,1.7]}").0);
+        let all: Vec<_> = (0..1000).map(ask).collect();
+        all.into_iter().map(|one| one.join().unwrap()).collect()
+    });
+    let count = |status: u16| statuses.iter().filter(|&&own| own == status).count();
+    assert_eq!(count(200) + count(429), 1000, "{statuses:?}");
+    assert!(count(200) > 0);
+    is_well(&host, &token);
+}
