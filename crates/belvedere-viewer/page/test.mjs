@@ -181,6 +181,19 @@ async function main() {
     await page.evaluate(() => { document.getElementById("zone").value = "Mars"; belvedere.time.zone = "Mars"; belvedere.choose("shadow"); });
     await page.waitForFunction(() => /No answer[\s\S]*Mars/.test(document.getElementById("card").innerText), null, { timeout: 5000 });
   });
+  await step("a page in one file shows the shadows of a day without a server", async () => {
+    execFileSync(program, ["view", "town/cloud.laz", "--export", "page.html", "--date", "2026-06-21", "--zone", "Europe/Amsterdam"], { cwd: folder, stdio: "ignore" });
+    const alone = await open(browser, `file://${join(folder, "page.html")}`);
+    await ready(alone);
+    assert.equal(await alone.evaluate(() => document.querySelectorAll("#tools button").length), 2);
+    await alone.keyboard.press("2");
+    await answered(alone);
+    assert.match(await text(alone), /% is lit[\s\S]*belvedere shadow town\/cloud\.laz --time 2026-06-21T/);
+    const noon = await alone.evaluate(() => belvedere.last.lit_share);
+    for (let i = 0; i < 7; i++) await alone.keyboard.press(">");
+    await alone.waitForFunction((before) => belvedere.last.lit_share < before - 0.1, noon, { timeout: 5000 });
+    await alone.close();
+  });
   await step("a lost connection is in words", async () => {
     child.kill("SIGKILL");
     await page.waitForFunction(() => /connection to Belvedere is lost/.test(document.getElementById("message").innerText), null, { timeout: 8000 });

@@ -271,7 +271,7 @@ function pick(clicked, code) {
 page.pick = pick;
 
 let asking;
-async function ask() {
+async function ask(quick = false) {
   const { tool } = page;
   asking?.abort();
   const mine = (asking = new AbortController());
@@ -291,11 +291,17 @@ async function ask() {
   const busy = setTimeout(() => { if (!page.last) card(`<p class="busy">Asking …</p>`); }, 150);
   const start = performance.now();
   try {
-    const first = tool.first?.(places, null, page);
+    const first = tool.first?.(places, { date, zone, clock }, page);
     if (first) {
       const answer = await api.ask(...first, mine.signal);
       if (mine.signal.aborted) return;
-      showAnswer(tool, { ...answer, isFirst: true, took: performance.now() - start }, places);
+      const shown = { ...answer, isFirst: true, took: performance.now() - start };
+      if (quick) page.last = shown;
+      showAnswer(tool, shown, places);
+      if (quick) return;
+      // whoever still moves the time waits for nothing else
+      if (tool.time) await new Promise((go) => setTimeout(go, 250));
+      if (mine.signal.aborted) return;
     }
     const answer = await api.ask(...tool.ask(places, { date, zone, clock }), mine.signal);
     if (mine.signal.aborted) return;
@@ -365,11 +371,14 @@ function setPlaying(on) {
   playing = null;
   $("play").setAttribute("aria-pressed", on);
   $("play").textContent = on ? "Pause" : "Play";
-  if (!on) return;
+  if (!on) {
+    if (page.last?.isFirst) ask();
+    return;
+  }
   const next = async () => {
     step();
     showClock();
-    await ask();
+    await ask(true);
     // nothing to see at night: on to the morning
     for (let i = 0; page.last?.elevation_deg < -6 && i < 6; i++) step();
     if ($("play").getAttribute("aria-pressed") === "true") playing = setTimeout(next, 60);

@@ -73,6 +73,8 @@ export const TOOLS = [
   {
     name: "shadow", title: "Shadow at a time", icon: icon('<circle cx="17" cy="6" r="3"/><path d="M4 20h16M9 20V10h5v10M9 20l-5-3"/>'), places: 0, time: "hour",
     hint: "Move the time, or play the day.",
+    // of many points a depth map answers first
+    first: (_, { date, clock, zone }, page) => (page.scene.point_count > 250_000 ? ["shadow", { time: `${date}T${clock}`, zone, exact: false }] : null),
     ask: (_, { date, clock, zone }) => ["shadow", { time: `${date}T${clock}`, zone }],
     show(answer, page) {
       page.answer = colors.ofLight();
@@ -81,7 +83,7 @@ export const TOOLS = [
       const lit = bytes.reduce((sum, v) => sum + (v === 1 ? 1 : 0), 0);
       answer.lit_share = lit / Math.max(bytes.length, 1);
       const up = answer.elevation_deg > 0;
-      return `<p class="verdict">${up ? `${percent(lit, bytes.length)} is lit` : "The sun is below the horizon"}</p><p class="note">of the points of the cloud, ${escape(answer.time)}.</p>`
+      return `<p class="verdict">${up ? `${percent(lit, bytes.length)} is lit` : "The sun is below the horizon"}</p><p class="note">of the points of the cloud, ${escape(answer.time.replace("T", " "))}.${answer.isFirst ? " A first answer from a depth map; the exact one follows." : ""}</p>`
         + list([["Azimuth of the sun", `${answer.azimuth_deg.toFixed(1)}°`], ["Elevation of the sun", `${answer.elevation_deg.toFixed(1)}°`]]);
     },
     rows: (answer) => [["time", "azimuth_deg", "elevation_deg", "lit_share"], [answer.time, answer.azimuth_deg, answer.elevation_deg, answer.lit_share]],

@@ -43,6 +43,11 @@ fn parsed<T: DeserializeOwned>(body: &[u8]) -> Result<T, Refusal> {
     serde_json::from_slice(body).map_err(|error| Refusal(format!("the question cannot be read: {error}")))
 }
 
+/// What questions take unless they say otherwise.
+fn yes() -> bool {
+    true
+}
+
 /// Centres and radii of the balls, local metres: four f32 each, little endian.
 pub(crate) fn balls(scene: &Scene) -> Vec<u8> {
     let balls = scene.model.balls();

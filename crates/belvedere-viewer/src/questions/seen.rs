@@ -15,12 +15,8 @@ pub(super) struct Question {
     /// The eye, in the coordinates of the file.
     place: [f64; 3],
     /// Whether pulses tell visible from unproven; without them the answer comes sooner.
-    #[serde(default = "yes")]
+    #[serde(default = "super::yes")]
     proven: bool,
-}
-
-fn yes() -> bool {
-    true
 }
 
 pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {
