@@ -128,6 +128,12 @@ pub fn fault_of(scene: &MedialScene, ground: Option<&Ground>, place: [f64; 3]) -
     (depth > TOLERANCE.max(scene.params().shell)).then(|| EyeFault::InsideObstacle(rounded(depth, 3)))
 }
 
+/// Why a target at `place`, local metres, cannot be looked at from anywhere. Other than eyes, targets may lie inside an obstacle: often it is they that are seen.
+#[must_use]
+pub fn fault_of_target(scene: &MedialScene, place: [f64; 3]) -> Option<EyeFault> {
+    fault_of(scene, None, place).filter(|fault| !matches!(fault, EyeFault::InsideObstacle(_)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -10,7 +10,7 @@ use crate::splatting::{SplatParams, Splats};
 use crate::tin::{Tin, TinParams};
 use crate::voxels::{VoxelParams, Voxels};
 use crate::{Model, Survey};
-use belvedere::medial::{CarvedParams, CrownParams, Rule, Trees};
+use belvedere::medial::{CarvedParams, Rule, Trees};
 use belvedere::model::BallParams;
 use belvedere::query::{BlockRule, Visibility};
 use belvedere::{Mesh, PointCloud, Result};
@@ -92,10 +92,9 @@ const MESH_CLEARANCE: f64 = 0.1;
 
 /// Carved balls for surveys in winter, of which targets in the air are asked: crowns are twigs, and nothing gives way to targets.
 fn carved_for_winter() -> MedialParams {
-    let carving = CarvedParams::default();
-    let crowns = carving.crowns.map(|crowns| CrownParams { trees: Trees::Porous, ..crowns });
+    let carving = CarvedParams::default().with_trees(Trees::Porous);
     let blocking = BlockRule { shell: 0.0, ..BlockRule::carved() };
-    MedialParams { making: BallParams::Carved(CarvedParams { crowns, ..carving }), blocking, ..MedialParams::carved() }
+    MedialParams { making: BallParams::Carved(carving), blocking, ..MedialParams::carved() }
 }
 
 /// Carved balls without one rule: key, title and parameters. They run when named.

@@ -20,7 +20,7 @@ mod view;
 mod view_page;
 
 pub(crate) use balls::{
-    Balls, Cleaning, MethodChoice, NeighborChoice, Normals, OrientChoice, Orienting, Shrinking, SideChoice, TreesChoice,
+    Balls, Cleaning, MethodChoice, NeighborChoice, Normals, OrientChoice, Orienting, Shrinking, SideChoice,
 };
 #[cfg(feature = "compare")]
 pub(crate) use compare::Compare;

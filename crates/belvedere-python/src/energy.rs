@@ -1,16 +1,19 @@
 //! The energy of sun and sky.
 
+use crate::arrays::to_1d;
 use crate::errors::{exception, wrong};
-use crate::scene::Scene;
-use crate::targets::{Column, Grid, Wanted, columns, grid_of_targets};
+use crate::scene::{Inner, Scene};
+use crate::targets::{Column, Grid, Wanted, columns, grid_of_targets, ground_cloud, ground_points};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::irradiance::{
     BirdParams, CLEAR_SKY_YEAR, ClearSky, Grouping, IrradianceParams, PARTS, RadiationSource, SkyModel, Surroundings,
-    irradiation_measures, look_count, period_seasons, season_irradiation,
+    irradiation_measures, look_count, period_seasons, roof_columns, roof_irradiation, season_irradiation,
 };
+use belvedere::apps::roof_planes::{GROUND_CELL, RoofPlaneParams, roof_planes, roof_points};
 use belvedere::apps::rows::Obstacles;
 use belvedere::apps::sun::Site;
+use belvedere::ground::{Ground, GroundParams, MapGrid};
 use belvedere::io::read_weather;
 use belvedere::query::UnprovenAs;
 use belvedere::weather::Weather;
@@ -100,10 +103,91 @@ impl Radiation {
             (None, None) => Err(wrong("radiation", "missing", "give weather='file.epw' or clear_sky='ineichen'")),
         }
     }
+
+    /// The place on earth: as given, or as the scene or the weather has it.
+    fn site(&self, source: &Source, inner: &Inner) -> PyResult<Site> {
+        let given = self.location.map(|place| place.map(f64::to_radians));
+        let station = match source {
+            Source::Weather(weather, _) => Some([weather.latitude, weather.longitude]),
+            Source::ClearSky(..) => None,
+        };
+        let found = Site::of_scene(inner.frame(), &inner.model.bounds(), given, station);
+        Ok(found
+            .map_err(|error| match error {
+                belvedere::Error::MissingAttribute { attribute, needed_for, .. } => {
+                    exception(belvedere::Error::MissingAttribute {
+                        attribute,
+                        needed_for,
+                        advice: "give location=(latitude, longitude), or crs='EPSG:CODE' when reading the cloud",
+                    })
+                }
+                other => exception(other),
+            })?
+            .0)
+    }
 }
+
+impl Source {
+    fn radiation(&self) -> RadiationSource<'_> {
+        match self {
+            Self::Weather(weather, parts) => RadiationSource::Weather { weather, parts: *parts },
+            Self::ClearSky(clear_sky, year) => RadiationSource::ClearSky { clear_sky: *clear_sky, year: *year },
+        }
+    }
+}
+
+/// Names and values, and the number of cells of each plane.
+type RoofColumns<'py> = (Vec<(&'static str, Bound<'py, PyAny>)>, Vec<usize>);
 
 #[pymethods]
 impl Scene {
+    /// The columns of the planes of roofs, with the middle of each first, and the number of cells of each.
+    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
+    fn roof_planes<'py>(
+        &self,
+        py: Python<'py>,
+        radiation: Radiation,
+        min_area: Option<f64>,
+        panel: Option<f64>,
+        ground: Option<&str>,
+        trees: Through,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<RoofColumns<'py>> {
+        let params = radiation.params()?;
+        let source = py.detach(|| radiation.source(&params))?;
+        let inner = Arc::clone(&self.0);
+        let site = radiation.site(&source, &inner)?;
+        let usual = RoofPlaneParams::default();
+        let of_planes =
+            usual.with_least_area(min_area.unwrap_or(usual.least_area)).with_cell(panel.unwrap_or(usual.cell));
+        let points = ground_points(ground)?;
+        let (columns, cells) = run(py, progress, move |control| {
+            let cloud = ground_cloud(&inner)?;
+            let (low, high) = inner.model.bounds().on_map();
+            let origin = inner.frame().origin;
+            let grid = MapGrid::covering(low, high, GROUND_CELL, [origin[0], origin[1]])?;
+            let of_ground = GroundParams { points, ..GroundParams::default() };
+            let (ground, _) =
+                control.stage("computing ground", 0, || Ground::of_cloud(cloud, grid, &of_ground, control))?;
+            let (rows, _) = roof_points(cloud, &ground)?;
+            let places: Vec<[f32; 3]> =
+                rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
+            let planes = control.stage("detecting roof planes", 0, || roof_planes(&places, &of_planes, control))?;
+            let trees = trees.of(&inner, control)?;
+            let (seasons, _) = control.stage("computing radiation", 0, || {
+                period_seasons(&source.radiation(), &site, trees.as_ref(), &params, control)
+            })?;
+            let scene = inner.blockers(UnprovenAs::Visible, control)?;
+            let obstacles = Obstacles { scene: &scene, trees: trees.as_ref() };
+            let energies = control.stage("testing sun and sky", planes.len(), || {
+                roof_irradiation(obstacles, &planes, &seasons, control)
+            })?;
+            let cells: Vec<usize> = energies.iter().map(|energy| energy.cell_count).collect();
+            Ok((roof_columns(&planes, &energies, inner.frame(), &site), cells))
+        })?;
+        Ok((columns.into_iter().map(|column| (column.name, to_1d(py, column.values).into_any())).collect(), cells))
+    }
+
     fn irradiance<'py>(
         &self,
         py: Python<'py>,
@@ -115,31 +199,13 @@ impl Scene {
         let params = radiation.params()?;
         let source = py.detach(|| radiation.source(&params))?;
         let inner = Arc::clone(&self.0);
-        let given = radiation.location.map(|place| place.map(f64::to_radians));
-        let station = match &source {
-            Source::Weather(weather, _) => Some([weather.latitude, weather.longitude]),
-            Source::ClearSky(..) => None,
-        };
-        let (site, _) =
-            Site::of_scene(inner.frame(), &inner.model.bounds(), given, station).map_err(|error| match error {
-                belvedere::Error::MissingAttribute { attribute, needed_for, .. } => {
-                    exception(belvedere::Error::MissingAttribute {
-                        attribute,
-                        needed_for,
-                        advice: "give location=(latitude, longitude), or crs='EPSG:CODE' when reading the cloud",
-                    })
-                }
-                other => exception(other),
-            })?;
+        let site = radiation.site(&source, &inner)?;
         let asked = targets.owned(py, &inner)?;
         let (measures, grid, report) = run(py, progress, move |control| {
             let trees = trees.of(&inner, control)?;
-            let source = match &source {
-                Source::Weather(weather, parts) => RadiationSource::Weather { weather, parts: *parts },
-                Source::ClearSky(clear_sky, year) => RadiationSource::ClearSky { clear_sky: *clear_sky, year: *year },
-            };
-            let (seasons, report) = control
-                .stage("computing radiation", 0, || period_seasons(&source, &site, trees.as_ref(), &params, control))?;
+            let (seasons, report) = control.stage("computing radiation", 0, || {
+                period_seasons(&source.radiation(), &site, trees.as_ref(), &params, control)
+            })?;
             let targets = asked.targets(&inner, control)?;
             let scene = inner.blockers(UnprovenAs::Visible, control)?;
             let obstacles = Obstacles { scene: &scene, trees: trees.as_ref() };

@@ -8,6 +8,7 @@ use crate::sights::earth;
 use crate::sun::Place;
 use crate::targets::{Cells, Grid, grid_of, ground_points};
 use crate::work::run;
+use belvedere::apps::eyes::{EyesReport, fault_of_target};
 use belvedere::apps::horizon::{HorizonParams, azimuth_count, horizons};
 use belvedere::apps::isovist::{Isovist, IsovistParams, isovist};
 use belvedere::apps::targets::{CellLevel, CellParams, CoveredCells, Targets, set_on_ground};
@@ -35,6 +36,8 @@ pub(crate) struct Looking {
     pub(crate) max_distance: Option<f64>,
     curvature: Option<String>,
     refraction: Option<f64>,
+    /// The one place is a target, and who looks stands in the cells.
+    is_reverse: bool,
 }
 
 impl Looking {
@@ -85,13 +88,22 @@ impl Scene {
             let area = box_within_reach(inner.model.bounds().on_map(), reaches);
             let cells = Cells { side: looking.cell, height: None, level: CellLevel::Ground, ground: points };
             let ground = cells.ground_within(&inner, area, control)?;
-            let height = looking.observer_height.unwrap_or(OBSERVER_HEIGHT);
+            let mut heights =
+                [looking.observer_height.unwrap_or(OBSERVER_HEIGHT), looking.target_height.unwrap_or(TARGET_HEIGHT)];
+            if looking.is_reverse {
+                heights.reverse();
+            }
+            let [height, of_cells] = heights;
             set_on_ground(eyes.iter_mut().map(|eye| (eye, height)), &ground);
             let scene = inner.blockers(unproven, control)?;
-            let report = skip(&scene, Some(&ground), &mut eyes, control)?;
+            let report = match &eyes[..] {
+                &[target] if looking.is_reverse && fault_of_target(&scene, target).is_none() => {
+                    EyesReport::none_skipped(1)
+                }
+                _ => skip(&scene, Some(&ground), &mut eyes, control)?,
+            };
             let observers: Vec<Observer> = eyes.into_iter().map(|eye| Observer { eye, limits }).collect();
-            let height = tested_height(looking.target_height.unwrap_or(TARGET_HEIGHT));
-            let cells = CellParams::default().with_height(height).with_covered(CoveredCells::Kept);
+            let cells = CellParams::default().with_height(tested_height(of_cells)).with_covered(CoveredCells::Kept);
             let grid = grid_of(&ground.grid, inner.frame());
             let params = ViewshedParams::default().with_earth(earth).with_unproven(unproven);
             let seen = control.stage("testing cells", observers.len(), || {

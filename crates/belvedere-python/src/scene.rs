@@ -4,10 +4,11 @@ use crate::cloud::{Cloud, Input, json};
 use crate::errors::{belvedere_error, exception, wrong};
 use crate::system::System;
 use crate::work::run;
-use belvedere::clean::{CleanParams, Treatment};
+use belvedere::clean::CleanParams;
 use belvedere::control::Control;
-use belvedere::io::{Output, is_ball_file, read_balls, read_mesh, read_trajectory, write_balls};
-use belvedere::medial::{CarvedParams, CrownParams, Rule, ShrinkMethod, ShrinkParams, Trees};
+use belvedere::crs::Crs;
+use belvedere::io::{Output, is_ball_file, read_balls, read_mesh, read_stations, read_trajectory, write_balls};
+use belvedere::medial::{CarvedParams, Rule, ShrinkMethod, ShrinkParams, Trees};
 use belvedere::model::{BallParams, ModelParams, OrientBy, SceneModel};
 use belvedere::normals::estimate::Neighborhood;
 use belvedere::query::{MedialScene, UnprovenAs};
@@ -62,6 +63,33 @@ pub(crate) fn unproven_as(text: &str) -> PyResult<UnprovenAs> {
     }
 }
 
+/// The value of a library's type that has a name.
+fn named<T: Copy>(what: &'static str, name: &str, all: &[T], name_of: fn(T) -> &'static str) -> PyResult<T> {
+    all.iter().copied().find(|&value| name_of(value) == name).ok_or_else(|| {
+        let names: Vec<String> = all.iter().map(|&value| format!("'{}'", name_of(value))).collect();
+        wrong(what, &format!("'{name}'"), &format!("use {}", names.join(", ")))
+    })
+}
+
+/// Where each station stood: a table, or the point source ids and places in the coordinates of the file.
+#[derive(FromPyObject)]
+enum Stations {
+    Table(PathBuf),
+    Places(Vec<(u16, [f64; 3])>),
+}
+
+impl Stations {
+    /// Ids and places, metres in the system of the cloud.
+    fn read(&self, crs: &Crs) -> PyResult<Vec<(u16, [f64; 3])>> {
+        let scale = crs.metres_per_unit_xyz();
+        let metres = |place: &[f64; 3]| std::array::from_fn(|axis| place[axis] * scale[axis]);
+        match self {
+            Self::Table(path) => read_stations(path, crs).map_err(exception),
+            Self::Places(places) => Ok(places.iter().map(|(id, place)| (*id, metres(place))).collect()),
+        }
+    }
+}
+
 /// How balls are made; what is not given is the library's default.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
@@ -69,6 +97,7 @@ pub(crate) struct Choices {
     trees: Option<String>,
     orient: Option<String>,
     scanner: Option<[f64; 3]>,
+    stations: Option<Stations>,
     trajectory: Option<PathBuf>,
     mesh: Option<PathBuf>,
     method: Option<String>,
@@ -86,15 +115,13 @@ impl Choices {
     fn clean(&self) -> CleanParams {
         let mut params = CleanParams::default();
         if self.keep_noise {
-            params.dropped_classes = Vec::new();
-            params.withheld = Treatment::Keep;
+            params = params.keeping_noise();
         }
         if self.keep_duplicates {
-            params.exact_duplicates = Treatment::Keep;
-            params.near_duplicate_distance = None;
+            params = params.keeping_duplicates();
         }
         if self.keep_isolated {
-            params.isolated = None;
+            params = params.keeping_isolated();
         }
         params
     }
@@ -102,6 +129,9 @@ impl Choices {
     fn orient(&self, frame: &Frame) -> PyResult<OrientBy> {
         if let Some(place) = self.scanner {
             return Ok(OrientBy::ScannerAt(place));
+        }
+        if let Some(stations) = &self.stations {
+            return Ok(OrientBy::Stations(stations.read(&frame.crs)?));
         }
         if let Some(path) = &self.trajectory {
             return Ok(OrientBy::Trajectory(read_trajectory(path, &frame.crs).map_err(exception)?.0));
@@ -126,21 +156,11 @@ impl Choices {
         params.penetration = self.penetration.unwrap_or(params.penetration);
         params.initial_radius = self.initial_radius.unwrap_or(params.initial_radius);
         params.max_radius = self.max_radius.unwrap_or(params.max_radius);
-        if let Some(trees) = self.trees.as_deref() {
-            let trees = match trees {
-                "opaque" => Trees::Opaque,
-                "porous" => Trees::Porous,
-                "measured" => Trees::Measured,
-                _ => return Err(wrong("trees", &format!("'{trees}'"), "use 'measured', 'opaque' or 'porous'")),
-            };
-            params.crowns = params.crowns.map(|crowns| CrownParams { trees, ..crowns });
+        if let Some(name) = self.trees.as_deref() {
+            params = params.with_trees(named("trees", name, &Trees::ALL, Trees::name)?);
         }
         for name in &self.without {
-            let Some(rule) = Rule::ALL.into_iter().find(|rule| rule.name() == name) else {
-                let names: Vec<&str> = Rule::ALL.into_iter().map(Rule::name).collect();
-                return Err(wrong("without", &format!("'{name}'"), &format!("use {}", names.join(", "))));
-            };
-            params = params.without(rule);
+            params = params.without(named("without", name, &Rule::ALL, Rule::name)?);
         }
         Ok(params)
     }

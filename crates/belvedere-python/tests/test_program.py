@@ -95,6 +95,63 @@ def test_viewsheds(scene, run_program, folder, standing):
     assert_same_raster(ours, folder / "two.tif", folder)
 
 
+@pytest.mark.parametrize(
+    ("name", "flags", "arguments"),
+    [
+        ("ground", [], {}),
+        ("high", ["--target-height", "12", "--observer-height", "3"], {"target_height": 12, "observer_height": 3}),
+        ("near", ["--max-distance", "30", "--cell", "1"], {"max_distance": 30, "cell": 1}),
+    ],
+)
+def test_cells_from_which_a_target_is_seen(scene, run_program, folder, standing, name, flags, arguments):
+    x, y = standing
+    run_program("viewshed", "tile.laz", "--target", f"{x},{y}", *flags, "-o", f"from_{name}.tif")
+    ours = scene.viewshed(target=(x, y), **arguments)
+    assert_same_raster(ours, folder / f"from_{name}.tif", folder)
+    # it is no viewshed of an observer there: heights are those of the other end
+    if name == "high":
+        assert not np.array_equal(ours.values, scene.viewshed((x, y), **arguments).values)
+
+
+def test_stations_of_a_scanner_on_the_ground(run_program, folder):
+    simulated = ["--scanner", "terrestrial", "--extent", 60, "--stations", 2, "--angle-step-deg", 1]
+    run_program("simulate", "town", *simulated, "-o", "tripods")
+    table = folder / "tripods" / "stations.csv"
+    run_program("balls", "tripods/cloud.laz", "--orient", f"stations={table}", "-o", "tripods.npz")
+    theirs = np.load(folder / "tripods.npz")
+    rows = np.loadtxt(table, delimiter=",", skiprows=1)
+    with pytest.warns(belvedere.BelvedereWarning, match="extra bytes"):
+        cloud = belvedere.read(folder / "tripods" / "cloud.laz")
+    for given in (table, rows, {int(row[0]): row[1:] for row in rows}):
+        with pytest.warns(belvedere.BelvedereWarning, match="scanner on the ground"):
+            scene = belvedere.Scene(cloud, stations=given)
+        scene.save(folder / "python_tripods.npz")
+        ours = np.load(folder / "python_tripods.npz")
+        for name in set(theirs) - {"metadata"}:
+            assert ours[name].tobytes() == theirs[name].tobytes(), name
+    # the places count: with those of the other station the pulses come from elsewhere
+    with pytest.warns(belvedere.BelvedereWarning, match="scanner on the ground"):
+        other = belvedere.Scene(cloud, stations=np.column_stack([rows[::-1, 0], rows[:, 1:]]))
+    assert other.report["normals"] != scene.report["normals"]
+
+
+def test_roof_planes(scene, run_program, folder):
+    pandas = pytest.importorskip("pandas")
+    flags = ["--clear-sky", "ineichen", "--sun-cell-deg", 6, "--patch-division", 1, "--months", "--panel", 2]
+    run_program("irradiance", "tile.laz", *flags, "--through-trees", "seasons", "--planes", "roofs.csv")
+    theirs = pandas.read_csv(folder / "roofs.csv", dtype=str)
+    ours = scene.roof_planes(
+        clear_sky="ineichen", sun_cell_deg=6, patch_division=1, months=True, panel=2, through_trees="seasons"
+    )
+    assert ours.row_count == len(theirs) > 3
+    columns = {"x": ours.places[:, 0], "y": ours.places[:, 1], "z": ours.places[:, 2], **ours}
+    assert list(theirs.columns) == ["plane", "cells", *(name for name in columns if name != "cells")]
+    for name, values in columns.items():
+        decimals = max(len(cell.partition(".")[2]) for cell in theirs[name])
+        written = [float(cell) for cell in theirs[name]]
+        assert np.abs(values - written).max() <= 0.5001 * 10.0**-decimals, name
+
+
 def test_horizons_and_isovists(scene, run_program, folder, standing):
     pandas = pytest.importorskip("pandas")
     x, y = standing

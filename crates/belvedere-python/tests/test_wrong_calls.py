@@ -50,6 +50,12 @@ WRONG = {
     "orient": (lambda s, c, f: belvedere.Scene(c, orient="down"), "orient", "pulses"),
     "two ways to orient": (
         lambda s, c, f: belvedere.Scene(c, orient="up", scanner=(1, 2, 3)), "orient and scanner", "one of them"),
+    "stations of three columns": (lambda s, c, f: belvedere.Scene(c, stations=PLACES), "stations", "four columns"),
+    "a station twice": (
+        lambda s, c, f: belvedere.Scene(c, stations=[[1, 2, 3, 4], [1, 2, 3, 5]]), "stations", "once"),
+    "nobody who looks": (lambda s, c, f: s.viewshed(), "observers", "target"),
+    "observers and a target": (lambda s, c, f: s.viewshed((1, 2), target=(1, 2)), "observers and target", "one of"),
+    "two targets": (lambda s, c, f: s.viewshed(target=[(1, 2), (3, 4)]), "target", "one"),
     "method": (lambda s, c, f: belvedere.Scene(c, method="best"), "method", "carved"),
     "rule": (lambda s, c, f: belvedere.Scene(c, without="houses"), "without", "crowns"),
     "radius": (lambda s, c, f: belvedere.Scene(c, max_radius=-1), None, "above"),

@@ -7,7 +7,7 @@ mod points;
 mod room;
 
 pub use cells::PlaneCells;
-pub use points::{RoofsFrom, roof_points};
+pub use points::{GROUND_CELL, RoofsFrom, roof_points};
 
 use belvedere_core::neighbors::NeighborIndex;
 use belvedere_core::normals::estimate::{Neighborhood, estimate};

@@ -11,6 +11,9 @@ const LEAST_HEIGHT: f64 = 2.0;
 /// One point in so many must be classed as a building for that class to be believed.
 const FEW: usize = 1000;
 
+/// Side of the cells of the ground that roofs are separated from, metres.
+pub const GROUND_CELL: f64 = 1.0;
+
 /// How roofs were told from other things.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RoofsFrom {

@@ -1,7 +1,8 @@
 //! Flags of normals and balls. Every command that builds balls has them; only `normals` and `balls` list them in their help.
 
 use super::{CloudInput, Numbers, SceneConfig, above_zero};
-use belvedere::medial::Rule;
+use belvedere::medial::{Rule, Trees};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -92,6 +93,19 @@ pub(crate) struct Orienting {
     pub(crate) orient: OrientChoice,
 }
 
+fn trees() -> impl TypedValueParser<Value = Trees> {
+    let possible = Trees::ALL.map(|trees| {
+        PossibleValue::new(trees.name()).help(match trees {
+            Trees::Opaque => "Solid from the highest to the lowest return, as in leaf",
+            Trees::Porous => "Twigs with gaps between them, as in winter",
+            Trees::Measured => "Each part by the share of pulses that passed through it",
+        })
+    });
+    // the parser lets no other name through
+    PossibleValuesParser::new(possible)
+        .map(|name| Trees::ALL.into_iter().find(|trees| trees.name() == name).unwrap_or_default())
+}
+
 fn rule(name: &str) -> Result<Rule, String> {
     Rule::ALL
         .into_iter()
@@ -108,8 +122,8 @@ pub(crate) struct Shrinking {
     #[arg(long, value_enum)]
     pub(crate) method: Option<MethodChoice>,
     /// How carved balls represent the crowns of trees [default: measured]
-    #[arg(long, value_enum, value_name = "TREES")]
-    pub(crate) trees: Option<TreesChoice>,
+    #[arg(long, value_name = "TREES", value_parser = trees())]
+    pub(crate) trees: Option<Trees>,
     /// Rules of carved balls to switch off, for research
     ///
     /// docs/methods/carving.md describes each rule.
@@ -138,16 +152,6 @@ pub(crate) enum SideChoice {
     Interior,
     /// In free space
     Exterior,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum TreesChoice {
-    /// Solid from the highest to the lowest return, as in leaf
-    Opaque,
-    /// Twigs with gaps between them, as in winter
-    Porous,
-    /// Each part by the share of pulses that passed through it
-    Measured,
 }
 
 #[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]

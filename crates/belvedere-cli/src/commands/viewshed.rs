@@ -11,7 +11,7 @@ use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
 use belvedere::PointCloud;
-use belvedere::apps::eyes::{EyeFault, EyesReport, fault_of};
+use belvedere::apps::eyes::{EyesReport, fault_of_target};
 use belvedere::apps::targets::{CellParams, CoveredCells, Targets};
 use belvedere::apps::viewshed::{
     Masks, OBSERVER_HEIGHT, Observer, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, box_within_reach, cell_for,
@@ -150,9 +150,7 @@ fn skip_observers(
 ) -> Result<EyesReport> {
     let mut eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
     let report = match (who, &eyes[..]) {
-        ("target", &[eye]) if matches!(fault_of(blockers, None, eye), None | Some(EyeFault::InsideObstacle(_))) => {
-            EyesReport::none_skipped(1)
-        }
+        ("target", &[eye]) if fault_of_target(blockers, eye).is_none() => EyesReport::none_skipped(1),
         _ => skip_unfit(blockers, Some(ground), (who, &cloud.frame), &mut eyes, stages, summary)?,
     };
     observers.iter_mut().zip(eyes).for_each(|(observer, eye)| observer.eye = eye);

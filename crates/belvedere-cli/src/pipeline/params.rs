@@ -1,16 +1,14 @@
 //! From flags to the parameters of a scene model.
 
 use super::flagged;
-use crate::arguments::{
-    Cleaning, MethodChoice, NeighborChoice, OrientChoice, Orienting, Shrinking, TreesChoice, Usage,
-};
+use crate::arguments::{Cleaning, MethodChoice, NeighborChoice, OrientChoice, Orienting, Shrinking, Usage};
 use crate::progress::Stages;
 use anyhow::Result;
 use belvedere::Error;
-use belvedere::clean::{CleanParams, Treatment};
+use belvedere::clean::CleanParams;
 use belvedere::crs::Crs;
 use belvedere::io::{read_mesh, read_stations, read_trajectory};
-use belvedere::medial::{CarvedParams, CrownParams, ShrinkMethod, ShrinkParams, Trees};
+use belvedere::medial::{CarvedParams, ShrinkMethod, ShrinkParams};
 use belvedere::model::{BallParams, ModelParams, OrientBy};
 use belvedere::normals::estimate::Neighborhood;
 
@@ -56,15 +54,13 @@ impl Cleaning {
     pub(crate) fn params(&self) -> CleanParams {
         let mut params = CleanParams::default();
         if self.keep_noise {
-            params.dropped_classes = Vec::new();
-            params.withheld = Treatment::Keep;
+            params = params.keeping_noise();
         }
         if self.keep_duplicates {
-            params.exact_duplicates = Treatment::Keep;
-            params.near_duplicate_distance = None;
+            params = params.keeping_duplicates();
         }
         if self.keep_isolated {
-            params.isolated = None;
+            params = params.keeping_isolated();
         }
         params
     }
@@ -135,12 +131,7 @@ impl Shrinking {
         params.max_radius = self.max_radius.unwrap_or(params.max_radius);
         check_shrinking(&params.shrinking())?;
         if let Some(trees) = self.trees {
-            let trees = match trees {
-                TreesChoice::Opaque => Trees::Opaque,
-                TreesChoice::Porous => Trees::Porous,
-                TreesChoice::Measured => Trees::Measured,
-            };
-            params.crowns = params.crowns.map(|crowns| CrownParams { trees, ..crowns });
+            params = params.with_trees(trees);
         }
         Ok(self.without.iter().fold(params, |params, &rule| params.without(rule)))
     }

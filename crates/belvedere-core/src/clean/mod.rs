@@ -66,6 +66,24 @@ impl CleanParams {
             isolated: None,
         }
     }
+
+    /// The same with points of noise classes and those flagged as withheld.
+    #[must_use]
+    pub fn keeping_noise(self) -> Self {
+        Self { withheld: Treatment::Keep, dropped_classes: Vec::new(), ..self }
+    }
+
+    /// The same with points that repeat others.
+    #[must_use]
+    pub fn keeping_duplicates(self) -> Self {
+        Self { exact_duplicates: Treatment::Keep, near_duplicate_distance: None, ..self }
+    }
+
+    /// The same with points that have hardly another around them.
+    #[must_use]
+    pub fn keeping_isolated(self) -> Self {
+        Self { isolated: None, ..self }
+    }
 }
 
 /// How many points each step left out, in the order of the steps. All counts together are the points of the cloud.

@@ -4,7 +4,7 @@ use super::bounds::{Kind, KindBounds, RadiusBounds, kinds};
 use super::carve::{CarveReport, carve};
 use super::cells::lowest_near;
 use super::close_range::{CloseRangeBalls, CloseRangeParams};
-use super::crowns::{self, CrownParams, Crowns};
+use super::crowns::{self, CrownParams, Crowns, Trees};
 use super::prune::{PruneParams, prune_in_blocks_of};
 use super::relief::{Relief, ReliefParams};
 use super::roof_edges::{RoofEdgeParams, RoofEdges};
@@ -132,6 +132,13 @@ impl Rule {
 }
 
 impl CarvedParams {
+    /// The same with crowns taken for `trees`, unless their rule is left out.
+    #[must_use]
+    pub fn with_trees(mut self, trees: Trees) -> Self {
+        self.crowns = self.crowns.map(|crowns| CrownParams { trees, ..crowns });
+        self
+    }
+
     /// The same without one rule.
     #[must_use]
     pub fn without(mut self, rule: Rule) -> Self {

@@ -28,6 +28,21 @@ pub enum Trees {
     Measured,
 }
 
+impl Trees {
+    /// Every way.
+    pub const ALL: [Self; 3] = [Self::Opaque, Self::Porous, Self::Measured];
+
+    /// Name on the command line and in Python.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Opaque => "opaque",
+            Self::Porous => "porous",
+            Self::Measured => "measured",
+        }
+    }
+}
+
 /// How crowns are represented.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrownParams {

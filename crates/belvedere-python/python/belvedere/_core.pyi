@@ -160,6 +160,15 @@ class Scene:
     def irradiance(
         self, radiation: dict[str, Any], targets: dict[str, Any], trees: dict[str, Any], progress: _Progress
     ) -> tuple[_Columns, _Grid | None, str]: ...
+    def roof_planes(
+        self,
+        radiation: dict[str, Any],
+        min_area: float | None,
+        panel: float | None,
+        ground: str | None,
+        trees: dict[str, Any],
+        progress: _Progress,
+    ) -> tuple[list[tuple[str, npt.NDArray[np.float64]]], list[int]]: ...
     def depth_map(
         self, camera: dict[str, Any], place: dict[str, Any], progress: _Progress
     ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32] | None]: ...

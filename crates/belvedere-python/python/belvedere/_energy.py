@@ -7,15 +7,15 @@ import os
 import warnings
 from typing import Any
 
+import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._errors import BelvedereWarning
-from ._inputs import Progress, check_finite, number_pair, reporter
-from ._raster import Rasters
+from ._inputs import Progress, check_finite, location_pair, reporter
 from ._sunlight import _cells
 from ._table import Table
-from ._targets import Targets, measures, wanted
+from ._targets import RastersOrTable, Targets, measures, wanted
 
 
 class Energy:
@@ -47,7 +47,7 @@ class Energy:
         leaves: str | None = None,
         location: npt.ArrayLike | None = None,
         progress: Progress = None,
-    ) -> Rasters | Table:
+    ) -> RastersOrTable:
         """The energy that sun and sky send to places in a year, or in the period of a weather file.
 
         Parameters
@@ -104,22 +104,20 @@ class Energy:
         >>> bool(0 < np.nanmax(energy["kwh_m2"]) < 2500)
         True
         """
-        where = "give latitude and longitude in degrees, such as (52.0, 4.4)"
-        check_finite(linke=linke, albedo=albedo, sun_cell_deg=sun_cell_deg)
-        radiation: dict[str, Any] = {
-            "weather": None if weather is None else os.fspath(weather),
-            "clear_sky": clear_sky,
-            "linke": linke,
-            "year": year,
-            "parts": parts_per_row,
-            "sky_model": sky_model,
-            "patch_division": patch_division,
-            "albedo": albedo,
-            "surroundings": surroundings,
-            "sun_cell": sun_cell_deg,
-            "months": months,
-            "location": None if location is None else number_pair(location, "location", where),
-        }
+        radiation = _radiation(
+            weather=weather,
+            clear_sky=clear_sky,
+            linke=linke,
+            year=year,
+            parts=parts_per_row,
+            sky_model=sky_model,
+            patch_division=patch_division,
+            albedo=albedo,
+            surroundings=surroundings,
+            sun_cell=sun_cell_deg,
+            months=months,
+            location=location,
+        )
         columns, grid, text = self._core.irradiance(
             radiation,
             wanted(targets, normals, _cells(cell, target_height, surface, ground)),
@@ -134,3 +132,90 @@ class Energy:
                 stacklevel=2,
             )
         return measures(columns, grid, self._core.crs, targets)
+
+    def roof_planes(
+        self,
+        *,
+        weather: str | os.PathLike[str] | None = None,
+        clear_sky: str | None = None,
+        linke: float | None = None,
+        year: int | None = None,
+        months: bool = False,
+        sky_model: str | None = None,
+        patch_division: int | None = None,
+        parts_per_row: int | None = None,
+        albedo: float | None = None,
+        surroundings: str | None = None,
+        sun_cell_deg: float | None = None,
+        min_area: float | None = None,
+        panel: float | None = None,
+        ground: str | None = None,
+        through_trees: str | float | None = None,
+        leaves: str | None = None,
+        location: npt.ArrayLike | None = None,
+        progress: Progress = None,
+    ) -> Table:
+        """The planes of roofs, and the energy that each receives.
+
+        Parameters
+        ----------
+        weather, clear_sky, linke, year, months, sky_model, patch_division, parts_per_row, albedo, surroundings
+            As for `irradiance`.
+        sun_cell_deg, ground, through_trees, leaves, location
+            As for `irradiance`.
+        min_area : float, optional
+            Smallest area of a plane, square metres; that of the command line if not given.
+        panel : float, optional
+            Side of the panels that a plane is divided into, metres; a row of panels is a string.
+        progress : bool or callable, optional
+
+        Returns
+        -------
+        Table
+            A row for each plane: ``cells``, ``area_m2``, ``tilt_deg``, ``azimuth_deg`` from true north, ``kwh_m2`` and
+            its parts, ``min_loss`` where each panel works alone, ``max_loss`` where the worst panel limits its row, and
+            ``kwh``. `places` has the middle of each plane.
+
+        Raises
+        ------
+        BelvedereError
+            Without a source of radiation, for a cloud without roofs, and parameters out of range.
+
+        References
+        ----------
+        docs/methods/irradiance.md
+
+        Examples
+        --------
+        >>> roofs = scene.roof_planes(clear_sky="ineichen", sun_cell_deg=6, patch_division=1)
+        >>> bool((roofs["max_loss"] >= roofs["min_loss"]).all()), roofs.places.shape == (roofs.row_count, 3)
+        (True, True)
+        """
+        check_finite(min_area=min_area, panel=panel)
+        radiation = _radiation(
+            weather=weather,
+            clear_sky=clear_sky,
+            linke=linke,
+            year=year,
+            parts=parts_per_row,
+            sky_model=sky_model,
+            patch_division=patch_division,
+            albedo=albedo,
+            surroundings=surroundings,
+            sun_cell=sun_cell_deg,
+            months=months,
+            location=location,
+        )
+        trees = {"share": through_trees, "leaves": leaves}
+        columns, cells = self._core.roof_planes(radiation, min_area, panel, ground, trees, reporter(progress))
+        middle = np.column_stack([values for _, values in columns[:3]])
+        found = {"cells": np.array(cells, np.int64), **dict(columns[3:])}
+        return Table(found, places=middle, crs=self._core.crs.text)
+
+
+def _radiation(**given: Any) -> dict[str, Any]:
+    """Where radiation comes from, as the native part takes it."""
+    check_finite(linke=given["linke"], albedo=given["albedo"], sun_cell_deg=given["sun_cell"])
+    weather = given["weather"]
+    weather = None if weather is None else os.fspath(weather)
+    return given | {"weather": weather, "location": location_pair(given["location"])}

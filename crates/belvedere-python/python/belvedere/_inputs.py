@@ -79,6 +79,29 @@ def places(value: Places, what: str) -> npt.NDArray[Any]:
     return array
 
 
+def map_places(value: npt.ArrayLike, what: str, advice: str, least: int = 1) -> npt.NDArray[np.float64]:
+    """Rows of x, y, z from one place or rows of x, y and perhaps z, which is NaN where it follows from the ground."""
+    try:
+        array = np.asarray(value, np.float64)
+    except (TypeError, ValueError):
+        raise wrong(what, repr(value), advice) from None
+    if array.ndim == 1:
+        array = array[np.newaxis]
+    if array.ndim != 2 or array.shape[1] not in (2, 3) or len(array) < least:
+        raise wrong(what, f"an array of shape {np.shape(value)}", advice)
+    if not np.isfinite(array).all():
+        raise wrong(what, "not finite", "leave z out where it is not known")
+    if array.shape[1] == 2:
+        array = np.column_stack([array, np.full(len(array), np.nan)])
+    return np.ascontiguousarray(array)
+
+
+def location_pair(location: npt.ArrayLike | None) -> tuple[float, float] | None:
+    """Latitude and longitude, degrees."""
+    where = "give latitude and longitude in degrees, such as (52.0, 4.4)"
+    return None if location is None else number_pair(location, "location", where)
+
+
 def time_text(time: Time, what: str = "time") -> str:
     """ISO 8601 with an offset."""
     if isinstance(time, str):

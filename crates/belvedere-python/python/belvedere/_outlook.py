@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import BelvedereWarning, wrong
-from ._inputs import Progress, check_finite, number_pair, place, reporter
+from ._inputs import Progress, check_finite, map_places, number_pair, place, reporter
 from ._raster import Raster
 from ._sunlight import _place
 from ._table import Table
@@ -26,8 +26,9 @@ class Outlook:
 
     def viewshed(
         self,
-        observers: npt.ArrayLike,
+        observers: npt.ArrayLike | None = None,
         *,
+        target: npt.ArrayLike | None = None,
         observer_height: float | None = None,
         target_height: float | None = None,
         cell: float | None = None,
@@ -42,12 +43,15 @@ class Outlook:
         grid_north: bool = False,
         progress: Progress = None,
     ) -> Raster:
-        """What one or many observers see of the ground.
+        """What one or many observers see of the ground, or from where a target is seen.
 
         Parameters
         ----------
-        observers : array_like, shape (2,), (3,), (N, 2) or (N, 3)
+        observers : array_like, shape (2,), (3,), (N, 2) or (N, 3), optional
             Places in the coordinates of the file. Without z, eyes are `observer_height` above the ground.
+        target : array_like, shape (2,) or (3,), optional
+            In place of observers: cells are those from which this place is seen by eyes `observer_height` above the
+            ground. Without z, it is `target_height` above the ground.
         observer_height : float, optional
             Height of eyes above the ground, metres; 1.7 if not given.
         target_height : float, optional
@@ -95,6 +99,7 @@ class Outlook:
         >>> seen = scene.viewshed(standing, max_distance=50)
         >>> seen.values.dtype, bool((seen.values == belvedere.Answer.VISIBLE).any())
         (dtype('uint8'), True)
+        >>> seen_from = scene.viewshed(target=standing, target_height=10, cell=2)
         """
         looking = _looking(
             observer_height=observer_height,
@@ -107,8 +112,20 @@ class Outlook:
             max_distance=max_distance,
             curvature=curvature,
             refraction=refraction,
+            is_reverse=target is not None,
         )
-        places = _places(observers)
+        if target is None:
+            if observers is None:
+                raise wrong("observers", "missing", "give observers, or a target")
+            places = map_places(observers, "observers", _OBSERVERS)
+        else:
+            if observers is not None:
+                raise wrong("observers and target", "given together", "give one of them")
+            if azimuth_range_deg is not None or elevation_range_deg is not None:
+                raise wrong("azimuth_range_deg and elevation_range_deg", "given with a target", "they limit observers")
+            places = map_places(target, "target", "give x and y, or x, y and z")
+            if len(places) != 1:
+                raise wrong("target", f"{len(places)} places", "give one")
         answers, counts, grid, skipped = self._core.viewshed(
             places, looking, _place(None, grid_north=grid_north), unproven, reporter(progress)
         )
@@ -240,7 +257,7 @@ class Outlook:
         """
         looking = _looking(observer_height=observer_height, ground=ground, curvature=curvature, refraction=refraction)
         check_finite(angle_step_deg=angle_step_deg)
-        places = _places(observers)
+        places = map_places(observers, "observers", _OBSERVERS)
         found, count, skipped = self._core.horizon(
             places, angle_step_deg, looking, _place(None, grid_north=grid_north), reporter(progress)
         )
@@ -302,7 +319,7 @@ class Outlook:
         looking = _looking(observer_height=observer_height, max_distance=max_distance, ground=ground)
         check_finite(angle_step_deg=angle_step_deg, min_jump=min_jump)
         columns, panoramas, skipped = self._core.isovist(
-            _places(observers),
+            map_places(observers, "observers", _OBSERVERS),
             angle_step_deg,
             min_jump,
             looking,
@@ -320,28 +337,11 @@ def _looking(**given: Any) -> dict[str, Any]:
     more = ("min_distance", "max_distance", "curvature", "refraction")
     numbers = ("observer_height", "target_height", "cell", "min_distance", "refraction")
     check_finite(**{name: given.get(name) for name in numbers})
-    return {name: given.get(name) for name in names + more}
+    return {name: given.get(name) for name in names + more} | {"is_reverse": bool(given.get("is_reverse"))}
 
 
 def _range(value: npt.ArrayLike | None, what: str) -> tuple[float, float] | None:
     return None if value is None else number_pair(value, what, "give two angles in degrees, such as (300, 60)")
-
-
-def _places(value: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """Rows of x, y, z; z is NaN where it follows from the ground."""
-    try:
-        array = np.asarray(value, np.float64)
-    except (TypeError, ValueError):
-        raise wrong("observers", repr(value), _OBSERVERS) from None
-    if array.ndim == 1:
-        array = array[np.newaxis]
-    if array.ndim != 2 or array.shape[1] not in (2, 3) or not len(array):
-        raise wrong("observers", f"an array of shape {np.shape(value)}", _OBSERVERS)
-    if not np.isfinite(array).all():
-        raise wrong("observers", "not finite", "leave z out where it is not known")
-    if array.shape[1] == 2:
-        array = np.column_stack([array, np.full(len(array), np.nan)])
-    return np.ascontiguousarray(array)
 
 
 def _warn(sentences: list[str]) -> None:

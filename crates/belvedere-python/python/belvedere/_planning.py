@@ -18,16 +18,15 @@ from ._inputs import (
     Time,
     as_list,
     check_finite,
-    day_texts,
-    moments,
+    map_places,
     number_pair,
     reporter,
 )
-from ._outlook import _looking, _places, _warn
-from ._raster import Raster, Rasters
-from ._sunlight import _DIRECTION, _place
+from ._outlook import _OBSERVERS, _looking, _warn
+from ._raster import Raster
+from ._sunlight import _DIRECTION, _days, _place
 from ._table import Table
-from ._targets import measures, raster
+from ._targets import RastersOrTable, measures, raster
 
 _LINE = "give corners of shape (N, 2) or (N, 3)"
 
@@ -55,7 +54,7 @@ class Planning:
         curvature: str | None = None,
         refraction: float | None = None,
         progress: Progress = None,
-    ) -> Rasters | Table:
+    ) -> RastersOrTable:
         """From where a landmark is seen, and how much of it.
 
         Parameters
@@ -123,7 +122,7 @@ class Planning:
         )
         if observers is not None and cell is not None:
             raise wrong("cell", cell, "it applies only to a grid; leave out observers, or leave this out")
-        places = None if observers is None else _places(observers)
+        places = None if observers is None else map_places(observers, "observers", _OBSERVERS)
         columns, grid, skipped = self._core.landmark(what, places, looking, unproven, reporter(progress))
         _warn(skipped)
         if places is not None:
@@ -313,16 +312,8 @@ class Planning:
 
 def _line(value: Any, what: str, least: int = 1) -> list[tuple[float, float, float]]:
     """Corners; z is NaN where it follows from the ground."""
-    try:
-        array = np.asarray(value, np.float64)
-    except (TypeError, ValueError):
-        raise wrong(what, repr(value), _LINE) from None
-    if array.ndim != 2 or array.shape[1] not in (2, 3) or len(array) < least:
-        raise wrong(what, f"an array of shape {array.shape}", f"{_LINE}, {least} at least")
-    if not np.isfinite(array).all():
-        raise wrong(what, "not finite", "leave z out where it is not known")
-    nan = float("nan")
-    return [(float(row[0]), float(row[1]), float(row[2]) if len(row) == 3 else nan) for row in array]
+    rows = map_places(value, what, f"{_LINE}, {least} at least", least)
+    return [(float(x), float(y), float(z)) for x, y, z in rows]
 
 
 def _windows(columns: Mapping[str, npt.ArrayLike]) -> list[list[float]]:
@@ -340,16 +331,3 @@ def _windows(columns: Mapping[str, npt.ArrayLike]) -> list[list[float]]:
     if {values.shape for values in full.values()} != {(count,)} or not count:
         raise wrong("windows", "columns of different lengths, or empty", "give a value for each window")
     return [[float(value) for value in row] for row in np.column_stack([full[name] for name in known])]
-
-
-def _days(date: Any, period: Any, year: int | None, time_step_min: float | None) -> dict[str, Any]:
-    if date is not None and period is not None:
-        raise wrong("date and period", "given together", "give one of them")
-    return {
-        "dates": [] if date is None else day_texts(date),
-        "between": None if period is None else moments(period),
-        "year": year,
-        "step": time_step_min,
-        "min_sun_elevation": None,
-        "tolerance": None,
-    }

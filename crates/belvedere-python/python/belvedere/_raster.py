@@ -140,6 +140,9 @@ class Raster:
             return np.array(self.values, dtype)
         return np.asarray(self.values, dtype)
 
+    def __getitem__(self, cells: Any) -> Any:
+        return self.values[cells]
+
     def __repr__(self) -> str:
         rows, columns = self.shape
         name = f" '{self.name}'" if self.name else ""

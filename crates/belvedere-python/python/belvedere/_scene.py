@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import warnings
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,9 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
         of the file, as the file says, or upward.
     scanner : array_like, shape (3,), optional
         Place of the one scanner, in the coordinates of the cloud, in place of `orient`.
+    stations : path, mapping or array_like of shape (N, 4), optional
+        Where a scanner on the ground stood, in place of `orient`: a table with the columns station, x, y and z, places
+        by the point source id of their points, or rows of these four numbers. In the coordinates of the cloud.
     trajectory : path, optional
         Trajectory of the scanner, in place of `orient`.
     mesh : path, optional
@@ -90,6 +94,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
         trees: str | None = None,
         orient: str | None = None,
         scanner: npt.ArrayLike | None = None,
+        stations: str | os.PathLike[str] | Mapping[int, npt.ArrayLike] | npt.ArrayLike | None = None,
         trajectory: str | os.PathLike[str] | None = None,
         mesh: str | os.PathLike[str] | None = None,
         method: str | None = None,
@@ -107,7 +112,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
             raise wrong("cloud", "an array", "make a cloud of it: belvedere.Cloud(xyz, crs='EPSG:CODE')")
         if not isinstance(cloud, Cloud):
             cloud = read(cloud)
-        ways = {"orient": orient, "scanner": scanner, "trajectory": trajectory, "mesh": mesh}
+        ways = {"orient": orient, "scanner": scanner, "stations": stations, "trajectory": trajectory, "mesh": mesh}
         given = [name for name, value in ways.items() if value is not None]
         if len(given) > 1:
             raise wrong(" and ".join(given), "given together", "give one of them")
@@ -116,6 +121,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
             "trees": trees,
             "orient": orient,
             "scanner": None if scanner is None else place(scanner, "scanner"),
+            "stations": None if stations is None else _stations(stations),
             "trajectory": None if trajectory is None else os.fspath(trajectory),
             "mesh": None if mesh is None else os.fspath(mesh),
             "method": method,
@@ -226,6 +232,25 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _unpickled, (self._core.to_bytes(), self.cloud, self.report)
+
+
+def _stations(given: Any) -> str | list[tuple[int, tuple[float, float, float]]]:
+    """The path of a table, or ids and places."""
+    if isinstance(given, (str, os.PathLike)):
+        return os.fspath(given)
+    if isinstance(given, Mapping):
+        rows = [(number, place(where, f"stations[{number}]")) for number, where in given.items()]
+    else:
+        array = np.asarray(given, np.float64)
+        if array.ndim != 2 or array.shape[1] != 4:
+            raise wrong("stations", f"an array of shape {array.shape}", "give station, x, y and z in four columns")
+        rows = [(row[0], place(row[1:], "stations")) for row in array]
+    if not rows:
+        raise wrong("stations", "empty", "give at least one")
+    numbers = [number for number, _ in rows]
+    if any(number != int(number) or not 0 <= number <= 65535 for number in numbers) or len(set(numbers)) < len(rows):
+        raise wrong("stations", repr(numbers), "each is a point source id, 0 to 65535, and occurs once")
+    return [(int(number), where) for number, where in rows]
 
 
 def _relief(cloud: Cloud) -> npt.NDArray[np.float64]:

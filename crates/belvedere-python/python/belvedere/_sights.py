@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -94,7 +94,7 @@ class Sights:
         curvature: str | None = None,
         refraction: float | None = None,
         progress: Progress = None,
-    ) -> Sight | Table:
+    ) -> Any:
         """What is known of lines of sight between pairs of places.
 
         Parameters

@@ -18,15 +18,15 @@ from ._inputs import (
     as_list,
     check_finite,
     day_texts,
+    location_pair,
     moments,
     number_pair,
     reporter,
     times,
     zone_text,
 )
-from ._raster import Raster, Rasters
-from ._table import Table
-from ._targets import Cells, Targets, measures, raster, wanted, warn_of_nothing
+from ._raster import Raster
+from ._targets import Cells, RastersOrTable, Targets, measures, raster, wanted, warn_of_nothing
 
 _DIRECTION = "give azimuth and elevation in degrees, such as (180, 30)"
 
@@ -157,7 +157,7 @@ class Sunlight:
         sun_elevation: str = "apparent",
         air: npt.ArrayLike | None = None,
         progress: Progress = None,
-    ) -> Rasters | Table:
+    ) -> RastersOrTable:
         """Hours of sun on days, and when.
 
         Parameters
@@ -215,16 +215,7 @@ class Sunlight:
             min_sun_elevation_deg=min_sun_elevation_deg,
             sun_tolerance_deg=sun_tolerance_deg,
         )
-        days = {
-            "dates": [] if date is None else day_texts(date),
-            "between": None if period is None else moments(period),
-            "year": year,
-            "step": time_step_min,
-            "min_sun_elevation": min_sun_elevation_deg,
-            "tolerance": sun_tolerance_deg,
-        }
-        if date is not None and period is not None:
-            raise wrong("date and period", "given together", "give one of them")
+        days = _days(date, period, year, time_step_min, min_sun_elevation_deg, sun_tolerance_deg)
         columns, grid = self._core.sun_hours(
             days,
             as_list(rule),
@@ -248,7 +239,7 @@ class Sunlight:
         ground: str | None = None,
         through_trees: str | float | None = None,
         progress: Progress = None,
-    ) -> Rasters | Table:
+    ) -> RastersOrTable:
         """How much of the sky places see.
 
         Parameters
@@ -315,6 +306,26 @@ def _cells(cell: float | None, target_height: float | None, surface: bool, groun
     return {"cell": cell, "target_height": target_height, "surface": surface, "ground": ground}
 
 
+def _days(
+    date: Any,
+    period: Any,
+    year: int | None,
+    time_step_min: float | None,
+    min_sun_elevation_deg: float | None = None,
+    sun_tolerance_deg: float | None = None,
+) -> dict[str, Any]:
+    if date is not None and period is not None:
+        raise wrong("date and period", "given together", "give one of them")
+    return {
+        "dates": [] if date is None else day_texts(date),
+        "between": None if period is None else moments(period),
+        "year": year,
+        "step": time_step_min,
+        "min_sun_elevation": min_sun_elevation_deg,
+        "tolerance": sun_tolerance_deg,
+    }
+
+
 def _suns(sun: npt.ArrayLike | None, time: Time | Iterable[Time] | None) -> tuple[Any, bool]:
     """Directions or times, and whether there is one that was not given in a list."""
     if (sun is None) == (time is None):
@@ -342,10 +353,9 @@ def _place(
 ) -> dict[str, Any]:
     if sun_elevation not in ("apparent", "geometric"):
         raise wrong("sun_elevation", repr(sun_elevation), "use 'apparent' or 'geometric'")
-    where = "give latitude and longitude in degrees, such as (52.0, 4.4)"
     what = "give pressure in hPa and temperature in degrees Celsius"
     return {
-        "location": None if location is None else number_pair(location, "location", where),
+        "location": location_pair(location),
         "zone": zone_text(zone),
         "grid_north": grid_north,
         "geometric": sun_elevation == "geometric",

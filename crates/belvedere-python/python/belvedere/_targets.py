@@ -18,6 +18,8 @@ from ._table import Table
 
 #: Cells of a grid (None), places of shape (N, 3), or the points of a cloud.
 Targets = Union[Places, Cloud, None]
+#: `Rasters` for the cells of a grid, a `Table` for other targets. Any, because users know which targets they gave.
+RastersOrTable = Union[Rasters, Any]
 
 
 class Cells(TypedDict, total=False):
@@ -68,7 +70,7 @@ def raster(values: npt.NDArray[Any], grid: Grid, crs: _core.Crs, **named: Any) -
 
 def measures(
     columns: list[tuple[str, str, npt.NDArray[Any]]], grid: Grid | None, crs: _core.Crs, targets: Targets
-) -> Rasters | Table:
+) -> RastersOrTable:
     """Columns of values as rasters where targets are cells, and as a table elsewhere."""
     if grid is not None:
         nan = float("nan")

@@ -11,17 +11,15 @@ use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::apps::irradiance::{
-    MONTH_COLUMNS, RoofIrradiation, RoofsReport, SeasonRadiation, horizon_places, roof_irradiation,
+    RoofColumn, RoofIrradiation, RoofsReport, SeasonRadiation, horizon_places, roof_columns, roof_irradiation,
 };
-use belvedere::apps::roof_planes::{RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
+use belvedere::apps::roof_planes::{GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use belvedere::apps::rows::Obstacles;
 use belvedere::apps::sun::Site;
 use belvedere::ground::MapGrid;
 use belvedere::io::{Area, Cells, atomic, outlines, write_geojson_areas, write_table};
 use belvedere::query::MedialScene;
 
-/// Cells of the ground that roofs are told from, metres.
-const GROUND_CELL: f64 = 1.0;
 /// Azimuths of a horizon: steps of 7.5 degrees, as PVGIS has them.
 const AZIMUTHS: usize = 48;
 
@@ -115,69 +113,29 @@ pub(super) fn measure(
     Ok(())
 }
 
-/// Degrees from true north.
-fn azimuth_deg(plane: &RoofPlane, site: &Site) -> f64 {
-    (plane.azimuth() + site.convergence).to_degrees().rem_euclid(360.0)
-}
-
-/// Columns of figures of all planes: name, values, digits.
-fn figures(roofs: &Roofs, rows: &[RoofIrradiation], site: &Site) -> Vec<(&'static str, Vec<f64>, usize)> {
-    let of_planes = |value: &dyn Fn(&RoofPlane) -> f64| -> Vec<f64> { roofs.planes.iter().map(value).collect() };
-    let of_rows = |value: &dyn Fn(&RoofIrradiation) -> f64| -> Vec<f64> { rows.iter().map(value).collect() };
-    let middle = |axis: usize| {
-        let scale = roofs.frame.frame.crs.metres_per_unit_xyz();
-        of_planes(&|plane| (plane.middle[axis] + roofs.frame.frame.origin[axis]) / scale[axis])
-    };
-    let of_both = |value: &dyn Fn(&RoofPlane, &RoofIrradiation) -> f64| -> Vec<f64> {
-        roofs.planes.iter().zip(rows).map(|(plane, row)| value(plane, row)).collect()
-    };
-    let panel_area = of_both(&|plane, row| row.panel_area(plane));
-    let energy = of_both(&|plane, row| row.panel_area(plane) * row.mean.total());
-    let mut columns = vec![
-        ("x", middle(0), 3),
-        ("y", middle(1), 3),
-        ("z", middle(2), 3),
-        ("area_m2", of_planes(&|plane| plane.area), 2),
-        ("panel_area_m2", panel_area, 2),
-        ("tilt_deg", of_planes(&|plane| plane.tilt().to_degrees()), 2),
-        ("azimuth_deg", of_planes(&|plane| azimuth_deg(plane, site)), 2),
-        ("roughness_m", of_planes(&|plane| plane.roughness), 3),
-        ("kwh_m2", of_rows(&|row| row.mean.total()), 1),
-        ("beam_kwh_m2", of_rows(&|row| row.mean.beam), 1),
-        ("sky_kwh_m2", of_rows(&|row| row.mean.diffuse), 1),
-        ("ground_kwh_m2", of_rows(&|row| row.mean.reflected), 1),
-        ("free_kwh_m2", of_rows(&|row| row.mean.unshaded), 1),
-        ("min_loss", of_rows(&|row| row.mean.loss()), 4),
-        ("max_loss", of_rows(&RoofIrradiation::greatest_loss), 4),
-        ("kwh", energy, 0),
-    ];
-    for (month, name) in MONTH_COLUMNS.into_iter().enumerate() {
-        if rows.iter().all(|row| row.groups.len() > 1) {
-            columns.push((name, of_rows(&|row| row.groups.get(month).copied().unwrap_or(f64::NAN)), 2));
-        }
-    }
-    columns
+fn columns(roofs: &Roofs, rows: &[RoofIrradiation], site: &Site) -> Vec<RoofColumn> {
+    roof_columns(&roofs.planes, rows, &roofs.frame.frame, site)
 }
 
 fn write_rows(output: &std::path::Path, roofs: &Roofs, rows: &[RoofIrradiation], site: &Site) -> Result<()> {
     let numbers: Vec<Option<u64>> = (1..).take(rows.len()).map(Some).collect();
     let cells: Vec<Option<u64>> = rows.iter().map(|row| Some(row.cell_count as u64)).collect();
-    let columns = figures(roofs, rows, site);
+    let columns = columns(roofs, rows, site);
     let mut table = vec![("plane", Cells::Whole(&numbers)), ("cells", Cells::Whole(&cells))];
-    table.extend(columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))));
+    table.extend(columns.iter().map(|column| (column.name, Cells::Real(&column.values, column.decimals))));
     Ok(write_table(output, &table)?)
 }
 
 fn write_outlines(output: &std::path::Path, roofs: &Roofs, rows: &[RoofIrradiation], site: &Site) -> Result<()> {
-    let columns = figures(roofs, rows, site);
+    let columns = columns(roofs, rows, site);
     let mut areas = Vec::with_capacity(rows.len());
     for (number, plane) in roofs.planes.iter().enumerate() {
         let mut area = Area::default();
         area.properties.insert("plane".to_owned(), (number + 1).into());
-        for (name, values, decimals) in columns.iter().skip(3) {
-            let digits = i32::try_from(*decimals).unwrap_or(2);
-            area.properties
-                .insert((*name).to_owned(), rounded(values.get(number).copied().unwrap_or(f64::NAN), digits));
+        for column in columns.iter().skip(3) {
+            let digits = i32::try_from(column.decimals).unwrap_or(2);
+            let value = column.values.get(number).copied().unwrap_or(f64::NAN);
+            area.properties.insert(column.name.to_owned(), rounded(value, digits));
         }
         let corner = |corner: &[usize; 2]| {
             let place = plane.cells.place(corner.map(|v| v as f64));
