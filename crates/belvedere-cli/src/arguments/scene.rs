@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 #[derive(Args, Clone)]
 pub(crate) struct CloudInput {
-    /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy), a catalogue of tiles (.vpc), or a folder of clouds
+    /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy), a catalogue (.vpc), or a folder
     ///
     /// Several files, or a folder, are read as one cloud. A folder with coords.npy is read in the layout of masbcpp.
     #[arg(value_name = "CLOUD", required = true, help_heading = None::<&'static str>)]
