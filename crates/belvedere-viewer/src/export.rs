@@ -3,6 +3,7 @@
 use crate::chunks::Chunks;
 use crate::page;
 use crate::scene::{Scene, Shown};
+use crate::server::SceneText;
 use belvedere::apps::shadow::{Edges, ShadowSun, scene_shadow};
 use belvedere::apps::sun::{Date, Refraction, SunPosition, Zone, sun_position_with};
 use belvedere::apps::targets::Targets;
@@ -25,8 +26,8 @@ const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwx
 pub struct ExportParams {
     /// What the page is called.
     pub title: String,
-    /// The files and the flags of the scene as they were typed, for the command lines on the page.
-    pub input: String,
+    /// The scene in the command lines that the page shows.
+    pub scene: SceneText,
     /// The day whose shadows are in the file, and how its clocks run; `None` for a file without shadows.
     pub day: Option<(Date, Zone)>,
 }
@@ -53,10 +54,10 @@ pub fn export(
     control: &Control<'_>,
 ) -> Result<(String, ExportReport)> {
     let chunks = Chunks::new(cloud).sample(MOST_POINTS);
-    let shown = Arc::new(Shown { cloud: Arc::clone(cloud), chunks });
+    let shown = Arc::new(Shown::of(Arc::clone(cloud), chunks));
     let scene = Scene::new(model, Arc::clone(&shown));
     let suns = match &params.day {
-        Some((date, zone)) => suns(&scene, *date, zone, &params.input, control)?,
+        Some((date, zone)) => suns(&scene, *date, zone, &params.scene, control)?,
         None => Vec::new(),
     };
     let numbers = 0..shown.chunks.chunks.len();
@@ -65,7 +66,7 @@ pub fn export(
     };
     let points = shown.chunks.len();
     let report = ExportReport { points, points_left_out: cloud.len() - points, suns: suns.len() };
-    let mut description = shown.describe();
+    let mut description = shown.description.clone();
     description["point_count"] = points.into();
     let data = json!({
         "state": { "title": params.title, "stage": "", "total": 0, "done": 0, "failure": null, "shown": description, "scene": scene.describe() },
@@ -79,7 +80,7 @@ pub fn export(
 }
 
 /// The suns of the whole hours of a day, and a bit for each point in the order in which points are sent: 1 for lit.
-fn suns(scene: &Scene, date: Date, zone: &Zone, input: &str, control: &Control<'_>) -> Result<Vec<Value>> {
+fn suns(scene: &Scene, date: Date, zone: &Zone, text: &SceneText, control: &Control<'_>) -> Result<Vec<Value>> {
     let site = scene.site()?;
     let mut hours = Vec::new();
     for hour in 0..24 {
@@ -98,13 +99,14 @@ fn suns(scene: &Scene, date: Date, zone: &Zone, input: &str, control: &Control<'
     let blockers = scene.blockers(UnprovenAs::Visible, control)?;
     let targets = Targets::of_points(&sent, None);
     let lit = scene_shadow(&*blockers, &targets, &kinds, Edges::Hard, control)?;
+    let points = text.cloud_beside.as_ref().map_or("--self".to_owned(), |cloud| format!("--targets {cloud}"));
     let of_hour = |((hour, time, position), lit): (&(i32, String, SunPosition), &Vec<f32>)| {
         json!({
             "minutes": 60 * hour,
             "time": time,
             "azimuth_deg": rounded(position.azimuth.to_degrees(), 4),
             "elevation_deg": rounded(position.elevation.to_degrees(), 4),
-            "command": format!("belvedere shadow {input} --time {date}T{hour:02}:00 --zone {} --self -o shadow.laz", zone.name()),
+            "command": format!("belvedere shadow {} --time {date}T{hour:02}:00 --zone {} {points} -o shadow.laz", text.input, zone.name()),
             "bits": base64(&bits(lit)),
         })
     };

@@ -29,4 +29,4 @@ mod server;
 
 pub use export::{ExportParams, ExportReport, export};
 pub use loading::Loading;
-pub use server::{Viewer, ViewerParams};
+pub use server::{SceneText, Viewer, ViewerParams};

@@ -1,9 +1,10 @@
 //! What happens to the files while the page is open already: reading, building, and what the page is told of it.
 
 use crate::scene::{Scene, Shown};
-use belvedere::PointCloud;
+use belvedere::cloud::to_local;
 use belvedere::control::Watcher;
 use belvedere::model::SceneModel;
+use belvedere::{Frame, Mesh, PointCloud};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Takes what is read and built, and shows it on the page. As a [`Watcher`] it shows progress there.
@@ -17,6 +18,8 @@ pub(crate) struct State {
     pub(crate) stage: (&'static str, usize, usize),
     pub(crate) shown: Option<Arc<Shown>>,
     pub(crate) scene: Option<Arc<Scene>>,
+    /// Corners of the triangles of meshes, local metres, nine f32 each, little endian.
+    pub(crate) meshes: Vec<Arc<[u8]>>,
     pub(crate) failure: Option<String>,
 }
 
@@ -25,6 +28,14 @@ impl Loading {
     pub fn show(&self, cloud: &Arc<PointCloud>) {
         let shown = Arc::new(Shown::new(Arc::clone(cloud)));
         self.state().shown = Some(shown);
+    }
+
+    /// Shows a mesh, in metres, beside the cloud.
+    pub fn show_mesh(&self, mesh: &Mesh, frame: &Frame) {
+        let corners = (0..mesh.triangles.len()).filter_map(|index| mesh.corners(index)).flatten();
+        let local = corners.flat_map(|corner| to_local(corner, frame.origin));
+        let bytes: Vec<u8> = local.flat_map(f32::to_le_bytes).collect();
+        self.state().meshes.push(bytes.into());
     }
 
     /// Takes the model of the cloud shown, or of a ball file: questions are answered from now on.

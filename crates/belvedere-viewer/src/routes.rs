@@ -5,7 +5,7 @@ use crate::loading::Loading;
 use crate::page;
 use crate::questions::{self, Asked};
 use crate::replies::{Refusal, binary, refused};
-use crate::server::ViewerParams;
+use crate::server::{SceneText, ViewerParams};
 use axum::body::Bytes;
 use axum::extract::{DefaultBodyLimit, Path, Request, State};
 use axum::http::{HeaderValue, StatusCode, header};
@@ -32,7 +32,7 @@ const POLICY: &str = "default-src 'self'; img-src 'self' blob: data:; style-src 
 /// What all requests share.
 struct Shared {
     loading: Loading,
-    input: String,
+    text: SceneText,
     title: String,
     /// One question at a time has all threads.
     turn: Arc<Semaphore>,
@@ -42,7 +42,7 @@ struct Shared {
 pub(crate) fn app(guard: Arc<Guard>, loading: Loading, params: &ViewerParams) -> Router {
     let shared = Shared {
         loading,
-        input: params.input.clone(),
+        text: params.scene.clone(),
         title: params.title.clone(),
         turn: Arc::new(Semaphore::new(1)),
         places: Arc::new(Semaphore::new(MOST_QUESTIONS)),
@@ -54,6 +54,7 @@ pub(crate) fn app(guard: Arc<Guard>, loading: Loading, params: &ViewerParams) ->
         .route("/{token}/points/{chunk}", get(points))
         .route("/{token}/colors/{chunk}", get(colors))
         .route("/{token}/balls", get(balls))
+        .route("/{token}/meshes/{mesh}", get(meshes))
         .route("/{token}/ask/{question}", post(ask))
         .fallback(|| async { refused(StatusCode::NOT_FOUND, "there is nothing at this address") })
         .layer(DefaultBodyLimit::max(MOST_BYTES))
@@ -95,7 +96,8 @@ async fn state(State(shared): State<Arc<Shared>>) -> Json<Value> {
         "title": shared.title,
         "stage": stage, "total": total, "done": done,
         "failure": now.failure,
-        "shown": now.shown.map(|shown| shown.describe()),
+        "mesh_count": now.meshes.len(),
+        "shown": now.shown.map(|shown| shown.description.clone()),
         "scene": now.scene.map(|scene| scene.describe()),
     }))
 }
@@ -113,6 +115,11 @@ async fn colors(State(shared): State<Arc<Shared>>, Path((_, chunk)): Path<(Strin
 async fn balls(State(shared): State<Arc<Shared>>) -> Response {
     let scene = shared.loading.now().scene;
     off_thread(move || scene.map(|scene| questions::balls(&scene))).await
+}
+
+async fn meshes(State(shared): State<Arc<Shared>>, Path((_, mesh)): Path<(String, usize)>) -> Response {
+    let meshes = shared.loading.now().meshes;
+    off_thread(move || meshes.get(mesh).map(|mesh| mesh.to_vec())).await
 }
 
 async fn off_thread(work: impl FnOnce() -> Option<Vec<u8>> + Send + 'static) -> Response {
@@ -170,10 +177,10 @@ async fn ask(State(shared): State<Arc<Shared>>, Path((_, name)): Path<(String, S
     let waiting = Arc::new(Waiting::default());
     let of_work = Arc::clone(&waiting);
     let _stop = StopWhenDropped(waiting);
-    let input = shared.input.clone();
+    let text = shared.text.clone();
     let work = move || {
         let control = Control::new(&*of_work);
-        let answer = questions::answer(&name, &body, &Asked { scene: &scene, input: &input, control: &control });
+        let answer = questions::answer(&name, &body, &Asked { scene: &scene, text: &text, control: &control });
         drop(turn);
         answer
     };

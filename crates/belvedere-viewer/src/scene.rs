@@ -20,6 +20,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 pub(crate) struct Shown {
     pub(crate) cloud: Arc<PointCloud>,
     pub(crate) chunks: Chunks,
+    /// What the page must know before it draws.
+    pub(crate) description: Value,
 }
 
 /// What questions are asked of.
@@ -56,16 +58,20 @@ impl<T> Kept<T> {
 impl Shown {
     pub(crate) fn new(cloud: Arc<PointCloud>) -> Self {
         let chunks = Chunks::new(&cloud);
-        Self { cloud, chunks }
+        Self::of(cloud, chunks)
     }
 
-    /// What the page must know before it draws.
-    pub(crate) fn describe(&self) -> Value {
-        let cloud = &self.cloud;
+    /// A cloud of which these chunks are shown.
+    pub(crate) fn of(cloud: Arc<PointCloud>, chunks: Chunks) -> Self {
+        let description = Self::describe(&cloud, &chunks);
+        Self { cloud, chunks, description }
+    }
+
+    fn describe(cloud: &PointCloud, chunks: &Chunks) -> Value {
         let frame = &cloud.frame;
         let bounds = cloud.bounds().unwrap_or_default();
         let size = bounds.size().map(f64::from);
-        let chunks: Vec<Value> = self.chunks.chunks.iter().map(|chunk| {
+        let chunks: Vec<Value> = chunks.chunks.iter().map(|chunk| {
             json!({ "low": chunk.low, "step": chunk.step, "count": chunk.points.len(), "first": chunk.points.start })
         }).collect();
         let mut classes = [0_usize; 256];

@@ -25,10 +25,19 @@ const THREADS: usize = 2;
 pub struct ViewerParams {
     /// Port to listen on. Default 0: any that is free.
     pub port: u16,
-    /// The files and the flags of the scene as they were typed: a part of the command lines that the page shows.
-    pub input: String,
+    /// The scene in the command lines that the page shows.
+    pub scene: SceneText,
     /// What the page is called.
     pub title: String,
+}
+
+/// A scene as it is typed on command lines.
+#[derive(Clone, Debug, Default)]
+pub struct SceneText {
+    /// Its files and flags.
+    pub input: String,
+    /// The cloud beside a ball file, which shows the ground and the points.
+    pub cloud_beside: Option<String>,
 }
 
 /// A running server. It ends when it is dropped.

@@ -1,17 +1,18 @@
 //! `belvedere view`.
 
 use super::check_output;
+use super::mesh_targets::{is_mesh, mesh_in};
 use crate::arguments::{Global, MethodChoice, SceneInput, Usage, ViewPage};
 use crate::interrupt;
 use crate::pipeline::{self, Points, flagged, params};
 use crate::progress::Stages;
 use crate::summary::{Summary, note};
 use anyhow::{Context, Result, bail};
-use belvedere::PointCloud;
 use belvedere::apps::sun::{Date, Site, Zone};
 use belvedere::io::{atomic, is_ball_file};
 use belvedere::model::SceneModel;
-use belvedere_viewer::{ExportParams, Loading, Viewer, ViewerParams, export};
+use belvedere::{Frame, PointCloud};
+use belvedere_viewer::{ExportParams, Loading, SceneText, Viewer, ViewerParams, export};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -25,12 +26,13 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
     for path in files {
         path.metadata().map_err(belvedere::Error::io(path))?;
     }
-    let (balls, clouds) = parted(files)?;
+    let files = Files::of(files)?;
     if let Some(output) = &arguments.export {
-        return write_page(output, arguments, global);
+        return write_page(output, arguments, &files, global);
     }
-    let title = title(files);
-    let params = ViewerParams { port: arguments.port.unwrap_or(0), input: typed(), title };
+    let scene = SceneText { input: files.typed(), cloud_beside: files.cloud_beside() };
+    let title = title(&arguments.scene.input.clouds);
+    let params = ViewerParams { port: arguments.port.unwrap_or(0), scene, title };
     let viewer = Viewer::start(&params).context("--port: the program cannot listen there")?;
     print_url(&viewer.url(), global)?;
     if !arguments.no_browser
@@ -41,7 +43,7 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
     let loading = viewer.loading();
     let mut summary = Summary::default();
     let mut stages = Stages::new(global).told_also(loading.clone());
-    match load(&arguments.scene, balls, clouds, &loading, &mut stages, &mut summary) {
+    match load(&arguments.scene, &files, &loading, &mut stages, &mut summary) {
         Ok((_, model)) => loading.finish(model),
         Err(error) => {
             // the page says it too, and looks for it four times a second
@@ -64,14 +66,13 @@ fn title(files: &[PathBuf]) -> String {
 }
 
 /// Writes the page as one file.
-fn write_page(output: &Path, arguments: &ViewPage, global: &Global) -> Result<Summary> {
+fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Global) -> Result<Summary> {
     check_output("--export", output, &["html"])?;
     let date = arguments.date.as_deref().map(|date| flagged("--date", Date::parse(date))).transpose()?;
     let zone = arguments.zone.as_deref().map(|zone| flagged("--zone", Zone::parse(zone))).transpose()?;
     let loading = Loading::default();
     let (mut stages, mut summary) = (Stages::new(global), Summary::default());
-    let (balls, clouds) = parted(&arguments.scene.input.clouds)?;
-    let (cloud, model) = load(&arguments.scene, balls, clouds, &loading, &mut stages, &mut summary)?;
+    let (cloud, model) = load(&arguments.scene, files, &loading, &mut stages, &mut summary)?;
     let Some(cloud) = cloud else {
         return Err(Usage("--export needs a cloud; a ball file has no points".to_owned()).into());
     };
@@ -84,7 +85,11 @@ fn write_page(output: &Path, arguments: &ViewPage, global: &Global) -> Result<Su
             Some((date, Zone::mean_solar(&site.0)))
         }
     };
-    let params = ExportParams { title: title(&arguments.scene.input.clouds), input: typed(), day };
+    let params = ExportParams {
+        title: title(&arguments.scene.input.clouds),
+        scene: SceneText { input: files.typed(), cloud_beside: files.cloud_beside() },
+        day,
+    };
     let exported = stages.run("making the page", 0, |control| export(&cloud, model, &params, control));
     let (page, report) = exported?;
     stages.run("writing", 0, |_| {
@@ -95,44 +100,78 @@ fn write_page(output: &Path, arguments: &ViewPage, global: &Global) -> Result<Su
     Ok(summary)
 }
 
-/// Ball files and clouds.
-fn parted(files: &[PathBuf]) -> Result<(Option<PathBuf>, Vec<PathBuf>)> {
-    let (mut balls, mut clouds) = (Vec::new(), Vec::new());
-    for path in files {
-        let is_balls = path.is_file() && is_ball_file(path)?;
-        if is_balls { &mut balls } else { &mut clouds }.push(path.clone());
+/// The files that were typed, by what they hold.
+struct Files {
+    balls: Option<PathBuf>,
+    clouds: Vec<PathBuf>,
+    meshes: Vec<PathBuf>,
+}
+
+impl Files {
+    fn of(files: &[PathBuf]) -> Result<Self> {
+        let (mut balls, mut clouds, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
+        for path in files {
+            if path.is_file() && is_mesh(path) {
+                &mut meshes
+            } else if path.is_file() && is_ball_file(path)? {
+                &mut balls
+            } else {
+                &mut clouds
+            }
+            .push(path.clone());
+        }
+        let refused = |what: &str| Err(Usage(what.to_owned()).into());
+        match (balls.len(), clouds.len()) {
+            (2.., _) => refused("only one ball file can be shown at a time"),
+            (1, 2..) => refused("a ball file can be shown with one cloud: give a single file or a folder"),
+            (0, 0) => refused("a mesh is shown with a cloud or a ball file: give one too"),
+            _ => Ok(Self { balls: balls.pop(), clouds, meshes }),
+        }
     }
-    match &balls[..] {
-        [_, _, ..] => Err(Usage("only one ball file can be shown at a time".to_owned()).into()),
-        _ => Ok((balls.pop(), clouds)),
+
+    /// The scene as other commands take it: its files, and the flags that were typed unless a ball file holds what they say.
+    fn typed(&self) -> String {
+        if let Some(balls) = &self.balls {
+            return quoted(&balls.to_string_lossy());
+        }
+        let meshes: Vec<String> = self.meshes.iter().map(|path| path.to_string_lossy().into_owned()).collect();
+        typed(&meshes)
+    }
+
+    /// The cloud that shows the ground of a ball file.
+    fn cloud_beside(&self) -> Option<String> {
+        let cloud = self.clouds.first().filter(|_| self.balls.is_some())?;
+        Some(quoted(&cloud.to_string_lossy()))
     }
 }
 
 /// Reads what was typed and builds its balls; shows the cloud as soon as it is there.
 fn load(
     arguments: &SceneInput,
-    balls: Option<PathBuf>,
-    clouds: Vec<PathBuf>,
+    files: &Files,
     loading: &Loading,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<(Option<Arc<PointCloud>>, SceneModel)> {
     let mut input = arguments.clone();
-    let Some(balls) = balls else {
+    input.input.clouds.clone_from(&files.clouds);
+    let Some(balls) = &files.balls else {
         let params = arguments.shrinking.params(MethodChoice::Carved)?;
-        let cloud = Arc::new(pipeline::read(&arguments.input, stages, summary)?);
+        let cloud = Arc::new(pipeline::read(&input.input, stages, summary)?);
         loading.show(&cloud);
+        show_meshes(files, &cloud.frame, loading, stages, summary)?;
         let crs = &cloud.frame.crs;
         let params = params::model(&arguments.cleaning, &arguments.orienting, params, crs, stages)?;
         let built = SceneModel::build(&cloud, &params, &stages.control());
         let model = built.map_err(pipeline::advised)?.0;
         return Ok((Some(cloud), model));
     };
-    input.input.clouds = vec![balls];
+    input.input.clouds = vec![balls.clone()];
     let scene = pipeline::scene(&input, Points::Keep, stages, summary)?;
+    show_meshes(files, scene.model.frame(), loading, stages, summary)?;
     let mut shown = None;
-    if !clouds.is_empty() {
-        input.input.clouds = clouds;
+    if !files.clouds.is_empty() {
+        input.input.clouds.clone_from(&files.clouds);
         let cloud = pipeline::read(&input.input, stages, summary)?;
         let frame = scene.model.frame();
         if cloud.frame.crs.contradicts(&frame.crs) {
@@ -146,8 +185,22 @@ fn load(
     Ok((shown, scene.model))
 }
 
-/// The files and flags of the scene as they were typed, for a shell.
-fn typed() -> String {
+fn show_meshes(
+    files: &Files,
+    frame: &Frame,
+    loading: &Loading,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<()> {
+    for path in &files.meshes {
+        let mesh = mesh_in(path, &frame.crs, stages, summary)?;
+        loading.show_mesh(&mesh, frame);
+    }
+    Ok(())
+}
+
+/// The files and flags of the scene as they were typed, for a shell, without the files named.
+fn typed(without: &[String]) -> String {
     let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
     let mut kept = Vec::new();
     let mut skips = false;
@@ -159,7 +212,7 @@ fn typed() -> String {
         }
         if has_value.contains(&word.as_str()) {
             skips = true;
-        } else if !has_value.iter().any(|flag| word.starts_with(&format!("{flag}="))) {
+        } else if !without.contains(&word) && !has_value.iter().any(|flag| word.starts_with(&format!("{flag}="))) {
             kept.push(quoted(&word));
         }
     }

@@ -285,6 +285,27 @@ fn a_ball_file_and_its_cloud_are_ready_without_building() {
     let balls = page.request("GET", "balls", "").1;
     assert_eq!(balls.len() as u64, 16 * state["scene"]["ball_count"].as_u64().unwrap());
 
+    // commands take the ground and the points from the cloud
+    let (head, answers) = page.ask("shadow", &json!({ "time": "2026-06-21T17:00", "zone": "Europe/Amsterdam" }));
+    run_shown(&place, &json!({ "command": head["command"].as_str().unwrap().replace("shadow.laz", "shadow.csv") }));
+    let lit = column(&place, "shadow.csv", "lit").iter().filter(|lit| **lit > 0.0).count();
+    assert_eq!(answers.iter().filter(|&&code| code == 1).count(), lit);
+    let middle = [0, 1].map(|i| state["shown"]["origin"][i].as_f64().unwrap());
+    let (head, _) = page.ask("who", &json!({ "place": [middle[0], middle[1], 60.0] }));
+    let run = place.summary(head["command"].as_str().unwrap().strip_prefix("belvedere ").unwrap());
+    assert_eq!(head["visible"], run["cells"]["visible"]);
+
+    let with_mesh = Page::open(&place, "balls.npz town/mesh.obj town/cloud.laz");
+    assert_eq!(with_mesh.state()["mesh_count"], 1);
+    let triangles = with_mesh.request("GET", "meshes/0", "").1.len() / 36;
+    let written = place.text("town/mesh.obj").lines().filter(|line| line.starts_with("f ")).count();
+    assert_eq!(triangles, written);
+    assert_eq!(with_mesh.request("GET", "meshes/1", "").0, 404);
+    let (head, _) = with_mesh.ask("shadow", &json!({ "time": "2026-06-21T17:00", "zone": "Europe/Amsterdam" }));
+    assert!(!head["command"].as_str().unwrap().contains("mesh"), "{}", head["command"]);
+    place.refusal(2, "view town/mesh.obj --no-browser", &["mesh", "cloud"]);
+    place.refusal(2, "view balls.npz town/cloud.laz town --no-browser", &["ball file", "one cloud"]);
+
     let alone = Page::open(&place, "balls.npz");
     assert_eq!(alone.state()["shown"]["point_count"], 0);
     assert!(alone.refusal("seen", &json!({ "place": [0, 0, 0] })).contains("together with its cloud"));

@@ -1,6 +1,6 @@
 // Points on the screen: chunks in random order drawn up to a budget, and shading by depth (eye-dome lighting).
 import {
-  BufferAttribute, BufferGeometry, Color, DataTexture, GLSL3, Mesh, NearestFilter, OrthographicCamera, Points, RawShaderMaterial, RGBAFormat, Scene,
+  BufferAttribute, BufferGeometry, Color, DataTexture, DoubleSide, GLSL3, Mesh, NearestFilter, OrthographicCamera, Points, RawShaderMaterial, RGBAFormat, Scene,
   Sphere, UnsignedByteType, Vector2, Vector3, WebGLRenderTarget,
 } from "three";
 
@@ -36,6 +36,11 @@ layout(location = 0) out vec4 shown; layout(location = 1) out vec4 far24;${PACK}
 void main() { vec2 o = (gl_PointCoord - 0.5) * 2.15; o.y = -o.y; float h = 1.0 - dot(o, o); if (h < 0.0) discard; vec3 n = vec3(o, sqrt(h));
   vec3 at = middle + radius * n; vec4 clip = projectionMatrix * vec4(at, 1.0); gl_FragDepth = clip.z / clip.w * 0.5 + 0.5;
   shown = vec4(tint * (0.45 + 0.55 * max(dot(n, normalize(vec3(0.3, 0.6, 0.75))), 0.0)), 1.0); far24 = packed(-at.z / far); }`;
+
+const MESH_VERTEX = `precision highp float; in vec3 corner; uniform mat4 modelViewMatrix, projectionMatrix; out vec3 at;
+void main() { vec4 view = modelViewMatrix * vec4(corner, 1.0); at = view.xyz; gl_Position = projectionMatrix * view; }`;
+const MESH_FRAGMENT = `precision highp float; in vec3 at; uniform float far; uniform vec3 tint; layout(location = 0) out vec4 shown; layout(location = 1) out vec4 far24;${PACK}
+void main() { vec3 n = normalize(cross(dFdx(at), dFdy(at))); shown = vec4(tint * (0.5 + 0.5 * abs(dot(n, normalize(vec3(0.3, 0.6, 0.75))))), 1.0); far24 = packed(-at.z / far); }`;
 
 const SHADE = `precision highp float; uniform sampler2D shown, far24; uniform vec2 texel; uniform vec3 ground; uniform float far, strength, radius; in vec2 uv; out vec4 color;
 float at(vec2 p) { vec4 t = texture(far24, p); return t.a < 0.5 ? -1.0 : log2(max(dot(t.rgb, vec3(65536.0, 256.0, 1.0)) * 255.0 / 16777215.0 * far, 0.01)); }
@@ -137,6 +142,17 @@ export class Cloud {
     this.extra.add(this.balls);
   }
 
+  // Triangles beside the cloud: nine numbers each.
+  addMesh(values) {
+    const geometry = new BufferGeometry().setAttribute("corner", new BufferAttribute(values, 3));
+    geometry.setDrawRange(0, values.length / 3);
+    const own = { far: this.own.far, ...uniforms({ tint: new Color(0.86, 0.84, 0.9) }) };
+    const mesh = new Mesh(geometry, new RawShaderMaterial({ glslVersion: GLSL3, side: DoubleSide, vertexShader: MESH_VERTEX, fragmentShader: MESH_FRAGMENT, uniforms: own }));
+    mesh.frustumCulled = false;
+    this.extra.add(mesh);
+    (this.meshes ??= []).push(mesh);
+  }
+
   resize(width, height) {
     this.target.setSize(width, height);
     this.shade.uniforms.texel.value.set(1 / width, 1 / height);
@@ -210,10 +226,12 @@ export class Cloud {
 
   // The lowest point around a place on the map: what a person who walks stands on.
   groundAt(x, y) {
+    // the first points of a chunk are a fair sample of it
+    const MOST = 40_000;
     if (!this.lowest) {
       this.lowest = new Map();
       for (const { low, step, places, count } of this.chunks) {
-        for (let i = 0; i < count; i++) {
+        for (let i = 0; i < Math.min(count, MOST); i++) {
           const key = `${Math.floor((low[0] + places[4 * i] * step[0]) / 2)},${Math.floor((low[1] + places[4 * i + 1] * step[1]) / 2)}`;
           const z = low[2] + places[4 * i + 2] * step[2];
           if (!(this.lowest.get(key) <= z)) this.lowest.set(key, z);

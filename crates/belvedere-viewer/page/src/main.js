@@ -489,6 +489,9 @@ async function watch() {
       throw new api.Refused(state.failure);
     }
     if (state.shown && !page.scene && (state.shown.point_count || state.scene)) begin(state).catch(report);
+    for (page.meshes ??= 0; page.scene && page.meshes < (state.mesh_count ?? 0); page.meshes++) {
+      api.mesh(page.meshes).then((values) => { cloud.addMesh(values); $("meshes").hidden = false; draw(); }).catch(report);
+    }
     if (state.scene && page.scene && !page.ready) {
       Object.assign(page.scene, { ...state.scene, low: page.scene.low, high: page.scene.high });
       page.ready = true;
@@ -550,6 +553,12 @@ function listen() {
   $("theme").onclick = () => theme(root.dataset.theme === "dark" ? "light" : "dark");
   $("picture").onclick = async () => save(`${page.scene.title.replace(/\..*$/, "")}.png`, await snapshot());
   $("balls").onclick = toggleBalls;
+  $("meshes").onclick = () => {
+    const on = $("meshes").getAttribute("aria-pressed") !== "true";
+    $("meshes").setAttribute("aria-pressed", on);
+    cloud.meshes.forEach((mesh) => { mesh.visible = on; });
+    draw();
+  };
   $("help").onclick = help;
   $("play").onclick = () => setPlaying(!playing);
   $("date").onchange = () => { page.time.date = $("date").value; again(); };

@@ -1,7 +1,7 @@
 //! Is B seen from A: the answer, the place that blocks, and the profile.
 
 use super::Asked;
-use super::places::{command, local, number, rounded, shown, typed};
+use super::places::{command_on_ground, local, number, rounded, shown, typed};
 use crate::replies::{Answer, Refusal};
 use belvedere::apps::profile::sight_profile;
 use belvedere::query::{Answer as Sight, EarthParams, UnprovenAs};
@@ -40,7 +40,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "first_block": block,
         "unproven_m": if scene.model.pulses().is_some() { number(sight.unproven_length, 3) } else { Value::Null },
         "profile": profile(asked, [observer, target], &earth),
-        "command": command(asked, "line-of-sight", &format!("{ends} -o line.csv --profile-out profile.png")),
+        "command": command_on_ground(asked, "line-of-sight", &format!("{ends} -o line.csv --profile-out profile.png")),
     });
     Ok(Answer::of(head))
 }

@@ -12,6 +12,7 @@ mod who;
 
 use crate::replies::{Answer, Refusal};
 use crate::scene::Scene;
+use crate::server::SceneText;
 use belvedere::control::Control;
 pub(crate) use roof::Roofs;
 use serde::de::DeserializeOwned;
@@ -19,8 +20,8 @@ use serde::de::DeserializeOwned;
 /// What every question knows.
 pub(crate) struct Asked<'a> {
     pub(crate) scene: &'a Scene,
-    /// Files and flags of the scene, for command lines.
-    pub(crate) input: &'a str,
+    /// The scene on command lines.
+    pub(crate) text: &'a SceneText,
     pub(crate) control: &'a Control<'a>,
 }
 

@@ -33,7 +33,15 @@ pub(super) fn number(value: f64, decimals: i32) -> Value {
 
 /// The command with the scene of this page.
 pub(super) fn command(asked: &Asked<'_>, name: &str, flags: &str) -> String {
-    format!("belvedere {name} {} {flags}", asked.input)
+    format!("belvedere {name} {} {flags}", asked.text.input)
+}
+
+/// The same for commands that need the ground, which a ball file does not have.
+pub(super) fn command_on_ground(asked: &Asked<'_>, name: &str, flags: &str) -> String {
+    match &asked.text.cloud_beside {
+        Some(cloud) => command(asked, name, &format!("--ground cloud={cloud} {flags}")),
+        None => command(asked, name, flags),
+    }
 }
 
 /// The same for targets that the command line reads from a table.

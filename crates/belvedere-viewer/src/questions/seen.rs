@@ -1,7 +1,7 @@
 //! What is seen from here: an answer for each point of the cloud.
 
 use super::Asked;
-use super::places::{command, local, typed};
+use super::places::{command_on_ground, local, typed};
 use crate::replies::{Answer, Refusal};
 use crate::scene::Inside;
 use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, viewshed_among};
@@ -37,7 +37,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "blocked": counts.blocked,
         "unproven": counts.unproven,
         "tells_unproven": question.proven && blockers.proof().is_some(),
-        "command": command(asked, "viewshed", &format!("--observer {} {flags}-o seen.laz", typed(&question.place))),
+        "command": command_on_ground(asked, "viewshed", &format!("--observer {} {flags}-o seen.laz", typed(&question.place))),
     });
     Ok(Answer { head, body: scene.shown.chunks.in_order(|row| seen.answers[row] as u8) })
 }

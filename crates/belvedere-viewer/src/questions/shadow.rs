@@ -43,7 +43,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "elevation_deg": rounded(position.elevation.to_degrees(), 4),
         "to_sun": position.to_sun(&site),
         "time": zone.display(instant),
-        "command": command(asked, "shadow", &format!("--time {} --zone {} --self -o shadow.laz", question.time, zone.name())),
+        "command": command_of(asked, &question.time, zone.name()),
     });
     if !question.exact {
         let lit = by_depth_map(asked, position.to_sun(&site))?;
@@ -66,6 +66,12 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         _ => CODES[2],
     };
     Ok(Answer { head, body: scene.shown.chunks.in_order(code) })
+}
+
+/// The command for the points of the cloud, which a ball file has beside it.
+fn command_of(asked: &Asked<'_>, time: &str, zone: &str) -> String {
+    let points = asked.text.cloud_beside.as_ref().map_or("--self".to_owned(), |cloud| format!("--targets {cloud}"));
+    command(asked, "shadow", &format!("--time {time} --zone {zone} {points} -o shadow.laz"))
 }
 
 /// What a depth map from the sun says of the points of the cloud: right but for edges and slopes.

@@ -1,7 +1,7 @@
 //! Who sees this: the cells from which a person would see the place.
 
 use super::Asked;
-use super::places::{command, local, typed};
+use super::places::{command_on_ground, local, typed};
 use crate::replies::{Answer, Refusal};
 use crate::scene::Inside;
 use belvedere::apps::targets::{CellParams, CoveredCells, Targets};
@@ -36,7 +36,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "unproven": counts.unproven,
         "visible_m2": super::places::rounded(counts.visible as f64 * grid.cell * grid.cell, 1),
         "grid": { "first_center": low, "cell_m": grid.cell, "columns": grid.width, "rows": grid.height },
-        "command": command(asked, "viewshed", &format!("--target {} -o who.tif", typed(&question.place))),
+        "command": command_on_ground(asked, "viewshed", &format!("--target {} -o who.tif", typed(&question.place))),
     });
     let heights = ground.heights.values().iter().flat_map(|height| height.to_le_bytes());
     let answers = seen.answers.iter().map(|&answer| answer as u8);
