@@ -189,6 +189,17 @@ def test_lines_of_sight(scene, run_program, folder, eye, targets):
     assert (ours["block_ball"] == theirs["block_ball"].fillna(-1)).all()
 
 
+def test_lines_of_sight_without_heights(scene, run_program, folder, standing, targets):
+    pandas = pytest.importorskip("pandas")
+    flat = np.column_stack([np.tile(standing, (len(targets), 1)), targets[:, :2]])
+    pandas.DataFrame(flat).to_csv(folder / "flat.csv", header=["ax", "ay", "bx", "by"], index=False)
+    run_program("line-of-sight", "tile.laz", "--pairs", "flat.csv", "--target-height", 1, "-o", "flat-sights.csv")
+    theirs = pandas.read_csv(folder / "flat-sights.csv")
+    ours = scene.line_of_sight(standing, targets[:, :2], target_height=1)
+    assert np.abs(ours.places[:, 2] - theirs["bz"]).max() < 6e-5
+    assert (ours["answer"] == theirs["answer"]).all() and len(set(ours["answer"])) > 1
+
+
 def test_simulated_points_are_those_of_the_program(run_program, folder):
     run_program("simulate", "town", "--extent", 80, "--density", 6, "--seed", 3, "-o", "town")
     with pytest.warns(belvedere.BelvedereWarning, match="extra bytes"):

@@ -89,6 +89,14 @@ class Scene:
     def visible(
         self, eye: Sequence[float], targets: dict[str, Any], unproven: str, progress: _Progress
     ) -> npt.NDArray[np.uint8]: ...
+    def on_ground(
+        self,
+        array: npt.NDArray[np.float64],
+        height: float | None,
+        is_target: bool,
+        ground: str | None,
+        progress: _Progress,
+    ) -> npt.NDArray[np.float64]: ...
     def lines_of_sight(
         self,
         observers: npt.NDArray[Any],

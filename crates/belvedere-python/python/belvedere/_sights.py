@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._answer import Answer
-from ._inputs import Places, Progress, check_finite, place, places, reporter
+from ._inputs import Places, Progress, check_finite, map_places, place, places, reporter
 from ._table import Table
 from ._targets import Targets, wanted
 
@@ -90,6 +90,9 @@ class Sights:
         observer: Places,
         target: Places,
         *,
+        observer_height: float | None = None,
+        target_height: float | None = None,
+        ground: str | None = None,
         unproven: str = "report",
         curvature: str | None = None,
         refraction: float | None = None,
@@ -99,9 +102,15 @@ class Sights:
 
         Parameters
         ----------
-        observer, target : array_like, shape (3,) or (N, 3)
-            Ends of the lines in the coordinates of the file: x, y, z. One observer can have many targets, and the
-            other way round.
+        observer, target : array_like, shape (3,), (N, 3), (2,) or (N, 2)
+            Ends of the lines in the coordinates of the file: x, y, z. Without z they are above the ground. One observer
+            can have many targets, and the other way round.
+        observer_height : float, optional
+            Height of observers without z above the ground, metres; 1.7 if not given.
+        target_height : float, optional
+            Height of targets without z above the ground, metres; 0 if not given.
+        ground : {'auto', 'class', 'found'}, optional
+            Which points are ground, as for `viewshed`.
         unproven : {'report', 'as-visible', 'as-blocked'}
             What to make of lines that nothing blocks but that cross space that no pulse came near.
         curvature : {'auto', 'on', 'off'}, optional
@@ -126,13 +135,10 @@ class Sights:
         >>> scene.line_of_sight(eye, targets)
         <belvedere.Table: ... rows of answer, first_block_range_m, unproven_m, block, block_ball, block_source>
         """
-        check_finite(refraction=refraction)
-        ends = [np.asarray(end, np.float64) if np.ndim(end) == 1 else end for end in (observer, target)]
-        is_one = all(np.ndim(end) == 1 for end in ends)
-        observers, targets = (
-            np.array([place(end, name)]) if np.ndim(end) == 1 else places(end, name)
-            for end, name in zip(ends, ("observer", "target"))
-        )
+        check_finite(refraction=refraction, observer_height=observer_height, target_height=target_height)
+        is_one = np.ndim(observer) == 1 and np.ndim(target) == 1
+        observers = self._ends(observer, "observer", observer_height, ground, progress)
+        targets = self._ends(target, "target", target_height, ground, progress)
         if len(observers) == 1 and len(targets) > 1:
             observers = np.repeat(observers, len(targets), axis=0)
         elif len(targets) == 1 and len(observers) > 1:
@@ -148,3 +154,12 @@ class Sights:
             float(columns["unproven_m"][0]) if "unproven_m" in columns else nan,
             (float(block[0]), float(block[1]), float(block[2])),
         )
+
+    def _ends(
+        self, ends: Places, what: str, height: float | None, ground: str | None, progress: Progress
+    ) -> npt.NDArray[Any]:
+        """Ends of lines as rows of x, y, z."""
+        if np.shape(ends)[-1:] == (2,):
+            rows = map_places(ends, what, "give x and y, or x, y and z")
+            return self._core.on_ground(rows, height, what == "target", ground, reporter(progress))
+        return np.array([place(ends, what)]) if np.ndim(ends) == 1 else places(ends, what)
