@@ -1,6 +1,7 @@
 //! What can be typed: flags as entered. What they build is made in `pipeline` and in each command. Texts longer than a line are in `help/`.
 
 mod balls;
+mod city;
 #[cfg(feature = "compare")]
 mod compare;
 mod envelope;
@@ -22,6 +23,7 @@ mod view_page;
 pub(crate) use balls::{
     Balls, Cleaning, MethodChoice, NeighborChoice, Normals, OrientChoice, Orienting, Shrinking, SideChoice,
 };
+pub(crate) use city::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};
 #[cfg(feature = "compare")]
 pub(crate) use compare::Compare;
 pub(crate) use envelope::{Comfort, Corners, Envelope};
@@ -160,6 +162,8 @@ pub(crate) enum Command {
     /// Show clouds in the browser, and ask there what is seen, lit and shaded
     #[cfg(feature = "view")]
     View(ViewPage),
+    /// Map shadow and sky view of a whole city, tile by tile
+    City(City),
     /// Compare the accuracy and cost of visibility methods against ground truth
     #[cfg(feature = "compare")]
     Compare(Compare),

@@ -44,6 +44,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("comfort", include_str!("help/comfort.txt")),
     #[cfg(feature = "view")]
     ("view", include_str!("help/view.txt")),
+    ("city", include_str!("help/city.txt")),
     #[cfg(feature = "compare")]
     ("compare", include_str!("help/compare.txt")),
     ("describe", include_str!("help/describe.txt")),
@@ -51,10 +52,22 @@ const TEXTS: &[(&str, &str)] = &[
     ("man", include_str!("help/man.txt")),
 ];
 
+/// The same for the steps of `city`.
+const STEPS_OF_CITY: &[(&str, &str)] = &[
+    ("plan", include_str!("help/city-plan.txt")),
+    ("run", include_str!("help/city-run.txt")),
+    ("status", include_str!("help/city-status.txt")),
+    ("merge", include_str!("help/city-merge.txt")),
+];
+
 /// The command line as users see it.
 pub(crate) fn command() -> Command {
     let command = Cli::command().long_about(include_str!("help/belvedere.txt").trim_end());
-    TEXTS.iter().fold(command, |command, (name, text)| command.mut_subcommand(name, |sub| described(sub, text)))
+    let command =
+        TEXTS.iter().fold(command, |command, (name, text)| command.mut_subcommand(name, |sub| described(sub, text)));
+    let with_step =
+        |city: Command, (name, text): &(&str, &'static str)| city.mut_subcommand(name, |sub| described(sub, text));
+    command.mut_subcommand("city", |city| STEPS_OF_CITY.iter().fold(city, with_step))
 }
 
 /// A text before and after its heading of examples.

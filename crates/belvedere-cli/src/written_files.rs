@@ -18,6 +18,9 @@ struct Typed {
 pub(crate) fn check(program: &Command, matches: &ArgMatches) -> Result<()> {
     let Some((name, of_command)) = matches.subcommand() else { return Ok(()) };
     let Some(command) = program.find_subcommand(name) else { return Ok(()) };
+    if command.has_subcommands() {
+        return check(command, of_command);
+    }
     let (mut inputs, mut outputs): (Vec<Typed>, Vec<Typed>) = (Vec::new(), Vec::new());
     for argument in command.get_arguments().filter(|argument| argument.get_action().takes_values()) {
         if of_command.value_source(argument.get_id().as_str()) != Some(ValueSource::CommandLine) {

@@ -18,11 +18,18 @@ pub(crate) fn run() -> Summary {
         .add("version", env!("CARGO_PKG_VERSION"))
         .add("summary", text(program.get_about()))
         .add("global_parameters", program.get_arguments().map(parameter).collect::<Vec<_>>())
-        .add("commands", program.get_subcommands().map(command).collect::<Vec<_>>());
+        .add("commands", program.get_subcommands().flat_map(steps).collect::<Vec<_>>());
     summary
 }
 
-fn command(command: &Command) -> Value {
+/// A command, or the steps of one that has steps, under their names of two words.
+fn steps(of: &Command) -> Vec<Value> {
+    let name = |step: &Command| format!("{} {}", of.get_name(), step.get_name());
+    let steps: Vec<Value> = of.get_subcommands().map(|step| command(&name(step), step)).collect();
+    if steps.is_empty() { vec![command(of.get_name(), of)] } else { steps }
+}
+
+fn command(name_of: &str, command: &Command) -> Value {
     let examples = help::examples(&text(command.get_after_help()));
     let one_of: Vec<Value> = command
         .get_groups()
@@ -33,7 +40,7 @@ fn command(command: &Command) -> Value {
         })
         .collect();
     json!({
-        "name": command.get_name(),
+        "name": name_of,
         "summary": text(command.get_about()),
         "description": text(command.get_long_about()),
         "examples": examples,

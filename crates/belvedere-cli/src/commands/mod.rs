@@ -1,6 +1,7 @@
 //! One file per command.
 
 mod balls;
+mod city;
 mod comfort;
 #[cfg(feature = "compare")]
 mod compare;
@@ -70,6 +71,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::Comfort(arguments) => comfort::run(arguments, global),
         #[cfg(feature = "view")]
         Command::View(arguments) => view::run(arguments, global),
+        Command::City(arguments) => city::run(arguments, global),
         #[cfg(feature = "compare")]
         Command::Compare(arguments) => compare::run(arguments, global),
         Command::Describe => Ok(describe::run()),

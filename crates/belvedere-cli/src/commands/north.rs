@@ -3,6 +3,7 @@
 use crate::arguments::North;
 use crate::pipeline::Scene;
 use crate::summary::{Summary, rounded};
+use belvedere::Frame;
 use belvedere::apps::horizon::convergence;
 
 /// The north of the azimuths of a command.
@@ -23,11 +24,16 @@ impl North {
 
     /// The north at a local place.
     pub(crate) fn at(&self, scene: &Scene, place: [f64; 2]) -> AzimuthNorth {
+        self.of_frame(&scene.cloud.frame, place)
+    }
+
+    /// The north at a local place of a frame.
+    pub(crate) fn of_frame(&self, frame: &Frame, place: [f64; 2]) -> AzimuthNorth {
         if self.grid_north {
             return AzimuthNorth { of_grid: 0.0, name: "grid north" };
         }
-        let [x, y] = [0, 1].map(|i| scene.cloud.frame.origin[i] + place[i]);
-        match convergence(&scene.cloud.frame.crs, [x, y]) {
+        let [x, y] = [0, 1].map(|i| frame.origin[i] + place[i]);
+        match convergence(&frame.crs, [x, y]) {
             Ok(of_grid) => AzimuthNorth { of_grid, name: "true north" },
             Err(_) => AzimuthNorth {
                 of_grid: 0.0,

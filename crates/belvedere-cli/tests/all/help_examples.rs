@@ -4,7 +4,7 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 24] = [
+const COMMANDS: [&str; 25] = [
     "demo",
     "simulate",
     "info",
@@ -24,6 +24,7 @@ const COMMANDS: [&str; 24] = [
     "shadow",
     "sky-view",
     "sun-hours",
+    "city",
     "compare",
     "view",
     "describe",
@@ -97,7 +98,9 @@ fn every_example_works_as_printed() {
     assert_eq!(demo.status, 0, "{demo:?}");
     place.write_folder("FOLDER", &house());
     let mut done = BTreeSet::new();
-    let of_help = COMMANDS.iter().flat_map(|command| examples(&place.run(&format!("help {command}")).stdout));
+    let steps = ["city plan", "city run", "city status", "city merge"];
+    let of_help =
+        COMMANDS.iter().chain(&steps).flat_map(|command| examples(&place.run(&format!("help {command}")).stdout));
     let of_help: Vec<String> = of_help.collect();
     for example in of_help.into_iter().chain(cookbook()) {
         // what follows > is for the shell

@@ -4,6 +4,7 @@
 
 mod answers;
 mod carved;
+mod city;
 mod common;
 #[cfg(feature = "compare")]
 mod compare;

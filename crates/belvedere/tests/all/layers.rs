@@ -3,17 +3,18 @@
 use std::path::{Path, PathBuf};
 
 /// The crates of the library, and the crates of ours that each may import.
-const CRATES: [(&str, &[&str]); 11] = [
+const CRATES: [(&str, &[&str]); 12] = [
     ("data", &[]),
     ("io", &["data"]),
     ("figures", &["data", "io"]),
     ("core", &["data"]),
     ("apps", &["data", "core"]),
     ("", &["data", "io", "figures", "core", "apps"]),
+    ("tiles", &[""]),
     ("scenes", &[]),
     ("baselines", &[""]),
     ("viewer", &[""]),
-    ("cli", &["", "scenes", "baselines", "viewer"]),
+    ("cli", &["", "tiles", "scenes", "baselines", "viewer"]),
     ("python", &["", "scenes"]),
 ];
 

@@ -1,0 +1,137 @@
+//! Flags of runs over whole cities.
+
+use super::{North, Numbers, above_zero, at_least_one, known_crs};
+use clap::{Args, Subcommand};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+#[derive(Args)]
+#[command(disable_help_subcommand = true)]
+pub(crate) struct City {
+    #[command(subcommand)]
+    pub(crate) step: CityStep,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum CityStep {
+    /// Read a survey once, and plan its tiles
+    Plan(CityPlan),
+    /// Compute the tiles that are not done yet
+    Run(CityRun),
+    /// Report which tiles are done, which are left, and which failed
+    Status(CityStatus),
+    /// Write the tiles of one result as one raster
+    Merge(CityMerge),
+}
+
+#[derive(Args)]
+pub(crate) struct CityPlan {
+    /// Tiles of the survey (.las .laz .copc.laz), a catalogue of tiles (.vpc), or a folder of tiles
+    #[arg(value_name = "CLOUD", required = true)]
+    pub(crate) clouds: Vec<PathBuf>,
+    /// Coordinate reference system, as EPSG:CODE or WKT [default: that of the files]
+    #[arg(long, value_name = "CRS", value_parser = known_crs)]
+    pub(crate) crs: Option<String>,
+    /// A sun direction for a shadow map: azimuth clockwise from true north and elevation, in degrees; repeatable
+    ///
+    /// See --grid-north.
+    #[arg(long = "sun", value_name = "AZ,EL", allow_hyphen_values = true, help_heading = "Questions")]
+    pub(crate) suns: Vec<Numbers<2>>,
+    /// Map the sky view factor
+    #[arg(long, help_heading = "Questions")]
+    pub(crate) sky_view: bool,
+    /// Number of sky directions
+    #[arg(long = "directions", value_name = "N", default_value_t = 577, requires = "sky_view", help_heading = "Questions",
+        value_parser = at_least_one)]
+    pub(crate) direction_count: usize,
+    #[command(flatten)]
+    pub(crate) north: North,
+    /// Side of the cells of results in metres: a whole number of sixty-fourths, such as 0.25, 0.5, 1 or 2
+    #[arg(long, value_name = "M", default_value_t = 1.0, value_parser = above_zero::<f64>, allow_negative_numbers = true,
+        help_heading = "Tiles")]
+    pub(crate) cell: f64,
+    /// Side of a tile in metres, 16 to 8192; it does not change results
+    ///
+    /// Multiples of 64 read the fewest points.
+    #[arg(long, value_name = "M", default_value_t = 512.0, value_parser = above_zero::<f64>, allow_negative_numbers = true,
+        help_heading = "Tiles")]
+    pub(crate) tile_size: f64,
+    /// Memory that a tile may use, such as 3G or 800M [default: no limit]
+    ///
+    /// A plan whose largest tile is estimated to need more is refused, with the tile size that fits.
+    #[arg(long, value_name = "SIZE", help_heading = "Tiles")]
+    pub(crate) memory: Option<Memory>,
+    /// Folder for the plan and the results; created if it does not exist
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Args)]
+pub(crate) struct CityRun {
+    /// Folder of the plan
+    #[arg(value_name = "DIR")]
+    pub(crate) run: PathBuf,
+    /// Compute only a share of the tiles, such as 3/64, for the jobs of a cluster
+    #[arg(long, value_name = "I/N")]
+    pub(crate) shard: Option<Share>,
+}
+
+#[derive(Args)]
+pub(crate) struct CityStatus {
+    /// Folder of the plan
+    #[arg(value_name = "DIR")]
+    pub(crate) run: PathBuf,
+}
+
+#[derive(Args)]
+pub(crate) struct CityMerge {
+    /// Folder of the plan
+    #[arg(value_name = "DIR")]
+    pub(crate) run: PathBuf,
+    /// Result to merge: the name of its folder [default: the only one]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) result: Option<String>,
+    /// Raster of all tiles (.tif)
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+}
+
+/// An amount of memory, bytes.
+#[derive(Clone, Copy)]
+pub(crate) struct Memory(pub(crate) u64);
+
+impl FromStr for Memory {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let wrong = || "must be a size such as 3G or 800M".to_owned();
+        let unit = text.chars().next_back().map(|c| c.to_ascii_uppercase());
+        let scale: f64 = match unit {
+            Some('G') => 1e9,
+            Some('M') => 1e6,
+            _ => return Err(wrong()),
+        };
+        let number: f64 = text.get(..text.len() - 1).and_then(|number| number.parse().ok()).ok_or_else(wrong)?;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
+        if number > 0.0 && number.is_finite() { Ok(Self((number * scale) as u64)) } else { Err(wrong()) }
+    }
+}
+
+/// A share of the tiles.
+#[derive(Clone, Copy)]
+pub(crate) struct Share {
+    pub(crate) number: usize,
+    pub(crate) of: usize,
+}
+
+impl FromStr for Share {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+        match numbers {
+            Some((number, of)) if (1..=of).contains(&number) => Ok(Self { number, of }),
+            _ => Err("must be a share from 1/N to N/N".to_owned()),
+        }
+    }
+}

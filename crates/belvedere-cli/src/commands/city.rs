@@ -1,0 +1,147 @@
+//! `belvedere city`.
+
+use super::check_output;
+use crate::arguments::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, Numbers, Usage};
+use crate::pipeline::flagged;
+use crate::progress::Stages;
+use crate::summary::{Summary, rounded};
+use anyhow::{Result, bail};
+use belvedere::apps::shadow::ShadowSun;
+use belvedere::{Bounds, Error, Frame};
+use belvedere_tiles::{Plan, PlanParams, Question, RunParams, Shard, merge, run as run_tiles, status as status_of};
+use std::time::Instant;
+
+/// Most failures that are listed one by one.
+const MOST_LISTED: usize = 10;
+
+pub(crate) fn run(arguments: &City, global: &Global) -> Result<Summary> {
+    match &arguments.step {
+        CityStep::Plan(arguments) => plan(arguments, global),
+        CityStep::Run(arguments) => run_plan(arguments, global),
+        CityStep::Status(arguments) => status(arguments),
+        CityStep::Merge(arguments) => merge_tiles(arguments, global),
+    }
+}
+
+fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
+    if arguments.suns.is_empty() && !arguments.sky_view {
+        return Err(Usage("questions are missing: give --sun AZ,EL or --sky-view".to_owned()).into());
+    }
+    let stages = Stages::new(global);
+    let mut summary = Summary::default();
+    let params = PlanParams {
+        clouds: arguments.clouds.clone(),
+        crs: arguments.crs.clone(),
+        tile_size: arguments.tile_size,
+        cell: arguments.cell,
+        memory: arguments.memory.map(|memory| memory.0),
+        program: concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned(),
+    };
+    let questions = |frame: &Frame, bounds: &Bounds| Ok(questions(arguments, frame, bounds));
+    let plan = Plan::make(&params, questions, &stages.control()).map_err(|error| match error {
+        Error::InvalidParameter { name: "cell", .. } => Usage(format!("--cell: {error}")).into(),
+        Error::InvalidParameter { name: "tile size", .. } => Usage(format!("--tile-size: {error}")).into(),
+        Error::InvalidParameter { name: "elevation of the sun", .. } => Usage(format!("--sun: {error}")).into(),
+        Error::InvalidParameter { name: "memory for a tile", .. } => Usage(format!("--memory: {error}")).into(),
+        other => anyhow::Error::from(other),
+    })?;
+    plan.write(&arguments.output)?;
+    let estimate = plan.estimate();
+    summary
+        .add("files", plan.inputs.len())
+        .add("tiles", plan.tiles.len())
+        .add("tile_size_m", plan.tile_size)
+        .add("halo_m", plan.halo)
+        .add("results", plan.questions.iter().map(Question::name).collect::<Vec<_>>())
+        .add("points", estimate.points)
+        .add("points_read_with_halo", estimate.points_with_halo)
+        .add("points_of_the_largest_tile", estimate.most_points_of_a_tile)
+        .add("estimated_memory_gb", rounded(estimate.memory_bytes as f64 / 1e9, 2))
+        .add("estimated_disk_gb", rounded(estimate.disk_bytes as f64 / 1e9, 2))
+        .add("written", arguments.output.display().to_string());
+    summary.add_seconds(stages.into_seconds());
+    Ok(summary)
+}
+
+/// What was typed as questions, azimuths from the north at the middle of the survey.
+fn questions(arguments: &CityPlan, frame: &Frame, bounds: &Bounds) -> Vec<Question> {
+    let (low, high) = bounds.on_map();
+    let north = arguments.north.of_frame(frame, [0, 1].map(|axis| f64::midpoint(low[axis], high[axis])));
+    let sun = |typed: &Numbers<2>| {
+        let [azimuth, elevation] = typed.0;
+        let name = format!("shadow_{azimuth}_{elevation}");
+        Question::Shadow {
+            name,
+            to_sun: ShadowSun::at(azimuth.to_radians() - north.of_grid, elevation.to_radians()).to_sun,
+        }
+    };
+    let sky = arguments.sky_view.then_some(Question::SkyView { directions: arguments.direction_count });
+    arguments.suns.iter().map(sun).chain(sky).collect()
+}
+
+fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
+    let plan = Plan::read(&arguments.run)?;
+    let stages = Stages::new(global);
+    let mut summary = Summary::default();
+    let start = Instant::now();
+    let shard = arguments.shard.map_or_else(Shard::default, |share| Shard { number: share.number, of: share.of });
+    let params = RunParams { shard, seconds: &|| start.elapsed().as_secs_f64() };
+    let report = flagged("--shard", run_tiles(&plan, &arguments.run, &params, &stages.control()))?;
+    if let Some((first, _)) = report.failed.split_first() {
+        let listed = report.failed.iter().take(MOST_LISTED).map(|why| format!("\n  {why}")).collect::<String>();
+        let more = report.failed.len().saturating_sub(MOST_LISTED);
+        let more = if more > 0 { format!("\n  and {more} more (belvedere city status)") } else { String::new() };
+        if report.failed.len() == 1 {
+            bail!("{first}; all else is done, and the next run tries it again");
+        }
+        bail!(
+            "{} steps failed; all else is done, and the next run tries them again:{listed}{more}",
+            report.failed.len()
+        );
+    }
+    summary.add_report(&report);
+    if report.unproven_cells > 0 {
+        summary.warn(format!(
+            "{} cells are unproven because tiles that may block them are missing",
+            report.unproven_cells
+        ));
+    }
+    summary.add("written", arguments.run.display().to_string());
+    summary.add_seconds(stages.into_seconds());
+    Ok(summary)
+}
+
+fn status(arguments: &CityStatus) -> Result<Summary> {
+    let plan = Plan::read(&arguments.run)?;
+    let found = status_of(&plan, &arguments.run);
+    let mut summary = Summary::default();
+    summary.add("tiles", found.tiles).add("is_complete", found.is_complete());
+    for stage in &found.stages {
+        let mut section = Summary::of(stage);
+        section.add("seconds", rounded(stage.seconds, 1));
+        summary.add(&stage.name, section);
+    }
+    Ok(summary)
+}
+
+fn merge_tiles(arguments: &CityMerge, global: &Global) -> Result<Summary> {
+    check_output("-o", &arguments.output, &["tif"])?;
+    let plan = Plan::read(&arguments.run)?;
+    let names = || plan.questions.iter().map(Question::name).collect::<Vec<_>>().join(", ");
+    let question = match (&arguments.result, &plan.questions[..]) {
+        (None, [only]) => only,
+        (None, _) => return Err(Usage(format!("--result is missing: give one of {}", names())).into()),
+        (Some(name), questions) => questions
+            .iter()
+            .find(|question| question.name() == name)
+            .ok_or_else(|| Usage(format!("--result {name}: the results are {}", names())))?,
+    };
+    let mut stages = Stages::new(global);
+    let merged =
+        stages.run("merging", 0, |control| merge(&plan, &arguments.run, question, &arguments.output, control))?;
+    let mut summary = Summary::default();
+    summary.add("tiles", merged.tiles).add("tiles_without_result", merged.without_result);
+    summary.add("written", arguments.output.display().to_string());
+    summary.add_seconds(stages.into_seconds());
+    Ok(summary)
+}

@@ -1,0 +1,136 @@
+//! Tiles on one grid.
+
+use belvedere::Bounds;
+use serde::{Deserialize, Serialize};
+
+/// Side of the cells that tops are kept on, and of the blocks that some rules for balls work in, metres.
+pub(crate) const CELL: f64 = 64.0;
+
+/// A tile: number east and north on the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct TileId {
+    /// Row, counted north from the origin of the reference system.
+    pub north: i64,
+    /// Column, counted east from there.
+    pub east: i64,
+}
+
+impl TileId {
+    /// The name of the tile in file names.
+    #[must_use]
+    pub fn name(self) -> String {
+        format!("e{}_n{}", self.east, self.north)
+    }
+}
+
+/// A grid of square tiles, counted from the origin of the reference system, in local coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TileGrid {
+    /// Side of a tile, metres.
+    pub size: f64,
+    /// Origin of local coordinates, metres east and north.
+    pub origin: [f64; 2],
+}
+
+/// A rectangle on the map from its lowest to its highest corner, local metres. The lower sides belong to it, the upper ones do not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Area {
+    pub(crate) low: [f64; 2],
+    pub(crate) high: [f64; 2],
+}
+
+impl TileGrid {
+    /// The core of a tile.
+    pub(crate) fn core(&self, tile: TileId) -> Area {
+        #[expect(clippy::cast_precision_loss, reason = "tiles of a planet are far fewer than 2^53")]
+        let low = [tile.east as f64 * self.size - self.origin[0], tile.north as f64 * self.size - self.origin[1]];
+        Area { low, high: low.map(|v| v + self.size) }
+    }
+
+    /// The tile whose core holds a local position.
+    #[expect(clippy::cast_possible_truncation, reason = "tiles of a planet are far fewer than 2^63")]
+    pub(crate) fn tile_of(&self, [x, y]: [f64; 2]) -> TileId {
+        let number = |v: f64, axis: usize| ((v + self.origin[axis]) / self.size).floor() as i64;
+        TileId { east: number(x, 0), north: number(y, 1) }
+    }
+}
+
+impl Area {
+    pub(crate) fn holds(&self, [x, y]: [f64; 2]) -> bool {
+        self.low[0] <= x && x < self.high[0] && self.low[1] <= y && y < self.high[1]
+    }
+
+    pub(crate) fn widened(&self, by: f64) -> Self {
+        Self { low: self.low.map(|v| v - by), high: self.high.map(|v| v + by) }
+    }
+
+    /// The blocks of 64 m from the origin of local coordinates that the area meets.
+    pub(crate) fn in_blocks(&self) -> Self {
+        Self { low: self.low.map(|v| (v / CELL).floor() * CELL), high: self.high.map(|v| (v / CELL).ceil() * CELL) }
+    }
+
+    /// The numbers of these blocks, east and north.
+    pub(crate) fn blocks(&self) -> impl Iterator<Item = [i32; 2]> + use<> {
+        #[expect(clippy::cast_possible_truncation, reason = "blocks of a frame of kilometres")]
+        let range = |axis: usize| ((self.low[axis] / CELL).floor() as i32)..((self.high[axis] / CELL).ceil() as i32);
+        let (east, north) = (range(0), range(1));
+        north.flat_map(move |north| east.clone().map(move |east| [east, north]))
+    }
+
+    /// Distance on the map to a rectangle, metres; 0 where they meet.
+    pub(crate) fn distance(&self, other: &Self) -> f64 {
+        let gap = |axis: usize| (other.low[axis] - self.high[axis]).max(self.low[axis] - other.high[axis]).max(0.0);
+        gap(0).hypot(gap(1))
+    }
+
+    /// The box of all heights over the area.
+    #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+    pub(crate) fn column(&self) -> Bounds {
+        let [low, high] = [self.low, self.high].map(|[x, y]| [x as f32, y as f32]);
+        let (bottom, top) = (-1e6, 1e6);
+        Bounds { low: [low[0], low[1], bottom], high: [high[0], high[1], top] }
+    }
+}
+
+/// The area of a block of 64 m.
+pub(crate) fn block_area(block: [i32; 2]) -> Area {
+    let low = block.map(|number| f64::from(number) * CELL);
+    Area { low, high: low.map(|v| v + CELL) }
+}
+
+/// The block of 64 m that a local position lies in.
+#[expect(clippy::cast_possible_truncation, reason = "blocks of a frame of kilometres; `as` saturates")]
+pub(crate) fn block_of([x, y]: [f32; 2]) -> [i32; 2] {
+    [x, y].map(|v| (f64::from(v) / CELL).floor() as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_place_has_one_tile_and_edges_belong_to_the_upper_one() {
+        let grid = TileGrid { size: 75.0, origin: [154_624.0, 463_872.0] };
+        for place in [[0.0, 0.0], [-300.2, 17.5], [1000.0, -512.0], [1.0, 150.0 - 72.0]] {
+            let tile = grid.tile_of(place);
+            assert!(grid.core(tile).holds(place), "{place:?}");
+            for (east, north) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
+                let other = TileId { east: tile.east + east, north: tile.north + north };
+                assert!(!grid.core(other).holds(place));
+            }
+        }
+        let core = grid.core(TileId { east: 2062, north: 6185 });
+        assert_eq!(grid.tile_of(core.low), TileId { east: 2062, north: 6185 });
+        assert_eq!(grid.tile_of(core.high), TileId { east: 2063, north: 6186 });
+    }
+
+    #[test]
+    fn areas_know_their_blocks_and_how_far_apart_they_are() {
+        let area = Area { low: [-10.0, 0.0], high: [64.0, 70.0] };
+        assert_eq!(area.blocks().collect::<Vec<_>>(), [[-1, 0], [0, 0], [-1, 1], [0, 1]]);
+        assert_eq!(area.in_blocks(), Area { low: [-64.0, 0.0], high: [64.0, 128.0] });
+        assert_eq!(area.distance(&block_area([1, 1])), 0.0);
+        assert_eq!(area.distance(&block_area([2, 2])), 64.0_f64.hypot(58.0));
+        assert_eq!(block_of([-0.1, 64.0]), [-1, 1]);
+    }
+}

@@ -1,0 +1,95 @@
+//! The files of a survey, and whether they are still what they were when the plan was made.
+
+use belvedere::io::{LasHead, read_las_head};
+use belvedere::{Error, GpsTimeKind, Result};
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+/// Bytes at either end of a file that its quick fingerprint is taken of.
+const ENDS: u64 = 1 << 16;
+
+/// A file of a survey.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InputFile {
+    /// Where it lies.
+    pub path: PathBuf,
+    /// Size, bytes.
+    pub bytes: u64,
+    /// Number of points.
+    pub points: u64,
+    /// Lowest and highest corner, in its own coordinates.
+    pub bounds: [[f64; 3]; 2],
+    /// FNV-1a of 64 bits over its size and its first and last 64 KiB, as hexadecimal digits.
+    pub fingerprint: String,
+}
+
+impl InputFile {
+    /// A file as it is now, and what its header says.
+    ///
+    /// # Errors
+    /// Those of [`read_las_head`].
+    pub(crate) fn new(path: &Path) -> Result<(Self, LasHead)> {
+        let is_las = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("las") || e.eq_ignore_ascii_case("laz"));
+        if !is_las {
+            return Err(Error::UnknownFormat {
+                path: path.to_owned(),
+                kind: "tile",
+                supported: ".las, .laz, .copc.laz; convert other clouds first",
+            });
+        }
+        let head = read_las_head(path)?;
+        let path = std::path::absolute(path).map_err(Error::io(path))?;
+        let fingerprint = fingerprint(&path, head.bytes)?;
+        Ok((Self { path, bytes: head.bytes, points: head.points, bounds: head.bounds, fingerprint }, head))
+    }
+
+    /// Refuses a file that is no longer what it was.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for a file that is gone, [`Error::Malformed`] for one that changed.
+    pub(crate) fn check(&self) -> Result<()> {
+        let found = std::fs::metadata(&self.path).map_err(Error::io(&self.path))?.len();
+        if found != self.bytes || fingerprint(&self.path, found)? != self.fingerprint {
+            let what = "is no longer what it was when the plan was made; make the plan again";
+            return Err(Error::malformed(&self.path, what));
+        }
+        Ok(())
+    }
+}
+
+fn fingerprint(path: &Path, size: u64) -> Result<String> {
+    let mut file = File::open(path).map_err(Error::io(path))?;
+    let mut bytes = size.to_le_bytes().to_vec();
+    (&mut file).take(ENDS).read_to_end(&mut bytes).map_err(Error::io(path))?;
+    file.seek(SeekFrom::Start(size.saturating_sub(ENDS))).map_err(Error::io(path))?;
+    file.take(ENDS).read_to_end(&mut bytes).map_err(Error::io(path))?;
+    Ok(hash(&bytes))
+}
+
+/// FNV-1a of 64 bits, as hexadecimal digits.
+pub(crate) fn hash(bytes: &[u8]) -> String {
+    let mix = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    format!("{:016x}", bytes.iter().fold(0xcbf2_9ce4_8422_2325, mix))
+}
+
+/// The columns of points that all files have and tiles need.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Columns {
+    /// GPS times of one kind.
+    pub(crate) gps_times: bool,
+    /// Channels of the scanner.
+    pub(crate) channels: bool,
+}
+
+impl Columns {
+    /// Those of all files with these headers.
+    pub(crate) fn common(heads: &[LasHead]) -> Self {
+        let kinds: Vec<Option<GpsTimeKind>> = heads.iter().map(|head| head.gps_times).collect();
+        Self {
+            gps_times: kinds.first().is_some_and(|first| first.is_some() && kinds.iter().all(|kind| kind == first)),
+            channels: heads.iter().all(|head| head.has_channels),
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! The balls of a tile.
+
+use crate::grid::{Area, TileId, block_of};
+use crate::plan::Plan;
+use crate::record::{Outcome, Record, Stage};
+use crate::window;
+use belvedere::control::Control;
+use belvedere::io::{atomic, write_balls};
+use belvedere::medial::MedialBalls;
+use belvedere::model::{ModelParts, SceneModel};
+use belvedere::{PointCloud, Result};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Makes the balls of a tile and writes them and their record into the folder of the run. The same plan and tile give the same balls.
+///
+/// # Errors
+/// Those of reading the files and of [`SceneModel::build`].
+pub fn make_balls(plan: &Plan, run: &Path, tile: TileId, control: &Control<'_>) -> Result<Record> {
+    atomic::make_folder(&Stage::Balls.folder(run))?;
+    let cloud = control.stage("reading", 0, || window::read(plan, &plan.window(tile), control))?;
+    let record = made(plan, run, tile, cloud, control)?;
+    record.write(plan, run, Stage::Balls, tile)?;
+    Ok(record)
+}
+
+fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Control<'_>) -> Result<Record> {
+    let points = cloud.len();
+    let nothing = Record { points, ..Record::default() };
+    let core = plan.grid().core(tile);
+    let is_in = |p: &[f32; 3]| core.holds([p[0].into(), p[1].into()]);
+    if !cloud.positions.iter().any(is_in) {
+        return Ok(nothing);
+    }
+    let positions = cloud.positions.clone();
+    let parts = match SceneModel::build_owned(cloud, &plan.model(), control) {
+        Ok((model, _)) => model.into_parts(),
+        Err(error) if window::is_nothing(&error) => return Ok(nothing),
+        Err(error) => return Err(error),
+    };
+    let is_own = |row: &usize| {
+        let source = parts.balls.source.get(*row).and_then(|&source| positions.get(source as usize));
+        source.is_some_and(is_in)
+    };
+    let own: Vec<usize> = (0..parts.balls.len()).filter(is_own).collect();
+    if own.is_empty() {
+        return Ok(nothing);
+    }
+    let transmission = own.iter().filter_map(|&row| parts.transmission.get(row).copied()).collect();
+    let balls = parts.balls.select(&own);
+    let tops = tops(&balls);
+    let count = balls.len();
+    // lines of sight are proven by pulses of the whole; here they are not kept
+    let parts = ModelParts { balls, transmission, bounds: plan.bounds(), pulses: None, ..parts };
+    let path = Stage::Balls.result(run, tile);
+    control.stage("writing", 0, || write_balls(&path, &parts.with_provenance("tile", tile.name())))?;
+    Ok(Record { outcome: Outcome::Done, points, balls: count, tops, ..Record::default() })
+}
+
+/// The highest top of balls over each block of 64 m that any reaches into.
+fn tops(balls: &MedialBalls) -> Vec<([i32; 2], f32)> {
+    let mut tops: BTreeMap<[i32; 2], f32> = BTreeMap::new();
+    for (&[x, y, z], &radius) in balls.centers.iter().zip(&balls.radii) {
+        let (first, last) = (block_of([x - radius, y - radius]), block_of([x + radius, y + radius]));
+        for north in first[1]..=last[1] {
+            for east in first[0]..=last[0] {
+                let top = tops.entry([east, north]).or_insert(f32::NEG_INFINITY);
+                *top = top.max(z + radius);
+            }
+        }
+    }
+    tops.into_iter().collect()
+}
+
+/// The square on the map that a ball covers.
+pub(crate) fn square_of([x, y, _]: [f32; 3], radius: f32) -> Area {
+    let (middle, radius) = ([x, y].map(f64::from), f64::from(radius));
+    Area { low: middle.map(|v| v - radius), high: middle.map(|v| v + radius) }
+}

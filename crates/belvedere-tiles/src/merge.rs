@@ -1,0 +1,149 @@
+//! All tiles of a result as one: a catalogue that programs of GIS open, or one raster.
+
+use crate::answer::NO_DATA;
+use crate::grid::TileId;
+use crate::plan::Plan;
+use crate::question::Question;
+use crate::record::{Outcome, Record, Stage};
+use belvedere::control::Control;
+use belvedere::crs::text::wkt_line;
+use belvedere::ground::MapGrid;
+use belvedere::io::{atomic, read_tif_f32, read_tif_u8, write_tif_f32, write_tif_u8};
+use belvedere::raster::Raster;
+use belvedere::results::georeference;
+use belvedere::{Error, Result};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+
+/// Most cells of a merged raster: a gigabyte of floats.
+const MOST_CELLS: usize = 1 << 28;
+
+/// Value of sky view factors that are not known.
+const NO_FACTOR: f32 = -1.0;
+
+/// What was merged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Merged {
+    /// Tiles that have a result.
+    pub tiles: usize,
+    /// Tiles of the plan that have none, because they are empty, failed or are not done.
+    pub without_result: usize,
+}
+
+/// Tiles with a result, and the grid of cells around all tiles of the plan.
+fn results(plan: &Plan, folder: &Path, question: &Question) -> Result<(Vec<TileId>, MapGrid)> {
+    let has_result = |tile: &TileId| {
+        Record::read(plan, folder, Stage::Answer(question), *tile).is_some_and(|record| record.outcome == Outcome::Done)
+    };
+    let grid = plan.grid();
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for &tile in &plan.tiles {
+        let core = grid.core(tile);
+        low = [0, 1].map(|axis| low[axis].min(core.low[axis]));
+        high = [0, 1].map(|axis| high[axis].max(core.high[axis]));
+    }
+    if plan.tiles.is_empty() {
+        return Err(Error::NoPoints { what: "the plan has no tile".to_owned() });
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
+    let count = |axis: usize| ((high[axis] - low[axis]) / plan.cell).round() as usize;
+    let cells = MapGrid { corner: [low[0], high[1]], cell: plan.cell, width: count(0), height: count(1) };
+    Ok((plan.tiles.iter().copied().filter(has_result).collect(), cells))
+}
+
+/// Column and row of the first cell of a tile, and cells along its side.
+fn place_of(plan: &Plan, cells: &MapGrid, tile: TileId) -> [usize; 3] {
+    let core = plan.grid().core(tile);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
+    let number = |metres: f64| (metres / plan.cell).round() as usize;
+    [number(core.low[0] - cells.corner[0]), number(cells.corner[1] - core.high[1]), number(plan.tile_size)]
+}
+
+/// Writes a catalogue (`.vrt`) of the results of a question that are there, which QGIS, GDAL and rasterio open as one raster.
+///
+/// # Errors
+/// [`Error::Io`].
+pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Result<Merged> {
+    let (tiles, cells) = results(plan, folder, question)?;
+    let frame = plan.frame()?;
+    let place = georeference(&cells, &frame);
+    let (kind, no_data) = match question {
+        Question::Shadow { .. } => ("Byte", f64::from(NO_DATA)),
+        Question::SkyView { .. } => ("Float32", f64::from(NO_FACTOR)),
+    };
+    let mut text = format!("<VRTDataset rasterXSize=\"{}\" rasterYSize=\"{}\">\n", cells.width, cells.height);
+    if let Some(system) = wkt_line(&frame.crs) {
+        let system = system.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+        let _ = writeln!(text, "  <SRS>{system}</SRS>");
+    }
+    let [x, y] = place.upper_left;
+    let step = place.column_step[0];
+    let _ = writeln!(text, "  <GeoTransform>{x}, {step}, 0, {y}, 0, {}</GeoTransform>", -step);
+    let _ =
+        writeln!(text, "  <VRTRasterBand dataType=\"{kind}\" band=\"1\">\n    <NoDataValue>{no_data}</NoDataValue>");
+    for &tile in &tiles {
+        let [column, row, side] = place_of(plan, &cells, tile);
+        let _ = writeln!(
+            text,
+            "    <SimpleSource><SourceFilename relativeToVRT=\"1\">{}/{}.tif</SourceFilename><SourceBand>1</SourceBand>\
+             <SrcRect xOff=\"0\" yOff=\"0\" xSize=\"{side}\" ySize=\"{side}\"/>\
+             <DstRect xOff=\"{column}\" yOff=\"{row}\" xSize=\"{side}\" ySize=\"{side}\"/></SimpleSource>",
+            question.name(),
+            tile.name()
+        );
+    }
+    text.push_str("  </VRTRasterBand>\n</VRTDataset>\n");
+    let path = folder.join(format!("{}.vrt", question.name()));
+    atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(Error::io(&path)))?;
+    Ok(Merged { tiles: tiles.len(), without_result: plan.tiles.len() - tiles.len() })
+}
+
+/// Writes the results of a question that are there as one raster.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for more cells than fit into memory; those of reading and writing rasters.
+pub fn merge(plan: &Plan, folder: &Path, question: &Question, output: &Path, control: &Control<'_>) -> Result<Merged> {
+    let (tiles, cells) = results(plan, folder, question)?;
+    let (width, height) = (cells.width, cells.height);
+    if width.saturating_mul(height) > MOST_CELLS {
+        return Err(Error::InvalidParameter {
+            name: "size of the merged raster",
+            value: format!("{width} x {height} cells"),
+            expected: "at most 268 million cells; open the .vrt, or convert it with gdal_translate",
+        });
+    }
+    let place = georeference(&cells, &plan.frame()?);
+    let path = |tile: TileId| Stage::Answer(question).result(folder, tile);
+    match question {
+        Question::Shadow { .. } => {
+            let mut all = Raster::filled(width, height, NO_DATA);
+            for &tile in &tiles {
+                control.check()?;
+                put(plan, &cells, tile, &read_tif_u8(path(tile))?, &mut all);
+            }
+            write_tif_u8(output, &all, Some(&place), Some(NO_DATA), None)?;
+        }
+        Question::SkyView { .. } => {
+            let mut all = Raster::filled(width, height, NO_FACTOR);
+            for &tile in &tiles {
+                control.check()?;
+                put(plan, &cells, tile, &read_tif_f32(path(tile))?, &mut all);
+            }
+            write_tif_f32(output, &all, Some(&place), Some(NO_FACTOR), None)?;
+        }
+    }
+    Ok(Merged { tiles: tiles.len(), without_result: plan.tiles.len() - tiles.len() })
+}
+
+/// Puts the cells of a tile at their place.
+fn put<T: Copy>(plan: &Plan, cells: &MapGrid, tile: TileId, of_tile: &Raster<T>, all: &mut Raster<T>) {
+    let [column, row, _] = place_of(plan, cells, tile);
+    let width = all.width();
+    for (number, values) in of_tile.values().chunks(of_tile.width().max(1)).enumerate() {
+        let from = (row + number) * width + column;
+        if let Some(place) = all.values_mut().get_mut(from..from + values.len()) {
+            place.copy_from_slice(values);
+        }
+    }
+}

@@ -1,0 +1,411 @@
+//! The plan of a run: everything that a tile must know beside its own points.
+
+use crate::grid::{Area, TileGrid, TileId, block_area};
+use crate::inputs::{Columns, InputFile, hash};
+use crate::question::Question;
+use crate::survey::{Block, survey};
+use crate::window;
+use belvedere::control::Control;
+use belvedere::crs::Crs;
+use belvedere::io::{LasHead, atomic, cloud_files};
+use belvedere::model::{ModelParams, SurveyFacts};
+use belvedere::{Bounds, Error, Frame, Result};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Version of the layout of plans and records.
+const LAYOUT: u32 = 1;
+/// Corners that the origin of local coordinates is one of, metres: of blocks of 64 m, and few, so that neighbouring surveys share it.
+const ORIGIN_STEP: f64 = 1024.0;
+/// Farthest that a point may lie from the origin, metres: up to here f32 keeps a millimetre.
+const FARTHEST: f64 = 16_384.0;
+/// Steps that the side of a cell must be a whole number of, metres: middles of cells are then exact numbers.
+const CELL_STEP: f64 = 1.0 / 64.0;
+/// Memory for each point of a window while balls are made, and without any, bytes. As measured in docs/scale.md.
+const BYTES_PER_POINT: f64 = 450.0;
+const BYTES_AT_LEAST: f64 = 100e6;
+/// Bytes of a ball file for each point of a tile.
+const DISK_PER_POINT: f64 = 30.0;
+
+/// How a plan is made.
+#[derive(Clone, Debug)]
+pub struct PlanParams {
+    /// Files, folders and catalogues of tiles.
+    pub clouds: Vec<PathBuf>,
+    /// Reference system in place of what the files say.
+    pub crs: Option<String>,
+    /// Side of a tile, metres. Default 512: a multiple of the blocks of 64 m, so that no point is looked at for nothing.
+    pub tile_size: f64,
+    /// Side of the cells of results, metres. Default 1.
+    pub cell: f64,
+    /// Most memory that a tile may take, bytes; `None` for any.
+    pub memory: Option<u64>,
+    /// Name and version of the program.
+    pub program: String,
+}
+
+impl Default for PlanParams {
+    fn default() -> Self {
+        Self { clouds: Vec::new(), crs: None, tile_size: 512.0, cell: 1.0, memory: None, program: String::new() }
+    }
+}
+
+/// A plan: input files, tiles and what is known of the whole survey. It is the same for the same files and parameters.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    layout: u32,
+    /// Name and version of the program that made it.
+    pub program: String,
+    /// Files of the survey.
+    pub inputs: Vec<InputFile>,
+    /// Reference system that was given in place of what the files say.
+    pub(crate) crs: Option<String>,
+    frame: PlanFrame,
+    pub(crate) columns: Columns,
+    /// Side of a tile, metres.
+    pub tile_size: f64,
+    /// Side of a cell of results, metres.
+    pub cell: f64,
+    /// How far around a tile points are read, metres.
+    pub halo: f64,
+    /// What is asked.
+    pub questions: Vec<Question>,
+    /// Tiles that may hold points, from the south-west.
+    pub tiles: Vec<TileId>,
+    low: [f32; 3],
+    high: [f32; 3],
+    pub(crate) facts: SurveyFacts,
+    pub(crate) blocks: Vec<Block>,
+    /// What records name the plan by that they belong to: a fingerprint of its file; empty before it was read from one.
+    #[serde(skip)]
+    pub(crate) name: String,
+}
+
+/// Where local coordinates lie.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlanFrame {
+    /// Origin, metres.
+    pub origin: [f64; 3],
+    /// Metres per unit of the files along each axis.
+    pub metres_per_unit: [f64; 3],
+    /// Reference system as text; empty where it is not known.
+    pub system: String,
+}
+
+/// What a plan will take.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Estimate {
+    /// Points of all tiles.
+    pub points: u64,
+    /// Points that are read, those around tiles among them.
+    pub points_with_halo: u64,
+    /// Most points that one tile reads.
+    pub most_points_of_a_tile: u64,
+    /// Memory that this tile takes, bytes.
+    pub memory_bytes: u64,
+    /// Disk that balls take, bytes.
+    pub disk_bytes: u64,
+}
+
+impl Plan {
+    /// Looks at all points once, and plans the tiles.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for sizes out of range, a survey that is too wide for one frame, and a tile that does not fit into the memory, with the
+    /// size that would; those of reading the files, and of [`SurveyFacts::estimate`].
+    pub fn make(
+        params: &PlanParams,
+        questions: impl FnOnce(&Frame, &Bounds) -> Result<Vec<Question>>,
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        check_sizes(params)?;
+        let (inputs, heads) = inputs(&params.clouds)?;
+        let crs = match &params.crs {
+            Some(crs) => Crs::parse(crs)?,
+            None => heads
+                .iter()
+                .map(|head| &head.crs)
+                .find(|crs| crs.epsg.is_some() || crs.wkt.is_some())
+                .cloned()
+                .unwrap_or_else(|| heads[0].crs.clone()),
+        };
+        let metres_per_unit = crs.metres_per_unit_xyz();
+        let ends = |end: usize, axis: usize| {
+            inputs.iter().filter(|file| file.points > 0).map(move |file| file.bounds[end][axis] * metres_per_unit[axis])
+        };
+        let low: [f64; 3] = std::array::from_fn(|axis| ends(0, axis).fold(f64::INFINITY, f64::min));
+        let high: [f64; 3] = std::array::from_fn(|axis| ends(1, axis).fold(f64::NEG_INFINITY, f64::max));
+        if low.iter().zip(&high).any(|(low, high)| !(low <= high)) {
+            return Err(Error::NoPoints { what: "no file has a point".to_owned() });
+        }
+        if let Some(what) = crs.refusal(low.map(|v| v / metres_per_unit[0])) {
+            return Err(Error::UnusableCrs { path: inputs[0].path.clone(), what });
+        }
+        let origin: [f64; 3] =
+            std::array::from_fn(|i| (f64::midpoint(low[i], high[i]) / ORIGIN_STEP).round() * ORIGIN_STEP);
+        if (0..2).any(|i| low[i] - origin[i] < -FARTHEST || high[i] - origin[i] > FARTHEST) {
+            let [width, height] = [0, 1].map(|i| ((high[i] - low[i]) / 1000.0).ceil());
+            return Err(Error::InvalidParameter {
+                name: "extent of the survey",
+                value: format!("{width} x {height} km"),
+                expected: "at most 32 x 32 km; make a plan for each part, with the tiles around it",
+            });
+        }
+        let system = crs.wkt.clone().or_else(|| crs.epsg.map(|code| format!("EPSG:{code}"))).unwrap_or_default();
+        let frame = PlanFrame { origin, metres_per_unit, system };
+        let columns = Columns::common(&heads);
+        let files: Vec<PathBuf> = inputs.iter().map(|file| file.path.clone()).collect();
+        let points = inputs.iter().map(|file| file.points).sum();
+        let local = |v: [f64; 3]| [v[0] - origin[0], v[1] - origin[1]];
+        let area = Area { low: local(low), high: local(high) };
+        let options = window::options(params.crs.as_deref(), frame.to_frame()?);
+        let found = control.stage("surveying", usize::try_from(points).unwrap_or(0), || {
+            survey(&files, &options, columns, points, &area, control)
+        })?;
+        let bounds = found.bounds.ok_or_else(|| Error::NoPoints { what: "all points are noise".to_owned() })?;
+        let model = ModelParams::default();
+        let facts = SurveyFacts::estimate(&found.along_lines, &found.places, &found.extremes, &model, control)?;
+        let mut plan = Self {
+            layout: LAYOUT,
+            program: params.program.clone(),
+            inputs,
+            crs: params.crs.clone(),
+            columns,
+            tile_size: params.tile_size,
+            cell: params.cell,
+            // in steps, so that it does not look more exact than it is
+            halo: facts.halo(&model).ceil(),
+            questions: questions(&found.places.frame, &bounds)?,
+            tiles: Vec::new(),
+            low: bounds.low,
+            high: bounds.high,
+            facts,
+            blocks: found.blocks,
+            frame,
+            name: String::new(),
+        };
+        plan.questions.iter().try_for_each(|question| question.directions().map(|_| ()))?;
+        plan.tiles = plan.tiles_with_points();
+        if let Some(memory) = params.memory {
+            plan.check_memory(memory)?;
+        }
+        Ok(plan)
+    }
+
+    /// Reads the plan of a run.
+    ///
+    /// # Errors
+    /// [`Error::Io`], and [`Error::Malformed`] for what is no plan, or one of another version.
+    pub fn read(folder: &Path) -> Result<Self> {
+        let path = Self::path(folder);
+        let bytes = std::fs::read(&path).map_err(Error::io(&path))?;
+        let mut plan: Self = serde_json::from_slice(&bytes)
+            .map_err(|e| Error::malformed(&path, format!("is no plan of this version: {e}; make it again")))?;
+        if plan.layout != LAYOUT || check_numbers(&plan).is_none() {
+            return Err(Error::malformed(&path, "is no plan of this version; make it again"));
+        }
+        plan.name = hash(&bytes);
+        Ok(plan)
+    }
+
+    /// Writes the plan into the folder of a run, which is made.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn write(&self, folder: &Path) -> Result<()> {
+        atomic::make_folder(folder)?;
+        let path = Self::path(folder);
+        let text =
+            serde_json::to_string(self).map_err(|e| Error::malformed(&path, format!("cannot be written: {e}")))?;
+        atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(Error::io(&path)))
+    }
+
+    fn path(folder: &Path) -> PathBuf {
+        folder.join("plan.json")
+    }
+
+    /// The frame of all tiles.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a reference system that this program does not know.
+    pub fn frame(&self) -> Result<Frame> {
+        self.frame.to_frame()
+    }
+
+    /// The smallest box around the survey, local metres.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        Bounds { low: self.low, high: self.high }
+    }
+
+    /// The grid of tiles.
+    #[must_use]
+    pub fn grid(&self) -> TileGrid {
+        TileGrid { size: self.tile_size, origin: [self.frame.origin[0], self.frame.origin[1]] }
+    }
+
+    /// How balls of tiles are made.
+    pub(crate) fn model(&self) -> ModelParams {
+        ModelParams::default().with_facts(Some(Arc::new(self.facts.clone())))
+    }
+
+    /// Files that may have points in `area`.
+    pub(crate) fn files_meeting(&self, area: &Area) -> impl Iterator<Item = &InputFile> {
+        // what headers round bounds by
+        let area = area.widened(0.1);
+        let PlanFrame { origin, metres_per_unit, .. } = &self.frame;
+        let local = move |v: f64, axis: usize| v * metres_per_unit[axis] - origin[axis];
+        self.inputs.iter().filter(move |file| {
+            file.points > 0
+                && (0..2).all(|axis| {
+                    local(file.bounds[0][axis], axis) <= area.high[axis]
+                        && area.low[axis] <= local(file.bounds[1][axis], axis)
+                })
+        })
+    }
+
+    /// The area whose points a tile needs for its balls.
+    pub(crate) fn window(&self, tile: TileId) -> Area {
+        self.grid().core(tile).in_blocks().widened(self.halo)
+    }
+
+    /// Blocks of 64 m with points that meet `area`.
+    pub(crate) fn blocks_in(&self, area: &Area) -> impl Iterator<Item = &Block> {
+        area.blocks().filter_map(|at| {
+            let place = self.blocks.binary_search_by_key(&at, |block| block.at).ok()?;
+            self.blocks.get(place)
+        })
+    }
+
+    fn tiles_with_points(&self) -> Vec<TileId> {
+        let grid = self.grid();
+        let of_block = |block: &Block| {
+            let area = block_area(block.at);
+            let (first, last) = (grid.tile_of(area.low), grid.tile_of(area.high));
+            (first.north..=last.north)
+                .flat_map(move |north| (first.east..=last.east).map(move |east| TileId { east, north }))
+        };
+        let tiles: BTreeSet<TileId> = self.blocks.iter().flat_map(of_block).collect();
+        let (low, high) = self.bounds().on_map();
+        let has_survey = |tile: &TileId| {
+            let core = grid.core(*tile);
+            (0..2).all(|axis| core.low[axis] <= high[axis] && low[axis] < core.high[axis])
+        };
+        tiles.into_iter().filter(has_survey).collect()
+    }
+
+    /// Points that a tile reads, about.
+    fn window_points(&self, area: &Area) -> f64 {
+        let share = |block: &Block| {
+            let own = block_area(block.at);
+            let side = |axis: usize| (area.high[axis].min(own.high[axis]) - area.low[axis].max(own.low[axis])).max(0.0);
+            side(0) * side(1) / (crate::grid::CELL * crate::grid::CELL) * block.points as f64
+        };
+        self.blocks_in(area).map(share).sum()
+    }
+
+    /// What the run will take, about.
+    #[must_use]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "estimates; `as` saturates")]
+    pub fn estimate(&self) -> Estimate {
+        let windows: Vec<f64> = self.tiles.iter().map(|&tile| self.window_points(&self.window(tile))).collect();
+        let most = windows.iter().copied().fold(0.0, f64::max);
+        let points: u64 = self.blocks.iter().map(|block| block.points).sum();
+        Estimate {
+            points,
+            points_with_halo: windows.iter().sum::<f64>() as u64,
+            most_points_of_a_tile: most as u64,
+            memory_bytes: memory_of(most) as u64,
+            disk_bytes: (points as f64 * DISK_PER_POINT) as u64,
+        }
+    }
+
+    fn check_memory(&self, memory: u64) -> Result<()> {
+        if self.estimate().memory_bytes <= memory {
+            return Ok(());
+        }
+        let mut smaller = self.clone();
+        let advice = loop {
+            smaller.tile_size /= 2.0;
+            if smaller.tile_size < 4.0 * self.cell || smaller.tile_size < 16.0 {
+                break "there is no size of tiles that fits".to_owned();
+            }
+            smaller.tiles = smaller.tiles_with_points();
+            if smaller.estimate().memory_bytes <= memory {
+                break format!("tiles of {} m fit", smaller.tile_size);
+            }
+        };
+        let needed = self.estimate().memory_bytes as f64 / 1e6;
+        Err(Error::InvalidParameter {
+            name: "memory for a tile",
+            value: format!(
+                "{:.0} MB, but a tile of {} m takes about {needed:.0} MB ({advice})",
+                memory as f64 / 1e6,
+                self.tile_size
+            ),
+            expected: "enough for a tile; give smaller tiles or more memory",
+        })
+    }
+}
+
+impl PlanFrame {
+    fn to_frame(&self) -> Result<Frame> {
+        let crs = if self.system.is_empty() {
+            Crs {
+                metres_per_unit: self.metres_per_unit[0],
+                vertical_metres_per_unit: self.metres_per_unit[2],
+                ..Crs::default()
+            }
+        } else {
+            Crs::parse(&self.system)?
+        };
+        Ok(Frame { origin: self.origin, crs })
+    }
+}
+
+fn memory_of(points: f64) -> f64 {
+    BYTES_AT_LEAST + points * BYTES_PER_POINT
+}
+
+fn inputs(clouds: &[PathBuf]) -> Result<(Vec<InputFile>, Vec<LasHead>)> {
+    let found: Vec<(InputFile, LasHead)> =
+        cloud_files(clouds)?.iter().map(|file| InputFile::new(file)).collect::<Result<_>>()?;
+    if let Some((first, rest)) = found.split_first()
+        && let Some((other, _)) = rest.iter().find(|(_, head)| head.crs.contradicts(&first.1.crs))
+    {
+        let what = format!("is in another reference system than {}; convert one of them", first.0.path.display());
+        return Err(Error::UnusableCrs { path: other.path.clone(), what });
+    }
+    Ok(found.into_iter().unzip())
+}
+
+fn check_sizes(params: &PlanParams) -> Result<()> {
+    let invalid =
+        |name, value: f64, expected| Err(Error::InvalidParameter { name, value: format!("{value} m"), expected });
+    let steps = params.cell / CELL_STEP;
+    if !(steps >= 1.0 && steps == steps.floor() && params.cell <= 64.0) {
+        return invalid(
+            "cell",
+            params.cell,
+            "a whole number of sixty-fourths of a metre up to 64, such as 0.25, 0.5, 1 or 2",
+        );
+    }
+    let cells = params.tile_size / params.cell;
+    if !(params.tile_size >= 16.0 && params.tile_size <= 8192.0 && cells == cells.floor()) {
+        return invalid("tile size", params.tile_size, "16 to 8192 m, and a whole number of cells");
+    }
+    Ok(())
+}
+
+/// The numbers of a plan that must not be anything.
+fn check_numbers(plan: &Plan) -> Option<()> {
+    let finite =
+        plan.frame.origin.iter().chain(&plan.frame.metres_per_unit).chain([&plan.halo, &plan.tile_size, &plan.cell]);
+    let sizes = PlanParams { tile_size: plan.tile_size, cell: plan.cell, ..PlanParams::default() };
+    let are_sorted = plan.blocks.windows(2).all(|pair| pair[0].at < pair[1].at);
+    let is_sound = finite.clone().all(|v| v.is_finite()) && plan.halo > 0.0 && plan.halo < 1e4 && are_sorted;
+    (is_sound && check_sizes(&sizes).is_ok()).then_some(())
+}

@@ -1,0 +1,116 @@
+//! What became of a tile. A record is written after its result, so that whatever has one is complete.
+
+use crate::grid::TileId;
+use crate::plan::Plan;
+use crate::question::Question;
+use belvedere::io::atomic;
+use belvedere::{Error, Result};
+use serde::{Deserialize, Serialize};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Largest record that is believed, bytes.
+const MOST_BYTES: u64 = 1 << 26;
+
+/// A step of the run of a tile.
+#[derive(Clone, Copy, Debug)]
+pub enum Stage<'a> {
+    /// Its balls.
+    Balls,
+    /// The answer to a question.
+    Answer(&'a Question),
+}
+
+impl Stage<'_> {
+    /// The name of its folder in a run.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Balls => "balls",
+            Self::Answer(question) => question.name(),
+        }
+    }
+
+    pub(crate) fn folder(&self, run: &Path) -> PathBuf {
+        run.join(self.name())
+    }
+
+    /// Where the result of a tile lies.
+    pub(crate) fn result(&self, run: &Path, tile: TileId) -> PathBuf {
+        let extension = if matches!(self, Self::Balls) { "npz" } else { "tif" };
+        self.folder(run).join(format!("{}.{extension}", tile.name()))
+    }
+
+    fn record(&self, run: &Path, tile: TileId) -> PathBuf {
+        self.folder(run).join(format!("{}.json", tile.name()))
+    }
+}
+
+/// What became of a tile.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// Its result is there.
+    Done,
+    /// Nothing is there, and there is no result.
+    #[default]
+    Nothing,
+    /// It could not be done, and why.
+    Failed(String),
+}
+
+/// The record of a tile.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// Name of the plan that it belongs to.
+    pub(crate) plan: String,
+    /// What became of the tile.
+    pub outcome: Outcome,
+    /// Points that were read.
+    pub points: usize,
+    /// Balls that were made, or that could matter for the answer.
+    pub balls: usize,
+    /// Cells that are asked about.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub cells: usize,
+    /// Cells whose answer is unproven because balls are missing.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub unproven_cells: usize,
+    /// Seconds that it took, where the program has a clock.
+    #[serde(default)]
+    pub seconds: f64,
+    /// Blocks of 64 m that balls reach into, and the highest top of them there, local metres.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) tops: Vec<([i32; 2], f32)>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
+impl Record {
+    /// The record of a tile in a run; `None` where there is none that belongs to the plan.
+    pub(crate) fn read(plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Option<Self> {
+        let path = stage.record(run, tile);
+        if std::fs::metadata(&path).ok()?.len() > MOST_BYTES {
+            return None;
+        }
+        let record: Self = serde_json::from_slice(&std::fs::read(&path).ok()?).ok()?;
+        (record.plan == plan.name).then_some(record)
+    }
+
+    /// Whether the tile need not be done again.
+    #[must_use]
+    pub fn is_settled(&self) -> bool {
+        !matches!(self.outcome, Outcome::Failed(_))
+    }
+
+    pub(crate) fn write(&self, plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Result<()> {
+        let path = stage.record(run, tile);
+        let record = Self { plan: plan.name.clone(), ..self.clone() };
+        let text =
+            serde_json::to_string(&record).map_err(|e| Error::malformed(&path, format!("cannot be written: {e}")))?;
+        atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(Error::io(&path)))
+    }
+}

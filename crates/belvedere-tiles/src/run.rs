@@ -1,0 +1,149 @@
+//! A run: all tiles that are not done yet, one after the other.
+
+use crate::answer::answer;
+use crate::grid::TileId;
+use crate::make_balls::make_balls;
+use crate::merge::write_catalogue;
+use crate::obstacles::{Lines, tiles};
+use crate::plan::Plan;
+use crate::question::Question;
+use crate::record::{Outcome, Record, Stage};
+use crate::report::write_report;
+use belvedere::control::Control;
+use belvedere::{Error, Result};
+use serde::Serialize;
+use std::path::Path;
+
+/// A share of the tiles: every `of`-th from number `number` on, counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// Which share, from 1.
+    pub number: usize,
+    /// How many shares there are.
+    pub of: usize,
+}
+
+impl Default for Shard {
+    fn default() -> Self {
+        Self { number: 1, of: 1 }
+    }
+}
+
+/// How a run is done.
+pub struct RunParams<'a> {
+    /// Which tiles. Default: all.
+    pub shard: Shard,
+    /// Seconds on a clock of the program, for records; the library has none.
+    pub seconds: &'a dyn Fn() -> f64,
+}
+
+/// What a run did.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct RunReport {
+    /// Tiles whose balls were made.
+    pub balls_made: usize,
+    /// Answers to a question on a tile.
+    pub answers_made: usize,
+    /// Tiles and answers that were there already.
+    pub already_done: usize,
+    /// Cells whose answer is unproven because balls are missing.
+    pub unproven_cells: usize,
+    /// What could not be done, and why.
+    pub failed: Vec<String>,
+}
+
+/// Makes the balls and the answers that a run lacks. What fails is named and recorded, and the rest goes on; the next run tries it again.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a share that there is not, [`Error::Cancelled`], and those of writing records.
+pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control<'_>) -> Result<RunReport> {
+    let Shard { number, of } = params.shard;
+    if number == 0 || number > of {
+        let value = format!("{number}/{of}");
+        return Err(Error::InvalidParameter { name: "share of the tiles", value, expected: "1/N to N/N" });
+    }
+    let mut work = Work { plan, folder, params, control, report: RunReport::default() };
+    let own = || plan.tiles.iter().copied().skip(number - 1).step_by(of);
+    for tile in own() {
+        work.balls(tile)?;
+    }
+    for question in &plan.questions {
+        let directions = question.directions()?;
+        for tile in own() {
+            let record = Record::read(plan, folder, Stage::Answer(question), tile);
+            // what was unproven for lack of balls may have them now
+            if record.is_some_and(|record| record.is_settled() && record.unproven_cells == 0) {
+                work.report.already_done += 1;
+                continue;
+            }
+            // other shares may not have come to them
+            let core = plan.grid().core(tile);
+            let heights = plan.blocks_in(&core).map(|block| f64::from(block.heights[0]));
+            let lowest = heights.fold(f64::INFINITY, f64::min);
+            let lines = Lines { targets: core, lowest, directions: &directions };
+            for other in tiles(plan, &lines) {
+                work.missing_balls(other)?;
+            }
+            work.answer(question, tile)?;
+        }
+    }
+    for question in &plan.questions {
+        write_catalogue(plan, folder, question)?;
+    }
+    write_report(plan, folder)?;
+    Ok(work.report)
+}
+
+struct Work<'a> {
+    plan: &'a Plan,
+    folder: &'a Path,
+    params: &'a RunParams<'a>,
+    control: &'a Control<'a>,
+    report: RunReport,
+}
+
+impl Work<'_> {
+    /// Makes the balls of a tile unless they are there.
+    fn balls(&mut self, tile: TileId) -> Result<()> {
+        if Record::read(self.plan, self.folder, Stage::Balls, tile).is_some_and(|record| record.is_settled()) {
+            self.report.already_done += 1;
+            return Ok(());
+        }
+        self.attempt(Stage::Balls, tile, || make_balls(self.plan, self.folder, tile, self.control))?;
+        self.report.balls_made += 1;
+        Ok(())
+    }
+
+    /// The same for a tile that an answer needs: one that failed before is not tried again.
+    fn missing_balls(&mut self, tile: TileId) -> Result<()> {
+        if Record::read(self.plan, self.folder, Stage::Balls, tile).is_none() {
+            self.attempt(Stage::Balls, tile, || make_balls(self.plan, self.folder, tile, self.control))?;
+            self.report.balls_made += 1;
+        }
+        Ok(())
+    }
+
+    fn answer(&mut self, question: &Question, tile: TileId) -> Result<()> {
+        let stage = Stage::Answer(question);
+        let record = self.attempt(stage, tile, || answer(self.plan, self.folder, question, tile, self.control))?;
+        self.report.answers_made += 1;
+        self.report.unproven_cells += record.unproven_cells;
+        Ok(())
+    }
+
+    /// Does something with a tile, and records how long it took or why it failed.
+    fn attempt(&mut self, stage: Stage<'_>, tile: TileId, work: impl FnOnce() -> Result<Record>) -> Result<Record> {
+        let start = (self.params.seconds)();
+        let mut record = match work() {
+            Ok(record) => record,
+            Err(Error::Cancelled) => return Err(Error::Cancelled),
+            Err(error) => {
+                self.report.failed.push(format!("{} of tile {}: {error}", stage.name(), tile.name()));
+                Record { outcome: Outcome::Failed(error.to_string()), ..Record::default() }
+            }
+        };
+        record.seconds = (self.params.seconds)() - start;
+        record.write(self.plan, self.folder, stage, tile)?;
+        Ok(record)
+    }
+}

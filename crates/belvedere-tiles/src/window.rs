@@ -1,0 +1,76 @@
+//! The points of a rectangle of the survey, the same in every tile that reads them.
+
+use crate::grid::Area;
+use crate::inputs::Columns;
+use crate::plan::Plan;
+use belvedere::control::Control;
+use belvedere::io::{CloudBatches, ReadOptions, Within, read_batches};
+use belvedere::{Attributes, Error, Frame, PointCloud, Result};
+
+/// The points of `area` that are asked for, in the order of the files and of their points.
+///
+/// # Errors
+/// Those of [`read_batches`], and [`Error::Malformed`] for a file that is no longer what it was.
+pub(crate) fn read(plan: &Plan, area: &Area, control: &Control<'_>) -> Result<PointCloud> {
+    let mut files = Vec::new();
+    for file in plan.files_meeting(area) {
+        file.check()?;
+        files.push(file.path.clone());
+    }
+    let mut cloud = PointCloud::in_frame(plan.frame()?);
+    if files.is_empty() {
+        return Ok(cloud);
+    }
+    let options = options(plan.crs.as_deref(), plan.frame()?).with_points_within(Within::Local(area.column()));
+    for batch in batches(&files, &options, control)? {
+        append(&mut cloud, batch?.cloud, plan.columns);
+    }
+    Ok(cloud)
+}
+
+pub(crate) fn options(crs: Option<&str>, frame: Frame) -> ReadOptions {
+    let options = ReadOptions::new().with_frame(frame);
+    match crs {
+        Some(crs) => options.with_crs(crs),
+        None => options,
+    }
+}
+
+pub(crate) fn batches<'a>(
+    files: &[std::path::PathBuf],
+    options: &ReadOptions,
+    control: &Control<'a>,
+) -> Result<CloudBatches<'a>> {
+    // sources live as long as the work
+    read_batches(files.to_vec(), options, control)
+}
+
+/// Adds the points of `more`, with the columns that tiles need and all files have.
+pub(crate) fn append(cloud: &mut PointCloud, more: PointCloud, columns: Columns) {
+    let count = more.len();
+    let attributes = needed(more.attributes, columns);
+    cloud.attributes.append(cloud.positions.len(), attributes, count);
+    cloud.positions.extend(more.positions);
+    cloud.frame = more.frame;
+}
+
+/// The columns that tiles need and all files have.
+pub(crate) fn needed(attributes: Attributes, columns: Columns) -> Attributes {
+    Attributes {
+        classification: attributes.classification,
+        gps_time: attributes.gps_time.filter(|_| columns.gps_times),
+        gps_time_kind: attributes.gps_time_kind,
+        return_number: attributes.return_number,
+        return_count: attributes.return_count,
+        scan_angle: attributes.scan_angle,
+        point_source_id: attributes.point_source_id,
+        scanner_channel: attributes.scanner_channel.filter(|_| columns.channels),
+        flags: attributes.flags,
+        ..Attributes::default()
+    }
+}
+
+/// Whether nothing is there, which is no failure for a tile.
+pub(crate) fn is_nothing(error: &Error) -> bool {
+    matches!(error, Error::NoPoints { .. } | Error::NoSurface { .. })
+}

@@ -1,0 +1,6 @@
+//! Runs of a simulated town in tiles.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+mod robust;
+mod seams;

@@ -1,0 +1,138 @@
+//! What is missing or damaged is named, the rest goes on, and what was interrupted goes on where it stopped.
+
+use crate::common::{plan, run_all, suns, write_town};
+use belvedere::Error;
+use belvedere::control::{Control, Watcher};
+use belvedere::io::read_tif_u8;
+use belvedere_tiles::{Plan, PlanParams, RunParams, Shard, merge, run, status};
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// All results of a run: file names below its folder, and their bytes.
+fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut found = Vec::new();
+    for stage in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
+        for file in std::fs::read_dir(&stage).unwrap().map(|entry| entry.unwrap().path()) {
+            let name = file.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
+            assert!(file.extension().is_some_and(|e| e == "npz" || e == "tif" || e == "json"), "{name} is left");
+            found.push((name, std::fs::read(&file).unwrap()));
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Stops the work after some number of looks at whether to stop.
+struct Impatient(AtomicUsize);
+
+impl Watcher for Impatient {
+    fn is_cancelled(&self) -> bool {
+        self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_err()
+    }
+}
+
+#[test]
+fn a_run_that_is_stopped_again_and_again_has_the_results_of_one_that_is_not() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 100.0, 1.0);
+    let (straight, stopped) = (place.path().join("straight"), place.path().join("stopped"));
+    run_all(&plan(&clouds, &straight, 64.0, suns()), &straight);
+    let plan = plan(&clouds, &stopped, 64.0, suns());
+    let params = RunParams { shard: Shard::default(), seconds: &|| 0.0 };
+    let (mut stops, mut patience) = (0, 500);
+    loop {
+        let watcher = Impatient(AtomicUsize::new(patience));
+        match run(&plan, &stopped, &params, &Control::new(&watcher)) {
+            Err(Error::Cancelled) => stops += 1,
+            other => {
+                assert!(other.unwrap().failed.is_empty());
+                break;
+            }
+        }
+        assert!(!status(&plan, &stopped).is_complete());
+        patience *= 4;
+    }
+    assert!(stops >= 3, "{stops}");
+    assert!(results(&straight) == results(&stopped));
+    // nothing is done twice
+    let report = run_all(&plan, &stopped);
+    assert_eq!((report.balls_made, report.answers_made), (0, 0));
+}
+
+#[test]
+fn shares_of_the_tiles_give_the_whole_together() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 100.0, 1.0);
+    let (straight, shared) = (place.path().join("straight"), place.path().join("shared"));
+    run_all(&plan(&clouds, &straight, 64.0, suns()), &straight);
+    let plan = plan(&clouds, &shared, 64.0, suns());
+    for number in [2, 1, 3] {
+        let params = RunParams { shard: Shard { number, of: 3 }, seconds: &|| 0.0 };
+        assert!(run(&plan, &shared, &params, &Control::none()).unwrap().failed.is_empty());
+    }
+    assert!(results(&straight) == results(&shared));
+    let params = RunParams { shard: Shard { number: 4, of: 3 }, seconds: &|| 0.0 };
+    assert!(run(&plan, &shared, &params, &Control::none()).is_err());
+}
+
+#[test]
+fn a_file_that_is_gone_is_named_and_what_it_may_block_is_unproven_and_never_lit() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 400.0, 0.6);
+    let (straight, broken) = (place.path().join("straight"), place.path().join("broken"));
+    let sun = vec![suns()[2].clone()];
+    let whole = plan(&clouds, &straight, 64.0, sun.clone());
+    run_all(&whole, &straight);
+    let plan = plan(&clouds, &broken, 64.0, sun.clone());
+    // the eastern half is gone, and with it the balls of tiles next to it
+    std::fs::rename(&clouds[1], place.path().join("away")).unwrap();
+    let report = run_all(&plan, &broken);
+    assert!(!report.failed.is_empty() && report.answers_made > 0);
+    assert!(report.failed.iter().all(|why| why.contains("half_1.laz")), "{:?}", report.failed);
+    assert!(!status(&plan, &broken).is_complete());
+    let values = |plan: &Plan, folder: &Path| {
+        let path = folder.join("merged.tif");
+        merge(plan, folder, &sun[0], &path, &Control::none()).unwrap();
+        read_tif_u8(&path).unwrap().values().to_vec()
+    };
+    let (expected, found) = (values(&whole, &straight), values(&plan, &broken));
+    assert_eq!(expected.len(), found.len());
+    let pairs = || expected.iter().zip(&found);
+    assert!(pairs().filter(|(_, found)| **found == 2).count() > 100);
+    assert!(pairs().filter(|(_, found)| **found == 1).count() > 500);
+    let wrong = pairs().filter(|(expected, found)| **expected == 0 && **found == 1).count();
+    assert_eq!(wrong, 0, "cells in shadow that are called lit");
+    // back again, the next run completes it, and asks again what was unproven
+    std::fs::rename(place.path().join("away"), &clouds[1]).unwrap();
+    assert!(run_all(&plan, &broken).failed.is_empty());
+    assert_eq!(values(&plan, &broken), expected);
+}
+
+#[test]
+fn a_file_that_changed_since_the_plan_is_refused() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 100.0, 1.0);
+    let folder = place.path().join("run");
+    let plan = plan(&clouds, &folder, 128.0, suns());
+    let mut bytes = std::fs::read(&clouds[0]).unwrap();
+    let middle = bytes.len() - 300;
+    bytes[middle] ^= 1;
+    std::fs::write(&clouds[0], bytes).unwrap();
+    let report = run_all(&plan, &folder);
+    assert!(report.failed.iter().any(|why| why.contains("half_0.laz") && why.contains("make the plan again")));
+}
+
+#[test]
+fn tiles_that_do_not_fit_into_the_memory_are_refused_with_the_size_that_does() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 200.0, 4.0);
+    let params = PlanParams { clouds, ..PlanParams::default() };
+    let whole = Plan::make(&params, |_, _| Ok(suns()), &Control::none()).unwrap();
+    let params = PlanParams { memory: Some(whole.estimate().memory_bytes - 2_000_000), ..params };
+    let error = Plan::make(&params, |_, _| Ok(suns()), &Control::none()).unwrap_err().to_string();
+    assert!(error.contains("tiles of") && error.contains("fit"), "{error}");
+    for (tile_size, cell) in [(100.0, 0.3), (100.5, 1.0), (4.0, 1.0), (f64::NAN, 1.0)] {
+        let params = PlanParams { tile_size, cell, ..params.clone() };
+        assert!(Plan::make(&params, |_, _| Ok(suns()), &Control::none()).is_err(), "{tile_size} {cell}");
+    }
+}
