@@ -36,7 +36,9 @@ fn address(viewer: &Viewer) -> (String, String) {
 
 /// Sends bytes, and gives status and text of the reply; 0 where the server hung up without one.
 fn sent(host: &str, request: &[u8]) -> (u16, String) {
-    let mut stream = TcpStream::connect(host).unwrap();
+    // a thousand at once may be more than the open files that this process is allowed
+    let connect = || TcpStream::connect(host).inspect_err(|_| std::thread::sleep(Duration::from_millis(50)));
+    let mut stream = (0..200).find_map(|_| connect().ok()).unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
     // a server that has heard enough closes while we still write
     let _ = stream.write_all(request);
