@@ -32,7 +32,7 @@ pub(super) fn drop_exact(positions: &[[f32; 3]], kept: &mut Vec<u32>) -> usize {
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-pub(super) fn drop_near(
+pub(crate) fn drop_near(
     positions: &[[f32; 3]],
     kept: &mut Vec<u32>,
     distance: f64,

@@ -4,13 +4,13 @@ mod duplicates;
 mod grid;
 mod outliers;
 
-use rayon::prelude::*;
-
+pub(crate) use duplicates::drop_near;
 pub use outliers::{IsolatedPoints, IsolationRadius};
 
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use belvedere_data::{Error, PointCloud, Result};
+use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
 /// LAS flag of a point that its producer withdrew.
@@ -163,7 +163,7 @@ pub fn clean(cloud: &PointCloud, params: &CleanParams, control: &Control<'_>) ->
         control.check()?;
     }
     if let Some(distance) = params.near_duplicate_distance {
-        report.near_duplicate_count = duplicates::drop_near(positions, &mut kept, distance, control)?;
+        report.near_duplicate_count = drop_near(positions, &mut kept, distance, control)?;
     }
     if let Some(isolated) = &params.isolated {
         let radius = isolated.radius_for(positions, &kept, control)?;

@@ -224,6 +224,9 @@ pub struct CarvedReport {
     /// Balls cut below the edges of roofs.
     #[serde(rename = "balls_cut_at_roof_edges")]
     pub cut_at_edges: usize,
+    /// Balls that close floors below tripods.
+    #[serde(rename = "balls_below_tripods")]
+    pub below_tripods: usize,
 }
 
 /// Balls of a survey.
@@ -272,11 +275,11 @@ pub(crate) fn carve_survey(
     let positions = oriented.positions();
     let mut report = CarvedReport::default();
     if let Some(sizes) = params.close_range.filter(|_| needles.are_from_the_ground()) {
-        let CloseRangeBalls { balls, shrinking, carving } = sizes.balls(input, control)?;
+        let CloseRangeBalls { balls, shrinking, carving, below_tripods } = sizes.balls(input, control)?;
         let carved = CarvedBalls {
             balls: balls.shrunk(),
             transmission: Vec::new(),
-            report: CarvedReport { shrinking, carving, ..report },
+            report: CarvedReport { shrinking, carving, below_tripods, ..report },
         };
         return Ok((carved, WholeSurvey::default()));
     }

@@ -4,6 +4,7 @@
 //! surveys from the air would fill that space, through which lines of sight run that never meet the surface. Here balls are only as
 //! thick as it takes to close the surface; what no pulse has seen is left for the pulses to call unproven.
 
+use super::below_tripods::{FloorPlace, floors_below};
 use super::carve::CarveReport;
 use super::carved::CarvedInput;
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink, spacing_at};
@@ -22,8 +23,8 @@ const LEAST_RADIUS: f32 = 1e-3;
 /// Sizes of balls for scanners that stand among the things they measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloseRangeParams {
-    /// Most radius in spacings of the points around, above 0.5: below that there are gaps between points in squares. Default 1.5, since
-    /// scan lines are often twice as far apart as the points on them.
+    /// Most radius in spacings of the points around, above 0.5: below that there are gaps between points in squares. Default 2, since
+    /// scan lines are often twice as far apart as the points on them. 1.5 leaves gaps at the edges of rooms.
     pub most_spacings: f32,
     /// Most radius, metres, above 0. Default 0.15: 0.25 blocks twice as much of what is visible behind cars and fences.
     pub most_radius: f32,
@@ -37,7 +38,7 @@ pub struct CloseRangeParams {
 
 impl Default for CloseRangeParams {
     fn default() -> Self {
-        Self { most_spacings: 1.5, most_radius: 0.15, penetration_share: 0.25, most_penetration: 0.0075 }
+        Self { most_spacings: 2.0, most_radius: 0.15, penetration_share: 0.25, most_penetration: 0.0075 }
     }
 }
 
@@ -46,6 +47,8 @@ pub(super) struct CloseRangeBalls {
     pub(super) balls: MedialBalls,
     pub(super) shrinking: ShrinkReport,
     pub(super) carving: CarveReport,
+    /// Balls of floors below tripods.
+    pub(super) below_tripods: usize,
 }
 
 impl CloseRangeParams {
@@ -67,7 +70,27 @@ impl CloseRangeParams {
         let carving = control.stage("carving balls", oriented.len(), || self.carve(&mut balls, input, control))?;
         // what no point bounds is bounded by these sizes
         shrinking.limited += std::mem::take(&mut shrinking.never_shrunk);
-        Ok(CloseRangeBalls { balls, shrinking, carving })
+        let below_tripods =
+            control.stage("closing floors below tripods", 0, || Ok(self.close_floors(&mut balls, input)))?;
+        Ok(CloseRangeBalls { balls, shrinking, carving, below_tripods })
+    }
+
+    /// Adds balls to the floors that tripods stand on; returns how many.
+    fn close_floors(&self, balls: &mut MedialBalls, input: &CarvedInput<'_>) -> usize {
+        let spacing = 0.5 * self.most_radius;
+        let before = balls.len();
+        for FloorPlace { position, row } in
+            floors_below(input.oriented.positions(), input.index, input.needles, spacing)
+        {
+            let tangent = Tangent { point: position, inward: [0.0, 0.0, -1.0], margin: self.most_penetration };
+            let most = self.most_radius - self.most_penetration;
+            let radius = input.needles.smallest_tangent_ball(&tangent, most).map_or(most, |empty| empty - GAP_M);
+            if radius >= LEAST_RADIUS {
+                let [x, y, z] = position;
+                balls.push(row, [x, y, z - self.most_penetration - GAP_M - radius], radius, LIMIT_TOUCH);
+            }
+        }
+        balls.len() - before
     }
 
     /// Cuts balls down to where no pulse enters them.

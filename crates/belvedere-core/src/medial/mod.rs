@@ -1,5 +1,6 @@
 //! Medial balls: the volume of a scene as a union of balls that touch its surface.
 
+mod below_tripods;
 pub mod bounds;
 pub mod carve;
 pub mod carved;

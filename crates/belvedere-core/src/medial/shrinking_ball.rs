@@ -257,11 +257,15 @@ const LIMITED_PENETRATION: f32 = 0.25;
 /// Neighbours that tell the spacing of points: enough to reach from one scan line to the next.
 const SPACING_NEIGHBORS: usize = 12;
 
-/// Distance between points at `p`, metres, if those around it lay in squares.
+/// Least distance between points that counts, metres: above and below a tripod scan lines lie up to 0.03 m apart, while the points on
+/// them touch, and balls must close the gaps between the lines.
+const LEAST_SPACING: f32 = 0.0135;
+
+/// Distance between points at `p`, metres, if those around it lay in squares; [`LEAST_SPACING`] or more.
 pub(super) fn spacing_at(index: &NeighborIndex, p: [f32; 3], near: &mut Vec<Neighbor>) -> f32 {
     index.k_nearest(p, SPACING_NEIGHBORS + 1, near);
     let farthest = near.last().map_or(f32::INFINITY, |found| found.distance_squared.sqrt());
-    farthest / (SPACING_NEIGHBORS as f32 / std::f32::consts::PI).sqrt()
+    (farthest / (SPACING_NEIGHBORS as f32 / std::f32::consts::PI).sqrt()).max(LEAST_SPACING)
 }
 
 /// Cosine of ∠pcq, within −1 to 1.

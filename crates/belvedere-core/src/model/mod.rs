@@ -8,6 +8,7 @@
 
 mod blocked_pulses;
 mod build;
+mod close_range_normals;
 mod facts;
 mod params;
 mod prepare;

@@ -1,5 +1,6 @@
 //! From a cloud to a cleaned cloud with outward normals, and what its pulses prove empty.
 
+use super::close_range_normals::close_range_normals;
 use super::facts::SurveyFacts;
 use super::params::{Carving, ModelParams, OrientBy};
 use super::report::{BuildReport, NormalsReport, PulsesReport, SmoothingReport};
@@ -140,15 +141,20 @@ pub(super) fn prepare(
     }
     let index = control.stage("indexing points", cloud.len(), || NeighborIndex::new(&cloud.positions, control))?;
     let by = orientation(&cloud, params, &scanner, wants_scanner, carving.is_some());
+    let is_from_the_ground = carving.as_ref().is_some_and(|input| input.needles.are_from_the_ground());
     let (normals, scatter) = match by {
         Orientation::Given => (Normals::default(), Scatter::default()),
+        _ if is_from_the_ground => control.stage("estimating normals", cloud.len(), || {
+            close_range_normals(&cloud.positions, params.neighborhood, control)
+                .map(|normals| (normals, Scatter::default()))
+        })?,
         _ => control.stage("estimating normals", cloud.len(), || {
             let farthest = facts.map_or(f32::INFINITY, SurveyFacts::farthest);
             estimate_within(&cloud.positions, &index, params.neighborhood, farthest, control)
         })?,
     };
     // balls of scanners on the ground have sizes of their own, which noise is part of
-    let is_flown = carving.as_ref().is_some_and(|input| !input.needles.are_from_the_ground());
+    let is_flown = carving.is_some() && !is_from_the_ground;
     let scatter = (is_flown && params.balls.smooths() && !scatter.roughness.is_empty()).then_some(scatter);
     let (mut oriented, orientation) =
         control.stage("orienting normals", cloud.len(), || orient(&cloud, normals, &by, control))?;
@@ -271,13 +277,6 @@ fn carving_input(
     }
     // of a part it was decided with the whole
     let carving = if params.facts.is_some() { Carving::Wanted } else { carving };
-    if needles.are_from_the_ground() && carving == Carving::IfPossible {
-        report.remark = Some(
-            "pulses do not carve here without --method carved: many are too flat, as from a scanner on the ground; balls are as thin as the points are close"
-                .to_owned(),
-        );
-        return Ok((None, report));
-    }
     if scanner.is_assumed && used < LEAST_ASSUMED_SHARE * cloud.len() as f64 && carving == Carving::IfPossible {
         report.remark = Some(format!(
             "pulses do not carve here: they are only assumed to be vertical, and {:.0} % of the points have something above them; give \
