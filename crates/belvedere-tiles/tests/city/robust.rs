@@ -78,7 +78,7 @@ fn shares_of_the_tiles_give_the_whole_together() {
 #[test]
 fn a_file_that_is_gone_is_named_and_what_it_may_block_is_unproven_and_never_lit() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 400.0, 0.6);
+    let clouds = write_town(place.path(), 300.0, 0.6);
     let (straight, broken) = (place.path().join("straight"), place.path().join("broken"));
     let sun = vec![suns()[2].clone()];
     let whole = plan(&clouds, &straight, 64.0, sun.clone());

@@ -49,21 +49,21 @@ fn balls(plan: &Plan, folder: &Path) -> Vec<[u32; 4]> {
 #[test]
 fn tiles_of_any_size_give_the_balls_and_shadows_of_one_tile_over_all() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 300.0, 0.8);
+    let clouds = write_town(place.path(), 220.0, 0.8);
     let whole_folder = place.path().join("whole");
     let whole = plan(&clouds, &whole_folder, 8192.0, suns());
     assert_eq!(whole.tiles.len(), 1);
     assert!(run_all(&whole, &whole_folder).failed.is_empty());
     let expected_balls = balls(&whole, &whole_folder);
-    assert!(expected_balls.len() > 20_000, "{}", expected_balls.len());
+    assert!(expected_balls.len() > 10_000, "{}", expected_balls.len());
     let expected: Vec<_> = suns().iter().map(|sun| shadow_cells(&whole, &whole_folder, sun)).collect();
     for (of_sun, lit_share) in expected.iter().zip([0.05..0.9, 0.2..0.95, 0.6..1.0]) {
-        assert!(of_sun.len() > 50_000, "{}", of_sun.len());
+        assert!(of_sun.len() > 40_000, "{}", of_sun.len());
         let lit = of_sun.values().filter(|&&value| value == 1).count() as f64 / of_sun.len() as f64;
         assert!(lit_share.contains(&lit), "{lit}");
         assert!(of_sun.values().all(|&value| value < 2), "nothing is missing");
     }
-    for size in [75.0, 150.0] {
+    for size in [90.0, 150.0] {
         let folder = place.path().join(format!("tiles_{size}"));
         let plan = plan(&clouds, &folder, size, suns());
         assert!(plan.tiles.len() >= 9);
