@@ -7,6 +7,7 @@ use crate::survey::{Block, survey};
 use crate::window;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
+use belvedere::ground::SurfaceParams;
 use belvedere::io::{LasHead, atomic, cloud_files};
 use belvedere::model::{ModelParams, SurveyFacts};
 use belvedere::{Bounds, Error, Frame, Result};
@@ -188,7 +189,7 @@ impl Plan {
             name: String::new(),
         };
         plan.questions.iter().try_for_each(|question| question.directions().map(|_| ()))?;
-        plan.tiles = plan.tiles_with_points();
+        plan.tiles = plan.tiles_with_cells();
         if let Some(memory) = params.memory {
             plan.check_memory(memory)?;
         }
@@ -280,10 +281,12 @@ impl Plan {
         })
     }
 
-    fn tiles_with_points(&self) -> Vec<TileId> {
+    /// Tiles with cells that may get a height: those near points.
+    fn tiles_with_cells(&self) -> Vec<TileId> {
         let grid = self.grid();
+        let reach = SurfaceParams::reach(self.cell);
         let of_block = |block: &Block| {
-            let area = block_area(block.at);
+            let area = block_area(block.at).widened(reach);
             let (first, last) = (grid.tile_of(area.low), grid.tile_of(area.high));
             (first.north..=last.north)
                 .flat_map(move |north| (first.east..=last.east).map(move |east| TileId { east, north }))
@@ -292,7 +295,7 @@ impl Plan {
         let (low, high) = self.bounds().on_map();
         let has_survey = |tile: &TileId| {
             let core = grid.core(*tile);
-            (0..2).all(|axis| core.low[axis] <= high[axis] && low[axis] < core.high[axis])
+            (0..2).all(|axis| core.low[axis] <= high[axis] + reach && low[axis] - reach < core.high[axis])
         };
         tiles.into_iter().filter(has_survey).collect()
     }
@@ -333,7 +336,7 @@ impl Plan {
             if smaller.tile_size < 4.0 * self.cell || smaller.tile_size < 16.0 {
                 break "there is no size of tiles that fits".to_owned();
             }
-            smaller.tiles = smaller.tiles_with_points();
+            smaller.tiles = smaller.tiles_with_cells();
             if smaller.estimate().memory_bytes <= memory {
                 break format!("tiles of {} m fit", smaller.tile_size);
             }

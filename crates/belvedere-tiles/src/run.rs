@@ -10,6 +10,7 @@ use crate::question::Question;
 use crate::record::{Outcome, Record, Stage};
 use crate::report::write_report;
 use belvedere::control::Control;
+use belvedere::ground::SurfaceParams;
 use belvedere::{Error, Result};
 use serde::Serialize;
 use std::path::Path;
@@ -78,7 +79,8 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             }
             // other shares may not have come to them
             let core = plan.grid().core(tile);
-            let heights = plan.blocks_in(&core).map(|block| f64::from(block.heights[0]));
+            let around = core.widened(SurfaceParams::reach(plan.cell));
+            let heights = plan.blocks_in(&around).map(|block| f64::from(block.heights[0]));
             let lowest = heights.fold(f64::INFINITY, f64::min);
             let lines = Lines { targets: core, lowest, directions: &directions };
             for other in tiles(plan, &lines) {

@@ -38,6 +38,13 @@ impl Default for SurfaceParams {
 }
 
 impl SurfaceParams {
+    /// Greatest distance from a point, metres, at which [`top_surface`] may give a cell of this side a height.
+    #[must_use]
+    pub fn reach(cell: f64) -> f64 {
+        // to the middle of a cell, or to the next cell
+        REACH.max(cell) + cell
+    }
+
     /// Checks the parameters.
     ///
     /// # Errors

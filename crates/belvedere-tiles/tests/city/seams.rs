@@ -63,7 +63,7 @@ fn tiles_of_any_size_give_the_balls_and_shadows_of_one_tile_over_all() {
         assert!(lit_share.contains(&lit), "{lit}");
         assert!(of_sun.values().all(|&value| value < 2), "nothing is missing");
     }
-    for size in [90.0, 150.0] {
+    for size in [75.0, 150.0] {
         let folder = place.path().join(format!("tiles_{size}"));
         let plan = plan(&clouds, &folder, size, suns());
         assert!(plan.tiles.len() >= 9);
@@ -84,8 +84,8 @@ fn tiles_of_any_size_give_the_balls_and_shadows_of_one_tile_over_all() {
 #[test]
 fn sky_view_is_that_of_one_tile_over_all() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 160.0, 2.0);
-    let question = Question::SkyView { directions: 97 };
+    let clouds = write_town(place.path(), 110.0, 1.0);
+    let question = Question::SkyView { directions: 49 };
     let factors = |size: f64| {
         let folder = place.path().join(format!("tiles_{size}"));
         let plan = plan(&clouds, &folder, size, vec![question.clone()]);
@@ -97,6 +97,7 @@ fn sky_view_is_that_of_one_tile_over_all() {
         cells(&plan, &bits, raster.width(), (-1.0_f32).to_bits())
     };
     let whole = factors(8192.0);
-    assert!(whole.len() > 15_000);
+    // some tiles of 64 m have no point, but cells beside points
+    assert!(whole.len() > 8_000);
     assert!(factors(64.0) == whole);
 }
