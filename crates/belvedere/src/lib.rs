@@ -65,7 +65,7 @@ pub use belvedere_data::{control, crs, error, frame, mesh, random, raster, repor
 pub use belvedere_figures as figures;
 #[cfg(feature = "io")]
 pub use belvedere_io as io;
-#[cfg(all(feature = "apps", feature = "io"))]
+#[cfg(all(feature = "apps", feature = "tiff"))]
 pub mod results;
 
 /// What most programs need: `use belvedere::prelude::*`.
@@ -82,7 +82,7 @@ pub mod prelude {
     pub use crate::io::{ReadOptions, read_balls, read_cloud, write_balls, write_cloud};
     pub use crate::model::{ModelParams, OrientBy, SceneModel};
     pub use crate::query::{Answer, UnprovenAs, Viewer, Visibility};
-    #[cfg(all(feature = "apps", feature = "io"))]
+    #[cfg(all(feature = "apps", feature = "tiff"))]
     pub use crate::results::write_raster;
     pub use crate::{Attributes, Bounds, Error, Frame, Mesh, PointCloud, Result};
 }
