@@ -27,7 +27,7 @@ pub(crate) use city::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};
 #[cfg(feature = "compare")]
 pub(crate) use compare::Compare;
 pub(crate) use envelope::{Comfort, Corners, Envelope};
-pub(crate) use irradiance::{ClearSkyChoice, Irradiance};
+pub(crate) use irradiance::{ClearSkyChoice, Irradiance, RadiationModel};
 pub(crate) use numbers::Numbers;
 use numbers::{above_zero, at_least_one, at_most, finite, known_crs, length, location};
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Shell, Viewshed};

@@ -17,6 +17,17 @@ pub fn read_u8<'a>(source: impl Into<Source<'a>>) -> Result<Raster<u8>> {
     })
 }
 
+/// The values of a raster of unsigned 16-bit integers.
+///
+/// # Errors
+/// Those of [`read_u8`].
+pub fn read_u16<'a>(source: impl Into<Source<'a>>) -> Result<Raster<u16>> {
+    read(source.into(), |values| match values {
+        DecodingResult::U16(values) => Some(values),
+        _ => None,
+    })
+}
+
 /// The values of a raster of 32-bit floats.
 ///
 /// # Errors

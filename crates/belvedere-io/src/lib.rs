@@ -99,7 +99,7 @@ pub use geotiff::{
     write_u32 as write_tif_u32,
 };
 #[cfg(feature = "tiff")]
-pub use geotiff_read::{read_f32 as read_tif_f32, read_u8 as read_tif_u8};
+pub use geotiff_read::{read_f32 as read_tif_f32, read_u8 as read_tif_u8, read_u16 as read_tif_u16};
 #[cfg(feature = "las")]
 pub use las::{LasHead, read_las_head};
 pub use mesh::read_mesh;

@@ -1,29 +1,34 @@
 //! The answer to a question on the cells of a tile.
 
 use crate::grid::TileId;
-use crate::obstacles::{Lines, Obstacles};
+use crate::lines::Lines;
+use crate::obstacles::Obstacles;
 use crate::plan::Plan;
-use crate::question::Question;
+use crate::question::{Asked, Question};
 use crate::record::{Outcome, Record, Stage};
+use crate::values::{UNPROVEN, Values};
 use crate::window;
-use belvedere::apps::shadow::{ShadowSun, shadow};
-use belvedere::apps::sky_view::{SKY_TARGET_HEIGHT, SkyDirections, scene_sky_view};
+use belvedere::apps::eyes::skip_unfit_eyes;
+use belvedere::apps::irradiance::{irradiation_measures, season_irradiation};
+use belvedere::apps::shadow::shadow;
+use belvedere::apps::sky_view::{SKY_TARGET_HEIGHT, scene_sky_view};
+use belvedere::apps::sun_hours::scene_sun_hours;
 use belvedere::apps::targets::{Layout, Targets};
+use belvedere::apps::viewshed::{Masks, Observer, ViewshedParams, viewshed};
 use belvedere::clean::clean;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid, SurfaceParams, top_surface};
-use belvedere::io::{atomic, write_tif_f32, write_tif_u8};
+use belvedere::io::atomic;
+use belvedere::query::Answer;
 use belvedere::raster::Raster;
 use belvedere::results::georeference;
+use belvedere::vector::sub;
 use belvedere::{PointCloud, Result};
 use rayon::prelude::*;
 use std::path::Path;
 
 /// Cells around a tile that the surface of its cells is taken from.
 const RIM: usize = 2;
-/// Values of a map of shadow, beside 1 for lit and 0 for in shadow.
-pub(crate) const UNPROVEN: u8 = 2;
-pub(crate) const NO_DATA: u8 = 255;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
 
@@ -33,9 +38,20 @@ const CHUNK: usize = 1024;
 /// # Errors
 /// Those of reading the files and the balls, and of writing.
 pub fn answer(plan: &Plan, run: &Path, question: &Question, tile: TileId, control: &Control<'_>) -> Result<Record> {
+    answer_prepared(plan, run, (question, &question.prepare(control)?), tile, control)
+}
+
+/// The same for a question that is prepared already.
+pub(crate) fn answer_prepared(
+    plan: &Plan,
+    run: &Path,
+    (question, asked): (&Question, &Asked),
+    tile: TileId,
+    control: &Control<'_>,
+) -> Result<Record> {
     let stage = Stage::Answer(question);
     atomic::make_folder(&stage.folder(run))?;
-    let record = answered(plan, run, question, tile, control)?;
+    let record = answered(plan, run, (question, asked), tile, control)?;
     record.write(plan, run, stage, tile)?;
     Ok(record)
 }
@@ -46,62 +62,148 @@ fn area_of_cells(plan: &Plan, tile: TileId) -> crate::grid::Area {
     plan.grid().core(tile).widened(farthest + (RIM + 1) as f64 * plan.cell)
 }
 
-fn answered(plan: &Plan, run: &Path, question: &Question, tile: TileId, control: &Control<'_>) -> Result<Record> {
+fn answered(
+    plan: &Plan,
+    run: &Path,
+    (question, asked): (&Question, &Asked),
+    tile: TileId,
+    control: &Control<'_>,
+) -> Result<Record> {
+    let core = plan.grid().core(tile);
+    let nothing = |points: usize| Ok(Record { points, ..Record::default() });
+    if Lines::of(asked, core, 0.0).is_empty() {
+        return nothing(0);
+    }
     let cloud = control.stage("reading", 0, || window::read(plan, &area_of_cells(plan, tile), control))?;
     let points = cloud.len();
     let targets = control.stage("computing top surface", 0, || cells(plan, tile, &cloud, control))?;
-    let asked = targets.asked_count();
-    let directions = question.directions()?;
+    let (cells, Layout::Cells(ground)) = (targets.asked_count(), &targets.layout) else { return nothing(points) };
+    if cells == 0 {
+        return nothing(points);
+    }
     let known = targets.positions.iter().filter(|p| p[2].is_finite());
     let lowest = known.map(|p| f64::from(p[2])).fold(f64::INFINITY, f64::min);
-    if asked == 0 {
-        return Ok(Record { points, ..Record::default() });
-    }
-    let lines = Lines { targets: plan.grid().core(tile), lowest, directions: &directions };
+    let lines = Lines::of(asked, core, lowest);
     let obstacles = control.stage("reading balls", 0, || Obstacles::gather(plan, run, &lines, control))?;
-    let path = Stage::Answer(question).result(run, tile);
-    let Layout::Cells(ground) = &targets.layout else { return Ok(Record { points, ..Record::default() }) };
-    let place = georeference(&ground.grid, &targets.frame);
-    let (width, height) = (ground.grid.width, ground.grid.height);
-    let is_unknown: Vec<bool> = control.stage("looking for missing tiles", asked, || {
-        let is_unknown = |position: &[f32; 3]| {
-            let position = position.map(f64::from);
-            !obstacles.missing.is_empty()
-                && position.iter().all(|v| v.is_finite())
-                && directions.iter().any(|&direction| obstacles.is_unknown(position, direction))
-        };
-        Ok(targets.positions.par_iter().with_min_len(CHUNK).map(is_unknown).collect())
-    })?;
-    let mut unproven_cells = 0;
-    match question {
-        Question::Shadow { to_sun, .. } => {
-            let sun = ShadowSun { to_sun: *to_sun, season: None };
-            let lit = control.stage("testing sun", asked, || shadow(&obstacles.scene, &targets, sun, control))?;
-            let value = |(&lit, &is_unknown): (&f32, &bool)| match lit {
-                lit if lit.is_nan() => NO_DATA,
-                lit if lit > 0.0 && is_unknown => UNPROVEN,
-                lit => u8::from(lit > 0.0),
-            };
-            let values: Vec<u8> = lit.iter().zip(&is_unknown).map(value).collect();
-            unproven_cells += values.iter().filter(|&&value| value == UNPROVEN).count();
-            let raster = Raster::from_values(width, height, values)?;
-            write_tif_u8(&path, &raster, Some(&place), Some(NO_DATA), None)?;
-        }
-        Question::SkyView { directions } => {
-            let sky = SkyDirections::even(*directions)?;
-            let scene = &obstacles.scene;
-            let mut factors =
-                control.stage("testing sky", asked, || scene_sky_view(scene, &targets, &sky, control))?.factors;
-            for (factor, _) in factors.iter_mut().zip(&is_unknown).filter(|(_, is_unknown)| **is_unknown) {
-                unproven_cells += usize::from(factor.is_finite());
-                *factor = f32::NAN;
-            }
-            let raster = Raster::from_values(width, height, factors)?;
-            write_tif_f32(&path, &raster, Some(&place), Some(-1.0), None)?;
-        }
+    let found = control.stage("testing lines of sight", cells, || ask(asked, &obstacles, &targets, control))?;
+    if found.values.are_nothing() && found.unproven_cells == 0 {
+        return nothing(points);
     }
-    let balls = obstacles.ball_count;
-    Ok(Record { outcome: Outcome::Done, points, balls, cells: asked, unproven_cells, ..Record::default() })
+    let place = georeference(&ground.grid, &targets.frame);
+    found.values.write(&Stage::Answer(question).result(run, tile), &place)?;
+    Ok(Record {
+        outcome: Outcome::Done,
+        points,
+        balls: obstacles.ball_count,
+        cells,
+        unproven_cells: found.unproven_cells,
+        skipped_observers: found.skipped_observers,
+        ..Record::default()
+    })
+}
+
+/// What was found of the cells of a tile.
+struct Found {
+    values: Values,
+    unproven_cells: usize,
+    skipped_observers: usize,
+}
+
+fn ask(asked: &Asked, obstacles: &Obstacles, targets: &Targets, control: &Control<'_>) -> Result<Found> {
+    let scene = &obstacles.scene;
+    let (width, height) = match &targets.layout {
+        Layout::Cells(ground) => (ground.grid.width, ground.grid.height),
+        _ => (targets.len(), 1),
+    };
+    let (numbers, directions) = match asked {
+        Asked::Viewshed(observers) => return see(observers, obstacles, targets, [width, height], control),
+        Asked::Shadow(sun) => {
+            let lit = shadow(scene, targets, *sun, control)?;
+            let is_unknown = unknown_towards(obstacles, targets, &[sun.to_sun]);
+            let code = |(&lit, &is_unknown): (&f32, &bool)| match lit {
+                lit if lit.is_nan() => None,
+                lit if lit > 0.0 && is_unknown => Some(UNPROVEN),
+                lit => Some(u8::from(lit > 0.0)),
+            };
+            let codes: Vec<Option<u8>> = lit.iter().zip(&is_unknown).map(code).collect();
+            let unproven_cells = codes.iter().filter(|&&code| code == Some(UNPROVEN)).count();
+            let values = Values::of_codes(width, height, codes.into_iter())?;
+            return Ok(Found { values, unproven_cells, skipped_observers: 0 });
+        }
+        Asked::Sky(sky) => (scene_sky_view(scene, targets, sky, control)?.into_measures(), &sky.directions[..]),
+        Asked::SunHours(plan) => {
+            let sums = scene_sun_hours(scene, targets, plan, None, control)?;
+            (sums.into_measures(plan, targets), plan.directions())
+        }
+        Asked::Irradiance { seasons, directions } => {
+            let sums = season_irradiation(scene, targets, seasons, control)?;
+            (irradiation_measures(&sums, 1), &directions[..])
+        }
+    };
+    // the first measure is what the question is named after
+    let numbers = numbers.into_iter().next().map(|measure| measure.values).unwrap_or_default();
+    let is_unknown = unknown_towards(obstacles, targets, directions);
+    let unproven_cells =
+        numbers.iter().zip(&is_unknown).filter(|(v, is_unknown)| v.is_finite() && **is_unknown).count();
+    let known = numbers.iter().zip(&is_unknown).map(|(&v, &is_unknown)| if is_unknown { f32::NAN } else { v });
+    Ok(Found { values: Values::of_numbers(width, height, known)?, unproven_cells, skipped_observers: 0 })
+}
+
+/// Of each target, whether missing balls may block it in any of `directions`.
+fn unknown_towards(obstacles: &Obstacles, targets: &Targets, directions: &[[f64; 3]]) -> Vec<bool> {
+    let is_unknown = |position: &[f32; 3]| {
+        let position = position.map(f64::from);
+        !obstacles.missing.is_empty()
+            && position.iter().all(|v| v.is_finite())
+            && directions.iter().any(|&direction| obstacles.is_unknown(position, direction, f64::INFINITY))
+    };
+    targets.positions.par_iter().with_min_len(CHUNK).map(is_unknown).collect()
+}
+
+/// What observers see of targets.
+fn see(
+    observers: &[Observer],
+    obstacles: &Obstacles,
+    targets: &Targets,
+    [width, height]: [usize; 2],
+    control: &Control<'_>,
+) -> Result<Found> {
+    let mut observers = observers.to_vec();
+    let mut eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
+    let skipped = skip_unfit_eyes(&obstacles.scene, None, &mut eyes, control)?.skipped;
+    observers.iter_mut().zip(eyes).for_each(|(observer, eye)| observer.eye = eye);
+    let params = ViewshedParams::default().with_masks(Masks::Kept);
+    let seen = viewshed(&obstacles.scene, &observers, &targets.positions, &params, control)?;
+    let is_unknown = |target: [f32; 3], eye: [f64; 3]| {
+        let target = target.map(f64::from);
+        !obstacles.missing.is_empty() && obstacles.is_unknown(target, sub(eye, target), 1.0)
+    };
+    let bit =
+        |row: usize, number: usize| seen.masks.get(number / 32).is_some_and(|band| band[row] >> (number % 32) & 1 == 1);
+    let unproven = |row: usize| {
+        let target = targets.positions[row];
+        let seen_by = observers.iter().enumerate().filter(|(number, _)| bit(row, *number));
+        seen_by.filter(|(_, observer)| is_unknown(target, observer.eye)).count()
+    };
+    let unproven: Vec<usize> = (0..targets.len()).into_par_iter().with_min_len(CHUNK).map(unproven).collect();
+    let is_asked = |answer: Answer| !matches!(answer, Answer::OutsideView | Answer::OutsideCloud);
+    let cells = || seen.answers.iter().zip(&seen.counts).zip(&unproven);
+    let values = match observers.len() {
+        1 => {
+            let code = |count: u32, unproven: usize| if unproven > 0 { UNPROVEN } else { u8::from(count > 0) };
+            let of_cell = |((&answer, &count), &unproven)| is_asked(answer).then(|| code(count, unproven));
+            Values::of_codes(width, height, cells().map(of_cell))?
+        }
+        _ => {
+            #[expect(clippy::cast_possible_truncation, reason = "no more than there are observers")]
+            let of_cell = |((&answer, &count), &unproven): ((&Answer, &u32), &usize)| {
+                is_asked(answer).then(|| count - unproven as u32)
+            };
+            Values::of_counts(width, height, cells().map(of_cell))?
+        }
+    };
+    let unproven_cells = unproven.iter().filter(|&&count| count > 0).count();
+    Ok(Found { values, unproven_cells, skipped_observers: skipped })
 }
 
 /// The cells of a tile as targets on top of what stands there.
@@ -137,4 +239,53 @@ fn cells(plan: &Plan, tile: TileId, cloud: &PointCloud, control: &Control<'_>) -
     let layout = Layout::Cells(Box::new(Ground { grid, heights, gaps }));
     let frame = cloud.frame.clone();
     Ok(Targets { frame, positions, normals: None, weights: Vec::new(), groups: Vec::new(), layout })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Area;
+    use belvedere::apps::viewshed::SightLimits;
+    use belvedere::blocking::BlockRule;
+    use belvedere::medial::MedialBalls;
+    use belvedere::query::MedialScene;
+
+    #[test]
+    fn views_that_missing_tiles_may_block_are_unproven_and_never_seen() {
+        // a ball of 2 m in the east, and nothing known of a place in the north
+        let mut balls = MedialBalls::default();
+        balls.push(0, [10.0, 0.0, 2.0], 2.0, 0);
+        let scene = MedialScene::new(&balls, &BlockRule::carved()).unwrap();
+        let missing = vec![(Area { low: [-5.0, 10.0], high: [5.0, 20.0] }, 30.0)];
+        let obstacles = Obstacles { scene, ball_count: 1, missing };
+        let positions = vec![
+            [-20.0, 0.0, 2.0],  // free
+            [20.0, 0.0, 2.0],   // behind the ball
+            [0.0, 40.0, 2.0],   // behind what is missing
+            [0.0, 5.0, 2.0],    // before it
+            [0.0, 40.0, 200.0], // high above it
+            [-90.0, 0.0, 2.0],  // too far away
+            [f32::NAN; 3],
+        ];
+        let targets = Targets {
+            frame: belvedere::Frame::default(),
+            positions,
+            normals: None,
+            weights: Vec::new(),
+            groups: Vec::new(),
+            layout: Layout::Points,
+        };
+        let limits = SightLimits { distance: [0.0, 50.0], ..SightLimits::default() };
+        let low = Observer { eye: [0.0, 0.0, 2.0], limits };
+        let found = see(&[low], &obstacles, &targets, [7, 1], &Control::none()).unwrap();
+        let Values::Codes(codes) = &found.values else { panic!("codes of one observer") };
+        assert_eq!(codes.values(), [1, 0, 2, 1, 1, 255, 255]);
+        assert_eq!((found.unproven_cells, found.skipped_observers), (1, 0));
+        // another high above, and one inside the ball, which sees nothing
+        let observers = [low, Observer { eye: [0.0, 0.0, 80.0], limits }, Observer { eye: [10.0, 0.0, 2.0], limits }];
+        let found = see(&observers, &obstacles, &targets, [7, 1], &Control::none()).unwrap();
+        let Values::Counts(counts) = &found.values else { panic!("counts of several observers") };
+        assert_eq!(counts.values(), [2, 1, 1, 2, 2, 65_535, 65_535]);
+        assert_eq!((found.unproven_cells, found.skipped_observers), (1, 1));
+    }
 }

@@ -60,6 +60,27 @@ impl Area {
         self.low[0] <= x && x < self.high[0] && self.low[1] <= y && y < self.high[1]
     }
 
+    /// One place.
+    pub(crate) fn at([x, y, _]: [f64; 3]) -> Self {
+        Self { low: [x, y], high: [x, y] }
+    }
+
+    pub(crate) fn corners(&self) -> [[f64; 2]; 4] {
+        [self.low, [self.high[0], self.low[1]], [self.low[0], self.high[1]], self.high]
+    }
+
+    /// From where to where it reaches along an axis on the map.
+    pub(crate) fn span(&self, axis: [f64; 2]) -> [f64; 2] {
+        let places = self.corners().map(|[x, y]| x * axis[0] + y * axis[1]);
+        [places.into_iter().fold(f64::INFINITY, f64::min), places.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+    }
+
+    /// Greatest distance on the map between a place of this and one of `other`, metres.
+    pub(crate) fn farthest(&self, other: &Self) -> f64 {
+        let side = |axis: usize| (other.high[axis] - self.low[axis]).max(self.high[axis] - other.low[axis]);
+        side(0).hypot(side(1))
+    }
+
     pub(crate) fn widened(&self, by: f64) -> Self {
         Self { low: self.low.map(|v| v - by), high: self.high.map(|v| v + by) }
     }

@@ -16,6 +16,7 @@
 mod answer;
 mod grid;
 mod inputs;
+mod lines;
 mod make_balls;
 mod merge;
 mod obstacles;
@@ -26,6 +27,7 @@ mod report;
 mod run;
 mod status;
 mod survey;
+mod values;
 mod window;
 
 pub use answer::answer;
@@ -34,7 +36,7 @@ pub use inputs::InputFile;
 pub use make_balls::make_balls;
 pub use merge::{Merged, merge, write_catalogue};
 pub use plan::{Estimate, Plan, PlanFrame, PlanParams};
-pub use question::Question;
+pub use question::{Question, Radiation, SunQuestion};
 pub use record::{Outcome, Record, Stage};
 pub use run::{RunParams, RunReport, Shard, run};
 pub use status::{StageStatus, Status, status};

@@ -1,6 +1,5 @@
 //! All tiles of a result as one: a catalogue that programs of GIS open, or one raster.
 
-use crate::answer::NO_DATA;
 use crate::grid::TileId;
 use crate::plan::Plan;
 use crate::question::Question;
@@ -8,8 +7,7 @@ use crate::record::{Outcome, Record, Stage};
 use belvedere::control::Control;
 use belvedere::crs::text::wkt_line;
 use belvedere::ground::MapGrid;
-use belvedere::io::{atomic, read_tif_f32, read_tif_u8, write_tif_f32, write_tif_u8};
-use belvedere::raster::Raster;
+use belvedere::io::atomic;
 use belvedere::results::georeference;
 use belvedere::{Error, Result};
 use std::fmt::Write as _;
@@ -18,9 +16,6 @@ use std::path::Path;
 
 /// Most cells of a merged raster: a gigabyte of floats.
 const MOST_CELLS: usize = 1 << 28;
-
-/// Value of sky view factors that are not known.
-const NO_FACTOR: f32 = -1.0;
 
 /// What was merged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -68,10 +63,7 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Resul
     let (tiles, cells) = results(plan, folder, question)?;
     let frame = plan.frame()?;
     let place = georeference(&cells, &frame);
-    let (kind, no_data) = match question {
-        Question::Shadow { .. } => ("Byte", f64::from(NO_DATA)),
-        Question::SkyView { .. } => ("Float32", f64::from(NO_FACTOR)),
-    };
+    let (kind, no_data) = question.kind().in_vrt();
     let mut text = format!("<VRTDataset rasterXSize=\"{}\" rasterYSize=\"{}\">\n", cells.width, cells.height);
     if let Some(system) = wkt_line(&frame.crs) {
         let system = system.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
@@ -114,36 +106,12 @@ pub fn merge(plan: &Plan, folder: &Path, question: &Question, output: &Path, con
         });
     }
     let place = georeference(&cells, &plan.frame()?);
-    let path = |tile: TileId| Stage::Answer(question).result(folder, tile);
-    match question {
-        Question::Shadow { .. } => {
-            let mut all = Raster::filled(width, height, NO_DATA);
-            for &tile in &tiles {
-                control.check()?;
-                put(plan, &cells, tile, &read_tif_u8(path(tile))?, &mut all);
-            }
-            write_tif_u8(output, &all, Some(&place), Some(NO_DATA), None)?;
-        }
-        Question::SkyView { .. } => {
-            let mut all = Raster::filled(width, height, NO_FACTOR);
-            for &tile in &tiles {
-                control.check()?;
-                put(plan, &cells, tile, &read_tif_f32(path(tile))?, &mut all);
-            }
-            write_tif_f32(output, &all, Some(&place), Some(NO_FACTOR), None)?;
-        }
+    let mut all = question.kind().nothing(width, height);
+    for &tile in &tiles {
+        control.check()?;
+        let values = question.kind().read(&Stage::Answer(question).result(folder, tile))?;
+        all.put(&values, place_of(plan, &cells, tile))?;
     }
+    all.write(output, &place)?;
     Ok(Merged { tiles: tiles.len(), without_result: plan.tiles.len() - tiles.len() })
-}
-
-/// Puts the cells of a tile at their place.
-fn put<T: Copy>(plan: &Plan, cells: &MapGrid, tile: TileId, of_tile: &Raster<T>, all: &mut Raster<T>) {
-    let [column, row, _] = place_of(plan, cells, tile);
-    let width = all.width();
-    for (number, values) in of_tile.values().chunks(of_tile.width().max(1)).enumerate() {
-        let from = (row + number) * width + column;
-        if let Some(place) = all.values_mut().get_mut(from..from + values.len()) {
-            place.copy_from_slice(values);
-        }
-    }
 }

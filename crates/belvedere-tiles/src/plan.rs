@@ -3,11 +3,13 @@
 use crate::grid::{Area, TileGrid, TileId, block_area};
 use crate::inputs::{Columns, InputFile, hash};
 use crate::question::Question;
+use crate::record::Stage;
 use crate::survey::{Block, survey};
 use crate::window;
+use belvedere::apps::targets::{grid_around, set_on_ground};
 use belvedere::control::Control;
 use belvedere::crs::Crs;
-use belvedere::ground::SurfaceParams;
+use belvedere::ground::{Ground, GroundParams, SurfaceParams};
 use belvedere::io::{LasHead, atomic, cloud_files};
 use belvedere::model::{ModelParams, SurveyFacts};
 use belvedere::{Bounds, Error, Frame, Result};
@@ -18,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Version of the layout of plans and records.
-const LAYOUT: u32 = 1;
+const LAYOUT: u32 = 2;
 /// Corners that the origin of local coordinates is one of, metres: of blocks of 64 m, and few, so that neighbouring surveys share it.
 const ORIGIN_STEP: f64 = 1024.0;
 /// Farthest that a point may lie from the origin, metres: up to here f32 keeps a millimetre.
@@ -28,6 +30,8 @@ const CELL_STEP: f64 = 1.0 / 64.0;
 /// Memory for each point of a window while balls are made, and without any, bytes. As measured in docs/scale.md.
 const BYTES_PER_POINT: f64 = 450.0;
 const BYTES_AT_LEAST: f64 = 100e6;
+/// Points around a place that its ground is taken from, metres, beside the usual ones.
+const GROUND_AROUND: f64 = 32.0;
 /// Bytes of a ball file for each point of a tile.
 const DISK_PER_POINT: f64 = 30.0;
 
@@ -112,16 +116,12 @@ pub struct Estimate {
 }
 
 impl Plan {
-    /// Looks at all points once, and plans the tiles.
+    /// Looks at all points once, and plans the tiles, without a question.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for sizes out of range, a survey that is too wide for one frame, and a tile that does not fit into the memory, with the
     /// size that would; those of reading the files, and of [`SurveyFacts::estimate`].
-    pub fn make(
-        params: &PlanParams,
-        questions: impl FnOnce(&Frame, &Bounds) -> Result<Vec<Question>>,
-        control: &Control<'_>,
-    ) -> Result<Self> {
+    pub fn make(params: &PlanParams, control: &Control<'_>) -> Result<Self> {
         check_sizes(params)?;
         let (inputs, heads) = inputs(&params.clouds)?;
         let crs = match &params.crs {
@@ -179,7 +179,7 @@ impl Plan {
             cell: params.cell,
             // in steps, so that it does not look more exact than it is
             halo: facts.halo(&model).ceil(),
-            questions: questions(&found.places.frame, &bounds)?,
+            questions: Vec::new(),
             tiles: Vec::new(),
             low: bounds.low,
             high: bounds.high,
@@ -188,7 +188,6 @@ impl Plan {
             frame,
             name: String::new(),
         };
-        plan.questions.iter().try_for_each(|question| question.directions().map(|_| ()))?;
         plan.tiles = plan.tiles_with_cells();
         if let Some(memory) = params.memory {
             plan.check_memory(memory)?;
@@ -324,6 +323,48 @@ impl Plan {
             memory_bytes: memory_of(most) as u64,
             disk_bytes: (points as f64 * DISK_PER_POINT) as u64,
         }
+    }
+
+    /// This with other questions.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for two questions whose results would lie in one folder and for parameters outside their range; those of reading
+    /// weather.
+    pub fn with_questions(self, questions: Vec<Question>, control: &Control<'_>) -> Result<Self> {
+        let mut names = BTreeSet::from([Stage::Balls.name()]);
+        if let Some(name) = questions.iter().map(Question::name).find(|name| !names.insert(name)) {
+            let (value, expected) = (format!("{name} twice"), "each question once");
+            return Err(Error::InvalidParameter { name: "questions", value, expected });
+        }
+        questions.iter().try_for_each(|question| question.prepare(control).map(|_| ()))?;
+        Ok(Self { questions, ..self })
+    }
+
+    /// Puts places on the map, local metres, on the ground: each that has no height gets `height` metres above the ground there.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a place without ground, those of reading the files and of [`Ground::of_cloud`].
+    pub fn set_on_ground(&self, places: &mut [[f64; 3]], height: f64, control: &Control<'_>) -> Result<()> {
+        let origin = self.frame.origin;
+        for place in places {
+            let Some(grid) = grid_around([*place], origin)? else { continue };
+            let corner = [grid.corner[0], grid.corner[1] - grid.cell * grid.height as f64];
+            let area = Area { low: corner, high: [corner[0] + grid.cell * grid.width as f64, grid.corner[1]] };
+            let cloud = window::read(self, &area.widened(GROUND_AROUND), control)?;
+            let ground = match Ground::of_cloud(&cloud, grid, &GroundParams::default(), control) {
+                Err(error) if !window::is_nothing(&error) => return Err(error),
+                ground => ground.ok(),
+            };
+            let unknown = ground.map(|(ground, _)| set_on_ground([(&mut *place, height)], &ground));
+            if unknown.is_none_or(|unknown| !unknown.is_empty()) {
+                return Err(Error::InvalidParameter {
+                    name: "observer",
+                    value: format!("{}, {}", place[0] + origin[0], place[1] + origin[1]),
+                    expected: "a place of the survey with ground, or with its height as a third coordinate",
+                });
+            }
+        }
+        Ok(())
     }
 
     fn check_memory(&self, memory: u64) -> Result<()> {

@@ -1,8 +1,17 @@
 //! What is asked of a city.
 
+use crate::inputs::hash;
+use belvedere::apps::irradiance::{ClearSky, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons};
+use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sky_view::SkyDirections;
+use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, SunSchedule, Zone, sun_days};
+use belvedere::apps::sun_hours::SunPlan;
+use belvedere::apps::viewshed::{Observer, SightLimits};
+use belvedere::control::Control;
+use belvedere::io::read_weather;
 use belvedere::{Error, Result};
 use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
 
 /// A question that has an answer for each cell on top of what stands there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,6 +30,145 @@ pub enum Question {
         /// Number of directions that stand for the sky.
         directions: usize,
     },
+    /// Hours of sun a day, the mean over some days.
+    SunHours(SunQuestion),
+    /// Energy of sun and sky on level cells over a period, kWh/m².
+    Irradiance {
+        /// Where the survey lies.
+        site: Site,
+        /// Where the radiation comes from.
+        radiation: Radiation,
+        /// How it is gathered.
+        params: IrradianceParams,
+    },
+    /// What observers see: of one 1 visible, 0 blocked, 2 unproven; of several how many see a cell.
+    Viewshed {
+        /// Their eyes, local metres.
+        eyes: Vec<[f64; 3]>,
+        /// How far they look on the map, metres; `None` for any distance.
+        max_distance: Option<f64>,
+    },
+}
+
+/// Days of the sun, as parameters that its directions follow from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SunQuestion {
+    site: Site,
+    /// Name of the zone; `None` for the mean solar time of the site.
+    zone: Option<String>,
+    days: Days,
+    params: DayParams,
+    binning: Binning,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Days {
+    On(Vec<String>),
+    Between([f64; 2]),
+}
+
+/// Where radiation comes from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Radiation {
+    /// Rows of weather, each cut into parts.
+    Weather {
+        /// The file.
+        file: PathBuf,
+        /// Fingerprint of its bytes when the plan was made.
+        fingerprint: String,
+        /// Parts of each row.
+        parts: usize,
+    },
+    /// A year without clouds.
+    ClearSky {
+        /// What it sends.
+        clear_sky: ClearSky,
+        /// The year.
+        year: i16,
+    },
+}
+
+/// What the values of a result are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ValueKind {
+    /// Small codes.
+    Codes,
+    /// Numbers of observers.
+    Counts,
+    /// Measured numbers.
+    Numbers,
+}
+
+/// A question with all that follows from its parameters.
+pub(crate) enum Asked {
+    Shadow(ShadowSun),
+    Sky(SkyDirections),
+    SunHours(Box<SunPlan>),
+    Irradiance { seasons: Vec<SeasonRadiation>, directions: Vec<[f64; 3]> },
+    Viewshed(Vec<Observer>),
+}
+
+impl SunQuestion {
+    /// The days of `period` at a site.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a zone whose name says nothing to others.
+    pub fn new(site: Site, zone: &Zone, period: &Period, params: DayParams, binning: Binning) -> Result<Self> {
+        let is_solar = *zone == Zone::mean_solar(&site);
+        let zone = (!is_solar).then(|| zone.name().to_owned());
+        zone.as_deref().map(Zone::parse).transpose()?;
+        let days = match period {
+            Period::Days(dates) => Days::On(dates.iter().map(Date::to_string).collect()),
+            Period::Between(instants) => Days::Between(*instants),
+        };
+        Ok(Self { site, zone, days, params, binning })
+    }
+
+    /// The suns of these days.
+    pub(crate) fn schedule(&self) -> Result<SunSchedule> {
+        let zone = match &self.zone {
+            Some(name) => Zone::parse(name)?,
+            None => Zone::mean_solar(&self.site),
+        };
+        let period = match &self.days {
+            Days::On(dates) => Period::Days(dates.iter().map(|date| Date::parse(date)).collect::<Result<_>>()?),
+            Days::Between(instants) => Period::Between(*instants),
+        };
+        SunSchedule::new(&sun_days(&self.site, &zone, &period, &self.params)?, self.binning)
+    }
+}
+
+impl Radiation {
+    /// The rows of a weather file as it is now.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn of_weather(file: &Path, parts: usize) -> Result<Self> {
+        let file = std::path::absolute(file).map_err(Error::io(file))?;
+        let fingerprint = hash(&std::fs::read(&file).map_err(Error::io(&file))?);
+        Ok(Self::Weather { file, fingerprint, parts })
+    }
+
+    fn seasons(&self, site: &Site, params: &IrradianceParams, control: &Control<'_>) -> Result<Vec<SeasonRadiation>> {
+        params.validate()?;
+        let gather = |source: &RadiationSource<'_>| Ok(period_seasons(source, site, None, params, control)?.0);
+        match self {
+            Self::Weather { file, fingerprint, parts } => {
+                let bytes = std::fs::read(file).map_err(Error::io(file))?;
+                if hash(&bytes) != *fingerprint {
+                    let what = "is no longer what it was when the plan was made; make the plan again";
+                    return Err(Error::malformed(file, what));
+                }
+                gather(&RadiationSource::Weather { weather: &read_weather(file)?, parts: *parts })
+            }
+            Self::ClearSky { clear_sky, year } => {
+                gather(&RadiationSource::ClearSky { clear_sky: *clear_sky, year: *year })
+            }
+        }
+    }
 }
 
 impl Question {
@@ -30,22 +178,52 @@ impl Question {
         match self {
             Self::Shadow { name, .. } => name,
             Self::SkyView { .. } => "sky_view_factor",
+            Self::SunHours { .. } => "sun_hours",
+            Self::Irradiance { .. } => "irradiance",
+            Self::Viewshed { .. } => "viewshed",
         }
     }
 
-    /// Directions that lines of sight are asked in.
+    pub(crate) fn kind(&self) -> ValueKind {
+        match self {
+            Self::Shadow { .. } => ValueKind::Codes,
+            Self::Viewshed { eyes, .. } if eyes.len() == 1 => ValueKind::Codes,
+            Self::Viewshed { .. } => ValueKind::Counts,
+            Self::SkyView { .. } | Self::SunHours { .. } | Self::Irradiance { .. } => ValueKind::Numbers,
+        }
+    }
+
+    /// What follows from its parameters.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a sun that is not above the horizon, and those of [`SkyDirections::even`].
-    pub(crate) fn directions(&self) -> Result<Vec<[f64; 3]>> {
+    /// [`Error::InvalidParameter`] for parameters outside their range, a sun that is not above the horizon and eyes that are nowhere; those of
+    /// reading weather.
+    pub(crate) fn prepare(&self, control: &Control<'_>) -> Result<Asked> {
+        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
         match self {
-            Self::Shadow { to_sun, .. } if to_sun[2] > 0.0 => Ok(vec![*to_sun]),
-            Self::Shadow { to_sun, .. } => Err(Error::InvalidParameter {
-                name: "elevation of the sun",
-                value: format!("{:.3} degrees", to_sun[2].clamp(-1.0, 1.0).asin().to_degrees()),
-                expected: "above the horizon",
-            }),
-            Self::SkyView { directions } => Ok(SkyDirections::even(*directions)?.directions),
+            Self::Shadow { to_sun, .. } if to_sun[2] > 0.0 => {
+                Ok(Asked::Shadow(ShadowSun { to_sun: *to_sun, season: None }))
+            }
+            Self::Shadow { to_sun, .. } => {
+                let elevation = to_sun[2].clamp(-1.0, 1.0).asin().to_degrees();
+                invalid("elevation of the sun", format!("{elevation:.3} degrees"), "above the horizon")
+            }
+            Self::SkyView { directions } => Ok(Asked::Sky(SkyDirections::even(*directions)?)),
+            Self::SunHours(days) => Ok(Asked::SunHours(Box::new(SunPlan::new(days.schedule()?, Vec::new())))),
+            Self::Irradiance { site, radiation, params } => {
+                let seasons = radiation.seasons(&site.validate()?, params, control)?;
+                let directions = seasons.iter().flat_map(|season| season.radiation.directions()).collect();
+                Ok(Asked::Irradiance { seasons, directions })
+            }
+            Self::Viewshed { eyes, .. } if eyes.is_empty() || !eyes.iter().flatten().all(|v| v.is_finite()) => {
+                invalid("observers", format!("{eyes:?}"), "one or more places with a height")
+            }
+            Self::Viewshed { eyes, max_distance } => {
+                let limits =
+                    SightLimits { distance: [0.0, max_distance.unwrap_or(f64::INFINITY)], ..SightLimits::default() };
+                limits.validate()?;
+                Ok(Asked::Viewshed(eyes.iter().map(|&eye| Observer { eye, limits }).collect()))
+            }
         }
     }
 }

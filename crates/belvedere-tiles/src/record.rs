@@ -76,6 +76,9 @@ pub struct Record {
     /// Cells whose answer is unproven because balls are missing.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub unproven_cells: usize,
+    /// Observers that stand inside an obstacle, and see nothing.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub skipped_observers: usize,
     /// Seconds that it took, where the program has a clock.
     #[serde(default)]
     pub seconds: f64,

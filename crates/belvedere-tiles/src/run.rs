@@ -1,12 +1,12 @@
 //! A run: all tiles that are not done yet, one after the other.
 
-use crate::answer::answer;
+use crate::answer::answer_prepared;
 use crate::grid::TileId;
+use crate::lines::{Lines, tiles};
 use crate::make_balls::make_balls;
 use crate::merge::write_catalogue;
-use crate::obstacles::{Lines, tiles};
 use crate::plan::Plan;
-use crate::question::Question;
+use crate::question::{Asked, Question};
 use crate::record::{Outcome, Record, Stage};
 use crate::report::write_report;
 use belvedere::control::Control;
@@ -49,6 +49,8 @@ pub struct RunReport {
     pub already_done: usize,
     /// Cells whose answer is unproven because balls are missing.
     pub unproven_cells: usize,
+    /// Observers of viewsheds that stand inside an obstacle, and see nothing.
+    pub skipped_observers: usize,
     /// What could not be done, and why.
     pub failed: Vec<String>,
 }
@@ -69,7 +71,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
         work.balls(tile)?;
     }
     for question in &plan.questions {
-        let directions = question.directions()?;
+        let asked = question.prepare(control)?;
         for tile in own() {
             let record = Record::read(plan, folder, Stage::Answer(question), tile);
             // what was unproven for lack of balls may have them now
@@ -82,11 +84,10 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             let around = core.widened(SurfaceParams::reach(plan.cell));
             let heights = plan.blocks_in(&around).map(|block| f64::from(block.heights[0]));
             let lowest = heights.fold(f64::INFINITY, f64::min);
-            let lines = Lines { targets: core, lowest, directions: &directions };
-            for other in tiles(plan, &lines) {
+            for other in tiles(plan, &Lines::of(&asked, core, lowest)) {
                 work.missing_balls(other)?;
             }
-            work.answer(question, tile)?;
+            work.answer((question, &asked), tile)?;
         }
     }
     for question in &plan.questions {
@@ -125,11 +126,13 @@ impl Work<'_> {
         Ok(())
     }
 
-    fn answer(&mut self, question: &Question, tile: TileId) -> Result<()> {
+    fn answer(&mut self, (question, asked): (&Question, &Asked), tile: TileId) -> Result<()> {
         let stage = Stage::Answer(question);
-        let record = self.attempt(stage, tile, || answer(self.plan, self.folder, question, tile, self.control))?;
+        let record = self
+            .attempt(stage, tile, || answer_prepared(self.plan, self.folder, (question, asked), tile, self.control))?;
         self.report.answers_made += 1;
         self.report.unproven_cells += record.unproven_cells;
+        self.report.skipped_observers = self.report.skipped_observers.max(record.skipped_observers);
         Ok(())
     }
 

@@ -4,9 +4,11 @@ use super::atmosphere::{absolute_air_mass, air_mass, pressure};
 use super::erbs::split_global;
 use belvedere_data::weather::Irradiance;
 use belvedere_data::{Error, Result};
+use serde::{Deserialize, Serialize};
 
 /// Which radiation a clear sky gives.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum ClearSky {
     /// Ineichen & Perez, from the height of the place and the turbidity of the air.
     Ineichen {
@@ -37,7 +39,7 @@ impl Default for ClearSky {
 }
 
 /// What is in the air for [`ClearSky::Bird`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BirdParams {
     /// Optical depth of aerosols at 380 nm, 0 or more. Default 0.15, of Bird & Hulstrom's standard atmosphere.
     pub aerosol_380: f64,

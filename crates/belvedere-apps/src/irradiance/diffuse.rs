@@ -2,10 +2,12 @@
 
 use super::atmosphere::air_mass;
 use belvedere_data::weather::Irradiance;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
 /// Model of the sky's diffuse radiation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum SkyModel {
     /// The same from all of the sky.
     Isotropic,

@@ -6,6 +6,7 @@ use crate::sky_view::SkyDirections;
 use belvedere_data::vector::unit;
 use belvedere_data::weather::Irradiance;
 use belvedere_data::{Error, Result};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -17,7 +18,7 @@ const DOUBTFUL: f64 = 0.01;
 const MOST_SUN_DIRECTIONS: f64 = 200_000.0;
 
 /// How the radiation of a period is gathered and falls on planes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct IrradianceParams {
     /// Model of the sky's diffuse radiation.
@@ -45,7 +46,8 @@ belvedere_data::setters!(IrradianceParams {
 });
 
 /// What obstacles send to a plane in place of the sky that they hide.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Surroundings {
     /// Nothing: radiation is a lower bound, and the loss by shading an upper one. Default.
     #[default]
@@ -55,7 +57,8 @@ pub enum Surroundings {
 }
 
 /// Which sums of a period are kept.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Grouping {
     /// One, of the whole period.
     #[default]

@@ -4,6 +4,7 @@ use super::position::transit;
 use super::{Date, Refraction, Site, Zone, sun_position_with};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 const DAY: f64 = 86_400.0;
 /// Longest time between two looks at the elevation, seconds: a sun that shows between two of them and is gone again rises 0.02° at most.
@@ -14,7 +15,7 @@ const MOST_DAYS: usize = 3700;
 const MOMENT: f64 = 0.01;
 
 /// How days are parted.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct DayParams {
     /// Length of a step, seconds, 10 to 3600; steps are made a little shorter where they do not fill the day. Default 600: shadows of edges

@@ -3,6 +3,7 @@
 use super::Site;
 use belvedere_data::view::to_sun;
 use belvedere_data::{Error, Result};
+use serde::{Deserialize, Serialize};
 use solar_positioning::time::JulianDate;
 use solar_positioning::{Horizon, Location, RefractionCorrection, SolarEvents, SolarPositions, delta_t};
 
@@ -19,7 +20,8 @@ const STANDARD_PRESSURE: f64 = 1013.25;
 const STANDARD_TEMPERATURE: f64 = 10.0;
 
 /// By how much air lifts the sun.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Refraction {
     /// 10 °C and the pressure of the standard atmosphere at the height of the site, 1013.25 hPa at the sea.
     #[default]

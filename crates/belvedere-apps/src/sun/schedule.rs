@@ -3,6 +3,7 @@
 use super::{Date, SunDay, declination};
 use belvedere_data::vector::{dot, unit};
 use belvedere_data::{Error, Result};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Most steps for which each has its own direction where that is left to [`SunSchedule::new`].
@@ -11,7 +12,8 @@ const MOST_EXACT: usize = 2000;
 const USUAL_ANGLE: f64 = 0.017_453_292_519_943_295;
 
 /// Whether suns that stand close together share a direction.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Binning {
     /// Each step its own direction up to 2000 steps, which is about a month at 10 minutes; beyond, as within 1°.
     #[default]

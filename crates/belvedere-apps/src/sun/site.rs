@@ -5,7 +5,7 @@ use belvedere_core::query::earth::EARTH_RADIUS;
 use belvedere_data::crs::Crs;
 use belvedere_data::frame::{Bounds, Frame};
 use belvedere_data::{Error, Result};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Heights above the sea that a site may have, metres.
@@ -13,7 +13,7 @@ const LOWEST: f64 = -500.0;
 const HIGHEST: f64 = 10_000.0;
 
 /// A place on earth, and how the grid of a scene lies there.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Site {
     /// Geographic latitude, radians, −π/2 to π/2, north positive.
     pub latitude: f64,

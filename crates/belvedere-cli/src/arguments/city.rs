@@ -1,6 +1,9 @@
 //! Flags of runs over whole cities.
 
-use super::{North, Numbers, above_zero, at_least_one, known_crs};
+use super::{
+    ClearSkyChoice, North, Numbers, Place, RadiationModel, SunPeriod, SunPlace, above_zero, at_least_one, finite,
+    known_crs,
+};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -15,7 +18,7 @@ pub(crate) struct City {
 #[derive(Subcommand)]
 pub(crate) enum CityStep {
     /// Read a survey once, and plan its tiles
-    Plan(CityPlan),
+    Plan(Box<CityPlan>),
     /// Compute the tiles that are not done yet
     Run(CityRun),
     /// Report which tiles are done, which are left, and which failed
@@ -37,13 +40,60 @@ pub(crate) struct CityPlan {
     /// See --grid-north.
     #[arg(long = "sun", value_name = "AZ,EL", allow_hyphen_values = true, help_heading = "Questions")]
     pub(crate) suns: Vec<Numbers<2>>,
+    /// An instant for a shadow map: 2026-06-21T15:00+02:00, or without the offset with --zone; repeatable
+    #[arg(long = "time", value_name = "TIME", help_heading = "Questions")]
+    pub(crate) times: Vec<String>,
+    /// Map the hours of sun a day, for --date, or --from and --to
+    #[arg(long, help_heading = "Questions")]
+    pub(crate) sun_hours: bool,
+    /// Map the solar energy of a year in kWh for each square metre, with --weather or --clear-sky
+    #[arg(long, help_heading = "Questions")]
+    pub(crate) irradiance: bool,
     /// Map the sky view factor
     #[arg(long, help_heading = "Questions")]
     pub(crate) sky_view: bool,
+    /// Map what an observer sees who stands at a place in file coordinates; repeatable
+    ///
+    /// Without Z, an observer is --observer-height above the ground. Of several observers, the map has the number that see each cell.
+    #[arg(long = "observer", value_name = "X,Y[,Z]", allow_hyphen_values = true, help_heading = "Questions")]
+    pub(crate) observers: Vec<Place>,
+    /// Height of observers above the ground in metres [default: 1.7]
+    #[arg(long, value_name = "M", value_parser = finite::<f64>, requires = "observers", allow_negative_numbers = true,
+        help_heading = "Questions")]
+    pub(crate) observer_height: Option<f64>,
+    /// Maximum horizontal distance of what observers see, in metres [default: no limit]
+    #[arg(long, value_name = "M", value_parser = above_zero::<f64>, requires = "observers", allow_negative_numbers = true,
+        help_heading = "Questions")]
+    pub(crate) max_distance: Option<f64>,
     /// Number of sky directions
     #[arg(long = "directions", value_name = "N", default_value_t = 577, requires = "sky_view", help_heading = "Questions",
         value_parser = at_least_one)]
     pub(crate) direction_count: usize,
+    #[command(flatten)]
+    pub(crate) when: SunPeriod,
+    #[command(flatten)]
+    pub(crate) sun: SunPlace,
+    /// Weather file: EPW, TMY3, CSV of PVGIS (typical year, or series on a horizontal plane), or CSV of NSRDB
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "irradiance",
+        conflicts_with = "clear_sky",
+        help_heading = "Radiation"
+    )]
+    pub(crate) weather: Option<PathBuf>,
+    /// Model of a year without clouds, which is --year
+    #[arg(
+        long,
+        value_enum,
+        value_name = "MODEL",
+        id = "clear_sky",
+        requires = "irradiance",
+        help_heading = "Radiation"
+    )]
+    pub(crate) clear_sky: Option<ClearSkyChoice>,
+    #[command(flatten)]
+    pub(crate) model: RadiationModel,
     #[command(flatten)]
     pub(crate) north: North,
     /// Side of the cells of results in metres: a whole number of sixty-fourths, such as 0.25, 0.5, 1 or 2

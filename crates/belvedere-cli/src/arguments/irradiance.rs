@@ -9,33 +9,14 @@ use std::path::PathBuf;
 pub(crate) struct Irradiance {
     #[command(flatten)]
     pub(crate) radiation: RadiationChoice,
-    /// Linke turbidity of a clear sky by ineichen, 1 to 20: 2 clean, 3 normal, 5 hazy [default: 3]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Radiation")]
-    pub(crate) linke: Option<f64>,
     /// Year of the clear sky [default: 2026]
     #[arg(long, value_name = "YEAR", requires = "clear_sky", help_heading = "Radiation")]
     pub(crate) year: Option<i16>,
     /// Latitude and longitude in degrees, north and east positive [default: from the reference system, else the weather file]
     #[arg(long, value_name = "LAT,LON", value_parser = location, allow_hyphen_values = true, help_heading = "Radiation")]
     pub(crate) location: Option<Numbers<2>>,
-    /// Number of sun positions for each row of weather; pvlib uses 1 [default: 4]
-    #[arg(long = "parts-per-row", value_name = "N", value_parser = at_least_one, conflicts_with = "clear_sky", help_heading = "Radiation")]
-    pub(crate) parts: Option<usize>,
-    /// Model of the diffuse sky [default: patches]
-    #[arg(long = "sky-model", value_enum, value_name = "MODEL", help_heading = "Radiation")]
-    pub(crate) sky: Option<SkyModelChoice>,
-    /// Number of sky patches: 1 for 145, 2 for 577, 4 for 2305 [default: 2]
-    #[arg(long, value_name = "N", value_parser = at_least_one, help_heading = "Radiation")]
-    pub(crate) patch_division: Option<usize>,
-    /// Albedo of the ground, 0 to 1 [default: 0.2]
-    #[arg(long, value_name = "SHARE", allow_negative_numbers = true, help_heading = "Radiation")]
-    pub(crate) albedo: Option<f64>,
-    /// Radiation from obstacles, instead of the sky that they hide [default: dark]
-    #[arg(long, value_enum, value_name = "HOW", help_heading = "Radiation")]
-    pub(crate) surroundings: Option<SurroundingsChoice>,
-    /// Side of the cells that group the sun directions, in degrees, 0.5 to 36 [default: 3]
-    #[arg(long = "sun-cell-deg", value_name = "DEG", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Radiation")]
-    pub(crate) sun_cell: Option<f64>,
+    #[command(flatten)]
+    pub(crate) model: RadiationModel,
     #[command(flatten)]
     pub(crate) places: SkyPlaces,
     #[command(flatten)]
@@ -72,6 +53,33 @@ pub(crate) struct Irradiance {
     pub(crate) outputs: IrradianceOutputs,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
+}
+
+/// How radiation is modelled.
+#[derive(Args)]
+#[command(next_help_heading = "Radiation")]
+pub(crate) struct RadiationModel {
+    /// Linke turbidity of a clear sky by ineichen, 1 to 20: 2 clean, 3 normal, 5 hazy [default: 3]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) linke: Option<f64>,
+    /// Number of sun positions for each row of weather; pvlib uses 1 [default: 4]
+    #[arg(long = "parts-per-row", value_name = "N", value_parser = at_least_one, conflicts_with = "clear_sky")]
+    pub(crate) parts: Option<usize>,
+    /// Model of the diffuse sky [default: patches]
+    #[arg(long = "sky-model", value_enum, value_name = "MODEL")]
+    pub(crate) sky: Option<SkyModelChoice>,
+    /// Number of sky patches: 1 for 145, 2 for 577, 4 for 2305 [default: 2]
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    pub(crate) patch_division: Option<usize>,
+    /// Albedo of the ground, 0 to 1 [default: 0.2]
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
+    pub(crate) albedo: Option<f64>,
+    /// Radiation from obstacles, instead of the sky that they hide [default: dark]
+    #[arg(long, value_enum, value_name = "HOW")]
+    pub(crate) surroundings: Option<SurroundingsChoice>,
+    /// Side of the cells that group the sun directions, in degrees, 0.5 to 36 [default: 3]
+    #[arg(long = "sun-cell-deg", value_name = "DEG", value_parser = above_zero::<f64>, allow_negative_numbers = true)]
+    pub(crate) sun_cell: Option<f64>,
 }
 
 #[derive(Args)]

@@ -1,13 +1,14 @@
 //! `belvedere city`.
 
+mod questions;
+
 use super::check_output;
-use crate::arguments::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, Numbers, Usage};
+use crate::arguments::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, Usage};
 use crate::pipeline::flagged;
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
-use belvedere::apps::shadow::ShadowSun;
-use belvedere::{Bounds, Error, Frame};
+use belvedere::Error;
 use belvedere_tiles::{Plan, PlanParams, Question, RunParams, Shard, merge, run as run_tiles, status as status_of};
 use std::time::Instant;
 
@@ -24,9 +25,7 @@ pub(crate) fn run(arguments: &City, global: &Global) -> Result<Summary> {
 }
 
 fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
-    if arguments.suns.is_empty() && !arguments.sky_view {
-        return Err(Usage("questions are missing: give --sun AZ,EL or --sky-view".to_owned()).into());
-    }
+    questions::check(arguments)?;
     let stages = Stages::new(global);
     let mut summary = Summary::default();
     let params = PlanParams {
@@ -37,12 +36,18 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         memory: arguments.memory.map(|memory| memory.0),
         program: concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned(),
     };
-    let questions = |frame: &Frame, bounds: &Bounds| Ok(questions(arguments, frame, bounds));
-    let plan = Plan::make(&params, questions, &stages.control()).map_err(|error| match error {
+    let plan = Plan::make(&params, &stages.control()).map_err(|error| match error {
         Error::InvalidParameter { name: "cell", .. } => Usage(format!("--cell: {error}")).into(),
         Error::InvalidParameter { name: "tile size", .. } => Usage(format!("--tile-size: {error}")).into(),
-        Error::InvalidParameter { name: "elevation of the sun", .. } => Usage(format!("--sun: {error}")).into(),
         Error::InvalidParameter { name: "memory for a tile", .. } => Usage(format!("--memory: {error}")).into(),
+        other => anyhow::Error::from(other),
+    })?;
+    let questions = questions::questions(arguments, &plan, &stages.control(), &mut summary)?;
+    let plan = plan.with_questions(questions, &stages.control()).map_err(|error| match error {
+        Error::InvalidParameter { name: "elevation of the sun", .. } => {
+            Usage(format!("--sun or --time: {error}")).into()
+        }
+        Error::InvalidParameter { name: "questions", .. } => Usage(error.to_string()).into(),
         other => anyhow::Error::from(other),
     })?;
     plan.write(&arguments.output)?;
@@ -61,22 +66,6 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         .add("written", arguments.output.display().to_string());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
-}
-
-/// What was typed as questions, azimuths from the north at the middle of the survey.
-fn questions(arguments: &CityPlan, frame: &Frame, bounds: &Bounds) -> Vec<Question> {
-    let (low, high) = bounds.on_map();
-    let north = arguments.north.of_frame(frame, [0, 1].map(|axis| f64::midpoint(low[axis], high[axis])));
-    let sun = |typed: &Numbers<2>| {
-        let [azimuth, elevation] = typed.0;
-        let name = format!("shadow_{azimuth}_{elevation}");
-        Question::Shadow {
-            name,
-            to_sun: ShadowSun::at(azimuth.to_radians() - north.of_grid, elevation.to_radians()).to_sun,
-        }
-    };
-    let sky = arguments.sky_view.then_some(Question::SkyView { directions: arguments.direction_count });
-    arguments.suns.iter().map(sun).chain(sky).collect()
 }
 
 fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
@@ -105,6 +94,9 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
             "{} cells are unproven because tiles that may block them are missing",
             report.unproven_cells
         ));
+    }
+    if report.skipped_observers > 0 {
+        summary.warn(format!("{} observers are inside obstacles and see nothing", report.skipped_observers));
     }
     summary.add("written", arguments.run.display().to_string());
     summary.add_seconds(stages.into_seconds());

@@ -1,7 +1,7 @@
 //! `belvedere irradiance`.
 
 mod planes;
-mod radiation;
+pub(super) mod radiation;
 
 use super::sights::{Proving, blockers, scene_params};
 use super::warn_of_geojson;
@@ -10,7 +10,7 @@ use crate::pipeline::{self, Points};
 use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::irradiance::{irradiation_measures, look_count, season_irradiation};
+use belvedere::apps::irradiance::{Grouping, irradiation_measures, look_count, season_irradiation};
 use belvedere::apps::rows::Obstacles;
 
 pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
@@ -21,7 +21,8 @@ pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
         return Err(Usage("--measures needs -o".to_owned()).into());
     }
     planes::check(arguments)?;
-    let params = radiation::params(arguments)?;
+    let grouping = if arguments.months { Grouping::Months } else { Grouping::Whole };
+    let params = radiation::params(&arguments.model)?.with_grouping(grouping);
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     // a mistyped weather file must not be told after the balls were made

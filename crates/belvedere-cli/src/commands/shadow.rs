@@ -145,7 +145,7 @@ fn suns(arguments: &Shadow, scene: &Scene, summary: &mut Summary) -> Result<Vec<
         let instants = instants(arguments, &site, &zone)?;
         for &instant in &instants {
             let position = flagged("--time", sun_position_with(&site, instant, refraction))?;
-            let column = if instants.len() == 1 { "lit".to_owned() } else { column_of(&zone, instant) };
+            let column = if instants.len() == 1 { "lit".to_owned() } else { format!("lit_{}", moment(&zone, instant)) };
             below += usize::from(position.elevation <= 0.0);
             if instants.len() <= MOST_TOLD {
                 section.add(&zone.display(instant), told(&position));
@@ -191,11 +191,10 @@ fn told(position: &SunPosition) -> Summary {
     section
 }
 
-/// The name of a column for an instant: its date and time by the clocks of the zone.
-fn column_of(zone: &Zone, instant: f64) -> String {
+/// An instant in names: its date and time by the clocks of the zone.
+pub(super) fn moment(zone: &Zone, instant: f64) -> String {
     let text: String = zone.display(instant).chars().filter(|c| c.is_ascii_digit() || matches!(c, 'T' | ' ')).collect();
-    let digits: String = text.replace(['T', ' '], "_").chars().take(15).collect();
-    format!("lit_{digits}")
+    text.replace(['T', ' '], "_").chars().take(15).collect()
 }
 
 /// Whether places see parts of the sun: said of all frames alike, so that they are of one size.

@@ -8,12 +8,18 @@ use belvedere::apps::sun::{
     Date, DayParams, Period, Refraction, Site, Zone, parse_instant, sun_position_with, zone_of_instant,
 };
 use belvedere::apps::sun_hours::RuleDays;
+use belvedere::{Bounds, Frame};
 
 impl SunPlace {
     /// Where the middle of the scene lies on earth.
     pub(crate) fn site(&self, scene: &Scene, summary: &mut Summary) -> Result<Site> {
+        self.site_of(&scene.cloud.frame, &scene.model.bounds(), summary)
+    }
+
+    /// The same of what lies within `bounds` of a frame.
+    pub(crate) fn site_of(&self, frame: &Frame, bounds: &Bounds, summary: &mut Summary) -> Result<Site> {
         let given = self.location.as_ref().map(|location| location.0.map(f64::to_radians));
-        let found = Site::of_scene(&scene.cloud.frame, &scene.model.bounds(), given, None);
+        let found = Site::of_scene(frame, bounds, given, None);
         let (site, _) = match given {
             Some(_) => flagged("--location", found)?,
             None => found.context(

@@ -91,10 +91,49 @@ fn wrong_plans_are_refused_with_advice() {
     place.refusal(2, &format!("{plan} --sky-view --tile-size 100.5"), &["--tile-size", "whole number of cells"]);
     place.refusal(2, &format!("{plan} --sky-view --memory 3"), &["--memory", "3G"]);
     place.refusal(2, &format!("{plan} --sky-view --memory 101M"), &["--memory", "101 MB"]);
+    place.refusal(2, &format!("{plan} --sun-hours"), &["--sun-hours", "--date"]);
+    place.refusal(2, &format!("{plan} --sky-view --date 2026-03-21"), &["--date", "--sun-hours"]);
+    place.refusal(2, &format!("{plan} --irradiance"), &["--weather", "--clear-sky"]);
+    place.refusal(2, &format!("{plan} --clear-sky bird"), &["--irradiance"]);
+    place.refusal(2, &format!("{plan} --time 2026-03-20T02:00+01:00"), &["--time", "horizon"]);
+    place.refusal(2, &format!("{plan} --time 2026-03-20T10:00"), &["--time", "zone"]);
+    place.refusal(2, &format!("{plan} --sun 150,20 --sun 150,20"), &["shadow_150_20 twice"]);
+    place.refusal(2, &format!("{plan} --observer 10,10"), &["--observer", "10, 10", "height"]);
     place.refusal(1, "city run nowhere", &["plan.json"]);
     place.summary(&format!("{plan} --sky-view --directions 49 --sun 150,20"));
     place.refusal(2, "city run run --shard 3/2", &["--shard", "1/N"]);
     place.refusal(2, "city merge run -o all.tif", &["--result", "sky_view_factor"]);
     std::fs::write(place.path("run/plan.json"), "{}").unwrap();
     place.refusal(1, "city run run", &["plan.json", "make it again"]);
+}
+
+#[test]
+fn questions_are_those_of_the_commands_they_are_named_after() {
+    let place = Workplace::new();
+    town(&place);
+    let flags = "--time 2026-03-20T12:45+01:00 --sun-hours --date 2026-03-20 --time-step-min 60 --irradiance --clear-sky haurwitz \
+                 --patch-division 1 --sun-cell-deg 20 --observer 155000,462985 --max-distance 30";
+    let plan = place.summary(&format!("city plan town/cloud.laz -o run --tile-size 128 --cell 4 {flags}"));
+    assert_eq!(plan["results"], serde_json::json!(["shadow_20260320_124500", "sun_hours", "irradiance", "viewshed"]));
+    let kept: serde_json::Value = serde_json::from_slice(&place.bytes("run/plan.json")).unwrap();
+    // noon at an equinox: 90 degrees less the latitude, 52.155
+    let up = kept["questions"][0]["shadow"]["to_sun"][2].as_f64().unwrap();
+    assert!((up.asin().to_degrees() - 37.85).abs() < 0.1, "{up}");
+    place.summary("city run run");
+    let grey = |name: &str| {
+        place.summary(&format!("city merge run --result {name} -o {name}.tif"));
+        let place = place.path(&format!("{name}.tif"));
+        belvedere::io::read_tif_f32(&place).unwrap()
+    };
+    let (hours, energy) = (grey("sun_hours"), grey("irradiance"));
+    let most = |values: &[f32]| values.iter().copied().fold(0.0, f32::max);
+    // half of a day at an equinox, and the energy of a clear year at 52 degrees, about 1700 kWh
+    assert!((11.0..12.4).contains(&most(hours.values())), "{}", most(hours.values()));
+    assert!((1600.0..1800.0).contains(&most(energy.values())), "{}", most(energy.values()));
+    place.summary("city merge run --result viewshed -o seen.tif");
+    let seen = belvedere::io::read_tif_u8(&place.path("seen.tif")).unwrap();
+    let of_code = |code: u8| seen.values().iter().filter(|&&value| value == code).count();
+    // a disc of 30 m, on cells of 16 m²
+    assert!((150..200).contains(&(of_code(0) + of_code(1))), "{} {}", of_code(0), of_code(1));
+    assert!(of_code(1) > 20 && of_code(2) == 0, "{}", of_code(1));
 }

@@ -56,7 +56,8 @@ pub(crate) fn suns() -> Vec<Question> {
 /// Plans a run and writes the plan into `folder`.
 pub(crate) fn plan(clouds: &[PathBuf], folder: &Path, tile_size: f64, questions: Vec<Question>) -> Plan {
     let params = PlanParams { clouds: clouds.to_vec(), tile_size, ..PlanParams::default() };
-    Plan::make(&params, |_, _| Ok(questions), &Control::none()).unwrap().write(folder).unwrap();
+    let plan = Plan::make(&params, &Control::none()).unwrap();
+    plan.with_questions(questions, &Control::none()).unwrap().write(folder).unwrap();
     Plan::read(folder).unwrap()
 }
 

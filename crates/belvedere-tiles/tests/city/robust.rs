@@ -127,12 +127,12 @@ fn tiles_that_do_not_fit_into_the_memory_are_refused_with_the_size_that_does() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 200.0, 4.0);
     let params = PlanParams { clouds, ..PlanParams::default() };
-    let whole = Plan::make(&params, |_, _| Ok(suns()), &Control::none()).unwrap();
+    let whole = Plan::make(&params, &Control::none()).unwrap();
     let params = PlanParams { memory: Some(whole.estimate().memory_bytes - 2_000_000), ..params };
-    let error = Plan::make(&params, |_, _| Ok(suns()), &Control::none()).unwrap_err().to_string();
+    let error = Plan::make(&params, &Control::none()).unwrap_err().to_string();
     assert!(error.contains("tiles of") && error.contains("fit"), "{error}");
     for (tile_size, cell) in [(100.0, 0.3), (100.5, 1.0), (4.0, 1.0), (f64::NAN, 1.0)] {
         let params = PlanParams { tile_size, cell, ..params.clone() };
-        assert!(Plan::make(&params, |_, _| Ok(suns()), &Control::none()).is_err(), "{tile_size} {cell}");
+        assert!(Plan::make(&params, &Control::none()).is_err(), "{tile_size} {cell}");
     }
 }

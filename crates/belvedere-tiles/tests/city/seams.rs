@@ -2,9 +2,11 @@
 #![expect(clippy::cast_possible_truncation, reason = "cells of a town are few")]
 
 use crate::common::{plan, run_all, suns, write_town};
+use belvedere::apps::irradiance::{ClearSky, IrradianceParams, clear_instants};
+use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, SunStep, Zone, sun_days};
 use belvedere::control::Control;
-use belvedere::io::{read_balls, read_tif_f32, read_tif_u8};
-use belvedere_tiles::{Plan, Question, merge, status};
+use belvedere::io::{read_balls, read_tif_f32, read_tif_u8, read_tif_u16};
+use belvedere_tiles::{Plan, Question, Radiation, SunQuestion, merge, status};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -20,13 +22,6 @@ fn cells<T: Copy + PartialEq>(plan: &Plan, values: &[T], width: usize, none: T) 
         (value != none).then_some(([corner[0] + column, corner[1] - row], value))
     };
     values.iter().enumerate().filter_map(cell).collect()
-}
-
-fn shadow_cells(plan: &Plan, folder: &Path, question: &Question) -> BTreeMap<[i64; 2], u8> {
-    let path = folder.join("merged.tif");
-    merge(plan, folder, question, &path, &Control::none()).unwrap();
-    let raster = read_tif_u8(&path).unwrap();
-    cells(plan, raster.values(), raster.width(), 255)
 }
 
 /// Centres and radii of all balls of a run, as bits, sorted.
@@ -46,58 +41,166 @@ fn balls(plan: &Plan, folder: &Path) -> Vec<[u32; 4]> {
     all
 }
 
+fn site() -> Site {
+    Site { latitude: 0.91, longitude: 0.09, height: 10.0, convergence: 0.02 }
+}
+
+/// The hours of a day in spring with the sun above 8 degrees.
+fn params() -> DayParams {
+    DayParams::default().with_step(3600.0).with_least_elevation(0.14)
+}
+
+fn day() -> Period {
+    Period::Days(vec![Date::new(2026, 4, 10).unwrap()])
+}
+
+/// Shadows, sky view, sun hours, energy, and what two observers see.
+fn all_questions(eyes: [[f64; 3]; 2]) -> Vec<Question> {
+    let zone = Zone::mean_solar(&site());
+    let radiation = Radiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
+    let coarse = IrradianceParams::default().with_patch_division(1).with_sun_cell(0.3);
+    let mut questions = suns();
+    questions.extend([
+        Question::SkyView { directions: 49 },
+        Question::SunHours(SunQuestion::new(site(), &zone, &day(), params(), Binning::Auto).unwrap()),
+        Question::Irradiance { site: site(), radiation, params: coarse },
+        Question::Viewshed { eyes: eyes.to_vec(), max_distance: Some(120.0) },
+    ]);
+    questions
+}
+
+/// The shadow of each of the suns whose hours are summed.
+fn suns_of_the_day() -> Vec<(Question, f64)> {
+    let days = sun_days(&site(), &Zone::mean_solar(&site()), &day(), &params()).unwrap();
+    let question = |(number, step): (usize, &SunStep)| {
+        let question = Question::Shadow { name: format!("step_{number}"), to_sun: step.direction };
+        (question, (step.end - step.start) / 3600.0)
+    };
+    days[0].steps.iter().enumerate().map(question).collect()
+}
+
+fn values(plan: &Plan, folder: &Path, question: &Question) -> BTreeMap<[i64; 2], u32> {
+    let path = folder.join("merged.tif");
+    merge(plan, folder, question, &path, &Control::none()).unwrap();
+    match question {
+        Question::Shadow { .. } => {
+            let raster = read_tif_u8(&path).unwrap();
+            let wide: Vec<u32> = raster.values().iter().map(|&v| v.into()).collect();
+            cells(plan, &wide, raster.width(), 255)
+        }
+        Question::Viewshed { .. } => {
+            let raster = read_tif_u16(&path).unwrap();
+            let wide: Vec<u32> = raster.values().iter().map(|&v| v.into()).collect();
+            cells(plan, &wide, raster.width(), 65_535)
+        }
+        _ => {
+            let raster = read_tif_f32(&path).unwrap();
+            let bits: Vec<u32> = raster.values().iter().map(|v| v.to_bits()).collect();
+            cells(plan, &bits, raster.width(), (-9999.0_f32).to_bits())
+        }
+    }
+}
+
 #[test]
-fn tiles_of_any_size_give_the_balls_and_shadows_of_one_tile_over_all() {
+fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 220.0, 0.8);
+    let clouds = write_town(place.path(), 140.0, 1.0);
     let whole_folder = place.path().join("whole");
-    let whole = plan(&clouds, &whole_folder, 8192.0, suns());
+    let whole = plan(&clouds, &whole_folder, 512.0, Vec::new());
+    // one in a street in a corner and one above the roofs at the other end, in other tiles than most of what they see
+    let bounds = whole.bounds();
+    let mut eyes = [
+        [bounds.low[0] + 20.0, bounds.low[1] + 30.0, f32::NAN],
+        [bounds.high[0] - 9.0, bounds.high[1] - 9.0, bounds.high[2] + 5.0],
+    ]
+    .map(|eye| eye.map(f64::from));
+    whole.set_on_ground(&mut eyes, 1.7, &Control::none()).unwrap();
+    let questions = all_questions(eyes);
+    let steps = suns_of_the_day();
+    let of_whole = questions.iter().cloned().chain(steps.iter().map(|(question, _)| question.clone())).collect();
+    let whole = plan(&clouds, &whole_folder, 512.0, of_whole);
     assert_eq!(whole.tiles.len(), 1);
     assert!(run_all(&whole, &whole_folder).failed.is_empty());
     let expected_balls = balls(&whole, &whole_folder);
     assert!(expected_balls.len() > 10_000, "{}", expected_balls.len());
-    let expected: Vec<_> = suns().iter().map(|sun| shadow_cells(&whole, &whole_folder, sun)).collect();
-    for (of_sun, lit_share) in expected.iter().zip([0.05..0.9, 0.2..0.95, 0.6..1.0]) {
-        assert!(of_sun.len() > 40_000, "{}", of_sun.len());
+    let expected: Vec<_> = questions.iter().map(|question| values(&whole, &whole_folder, question)).collect();
+    for (of_sun, lit_share) in expected.iter().zip([0.02..0.9, 0.2..0.95, 0.6..1.0]) {
+        assert!(of_sun.len() > 15_000, "{}", of_sun.len());
         let lit = of_sun.values().filter(|&&value| value == 1).count() as f64 / of_sun.len() as f64;
         assert!(lit_share.contains(&lit), "{lit}");
         assert!(of_sun.values().all(|&value| value < 2), "nothing is missing");
     }
-    for size in [75.0, 150.0] {
+    sun_hours_are_the_sum_of_shadows(&expected[4], &whole, &whole_folder, &steps);
+    energies_are_those_of_an_open_plane_less_what_obstacles_take(&expected[5]);
+    each_observer_sees_its_share(&expected[6]);
+    for size in [64.0, 100.0] {
         let folder = place.path().join(format!("tiles_{size}"));
-        let plan = plan(&clouds, &folder, size, suns());
-        assert!(plan.tiles.len() >= 9);
+        let plan = plan(&clouds, &folder, size, questions.clone());
+        // some tiles of 64 m have no point, but cells beside points
+        assert!(plan.tiles.len() >= 4);
         let report = run_all(&plan, &folder);
         assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
         assert!(status(&plan, &folder).is_complete());
         let found = balls(&plan, &folder);
         let different = expected_balls.iter().filter(|ball| found.binary_search(ball).is_err()).count();
         assert!(found == expected_balls, "tiles of {size} m: {different} of {} balls differ", expected_balls.len());
-        for (sun, expected) in suns().iter().zip(&expected) {
-            let found = shadow_cells(&plan, &folder, sun);
+        for (question, expected) in questions.iter().zip(&expected) {
+            let found = values(&plan, &folder, question);
             let different = expected.iter().filter(|(place, value)| found.get(*place) != Some(value)).count();
-            assert!(found == *expected, "tiles of {size} m, {}: {different} cells differ", sun.name());
+            assert!(found == *expected, "tiles of {size} m, {}: {different} cells differ", question.name());
         }
     }
 }
 
-#[test]
-fn sky_view_is_that_of_one_tile_over_all() {
-    let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 110.0, 1.0);
-    let question = Question::SkyView { directions: 49 };
-    let factors = |size: f64| {
-        let folder = place.path().join(format!("tiles_{size}"));
-        let plan = plan(&clouds, &folder, size, vec![question.clone()]);
-        assert!(run_all(&plan, &folder).failed.is_empty());
-        let path = folder.join("merged.tif");
-        merge(&plan, &folder, &question, &path, &Control::none()).unwrap();
-        let raster = read_tif_f32(&path).unwrap();
-        let bits: Vec<u32> = raster.values().iter().map(|v| v.to_bits()).collect();
-        cells(&plan, &bits, raster.width(), (-1.0_f32).to_bits())
+/// The hours of a cell against what the shadow of each sun says of it.
+fn sun_hours_are_the_sum_of_shadows(
+    hours: &BTreeMap<[i64; 2], u32>,
+    plan: &Plan,
+    folder: &Path,
+    steps: &[(Question, f64)],
+) {
+    assert!(steps.len() >= 8, "{}", steps.len());
+    let mut sums: BTreeMap<[i64; 2], f64> = hours.keys().map(|&cell| (cell, 0.0)).collect();
+    for (question, lasts) in steps {
+        for (cell, lit) in values(plan, folder, question) {
+            *sums.get_mut(&cell).unwrap() += f64::from(lit) * lasts;
+        }
+    }
+    let mut kinds = [0; 3];
+    let most: f64 = steps.iter().map(|(_, lasts)| lasts).sum();
+    for (cell, sum) in sums {
+        let found = f64::from(f32::from_bits(hours[&cell]));
+        // what f32 rounds in a sum of a dozen
+        assert!((found - sum).abs() < 1e-5, "{cell:?}: {found} {sum}");
+        kinds[if sum == 0.0 {
+            0
+        } else if sum < most - 0.01 {
+            1
+        } else {
+            2
+        }] += 1;
+    }
+    assert!(kinds.iter().all(|&count| count > 200), "{kinds:?}");
+}
+
+/// A plane without obstacles gets the global radiation of the year, whatever the model of the sky; others get less.
+fn energies_are_those_of_an_open_plane_less_what_obstacles_take(energies: &BTreeMap<[i64; 2], u32>) {
+    let instants = {
+        let zone = Zone::mean_solar(&site());
+        let year = [2026, 2027].map(|year| zone.instant_of(Date::new(year, 1, 1).unwrap(), 0.0).unwrap());
+        clear_instants(&ClearSky::Haurwitz, &site(), year, 600.0, &zone).unwrap()
     };
-    let whole = factors(8192.0);
-    // some tiles of 64 m have no point, but cells beside points
-    assert!(whole.len() > 8_000);
-    assert!(factors(64.0) == whole);
+    let global: f64 = instants.iter().map(|instant| instant.irradiance.ghi * instant.hours / 1000.0).sum();
+    let found: Vec<f64> = energies.values().map(|&bits| f64::from(f32::from_bits(bits))).collect();
+    let [low, high] = [f64::min, f64::max].map(|pick| found.iter().copied().reduce(pick).unwrap());
+    // suns gathered in cells of 17 degrees: each stands for its cell
+    assert!(high <= global * 1.01 && high > global * 0.97, "{high} of {global}");
+    assert!(low >= 0.0 && low < global * 0.4, "{low} of {global}");
+}
+
+/// The eye above all roofs sees most cells within its reach, the one in the street few.
+fn each_observer_sees_its_share(counts: &BTreeMap<[i64; 2], u32>) {
+    let of_number = |number: u32| counts.values().filter(|&&count| count == number).count();
+    assert!(of_number(0) > 500 && of_number(1) > 2_000 && of_number(2) > 100, "{}", counts.len());
+    assert_eq!(of_number(0) + of_number(1) + of_number(2), counts.len());
 }

@@ -1,13 +1,13 @@
 //! From flags and weather files to what a period sends.
 
-use crate::arguments::{ClearSkyChoice, Irradiance, Usage};
+use crate::arguments::{ClearSkyChoice, Irradiance, RadiationModel, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Context, Result};
 use belvedere::apps::irradiance::{
-    BirdParams, CLEAR_SKY_YEAR, ClearSky, Grouping, IrradianceParams, PARTS, RadiationSource, SeasonRadiation,
-    Surroundings, period_seasons,
+    BirdParams, CLEAR_SKY_YEAR, ClearSky, IrradianceParams, PARTS, RadiationSource, SeasonRadiation, Surroundings,
+    period_seasons,
 };
 use belvedere::apps::sun::{Site, SiteFrom};
 use belvedere::apps::tree_light::TreeLight;
@@ -17,23 +17,41 @@ use belvedere::weather::Weather;
 /// Distance from which on a weather file is told to be that of another place, metres.
 const FAR: f64 = 50_000.0;
 
-pub(super) fn params(arguments: &Irradiance) -> Result<IrradianceParams> {
+pub(in crate::commands) fn params(model: &RadiationModel) -> Result<IrradianceParams> {
     let usual = IrradianceParams::default();
     let params = IrradianceParams::default()
-        .with_sky(arguments.sky.map_or(usual.sky, Into::into))
-        .with_patch_division(arguments.patch_division.unwrap_or(usual.patch_division))
-        .with_sun_cell(arguments.sun_cell.map_or(usual.sun_cell, f64::to_radians))
-        .with_albedo(arguments.albedo.unwrap_or(usual.albedo))
-        .with_surroundings(arguments.surroundings.map_or(usual.surroundings, Into::into))
-        .with_grouping(if arguments.months { Grouping::Months } else { Grouping::Whole });
+        .with_sky(model.sky.map_or(usual.sky, Into::into))
+        .with_patch_division(model.patch_division.unwrap_or(usual.patch_division))
+        .with_sun_cell(model.sun_cell.map_or(usual.sun_cell, f64::to_radians))
+        .with_albedo(model.albedo.unwrap_or(usual.albedo))
+        .with_surroundings(model.surroundings.map_or(usual.surroundings, Into::into));
     flagged("--albedo, --sun-cell-deg", params.validate())?;
     Ok(params)
 }
 
-pub(super) fn weather(arguments: &Irradiance, stages: &mut Stages) -> Result<Option<Weather>> {
-    if arguments.linke.is_some() && arguments.radiation.clear_sky != Some(ClearSkyChoice::Ineichen) {
+/// The model of a sky without clouds.
+pub(in crate::commands) fn clear_sky(
+    choice: Option<ClearSkyChoice>,
+    model: &RadiationModel,
+    params: &IrradianceParams,
+) -> ClearSky {
+    match choice {
+        Some(ClearSkyChoice::Haurwitz) => ClearSky::Haurwitz,
+        Some(ClearSkyChoice::Bird) => ClearSky::Bird(BirdParams { albedo: params.albedo, ..BirdParams::default() }),
+        _ => model.linke.map_or_else(ClearSky::default, |linke| ClearSky::Ineichen { linke }),
+    }
+}
+
+/// Refuses a turbidity for a sky that knows none.
+pub(in crate::commands) fn check_linke(choice: Option<ClearSkyChoice>, model: &RadiationModel) -> Result<()> {
+    if model.linke.is_some() && choice != Some(ClearSkyChoice::Ineichen) {
         return Err(Usage("--linke needs --clear-sky ineichen".to_owned()).into());
     }
+    Ok(())
+}
+
+pub(super) fn weather(arguments: &Irradiance, stages: &mut Stages) -> Result<Option<Weather>> {
+    check_linke(arguments.radiation.clear_sky, &arguments.model)?;
     match &arguments.radiation.weather {
         Some(path) => Ok(Some(stages.run("reading weather", 0, |_| read_weather(path))?)),
         None => Ok(None),
@@ -93,17 +111,11 @@ pub(super) fn gather(
                 summary.warn(remark);
             }
             section.add("weather_hours", rounded(weather.hours(), 2)).add("notes", weather.notes.clone());
-            RadiationSource::Weather { weather, parts: arguments.parts.unwrap_or(PARTS) }
+            RadiationSource::Weather { weather, parts: arguments.model.parts.unwrap_or(PARTS) }
         }
         None => {
             let year = arguments.year.unwrap_or(CLEAR_SKY_YEAR);
-            let clear_sky = match arguments.radiation.clear_sky {
-                Some(ClearSkyChoice::Haurwitz) => ClearSky::Haurwitz,
-                Some(ClearSkyChoice::Bird) => {
-                    ClearSky::Bird(BirdParams { albedo: params.albedo, ..BirdParams::default() })
-                }
-                _ => arguments.linke.map_or_else(ClearSky::default, |linke| ClearSky::Ineichen { linke }),
-            };
+            let clear_sky = clear_sky(arguments.radiation.clear_sky, &arguments.model, params);
             section.add("source", clear_sky.to_string()).add("year", year);
             RadiationSource::ClearSky { clear_sky, year }
         }

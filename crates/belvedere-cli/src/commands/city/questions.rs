@@ -1,0 +1,100 @@
+//! From flags to the questions of a plan.
+
+use crate::arguments::{CityPlan, Numbers, Usage};
+use crate::commands::irradiance::radiation;
+use crate::commands::shadow::moment;
+use crate::pipeline::flagged;
+use crate::summary::Summary;
+use anyhow::Result;
+use belvedere::apps::irradiance::PARTS;
+use belvedere::apps::shadow::ShadowSun;
+use belvedere::apps::sun::{Binning, sun_position_with};
+use belvedere::apps::viewshed::OBSERVER_HEIGHT;
+use belvedere::control::Control;
+use belvedere_tiles::{Plan, Question, Radiation, SunQuestion};
+
+/// Refuses what cannot be asked, before the survey is read.
+pub(super) fn check(arguments: &CityPlan) -> Result<()> {
+    let usage = |text: &str| Err(Usage(text.to_owned()).into());
+    let has_suns = !arguments.suns.is_empty() || !arguments.times.is_empty();
+    let has_maps = arguments.sky_view || arguments.sun_hours || arguments.irradiance;
+    if !has_suns && !has_maps && arguments.observers.is_empty() {
+        return usage("questions are missing: give --sun, --time, --sun-hours, --irradiance, --sky-view or --observer");
+    }
+    match (arguments.sun_hours, arguments.when.is_given()) {
+        (true, false) => return usage("--sun-hours needs --date DAY, or --from and --to"),
+        (false, true) => return usage("--date, --from and --to need --sun-hours"),
+        _ => {}
+    }
+    arguments.when.check(&arguments.sun)?;
+    for time in &arguments.times {
+        arguments.sun.instant("--time", time)?;
+    }
+    let has_radiation = arguments.weather.is_some() || arguments.clear_sky.is_some();
+    if arguments.irradiance && !has_radiation {
+        return usage("--irradiance needs --weather FILE or --clear-sky MODEL");
+    }
+    radiation::params(&arguments.model)?;
+    radiation::check_linke(arguments.clear_sky, &arguments.model)
+}
+
+/// What was typed as questions. Azimuths count from the north, and the sun is that, at the middle of the survey.
+pub(super) fn questions(
+    arguments: &CityPlan,
+    plan: &Plan,
+    control: &Control<'_>,
+    summary: &mut Summary,
+) -> Result<Vec<Question>> {
+    let (frame, bounds) = (plan.frame()?, plan.bounds());
+    let (low, high) = bounds.on_map();
+    let north = arguments.north.of_frame(&frame, [0, 1].map(|axis| f64::midpoint(low[axis], high[axis])));
+    let sun = |typed: &Numbers<2>| {
+        let [azimuth, elevation] = typed.0;
+        let to_sun = ShadowSun::at(azimuth.to_radians() - north.of_grid, elevation.to_radians()).to_sun;
+        Question::Shadow { name: format!("shadow_{azimuth}_{elevation}"), to_sun }
+    };
+    let mut questions: Vec<Question> = arguments.suns.iter().map(sun).collect();
+    if !arguments.times.is_empty() || arguments.sun_hours {
+        let site = arguments.sun.site_of(&frame, &bounds, summary)?;
+        let mut times: Vec<&str> = arguments.times.iter().map(String::as_str).collect();
+        times.extend(arguments.when.times());
+        let zone = arguments.sun.zone(&site, &times)?;
+        for time in &arguments.times {
+            let instant = arguments.sun.instant("--time", time)?;
+            let position = flagged("--time", sun_position_with(&site, instant, arguments.sun.refraction()?))?;
+            let name = format!("shadow_{}", moment(&zone, instant));
+            questions.push(Question::Shadow { name, to_sun: position.to_sun(&site) });
+        }
+        if let Some(period) = arguments.when.period(&arguments.sun, &site, &zone)? {
+            let params = arguments.when.params(&arguments.sun)?;
+            let days = flagged("--zone", SunQuestion::new(site, &zone, &period, params, Binning::Auto))?;
+            questions.push(Question::SunHours(days));
+        }
+    }
+    if arguments.irradiance {
+        let site = arguments.sun.site_of(&frame, &bounds, summary)?;
+        let params = radiation::params(&arguments.model)?;
+        let radiation = match &arguments.weather {
+            Some(file) => Radiation::of_weather(file, arguments.model.parts.unwrap_or(PARTS))?,
+            None => Radiation::ClearSky {
+                clear_sky: radiation::clear_sky(arguments.clear_sky, &arguments.model, &params),
+                year: arguments.when.year,
+            },
+        };
+        questions.push(Question::Irradiance { site, radiation, params });
+    }
+    if arguments.sky_view {
+        questions.push(Question::SkyView { directions: arguments.direction_count });
+    }
+    if !arguments.observers.is_empty() {
+        let place = |place: &crate::arguments::Place| {
+            let &crate::arguments::Place([x, y], z) = place;
+            frame.local_from_file([x, y, z.unwrap_or(f64::NAN)])
+        };
+        let mut eyes: Vec<[f64; 3]> = arguments.observers.iter().map(place).collect();
+        let height = arguments.observer_height.unwrap_or(OBSERVER_HEIGHT);
+        flagged("--observer", plan.set_on_ground(&mut eyes, height, control))?;
+        questions.push(Question::Viewshed { eyes, max_distance: arguments.max_distance });
+    }
+    Ok(questions)
+}

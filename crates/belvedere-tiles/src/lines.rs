@@ -1,0 +1,226 @@
+//! Which lines of sight leave the cells of a tile, and what may stand in their way.
+
+use crate::grid::{Area, TileId, block_area};
+use crate::plan::Plan;
+use crate::question::Asked;
+use belvedere::query::EarthParams;
+use std::collections::BTreeSet;
+
+/// Directions up to which each is looked at by itself.
+const FEW: usize = 8;
+/// By how much lines of sight are taken for wider than they are, metres: more than f32 rounds.
+const ROOM: f64 = 0.25;
+/// How far above and beside its points any ball reaches at most, metres: twice the radius that they start with.
+pub(crate) const MOST_BALL: f64 = 10.0;
+
+/// Lines of sight from targets over an area, none lower than `lowest`.
+pub(crate) struct Lines<'a> {
+    pub(crate) targets: Area,
+    /// Local metres.
+    pub(crate) lowest: f64,
+    pub(crate) to: To<'a>,
+}
+
+/// Where lines of sight run to.
+pub(crate) enum To<'a> {
+    /// Along unit vectors upward, without end.
+    Directions(&'a [[f64; 3]]),
+    /// To eyes, local metres.
+    Eyes(Vec<[f64; 3]>),
+}
+
+impl<'a> Lines<'a> {
+    /// The lines of sight of a question from cells over an area.
+    pub(crate) fn of(asked: &'a Asked, targets: Area, lowest: f64) -> Self {
+        let to = match asked {
+            Asked::Shadow(sun) => To::Directions(std::slice::from_ref(&sun.to_sun)),
+            Asked::Sky(sky) => To::Directions(&sky.directions),
+            Asked::SunHours(plan) => To::Directions(plan.directions()),
+            Asked::Irradiance { directions, .. } => To::Directions(directions),
+            Asked::Viewshed(observers) => {
+                let is_near = |eye: &[f64; 3], reach: f64| targets.distance(&Area::at(*eye)) <= reach;
+                let near = observers.iter().filter(|observer| is_near(&observer.eye, observer.limits.distance[1]));
+                To::Eyes(near.map(|observer| observer.eye).collect())
+            }
+        };
+        Self { targets, lowest, to }
+    }
+
+    /// Whether there is no line at all.
+    pub(crate) fn is_empty(&self) -> bool {
+        match &self.to {
+            To::Directions(directions) => directions.is_empty(),
+            To::Eyes(eyes) => eyes.is_empty(),
+        }
+    }
+
+    /// Whether something over `area` that is no higher than `top`, local metres, may block one of them.
+    pub(crate) fn may_meet(&self, area: &Area, top: f64) -> bool {
+        match &self.to {
+            To::Directions(directions) => self.may_meet_towards(directions, area, top),
+            To::Eyes(eyes) => eyes.iter().any(|&eye| self.may_meet_from(eye, area, top)),
+        }
+    }
+
+    fn may_meet_towards(&self, directions: &[[f64; 3]], area: &Area, top: f64) -> bool {
+        let rise = top - self.lowest + ROOM;
+        if rise < 0.0 {
+            return false;
+        }
+        let slope = |d: &[f64; 3]| d[2] / d[0].hypot(d[1]).max(1e-12);
+        let flattest = directions.iter().map(slope).fold(f64::INFINITY, f64::min);
+        if self.targets.distance(area) * flattest > rise {
+            return false;
+        }
+        directions.len() > FEW || directions.iter().any(|direction| self.meets_along(direction, area, rise))
+    }
+
+    /// The same for one direction, of which it is known which way on the map it runs.
+    fn meets_along(&self, direction: &[f64; 3], area: &Area, rise: f64) -> bool {
+        let level = direction[0].hypot(direction[1]);
+        if level < 1e-9 {
+            return self.targets.distance(area) <= ROOM;
+        }
+        let along = [direction[0] / level, direction[1] / level];
+        let across = [-along[1], along[0]];
+        let ([left, right], [own_left, own_right]) = (area.span(across), self.targets.span(across));
+        let ([near, far], [back, front]) = (area.span(along), self.targets.span(along));
+        let beside = left > own_right + ROOM || own_left > right + ROOM;
+        let behind = far < back - ROOM;
+        !beside && !behind && (near - front).max(0.0) * direction[2] / level <= rise
+    }
+
+    /// The same for lines that end in an eye.
+    fn may_meet_from(&self, eye: [f64; 3], area: &Area, top: f64) -> bool {
+        let place = Area::at(eye);
+        // on the map: apart if any direction separates the area from both the eye and the targets
+        let sides = self.targets.corners().map(|corner| [eye[1] - corner[1], corner[0] - eye[0]]);
+        let axes = sides.into_iter().map(|[x, y]| [x / x.hypot(y).max(1e-12), y / x.hypot(y).max(1e-12)]);
+        let is_apart = |axis: [f64; 2]| {
+            let ([low, high], [eye_low, eye_high]) = (area.span(axis), place.span(axis));
+            let [own_low, own_high] = self.targets.span(axis);
+            low > own_high.max(eye_high) + ROOM || high < own_low.min(eye_low) - ROOM
+        };
+        if axes.chain([[1.0, 0.0], [0.0, 1.0]]).any(is_apart) {
+            return false;
+        }
+        // lines that fall towards the targets are lowest at the far side of the area
+        let (nearest, farthest) = (place.distance(&self.targets), place.farthest(&self.targets));
+        let share = if nearest > 0.0 { (place.farthest(area) / nearest).min(1.0) } else { 1.0 };
+        let lowest = eye[2] + share * (self.lowest - eye[2]).min(0.0);
+        top >= lowest - EarthParams::default().sag(farthest, 0.5) - ROOM
+    }
+}
+
+/// The tiles whose balls may matter for `lines`.
+pub(crate) fn tiles(plan: &Plan, lines: &Lines<'_>) -> Vec<TileId> {
+    let grid = plan.grid();
+    let is_planned = |tile: &TileId| plan.tiles.binary_search(tile).is_ok();
+    let mut tiles = BTreeSet::new();
+    for block in &plan.blocks {
+        let area = block_area(block.at).widened(MOST_BALL);
+        if !lines.may_meet(&area, f64::from(block.heights[1]) + MOST_BALL) {
+            continue;
+        }
+        let (first, last) = (grid.tile_of(area.low), grid.tile_of(area.high));
+        for north in first.north..=last.north {
+            tiles.extend((first.east..=last.east).map(|east| TileId { north, east }).filter(is_planned));
+        }
+    }
+    tiles.into_iter().collect()
+}
+
+/// Whether the line of sight from a target, local metres, may meet what stands over `area` up to `top`: the line runs along `way` and ends after
+/// `length` times that, or never.
+pub(crate) fn passes(target: [f64; 3], way: [f64; 3], length: f64, area: &Area, top: f64) -> bool {
+    let (mut from, mut to) = (0.0_f64, length);
+    for axis in 0..2 {
+        let (low, high) = (area.low[axis] - target[axis], area.high[axis] - target[axis]);
+        if way[axis] == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return false;
+            }
+            continue;
+        }
+        let (a, b) = (low / way[axis], high / way[axis]);
+        from = from.max(a.min(b));
+        to = to.min(a.max(b));
+    }
+    from <= to && target[2] + way[2] * (if way[2] > 0.0 { from } else { to }) <= top
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TARGETS: Area = Area { low: [0.0, 0.0], high: [100.0, 100.0] };
+
+    fn place(x: f64, y: f64) -> Area {
+        Area { low: [x, y], high: [x + 1.0, y + 1.0] }
+    }
+
+    #[test]
+    fn only_what_stands_towards_the_sun_and_high_enough_may_block_it() {
+        // a sun in the east, 45 degrees high
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let directions = [[half, 0.0, half]];
+        let lines = Lines { targets: TARGETS, lowest: 0.0, to: To::Directions(&directions) };
+        for (area, top, expected) in [
+            (place(150.0, 50.0), 60.0, true),
+            (place(150.0, 50.0), 40.0, false),
+            (place(-10.0, 50.0), 500.0, false),
+            (place(150.0, 110.0), 500.0, false),
+            (place(20.0, 20.0), 1.0, true),
+            (place(20.0, 20.0), -1.0, false),
+        ] {
+            assert_eq!(lines.may_meet(&area, top), expected, "{area:?} {top}");
+        }
+        // many directions: whatever the azimuth
+        let many = vec![[0.0, half, half]; FEW + 1];
+        let lines = Lines { targets: TARGETS, lowest: 0.0, to: To::Directions(&many) };
+        assert!(lines.may_meet(&place(150.0, 50.0), 60.0));
+        assert!(!lines.may_meet(&place(150.0, 50.0), 40.0));
+    }
+
+    #[test]
+    fn only_what_stands_between_eye_and_targets_and_high_enough_may_block_the_view() {
+        // an eye 300 m east of the targets and 40 m above them
+        let lines = Lines { targets: TARGETS, lowest: 0.0, to: To::Eyes(vec![[400.0, 50.0, 40.0]]) };
+        for (area, top, expected) in [
+            (place(110.0, 50.0), 3.0, true),
+            (place(110.0, 50.0), -1.0, false),
+            // half-way lines are no lower than 20 m, but for those to the near edge that are lower
+            (place(250.0, 50.0), 22.0, true),
+            (place(250.0, 50.0), 18.0, false),
+            (place(410.0, 50.0), 500.0, false),
+            (place(-20.0, 50.0), 500.0, false),
+            // beside the triangle between eye and targets
+            (place(250.0, 90.0), 500.0, false),
+            (place(110.0, 90.0), 500.0, true),
+        ] {
+            assert_eq!(lines.may_meet(&area, top), expected, "{area:?} {top}");
+        }
+        // an eye below the targets, among them
+        let lines = Lines { targets: TARGETS, lowest: 10.0, to: To::Eyes(vec![[50.0, 50.0, 2.0]]) };
+        assert!(lines.may_meet(&place(70.0, 70.0), 3.0));
+        assert!(!lines.may_meet(&place(70.0, 70.0), 1.0));
+        assert!(!lines.may_meet(&place(120.0, 70.0), 90.0));
+    }
+
+    #[test]
+    fn a_line_passes_what_stands_above_it_on_its_way() {
+        let area = Area { low: [10.0, -5.0], high: [20.0, 5.0] };
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let towards = |target, way| passes(target, way, f64::INFINITY, &area, 30.0);
+        assert!(towards([0.0; 3], [half, 0.0, half]));
+        assert!(!towards([0.0, 0.0, 25.0], [half, 0.0, half]));
+        assert!(!towards([0.0; 3], [-half, 0.0, half]));
+        assert!(!towards([0.0, 9.0, 0.0], [half, 0.0, half]));
+        assert!(towards([15.0, 0.0, 0.0], [0.0, 0.0, 1.0]));
+        // to an eye before the area, beyond it, and down from above
+        assert!(!passes([0.0; 3], [8.0, 0.0, 0.0], 1.0, &area, 30.0));
+        assert!(passes([0.0; 3], [30.0, 0.0, 0.0], 1.0, &area, 30.0));
+        assert!(passes([0.0, 0.0, 60.0], [40.0, 0.0, -70.0], 1.0, &area, 30.0));
+        assert!(!passes([0.0, 0.0, 60.0], [40.0, 0.0, -50.0], 1.0, &area, 30.0));
+    }
+}
