@@ -29,23 +29,54 @@ pub(super) struct SeenSpace {
     height: f64,
     /// Boxes above one another.
     layers: usize,
+    /// How near a needle must pass, less what rounding may shift it by.
+    nearness: f64,
     /// How near a needle must pass to the middle line of a box.
     reach: f64,
     size: [usize; 2],
     /// Tiles in a row.
     width: usize,
-    tiles: Vec<OnceLock<Tile>>,
+    tiles: Vec<OnceLock<Box<Tile>>>,
 }
 
-/// A word for each column of boxes of a tile, row by row; the lowest box has the lowest bit.
-type Tile = Box<[u64; TILE * TILE]>;
+/// Columns along a side of a block of a tile.
+const BLOCK: usize = 4;
+const BLOCKS: usize = TILE / BLOCK;
+
+/// Columns of boxes; the lowest box of a column is the lowest bit of its word.
+struct Tile {
+    /// Each column, row by row.
+    columns: [u64; TILE * TILE],
+    /// The layers on which all columns of a block are near pulses, so that a line crosses it in one step.
+    blocks: [u64; BLOCKS * BLOCKS],
+    /// The same for all of the tile.
+    all: u64,
+}
+
+impl Tile {
+    fn new(columns: [u64; TILE * TILE]) -> Self {
+        let mut blocks = [u64::MAX; BLOCKS * BLOCKS];
+        for (index, word) in columns.iter().enumerate() {
+            blocks[index / TILE / BLOCK * BLOCKS + index % TILE / BLOCK] &= word;
+        }
+        Self { columns, blocks, all: blocks.iter().fold(u64::MAX, |all, word| all & word) }
+    }
+
+    /// The widest group of columns around one that is near pulses on a layer: its side and its word.
+    fn widest(&self, [column, row]: [usize; 2], layer: usize) -> Option<(usize, u64)> {
+        let block = self.blocks[row / BLOCK * BLOCKS + column / BLOCK];
+        let groups = [(TILE, self.all), (BLOCK, block), (1, self.columns[row * TILE + column])];
+        groups.into_iter().find(|(_, word)| word >> layer & 1 == 1)
+    }
+}
 
 impl SeenSpace {
     /// Boxes over the rectangle from `low` to `high`, for needles that count up to `nearness` metres.
     pub(super) fn new(needles: &Needles, [low, high]: [[f64; 2]; 2], nearness: f64) -> Self {
         let extent = [0, 1].map(|axis| high[axis] - low[axis]);
         let side = (SIDE_PER_NEARNESS * nearness).max((extent[0] * extent[1] / MOST_COLUMNS).max(0.0).sqrt());
-        let reach = nearness - side / std::f64::consts::SQRT_2 - ROUNDING;
+        let nearness = nearness - ROUNDING;
+        let reach = nearness - half_diagonal(side);
         let floor = needles.lower_ends().map(|start| f64::from(start[2])).fold(f64::INFINITY, f64::min);
         let rise = f64::from(needles.top()) - floor;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates; NaN becomes 0")]
@@ -60,6 +91,7 @@ impl SeenSpace {
             side,
             height: rise / layers,
             layers: whole(layers),
+            nearness,
             reach,
             size,
             width,
@@ -68,19 +100,26 @@ impl SeenSpace {
     }
 
     /// The boxes of the tile whose lowest column and row are `first`.
-    fn tile(&self, needles: &Needles, first: [usize; 2]) -> Tile {
-        let mut boxes = Box::new([0; TILE * TILE]);
+    fn tile(&self, needles: &Needles, first: [usize; 2]) -> Box<Tile> {
+        let mut boxes = [0; TILE * TILE];
         // a box more on all sides than any needle that counts for the tile passes
         let room = self.reach + self.side;
         let low = [0, 1].map(|axis| self.low[axis] + first[axis] as f64 * self.side - room);
         let high = low.map(|low| low + TILE as f64 * self.side + 2.0 * room);
         needles.each_upright_over([low, high], |ends| self.mark(ends, [low, high], first, &mut boxes));
-        boxes
+        Box::new(Tile::new(boxes))
     }
 
-    /// Marks the boxes of a tile that a needle is near to: those whose middle line it passes within `reach` both where it enters
-    /// their layer and where it leaves it. Where it does so it lies over the rectangle `over`.
-    fn mark(&self, [start, end]: [[f64; 3]; 2], over: [[f64; 2]; 2], first: [usize; 2], boxes: &mut Tile) {
+    /// Marks the boxes of a tile that a needle is near to: those whose corners all are, since what is near a needle is convex. Where it
+    /// passes through a layer it must be within `reach` of the middle line of a box both where it enters and where it leaves; in the
+    /// layer that it begins in, nearer, since the lower corners lie below its end. Where it does so it lies over the rectangle `over`.
+    fn mark(
+        &self,
+        [start, end]: [[f64; 3]; 2],
+        over: [[f64; 2]; 2],
+        first: [usize; 2],
+        boxes: &mut [u64; TILE * TILE],
+    ) {
         let lean = [0, 1].map(|axis| (end[axis] - start[axis]) / (end[2] - start[2]));
         // heights at which the needle lies over the rectangle
         let mut heights = [start[2], end[2]];
@@ -92,11 +131,8 @@ impl SeenSpace {
         }
         let layer_of = |z: f64| (z - self.low[2]) / self.height;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-        let layers = [
-            // layers that it does not enter from below are left out
-            layer_of(start[2] - ROUNDING).ceil().max(layer_of(heights[0]).floor() - 1.0).max(0.0) as usize,
-            (layer_of(heights[1]).ceil() + 1.0).max(0.0) as usize,
-        ];
+        let layers =
+            [layer_of(heights[0]).floor().max(0.0) as usize, (layer_of(heights[1]).ceil() + 1.0).max(0.0) as usize];
         let middles = [0, 1].map(|axis| -> [f64; TILE] {
             std::array::from_fn(|index| ((first[axis] + index) as f64 + 0.5) * self.side)
         });
@@ -105,28 +141,37 @@ impl SeenSpace {
             if bounds[1] > end[2] + ROUNDING {
                 break;
             }
-            let at = bounds.map(|z| [0, 1].map(|axis| start[axis] + (z - start[2]) * lean[axis] - self.low[axis]));
+            let at = bounds
+                .map(|z| [0, 1].map(|axis| start[axis] + (z.max(start[2]) - start[2]) * lean[axis] - self.low[axis]));
+            // how near it must be to the middle line at the bottom and at the top
+            let below_end = (start[2] - bounds[0]).max(0.0);
+            let reach_below = (self.nearness.powi(2) - below_end.powi(2)).max(0.0).sqrt() - half_diagonal(self.side);
+            if reach_below <= 0.0 {
+                continue;
+            }
+            let reach = [reach_below, self.reach];
             let range = [0, 1].map(|axis| {
-                let (least, most) = (at[0][axis].min(at[1][axis]), at[0][axis].max(at[1][axis]));
-                // middles within reach of both places
-                let from = ((most - self.reach) / self.side - 0.5).ceil() - first[axis] as f64;
-                let to = ((least + self.reach) / self.side - 0.5).floor() + 1.0 - first[axis] as f64;
+                let from = f64::max(at[0][axis] - reach[0], at[1][axis] - reach[1]);
+                let to = f64::min(at[0][axis] + reach[0], at[1][axis] + reach[1]);
+                let index = |place: f64| place / self.side - 0.5 - first[axis] as f64;
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the tile")]
-                let range = from.clamp(0.0, TILE as f64) as usize..to.clamp(0.0, TILE as f64) as usize;
+                let range = index(from).ceil().clamp(0.0, TILE as f64) as usize
+                    ..(index(to).floor() + 1.0).clamp(0.0, TILE as f64) as usize;
                 range
             });
-            let square = self.reach * self.reach;
+            let square = reach.map(|reach| reach * reach);
             for row in range[1].clone() {
                 let aside = [0, 1].map(|end| (at[end][1] - middles[1][row]).powi(2));
                 for column in range[0].clone() {
-                    let near = |end: usize| (at[end][0] - middles[0][column]).powi(2) + aside[end] < square;
+                    let near = |end: usize| (at[end][0] - middles[0][column]).powi(2) + aside[end] < square[end];
                     boxes[row * TILE + column] |= u64::from(near(0) & near(1)) << layer;
                 }
             }
         }
     }
 
-    /// Where a line leaves the box that it is in at `at`, if all of that box is near `needles`, those that the grid was made for.
+    /// Where a line leaves the boxes around the one that it is in at `at`, if all of these are near `needles`, those that the grid was
+    /// made for.
     pub(super) fn near_until(
         &self,
         needles: &Needles,
@@ -137,7 +182,6 @@ impl SeenSpace {
         // a little on, so that a line at the edge of a box is taken for in the one it enters
         let within = at + 1e-9;
         let mut cell = [0_usize; 3];
-        let mut exit = f64::INFINITY;
         for axis in 0..3 {
             let place = (origin[axis] + within * direction[axis] - self.low[axis]) / sides[axis];
             if !(place >= 0.0) {
@@ -146,10 +190,6 @@ impl SeenSpace {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; saturates")]
             let index = place as usize;
             cell[axis] = index;
-            if direction[axis] != 0.0 {
-                let edge = index as f64 + if direction[axis] > 0.0 { 1.0 } else { 0.0 };
-                exit = exit.min((self.low[axis] + edge * sides[axis] - origin[axis]) / direction[axis]);
-            }
         }
         let [column, row, layer] = cell;
         if column >= self.size[0] || row >= self.size[1] || layer >= 64 {
@@ -157,11 +197,28 @@ impl SeenSpace {
         }
         let tile = self.tiles.get(row / TILE * self.width + column / TILE)?;
         let first = [column, row].map(|index| index / TILE * TILE);
-        let boxes = tile.get_or_init(|| self.tile(needles, first));
-        let word = boxes[row % TILE * TILE + column % TILE];
+        let tile = tile.get_or_init(|| self.tile(needles, first));
+        let (width, word) = tile.widest([column % TILE, row % TILE], layer)?;
+        // layers above and below that are near as well
+        let up = (word >> layer).trailing_ones() as usize;
+        let down = (word << (63 - layer)).leading_ones() as usize;
+        let group = [column, row].map(|index| index / width * width);
+        let edges = [[group[0], group[0] + width], [group[1], group[1] + width], [layer + 1 - down, layer + up]];
+        let mut exit = f64::INFINITY;
+        for axis in 0..3 {
+            if direction[axis] != 0.0 {
+                let edge = edges[axis][usize::from(direction[axis] > 0.0)] as f64;
+                exit = exit.min((self.low[axis] + edge * sides[axis] - origin[axis]) / direction[axis]);
+            }
+        }
         // at least a micrometre on, so that a walk ends
-        (word >> layer & 1 == 1 && exit > at + 1e-6).then_some(exit)
+        (exit > at + 1e-6).then_some(exit)
     }
+}
+
+/// From the middle of a square to its corners.
+fn half_diagonal(side: f64) -> f64 {
+    side * std::f64::consts::FRAC_1_SQRT_2
 }
 
 #[cfg(test)]
@@ -170,9 +227,10 @@ mod tests {
     use crate::pulses::NeedleParams;
     use belvedere_data::control::Control;
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::{dot, length, sub};
 
     #[test]
-    fn tiles_hold_the_boxes_that_some_needle_is_near_to() {
+    fn boxes_are_marked_where_one_needle_is_near_to_all_corners() {
         // a plane in strips over 40 m, its pulses leaning to all sides
         #[expect(clippy::cast_possible_truncation, reason = "positions are f32")]
         let random = |i: u64, k: u64| uniform(6, 8 * i + k) as f32;
@@ -197,35 +255,40 @@ mod tests {
                 Some([start, std::array::from_fn(|i| start[i] + f64::from(length) * up[i])])
             })
             .collect();
-        let reach = space.reach;
-        let is_near = |column: usize, row: usize, layer: usize| {
-            let middle = [column, row].map(|index| (index as f64 + 0.5) * space.side);
-            let bounds = [layer, layer + 1].map(|step| space.low[2] + step as f64 * space.height);
-            ends.iter().any(|[start, end]| {
-                bounds[0] >= start[2] - ROUNDING
-                    && bounds[1] <= end[2] + ROUNDING
-                    && bounds.iter().all(|z| {
-                        let share = (z - start[2]) / (end[2] - start[2]);
-                        let off = [0, 1].map(|i| start[i] + share * (end[i] - start[i]) - space.low[i] - middle[i]);
-                        off[0].hypot(off[1]) < reach
-                    })
-            })
+        // from a place to the piece of a line
+        let distance = |place: [f64; 3], [start, end]: &[[f64; 3]; 2]| {
+            let (way, from) = (sub(*end, *start), sub(place, *start));
+            let share = (dot(way, from) / dot(way, way)).clamp(0.0, 1.0);
+            length(std::array::from_fn(|i| from[i] - share * way[i]))
         };
-        let mut near_count = 0;
+        // whether one needle is near to all corners, by how much
+        let spare = |cell: [usize; 3]| {
+            let corner = |number: usize| -> [f64; 3] {
+                let sides = [space.side, space.side, space.height];
+                std::array::from_fn(|i| space.low[i] + (cell[i] + (number >> i & 1)) as f64 * sides[i])
+            };
+            let farthest = |needle| (0..8).map(|number| distance(corner(number), needle)).fold(0.0, f64::max);
+            1.1 - ends.iter().map(farthest).fold(f64::INFINITY, f64::min)
+        };
+        let (mut marked_count, mut near_count) = (0, 0);
         let mut asked = 0;
         for row in (0..space.size[1]).step_by(3) {
             for column in (0..space.size[0]).step_by(3) {
                 let tile = space.tiles[row / TILE * space.width + column / TILE]
                     .get_or_init(|| space.tile(&needles, [column, row].map(|index| index / TILE * TILE)));
-                let word = tile[row % TILE * TILE + column % TILE];
+                let word = tile.columns[row % TILE * TILE + column % TILE];
                 for layer in 0..space.layers {
-                    let near = is_near(column, row, layer);
-                    assert_eq!(word >> layer & 1 == 1, near, "column {column}, row {row}, layer {layer}");
-                    near_count += usize::from(near);
+                    let marked = word >> layer & 1 == 1;
+                    let spare = spare([column, row, layer]);
+                    assert!(!marked || spare > 0.0, "column {column}, row {row}, layer {layer}: {spare}");
+                    marked_count += usize::from(marked);
+                    // the grid asks for some more
+                    near_count += usize::from(spare > 0.0);
                     asked += 1;
                 }
             }
         }
         assert!(near_count > asked / 10 && near_count < asked * 9 / 10, "{near_count} of {asked}");
+        assert!(marked_count > near_count * 3 / 4, "{marked_count} of {near_count}");
     }
 }
