@@ -215,7 +215,7 @@ mod tests {
 
     #[test]
     fn a_horizon_could_be_higher_where_the_relief_beyond_the_edge_would_stand_above_it() {
-        let point = |elevation: f64| SkylinePoint { elevation, range: 1.0, ball: None };
+        let point = |elevation: f64| SkylinePoint { elevation, range: 1.0, blocker: None };
         // 20 m at 50 m, to the north, east, south and west: 21.8°
         let skyline = [point(0.1), point(0.37), point(0.39), point(FRAC_PI_2)];
         assert_eq!(horizon_share_near_edge(&coverage(), [50.0, 50.0, 0.0], &skyline, 0.0), 0.5);

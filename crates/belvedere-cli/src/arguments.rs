@@ -32,7 +32,7 @@ pub(crate) use numbers::Numbers;
 use numbers::{above_zero, at_least_one, at_most, finite, known_crs, length, location};
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Shell, Viewshed};
 pub(crate) use query::{DepthMap, Query, UnprovenChoice};
-pub(crate) use scene::{CloudInput, ProfileChoice, SceneConfig, SceneInput, UpChoice};
+pub(crate) use scene::{CloudInput, Plan, ProfileChoice, SceneConfig, SceneInput, UpChoice};
 pub(crate) use shadow::Shadow;
 pub(crate) use sky::{FacingChoice, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
 pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};

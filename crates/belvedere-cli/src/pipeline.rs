@@ -1,6 +1,9 @@
 //! From arguments to clouds, scene models and views. Calls the library; decides and computes nothing itself.
 
 pub(crate) mod params;
+mod plan;
+
+pub(crate) use plan::{mesh_in, planned};
 
 use crate::arguments::{
     CloudInput, MethodChoice, OrientChoice, ProfileChoice, SceneInput, SizeChoice, UnprovenChoice, UpChoice, Usage,
@@ -93,13 +96,20 @@ pub(crate) enum Points {
     LetGo,
 }
 
-/// The scene of a ball file, or of a cloud.
+/// The scene of a ball file, or of a cloud, as it will be with what is planned.
 pub(crate) fn scene(
     arguments: &SceneInput,
     points: Points,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<Scene> {
+    let mut scene = present_scene(arguments, points, stages, summary)?;
+    scene.model = planned(scene.model, &arguments.plan, stages, summary)?;
+    Ok(scene)
+}
+
+/// The scene of a ball file, or of a cloud, as it is.
+fn present_scene(arguments: &SceneInput, points: Points, stages: &mut Stages, summary: &mut Summary) -> Result<Scene> {
     if let [path] = &arguments.input.clouds[..]
         && path.is_file()
         && is_ball_file(path)?

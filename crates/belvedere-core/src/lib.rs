@@ -14,3 +14,4 @@ pub mod pulses;
 pub mod query;
 pub mod ray_index;
 pub mod summary;
+pub mod triangle_tree;

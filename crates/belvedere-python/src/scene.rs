@@ -2,6 +2,7 @@
 
 use crate::cloud::{Cloud, Input, json};
 use crate::errors::{belvedere_error, exception, wrong};
+use crate::landmark::mesh_of;
 use crate::system::System;
 use crate::work::run;
 use belvedere::clean::CleanParams;
@@ -238,6 +239,17 @@ impl Scene {
         Ok(Self(Arc::new(Inner::new(model, cloud))))
     }
 
+    /// The same scene with the meshes of these files added.
+    fn with_added(&self, py: Python<'_>, meshes: Vec<PathBuf>) -> PyResult<Self> {
+        let inner = Arc::clone(&self.0);
+        let model = run(py, None, move |_| {
+            meshes.iter().try_fold(inner.model.clone(), |model, path| {
+                model.with_added(&mesh_of(path, &inner)?, &path.display().to_string())
+            })
+        })?;
+        Ok(Self(Arc::new(Inner::new(model, Arc::clone(&self.0.cloud)))))
+    }
+
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let inner = Arc::clone(&self.0);
         run(py, None, move |_| write_balls(&path, inner.model.parts()))
@@ -263,6 +275,12 @@ impl Scene {
     #[getter]
     fn ball_count(&self) -> usize {
         self.0.model.balls().len()
+    }
+
+    /// Names of the meshes that were added.
+    #[getter]
+    fn added(&self) -> Vec<String> {
+        self.0.model.added().map_or(Vec::new(), |added| added.names().to_vec())
     }
 
     #[getter]

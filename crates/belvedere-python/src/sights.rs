@@ -103,10 +103,11 @@ impl Scene {
         }
         let place = |i: usize| block(i).map_or([f64::NAN; 3], |block| inner.frame().file_from_local(block.place));
         dict.set_item("block", to_2d(py, &each().map(place).collect::<Vec<_>>())?)?;
-        let ball = |i: usize| block(i).map_or(-1, |block| i64::try_from(block.ball).unwrap_or(-1));
+        let ball_of = |i: usize| block(i).and_then(|block| block.blocker.ball());
+        let ball = |i: usize| ball_of(i).map_or(-1, |row| i64::try_from(row).unwrap_or(-1));
         dict.set_item("block_ball", to_1d(py, each().map(ball).collect()))?;
         let source =
-            |i: usize| block(i).and_then(|b| inner.model.balls().source.get(b.ball)).map_or(-1, |&row| i64::from(row));
+            |i: usize| ball_of(i).and_then(|row| inner.model.balls().source.get(row)).map_or(-1, |&row| i64::from(row));
         dict.set_item("block_source", to_1d(py, each().map(source).collect()))?;
         Ok(dict)
     }

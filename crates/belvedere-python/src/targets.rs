@@ -148,7 +148,11 @@ impl Cells {
         if let Some(height) = self.height {
             params = params.with_height(height);
         }
-        Ok(Targets::of_cells(ground_cloud(inner)?, ground, &params, control)?.0)
+        let (mut targets, _) = Targets::of_cells(ground_cloud(inner)?, ground, &params, control)?;
+        if let Some(added) = inner.model.added() {
+            targets.set_on_added(added, &params);
+        }
+        Ok(targets)
     }
 }
 

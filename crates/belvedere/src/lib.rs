@@ -57,7 +57,7 @@
 #[cfg(feature = "apps")]
 pub use belvedere_apps as apps;
 pub use belvedere_core::{
-    blocking, clean, depth, ground, medial, model, neighbors, normals, pulses, query, ray_index, summary,
+    blocking, clean, depth, ground, medial, model, neighbors, normals, pulses, query, ray_index, summary, triangle_tree,
 };
 pub use belvedere_data::{Attributes, Bounds, Error, Frame, GpsTimeKind, Mesh, PointCloud, Result, cloud};
 pub use belvedere_data::{control, crs, error, frame, mesh, random, raster, report, trajectory, vector, view, weather};

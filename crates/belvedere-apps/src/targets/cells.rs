@@ -4,6 +4,7 @@ use super::{Layout, Targets};
 use crate::sky_view::SKY_TARGET_HEIGHT;
 use crate::viewshed::cell_targets;
 use belvedere_core::ground::{Ground, GroundParams, MapGrid, SurfaceParams, hidden_ground, top_surface};
+use belvedere_core::query::AddedMeshes;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, PointCloud, Result};
 use serde::Serialize;
@@ -116,5 +117,27 @@ impl Targets {
             }
         }
         Ok((Self::at(cloud.frame.clone(), positions, None, Layout::Cells(Box::new(ground))), report))
+    }
+
+    /// Sets cells made with `params` on the meshes that were added: those on a surface on top of what is higher, cloud or mesh. Cells on the
+    /// ground inside a mesh are left out, unless those under a cover are kept; returns how many.
+    pub fn set_on_added(&mut self, added: &AddedMeshes, params: &CellParams) -> usize {
+        let Layout::Cells(ground) = &mut self.layout else { return 0 };
+        if params.level == CellLevel::Surface {
+            added.raise(&mut ground.heights, &ground.grid);
+            self.positions = cell_targets(ground, params.height);
+            return 0;
+        }
+        if params.covered == CoveredCells::Kept {
+            return 0;
+        }
+        let mut left_out = 0;
+        let is_inside =
+            |position: &[f32; 3]| position.iter().all(|v| v.is_finite()) && added.encloses(position.map(f64::from));
+        for position in self.positions.iter_mut().filter(|position| is_inside(position)) {
+            *position = [f32::NAN; 3];
+            left_out += 1;
+        }
+        left_out
     }
 }

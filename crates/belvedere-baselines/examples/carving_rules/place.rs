@@ -159,7 +159,7 @@ impl Place {
                         }
                         if visible && answer == Answer::Blocked {
                             let block = model.scene().first_block(target.map(f64::from), towards, range);
-                            let Some((row, _)) = block else { continue };
+                            let Some(row) = block.and_then(|(blocker, _)| blocker.ball()) else { continue };
                             let (source, radius) = (model.balls().source[row] as usize, model.balls().radii[row]);
                             let surface = site
                                 .surface_of_return(

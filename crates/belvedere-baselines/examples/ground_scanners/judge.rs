@@ -97,7 +97,8 @@ fn blame(
     blockers: &mut BTreeMap<&'static str, (usize, f64)>,
 ) {
     let Some((towards, range)) = Viewer::Eye(eye).line_of_sight(0, target) else { return };
-    let Some((ball, _)) = medial.first_block(target.map(f64::from), towards, range) else { return };
+    let block = medial.first_block(target.map(f64::from), towards, range);
+    let Some(ball) = block.and_then(|(blocker, _)| blocker.ball()) else { return };
     let row = model.balls().source[ball] as usize;
     let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + cloud.frame.origin[i]) };
     let surface = site.surface_of_return(absolute(scanner[row]), absolute(cloud.positions[row]));

@@ -247,8 +247,11 @@ impl Town {
             for (&truly, &direction) in free.iter().zip(&light.directions).take(light.sun_count) {
                 let block = scene.first_block(at, direction, f64::INFINITY);
                 let what = match block {
-                    Some((row, range)) if truly => {
-                        let class = self.balls.source.get(row).and_then(|&i| classes.get(i as usize));
+                    Some((blocker, range)) if truly => {
+                        let class = blocker
+                            .ball()
+                            .and_then(|row| self.balls.source.get(row))
+                            .and_then(|&i| classes.get(i as usize));
                         format!("false shade: ball of class {} {} off", class.copied().unwrap_or(0), near(range))
                     }
                     None if !truly => {

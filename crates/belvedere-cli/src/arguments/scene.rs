@@ -35,6 +35,8 @@ pub(crate) struct SceneInput {
     #[command(flatten)]
     pub(crate) input: CloudInput,
     #[command(flatten)]
+    pub(crate) plan: Plan,
+    #[command(flatten)]
     pub(crate) config: SceneConfig,
     #[command(flatten)]
     pub(crate) cleaning: Cleaning,
@@ -45,6 +47,18 @@ pub(crate) struct SceneInput {
     /// Shape that represents a ball: the sphere, or the cone of the paper
     #[arg(long = "ball-profile", id = "ball_profile", value_name = "SHAPE", value_enum, default_value_t = ProfileChoice::Sphere, hide_short_help = true)]
     pub(crate) profile: ProfileChoice,
+}
+
+/// What is planned: the scene as it will be.
+#[derive(Args, Clone)]
+pub(crate) struct Plan {
+    /// Add a mesh to the scene, such as a planned building (.obj .ply .json); repeatable
+    ///
+    /// Its triangles block lines of sight exactly as they are, from both sides, whether they enclose a volume or not. Coordinates are those of
+    /// the cloud. A target within 1 mm of the plane of a triangle is not blocked by that triangle. With --surface cells lie on top of the mesh, and
+    /// cells on the ground inside it are left out. What pulses prove stays as it was.
+    #[arg(long, value_name = "MESH", help_heading = "Plan")]
+    pub(crate) add: Vec<PathBuf>,
 }
 
 /// The parameters of balls in a file.

@@ -14,12 +14,14 @@ use belvedere::medial::{CarvedParams, MedialBalls};
 use belvedere::model::{BallParams, ModelParams, OrientBy, SceneModel};
 use belvedere::query::{Answer, MedialScene, UnprovenAs, Viewer, Visibility};
 use belvedere::view::{View, default_pixel_size, to_sun};
-use belvedere_scenes::{AirborneParams, Scan, Scene, TownParams, Truth, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Placement, Scan, Scene, TownParams, Truth, extruded, scan_airborne, town};
 use std::io::Write;
 use std::path::Path;
 
 /// Azimuth and elevation of the sun in the pictures: a summer afternoon, degrees.
 const SUN_DEG: [f64; 2] = [235.0, 30.0];
+/// Length, width and height of the planned building.
+const PLANNED_M: [f64; 3] = [14.0, 10.0, 25.0];
 /// Height of a pedestrian's chest above the ground, metres.
 const PEDESTRIAN: f64 = 1.5;
 
@@ -109,10 +111,23 @@ fn town_section(scene: &Scene, scan: &Scan) -> Summary {
 
 fn write_town(folder: &Path, scene: &Scene, scan: &Scan) -> Result<()> {
     write_cloud(&folder.join("town.laz"), &cloud_of(scan)?, &[])?;
-    for (name, text) in [("trajectory.csv", scan.sensor_path.to_csv()), ("town.obj", scene.to_obj())] {
+    let planned = planned_building(scene).to_obj();
+    let texts = [("trajectory.csv", scan.sensor_path.to_csv()), ("town.obj", scene.to_obj()), ("planned.obj", planned)];
+    for (name, text) in texts {
         write_text(&folder.join(name), &text)?;
     }
     Ok(())
+}
+
+/// A building that is not there, in the middle of the town.
+fn planned_building(town: &Scene) -> Scene {
+    let mut planned = Scene::default();
+    let Some((low, high)) = town.bounds() else { return planned };
+    let middle = std::array::from_fn(|axis| f64::midpoint(low[axis], high[axis]));
+    let footprint = Placement { origin: middle, angle: 0.0 }.rectangle(PLANNED_M[0], PLANNED_M[1]);
+    let ground = town.mean_ground_height();
+    planned.add_object("planned", &[extruded(&footprint, ground - 1.0, ground + PLANNED_M[2])]);
+    planned
 }
 
 /// How many answers the exact mesh contradicts, each kind of error for itself.

@@ -24,6 +24,9 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     if let Some(path) = &arguments.balls_id {
         check_output("--ball-ids", path, &["tif", "tiff", "npy"])?;
     }
+    if !arguments.scene.plan.add.is_empty() {
+        return Err(Usage("--add: depth maps show only balls; use `belvedere query`".to_owned()).into());
+    }
     arguments.view.check()?;
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();

@@ -14,7 +14,7 @@ use belvedere::apps::viewshed::{OBSERVER_HEIGHT, TARGET_HEIGHT};
 use belvedere::figures::{profile_picture, write_png};
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::io::{Cells, GeojsonFeature, Shape, TextRows, read_geojson, read_table, with_columns_read, write_table};
-use belvedere::query::{Answer, AnswerCounts, EarthParams, MedialScene, UnprovenAs, random_pairs};
+use belvedere::query::{Answer, AnswerCounts, Blocker, EarthParams, MedialScene, UnprovenAs, random_pairs};
 use std::path::Path;
 
 const OUTSIDE_LINE: &str = "have an end outside the cloud, where nothing is known, and no answer";
@@ -66,13 +66,17 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
         if let Some(sight) = sight {
             one.add("answer", name(unproven_as.settle(sight.answer)));
             if let Some(block) = sight.first_block {
-                one.add("first_block_range_m", rounded(block.range, 3))
-                    .add(
-                        "block_position",
-                        scene.cloud.frame.file_from_local(block.place).map(|v| rounded(v, 3)).to_vec(),
-                    )
-                    .add("block_ball", block.ball)
-                    .add("block_source", scene.model.balls().source.get(block.ball).copied().unwrap_or_default());
+                one.add("first_block_range_m", rounded(block.range, 3)).add(
+                    "block_position",
+                    scene.cloud.frame.file_from_local(block.place).map(|v| rounded(v, 3)).to_vec(),
+                );
+                if let Some(ball) = block.blocker.ball() {
+                    let source = scene.model.balls().source.get(ball).copied().unwrap_or_default();
+                    one.add("block_ball", ball).add("block_source", source);
+                }
+                if let Some(name) = mesh_name(&blockers, block.blocker) {
+                    one.add("block_mesh", name);
+                }
             }
             if scene.model.pulses().is_some() && sight.answer != Answer::OutsideCloud {
                 one.add("unproven_m", rounded(sight.unproven_length, 3));
@@ -82,7 +86,7 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
         summary.add("line", one);
     }
     if let Some(output) = &arguments.output {
-        stages.run("writing", 0, |_| write(output, &scene, &pairs, &rows, &sights, &answers))?;
+        stages.run("writing", 0, |_| write(output, (&scene, &blockers), &pairs, &rows, &sights, &answers))?;
         summary.add("written", output.display().to_string());
     }
     if let (Some(output), [pair]) = (&arguments.profile_out, &pairs[..]) {
@@ -178,7 +182,7 @@ fn set_ends_on_ground(
 
 fn write(
     output: &Path,
-    scene: &Scene,
+    (scene, blockers): (&Scene, &MedialScene),
     pairs: &[[[f64; 3]; 2]],
     rows: &TextRows,
     sights: &[Option<belvedere::query::LineOfSight>],
@@ -200,9 +204,10 @@ fn write(
         .map(|sight| sight.filter(|s| s.first_block.is_none()).map_or(f64::NAN, |s| s.unproven_length))
         .collect();
     let codes: Vec<Option<u64>> = answers.iter().map(|&answer| Some(u64::from(answer as u8))).collect();
-    let balls: Vec<Option<u64>> = (0..count).map(|i| block(i).map(|block| block.ball as u64)).collect();
+    let ball = |i: usize| block(i).and_then(|block| block.blocker.ball());
+    let balls: Vec<Option<u64>> = (0..count).map(|i| ball(i).map(|ball| ball as u64)).collect();
     let sources: Vec<Option<u64>> =
-        (0..count).map(|i| scene.model.balls().source.get(block(i)?.ball).map(|&row| u64::from(row))).collect();
+        (0..count).map(|i| scene.model.balls().source.get(ball(i)?).map(|&row| u64::from(row))).collect();
     let mut columns: Vec<(&'static str, Cells<'_>)> =
         ENDS.iter().zip(&ends).map(|(&name, values)| (name, Cells::Real(values, 4))).collect();
     columns.push(("answer", Cells::Whole(&codes)));
@@ -213,8 +218,18 @@ fn write(
     columns.extend(["block_x", "block_y", "block_z"].into_iter().zip(&place).map(|(n, v)| (n, Cells::Real(v, 3))));
     columns.push(("block_ball", Cells::Whole(&balls)));
     columns.push(("block_source", Cells::Whole(&sources)));
+    let meshes: Vec<&str> =
+        (0..count).map(|i| block(i).and_then(|block| mesh_name(blockers, block.blocker)).unwrap_or_default()).collect();
+    if blockers.added().is_some() {
+        columns.push(("block_mesh", Cells::Words(&meshes)));
+    }
     let read = rows.columns(0..rows.row_count());
     Ok(write_table(output, &with_columns_read(&read, &ENDS, &columns))?)
+}
+
+/// The name of an added mesh that blocks.
+fn mesh_name(blockers: &MedialScene, blocker: Blocker) -> Option<&str> {
+    blockers.added()?.names().get(blocker.mesh()?).map(String::as_str)
 }
 
 #[expect(clippy::too_many_arguments, reason = "what a run knows, handed on once")]

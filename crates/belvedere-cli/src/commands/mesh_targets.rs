@@ -2,13 +2,12 @@
 
 use super::{check_output, extension, sights};
 use crate::arguments::{GivingWay, Global, MeshTargets, Query, Usage};
-use crate::pipeline::{self, Points, Scene};
+use crate::pipeline::{self, Points, Scene, mesh_in};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::Mesh;
-use belvedere::crs::Crs;
-use belvedere::io::{Cells, read_mesh, write_mesh_values, write_table};
+use belvedere::io::{Cells, write_mesh_values, write_table};
 use belvedere::query::{
     BackFaces, MeshTargetParams, Scope, SeenArea, SurfacePieces, Viewer, seen_faces, seen_in_all, seen_objects,
 };
@@ -47,26 +46,6 @@ pub(super) fn refuse_flags(flags: &MeshTargets) -> Result<()> {
 /// Reads a mesh in the coordinates of a scene, as metres.
 pub(super) fn mesh_of(path: &Path, scene: &Scene, stages: &mut Stages, summary: &mut Summary) -> Result<Mesh> {
     mesh_in(path, &scene.cloud.frame.crs, stages, summary)
-}
-
-/// The same in the coordinates of a reference system.
-pub(super) fn mesh_in(path: &Path, crs: &Crs, stages: &mut Stages, summary: &mut Summary) -> Result<Mesh> {
-    let (mesh, report) = stages.run("reading mesh", 0, |_| read_mesh(path))?;
-    if mesh.crs.contradicts(crs) {
-        bail!(
-            "{}: the mesh is in {}, but the scene is in {}; convert one of them",
-            path.display(),
-            mesh.crs.describe(),
-            crs.describe()
-        );
-    }
-    let mut section = Summary::default();
-    section
-        .add("triangles", mesh.triangles.len())
-        .add("objects", mesh.object_names.len())
-        .add("triangles_without_area", report.degenerate_triangle_count);
-    summary.add("mesh", section);
-    Ok(mesh.scaled_to_metres(crs))
 }
 
 pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Summary> {

@@ -136,14 +136,14 @@ fn matrix_params(scene: &Scene, arguments: &SunHours) -> BlockRule {
 
 /// The number by which a matrix knows the balls that it was made of.
 fn matrix_scene(scene: &Scene, arguments: &SunHours) -> u64 {
-    scene_fingerprint(scene.model.balls(), &matrix_params(scene, arguments))
+    scene_fingerprint(scene.model.balls(), scene.model.added(), &matrix_params(scene, arguments))
 }
 
 /// Refuses bits that were kept for other places or balls.
 fn check_kept(kept: &MatrixHead, targets: &Targets, scene: u64) -> Result<()> {
     if kept.scene != scene {
         bail!(
-            "--load-matrix: the matrix is for other balls, or for another --shell or --ball-profile; make it again with --save-matrix"
+            "--load-matrix: the matrix is for other balls, or for another --add, --shell or --ball-profile; make it again with --save-matrix"
         );
     }
     let same = |a: &[f32; 3], b: &[f32; 3]| a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());

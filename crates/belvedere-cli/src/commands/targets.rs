@@ -15,6 +15,7 @@ use belvedere::apps::viewshed::cell_for;
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::{MapGrid, highest_points};
 use belvedere::io::{Georeference, atomic, write_tif_u8};
+use belvedere::query::AddedMeshes;
 use belvedere::raster::Raster;
 use belvedere::results::{TakenFrom, georeference, measure_map, write_measures, write_raster};
 use belvedere::{Mesh, PointCloud};
@@ -42,7 +43,8 @@ pub(crate) struct Relief {
 
 enum Source {
     /// The cloud that the ground below cells, and the relief of maps, come from.
-    Cells(Box<PointCloud>),
+    /// The meshes that were added are part of the relief.
+    Cells(Box<PointCloud>, Option<AddedMeshes>),
     /// Points with their attributes, and the file they were read from unless they are those of the scene.
     Points(Box<PointCloud>, Option<PathBuf>),
     Mesh(Box<Mesh>),
@@ -143,11 +145,15 @@ impl SkyPlaces {
             params = params.with_height(f64::from(height));
         }
         let name = if self.places.surface { "finding the surface" } else { "finding hidden ground" };
-        let (targets, report) = stages.run(name, 0, |control| Targets::of_cells(&cloud, ground, &params, control))?;
+        let (mut targets, mut report) =
+            stages.run(name, 0, |control| Targets::of_cells(&cloud, ground, &params, control))?;
+        if let Some(added) = scene.model.added() {
+            report.cells_below_objects_excluded += targets.set_on_added(added, &params);
+        }
         if !self.places.surface {
             summary.add_report(&report);
         }
-        Ok(Asked { targets, from: Source::Cells(Box::new(cloud)) })
+        Ok(Asked { targets, from: Source::Cells(Box::new(cloud), scene.model.added().cloned()) })
     }
 
     fn of_points(&self, cloud: PointCloud, normals: Option<Vec<[f32; 3]>>, file: Option<&Path>) -> Result<Asked> {
@@ -213,12 +219,12 @@ pub(super) fn leave_out_outside(targets: &mut Targets, scene: &Scene, summary: &
 impl Asked {
     /// What maps are drawn on; `None` where targets are no cells.
     pub(crate) fn relief(&self) -> Option<Relief> {
-        let (Source::Cells(cloud), Some(ground)) = (&self.from, self.targets.ground()) else { return None };
-        Some(Relief {
-            heights: highest_points(&cloud.positions, ground),
-            cell: ground.grid.cell,
-            place: georeference(&ground.grid, &self.targets.frame),
-        })
+        let (Source::Cells(cloud, added), Some(ground)) = (&self.from, self.targets.ground()) else { return None };
+        let mut heights = highest_points(&cloud.positions, ground);
+        if let Some(added) = added {
+            added.raise(&mut heights, &ground.grid);
+        }
+        Some(Relief { heights, cell: ground.grid.cell, place: georeference(&ground.grid, &self.targets.frame) })
     }
 
     /// [`report_edge`] of these targets, with a mask of their cells where it is wanted.
@@ -269,7 +275,7 @@ impl Asked {
             stages.run("writing", 0, |_| self.write_one(output, measures, map, summary))?;
             written.push(output.display().to_string());
         }
-        if let (Some(folder), Source::Cells(_)) = (&outputs.measures, &self.from) {
+        if let (Some(folder), Source::Cells(..)) = (&outputs.measures, &self.from) {
             atomic::make_folder(folder)?;
             for measure in measures {
                 let path = folder.join(format!("{}.tif", measure.name));
@@ -296,7 +302,7 @@ impl Asked {
             _ => None,
         };
         let from = match &self.from {
-            Source::Cells(_) => TakenFrom::Nothing,
+            Source::Cells(..) => TakenFrom::Nothing,
             Source::Points(cloud, _) => rows.as_ref().map_or(TakenFrom::Cloud(cloud), TakenFrom::Rows),
             Source::Mesh(mesh) => TakenFrom::Mesh(mesh),
         };

@@ -1,7 +1,7 @@
 //! `belvedere view`.
 
 use super::check_output;
-use super::mesh_targets::{is_mesh, mesh_in};
+use super::mesh_targets::is_mesh;
 use crate::arguments::{Global, MethodChoice, SceneInput, Usage, ViewPage};
 use crate::interrupt;
 use crate::pipeline::{self, Points, flagged, params};
@@ -159,16 +159,16 @@ fn load(
         let params = arguments.shrinking.params(MethodChoice::Carved)?;
         let cloud = Arc::new(pipeline::read(&input.input, stages, summary)?);
         loading.show(&cloud);
-        show_meshes(files, &cloud.frame, loading, stages, summary)?;
+        show_meshes(files, &arguments.plan.add, &cloud.frame, loading, stages, summary)?;
         let crs = &cloud.frame.crs;
         let params = params::model(&arguments.cleaning, &arguments.orienting, params, crs, stages)?;
         let built = SceneModel::build(&cloud, &params, &stages.control());
         let model = built.map_err(pipeline::advised)?.0;
-        return Ok((Some(cloud), model));
+        return Ok((Some(cloud), pipeline::planned(model, &arguments.plan, stages, summary)?));
     };
     input.input.clouds = vec![balls.clone()];
     let scene = pipeline::scene(&input, Points::Keep, stages, summary)?;
-    show_meshes(files, scene.model.frame(), loading, stages, summary)?;
+    show_meshes(files, &arguments.plan.add, scene.model.frame(), loading, stages, summary)?;
     let mut shown = None;
     if !files.clouds.is_empty() {
         input.input.clouds.clone_from(&files.clouds);
@@ -187,13 +187,14 @@ fn load(
 
 fn show_meshes(
     files: &Files,
+    planned: &[PathBuf],
     frame: &Frame,
     loading: &Loading,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<()> {
-    for path in &files.meshes {
-        let mesh = mesh_in(path, &frame.crs, stages, summary)?;
+    for path in files.meshes.iter().chain(planned) {
+        let mesh = pipeline::mesh_in(path, &frame.crs, stages, summary)?;
         loading.show_mesh(&mesh, frame);
     }
     Ok(())

@@ -22,6 +22,7 @@ mod language;
 mod limits;
 mod masbcpp_folder;
 mod odd_clouds;
+mod plans;
 mod queries;
 mod readme;
 mod shadow;

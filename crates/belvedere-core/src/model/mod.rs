@@ -23,8 +23,8 @@ pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesR
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
 use crate::pulses::NeedleColumns;
-use crate::query::BallTree;
-use belvedere_data::{Bounds, Error, Frame, Result};
+use crate::query::{AddedMeshes, BallTree};
+use belvedere_data::{Bounds, Error, Frame, Mesh, Result};
 
 /// A scene that answers what is visible: balls that block lines of sight, and the pulses that prove others free.
 ///
@@ -39,6 +39,8 @@ pub struct SceneModel {
     normals: Option<Vec<[f32; 3]>>,
     /// The balls in a tree, where something has needed them so already.
     tree: Option<BallTree>,
+    /// Meshes that were added.
+    added: Option<AddedMeshes>,
 }
 
 impl SceneModel {
@@ -57,7 +59,25 @@ impl SceneModel {
             });
         }
         let vegetation = vegetation_of_transmission(&parts.transmission);
-        Ok(Self { parts, vegetation, normals: None, tree: None })
+        Ok(Self { parts, vegetation, normals: None, tree: None, added: None })
+    }
+
+    /// The same model with the triangles of `mesh`, metres of the reference system of the model ([`Mesh::scaled_to_metres`]), which `name`
+    /// names in answers. They block as they are, beside the balls. Called again, it adds another mesh.
+    ///
+    /// # Errors
+    /// Those of [`AddedMeshes::new`].
+    pub fn with_added(mut self, mesh: &Mesh, name: &str) -> Result<Self> {
+        let coverage = self.coverage();
+        let added = AddedMeshes::new(mesh, name, self.frame().origin, coverage.as_ref(), self.added.as_ref())?;
+        self.added = Some(added);
+        Ok(self)
+    }
+
+    /// The meshes that were added, if any were. They are not saved.
+    #[must_use]
+    pub fn added(&self) -> Option<&AddedMeshes> {
+        self.added.as_ref()
     }
 
     /// Everything that is saved of a model: what a ball file holds.

@@ -34,7 +34,7 @@ impl SceneModel {
             Some(tree) => tree.with_rule(rule)?,
             None => control.stage("indexing balls", balls.len(), || BallTree::new(balls, rule))?,
         };
-        let scene = MedialScene::of_tree(tree).with_coverage(self.coverage());
+        let scene = MedialScene::of_tree(tree).with_coverage(self.coverage()).with_added(self.added.clone());
         let Some(pulses) = self.pulses().filter(|_| unproven != UnprovenAs::Visible) else { return Ok(scene) };
         Ok(scene.with_pulses(Proof::from_columns(pulses.clone(), &ProofParams::default())?))
     }
@@ -47,6 +47,6 @@ impl SceneModel {
     pub fn scene_without_vegetation(&self, rule: &BlockRule, control: &Control<'_>) -> Result<MedialScene> {
         let balls = without_vegetation(self.balls(), self.vegetation())?;
         let scene = control.stage("indexing balls without trees", balls.len(), || MedialScene::new(&balls, rule))?;
-        Ok(scene.with_coverage(self.coverage()))
+        Ok(scene.with_coverage(self.coverage()).with_added(self.added.clone()))
     }
 }

@@ -79,7 +79,7 @@ impl MedialScene {
         Ok(answers)
     }
 
-    /// Calls `visit` with the place, in the order of the tree, of every target that no ball blocks, one at the viewer itself among
+    /// Calls `visit` with the place, in the order of the tree, of every target that nothing blocks, one at the viewer itself among
     /// them, but none outside the cloud; what pulses prove is not asked. Runs on the calling thread; the places ascend.
     ///
     /// # Errors
@@ -94,7 +94,12 @@ impl MedialScene {
         let sweep = Sweep::new(self, viewer, targets, control)?;
         if !targets.nodes.is_empty() && !is_eye_outside(self, viewer) {
             sweep.run(0, &mut |place| {
-                if !self.is_outside_cloud(targets.positions()[place].map(f64::from)) {
+                let target = targets.positions()[place];
+                let is_hidden = self.added.is_some()
+                    && viewer
+                        .line_of_sight(place, target)
+                        .is_some_and(|(towards, range)| self.is_behind_added(target.map(f64::from), towards, range));
+                if !is_hidden && !self.is_outside_cloud(target.map(f64::from)) {
                     visit(place);
                 }
             });

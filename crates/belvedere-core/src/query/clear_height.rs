@@ -1,7 +1,9 @@
 //! How high a target must stand to be seen over what blocks it.
 
+use super::skyline::cut;
 use super::{EarthParams, MedialScene};
 use crate::ray_index::Ray;
+use crate::triangle_tree::Corners;
 use belvedere_data::vector::{length, sub};
 
 /// Least step upward, metres: where rounding leaves a line of sight in a ball whose top it just reached.
@@ -38,6 +40,10 @@ impl MedialScene {
             let mut clear: Option<f64> = None;
             self.each_blocker(observer, target, earth, |number| {
                 let top = self.top(number, observer, target, earth) - foot[2];
+                clear = Some(clear.map_or(top, |clear| clear.max(top)));
+            });
+            self.each_added_blocker(observer, target, earth, |corners| {
+                let top = shadow_top_of_triangle(corners, observer, target, earth) - foot[2];
                 clear = Some(clear.map_or(top, |clear| clear.max(top)));
             });
             let Some(clear) = clear else { return Some(height) };
@@ -81,6 +87,36 @@ impl MedialScene {
     }
 }
 
+/// Where the shadow that a triangle casts from `observer` ends upward on the vertical through `target`.
+fn shadow_top_of_triangle(corners: &Corners, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
+    let across = [target[0] - observer[0], target[1] - observer[1]];
+    let span = across[0].hypot(across[1]);
+    let bends = earth.bends(target, observer);
+    let fall = |along: f64| if bends { earth.fall(along) } else { 0.0 };
+    let offsets = corners.map(|corner| {
+        let [x, y, z] = sub(corner, observer);
+        [x, y, z - fall(x.hypot(y))]
+    });
+    if span == 0.0 {
+        // straight below or above the observer: nothing is seen past it
+        let highest = corners.iter().map(|corner| corner[2]).fold(f64::NEG_INFINITY, f64::max);
+        return if highest > observer[2] { f64::INFINITY } else { highest };
+    }
+    let Some([near, far]) = cut(&offsets, [across[0] / span, across[1] / span]) else { return target[2] };
+    let at = |along: f64| match far[0] > near[0] {
+        true => near[1] + (far[1] - near[1]) * (along - near[0]) / (far[0] - near[0]),
+        false => far[1].max(near[1]),
+    };
+    // the piece between the observer and the vertical
+    let ends = [near[0].max(0.0), far[0].min(span)];
+    let shadow = |along: f64| match at(along) {
+        up if along > 0.0 => up * span / along,
+        up if up > 0.0 => f64::INFINITY,
+        _ => f64::NEG_INFINITY,
+    };
+    observer[2] + shadow(ends[0]).max(shadow(ends[1])) + fall(span)
+}
+
 /// Where the shadow that a whole ball casts from `observer` ends upward on the vertical through `target`.
 fn shadow_top(center: [f64; 3], radius: f64, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
     let across = [target[0] - observer[0], target[1] - observer[1]];
@@ -91,7 +127,7 @@ fn shadow_top(center: [f64; 3], radius: f64, observer: [f64; 3], target: [f64; 3
     }
     // seen from the observer a curved earth falls away below straight lines of sight
     let bends = earth.bends(target, observer);
-    let fall = |along: f64| if bends { (1.0 - earth.refraction) * along * along / (2.0 * earth.radius) } else { 0.0 };
+    let fall = |along: f64| if bends { earth.fall(along) } else { 0.0 };
     let along = (offset[0] * across[0] + offset[1] * across[1]) / span;
     let beside = (offset[0] * across[1] - offset[1] * across[0]) / span;
     let disc = (radius * radius - beside * beside).max(0.0).sqrt();

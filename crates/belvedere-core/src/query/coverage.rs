@@ -49,6 +49,14 @@ impl Coverage {
         self.holds_on_map(position) && (low[2] - MARGIN..=high[2] + CEILING).contains(&position[2])
     }
 
+    /// Whether the box between two corners, local metres, meets the space over the cloud.
+    #[must_use]
+    pub fn meets(&self, low: [f64; 3], high: [f64; 3]) -> bool {
+        let (first, last) = self.bounds.corners();
+        let room = [MARGIN, MARGIN, CEILING];
+        (0..3).all(|i| low[i] <= last[i] + room[i] && high[i] >= first[i] - MARGIN)
+    }
+
     /// Number of finite `positions`, (N, 3) local metres, that do not lie over the cloud.
     #[must_use]
     pub fn outside_count(&self, positions: &[[f32; 3]]) -> usize {

@@ -87,6 +87,12 @@ impl EarthParams {
         }
     }
 
+    /// How far below the level plane of an observer a place sinks that lies `span` metres away on the map, metres.
+    #[must_use]
+    pub(super) fn fall(&self, span: f64) -> f64 {
+        (1.0 - self.refraction) * span * span / (2.0 * self.radius)
+    }
+
     /// How far the line lies below the straight one between its ends, metres, at the share `share` of the horizontal length
     /// `span`, metres.
     #[must_use]

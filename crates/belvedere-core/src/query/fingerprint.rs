@@ -2,24 +2,28 @@
 
 use crate::blocking::{BlockRule, Profile};
 use crate::medial::MedialBalls;
+use crate::query::AddedMeshes;
 
-/// A number that differs, but for one chance in 10¹⁹, between scenes whose balls or parameters differ in any bit; the same on any machine.
+/// A number that differs, but for one chance in 10¹⁹, between scenes whose balls, added triangles or parameters differ in any bit; the same on any machine.
 ///
 /// # Source
 /// FNV-1a of 64 bits (Fowler, Noll & Vo), taken over words of 32 bits.
 #[must_use]
-pub fn scene_fingerprint(balls: &MedialBalls, params: &BlockRule) -> u64 {
+pub fn scene_fingerprint(balls: &MedialBalls, added: Option<&AddedMeshes>, params: &BlockRule) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut mix = |word: u32| hash = (hash ^ u64::from(word)).wrapping_mul(0x0100_0000_01b3);
+    #[expect(clippy::cast_possible_truncation, reason = "both halves are taken")]
+    let halves = |number: f64| [number.to_bits() as u32, (number.to_bits() >> 32) as u32];
     for number in [params.bias, params.shell] {
-        let bits = number.to_bits();
-        #[expect(clippy::cast_possible_truncation, reason = "both halves are taken")]
-        [bits as u32, (bits >> 32) as u32].into_iter().for_each(&mut mix);
+        halves(number).into_iter().for_each(&mut mix);
     }
     mix(u32::from(params.profile == Profile::Sphere));
     for (center, radius) in balls.centers.iter().zip(&balls.radii) {
         center.iter().for_each(|v| mix(v.to_bits()));
         mix(radius.to_bits());
+    }
+    for corner in added.map_or(&[][..], AddedMeshes::triangles).as_flattened().as_flattened() {
+        halves(*corner).into_iter().for_each(&mut mix);
     }
     hash
 }

@@ -1,11 +1,12 @@
 //! A union of medial balls that exact lines of sight are cut with.
 
+use super::added::{AddedMeshes, Ends};
 use super::backend::{Backend, Prepared};
 use super::ball_tree::BallTree;
 use super::certified::{line_in_view, viewer_of};
 use super::cpu::Cpu;
 use super::lazy::Lazy;
-use super::{Answer, Coverage, Proof, Sight, Viewer, Visibility};
+use super::{Answer, Blocker, Coverage, Proof, Sight, Viewer, Visibility};
 use crate::blocking::{Ball, BlockRule};
 use crate::medial::MedialBalls;
 use crate::ray_index::Ray;
@@ -28,11 +29,15 @@ const CHUNK: usize = 1024;
 /// With pulses ([`MedialScene::with_pulses`]) a target that nothing blocks is [`Answer::Unproven`] where too much of its
 /// line of sight runs through space that no pulse came near to.
 ///
+/// With meshes ([`MedialScene::with_added`]) their triangles block too, exactly as they are; space inside and around them stays as proven or
+/// unproven as it was.
+///
 /// With a coverage ([`MedialScene::with_coverage`]) what lies beside or below the cloud is [`Answer::OutsideCloud`].
 pub struct MedialScene {
     tree: Arc<BallTree>,
     pub(super) proof: Option<Proof>,
     coverage: Option<Coverage>,
+    pub(super) added: Option<AddedMeshes>,
     backend: Box<dyn Backend>,
     prepared: Lazy<Box<dyn Prepared>>,
 }
@@ -50,7 +55,7 @@ impl MedialScene {
     #[must_use]
     pub fn of_tree(tree: BallTree) -> Self {
         let tree = Arc::new(tree);
-        Self { tree, proof: None, coverage: None, backend: Box::new(Cpu), prepared: Lazy::new() }
+        Self { tree, proof: None, coverage: None, added: None, backend: Box::new(Cpu), prepared: Lazy::new() }
     }
 
     /// The same balls, whose lines of sight are settled in bulk by another backend. Answers stay the same.
@@ -89,6 +94,19 @@ impl MedialScene {
         self
     }
 
+    /// The same balls, beside which the triangles of `added` block.
+    #[must_use]
+    pub fn with_added(mut self, added: Option<AddedMeshes>) -> Self {
+        self.added = added;
+        self
+    }
+
+    /// The meshes that were added, if any were.
+    #[must_use]
+    pub fn added(&self) -> Option<&AddedMeshes> {
+        self.added.as_ref()
+    }
+
     /// Over which space the cloud lies, where that is known.
     #[must_use]
     pub fn coverage(&self) -> Option<&Coverage> {
@@ -119,7 +137,7 @@ impl MedialScene {
     /// vector `towards`. All numbers but the range must be finite.
     #[must_use]
     pub fn answer(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
-        if self.blocked(target, towards, range) {
+        if self.tree.blocks(&self.tree.ray(target, towards, range)) {
             return Answer::Blocked;
         }
         self.answer_unblocked(target, towards, range)
@@ -127,13 +145,16 @@ impl MedialScene {
 
     /// The same for a line of sight of which it is known that no ball blocks it.
     pub(super) fn answer_unblocked(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
+        if self.is_behind_added(target, towards, range) {
+            return Answer::Blocked;
+        }
         match &self.proof {
             Some(proof) if proof.is_unproven(target, towards, range) => Answer::Unproven,
             _ => Answer::Visible,
         }
     }
 
-    /// Visible or unproven, for a line of sight from `target` along the unit vector `towards` without end of which it is known that no ball
+    /// Visible, unproven, or blocked by what was added, for a line of sight from `target` along the unit vector `towards` without end of which it is known that no ball
     /// blocks it.
     #[must_use]
     pub fn answer_unblocked_towards(&self, target: [f64; 3], towards: [f64; 3]) -> Answer {
@@ -203,24 +224,43 @@ impl MedialScene {
         self.tree.ray(target, towards, range)
     }
 
-    /// Whether any ball lies between a target and its viewer at `range` along the unit vector `towards`.
-    pub(super) fn blocked(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
-        self.tree.blocks(&self.tree.ray(target, towards, range))
+    /// What a line of sight from `target` meets first on its way to `range` metres along the unit vector `towards`, and where the line
+    /// leaves it, metres from the target. `None` where nothing blocks.
+    #[must_use]
+    pub fn first_block(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Option<(Blocker, f64)> {
+        let ray = self.ray(target, towards, range);
+        let ball = self.tree.index().nearest(&ray, |number| self.front(number, &ray));
+        let ball = ball.and_then(|(number, front)| Some((self.blocker_of_ball(number)?, front)));
+        let ends = Ends { target, viewer: range.is_finite().then(|| ray.at(range)) };
+        let line = Ray { ranges: [0.0, range], ..ray };
+        nearer(ball, self.added.as_ref().and_then(|added| added.nearest(&line, &ends)))
     }
 
-    /// The ball that a line of sight from `target` meets first on its way to `range` metres along the unit vector `towards`: its
-    /// row among the balls given, and where the line leaves it, metres from the target. `None` where nothing blocks.
-    #[must_use]
-    pub fn first_block(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Option<(usize, f64)> {
-        let ray = self.ray(target, towards, range);
-        let (number, front) = self.tree.index().nearest(&ray, |number| self.front(number, &ray))?;
-        Some((*self.tree.rows().get(number)? as usize, front))
+    /// Whether a mesh that was added blocks a line of sight.
+    #[inline]
+    pub(super) fn is_behind_added(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
+        self.added.as_ref().is_some_and(|added| added.blocks(target, towards, range))
+    }
+
+    /// The ball of a row of the index as what blocks.
+    pub(super) fn blocker_of_ball(&self, number: usize) -> Option<Blocker> {
+        self.tree.rows().get(number).map(|&row| Blocker::Ball(row as usize))
     }
 
     /// Where a line of sight leaves ball `number`, metres from its target, if that ball blocks it.
     #[inline]
     pub(super) fn front(&self, number: usize, ray: &Ray) -> Option<f64> {
         self.tree.front(number, ray)
+    }
+}
+
+/// The nearer of a ball and a mesh by its number, each with its range; the ball where both are equally near.
+pub(super) fn nearer(ball: Option<(Blocker, f64)>, mesh: Option<(usize, f64)>) -> Option<(Blocker, f64)> {
+    let mesh = mesh.map(|(number, range)| (Blocker::Mesh(number), range));
+    match (ball, mesh) {
+        (Some(ball), Some(mesh)) if mesh.1 < ball.1 => Some(mesh),
+        (None, mesh) => mesh,
+        (ball, _) => ball,
     }
 }
 

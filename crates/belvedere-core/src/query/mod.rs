@@ -10,6 +10,7 @@
 //! Other models of a scene answer the second and the third by the trait [`Visibility`]. [`target_tree`] and [`certified`] hold what these
 //! are made of, for those who ask about the same targets or the same view again and again. A [`Backend`] settles lines of sight in bulk.
 
+mod added;
 pub mod backend;
 mod ball_tree;
 mod beams;
@@ -35,6 +36,7 @@ pub mod visibility;
 pub mod visibility_matrix;
 
 pub use crate::blocking::{Ball, BlockRule, Profile};
+pub use added::AddedMeshes;
 pub use backend::{Backend, Line, Prepared, Settled};
 pub use ball_tree::BallTree;
 pub use certified::{CertifiedReport, Scope};
@@ -48,7 +50,7 @@ pub use points::{
     Answer, AnswerCounts, MOST_RANDOM_PAIRS, MOST_RANDOM_TARGETS, UnprovenAs, query_points, random_targets,
 };
 pub use proof::{Beside, Proof, ProofParams};
-pub use segments::{Block, Crossing, Enclosure, LineOfSight, merged_crossings, random_pairs};
+pub use segments::{Block, Blocker, Crossing, Enclosure, LineOfSight, merged_crossings, random_pairs};
 pub use skyline::SkylinePoint;
 pub use surface::{Piece, Sides, SurfacePieces};
 pub use visibility::{Sight, Viewer, Visibility};

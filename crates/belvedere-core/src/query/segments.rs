@@ -1,8 +1,11 @@
 //! Lines of sight between pairs of points: what blocks them first, and all that lies on them.
 
+use super::added::Ends;
+use super::medial_scene::nearer;
 use super::{Answer, EarthParams, MedialScene};
 use crate::blocking::Chord;
 use crate::ray_index::Ray;
+use crate::triangle_tree::Corners;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::vector::{length, sub};
@@ -25,23 +28,46 @@ pub struct LineOfSight {
     pub unproven_length: f64,
 }
 
-/// A ball before a target.
+/// What stands in a line of sight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Blocker {
+    /// A ball, by its row among those that the scene was made of.
+    Ball(usize),
+    /// A mesh that was added, by its number ([`super::AddedMeshes::names`]).
+    Mesh(usize),
+}
+
+impl Blocker {
+    /// The row of a ball.
+    #[must_use]
+    pub fn ball(self) -> Option<usize> {
+        if let Self::Ball(row) = self { Some(row) } else { None }
+    }
+
+    /// The number of a mesh.
+    #[must_use]
+    pub fn mesh(self) -> Option<usize> {
+        if let Self::Mesh(number) = self { Some(number) } else { None }
+    }
+}
+
+/// What stands before a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
     /// Where the line of sight meets it, metres from the observer along the line.
     pub range: f64,
-    /// Its row among the balls that the scene was made of.
-    pub ball: usize,
+    /// What it is.
+    pub blocker: Blocker,
     /// Where the line meets it, local metres.
     pub place: [f64; 3],
 }
 
-/// The piece of a line of sight that lies in one ball, however it blocks.
+/// The piece of a line of sight that lies in one ball, however it blocks, or in one mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// Row of the ball among those that the scene was made of.
-    pub ball: usize,
-    /// Where the line enters and leaves the ball, metres from the observer, cut to the line.
+    /// In what it lies.
+    pub blocker: Blocker,
+    /// Where the line enters and leaves it, metres from the observer, cut to the line.
     pub ranges: [f64; 2],
 }
 
@@ -61,6 +87,17 @@ struct Piece {
     /// Ends of the whole line.
     target: [f64; 3],
     observer: [f64; 3],
+}
+
+impl Piece {
+    fn ends(&self) -> Ends {
+        Ends { target: self.target, viewer: Some(self.observer) }
+    }
+
+    /// All of it: a bias concerns balls only.
+    fn unbiased(&self) -> Ray {
+        Ray { ranges: [0.0, self.ray.ranges[1]], ..self.ray }
+    }
 }
 
 impl MedialScene {
@@ -84,10 +121,9 @@ impl MedialScene {
         };
         let whole = pieces.len() == 1;
         for (piece, passed) in &pieces {
-            if let Some((number, from_observer)) = self.first_on(piece, whole) {
+            if let Some((blocker, from_observer)) = self.first_on(piece, whole) {
                 let place = piece.ray.at(piece.ray.ranges[1] - from_observer);
-                let ball = self.tree().rows().get(number).map_or(usize::MAX, |&row| row as usize);
-                let block = Block { range: passed + from_observer, ball, place };
+                let block = Block { range: passed + from_observer, blocker, place };
                 return Some(LineOfSight { answer: Answer::Blocked, first_block: Some(block), unproven_length: 0.0 });
             }
         }
@@ -134,10 +170,11 @@ impl MedialScene {
             return self.answer(target, ray.direction, range);
         }
         let pieces = self.pieces(observer, target, earth);
-        if pieces
-            .iter()
-            .any(|(piece, _)| self.tree().index().any(&piece.ray, |number| self.front_on(number, piece).is_some()))
-        {
+        let is_blocked = |piece: &Piece| {
+            self.tree().index().any(&piece.ray, |number| self.front_on(number, piece).is_some())
+                || self.added().is_some_and(|added| added.blocks_piece(&piece.unbiased(), &piece.ends()))
+        };
+        if pieces.iter().any(|(piece, _)| is_blocked(piece)) {
             return Answer::Blocked;
         }
         let Some(proof) = &self.proof else { return Answer::Visible };
@@ -151,9 +188,10 @@ impl MedialScene {
         Answer::Visible
     }
 
-    /// Every ball on the line of sight from `observer` to `target`, local metres, by its whole radius, in the order in which the
-    /// line enters them. Balls around the ends are among them, and those that give way to the target. Empty for a line
-    /// without length or with coordinates that are not finite.
+    /// Every ball and mesh on the line of sight from `observer` to `target`, local metres, by its whole radius, in the order in which the
+    /// line enters them. Balls around the ends are among them, and those that give way to the target. A mesh holds what lies between every two
+    /// of its surfaces, counted from the target, and from the last one to the observer where their number is odd. Empty for a line without
+    /// length or with coordinates that are not finite.
     #[must_use]
     pub fn crossings(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<Crossing> {
         let corners = earth.corners(observer, target);
@@ -168,13 +206,24 @@ impl MedialScene {
                 let Some([enters, leaves]) = inside else { return };
                 let ranges = [enters.max(0.0), leaves.min(piece)];
                 if ranges[0] < ranges[1] {
-                    let ball = self.tree().rows().get(number).map_or(usize::MAX, |&row| row as usize);
-                    crossings.push(Crossing { ball, ranges: ranges.map(|range| passed + range) });
+                    let blocker = self.blocker_of_ball(number);
+                    let ranges = ranges.map(|range| passed + range);
+                    crossings.extend(blocker.map(|blocker| Crossing { blocker, ranges }));
                 }
             });
+            let mut passages = self.added().map_or(Vec::new(), |added| added.passages(&ray));
+            passages.reverse();
+            for of_mesh in passages.chunk_by(|a, b| a.0 == b.0) {
+                for pair in of_mesh.chunks(2) {
+                    let (mesh, leaves) = pair[0];
+                    let enters = pair.get(1).map_or(0.0, |(_, range)| *range);
+                    let ranges = [enters, leaves].map(|range| passed + range);
+                    crossings.push(Crossing { blocker: Blocker::Mesh(mesh), ranges });
+                }
+            }
             passed += piece;
         }
-        crossings.sort_by(|a, b| a.ranges[0].total_cmp(&b.ranges[0]).then(a.ball.cmp(&b.ball)));
+        crossings.sort_by(|a, b| a.ranges[0].total_cmp(&b.ranges[0]).then(a.blocker.cmp(&b.blocker)));
         crossings
     }
 
@@ -220,6 +269,20 @@ impl MedialScene {
         }
     }
 
+    /// Calls `visit` with the corners of every triangle of an added mesh that blocks the line of sight from `observer` to `target`.
+    pub(super) fn each_added_blocker(
+        &self,
+        observer: [f64; 3],
+        target: [f64; 3],
+        earth: &EarthParams,
+        mut visit: impl FnMut(&Corners),
+    ) {
+        let Some(added) = self.added() else { return };
+        for (piece, _) in self.pieces(observer, target, earth) {
+            added.each_blocking(&piece.unbiased(), &piece.ends(), &mut visit);
+        }
+    }
+
     /// The chords of a curved line from the observer on, each with what the line passed before it, metres.
     fn pieces(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<(Piece, f64)> {
         let corners = earth.corners(observer, target);
@@ -241,9 +304,8 @@ impl MedialScene {
         ray
     }
 
-    /// The ball that the observer meets first on a piece, by its number in the index, and where, metres from the end of the piece
-    /// on the observer's side.
-    fn first_on(&self, piece: &Piece, whole: bool) -> Option<(usize, f64)> {
+    /// What the observer meets first on a piece, and where, metres from the end of the piece on the observer's side.
+    fn first_on(&self, piece: &Piece, whole: bool) -> Option<(Blocker, f64)> {
         let ray = &piece.ray;
         let reach = ray.ranges[1];
         let back = Ray {
@@ -251,10 +313,13 @@ impl MedialScene {
             direction: ray.direction.map(|v| -v),
             ranges: [0.0, (reach - ray.ranges[0]).max(0.0)],
         };
-        self.tree().index().nearest(&back, |number| {
+        let ball = self.tree().index().nearest(&back, |number| {
             let front = if whole { self.front(number, ray) } else { self.front_on(number, piece) };
             front.map(|front| reach - front)
-        })
+        });
+        let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
+        let whole = Ray { ranges: [0.0, reach], ..back };
+        nearer(ball, self.added().and_then(|added| added.nearest(&whole, &piece.ends())))
     }
 
     /// As [`MedialScene::front`], for a chord of a longer line.

@@ -1,9 +1,11 @@
 //! The skyline around a place: how high the sky begins in each direction.
 
-use super::{EarthParams, MedialScene};
+use super::{Blocker, EarthParams, MedialScene};
 use crate::blocking::Ball;
+use crate::triangle_tree::Corners;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
+use belvedere_data::vector::{length, sub};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -18,19 +20,22 @@ pub struct SkylinePoint {
     pub elevation: f64,
     /// Range of what stands there, metres; infinite where nothing does.
     pub range: f64,
-    /// Row of its ball among the balls given.
-    pub ball: Option<usize>,
+    /// What stands there.
+    pub blocker: Option<Blocker>,
 }
 
-const EMPTY: SkylinePoint = SkylinePoint { elevation: -FRAC_PI_2, range: f64::INFINITY, ball: None };
+const EMPTY: SkylinePoint = SkylinePoint { elevation: -FRAC_PI_2, range: f64::INFINITY, blocker: None };
 
 impl SkylinePoint {
     /// The higher of two; of equally high ones that of the lower row, so that their order does not matter.
     fn or(self, other: Self) -> Self {
-        let rank = |point: &Self| point.ball.unwrap_or(usize::MAX);
+        let comes_first = match (self.blocker, other.blocker) {
+            (Some(own), Some(other)) => other < own,
+            (own, other) => own.is_none() && other.is_some(),
+        };
         match self.elevation.total_cmp(&other.elevation) {
             std::cmp::Ordering::Less => other,
-            std::cmp::Ordering::Equal if rank(&other) < rank(&self) => other,
+            std::cmp::Ordering::Equal if comes_first => other,
             _ => self,
         }
     }
@@ -40,7 +45,7 @@ impl MedialScene {
     /// The skyline around `eye`, local metres: at `count` azimuths, the first north, clockwise in equal steps. Empty for an eye that is
     /// not finite.
     ///
-    /// Exact for the union of balls, by the tangents of every ball in the vertical plane of each azimuth: nothing that floats above a
+    /// Exact for the union of balls and for meshes that were added, by the tangents of every ball in the vertical plane of each azimuth: nothing that floats above a
     /// gap is missed, and there is no step to choose. The eye may be a place on a surface: balls give way to it by
     /// [`crate::blocking::BlockRule::shell`] as to any target. Those that hold it even so are left out; [`MedialScene::enclosure`] tells of them.
     /// Over the earth of `earth` far balls sink.
@@ -75,7 +80,8 @@ impl MedialScene {
         let step = TAU / count as f64;
         // sines and cosines of the azimuths
         let directions: Vec<[f64; 2]> = (0..count).map(|i| (first + i as f64 * step).sin_cos().into()).collect();
-        self.tree()
+        let of_balls = self
+            .tree()
             .balls()
             .par_chunks(CHUNK)
             .enumerate()
@@ -84,24 +90,46 @@ impl MedialScene {
                 let mut skyline = vec![EMPTY; count];
                 for (i, &ball) in balls.iter().enumerate() {
                     let Some((offset, radius)) = self.before(eye, ball, earth) else { continue };
-                    let ball = self.tree().rows().get(chunk * CHUNK + i).map(|&row| row as usize);
+                    let blocker = self.blocker_of_ball(chunk * CHUNK + i);
                     each_azimuth(offset, radius, [first, step], count, |azimuth| {
                         if let Some((elevation, range)) = top(offset, radius, directions[azimuth]) {
-                            skyline[azimuth] = skyline[azimuth].or(SkylinePoint { elevation, range, ball });
+                            skyline[azimuth] = skyline[azimuth].or(SkylinePoint { elevation, range, blocker });
                         }
                     });
                 }
                 Ok(skyline)
             })
-            .try_reduce(|| vec![EMPTY; count], |a, b| Ok(a.into_iter().zip(b).map(|(a, b)| a.or(b)).collect()))
+            .try_reduce(|| vec![EMPTY; count], |a, b| Ok(a.into_iter().zip(b).map(|(a, b)| a.or(b)).collect()));
+        let mut skyline = of_balls?;
+        for (corners, mesh) in self.added().into_iter().flat_map(|added| added.before(eye)) {
+            control.check()?;
+            let corners = corners.map(|corner| self.offset(eye, corner, earth));
+            let middle = std::array::from_fn(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 3.0);
+            let radius = corners.iter().map(|&corner| length(sub(corner, middle))).fold(0.0, f64::max);
+            each_azimuth(middle, radius, [first, step], count, |azimuth| {
+                if let Some((elevation, range)) = top_of_triangle(&corners, directions[azimuth]) {
+                    let blocker = Some(Blocker::Mesh(mesh));
+                    skyline[azimuth] = skyline[azimuth].or(SkylinePoint { elevation, range, blocker });
+                }
+            });
+        }
+        Ok(skyline)
+    }
+
+    /// From the eye to a place; over a curved earth far places sink.
+    fn offset(&self, eye: [f64; 3], place: [f64; 3], earth: &EarthParams) -> [f64; 3] {
+        let mut offset = sub(place, eye);
+        if earth.bends(eye, place) {
+            offset[2] -= earth.fall(offset[0].hypot(offset[1]));
+        }
+        offset
     }
 
     /// From the eye to the centre of a ball, and its radius after giving way; `None` if it holds the eye even so.
     fn before(&self, eye: [f64; 3], ball: Ball, earth: &EarthParams) -> Option<([f64; 3], f64)> {
         let (mut offset, radius) = self.tree().rule().seen_from(ball, eye)?;
         if earth.bends(eye, ball.center.map(f64::from)) {
-            let span = offset[0].hypot(offset[1]);
-            offset[2] -= (1.0 - earth.refraction) * span * span / (2.0 * earth.radius);
+            offset[2] -= earth.fall(offset[0].hypot(offset[1]));
         }
         Some((offset, radius))
     }
@@ -135,4 +163,42 @@ fn top([x, y, z]: [f64; 3], radius: f64, [sin, cos]: [f64; 2]) -> Option<(f64, f
     // the disc may reach over the vertical through the eye, into the half plane behind it or from there
     let in_front = middle - half < FRAC_PI_2 && middle + half > -FRAC_PI_2;
     in_front.then(|| ((middle + half).min(FRAC_PI_2), (square - disc).sqrt()))
+}
+
+/// The highest elevation at which a half plane meets a triangle, corners from the eye, and the range there.
+fn top_of_triangle(corners: &Corners, [sin, cos]: [f64; 2]) -> Option<(f64, f64)> {
+    let [from, to] = cut(corners, [sin, cos])?;
+    if from[0] < 0.0 && to[0] < 0.0 {
+        return None;
+    }
+    // elevations along a piece lie between those of its ends; what lies behind the eye is cut off
+    let ends = [(from, to), (to, from)].map(|(end, other)| match end[0] < 0.0 {
+        true => [0.0, end[1] + (other[1] - end[1]) * -end[0] / (other[0] - end[0])],
+        false => end,
+    });
+    let point = |[ahead, up]: [f64; 2]| (up.atan2(ahead), ahead.hypot(up));
+    let [a, b] = ends.map(point);
+    Some(if a.0 > b.0 || (a.0 == b.0 && a.1 < b.1) { a } else { b })
+}
+
+/// The piece of a triangle in the vertical plane along an azimuth (its sine and cosine) through the origin: ahead and up.
+pub(super) fn cut(corners: &Corners, [sin, cos]: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    let flat = corners.map(|[x, y, z]| (x * cos - y * sin, [x * sin + y * cos, z]));
+    let mut ends: Option<[[f64; 2]; 2]> = None;
+    let mut take = |place: [f64; 2]| {
+        let [low, high] = ends.unwrap_or([place; 2]);
+        let before = |a: [f64; 2], b: [f64; 2]| (a[0], a[1]) < (b[0], b[1]);
+        ends = Some([if before(place, low) { place } else { low }, if before(high, place) { place } else { high }]);
+    };
+    for (i, &(aside, place)) in flat.iter().enumerate() {
+        let (next_aside, next) = flat[(i + 1) % 3];
+        if aside == 0.0 {
+            take(place);
+        }
+        if (aside < 0.0) != (next_aside < 0.0) && aside != 0.0 && next_aside != 0.0 {
+            let share = aside / (aside - next_aside);
+            take([0, 1].map(|k| place[k] + share * (next[k] - place[k])));
+        }
+    }
+    ends
 }

@@ -30,7 +30,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         _ => "outside the cloud",
     };
     let block = sight.first_block.map(
-        |block| json!({ "range_m": rounded(block.range, 3), "place": shown(asked, block.place), "ball": block.ball }),
+        |block| json!({ "range_m": rounded(block.range, 3), "place": shown(asked, block.place), "ball": block.blocker.ball() }),
     );
     let ends = format!("--observer {} --target {}", typed(&question.observer), typed(&question.target));
     let length = observer.iter().zip(target).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();

@@ -4,7 +4,7 @@
 use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, BlockRule, Curvature, EarthParams, MedialScene};
+use belvedere::query::{Answer, BlockRule, Blocker, Curvature, EarthParams, MedialScene};
 use belvedere::random::uniform;
 use belvedere::view::to_sun;
 use std::f64::consts::FRAC_PI_2;
@@ -29,12 +29,14 @@ fn a_ball_stands_as_high_as_its_tangents() {
     let expected = 30f64.to_radians() + (3.0f64 / 20.0).asin();
     // centres are f32: 1e-7
     assert!((skyline[90].elevation - expected).abs() < 1e-6, "{:?}", skyline[90]);
-    assert!((skyline[90].range - (400.0f64 - 9.0).sqrt()).abs() < 1e-5 && skyline[90].ball == Some(0));
+    assert!(
+        (skyline[90].range - (400.0f64 - 9.0).sqrt()).abs() < 1e-5 && skyline[90].blocker == Some(Blocker::Ball(0))
+    );
     // the vertical planes that touch it: sin = r / horizontal distance
     let half = (3.0 / (20.0 * 30f64.to_radians().cos())).asin().to_degrees();
     for (azimuth, point) in skyline.iter().enumerate() {
         let is_met = (azimuth as f64 - 90.0).abs() < half;
-        assert_eq!(point.ball.is_some(), is_met, "{azimuth}");
+        assert_eq!(point.blocker.is_some(), is_met, "{azimuth}");
         assert_eq!(point.elevation > -FRAC_PI_2, is_met);
     }
 }
@@ -95,7 +97,7 @@ fn what_floats_above_a_gap_is_the_horizon_and_a_roof_overhead_hides_the_zenith()
     assert_eq!(roof.iter().map(|p| p.elevation == FRAC_PI_2).collect::<Vec<_>>(), [true; 4]);
     let beside =
         scene_of(&[([0.0, 4.0, 5.0], 3.0)]).skyline([0.0; 3], 4, &EarthParams::flat(), &Control::none()).unwrap();
-    assert!(beside[0].elevation < FRAC_PI_2 && beside[2].ball.is_none());
+    assert!(beside[0].elevation < FRAC_PI_2 && beside[2].blocker.is_none());
 }
 
 #[test]

@@ -19,10 +19,11 @@ const CRATES: [(&str, &[&str]); 12] = [
 ];
 
 /// Level of each module of `belvedere-core`: a module imports from lower levels, or from its own folder.
-const LEVELS: [(&str, u8); 12] = [
+const LEVELS: [(&str, u8); 13] = [
     ("neighbors", 1),
     ("ray_index", 1),
     ("blocking", 1),
+    ("triangle_tree", 2),
     ("clean", 2),
     ("normals", 2),
     ("pulses", 2),

@@ -4,7 +4,7 @@
 use belvedere::control::Control;
 use belvedere::depth::Profile;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, BlockRule, Curvature, EarthParams, MedialScene, merged_crossings};
+use belvedere::query::{Answer, BlockRule, Blocker, Curvature, EarthParams, MedialScene, merged_crossings};
 use belvedere::random::uniform;
 
 fn balls(list: &[([f32; 3], f32)]) -> MedialBalls {
@@ -67,7 +67,11 @@ fn the_first_block_is_that_of_all_balls_tried_in_turn() {
             Some((range, row)) => {
                 blocked += 1;
                 let block = found.first_block.unwrap();
-                assert_eq!((found.answer, block.ball), (Answer::Blocked, row), "{observer:?} {target:?}");
+                assert_eq!(
+                    (found.answer, block.blocker),
+                    (Answer::Blocked, Blocker::Ball(row)),
+                    "{observer:?} {target:?}"
+                );
                 // f64 roots of lengths up to 70 m
                 assert!((block.range - range).abs() < 1e-9, "{} {range}", block.range);
                 assert!((distance(*observer, block.place) - range).abs() < 1e-9);
@@ -98,7 +102,7 @@ fn chords_answer_as_the_whole_line_where_the_earth_is_nearly_plane() {
             assert_eq!(scene.sight_answer(observer, target, &plane), straight.answer);
             if let (Some(a), Some(b)) = (straight.first_block, chords.first_block) {
                 blocked += 1;
-                assert_eq!(a.ball, b.ball);
+                assert_eq!(a.blocker, b.blocker);
                 // a block that begins in the chord behind is seen at its corner
                 assert!((a.range - b.range).abs() < 1e-6, "{} {}", a.range, b.range);
             }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![allow(clippy::cast_possible_truncation, reason = "the numbers of tests are small, or made to be f32")]
 
+mod added_meshes;
 mod animations;
 mod backends;
 mod ball_files;

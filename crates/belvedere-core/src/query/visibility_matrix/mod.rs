@@ -1,10 +1,12 @@
 //! Which of many directions each of many targets sees free: what sun hours, sky views and irradiance are sums over.
 
+mod behind_added;
 mod looking;
 
 use super::MedialScene;
 use super::backend::{BLOCK, WORD};
 use super::target_tree::TargetTree;
+use behind_added::hide_behind_added;
 use belvedere_data::control::Control;
 use belvedere_data::vector::length;
 use belvedere_data::{Error, Result};
@@ -91,7 +93,7 @@ const BATCH: usize = 512;
 const MOST_TARGETS: usize = BLOCK << 10;
 
 impl MedialScene {
-    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls: for every pair the same as
+    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls and of what was added: for every pair the same as
     /// [`MedialScene::answer`] at infinite range, pulses not being asked. A target that is not finite sees nothing. Progress counts
     /// targets.
     ///
@@ -151,6 +153,9 @@ impl MedialScene {
                     })?;
                 }
             }
+        }
+        if let Some(added) = self.added().filter(|_| width > 0) {
+            hide_behind_added(added, tree.positions(), directions, &mut words, control)?;
         }
         Ok(VisibilityMatrix { places, direction_count: directions.len(), width, words })
     }

@@ -1,0 +1,68 @@
+//! Lines of sight of the matrix that meshes block which were added.
+
+use super::super::AddedMeshes;
+use super::super::backend::{BLOCK, WORD};
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use rayon::prelude::*;
+
+/// By how much boxes are widened, metres: more than f32 and f64 err.
+const ROOM: f64 = 0.01;
+
+/// Unsets the bits of lines of sight that meshes block, in rows of `words` for `targets`, (M, 3), neighbours together, and `directions`,
+/// (D, 3).
+pub(super) fn hide_behind_added(
+    added: &AddedMeshes,
+    targets: &[[f32; 3]],
+    directions: &[[f64; 3]],
+    words: &mut [u64],
+    control: &Control<'_>,
+) -> Result<()> {
+    let width = directions.len().div_ceil(WORD);
+    let blocks = words.par_chunks_mut(width * BLOCK).zip(targets.par_chunks(BLOCK));
+    blocks.try_for_each(|(rows, targets)| {
+        control.check()?;
+        let around = around(targets);
+        let meets = |(_, direction): &(usize, &[f64; 3])| may_meet(around, **direction, added.bounds());
+        let met: Vec<(usize, [f64; 3])> =
+            directions.iter().enumerate().filter(meets).map(|(column, direction)| (column, *direction)).collect();
+        for (row, target) in rows.chunks_mut(width).zip(targets) {
+            let target = target.map(f64::from);
+            for &(column, direction) in &met {
+                let (word, bit) = (column / WORD, 1 << (column % WORD));
+                if row[word] & bit != 0 && added.blocks(target, direction, f64::INFINITY) {
+                    row[word] &= !bit;
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Lowest and highest corner of a box around targets.
+fn around(targets: &[[f32; 3]]) -> [[f64; 3]; 2] {
+    let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
+        std::array::from_fn(|axis| targets.iter().map(|target| f64::from(target[axis])).fold(start, pick))
+    };
+    [bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY)]
+}
+
+/// Whether a line of sight along `direction` from anywhere in a box may meet another box.
+fn may_meet([low, high]: [[f64; 3]; 2], direction: [f64; 3], [first, last]: [[f64; 3]; 2]) -> bool {
+    let (mut from, mut to) = (0.0_f64, f64::INFINITY);
+    for axis in 0..3 {
+        // how far the box must move along the axis to touch the other, and to have passed it
+        let (near, far) = (first[axis] - high[axis] - ROOM, last[axis] - low[axis] + ROOM);
+        let slope = direction[axis];
+        if slope == 0.0 {
+            if near > 0.0 || far < 0.0 {
+                return false;
+            }
+            continue;
+        }
+        let (a, b) = (near / slope, far / slope);
+        from = from.max(a.min(b));
+        to = to.min(a.max(b));
+    }
+    from <= to
+}

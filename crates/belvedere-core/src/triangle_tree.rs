@@ -1,0 +1,128 @@
+//! Triangles in a tree of boxes, and where rays cross them, exactly.
+
+use crate::ray_index::{Ray, RayIndex};
+use belvedere_data::Result;
+use belvedere_data::vector::sub;
+
+/// Corners of a triangle, local metres.
+pub type Corners = [[f64; 3]; 3];
+
+/// Triangles that rays are traced against. Both sides count, and no ray slips through an edge that two triangles share.
+pub struct TriangleTree {
+    /// In the order of the index.
+    triangles: Vec<Corners>,
+    index: RayIndex,
+}
+
+impl TriangleTree {
+    /// Indexes triangles by their corners, (T, 3, 3), local metres.
+    ///
+    /// # Errors
+    /// Those of [`RayIndex::new`] for a corner that is not finite.
+    pub fn new(triangles: &[Corners]) -> Result<Self> {
+        let boxes: Vec<_> = triangles.iter().map(bounding_box).collect();
+        let index = RayIndex::new(&boxes)?;
+        let triangles = index.order().iter().filter_map(|&i| triangles.get(i as usize).copied()).collect();
+        Ok(Self { triangles, index })
+    }
+
+    /// For each of [`TriangleTree::triangles`] its row among those given.
+    #[must_use]
+    pub fn order(&self) -> &[u32] {
+        self.index.order()
+    }
+
+    /// The triangles in the order of the tree.
+    #[must_use]
+    pub fn triangles(&self) -> &[Corners] {
+        &self.triangles
+    }
+
+    /// Lowest and highest corner of all triangles, or `None` without any.
+    #[must_use]
+    pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
+        let first = *self.triangles.first()?.first()?;
+        Some(self.triangles.as_flattened().iter().fold([first; 2], |[low, high], corner| {
+            [std::array::from_fn(|i| low[i].min(corner[i])), std::array::from_fn(|i| high[i].max(corner[i]))]
+        }))
+    }
+
+    /// Whether `ray` crosses a triangle within its ranges for which `counts` is true: it is given the row of the triangle.
+    #[must_use]
+    pub fn any(&self, ray: &Ray, mut counts: impl FnMut(usize) -> bool) -> bool {
+        let crossing = Crossing::new(ray);
+        self.index.any(ray, |row| self.range(&crossing, row, ray).is_some() && counts(row))
+    }
+
+    /// The triangle for which `counts` is true that `ray` crosses first within its ranges, by its row, and the range; the lowest row
+    /// where several are equal.
+    #[must_use]
+    pub fn nearest(&self, ray: &Ray, mut counts: impl FnMut(usize) -> bool) -> Option<(usize, f64)> {
+        let crossing = Crossing::new(ray);
+        self.index.nearest(ray, |row| self.range(&crossing, row, ray).filter(|_| counts(row)))
+    }
+
+    /// Calls `visit` with the row of every triangle that `ray` crosses within its ranges, and the range, in no particular order.
+    pub fn each(&self, ray: &Ray, mut visit: impl FnMut(usize, f64)) {
+        let crossing = Crossing::new(ray);
+        self.index.each(ray, |row| {
+            if let Some(range) = self.range(&crossing, row, ray) {
+                visit(row, range);
+            }
+        });
+    }
+
+    fn range(&self, crossing: &Crossing, row: usize, ray: &Ray) -> Option<f64> {
+        let range = crossing.range(self.triangles.get(row)?)?;
+        (ray.ranges[0] <= range && range <= ray.ranges[1]).then_some(range)
+    }
+}
+
+/// The box around a triangle, rounded outward.
+#[expect(clippy::cast_possible_truncation, reason = "rounded outward right after")]
+fn bounding_box([a, b, c]: &Corners) -> [[f32; 3]; 2] {
+    let low = std::array::from_fn(|i| (a[i].min(b[i]).min(c[i]) as f32).next_down());
+    let high = std::array::from_fn(|i| (a[i].max(b[i]).max(c[i]) as f32).next_up());
+    [low, high]
+}
+
+/// A ray in the space where it runs along the third axis, in which a triangle is met where its shadow on the first two
+/// axes holds the origin.
+///
+/// # Source
+/// Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection": it gives the barycentric coordinates
+/// of Möller & Trumbore 1997, but two triangles compute the side of a shared edge from the same numbers, so that no ray slips
+/// between them. All in f64, hence without the paper's fallback.
+struct Crossing {
+    origin: [f64; 3],
+    axes: [usize; 3],
+    shear: [f64; 3],
+}
+
+impl Crossing {
+    fn new(ray: &Ray) -> Self {
+        let d = ray.direction;
+        let longest = |a: usize, b: usize| if d[b].abs() > d[a].abs() { b } else { a };
+        let z = longest(longest(0, 1), 2);
+        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+        Self { origin: ray.origin, axes: [x, y, z], shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]] }
+    }
+
+    /// Range at which the line of the ray crosses a triangle, negative behind its origin; `None` where it passes by or runs
+    /// within its plane.
+    fn range(&self, corners: &Corners) -> Option<f64> {
+        let [x, y, z] = self.axes;
+        let [shear_x, shear_y, scale_z] = self.shear;
+        let [a, b, c] = corners.map(|corner| {
+            let p = sub(corner, self.origin);
+            [p[x] - shear_x * p[z], p[y] - shear_y * p[z], p[z]]
+        });
+        let side = |p: [f64; 3], q: [f64; 3]| p[0] * q[1] - p[1] * q[0];
+        let (u, v, w) = (side(b, c), side(c, a), side(a, b));
+        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+            return None;
+        }
+        let sum = u + v + w;
+        (sum != 0.0).then(|| (u * a[2] + v * b[2] + w * c[2]) * scale_z / sum)
+    }
+}
