@@ -5,7 +5,7 @@ use crate::lines::Lines;
 use crate::obstacles::Obstacles;
 use crate::plan::Plan;
 use crate::question::{Asked, Question};
-use crate::record::{Outcome, Record, Stage};
+use crate::record::{Outcome, Record, Stage, Stamp};
 use crate::values::{UNPROVEN, Values};
 use crate::window;
 use belvedere::apps::eyes::skip_unfit_eyes;
@@ -87,12 +87,15 @@ fn answered(
     let obstacles = control.stage("reading balls", 0, || Obstacles::gather(plan, run, &lines, control))?;
     let found = control.stage("testing lines of sight", cells, || ask(asked, &obstacles, &targets, control))?;
     if found.values.are_nothing() && found.unproven_cells == 0 {
-        return nothing(points);
+        return Ok(Record { points, damaged: obstacles.damaged, ..Record::default() });
     }
     let place = georeference(&ground.grid, &targets.frame);
-    found.values.write(&Stage::Answer(question).result(run, tile), &place)?;
+    let path = Stage::Answer(question).result(run, tile);
+    found.values.write(&path, &place)?;
     Ok(Record {
         outcome: Outcome::Done,
+        result: Some(Stamp::of(&path)?),
+        damaged: obstacles.damaged,
         points,
         balls: obstacles.ball_count,
         cells,
@@ -257,7 +260,7 @@ mod tests {
         balls.push(0, [10.0, 0.0, 2.0], 2.0, 0);
         let scene = MedialScene::new(&balls, &BlockRule::carved()).unwrap();
         let missing = vec![(Area { low: [-5.0, 10.0], high: [5.0, 20.0] }, 30.0)];
-        let obstacles = Obstacles { scene, ball_count: 1, missing };
+        let obstacles = Obstacles { scene, ball_count: 1, missing, damaged: Vec::new() };
         let positions = vec![
             [-20.0, 0.0, 2.0],  // free
             [20.0, 0.0, 2.0],   // behind the ball

@@ -2,7 +2,7 @@
 
 use crate::grid::{Area, TileId, block_of};
 use crate::plan::Plan;
-use crate::record::{Outcome, Record, Stage};
+use crate::record::{Outcome, Record, Stage, Stamp};
 use crate::window;
 use belvedere::control::Control;
 use belvedere::io::{atomic, write_balls};
@@ -54,7 +54,8 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     let parts = ModelParts { balls, transmission, bounds: plan.bounds(), pulses: None, ..parts };
     let path = Stage::Balls.result(run, tile);
     control.stage("writing", 0, || write_balls(&path, &parts.with_provenance("tile", tile.name())))?;
-    Ok(Record { outcome: Outcome::Done, points, balls: count, tops, ..Record::default() })
+    let result = Some(Stamp::of(&path)?);
+    Ok(Record { outcome: Outcome::Done, result, points, balls: count, tops, ..Record::default() })
 }
 
 /// The highest top of balls over each block of 64 m that any reaches into.

@@ -7,7 +7,7 @@ use crate::record::{Outcome, Record, Stage};
 use belvedere::control::Control;
 use belvedere::crs::text::wkt_line;
 use belvedere::ground::MapGrid;
-use belvedere::io::atomic;
+use belvedere::io::{Source, atomic};
 use belvedere::results::georeference;
 use belvedere::{Error, Result};
 use std::fmt::Write as _;
@@ -109,7 +109,10 @@ pub fn merge(plan: &Plan, folder: &Path, question: &Question, output: &Path, con
     let mut all = question.kind().nothing(width, height);
     for &tile in &tiles {
         control.check()?;
-        let values = question.kind().read(&Stage::Answer(question).result(folder, tile))?;
+        let stage = Stage::Answer(question);
+        let Some(record) = Record::read(plan, folder, stage, tile) else { continue };
+        let path = stage.result(folder, tile);
+        let values = question.kind().read(Source::bytes(&path, &record.read_result(&path)?))?;
         all.put(&values, place_of(plan, &cells, tile))?;
     }
     all.write(output, &place)?;

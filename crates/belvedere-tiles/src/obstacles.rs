@@ -2,12 +2,12 @@
 
 use crate::grid::{Area, CELL, TileId, block_area};
 use crate::lines::{Lines, MOST_BALL, passes, tiles};
-use crate::make_balls::square_of;
+use crate::make_balls::{make_balls, square_of};
 use crate::plan::Plan;
 use crate::record::{Outcome, Record, Stage};
 use belvedere::blocking::BlockRule;
 use belvedere::control::Control;
-use belvedere::io::read_balls;
+use belvedere::io::{Source, read_balls};
 use belvedere::medial::MedialBalls;
 use belvedere::query::MedialScene;
 use belvedere::{Error, Result};
@@ -19,45 +19,74 @@ pub(crate) struct Obstacles {
     pub(crate) ball_count: usize,
     /// Where balls are missing: what may stand there, and how high.
     pub(crate) missing: Vec<(Area, f64)>,
+    /// Balls that were found damaged, and were made again.
+    pub(crate) damaged: Vec<String>,
 }
 
 impl Obstacles {
-    /// Gathers the balls of the tiles that may matter for `lines`, as far as they are there.
+    /// Gathers the balls of the tiles that may matter for `lines`, as far as they are there. Damaged ones are made again.
     ///
     /// # Errors
-    /// Those of [`read_balls`] and [`MedialScene::new`].
+    /// Those of [`MedialScene::new`] and of writing records, and [`Error::Cancelled`].
     pub(crate) fn gather(plan: &Plan, run: &Path, lines: &Lines<'_>, control: &Control<'_>) -> Result<Self> {
         let mut balls = MedialBalls::default();
         let mut missing = Vec::new();
+        let mut damaged = Vec::new();
         for tile in tiles(plan, lines) {
             control.check()?;
-            let record = Record::read(plan, run, Stage::Balls, tile);
-            match record.as_ref().map(|record| &record.outcome) {
-                Some(Outcome::Nothing) => {}
-                Some(Outcome::Done) => {
-                    let tops = record.iter().flat_map(|record| &record.tops);
-                    if tops.clone().any(|&(block, top)| lines.may_meet(&block_area(block), top.into())) {
-                        match read_balls(Stage::Balls.result(run, tile)) {
-                            Ok(parts) => add(&mut balls, &parts.balls, lines),
-                            Err(Error::Cancelled) => return Err(Error::Cancelled),
-                            // damaged since; it is unknown what stands there
-                            Err(_) => missing.extend(unknown(plan, tile)),
-                        }
+            let Some(record) = Record::read(plan, run, Stage::Balls, tile) else {
+                missing.extend(unknown(plan, tile));
+                continue;
+            };
+            let may_meet = |&(block, top): &([i32; 2], f32)| lines.may_meet(&block_area(block), top.into());
+            match record.outcome {
+                Outcome::Done if record.tops.iter().any(may_meet) => {
+                    match sound(plan, run, tile, &record, &mut damaged, control)? {
+                        Some(found) => add(&mut balls, &found, lines),
+                        None => missing.extend(unknown(plan, tile)),
                     }
                 }
-                Some(Outcome::Failed(_)) | None => missing.extend(unknown(plan, tile)),
+                Outcome::Done | Outcome::Nothing => {}
+                Outcome::Failed(_) => missing.extend(unknown(plan, tile)),
             }
         }
         let rule = if plan.facts.carves { BlockRule::carved() } else { BlockRule::uncarved() };
         let ball_count = balls.len();
         let scene = control.stage("indexing balls", ball_count, || MedialScene::new(&balls, &rule))?;
-        Ok(Self { scene, ball_count, missing })
+        Ok(Self { scene, ball_count, missing, damaged })
     }
 
     /// Whether a line of sight from a target, local metres, may meet what is missing: along `way`, to an end after `length` times that or without
     /// end.
     pub(crate) fn is_unknown(&self, target: [f64; 3], way: [f64; 3], length: f64) -> bool {
         self.missing.iter().any(|(area, top)| passes(target, way, length, area, *top))
+    }
+}
+
+/// The balls of a tile. Those that are not what was written are named and made again; `None` where that fails.
+fn sound(
+    plan: &Plan,
+    run: &Path,
+    tile: TileId,
+    record: &Record,
+    damaged: &mut Vec<String>,
+    control: &Control<'_>,
+) -> Result<Option<MedialBalls>> {
+    let path = Stage::Balls.result(run, tile);
+    let read = |record: &Record| Ok(read_balls(Source::bytes(&path, &record.read_result(&path)?))?.balls);
+    match read(record) {
+        Ok(balls) => return Ok(Some(balls)),
+        Err(Error::Cancelled) => return Err(Error::Cancelled),
+        Err(error) => damaged.push(error.to_string()),
+    }
+    match make_balls(plan, run, tile, control).and_then(|record| read(&record)) {
+        Ok(balls) => Ok(Some(balls)),
+        Err(Error::Cancelled) => Err(Error::Cancelled),
+        Err(error) => {
+            let record = Record { outcome: Outcome::Failed(error.to_string()), ..Record::default() };
+            record.write(plan, run, Stage::Balls, tile)?;
+            Ok(None)
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! What became of a tile. A record is written after its result, so that whatever has one is complete.
 
 use crate::grid::TileId;
+use crate::inputs::hash;
 use crate::plan::Plan;
 use crate::question::Question;
 use belvedere::io::atomic;
@@ -59,6 +60,21 @@ pub enum Outcome {
     Failed(String),
 }
 
+/// A file of a result as it was written.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Stamp {
+    bytes: u64,
+    /// FNV-1a of 64 bits, as hexadecimal digits.
+    fingerprint: String,
+}
+
+impl Stamp {
+    pub(crate) fn of(path: &Path) -> Result<Self> {
+        let bytes = std::fs::read(path).map_err(Error::io(path))?;
+        Ok(Self { bytes: bytes.len() as u64, fingerprint: hash(&bytes) })
+    }
+}
+
 /// The record of a tile.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
@@ -66,6 +82,9 @@ pub struct Record {
     pub(crate) plan: String,
     /// What became of the tile.
     pub outcome: Outcome,
+    /// The file of its result, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) result: Option<Stamp>,
     /// Points that were read.
     pub points: usize,
     /// Balls that were made, or that could matter for the answer.
@@ -85,6 +104,9 @@ pub struct Record {
     /// Blocks of 64 m that balls reach into, and the highest top of them there, local metres.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) tops: Vec<([i32; 2], f32)>,
+    /// Balls that were found damaged on the way, and were made again.
+    #[serde(skip)]
+    pub(crate) damaged: Vec<String>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
@@ -107,6 +129,30 @@ impl Record {
     #[must_use]
     pub fn is_settled(&self) -> bool {
         !matches!(self.outcome, Outcome::Failed(_))
+    }
+
+    /// What became of the file of its result since, as far as its size tells; `None` where nothing did.
+    pub(crate) fn damage(&self, run: &Path, stage: Stage<'_>, tile: TileId) -> Option<String> {
+        let stamp = self.result.as_ref()?;
+        let path = stage.result(run, tile);
+        let what = match std::fs::metadata(&path) {
+            Err(_) => "is gone",
+            Ok(found) if found.len() != stamp.bytes => "is damaged",
+            Ok(_) => return None,
+        };
+        Some(format!("{} {what}", path.display()))
+    }
+
+    /// The bytes of the file of its result, refused unless they are what was written.
+    ///
+    /// # Errors
+    /// [`Error::Io`], and [`Error::Malformed`] for a file that changed since.
+    pub(crate) fn read_result(&self, path: &Path) -> Result<Vec<u8>> {
+        let bytes = std::fs::read(path).map_err(Error::io(path))?;
+        if self.result.as_ref().is_some_and(|stamp| stamp.fingerprint != hash(&bytes)) {
+            return Err(Error::malformed(path, "is damaged: remove it, and run again"));
+        }
+        Ok(bytes)
     }
 
     pub(crate) fn write(&self, plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Result<()> {

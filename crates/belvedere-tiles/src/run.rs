@@ -51,6 +51,8 @@ pub struct RunReport {
     pub unproven_cells: usize,
     /// Observers of viewsheds that stand inside an obstacle, and see nothing.
     pub skipped_observers: usize,
+    /// Results that were damaged or gone, and were made again.
+    pub damaged: Vec<String>,
     /// What could not be done, and why.
     pub failed: Vec<String>,
 }
@@ -73,9 +75,9 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
     for question in &plan.questions {
         let asked = question.prepare(control)?;
         for tile in own() {
-            let record = Record::read(plan, folder, Stage::Answer(question), tile);
             // what was unproven for lack of balls may have them now
-            if record.is_some_and(|record| record.is_settled() && record.unproven_cells == 0) {
+            let record = work.settled(Stage::Answer(question), tile);
+            if record.is_some_and(|record| record.unproven_cells == 0) {
                 work.report.already_done += 1;
                 continue;
             }
@@ -106,9 +108,17 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
+    /// The record of a tile that is done and whose result is still there; what is damaged is named.
+    fn settled(&mut self, stage: Stage<'_>, tile: TileId) -> Option<Record> {
+        let record = Record::read(self.plan, self.folder, stage, tile).filter(Record::is_settled)?;
+        let Some(damage) = record.damage(self.folder, stage, tile) else { return Some(record) };
+        self.report.damaged.push(damage);
+        None
+    }
+
     /// Makes the balls of a tile unless they are there.
     fn balls(&mut self, tile: TileId) -> Result<()> {
-        if Record::read(self.plan, self.folder, Stage::Balls, tile).is_some_and(|record| record.is_settled()) {
+        if self.settled(Stage::Balls, tile).is_some() {
             self.report.already_done += 1;
             return Ok(());
         }
@@ -132,6 +142,7 @@ impl Work<'_> {
             .attempt(stage, tile, || answer_prepared(self.plan, self.folder, (question, asked), tile, self.control))?;
         self.report.answers_made += 1;
         self.report.unproven_cells += record.unproven_cells;
+        self.report.damaged.extend(record.damaged);
         self.report.skipped_observers = self.report.skipped_observers.max(record.skipped_observers);
         Ok(())
     }

@@ -23,7 +23,7 @@ pub struct StageStatus {
     pub done: usize,
     /// Tiles on which nothing is.
     pub empty: usize,
-    /// Tiles that are left.
+    /// Tiles that are left, those whose result is damaged or gone among them.
     pub left: usize,
     /// Points that were read for them.
     pub points_read: usize,
@@ -53,7 +53,8 @@ pub fn status(plan: &Plan, folder: &Path) -> Status {
 fn of_stage(plan: &Plan, folder: &Path, stage: Stage<'_>) -> StageStatus {
     let mut status = StageStatus { name: stage.name().to_owned(), ..StageStatus::default() };
     for &tile in &plan.tiles {
-        let Some(record) = Record::read(plan, folder, stage, tile) else {
+        let record = Record::read(plan, folder, stage, tile);
+        let Some(record) = record.filter(|record| record.damage(folder, stage, tile).is_none()) else {
             status.left += 1;
             continue;
         };

@@ -2,7 +2,7 @@
 
 use crate::question::ValueKind;
 use belvedere::io::{
-    Georeference, read_tif_f32, read_tif_u8, read_tif_u16, write_tif_f32, write_tif_u8, write_tif_u16,
+    Georeference, Source, read_tif_f32, read_tif_u8, read_tif_u16, write_tif_f32, write_tif_u8, write_tif_u16,
 };
 use belvedere::raster::Raster;
 use belvedere::results::NO_VALUE;
@@ -44,11 +44,11 @@ impl ValueKind {
     ///
     /// # Errors
     /// Those of [`read_tif_u8`].
-    pub(crate) fn read(self, path: &Path) -> Result<Values> {
+    pub(crate) fn read(self, tile: Source<'_>) -> Result<Values> {
         Ok(match self {
-            Self::Codes => Values::Codes(read_tif_u8(path)?),
-            Self::Counts => Values::Counts(read_tif_u16(path)?),
-            Self::Numbers => Values::Numbers(read_tif_f32(path)?),
+            Self::Codes => Values::Codes(read_tif_u8(tile)?),
+            Self::Counts => Values::Counts(read_tif_u16(tile)?),
+            Self::Numbers => Values::Numbers(read_tif_f32(tile)?),
         })
     }
 }

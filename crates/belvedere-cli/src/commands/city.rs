@@ -89,6 +89,9 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
         );
     }
     summary.add_report(&report);
+    for damage in report.damaged.iter().take(MOST_LISTED) {
+        summary.warn(format!("{damage}; it was computed again"));
+    }
     if report.unproven_cells > 0 {
         summary.warn(format!(
             "{} cells are unproven because tiles that may block them are missing",

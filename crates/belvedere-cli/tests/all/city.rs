@@ -4,7 +4,7 @@ use crate::common::Workplace;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Stdio;
-use std::time::Duration;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 /// The results of a run: names of balls and rasters below its folder, and their bytes.
 fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -24,30 +24,49 @@ fn town(place: &Workplace) {
     assert_eq!(place.run("simulate village -o town --extent 130 --density 3").status, 0);
 }
 
+/// Results that a record says are done, and when each was written.
+fn recorded(folder: &Path) -> BTreeMap<String, SystemTime> {
+    let has_record = |name: &&String| folder.join(name).with_extension("json").exists();
+    let written = |name: &String| std::fs::metadata(folder.join(name)).unwrap().modified().unwrap();
+    results(folder).keys().filter(has_record).map(|name| (name.clone(), written(name))).collect()
+}
+
 #[test]
 fn a_run_that_is_killed_at_any_moment_goes_on_and_has_the_same_results() {
     let place = Workplace::new();
     town(&place);
     let plan = "city plan town/cloud.laz --sun 150,20 --tile-size 64";
     place.summary(&format!("{plan} -o straight"));
+    let start = Instant::now();
     let done = place.summary("city run straight");
+    let whole = start.elapsed();
     let steps = done["balls_made"].as_u64().unwrap() + done["answers_made"].as_u64().unwrap();
     assert!(steps >= 8, "{done}");
     place.summary(&format!("{plan} -o killed"));
-    let mut killed = 0;
-    for number in 1..=6_u64 {
+    let mut moments = Vec::new();
+    while moments.len() < 10 {
+        let share = f64::from(UNIX_EPOCH.elapsed().unwrap().subsec_nanos() % 1_000_000) / 1e6;
+        // so short that ten runs do not come to the end
+        let moment = whole.mul_f64(0.01 + 0.15 * share);
+        let before = recorded(&place.path("killed"));
         let mut run = place.command("city run killed").stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(170 * number));
-        if run.try_wait().unwrap().is_none() {
-            // SIGKILL on Unix: nothing is tidied up
-            run.kill().unwrap();
-            killed += 1;
-        }
+        std::thread::sleep(moment);
+        let was_running = run.try_wait().unwrap().is_none();
+        // SIGKILL on Unix: nothing is tidied up
+        run.kill().unwrap();
         run.wait().unwrap();
+        moments.push(moment);
+        // what was recorded is not done again, and at most one result is there that is not recorded
+        let (after, folder) = (recorded(&place.path("killed")), place.path("killed"));
+        assert!(before.iter().all(|(name, written)| after.get(name) == Some(written)), "{moments:?}");
+        assert!(results(&folder).len() <= after.len() + 1, "{moments:?}");
+        if !was_running {
+            break;
+        }
     }
-    assert!(killed >= 2, "{killed}");
+    assert!(moments.len() >= 5, "{moments:?}");
     place.summary("city run killed");
-    assert!(results(&place.path("straight")) == results(&place.path("killed")));
+    assert!(results(&place.path("straight")) == results(&place.path("killed")), "{moments:?}");
     // what is done is not done again
     let again = place.summary("city run killed");
     assert_eq!((&again["balls_made"], &again["answers_made"]), (&0.into(), &0.into()), "{again}");
@@ -57,6 +76,40 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_has_the_same_results() {
     assert!(merged["tiles"].as_u64().unwrap() >= 4, "{merged}");
     let catalogue = std::fs::read_to_string(place.path("killed/shadow_150_20.vrt")).unwrap();
     assert_eq!(catalogue.matches("<SimpleSource>").count() as u64, merged["tiles"].as_u64().unwrap());
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_named_leaves_nothing_half_written_and_the_run_goes_on_with_room() {
+    let place = Workplace::new();
+    town(&place);
+    place.summary("city plan town/cloud.laz --sun 150,20 --tile-size 64 -o straight");
+    place.summary("city run straight");
+    // a file system in memory that has room for the plan and a few tiles, in a namespace of its own
+    let script = r#"
+        mkdir small && mount -t tmpfs -o size=500k tmpfs small || exit 77
+        cp straight/plan.json small/
+        "$BELVEDERE" city run small > /dev/null 2> full.txt; echo $? > full.status
+        find small -name '.*' -type f > left.txt
+        ls small/balls | grep -c json > tiles.txt
+        mount -o remount,size=50m small && "$BELVEDERE" city run small > /dev/null && cp -r small copied
+    "#;
+    let run = std::process::Command::new("unshare")
+        .args(["-rm", "sh", "-c", script])
+        .current_dir(place.path(""))
+        .env("BELVEDERE", env!("CARGO_BIN_EXE_belvedere"))
+        .output();
+    let Some(run) = run.ok().filter(|run| run.status.code() != Some(77) && place.path("small").exists()) else {
+        println!("SKIPPED: this system gives no file system of its own to a test");
+        return;
+    };
+    assert!(run.status.success(), "{run:?}");
+    assert_eq!(place.text("full.status").trim(), "1");
+    let message = place.text("full.txt");
+    assert!(message.contains("small/balls") && message.contains("No space left on device"), "{message}");
+    assert_eq!(place.text("left.txt"), "");
+    assert!(place.text("tiles.txt").trim().parse::<u32>().unwrap() > 0);
+    assert!(results(&place.path("straight")) == results(&place.path("copied")));
 }
 
 #[test]

@@ -109,6 +109,53 @@ fn a_file_that_is_gone_is_named_and_what_it_may_block_is_unproven_and_never_lit(
 }
 
 #[test]
+fn balls_and_answers_that_were_damaged_are_named_and_made_again() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 100.0, 1.0);
+    let folder = place.path().join("run");
+    let low = || vec![suns()[0].clone()];
+    let plan = plan(&clouds, &folder, 64.0, low());
+    run_all(&plan, &folder);
+    let expected = results(&folder);
+    let names = |stage: &str| -> Vec<String> {
+        let of_stage =
+            expected.iter().map(|(name, _)| name).filter(|name| name.starts_with(stage) && !name.ends_with("json"));
+        of_stage.cloned().collect()
+    };
+    let (balls, answers) = (names("balls/"), names("shadow_5/"));
+    let damage = |name: &str, change: &dyn Fn(&mut Vec<u8>)| {
+        let mut bytes = std::fs::read(folder.join(name)).unwrap();
+        change(&mut bytes);
+        std::fs::write(folder.join(name), bytes).unwrap();
+    };
+    let flip = |bytes: &mut Vec<u8>| {
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 4;
+    };
+    // shorter than written, one bit changed, and an answer that is gone, so that balls are looked at
+    damage(&balls[0], &|bytes| bytes.truncate(bytes.len() - 1));
+    balls[1..].iter().for_each(|name| damage(name, &flip));
+    answers.iter().for_each(|name| std::fs::remove_file(folder.join(name)).unwrap());
+    let left = status(&plan, &folder).stages.iter().map(|stage| stage.left).collect::<Vec<_>>();
+    assert_eq!(left, [1, answers.len()]);
+    let report = run_all(&plan, &folder);
+    assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
+    for name in balls.iter().chain(&answers) {
+        assert!(report.damaged.iter().any(|damage| damage.contains(name)), "{name}: {:?}", report.damaged);
+    }
+    assert!(results(&folder) == expected);
+    // a changed answer is not merged
+    damage(&answers[0], &flip);
+    let merged = merge(&plan, &folder, &plan.questions[0], &place.path().join("all.tif"), &Control::none());
+    let error = merged.unwrap_err().to_string();
+    assert!(error.contains(&answers[0]) && error.contains("run again"), "{error}");
+    assert!(!place.path().join("all.tif").exists());
+    std::fs::remove_file(folder.join(&answers[0])).unwrap();
+    assert_eq!(run_all(&plan, &folder).answers_made, 1);
+    assert!(results(&folder) == expected);
+}
+
+#[test]
 fn a_file_that_changed_since_the_plan_is_refused() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 100.0, 1.0);
