@@ -25,6 +25,8 @@ const LAYOUT: u32 = 3;
 const ORIGIN_STEP: f64 = 1024.0;
 /// Farthest that a point may lie from the origin, metres: up to here f32 keeps a millimetre.
 const FARTHEST: f64 = 16_384.0;
+/// Smallest side of a tile, metres.
+const LEAST_TILE: f64 = 16.0;
 /// Steps that the side of a cell must be a whole number of, metres: middles of cells are then exact numbers.
 const CELL_STEP: f64 = 1.0 / 64.0;
 /// Memory for each point of a window while balls are made, and without any, bytes. As measured in docs/scale.md.
@@ -46,7 +48,7 @@ pub struct PlanParams {
     pub tile_size: f64,
     /// Side of the cells of results, metres. Default 1.
     pub cell: f64,
-    /// Most memory that a tile may take, bytes; `None` for any.
+    /// Most memory that a tile may take, bytes: tiles are quartered until the largest fits. `None` for any.
     pub memory: Option<u64>,
     /// Name and version of the program.
     pub program: String,
@@ -119,8 +121,8 @@ impl Plan {
     /// Looks at all points once, and plans the tiles, without a question.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for sizes out of range, a survey that is too wide for one frame, and a tile that does not fit into the memory, with the
-    /// size that would; those of reading the files, and of [`SurveyFacts::estimate`].
+    /// [`Error::InvalidParameter`] for sizes out of range, a survey that is too wide for one frame, and memory into which no tile fits;
+    /// those of reading the files, and of [`SurveyFacts::estimate`].
     pub fn make(params: &PlanParams, control: &Control<'_>) -> Result<Self> {
         check_sizes(params)?;
         let (inputs, heads) = inputs(&params.clouds)?;
@@ -189,10 +191,10 @@ impl Plan {
             name: String::new(),
         };
         plan.tiles = plan.tiles_with_cells();
-        if let Some(memory) = params.memory {
-            plan.check_memory(memory)?;
+        match params.memory {
+            Some(memory) => plan.fitting(memory),
+            None => Ok(plan),
         }
-        Ok(plan)
     }
 
     /// Reads the plan of a run.
@@ -367,31 +369,29 @@ impl Plan {
         Ok(())
     }
 
-    fn check_memory(&self, memory: u64) -> Result<()> {
-        if self.estimate().memory_bytes <= memory {
-            return Ok(());
+    /// This with tiles that are quartered until the largest fits into the memory, bytes: their size changes no result.
+    fn fitting(mut self, memory: u64) -> Result<Self> {
+        let (size, needed) = (self.tile_size, self.estimate().memory_bytes);
+        while self.estimate().memory_bytes > memory {
+            let cells = self.tile_size / 2.0 / self.cell;
+            if self.tile_size / 2.0 < LEAST_TILE || cells != cells.floor() {
+                let megabytes = |bytes: u64| bytes as f64 / 1e6;
+                return Err(Error::InvalidParameter {
+                    name: "memory for a tile",
+                    value: format!(
+                        "{:.0} MB, but a tile of {size} m takes about {:.0} MB, and one of {} m {:.0} MB",
+                        megabytes(memory),
+                        megabytes(needed),
+                        self.tile_size,
+                        megabytes(self.estimate().memory_bytes)
+                    ),
+                    expected: "enough for a small tile with what is around it",
+                });
+            }
+            self.tile_size /= 2.0;
+            self.tiles = self.tiles_with_cells();
         }
-        let mut smaller = self.clone();
-        let advice = loop {
-            smaller.tile_size /= 2.0;
-            if smaller.tile_size < 4.0 * self.cell || smaller.tile_size < 16.0 {
-                break "there is no size of tiles that fits".to_owned();
-            }
-            smaller.tiles = smaller.tiles_with_cells();
-            if smaller.estimate().memory_bytes <= memory {
-                break format!("tiles of {} m fit", smaller.tile_size);
-            }
-        };
-        let needed = self.estimate().memory_bytes as f64 / 1e6;
-        Err(Error::InvalidParameter {
-            name: "memory for a tile",
-            value: format!(
-                "{:.0} MB, but a tile of {} m takes about {needed:.0} MB ({advice})",
-                memory as f64 / 1e6,
-                self.tile_size
-            ),
-            expected: "enough for a tile; give smaller tiles or more memory",
-        })
+        Ok(self)
     }
 }
 
@@ -438,7 +438,7 @@ fn check_sizes(params: &PlanParams) -> Result<()> {
         );
     }
     let cells = params.tile_size / params.cell;
-    if !(params.tile_size >= 16.0 && params.tile_size <= 8192.0 && cells == cells.floor()) {
+    if !(params.tile_size >= LEAST_TILE && params.tile_size <= 8192.0 && cells == cells.floor()) {
         return invalid("tile size", params.tile_size, "16 to 8192 m, and a whole number of cells");
     }
     Ok(())

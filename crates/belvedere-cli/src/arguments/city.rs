@@ -108,7 +108,7 @@ pub(crate) struct CityPlan {
     pub(crate) tile_size: f64,
     /// Memory that a tile may use, such as 3G or 800M [default: no limit]
     ///
-    /// A plan whose largest tile is estimated to need more is refused, with the tile size that fits.
+    /// If the largest tile is estimated to need more, the side of all tiles is halved until it fits.
     #[arg(long, value_name = "SIZE", help_heading = "Tiles")]
     pub(crate) memory: Option<Memory>,
     /// Folder for the plan and the results; created if it does not exist

@@ -170,14 +170,20 @@ fn a_file_that_changed_since_the_plan_is_refused() {
 }
 
 #[test]
-fn tiles_that_do_not_fit_into_the_memory_are_refused_with_the_size_that_does() {
+fn tiles_are_quartered_until_they_fit_into_the_memory_and_sizes_out_of_range_are_refused() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 200.0, 4.0);
-    let params = PlanParams { clouds, ..PlanParams::default() };
-    let whole = Plan::make(&params, &Control::none()).unwrap();
-    let params = PlanParams { memory: Some(whole.estimate().memory_bytes - 2_000_000), ..params };
-    let error = Plan::make(&params, &Control::none()).unwrap_err().to_string();
-    assert!(error.contains("tiles of") && error.contains("fit"), "{error}");
+    let params = PlanParams { clouds: write_town(place.path(), 200.0, 1.0), ..PlanParams::default() };
+    let make = |params: &PlanParams| Plan::make(params, &Control::none());
+    let whole = make(&params).unwrap();
+    let memory = whole.estimate().memory_bytes - 1_000_000;
+    let fitting = make(&PlanParams { memory: Some(memory), ..params.clone() }).unwrap();
+    assert!(fitting.tile_size < whole.tile_size && fitting.estimate().memory_bytes <= memory);
+    // no smaller than needed, and otherwise the plan of that size
+    let larger = make(&PlanParams { tile_size: fitting.tile_size * 2.0, ..params.clone() }).unwrap();
+    assert!(larger.estimate().memory_bytes > memory);
+    assert_eq!(fitting, make(&PlanParams { tile_size: fitting.tile_size, ..params.clone() }).unwrap());
+    let error = make(&PlanParams { memory: Some(1_000_000), ..params.clone() }).unwrap_err().to_string();
+    assert!(error.contains("1 MB") && error.contains("of 16 m"), "{error}");
     for (tile_size, cell) in [(100.0, 0.3), (100.5, 1.0), (4.0, 1.0), (f64::NAN, 1.0)] {
         let params = PlanParams { tile_size, cell, ..params.clone() };
         assert!(Plan::make(&params, &Control::none()).is_err(), "{tile_size} {cell}");
