@@ -4,6 +4,7 @@ mod balls;
 mod city;
 #[cfg(feature = "compare")]
 mod compare;
+mod difference;
 mod envelope;
 mod irradiance;
 mod numbers;
@@ -26,13 +27,14 @@ pub(crate) use balls::{
 pub(crate) use city::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};
 #[cfg(feature = "compare")]
 pub(crate) use compare::Compare;
+pub(crate) use difference::Difference;
 pub(crate) use envelope::{Comfort, Corners, Envelope};
 pub(crate) use irradiance::{ClearSkyChoice, Irradiance, RadiationModel};
 pub(crate) use numbers::Numbers;
 use numbers::{above_zero, at_least_one, at_most, finite, known_crs, length, location};
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Shell, Viewshed};
 pub(crate) use query::{DepthMap, Query, UnprovenChoice};
-pub(crate) use scene::{CloudInput, Plan, ProfileChoice, SceneConfig, SceneInput, UpChoice};
+pub(crate) use scene::{AreaChoice, CloudInput, Plan, ProfileChoice, SceneConfig, SceneInput, UpChoice};
 pub(crate) use shadow::Shadow;
 pub(crate) use sky::{FacingChoice, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
 pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};
@@ -159,6 +161,8 @@ pub(crate) enum Command {
     Envelope(Envelope),
     /// Measure sun, shade and sky along walking routes and at windows
     Comfort(Comfort),
+    /// Compute what changes between two rasters: gains and losses before and after a plan
+    Difference(Difference),
     /// Show clouds in the browser, and ask there what is seen, lit and shaded
     #[cfg(feature = "view")]
     View(ViewPage),

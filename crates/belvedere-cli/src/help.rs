@@ -47,6 +47,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("city", include_str!("help/city.txt")),
     #[cfg(feature = "compare")]
     ("compare", include_str!("help/compare.txt")),
+    ("difference", include_str!("help/difference.txt")),
     ("describe", include_str!("help/describe.txt")),
     ("completions", include_str!("help/completions.txt")),
     ("man", include_str!("help/man.txt")),

@@ -103,7 +103,11 @@ pub(crate) fn scene(
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<Scene> {
-    let mut scene = present_scene(arguments, points, stages, summary)?;
+    let clears = !arguments.plan.clear.is_empty();
+    let mut scene = present_scene(arguments, if clears { Points::Keep } else { points }, stages, summary)?;
+    if clears {
+        plan::clear(&mut scene, &arguments.plan, stages, summary)?;
+    }
     scene.model = planned(scene.model, &arguments.plan, stages, summary)?;
     Ok(scene)
 }

@@ -9,6 +9,7 @@ pub mod control;
 pub mod crs;
 pub mod error;
 pub mod frame;
+pub mod horizon;
 pub mod mesh;
 pub mod model;
 pub mod needles;

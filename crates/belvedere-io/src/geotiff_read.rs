@@ -1,8 +1,11 @@
-//! Values of GeoTIFF rasters that Belvedere wrote.
+//! Values of GeoTIFF rasters.
 
 use tiff::decoder::{Decoder, DecodingResult};
+use tiff::tags::Tag;
 
+use crate::geotiff::Georeference;
 use crate::source::Source;
+use belvedere_data::crs::Crs;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
 
@@ -37,6 +40,71 @@ pub fn read_f32<'a>(source: impl Into<Source<'a>>) -> Result<Raster<f32>> {
         DecodingResult::F32(values) => Some(values),
         _ => None,
     })
+}
+
+/// A raster with its place on the map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedRaster {
+    /// Values of the first band; NaN where the file says that there is none.
+    pub values: Raster<f32>,
+    /// Where it lies, if the file says so.
+    pub place: Option<Georeference>,
+    /// What the values are, if the file says so.
+    pub description: Option<String>,
+}
+
+/// A raster of numbers of any kind, with its place on the map.
+///
+/// # Errors
+/// [`Error::Io`], and [`Error::Malformed`] for what is no raster of one band.
+pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
+    let input = source.into().open()?;
+    let name = input.name;
+    let damaged = |e: tiff::TiffError| match e {
+        tiff::TiffError::IoError(source) => Error::io(&name)(source),
+        other => Error::malformed(&name, format!("is no raster that can be read: {other}")),
+    };
+    let mut decoder = Decoder::new(input.reader).map_err(damaged)?;
+    let (width, height) = decoder.dimensions().map_err(damaged)?;
+    #[expect(clippy::cast_possible_truncation, reason = "values of maps are f32")]
+    let values: Vec<f32> = match decoder.read_image().map_err(damaged)? {
+        DecodingResult::U8(values) => values.into_iter().map(f32::from).collect(),
+        DecodingResult::I8(values) => values.into_iter().map(f32::from).collect(),
+        DecodingResult::U16(values) => values.into_iter().map(f32::from).collect(),
+        DecodingResult::I16(values) => values.into_iter().map(f32::from).collect(),
+        DecodingResult::U32(values) => values.into_iter().map(|v| v as f32).collect(),
+        DecodingResult::I32(values) => values.into_iter().map(|v| v as f32).collect(),
+        DecodingResult::F32(values) => values,
+        DecodingResult::F64(values) => values.into_iter().map(|v| v as f32).collect(),
+        _ => return Err(Error::malformed(&name, "has values of another kind than expected")),
+    };
+    let nodata = decoder.get_tag_ascii_string(Tag::GdalNodata).ok();
+    #[expect(clippy::cast_possible_truncation, reason = "values of maps are f32")]
+    let nodata = nodata.and_then(|text| text.trim().parse::<f64>().ok()).map(|nodata| nodata as f32);
+    let values = values.into_iter().map(|v| if Some(v) == nodata || !v.is_finite() { f32::NAN } else { v }).collect();
+    let side = |count: u32| usize::try_from(count).unwrap_or(usize::MAX);
+    let values = Raster::from_values(side(width), side(height), values)
+        .map_err(|_| Error::malformed(&name, "has more than one band; take one of them"))?;
+    let keys = decoder.get_tag_u16_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
+    let keys: Vec<u8> = keys.into_iter().flat_map(u16::to_le_bytes).collect();
+    let crs = Crs::from_geotiff_keys(&keys).unwrap_or_default();
+    let numbers = |decoder: &mut Decoder<_>, tag| decoder.get_tag_f64_vec(tag).unwrap_or_default();
+    let [scale, tie, matrix] = [Tag::ModelPixelScaleTag, Tag::ModelTiepointTag, Tag::ModelTransformationTag]
+        .map(|tag| numbers(&mut decoder, tag));
+    let place = match (&scale[..], &tie[..], &matrix[..]) {
+        (&[dx, dy, ..], &[column, row, _, x, y, ..], _) => Some(Georeference {
+            upper_left: [x - column * dx, y + row * dy],
+            column_step: [dx, 0.0],
+            row_step: [0.0, -dy],
+            crs,
+        }),
+        (_, _, &[cx, rx, _, x, cy, ry, _, y, ..]) => {
+            Some(Georeference { upper_left: [x, y], column_step: [cx, cy], row_step: [rx, ry], crs })
+        }
+        _ => None,
+    };
+    let description = decoder.get_tag_ascii_string(Tag::ImageDescription).ok();
+    Ok(PlacedRaster { values, place, description })
 }
 
 fn read<T: Copy>(source: Source<'_>, of_kind: impl Fn(DecodingResult) -> Option<Vec<T>>) -> Result<Raster<T>> {

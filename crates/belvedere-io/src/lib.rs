@@ -28,6 +28,7 @@ mod geojson_read;
 mod geotiff;
 #[cfg(feature = "tiff")]
 mod geotiff_read;
+mod horizon_profile;
 #[cfg(feature = "las")]
 mod las;
 #[cfg(feature = "las")]
@@ -99,7 +100,10 @@ pub use geotiff::{
     write_u32 as write_tif_u32,
 };
 #[cfg(feature = "tiff")]
-pub use geotiff_read::{read_f32 as read_tif_f32, read_u8 as read_tif_u8, read_u16 as read_tif_u16};
+pub use geotiff_read::{
+    PlacedRaster, read_f32 as read_tif_f32, read_placed as read_tif, read_u8 as read_tif_u8, read_u16 as read_tif_u16,
+};
+pub use horizon_profile::read_horizon;
 #[cfg(feature = "las")]
 pub use las::{LasHead, read_las_head};
 pub use mesh::read_mesh;

@@ -2,15 +2,18 @@
 
 use crate::cloud::{Cloud, Input, json};
 use crate::errors::{belvedere_error, exception, wrong};
-use crate::landmark::mesh_of;
+use crate::landmark::{local_ring, mesh_of};
 use crate::system::System;
 use crate::work::run;
+use belvedere::apps::horizon::convergence;
 use belvedere::clean::CleanParams;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
-use belvedere::io::{Output, is_ball_file, read_balls, read_mesh, read_stations, read_trajectory, write_balls};
+use belvedere::io::{
+    Output, is_ball_file, read_balls, read_horizon, read_mesh, read_stations, read_trajectory, write_balls,
+};
 use belvedere::medial::{CarvedParams, Rule, ShrinkMethod, ShrinkParams, Trees};
-use belvedere::model::{BallParams, ModelParams, OrientBy, SceneModel};
+use belvedere::model::{BallParams, ClearedArea, ModelParams, OrientBy, SceneModel};
 use belvedere::normals::estimate::Neighborhood;
 use belvedere::query::{MedialScene, UnprovenAs};
 use belvedere::{Frame, PointCloud};
@@ -275,6 +278,32 @@ impl Scene {
     #[getter]
     fn ball_count(&self) -> usize {
         self.0.model.balls().len()
+    }
+
+    /// The same scene without what stands in an area: rings of x and y in the coordinates of the file, or a class. With the report as JSON.
+    fn without(&self, py: Python<'_>, rings: Option<Vec<Vec<[f64; 2]>>>, class_: u8) -> PyResult<(Self, String)> {
+        let inner = Arc::clone(&self.0);
+        let (model, cloud, report) = run(py, None, move |control| {
+            let area = match rings {
+                Some(rings) => ClearedArea::Polygon(rings.iter().map(|ring| local_ring(&inner, ring)).collect()),
+                None => ClearedArea::Class(class_),
+            };
+            inner.model.clone().without(&area, &inner.cloud, control)
+        })?;
+        Ok((Self(Arc::new(Inner::new(model, Arc::new(cloud)))), json(&report)?))
+    }
+
+    /// The same scene before the far terrain of a file.
+    fn with_horizon(&self, py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let inner = Arc::clone(&self.0);
+        let model = run(py, None, move |_| {
+            let (low, high) = inner.model.bounds().corners();
+            let frame = inner.frame();
+            let middle = [0, 1].map(|i| f64::midpoint(low[i], high[i]) + frame.origin[i]);
+            let of_grid = convergence(&frame.crs, middle).unwrap_or(0.0);
+            Ok(inner.model.clone().with_horizon(read_horizon(&path)?.turned(-of_grid)))
+        })?;
+        Ok(Self(Arc::new(Inner::new(model, Arc::clone(&self.0.cloud)))))
     }
 
     /// Names of the meshes that were added.

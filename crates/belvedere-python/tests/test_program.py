@@ -280,3 +280,31 @@ def test_comfort_and_envelopes(scene, run_program, folder, standing):
     )
     ours = scene.envelope(ring, protect=line, date="2026-03-21", between=(10, 14), max_height=25)
     assert_same_raster(ours, folder / "envelope.tif", folder)
+
+
+def test_plans(scene, run_program, folder):
+    low, high = scene.bounds
+    x, y = ((low + high) / 2)[:2]
+    corners = [(x + a, y + b, c) for a, b in [(-9, -7), (9, -7), (9, 7), (-9, 7)] for c in (low[2] - 1, high[2] + 9)]
+    faces = ["1 3 4 2", "3 5 6 4", "5 7 8 6", "7 1 2 8", "2 4 6 8"]
+    lines = [f"v {a!r} {b!r} {c!r}" for a, b, c in ([float(v) for v in corner] for corner in corners)]
+    (folder / "planned.obj").write_text("\n".join(lines + [f"f {face}" for face in faces]))
+    (folder / "hills.csv").write_text("azimuth,elevation\n90,2\n180,25\n270,8\n")
+    box = [float(v) for v in (x - 20, y - 15, x + 20, y + 15)]
+    area = [(box[0], box[1]), (box[2], box[1]), (box[2], box[3]), (box[0], box[3])]
+    sun, flags = {"sun": (200, 25)}, ["--sun", "200,25"]
+    cleared = scene.without(area)
+    for name, planned, more in [
+        ("added", scene.with_added(folder / "planned.obj"), ["--add", "planned.obj"]),
+        ("cleared", cleared, ["--clear", ",".join(repr(v) for v in box)]),
+        (
+            "both",
+            cleared.with_added(folder / "planned.obj"),
+            ["--clear", ",".join(repr(v) for v in box), "--add", "planned.obj"],
+        ),
+        ("hills", scene.with_horizon(folder / "hills.csv"), ["--horizon", "hills.csv"]),
+    ]:
+        run_program("shadow", "tile.laz", *flags, *more, "-o", f"plan_{name}.tif")
+        raster = planned.shadow(**sun)
+        assert_same_raster(raster, folder / f"plan_{name}.tif", folder)
+        assert not np.array_equal(raster.values, scene.shadow(**sun).values, equal_nan=True), name

@@ -59,6 +59,41 @@ pub(crate) struct Plan {
     /// cells on the ground inside it are left out. What pulses prove stays as it was.
     #[arg(long, value_name = "MESH", help_heading = "Plan")]
     pub(crate) add: Vec<PathBuf>,
+    /// Clear what stands in an area: POLYGON.geojson, X0,Y0,X1,Y1 or class:N; repeatable
+    ///
+    /// Polygons, a box from the lowest to the highest x and y, or the points of a class. Points more than 0.3 m above the ground are gone, and what is lower
+    /// beside them unless it is ground, with the balls at them; balls beside the area are cut to its edge, and the ground is closed
+    /// at the height interpolated from the ground around. Lines of sight through the space that was freed count as proven. It comes before
+    /// --add, so that a building can replace another. Ball files have no points: give the cloud.
+    #[arg(long, value_name = "AREA", help_heading = "Plan", allow_hyphen_values = true)]
+    pub(crate) clear: Vec<AreaChoice>,
+}
+
+/// An area to clear, as typed.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum AreaChoice {
+    /// Lowest and highest x and y, in the coordinates of the file.
+    Box([f64; 4]),
+    Class(u8),
+    File(PathBuf),
+}
+
+impl std::str::FromStr for AreaChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if let Some(class) = text.strip_prefix("class:") {
+            return class.parse().map(Self::Class).map_err(|_| format!("{class} is no class: 0 to 255"));
+        }
+        let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+        match numbers.as_deref() {
+            Some(&[x0, y0, x1, y1]) if [x0, y0, x1, y1].iter().all(|v| v.is_finite()) && x0 < x1 && y0 < y1 => {
+                Ok(Self::Box([x0, y0, x1, y1]))
+            }
+            Some(_) => Err("a box is X0,Y0,X1,Y1: lowest x and y, then highest".to_owned()),
+            None => Ok(Self::File(text.into())),
+        }
+    }
 }
 
 /// The parameters of balls in a file.

@@ -33,6 +33,12 @@ pub(crate) struct SkyPlaces {
     /// Cells of a grid are always level.
     #[arg(long, value_enum, value_name = "HOW", help_heading = "Targets")]
     pub(crate) facing: Option<FacingChoice>,
+    /// Horizon of far terrain: a file of PVGIS (.json .csv), or a table of azimuth and elevation in degrees (.csv)
+    ///
+    /// Directions below it are blocked for all targets. Azimuths of PVGIS count from south and those of other tables clockwise from true north;
+    /// between rows the elevation is linear.
+    #[arg(long, value_name = "FILE", help_heading = "Plan")]
+    pub(crate) horizon: Option<PathBuf>,
     /// Also write a mask of the cells near the edge of the cloud (.tif): 1 near the edge, 0 not, nodata 255
     ///
     /// A cell is near the edge if more than 5 % of the light comes from directions that leave the cloud below its highest point: objects beyond the

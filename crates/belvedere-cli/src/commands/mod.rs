@@ -8,6 +8,7 @@ mod compare;
 mod demo;
 mod depth_map;
 mod describe;
+mod difference;
 mod envelope;
 mod horizon;
 mod info;
@@ -74,6 +75,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::City(arguments) => city::run(arguments, global),
         #[cfg(feature = "compare")]
         Command::Compare(arguments) => compare::run(arguments, global),
+        Command::Difference(arguments) => difference::run(arguments, global),
         Command::Describe => Ok(describe::run()),
         Command::Completions { shell } => {
             let mut script = Vec::new();

@@ -153,6 +153,9 @@ fn load(
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<(Option<Arc<PointCloud>>, SceneModel)> {
+    if !arguments.plan.clear.is_empty() {
+        return Err(Usage("--clear: the page shows the cloud as it is; use the commands for maps".to_owned()).into());
+    }
     let mut input = arguments.clone();
     input.input.clouds.clone_from(&files.clouds);
     let Some(balls) = &files.balls else {

@@ -1,14 +1,65 @@
 //! Flags of what is planned: a scene as it will be.
 
-use crate::arguments::Plan;
+use super::Scene;
+use crate::arguments::{AreaChoice, Plan};
 use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
-use belvedere::Mesh;
 use belvedere::crs::Crs;
-use belvedere::io::read_mesh;
-use belvedere::model::SceneModel;
+use belvedere::io::{Shape, read_geojson, read_mesh};
+use belvedere::model::{ClearReport, ClearedArea, SceneModel};
+use belvedere::{Frame, Mesh};
 use std::path::Path;
+
+/// Clears areas of a scene that has its points.
+pub(super) fn clear(scene: &mut Scene, plan: &Plan, stages: &mut Stages, summary: &mut Summary) -> Result<()> {
+    if scene.cloud.is_empty() {
+        bail!("--clear needs points, and a ball file has none: give the cloud that it was made from");
+    }
+    let mut sum = ClearReport::default();
+    for area in plan.clear.iter().map(|choice| areas(choice, scene.model.frame())).collect::<Result<Vec<_>>>()?.concat()
+    {
+        let model = std::mem::take(&mut scene.model);
+        let cleared = stages.run("clearing", 0, |control| model.without(&area, &scene.cloud, control));
+        let report;
+        (scene.model, scene.cloud, report) = super::flagged("--clear", cleared)?;
+        sum.points_cleared += report.points_cleared;
+        sum.balls_cleared += report.balls_cleared;
+        sum.balls_cut += report.balls_cut;
+        sum.ground_balls_added += report.ground_balls_added;
+    }
+    if sum.points_cleared == 0 {
+        summary.warn("--clear: nothing stands there");
+    }
+    summary.add("cleared", Summary::of(&sum));
+    Ok(())
+}
+
+/// The areas that were typed, local metres.
+fn areas(choice: &AreaChoice, frame: &Frame) -> Result<Vec<ClearedArea>> {
+    let path = match choice {
+        AreaChoice::Class(class) => return Ok(vec![ClearedArea::Class(*class)]),
+        AreaChoice::Box([x0, y0, x1, y1]) => {
+            let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+            let local = corners.map(|[x, y]| {
+                let [x, y, _] = frame.local_from_file([*x, *y, 0.0]);
+                [x, y]
+            });
+            return Ok(vec![ClearedArea::Polygon(vec![local.to_vec()])]);
+        }
+        AreaChoice::File(path) => path,
+    };
+    let local = |ring: &Vec<[f64; 3]>| ring.iter().map(|c| [c[0] - frame.origin[0], c[1] - frame.origin[1]]).collect();
+    let polygons = read_geojson(path, &frame.crs)?.into_iter().filter_map(|feature| match feature.shape {
+        Shape::Polygon(rings) => Some(ClearedArea::Polygon(rings.iter().map(local).collect())),
+        _ => None,
+    });
+    let polygons: Vec<ClearedArea> = polygons.collect();
+    if polygons.is_empty() {
+        bail!("{}: no polygon to clear is in the file", path.display());
+    }
+    Ok(polygons)
+}
 
 /// The model of a scene as it will be.
 pub(crate) fn planned(

@@ -4,7 +4,7 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 25] = [
+const COMMANDS: [&str; 26] = [
     "demo",
     "simulate",
     "info",
@@ -27,6 +27,7 @@ const COMMANDS: [&str; 25] = [
     "city",
     "compare",
     "view",
+    "difference",
     "describe",
     "completions",
     "man",

@@ -76,3 +76,113 @@ fn lines_of_sight_name_the_mesh_that_blocks_and_wrong_meshes_are_refused_by_name
     place.refusal(1, &format!("{shadow} empty.obj"), &["empty.obj"]);
     place.refusal(1, &format!("{shadow} missing.obj"), &["missing.obj"]);
 }
+
+#[test]
+fn a_cleared_house_casts_no_shadow_and_another_can_replace_it() {
+    let place = Workplace::new();
+    let mut cloud = house();
+    let class = |position: &[f32; 3]| if position[2].abs() < 0.1 { 2 } else { 6 };
+    cloud.attributes.classification = Some(cloud.positions.iter().map(class).collect());
+    place.write_cloud("house.laz", &cloud);
+    let [[x0, y0, _], [x1, y1, _]] = [at(-5.5, -4.5, 0.0), at(5.5, 4.5, 0.0)];
+    let area = format!("{x0},{y0},{x1},{y1}");
+    let shadow = format!("shadow {HOUSE} --sun 180,45 --grid-north --cell 0.5 -o lit.csv --clear {area}");
+    let run = place.summary(&shadow);
+    assert!(run["cleared"]["points_cleared"].as_u64().unwrap() > 500, "{run}");
+    let lit = column(&place, "lit.csv", "lit");
+    let [x, y] = ["x", "y"].map(|name| column(&place, "lit.csv", name));
+    let unlit: Vec<[f64; 3]> =
+        (0..lit.len()).filter(|&i| lit[i] != 1.0).map(|i| [x[i] - EAST, y[i] - NORTH, lit[i]]).collect();
+    assert!(unlit.is_empty() && lit.len() > 3500, "{unlit:?}");
+    // cells where it stood are asked about too
+    let inside = x.iter().zip(&y).filter(|(x, y)| (**x - EAST).abs() < 4.0 && (**y - NORTH).abs() < 3.0).count();
+    assert!(inside > 100, "{inside}");
+    place.summary(&shadow.replace(&area, "class:6"));
+    assert!(column(&place, "lit.csv", "lit").iter().all(|&lit| lit == 1.0));
+    place.write("plan.obj", box_obj([-3.0, -2.0], [3.0, 2.0], 4.0));
+    place.summary(&format!("{shadow} --add plan.obj"));
+    let [x, y, lit] = ["x", "y", "lit"].map(|name| column(&place, "lit.csv", name));
+    let is_right = |i: usize| {
+        let [x, y] = [x[i] - EAST, y[i] - NORTH];
+        let in_shadow = x.abs() < 3.0 && y > 2.0 && y < 5.9;
+        (5.7..6.1).contains(&y) || lit[i] == if in_shadow { 0.0 } else { 1.0 }
+    };
+    assert!((0..lit.len()).all(is_right) && lit.contains(&0.0));
+    place.write("area.geojson", format!(
+        r#"{{"type": "Polygon", "crs": {{"type": "name", "properties": {{"name": "EPSG:28992"}}}}, "coordinates": [[[{x0},{y0}],[{x1},{y0}],[{x1},{y1}],[{x0},{y1}],[{x0},{y0}]]]}}"#
+    ));
+    let of_file = place.summary(&shadow.replace(&area, "area.geojson"));
+    assert_eq!(of_file["cleared"], run["cleared"]);
+    place.refusal(2, &shadow.replace(&area, "0,0,9,9"), &["--clear", "cloud"]);
+    place.refusal(2, &shadow.replace(&area, "5,5,1,1"), &["X0,Y0,X1,Y1"]);
+    place.refusal(2, &shadow.replace(&area, "class:2"), &["--clear", "class 2"]);
+    place.summary(&format!("balls {HOUSE} -o balls.npz"));
+    place.refusal(1, &format!("line-of-sight balls.npz --random 5 -o lines.csv --clear {area}"), &["--clear", "cloud"]);
+}
+
+#[test]
+fn differences_are_those_of_the_two_results_cell_by_cell() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    place.write("plan.obj", box_obj([8.0, -2.0], [11.0, 2.0], 4.0));
+    let shadow = format!("shadow {HOUSE} --ground found --sun 180,45 --grid-north --cell 0.5");
+    place.summary(&format!("{shadow} -o before.tif -o before.csv"));
+    place.summary(&format!("{shadow} --add plan.obj -o after.tif -o after.csv"));
+    let run = place.summary("difference before.tif after.tif -o change.tif -o change.png -o change.csv");
+    let lit = |name: &str| -> std::collections::BTreeMap<[i64; 2], f64> {
+        let [x, y, lit] = ["x", "y", "lit"].map(|of| column(&place, name, of));
+        (0..lit.len()).map(|i| ([x[i], y[i]].map(|v| (v * 4.0).round() as i64), lit[i])).collect()
+    };
+    let (before, after) = (lit("before.csv"), lit("after.csv"));
+    let lost = before.iter().filter(|(cell, lit)| after.get(*cell).is_some_and(|after| after < lit)).count();
+    let gone = before.keys().filter(|cell| !after.contains_key(*cell)).count();
+    assert!(lost > 30 && gone > 30);
+    let figures = &run["difference"];
+    let figure = |name: &str| figures[name].as_f64().unwrap();
+    assert_eq!(
+        (figure("cells_loss"), figure("cells_gain"), figure("cells_only_before")),
+        (lost as f64, 0.0, gone as f64)
+    );
+    assert_eq!((figure("sum_loss"), figure("area_loss_m2")), (lost as f64 * -0.25, lost as f64 * 0.25));
+    for name in ["cells", "cells_loss", "mean_before", "mean_after", "sum_loss"] {
+        assert_eq!(column(&place, "change.csv", name), [figure(name)], "{name}");
+    }
+    assert!(place.bytes("change.png").starts_with(b"\x89PNG"));
+    // the raster of the change, read back, lies where the others do
+    let again = place.summary("difference before.tif before.tif -o same.tif");
+    assert_eq!((&again["difference"]["cells_loss"], &again["difference"]["cells_gain"]), (&0.into(), &0.into()));
+    place.summary("difference change.tif change.tif -o same.tif");
+    place.summary(&format!("{shadow} --cell 1 -o coarse.tif").replace("--cell 0.5 ", ""));
+    place.refusal(1, "difference before.tif coarse.tif -o change.tif", &["coarse.tif", "--cell"]);
+    place.refusal(1, "difference before.tif before.csv -o change.tif", &["before.csv"]);
+    place.refusal(2, "difference before.tif after.tif -o change.gif", &["extension"]);
+}
+
+#[test]
+fn far_terrain_hides_what_lies_below_its_horizon() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let [x, y, z] = at(0.0, 0.0, 12.0);
+    place.write("places.csv", format!("x,y,z\n{x},{y},{z}\n"));
+    // 30 degrees all around: cos² 30 of the light of an even sky, half of its directions
+    place.write("even.csv", "azimuth,elevation\n0,30\n120,30\n240,30\n");
+    place.summary(&format!("sky-view {HOUSE} --targets places.csv --horizon even.csv --directions 20000 -o sky.csv"));
+    let names = place.text("sky.csv").lines().next().unwrap().to_owned();
+    let value = |name: &str| column(&place, "sky.csv", name)[0];
+    let found: Vec<f64> =
+        names.split(',').filter(|name| name.contains("sky") || name.contains("open")).map(value).collect();
+    assert!(found.len() == 2 && (found[0] - 0.75).abs() < 0.003 && (found[1] - 0.5).abs() < 0.003, "{names} {found:?}");
+    // a mountain in the south: azimuths of PVGIS count from there, and those of the program from north
+    place.write("pvgis.csv", "A\tH_hor\n-90\t0\n0\t30\n90\t0\n180\t0\n");
+    place.write("north.csv", "azimuth,elevation\n0,0\n90,0\n180,30\n270,0\n");
+    for horizon in ["pvgis.csv", "north.csv"] {
+        for (sun, lit) in [("180,25", 0.0), ("180,35", 1.0), ("0,5", 1.0), ("225,14", 0.0), ("225,16", 1.0)] {
+            place.summary(&format!("shadow {HOUSE} --targets places.csv --horizon {horizon} --sun {sun} -o lit.csv"));
+            assert_eq!(column(&place, "lit.csv", "lit"), [lit], "{horizon} {sun}");
+        }
+    }
+    place.write("wrong.csv", "azimuth,elevation\n0,95\n");
+    let shadow = format!("shadow {HOUSE} --targets places.csv --sun 180,25 -o lit.csv --horizon");
+    place.refusal(1, &format!("{shadow} wrong.csv"), &["wrong.csv", "90"]);
+    place.refusal(1, &format!("{shadow} missing.csv"), &["missing.csv"]);
+}

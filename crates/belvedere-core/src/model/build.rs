@@ -111,7 +111,7 @@ fn of_survey(
         tree = Some(own);
     }
     let parts = ModelParts { frame, bounds: survey.bounds, balls, transmission, pulses: survey.pulses(), provenance };
-    Ok((SceneModel { parts, vegetation, normals: None, tree, added: None }, report))
+    Ok((SceneModel { parts, vegetation, tree, ..SceneModel::default() }, report))
 }
 
 /// How balls were made, as a saved model says it.

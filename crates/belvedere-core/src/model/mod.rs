@@ -8,6 +8,7 @@
 
 mod blocked_pulses;
 mod build;
+mod clear;
 mod close_range_normals;
 mod facts;
 mod params;
@@ -16,6 +17,7 @@ mod questions;
 mod report;
 
 pub use belvedere_data::model::ModelParts;
+pub use clear::{ClearReport, ClearedArea};
 pub use facts::{SurveyExtremes, SurveyFacts};
 pub use params::{BallParams, ModelParams, OrientBy};
 pub use prepare::OrientedSurvey;
@@ -23,8 +25,10 @@ pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesR
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
 use crate::pulses::NeedleColumns;
-use crate::query::{AddedMeshes, BallTree};
+use crate::query::{AddedMeshes, BallTree, FreedSpace};
+use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::{Bounds, Error, Frame, Mesh, Result};
+use std::sync::Arc;
 
 /// A scene that answers what is visible: balls that block lines of sight, and the pulses that prove others free.
 ///
@@ -41,6 +45,10 @@ pub struct SceneModel {
     tree: Option<BallTree>,
     /// Meshes that were added.
     added: Option<AddedMeshes>,
+    /// Space that was cleared.
+    freed: Vec<FreedSpace>,
+    /// Far terrain, azimuths from grid north.
+    horizon: Option<Arc<HorizonProfile>>,
 }
 
 impl SceneModel {
@@ -59,7 +67,7 @@ impl SceneModel {
             });
         }
         let vegetation = vegetation_of_transmission(&parts.transmission);
-        Ok(Self { parts, vegetation, normals: None, tree: None, added: None })
+        Ok(Self { parts, vegetation, ..Self::default() })
     }
 
     /// The same model with the triangles of `mesh`, metres of the reference system of the model ([`Mesh::scaled_to_metres`]), which `name`
@@ -78,6 +86,19 @@ impl SceneModel {
     #[must_use]
     pub fn added(&self) -> Option<&AddedMeshes> {
         self.added.as_ref()
+    }
+
+    /// The same model before far terrain: directions below `horizon`, azimuths from grid north, are blocked for all targets alike. It is not saved.
+    #[must_use]
+    pub fn with_horizon(mut self, horizon: HorizonProfile) -> Self {
+        self.horizon = Some(Arc::new(horizon));
+        self
+    }
+
+    /// The horizon of far terrain, if one was given.
+    #[must_use]
+    pub fn horizon(&self) -> Option<&HorizonProfile> {
+        self.horizon.as_deref()
     }
 
     /// Everything that is saved of a model: what a ball file holds.

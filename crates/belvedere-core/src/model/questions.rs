@@ -34,7 +34,7 @@ impl SceneModel {
             Some(tree) => tree.with_rule(rule)?,
             None => control.stage("indexing balls", balls.len(), || BallTree::new(balls, rule))?,
         };
-        let scene = MedialScene::of_tree(tree).with_coverage(self.coverage()).with_added(self.added.clone());
+        let scene = self.completed(MedialScene::of_tree(tree)).with_freed(&self.freed);
         let Some(pulses) = self.pulses().filter(|_| unproven != UnprovenAs::Visible) else { return Ok(scene) };
         Ok(scene.with_pulses(Proof::from_columns(pulses.clone(), &ProofParams::default())?))
     }
@@ -47,6 +47,11 @@ impl SceneModel {
     pub fn scene_without_vegetation(&self, rule: &BlockRule, control: &Control<'_>) -> Result<MedialScene> {
         let balls = without_vegetation(self.balls(), self.vegetation())?;
         let scene = control.stage("indexing balls without trees", balls.len(), || MedialScene::new(&balls, rule))?;
-        Ok(scene.with_coverage(self.coverage()).with_added(self.added.clone()))
+        Ok(self.completed(scene))
+    }
+
+    /// A scene of balls with what else blocks, and where the cloud lies.
+    fn completed(&self, scene: MedialScene) -> MedialScene {
+        scene.with_coverage(self.coverage()).with_added(self.added.clone()).with_horizon(self.horizon.clone())
     }
 }

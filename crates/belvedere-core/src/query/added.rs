@@ -127,6 +127,17 @@ impl AddedMeshes {
         self.tree.triangles()
     }
 
+    /// The same without the triangles whose middles, local metres, `is_cleared` names; `None` where none is left.
+    ///
+    /// # Errors
+    /// Those of [`TriangleTree::new`].
+    pub fn without(&self, is_cleared: impl Fn([f64; 3]) -> bool) -> Result<Option<Self>> {
+        let middle =
+            |corners: &Corners| std::array::from_fn(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 3.0);
+        let left: Vec<(Corners, u32)> = self.numbered().filter(|(corners, _)| !is_cleared(middle(corners))).collect();
+        if left.is_empty() { Ok(None) } else { Self::of_triangles(&left, self.names.to_vec()).map(Some) }
+    }
+
     /// Names of the meshes, in the order in which they were added.
     #[must_use]
     pub fn names(&self) -> &[String] {
@@ -159,6 +170,9 @@ impl AddedMeshes {
     /// surfaces each.
     #[must_use]
     pub fn encloses(&self, place: [f64; 3]) -> bool {
+        if !place.iter().all(|v| v.is_finite()) {
+            return false;
+        }
         let is_inside = |mesh: usize| {
             [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].into_iter().all(|direction| {
                 let ray = Ray { origin: place, direction, ranges: [0.0, f64::INFINITY] };

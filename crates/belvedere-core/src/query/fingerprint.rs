@@ -3,13 +3,19 @@
 use crate::blocking::{BlockRule, Profile};
 use crate::medial::MedialBalls;
 use crate::query::AddedMeshes;
+use belvedere_data::horizon::HorizonProfile;
 
-/// A number that differs, but for one chance in 10¹⁹, between scenes whose balls, added triangles or parameters differ in any bit; the same on any machine.
+/// A number that differs, but for one chance in 10¹⁹, between scenes whose balls, added triangles, horizon or parameters differ in any bit; the same on any machine.
 ///
 /// # Source
 /// FNV-1a of 64 bits (Fowler, Noll & Vo), taken over words of 32 bits.
 #[must_use]
-pub fn scene_fingerprint(balls: &MedialBalls, added: Option<&AddedMeshes>, params: &BlockRule) -> u64 {
+pub fn scene_fingerprint(
+    balls: &MedialBalls,
+    added: Option<&AddedMeshes>,
+    horizon: Option<&HorizonProfile>,
+    params: &BlockRule,
+) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut mix = |word: u32| hash = (hash ^ u64::from(word)).wrapping_mul(0x0100_0000_01b3);
     #[expect(clippy::cast_possible_truncation, reason = "both halves are taken")]
@@ -21,6 +27,9 @@ pub fn scene_fingerprint(balls: &MedialBalls, added: Option<&AddedMeshes>, param
     for (center, radius) in balls.centers.iter().zip(&balls.radii) {
         center.iter().for_each(|v| mix(v.to_bits()));
         mix(radius.to_bits());
+    }
+    for number in horizon.map_or(&[][..], HorizonProfile::rows).as_flattened() {
+        halves(*number).into_iter().for_each(&mut mix);
     }
     for corner in added.map_or(&[][..], AddedMeshes::triangles).as_flattened().as_flattened() {
         halves(*corner).into_iter().for_each(&mut mix);

@@ -5,6 +5,7 @@ use super::backend::{Backend, Prepared};
 use super::ball_tree::BallTree;
 use super::certified::{line_in_view, viewer_of};
 use super::cpu::Cpu;
+use super::freed_space::{FreedSpace, outside};
 use super::lazy::Lazy;
 use super::{Answer, Blocker, Coverage, Proof, Sight, Viewer, Visibility};
 use crate::blocking::{Ball, BlockRule};
@@ -12,6 +13,7 @@ use crate::medial::MedialBalls;
 use crate::ray_index::Ray;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
+use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::view::View;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -38,6 +40,8 @@ pub struct MedialScene {
     pub(super) proof: Option<Proof>,
     coverage: Option<Coverage>,
     pub(super) added: Option<AddedMeshes>,
+    pub(super) freed: Vec<FreedSpace>,
+    pub(super) horizon: Option<Arc<HorizonProfile>>,
     backend: Box<dyn Backend>,
     prepared: Lazy<Box<dyn Prepared>>,
 }
@@ -55,7 +59,16 @@ impl MedialScene {
     #[must_use]
     pub fn of_tree(tree: BallTree) -> Self {
         let tree = Arc::new(tree);
-        Self { tree, proof: None, coverage: None, added: None, backend: Box::new(Cpu), prepared: Lazy::new() }
+        Self {
+            tree,
+            proof: None,
+            coverage: None,
+            added: None,
+            freed: Vec::new(),
+            horizon: None,
+            backend: Box::new(Cpu),
+            prepared: Lazy::new(),
+        }
     }
 
     /// The same balls, whose lines of sight are settled in bulk by another backend. Answers stay the same.
@@ -107,6 +120,30 @@ impl MedialScene {
         self.added.as_ref()
     }
 
+    /// The same balls, of which it is known that all of `freed` is free whatever pulses say.
+    #[must_use]
+    pub fn with_freed(mut self, freed: &[FreedSpace]) -> Self {
+        self.freed = freed.to_vec();
+        self
+    }
+
+    /// The same balls before far terrain: every direction below its horizon, azimuths from grid north, is blocked. Lines of sight that end are not.
+    #[must_use]
+    pub fn with_horizon(mut self, horizon: Option<Arc<HorizonProfile>>) -> Self {
+        self.horizon = horizon;
+        self
+    }
+
+    /// How much of a line of sight `proof` does not prove, metres: [`Proof::unproven_length`] outside the space that was freed.
+    pub(super) fn unproven_length(&self, proof: &Proof, target: [f64; 3], towards: [f64; 3], range: f64) -> f64 {
+        if self.freed.is_empty() {
+            return proof.unproven_length(target, towards, range);
+        }
+        let ray = Ray { origin: target, direction: towards, ranges: [0.0, range] };
+        let pieces = outside(&self.freed, &ray).into_iter();
+        pieces.map(|[from, to]| proof.unproven_length(ray.at(from), towards, to - from)).sum()
+    }
+
     /// Over which space the cloud lies, where that is known.
     #[must_use]
     pub fn coverage(&self) -> Option<&Coverage> {
@@ -145,16 +182,22 @@ impl MedialScene {
 
     /// The same for a line of sight of which it is known that no ball blocks it.
     pub(super) fn answer_unblocked(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
-        if self.is_behind_added(target, towards, range) {
+        if self.is_behind_others(target, towards, range) {
             return Answer::Blocked;
         }
         match &self.proof {
-            Some(proof) if proof.is_unproven(target, towards, range) => Answer::Unproven,
+            Some(proof)
+                if proof.is_unproven(target, towards, range)
+                    && (self.freed.is_empty()
+                        || self.unproven_length(proof, target, towards, range) > proof.tolerance()) =>
+            {
+                Answer::Unproven
+            }
             _ => Answer::Visible,
         }
     }
 
-    /// Visible, unproven, or blocked by what was added, for a line of sight from `target` along the unit vector `towards` without end of which it is known that no ball
+    /// Visible, unproven, or blocked by what was added or by far terrain, for a line of sight from `target` along the unit vector `towards` without end of which it is known that no ball
     /// blocks it.
     #[must_use]
     pub fn answer_unblocked_towards(&self, target: [f64; 3], towards: [f64; 3]) -> Answer {
@@ -236,10 +279,17 @@ impl MedialScene {
         nearer(ball, self.added.as_ref().and_then(|added| added.nearest(&line, &ends)))
     }
 
-    /// Whether a mesh that was added blocks a line of sight.
+    /// Whether anything but balls blocks a line of sight: a mesh that was added, or far terrain.
     #[inline]
-    pub(super) fn is_behind_added(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
+    pub(super) fn is_behind_others(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         self.added.as_ref().is_some_and(|added| added.blocks(target, towards, range))
+            || (range == f64::INFINITY && self.is_below_horizon(towards))
+    }
+
+    /// Whether a unit vector points below the horizon of far terrain.
+    #[inline]
+    pub(super) fn is_below_horizon(&self, direction: [f64; 3]) -> bool {
+        self.horizon.as_ref().is_some_and(|horizon| horizon.hides(direction))
     }
 
     /// The ball of a row of the index as what blocks.

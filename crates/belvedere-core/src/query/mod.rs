@@ -21,6 +21,7 @@ mod cpu;
 pub mod earth;
 mod fingerprint;
 mod free_range;
+mod freed_space;
 mod lazy;
 mod many_targets;
 pub mod medial_scene;
@@ -44,6 +45,7 @@ pub use coverage::Coverage;
 pub use cpu::Cpu;
 pub use earth::{Curvature, EarthParams};
 pub use fingerprint::scene_fingerprint;
+pub use freed_space::FreedSpace;
 pub use medial_scene::MedialScene;
 pub use mesh::{BackFaces, MeshTargetParams, SeenArea, facing, seen_faces, seen_in_all, seen_objects};
 pub use points::{

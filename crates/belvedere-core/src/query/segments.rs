@@ -131,7 +131,7 @@ impl MedialScene {
             return Some(LineOfSight { answer: Answer::Visible, first_block: None, unproven_length: 0.0 });
         };
         let unseen = |(piece, _): &(Piece, f64)| {
-            proof.unproven_length(piece.ray.origin, piece.ray.direction, piece.ray.ranges[1])
+            self.unproven_length(proof, piece.ray.origin, piece.ray.direction, piece.ray.ranges[1])
         };
         let unproven_length = pieces.iter().map(unseen).sum();
         let answer = if unproven_length > proof.tolerance() { Answer::Unproven } else { Answer::Visible };
@@ -180,7 +180,7 @@ impl MedialScene {
         let Some(proof) = &self.proof else { return Answer::Visible };
         let mut unseen = 0.0;
         for (piece, _) in &pieces {
-            unseen += proof.unproven_length(piece.ray.origin, piece.ray.direction, piece.ray.ranges[1]);
+            unseen += self.unproven_length(proof, piece.ray.origin, piece.ray.direction, piece.ray.ranges[1]);
             if unseen > proof.tolerance() {
                 return Answer::Unproven;
             }

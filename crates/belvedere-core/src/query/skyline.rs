@@ -18,9 +18,9 @@ pub struct SkylinePoint {
     /// The least elevation above which nothing blocks up to the zenith, radians, −π/2 (nothing blocks at all) to π/2 (the zenith is
     /// hidden).
     pub elevation: f64,
-    /// Range of what stands there, metres; infinite where nothing does.
+    /// Range of what stands there, metres; infinite where nothing does, and for far terrain.
     pub range: f64,
-    /// What stands there.
+    /// What stands there; `None` for far terrain and where nothing does.
     pub blocker: Option<Blocker>,
 }
 
@@ -112,6 +112,14 @@ impl MedialScene {
                     skyline[azimuth] = skyline[azimuth].or(SkylinePoint { elevation, range, blocker });
                 }
             });
+        }
+        if let Some(horizon) = &self.horizon {
+            for (number, point) in skyline.iter_mut().enumerate() {
+                let elevation = horizon.elevation_at(first + number as f64 * step);
+                if elevation > point.elevation {
+                    *point = SkylinePoint { elevation, ..EMPTY };
+                }
+            }
         }
         Ok(skyline)
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -170,10 +170,11 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
         return cls._of(core, {} if cloud is None else cloud.report, {})
 
     def with_added(self, *meshes: str | os.PathLike[str]) -> Scene:
-        """The same scene with planned buildings: the triangles of meshes (``.obj .ply .json``) in the coordinates of the cloud.
+        """The same scene with planned buildings: meshes (``.obj .ply .json``) in the coordinates of the cloud.
 
-        They block lines of sight exactly as they are, from both sides, beside the balls. A target within 1 mm of the plane of a triangle is not
-        blocked by that triangle. What pulses prove stays as it was. Ball files do not keep added meshes.
+        Their triangles block lines of sight exactly as they are, from both sides, beside balls. A target within 1 mm
+        of the plane of a triangle is not blocked by that triangle. What pulses prove stays as it was. Ball files do not
+        keep added meshes.
 
         Parameters
         ----------
@@ -185,7 +186,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
         >>> x, y = ((low + high) / 2)[:2]
         >>> corners = [(x + a, y + b, low[2] + c) for a, b, c in [(-9, 0, -9), (9, 0, -9), (9, 0, 90), (-9, 0, 90)]]
         >>> lines = ["v {} {} {}".format(*corner) for corner in corners] + ["f 1 2 3 4"]
-        >>> _ = (folder / "wall.obj").write_text("\\n".join(lines))
+        >>> _ = (folder / "wall.obj").write_text(chr(10).join(lines))
         >>> planned = scene.with_added(folder / "wall.obj")
         >>> ends = [(x, y - 5, high[2])], [(x, y + 5, high[2])]
         >>> [int(s.lines_of_sight(*ends)["answer"][0]) for s in (scene, planned)]
@@ -195,6 +196,66 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
             raise wrong("meshes", "missing", "give at least one file")
         core = self._core.with_added([os.fspath(mesh) for mesh in meshes])
         return Scene._of(core, {} if self.cloud is None else self.cloud.report, self.report)
+
+    def without(
+        self,
+        polygon: Sequence[Sequence[tuple[float, float]]] | Sequence[tuple[float, float]] | None = None,
+        *,
+        class_: int | None = None,
+    ) -> Scene:
+        """The same scene without what stands in an area now: points above the ground, and the balls at them.
+
+        Balls beside the area are cut to its edge, and the ground is closed at the height interpolated from the ground
+        around. Lines of sight through the space that was freed count as proven. Meshes that were added go too.
+
+        Parameters
+        ----------
+        polygon : corners, or rings
+            Corners (x, y) of an outline in the coordinates of the cloud, or the outline and its holes.
+        class_ : int
+            Instead: the points of this class.
+
+        Examples
+        --------
+        >>> low, high = scene.bounds
+        >>> x, y = ((low + high) / 2)[:2]
+        >>> cleared = scene.without([(x - 20, y - 20), (x + 20, y - 20), (x + 20, y + 20), (x - 20, y + 20)])
+        >>> cleared.report["cleared"]["points_cleared"] == len(scene.cloud) - len(cleared.cloud)
+        True
+        """
+        if (polygon is None) == (class_ is None):
+            raise wrong("polygon and class_", "both or none", "give one of them")
+        if self.cloud is None:
+            raise wrong("cloud of the scene", "missing", "make the scene of a cloud: Scene(read(path))")
+        rings = None
+        if polygon is not None:
+            first = np.asarray(polygon[0], np.float64)
+            given = [polygon] if first.ndim == 1 else polygon
+            arrays = [np.asarray(ring, np.float64) for ring in given]
+            if any(ring.ndim != 2 or ring.shape[1] != 2 for ring in arrays):
+                raise wrong("polygon", "not made of corners", "give corners as (x, y)")
+            rings = [[(float(x), float(y)) for x, y in ring] for ring in arrays]
+        core, text = self._core.without(rings, 0 if class_ is None else int(class_))
+        return Scene._of(core, self.cloud.report, {**self.report, "cleared": json.loads(text)})
+
+    def with_horizon(self, path: str | os.PathLike[str]) -> Scene:
+        """The same scene before far terrain: directions to the sun and the sky below its horizon are blocked.
+
+        Parameters
+        ----------
+        path : path
+            The horizon of PVGIS (``.json .csv``, azimuths from south), or a table of azimuth, clockwise from north,
+            and elevation in degrees.
+
+        Examples
+        --------
+        >>> _ = (folder / "horizon.csv").write_text("0,30")
+        >>> float(scene.with_horizon(folder / "horizon.csv").shadow(sun=(180, 29)).values.max())
+        0.0
+        """
+        return Scene._of(
+            self._core.with_horizon(os.fspath(path)), {} if self.cloud is None else self.cloud.report, self.report
+        )
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a ball file: ``.npz`` keeps every bit; ``.ply .laz .las`` are for looking at.

@@ -6,10 +6,14 @@
 //! | points | | the points with their attributes, all measures as columns; `.csv` of a table: its rows as they were given |
 //! | faces of a mesh | | `.csv`: a row for each object and face; `.ply`: the mesh coloured by the first measure |
 
+#[cfg(feature = "figures")]
+mod difference;
 mod faces;
 #[cfg(feature = "figures")]
 mod map;
 
+#[cfg(feature = "figures")]
+pub use difference::difference_map;
 #[cfg(feature = "figures")]
 pub use map::measure_map;
 

@@ -1,5 +1,4 @@
 //! Meshes added to a scene: against closed forms, against the exact rays of the simulated towns, and all ways of asking against each other.
-#![expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 
 use belvedere::blocking::BlockRule;
 use belvedere::control::Control;

@@ -11,6 +11,7 @@ mod blocking;
 mod carving;
 mod certified;
 mod cleaning;
+mod cleared_areas;
 mod close_range;
 mod closed_form_shadows;
 mod closed_form_skies;

@@ -1,0 +1,22 @@
+//! Flags of differences between two results.
+
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub(crate) struct Difference {
+    /// Raster of the scene as it is (.tif)
+    #[arg(value_name = "BEFORE")]
+    pub(crate) before: PathBuf,
+    /// Raster of the scene as planned (.tif), with the same cells
+    #[arg(value_name = "AFTER")]
+    pub(crate) after: PathBuf,
+    /// Raster of the change (.tif), map with a legend of gains and losses (.png) or table of sums (.csv); repeatable
+    ///
+    /// .tif: value after less value before, nodata -9999 where either has no value.
+    #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
+    pub(crate) output: Vec<PathBuf>,
+    /// Title of the map [default: the names of the two files]
+    #[arg(long, value_name = "TEXT", help_heading = "Result")]
+    pub(crate) title: Option<String>,
+}

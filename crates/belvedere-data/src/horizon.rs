@@ -1,0 +1,111 @@
+//! The horizon of far terrain: below which elevation nothing is seen in each direction.
+
+use crate::{Error, Result};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Elevations of a horizon all around, linear between the azimuths that are given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HorizonProfile {
+    /// Azimuths clockwise from north, 0 to below 2π, ascending, and elevations above the horizontal, radians.
+    rows: Vec<[f64; 2]>,
+}
+
+impl HorizonProfile {
+    /// The profile of azimuths clockwise from north (any turns) and elevations, radians, in any order. Of equal azimuths the higher elevation
+    /// counts.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a profile without rows, and for a number that is not finite or an elevation beyond a right angle.
+    pub fn new(rows: impl IntoIterator<Item = [f64; 2]>) -> Result<Self> {
+        let mut rows: Vec<[f64; 2]> = rows.into_iter().collect();
+        let is_wrong = |row: &&[f64; 2]| !(row[0].is_finite() && row[1].abs() <= FRAC_PI_2 + 1e-9);
+        if let Some([azimuth, elevation]) = rows.iter().find(is_wrong) {
+            return Err(Error::InvalidParameter {
+                name: "row of a horizon",
+                value: format!("azimuth {}, elevation {} degrees", azimuth.to_degrees(), elevation.to_degrees()),
+                expected: "a finite azimuth and an elevation of -90 to 90 degrees",
+            });
+        }
+        if rows.is_empty() {
+            return Err(Error::InvalidParameter {
+                name: "horizon",
+                value: "without rows".to_owned(),
+                expected: "at least one azimuth with its elevation",
+            });
+        }
+        rows.iter_mut().for_each(|row| row[0] = row[0].rem_euclid(TAU));
+        // the higher first, which stays of those with equal azimuths
+        rows.sort_by(|a, b| a[0].total_cmp(&b[0]).then(b[1].total_cmp(&a[1])));
+        rows.dedup_by(|next, row| next[0] == row[0]);
+        Ok(Self { rows })
+    }
+
+    /// Azimuths clockwise from north and elevations, radians, ascending.
+    #[must_use]
+    pub fn rows(&self) -> &[[f64; 2]] {
+        &self.rows
+    }
+
+    /// The same with azimuths that are `by` radians larger: from another north.
+    #[must_use]
+    pub fn turned(&self, by: f64) -> Self {
+        let mut rows: Vec<[f64; 2]> = self.rows.iter().map(|row| [(row[0] + by).rem_euclid(TAU), row[1]]).collect();
+        rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        Self { rows }
+    }
+
+    /// Elevation at an azimuth clockwise from north, radians.
+    #[must_use]
+    pub fn elevation_at(&self, azimuth: f64) -> f64 {
+        let azimuth = azimuth.rem_euclid(TAU);
+        let after = self.rows.partition_point(|row| row[0] <= azimuth);
+        let (Some(&first), Some(&last)) = (self.rows.first(), self.rows.last()) else { return -FRAC_PI_2 };
+        let before = after.checked_sub(1).map_or([last[0] - TAU, last[1]], |row| self.rows[row]);
+        let after = self.rows.get(after).copied().unwrap_or([first[0] + TAU, first[1]]);
+        let share = if after[0] > before[0] { (azimuth - before[0]) / (after[0] - before[0]) } else { 0.0 };
+        before[1] + share * (after[1] - before[1])
+    }
+
+    /// Whether the unit vector `direction` (x east, y north, z up) points below the horizon.
+    #[must_use]
+    pub fn hides(&self, [x, y, z]: [f64; 3]) -> bool {
+        z.atan2(x.hypot(y)) < self.elevation_at(x.atan2(y))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elevations_are_linear_between_azimuths_all_around() {
+        let degrees = |rows: &[[f64; 2]]| HorizonProfile::new(rows.iter().map(|row| row.map(f64::to_radians)));
+        // a hill in the north-east, given from -180 to 180
+        let profile = degrees(&[[-90.0, 0.0], [0.0, 10.0], [90.0, 20.0], [180.0, 0.0], [-180.0, 2.0]]).unwrap();
+        let at = |azimuth: f64| profile.elevation_at(azimuth.to_radians()).to_degrees();
+        for (azimuth, expected) in [
+            (0.0, 10.0),
+            (45.0, 15.0),
+            (90.0, 20.0),
+            (135.0, 11.0),
+            (180.0, 2.0),
+            (225.0, 1.0),
+            (315.0, 5.0),
+            (-45.0, 5.0),
+            (720.0, 10.0),
+        ] {
+            assert!((at(azimuth) - expected).abs() < 1e-9, "{azimuth}: {}", at(azimuth));
+        }
+        let east = |elevation: f64| {
+            let (sin, cos) = elevation.to_radians().sin_cos();
+            profile.hides([cos, 0.0, sin])
+        };
+        assert!(east(19.99) && !east(20.01));
+        let turned = profile.turned(30f64.to_radians());
+        assert!((turned.elevation_at(120f64.to_radians()).to_degrees() - 20.0).abs() < 1e-9);
+        assert_eq!(degrees(&[[77.0, 5.0]]).unwrap().elevation_at(3.0), 5f64.to_radians());
+        for wrong in [&[][..], &[[0.0, 91.0]], &[[f64::NAN, 0.0]]] {
+            assert!(degrees(wrong).is_err(), "{wrong:?}");
+        }
+    }
+}

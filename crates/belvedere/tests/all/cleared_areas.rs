@@ -1,0 +1,144 @@
+//! Scenes from which a building is cleared: against the exact scene that never had it.
+
+use crate::common::simulated::cloud_of;
+use belvedere::control::Control;
+use belvedere::model::{ClearedArea, ModelParams, SceneModel};
+use belvedere::query::{Answer, UnprovenAs, random_targets};
+use belvedere::view::to_sun;
+use belvedere::{Mesh, PointCloud};
+use belvedere_scenes::{AirborneParams, Material, Part, Placement, Scene, Truth, extruded, scan_airborne};
+
+const FIRST: [f64; 2] = [24.0, 30.0];
+const SECOND: [f64; 2] = [38.0, 30.0];
+
+fn building(middle: [f64; 2], side: f64, height: f64) -> Part {
+    extruded(&Placement { origin: middle, angle: 0.0 }.rectangle(side, side), 0.0, height)
+}
+
+/// Level ground with a building, and with another.
+fn scene(both: bool) -> Scene {
+    let mut scene = Scene::default();
+    let ground = Part {
+        vertices: vec![[0.0, 0.0, 0.0], [60.0, 0.0, 0.0], [60.0, 60.0, 0.0], [0.0, 60.0, 0.0]],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        materials: vec![Material::Terrain; 2],
+    };
+    scene.add_object("ground", &[ground]);
+    scene.add_object("second", &[building(SECOND, 8.0, 10.0)]);
+    if both {
+        scene.add_object("first", &[building(FIRST, 10.0, 8.0)]);
+    }
+    scene
+}
+
+fn surveyed() -> (SceneModel, PointCloud) {
+    let scan = scan_airborne(&scene(true), &AirborneParams { pulses_per_m2: 6.0, ..AirborneParams::default() });
+    let cloud = cloud_of(&scan);
+    let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &Control::none()).unwrap();
+    (model, cloud)
+}
+
+fn same_balls(a: &SceneModel, b: &SceneModel) -> bool {
+    let (a, b) = (a.balls(), b.balls());
+    (&a.centers, &a.radii, &a.source, &a.touch) == (&b.centers, &b.radii, &b.source, &b.touch)
+}
+
+fn square(cloud: &PointCloud, middle: [f64; 2], half: f64) -> ClearedArea {
+    let corner = |x: f64, y: f64| [middle[0] + x - cloud.frame.origin[0], middle[1] + y - cloud.frame.origin[1]];
+    ClearedArea::Polygon(vec![vec![corner(-half, -half), corner(half, -half), corner(half, half), corner(-half, half)]])
+}
+
+#[test]
+fn a_cleared_building_is_gone_and_the_ground_below_it_closed() {
+    let (model, cloud) = surveyed();
+    let control = Control::none();
+    let before = model.scene(&model.rule(), UnprovenAs::Reported, &control).unwrap();
+    let (cleared, left, report) = model.clone().without(&square(&cloud, FIRST, 5.5), &cloud, &control).unwrap();
+    assert_eq!(left.len() + report.points_cleared, cloud.len());
+    assert!(report.points_cleared > 300 && report.balls_cleared > 100 && report.ground_balls_added > 300, "{report:?}");
+    let after = cleared.scene(&cleared.rule(), UnprovenAs::Reported, &control).unwrap();
+    let local = |place: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| place[i] - cloud.frame.origin[i]) };
+    let truth = Truth::new(&scene(false));
+    // people in the sun, on the ground beside what is left
+    for (azimuth, elevation) in [(250.0_f64, 35.0_f64), (110.0, 25.0), (180.0, 60.0)] {
+        let sun = to_sun(azimuth.to_radians(), elevation.to_radians());
+        let (mut asked, mut wrong) = (0, 0);
+        for place in random_targets([8.0, 8.0, 1.0], [52.0, 52.0, 1.0], 4000, 3) {
+            let place = place.map(f64::from);
+            if (0..2).all(|axis| (place[axis] - SECOND[axis]).abs() < 5.0) {
+                continue;
+            }
+            asked += 1;
+            let is_lit = !truth.occluded_towards(place, sun);
+            let answer = after.answer(local(place), sun, f64::INFINITY);
+            let in_area = (0..2).all(|axis| (place[axis] - FIRST[axis]).abs() < 5.0);
+            assert!(!(in_area && is_lit) || answer == Answer::Visible, "{place:?} {answer:?}");
+            wrong += usize::from((answer != Answer::Blocked) != is_lit);
+        }
+        assert!(wrong * 100 < asked * 2, "{wrong} of {asked}");
+    }
+    // straight through where it stood, which no pulse saw
+    let through = [[FIRST[0], 22.0, 2.0], [FIRST[0], 38.0, 2.0]].map(local);
+    let flat = belvedere::query::EarthParams::flat();
+    assert_eq!(before.sight_answer(through[0], through[1], &flat), Answer::Blocked);
+    let sight = after.line_of_sight(through[0], through[1], &flat).unwrap();
+    assert_eq!((sight.answer, after.sight_answer(through[0], through[1], &flat)), (Answer::Visible, Answer::Visible));
+    assert!(sight.unproven_length < 0.5);
+    // the ground is closed
+    for place in random_targets([20.0, 26.0, -1.0], [28.0, 34.0, -0.5], 500, 4) {
+        let up = to_sun(1.0, 0.9);
+        assert_eq!(after.answer(local(place.map(f64::from)), up, f64::INFINITY), Answer::Blocked, "{place:?}");
+    }
+    // rows are those of the points that are left
+    let balls = cleared.balls();
+    assert!(balls.source.iter().all(|&row| (row as usize) < left.len()));
+}
+
+#[test]
+fn adding_a_building_and_clearing_it_restores_every_answer() {
+    let (model, cloud) = surveyed();
+    let control = Control::none();
+    let site = [46.0, 14.0];
+    let mut planned = Scene::default();
+    planned.add_object("planned", &[building(site, 6.0, 12.0)]);
+    let mesh = Mesh { vertices: planned.vertices.clone(), triangles: planned.triangles.clone(), ..Mesh::default() };
+    let added = model.clone().with_added(&mesh, "planned").unwrap();
+    let (restored, left, report) = added.clone().without(&square(&cloud, site, 4.0), &cloud, &control).unwrap();
+    assert!(restored.added().is_none() && report == Default::default() && left.positions == cloud.positions);
+    assert!(same_balls(&restored, &model));
+    let bounds = model.bounds();
+    let targets = random_targets(bounds.low, bounds.high, 4000, 8);
+    let directions: Vec<[f64; 3]> = (0..20).map(|i| to_sun(f64::from(i), 0.1 + 0.07 * f64::from(i))).collect();
+    let scenes =
+        [&model, &added, &restored].map(|model| model.scene(&model.rule(), UnprovenAs::Reported, &control).unwrap());
+    let eye = targets[17].map(f64::from);
+    let answers = |index: usize| -> Vec<Answer> {
+        let scene = &scenes[index];
+        let mut answers = scene.visible_from(belvedere::query::Viewer::Eye(eye), &targets, &control).unwrap();
+        let lines = targets.iter().zip(directions.iter().cycle());
+        answers.extend(lines.map(|(target, sun)| scene.answer(target.map(f64::from), *sun, f64::INFINITY)));
+        answers
+    };
+    let (before, with, after) = (answers(0), answers(1), answers(2));
+    assert!(before == after && before != with && before.contains(&Answer::Unproven));
+    let [first, _, last] =
+        scenes.each_ref().map(|scene| scene.visibility_matrix(&targets, &directions, &control).unwrap());
+    assert!(first == last);
+}
+
+#[test]
+fn areas_that_cannot_be_cleared_are_refused() {
+    let (model, cloud) = surveyed();
+    let refused = |area: ClearedArea, words: &[&str]| {
+        let error = model.clone().without(&area, &cloud, &Control::none()).unwrap_err().to_string();
+        assert!(words.iter().all(|word| error.contains(word)), "{error}");
+    };
+    refused(square(&cloud, [900.0, 30.0], 5.0), &["area", "cloud"]);
+    refused(ClearedArea::Class(2), &["class 2"]);
+    refused(ClearedArea::Polygon(vec![vec![[0.0, 0.0], [1.0, 0.0]]]), &["3"]);
+    // no point of this class: nothing changes
+    let (same, left, report) = model.clone().without(&ClearedArea::Class(17), &cloud, &Control::none()).unwrap();
+    assert!(same_balls(&same, &model) && left.len() == cloud.len() && report == Default::default());
+    let nothing = PointCloud::in_frame(cloud.frame.clone());
+    assert!(model.clone().without(&square(&cloud, FIRST, 5.0), &nothing, &Control::none()).is_err());
+}
