@@ -53,12 +53,12 @@ fn blocks_of_any_size_give_the_rows_of_the_whole_matrix() {
     let scene = MedialScene::new(&balls, &params()).unwrap();
     let opaque = MedialScene::new(&without_vegetation(&balls, &vegetation).unwrap(), &params()).unwrap();
     let trees = TreeLight { opaque, transmissivity: Transmissivity::default(), leaves: Leaves::ByDate };
-    let targets = targets(700);
+    let targets = targets(300);
     let sky = SkyDirections::even(150).unwrap();
     let [whole, opaque] = [&scene, &trees.opaque]
         .map(|scene| scene.visibility_matrix(&targets.positions, &sky.directions, &Control::none()).unwrap());
     assert_ne!(whole, opaque, "trees must hide something");
-    for block in [1, 63, 64, 257, 699, 700, 10_000] {
+    for block in [1, 63, 64, 257, 299, 300, 10_000] {
         let obstacles = Obstacles { scene: &scene, trees: Some(&trees) };
         let mut next = 0;
         fold_blocks(obstacles, &targets.positions, &sky.directions, block, &Control::none(), |rows| {
@@ -71,7 +71,7 @@ fn blocks_of_any_size_give_the_rows_of_the_whole_matrix() {
             Ok(())
         })
         .unwrap();
-        assert_eq!(next, 700);
+        assert_eq!(next, 300);
     }
     let none = fold_blocks((&scene).into(), &targets.positions, &sky.directions, 0, &Control::none(), |_| Ok(()));
     assert!(matches!(none, Err(Error::InvalidParameter { .. })));

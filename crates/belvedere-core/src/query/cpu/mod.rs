@@ -26,6 +26,8 @@ use sweep::{Descending, Swept, sweep};
 const WORTH_GATHERING: usize = 16;
 /// Lines of sight for each ball from which on it pays to sweep.
 const WORTH_SWEEPING: f64 = 4.0;
+/// Words of layers that are swept in the time that a line of sight takes, measured in towns of 100 and 300 m.
+const WORDS_PER_LINE: usize = 150;
 /// Targets for which balls near by are looked up together.
 const TOGETHER: usize = 8;
 
@@ -58,6 +60,9 @@ impl Prepared for PreparedBalls {
             return Ok(settled);
         }
         let layers = self.layers.get_or_make(|| SpaceLayers::new(self.tree.balls(), self.tree.rule(), control))?;
+        if targets.len() * WORDS_PER_LINE < layers.word_count() {
+            return Ok(settled);
+        }
         let descending = Descending::new(layers, targets);
         let near: Vec<f64> = directions.iter().map(|direction| near_range(*direction)).collect();
         let swept: Vec<Option<Swept>> = directions

@@ -76,6 +76,11 @@ impl SpaceLayers {
         Ok(layers)
     }
 
+    /// Words that a direction is swept through.
+    pub(super) fn word_count(&self) -> usize {
+        self.reached.len()
+    }
+
     /// Marks the cells that a ball with the first of two radii reaches, and those that one with the second fills.
     #[expect(
         clippy::cast_possible_truncation,
