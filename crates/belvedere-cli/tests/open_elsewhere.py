@@ -135,5 +135,32 @@ for name in ("sky_view_factor", "sky_openness"):
     # roofs see more of the sky than the ground
     assert cloud[name][cloud.classification == 6].mean() > cloud[name][cloud.classification == 2].mean(), name
 
+# a city in tiles: the merged raster is cloud-optimised and holds what the tiles hold
+city, merged = folder / "city", folder / "city.tif"
+run("city", "plan", town, "--sun", "235,30", "--sky-view", "--directions", 49, "--cell", 0.125, "--tile-size", 64, "-o", city)
+run("city", "run", city)
+for result, kind, nodata in (("shadow_235_30", "uint8", 255), ("sky_view_factor", "float32", -9999)):
+    run("city", "merge", city, "--result", result, "-o", merged)
+    with rasterio.open(merged) as raster, rasterio.open(city / f"{result}.vrt") as tiles:
+        values = raster.read(1)
+        assert raster.dtypes == (kind,) and raster.nodata == tiles.nodata == nodata, raster.meta
+        assert raster.crs.to_epsg() in (7415, 28992) and raster.transform == tiles.transform
+        assert (values == tiles.read(1)).all() and (values != nodata).any()
+        levels = raster.overviews(1)
+        assert raster.block_shapes == [(512, 512)] and levels[0] == 2 and max(raster.shape) / levels[-1] <= 512, levels
+        # directories come first and in order; of the data, the coarsest level comes first
+        numbers = [None, *range(len(levels))]
+        directories = [int(raster.get_tag_item("IFD_OFFSET", "TIFF", bidx=1, ovr=n)) for n in numbers]
+        blocks = [int(raster.get_tag_item("BLOCK_OFFSET_0_0", "TIFF", bidx=1, ovr=n)) for n in numbers]
+        assert directories[0] == 8 and directories == sorted(directories) and max(directories) < min(blocks), directories
+        assert blocks == sorted(blocks, reverse=True), blocks
+    # values of a coarser level lie between those of the pixels below
+    with rasterio.open(merged, overview_level=0) as coarse:
+        seen, four = coarse.read(1), values[: 2 * (len(values) // 2), : 2 * (values.shape[1] // 2)]
+        four = numpy.ma.masked_equal(four.reshape(len(four) // 2, 2, -1, 2), nodata)
+        seen = numpy.ma.masked_equal(seen[: four.shape[0], : four.shape[2]], nodata)
+        low, high = four.min(axis=(1, 3)), four.max(axis=(1, 3))
+        assert (seen.mask == low.mask).all() and (seen >= low - 1e-6).all() and (seen <= high + 1e-6).all()
+
 print("rasterio", rasterio.__version__, "geopandas", geopandas.__version__, "laspy", laspy.__version__)
 print("and Pillow", PIL.__version__, "open all results")

@@ -106,10 +106,10 @@ where
     [C::Inner]: TiffValue,
 {
     let (Ok(width), Ok(height)) = (u32::try_from(raster.width()), u32::try_from(raster.height())) else {
-        return invalid_size(raster.width(), raster.height());
+        return Err(invalid_size(raster.width(), raster.height()));
     };
     if width == 0 || height == 0 {
-        return invalid_size(raster.width(), raster.height());
+        return Err(invalid_size(raster.width(), raster.height()));
     }
     output.write(|path, output| {
         let result = if size_of_val(raster.values()) < BIG_FILE_BYTES {
@@ -124,12 +124,12 @@ where
     })
 }
 
-fn invalid_size(width: usize, height: usize) -> Result<()> {
-    Err(Error::InvalidParameter {
+pub(crate) fn invalid_size(width: usize, height: usize) -> Error {
+    Error::InvalidParameter {
         name: "raster size",
         value: format!("{width} x {height}"),
         expected: "1 to 4294967295 pixels wide and high",
-    })
+    }
 }
 
 fn encode<C: ColorType, W: std::io::Write + std::io::Seek, K: TiffKind>(
@@ -162,9 +162,7 @@ where
             let matrix = [cx, rx, 0.0, x, cy, ry, 0.0, y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
             tags.write_tag(Tag::ModelTransformationTag, &matrix[..])?;
         }
-        // without a system the keys still say that pixels are areas
-        let keys = text::geo_keys(&place.crs, text::KeyUse::PixelAreas)
-            .unwrap_or_else(|| text::GeoKeys { directory: vec![1, 1, 0, 1, 1025, 0, 1, 1], text: String::new() });
+        let keys = geo_keys(place);
         tags.write_tag(Tag::GeoKeyDirectoryTag, &keys.directory[..])?;
         if !keys.text.is_empty() {
             tags.write_tag(Tag::GeoAsciiParamsTag, ascii(&keys.text).as_str())?;
@@ -173,7 +171,13 @@ where
     image.write_data(values)
 }
 
+/// What says in which system a raster lies; without a system the keys still say that pixels are areas.
+pub(crate) fn geo_keys(place: &Georeference) -> text::GeoKeys {
+    text::geo_keys(&place.crs, text::KeyUse::PixelAreas)
+        .unwrap_or_else(|| text::GeoKeys { directory: vec![1, 1, 0, 1, 1025, 0, 1, 1], text: String::new() })
+}
+
 /// TIFF text is ASCII and ends with a zero byte.
-fn ascii(text: &str) -> String {
+pub(crate) fn ascii(text: &str) -> String {
     text.chars().map(|c| if c.is_ascii() && c != '\0' { c } else { '?' }).collect()
 }

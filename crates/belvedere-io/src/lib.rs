@@ -27,6 +27,8 @@ mod geojson_read;
 #[cfg(feature = "tiff")]
 mod geotiff;
 #[cfg(feature = "tiff")]
+mod geotiff_cog;
+#[cfg(feature = "tiff")]
 mod geotiff_read;
 mod horizon_profile;
 #[cfg(feature = "las")]
@@ -99,6 +101,8 @@ pub use geotiff::{
     Georeference, write_f32 as write_tif_f32, write_u8 as write_tif_u8, write_u16 as write_tif_u16,
     write_u32 as write_tif_u32,
 };
+#[cfg(feature = "tiff")]
+pub use geotiff_cog::{CogValues, write_cog};
 #[cfg(feature = "tiff")]
 pub use geotiff_read::{
     PlacedRaster, read_f32 as read_tif_f32, read_placed as read_tif, read_u8 as read_tif_u8, read_u16 as read_tif_u16,

@@ -91,7 +91,7 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Resul
     Ok(Merged { tiles: tiles.len(), without_result: plan.tiles.len() - tiles.len() })
 }
 
-/// Writes the results of a question that are there as one raster.
+/// Writes the results of a question that are there as one cloud-optimised GeoTIFF.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for more cells than fit into memory; those of reading and writing rasters.
@@ -115,6 +115,6 @@ pub fn merge(plan: &Plan, folder: &Path, question: &Question, output: &Path, con
         let values = question.kind().read(Source::bytes(&path, &record.read_result(&path)?))?;
         all.put(&values, place_of(plan, &cells, tile))?;
     }
-    all.write(output, &place)?;
+    all.write_cog(output, &place)?;
     Ok(Merged { tiles: tiles.len(), without_result: plan.tiles.len() - tiles.len() })
 }

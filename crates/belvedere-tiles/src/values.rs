@@ -2,7 +2,8 @@
 
 use crate::question::ValueKind;
 use belvedere::io::{
-    Georeference, Source, read_tif_f32, read_tif_u8, read_tif_u16, write_tif_f32, write_tif_u8, write_tif_u16,
+    CogValues, Georeference, Source, read_tif_f32, read_tif_u8, read_tif_u16, write_cog, write_tif_f32, write_tif_u8,
+    write_tif_u16,
 };
 use belvedere::raster::Raster;
 use belvedere::results::NO_VALUE;
@@ -91,6 +92,19 @@ impl Values {
             (Self::Numbers(all), Self::Numbers(tile)) => put(all, tile, [column, row, side]),
             _ => Err(Error::LengthMismatch { what: "values of a tile", expected: side, found: 0 }),
         }
+    }
+
+    /// Writes them as a cloud-optimised GeoTIFF.
+    ///
+    /// # Errors
+    /// Those of [`write_cog`].
+    pub(crate) fn write_cog(&self, path: &Path, place: &Georeference) -> Result<()> {
+        let values = match self {
+            Self::Codes(raster) => CogValues::U8(raster, NO_CODE),
+            Self::Counts(raster) => CogValues::U16(raster, NO_COUNT),
+            Self::Numbers(raster) => CogValues::F32(raster, NO_VALUE),
+        };
+        write_cog(path, values, place)
     }
 
     /// Writes them as a GeoTIFF.

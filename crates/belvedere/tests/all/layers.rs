@@ -36,7 +36,7 @@ const LEVELS: [(&str, u8); 13] = [
 ];
 
 /// Crates of others that only one file or folder may name.
-const ONE_HOME: [(&str, &str); 26] = [
+const ONE_HOME: [(&str, &str); 27] = [
     ("ab_glyph::", "figures/src/font.rs"),
     ("colorous::", "io/src/colors.rs"),
     ("las::", "io/src/"),
@@ -45,6 +45,7 @@ const ONE_HOME: [(&str, &str); 26] = [
     ("csv::", "io/src/table.rs"),
     ("e57::", "io/src/e57.rs"),
     ("tiff::", "io/src/geotiff"),
+    ("flate2::", "io/src/geotiff_cog.rs"),
     ("geojson::", "io/src/geojson"),
     ("tobj::", "io/src/obj.rs"),
     ("earcut::", "io/src/"),

@@ -1,0 +1,347 @@
+//! Cloud-optimised GeoTIFF: tiles, coarser levels, and directories before the data, so that programs read what they show and no more.
+//!
+//! # Source
+//! TIFF 6.0 (Adobe 1992), OGC GeoTIFF 1.1 (19-008r4), OGC Cloud Optimized GeoTIFF 1.0 (21-026).
+
+use crate::geotiff::{Georeference, ascii, geo_keys, invalid_size};
+use crate::output::Output;
+use belvedere_data::raster::Raster;
+use belvedere_data::{Error, Result};
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use rayon::prelude::*;
+use std::io::Write;
+use std::path::Path;
+
+/// Side of a tile, pixels, as GDAL has it. Levels end where one tile holds the whole.
+const TILE: usize = 512;
+/// Compression of the tiles, by its number in TIFF: Deflate.
+const DEFLATE: u16 = 8;
+
+/// The values of a cloud-optimised raster.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum CogValues<'a> {
+    /// Codes and the one for no data: a coarser pixel has the most frequent of its four.
+    U8(&'a Raster<u8>, u8),
+    /// Counts and the one for no data: likewise.
+    U16(&'a Raster<u16>, u16),
+    /// Numbers and the one for no data: a coarser pixel has the mean of those of its four that have a value.
+    F32(&'a Raster<f32>, f32),
+}
+
+/// Writes a raster whose columns run east and whose rows run south as a cloud-optimised GeoTIFF, compressed without loss.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a raster without pixels, a turned one, and one of more than 4 GB compressed; [`Error::Io`].
+pub fn write_cog<'a>(output: impl Into<Output<'a>>, values: CogValues<'_>, place: &Georeference) -> Result<()> {
+    let ([east, tilt], [turn, south]) = (place.column_step, place.row_step);
+    if tilt != 0.0 || turn != 0.0 || !(east > 0.0 && south < 0.0) {
+        let value = format!("steps {:?} and {:?}", place.column_step, place.row_step);
+        return Err(Error::InvalidParameter {
+            name: "raster",
+            value,
+            expected: "columns to the east and rows to the south",
+        });
+    }
+    let (levels, nodata) = match values {
+        CogValues::U8(raster, nodata) => (levels(raster, nodata, most_frequent), nodata.to_string()),
+        CogValues::U16(raster, nodata) => (levels(raster, nodata, most_frequent), nodata.to_string()),
+        CogValues::F32(raster, nodata) => (levels(raster, nodata, mean), nodata.to_string()),
+    };
+    let levels = levels?;
+    let bytes = file(&levels, &nodata, place)?;
+    output.into().write(|path, file| bytes.iter().try_for_each(|part| file.write_all(part)).map_err(Error::io(path)))
+}
+
+/// A pixel, as it is stored.
+trait Pixel: Copy + PartialEq + Send + Sync {
+    /// Bits of a sample, and what kind of number it is by TIFF.
+    const KIND: [u16; 2];
+    fn put(self, bytes: &mut Vec<u8>);
+}
+
+impl Pixel for u8 {
+    const KIND: [u16; 2] = [8, 1];
+    fn put(self, bytes: &mut Vec<u8>) {
+        bytes.push(self);
+    }
+}
+
+impl Pixel for u16 {
+    const KIND: [u16; 2] = [16, 1];
+    fn put(self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.to_le_bytes());
+    }
+}
+
+impl Pixel for f32 {
+    const KIND: [u16; 2] = [32, 3];
+    fn put(self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.to_le_bytes());
+    }
+}
+
+/// A raster and the coarser ones of it, the finest first.
+struct Level {
+    width: u32,
+    height: u32,
+    kind: [u16; 2],
+    /// Compressed, row by row from the north-west.
+    tiles: Vec<Vec<u8>>,
+}
+
+fn levels<T: Pixel>(raster: &Raster<T>, nodata: T, pick: impl Fn([T; 4], T) -> T + Sync) -> Result<Vec<Level>> {
+    if raster.width() == 0 || raster.height() == 0 {
+        return Err(invalid_size(raster.width(), raster.height()));
+    }
+    let mut levels = vec![level(raster, nodata)?];
+    let mut coarser;
+    let mut last = raster;
+    while last.width().max(last.height()) > TILE {
+        coarser = halved(last, nodata, &pick)?;
+        levels.push(level(&coarser, nodata)?);
+        last = &coarser;
+    }
+    Ok(levels)
+}
+
+/// A raster of half the size, of each four pixels one.
+fn halved<T: Pixel>(raster: &Raster<T>, nodata: T, pick: &(impl Fn([T; 4], T) -> T + Sync)) -> Result<Raster<T>> {
+    let (width, height) = (raster.width().div_ceil(2), raster.height().div_ceil(2));
+    let pixel = |number: usize| {
+        let [column, row] = [2 * (number % width), 2 * (number / width)];
+        let four = [[0, 0], [1, 0], [0, 1], [1, 1]];
+        pick(four.map(|[right, down]| raster.get(column + right, row + down).unwrap_or(nodata)), nodata)
+    };
+    Raster::from_values(width, height, (0..width * height).into_par_iter().map(pixel).collect())
+}
+
+/// The value that most of four pixels with a value have, the first of them where several are as frequent.
+fn most_frequent<T: Pixel>(four: [T; 4], nodata: T) -> T {
+    let count = |value: T| four.iter().filter(|&&other| other == value).count();
+    let known = four.into_iter().filter(|&value| value != nodata);
+    known.fold(nodata, |best, value| if best == nodata || count(value) > count(best) { value } else { best })
+}
+
+fn mean(four: [f32; 4], nodata: f32) -> f32 {
+    let known = || four.into_iter().filter(|&value| value.is_finite() && value != nodata);
+    match known().count() {
+        0 => nodata,
+        count => known().sum::<f32>() / count as f32,
+    }
+}
+
+fn level<T: Pixel>(raster: &Raster<T>, nodata: T) -> Result<Level> {
+    let (Ok(width), Ok(height)) = (u32::try_from(raster.width()), u32::try_from(raster.height())) else {
+        return Err(invalid_size(raster.width(), raster.height()));
+    };
+    let across = raster.width().div_ceil(TILE);
+    let tile = |number: usize| {
+        let [left, top] = [number % across * TILE, number / across * TILE];
+        let mut bytes = Vec::with_capacity(TILE * TILE * usize::from(T::KIND[0] / 8));
+        for row in top..top + TILE {
+            (left..left + TILE).for_each(|column| raster.get(column, row).unwrap_or(nodata).put(&mut bytes));
+        }
+        compressed(&bytes)
+    };
+    let count = across * raster.height().div_ceil(TILE);
+    Ok(Level { width, height, kind: T::KIND, tiles: (0..count).into_par_iter().map(tile).collect::<Result<_>>()? })
+}
+
+fn compressed(bytes: &[u8]) -> Result<Vec<u8>> {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+    encoder.write_all(bytes).and_then(|()| encoder.finish()).map_err(Error::io(Path::new("raster in memory")))
+}
+
+/// A tag of a directory: its number, and its values as bytes with their type and number.
+struct Tag {
+    number: u16,
+    kind: u16,
+    count: usize,
+    bytes: Vec<u8>,
+}
+
+impl Tag {
+    fn shorts(number: u16, values: &[u16]) -> Self {
+        Self { number, kind: 3, count: values.len(), bytes: values.iter().flat_map(|v| v.to_le_bytes()).collect() }
+    }
+
+    fn longs(number: u16, values: &[u32]) -> Self {
+        Self { number, kind: 4, count: values.len(), bytes: values.iter().flat_map(|v| v.to_le_bytes()).collect() }
+    }
+
+    fn doubles(number: u16, values: &[f64]) -> Self {
+        Self { number, kind: 12, count: values.len(), bytes: values.iter().flat_map(|v| v.to_le_bytes()).collect() }
+    }
+
+    fn text(number: u16, text: &str) -> Self {
+        let bytes = [ascii(text).as_bytes(), &[0]].concat();
+        Self { number, kind: 2, count: bytes.len(), bytes }
+    }
+
+    /// Bytes beside the directory: all but what fits into the entry, on even places.
+    fn beside(&self) -> usize {
+        if self.bytes.len() > 4 { self.bytes.len().next_multiple_of(2) } else { 0 }
+    }
+}
+
+/// The parts of the file: directories from the finest level on, and the tiles, which begin with the coarsest level.
+fn file<'a>(levels: &'a [Level], nodata: &str, place: &Georeference) -> Result<Vec<std::borrow::Cow<'a, [u8]>>> {
+    let directory = |number: usize, offsets: &[u32]| tags(&levels[number], number, offsets, nodata, place);
+    // how long directories are does not depend on where tiles lie
+    let sizes: Vec<usize> = (0..levels.len())
+        .map(|number| {
+            let tags = directory(number, &vec![0; levels[number].tiles.len()]);
+            2 + 12 * tags.len() + 4 + tags.iter().map(Tag::beside).sum::<usize>()
+        })
+        .collect();
+    let mut next = 8 + sizes.iter().sum::<usize>();
+    let mut offsets: Vec<Vec<u32>> = vec![Vec::new(); levels.len()];
+    let too_large = |_| Error::InvalidParameter {
+        name: "size of the raster",
+        value: "more than 4 GB, compressed".to_owned(),
+        expected: "a smaller raster, or larger cells",
+    };
+    for (level, offsets) in levels.iter().zip(&mut offsets).rev() {
+        for tile in &level.tiles {
+            offsets.push(u32::try_from(next).map_err(too_large)?);
+            next += tile.len();
+        }
+    }
+    u32::try_from(next).map_err(too_large)?;
+    let mut head = b"II\x2a\x00\x08\x00\x00\x00".to_vec();
+    for (number, offsets) in offsets.iter().enumerate() {
+        let is_last = number + 1 == levels.len();
+        write_directory(&mut head, &directory(number, offsets), sizes[number], is_last);
+    }
+    let tiles = levels.iter().rev().flat_map(|level| &level.tiles);
+    Ok(std::iter::once(head.into()).chain(tiles.map(|tile| tile.as_slice().into())).collect())
+}
+
+fn tags(level: &Level, number: usize, offsets: &[u32], nodata: &str, place: &Georeference) -> Vec<Tag> {
+    #[expect(clippy::cast_possible_truncation, reason = "tiles of a megabyte at most")]
+    let sizes: Vec<u32> = level.tiles.iter().map(|tile| tile.len() as u32).collect();
+    let [bits, kind] = level.kind;
+    #[expect(clippy::cast_possible_truncation, reason = "512")]
+    let side = TILE as u16;
+    let mut tags = vec![
+        Tag::longs(254, &[u32::from(number > 0)]),
+        Tag::longs(256, &[level.width]),
+        Tag::longs(257, &[level.height]),
+        Tag::shorts(258, &[bits]),
+        Tag::shorts(259, &[DEFLATE]),
+        Tag::shorts(262, &[1]),
+        Tag::shorts(277, &[1]),
+        Tag::shorts(284, &[1]),
+        Tag::shorts(322, &[side]),
+        Tag::shorts(323, &[side]),
+        Tag::longs(324, offsets),
+        Tag::longs(325, &sizes),
+        Tag::shorts(339, &[kind]),
+    ];
+    if number == 0 {
+        let ([x, y], keys) = (place.upper_left, geo_keys(place));
+        tags.push(Tag::doubles(33550, &[place.column_step[0], -place.row_step[1], 0.0]));
+        tags.push(Tag::doubles(33922, &[0.0, 0.0, 0.0, x, y, 0.0]));
+        tags.push(Tag::shorts(34735, &keys.directory));
+        if !keys.text.is_empty() {
+            tags.push(Tag::text(34737, &keys.text));
+        }
+        tags.insert(8, Tag::text(305, "belvedere"));
+    }
+    tags.push(Tag::text(42113, nodata));
+    tags
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "directories of a file of less than 4 GB")]
+fn write_directory(head: &mut Vec<u8>, tags: &[Tag], size: usize, is_last: bool) {
+    let start = head.len();
+    let mut beside = start + 2 + 12 * tags.len() + 4;
+    head.extend((tags.len() as u16).to_le_bytes());
+    for tag in tags {
+        head.extend(tag.number.to_le_bytes());
+        head.extend(tag.kind.to_le_bytes());
+        head.extend((tag.count as u32).to_le_bytes());
+        let mut entry = [0; 4];
+        match tag.beside() {
+            0 => entry[..tag.bytes.len()].copy_from_slice(&tag.bytes),
+            _ => entry = (beside as u32).to_le_bytes(),
+        }
+        head.extend(entry);
+        beside += tag.beside();
+    }
+    let next = if is_last { 0 } else { start + size };
+    head.extend((next as u32).to_le_bytes());
+    for tag in tags.iter().filter(|tag| tag.beside() > 0) {
+        head.extend(&tag.bytes);
+        head.resize(head.len() + tag.beside() - tag.bytes.len(), 0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Source, read_tif_f32, read_tif_u8};
+    use belvedere_data::crs::Crs;
+    use std::io::Cursor;
+    use tiff::decoder::Decoder;
+    use tiff::tags::Tag as TiffTag;
+
+    fn place() -> Georeference {
+        let crs = Crs::parse("EPSG:28992").unwrap();
+        Georeference { upper_left: [155_000.0, 463_000.0], column_step: [2.0, 0.0], row_step: [0.0, -2.0], crs }
+    }
+
+    fn written(values: CogValues<'_>) -> Vec<u8> {
+        let mut file = Cursor::new(Vec::new());
+        write_cog(Output::writer("cog.tif", &mut file), values, &place()).unwrap();
+        file.into_inner()
+    }
+
+    #[test]
+    fn all_values_and_coarser_levels_are_read_back_by_the_crate_tiff() {
+        let (width, height) = (1200_usize, 700_usize);
+        let numbers: Vec<f32> = (0..width * height).map(|i| ((i * 7919) % 1013) as f32 / 8.0).collect();
+        let mut numbers = Raster::from_values(width, height, numbers).unwrap();
+        // a pixel without a value in a block of four
+        numbers.values_mut()[1] = -9999.0;
+        let file = written(CogValues::F32(&numbers, -9999.0));
+        assert_eq!(read_tif_f32(Source::bytes("cog.tif", &file)).unwrap(), numbers);
+        let mut decoder = Decoder::new(Cursor::new(&file)).unwrap();
+        let mut first_tiles = Vec::new();
+        let mut sizes = Vec::new();
+        loop {
+            assert_eq!(decoder.chunk_dimensions(), (512, 512));
+            sizes.push(decoder.dimensions().unwrap());
+            first_tiles.push(decoder.get_tag_u64_vec(TiffTag::TileOffsets).unwrap()[0]);
+            if sizes.len() == 2 {
+                let tiff::decoder::DecodingResult::F32(values) = decoder.read_image().unwrap() else { panic!("kind") };
+                let of = |column: usize, row: usize| numbers.get(column, row).unwrap();
+                assert_eq!(values[0], (of(0, 0) + of(0, 1) + of(1, 1)) / 3.0);
+                assert_eq!(values[601], (of(2, 2) + of(3, 2) + of(2, 3) + of(3, 3)) / 4.0);
+            }
+            if !decoder.more_images() {
+                break;
+            }
+            decoder.next_image().unwrap();
+        }
+        assert_eq!(sizes, [(1200, 700), (600, 350), (300, 175)]);
+        // the coarsest tiles come first, after all directories
+        assert!(first_tiles.windows(2).all(|pair| pair[0] > pair[1]), "{first_tiles:?}");
+    }
+
+    #[test]
+    fn codes_keep_their_meaning_on_coarser_levels() {
+        assert_eq!(most_frequent([1_u8, 0, 0, 255], 255), 0);
+        assert_eq!(most_frequent([255_u8, 255, 255, 2], 255), 2);
+        assert_eq!(most_frequent([255_u8; 4], 255), 255);
+        assert_eq!(most_frequent([1_u8, 0, 1, 0], 255), 1);
+        let codes = Raster::from_values(3, 1, vec![0_u8, 1, 255]).unwrap();
+        let file = written(CogValues::U8(&codes, 255));
+        assert_eq!(read_tif_u8(Source::bytes("cog.tif", &file)).unwrap(), codes);
+        let turned = Georeference { row_step: [0.0, 2.0], ..place() };
+        let mut file = Cursor::new(Vec::new());
+        assert!(write_cog(Output::writer("cog.tif", &mut file), CogValues::U8(&codes, 255), &turned).is_err());
+    }
+}
