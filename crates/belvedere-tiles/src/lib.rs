@@ -38,5 +38,5 @@ pub use merge::{Merged, merge, write_catalogue};
 pub use plan::{Estimate, Plan, PlanFrame, PlanParams};
 pub use question::{Question, Radiation, SunQuestion};
 pub use record::{Outcome, Record, Stage};
-pub use run::{RunParams, RunReport, Shard, run};
+pub use run::{RunParams, RunReport, Shard, Steps, run};
 pub use status::{StageStatus, Status, status};

@@ -30,10 +30,22 @@ impl Default for Shard {
     }
 }
 
+/// Which steps of a run are done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Steps {
+    /// Balls, and what is asked.
+    #[default]
+    All,
+    /// Balls only, so that jobs that answer later find those of all tiles.
+    Balls,
+}
+
 /// How a run is done.
 pub struct RunParams<'a> {
     /// Which tiles. Default: all.
     pub shard: Shard,
+    /// Which steps.
+    pub steps: Steps,
     /// Seconds on a clock of the program, for records; the library has none.
     pub seconds: &'a dyn Fn() -> f64,
 }
@@ -72,7 +84,8 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
     for tile in own() {
         work.balls(tile)?;
     }
-    for question in &plan.questions {
+    let questions = if params.steps == Steps::All { &plan.questions[..] } else { &[] };
+    for question in questions {
         let asked = question.prepare(control)?;
         for tile in own() {
             // what was unproven for lack of balls may have them now
@@ -92,7 +105,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             work.answer((question, &asked), tile)?;
         }
     }
-    for question in &plan.questions {
+    for question in questions {
         write_catalogue(plan, folder, question)?;
     }
     write_report(plan, folder)?;

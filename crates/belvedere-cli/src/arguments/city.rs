@@ -124,6 +124,9 @@ pub(crate) struct CityRun {
     /// Compute only a share of the tiles, such as 3/64, for the jobs of a cluster
     #[arg(long, value_name = "I/N")]
     pub(crate) shard: Option<Share>,
+    /// Build only the balls, so that jobs that compute results later find those of all tiles
+    #[arg(long)]
+    pub(crate) balls_only: bool,
 }
 
 #[derive(Args)]

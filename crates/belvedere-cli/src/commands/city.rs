@@ -9,7 +9,9 @@ use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::Error;
-use belvedere_tiles::{Plan, PlanParams, Question, RunParams, Shard, merge, run as run_tiles, status as status_of};
+use belvedere_tiles::{
+    Plan, PlanParams, Question, RunParams, Shard, Steps, merge, run as run_tiles, status as status_of,
+};
 use std::time::Instant;
 
 /// Most failures that are listed one by one.
@@ -74,7 +76,8 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
     let mut summary = Summary::default();
     let start = Instant::now();
     let shard = arguments.shard.map_or_else(Shard::default, |share| Shard { number: share.number, of: share.of });
-    let params = RunParams { shard, seconds: &|| start.elapsed().as_secs_f64() };
+    let steps = if arguments.balls_only { Steps::Balls } else { Steps::All };
+    let params = RunParams { shard, steps, seconds: &|| start.elapsed().as_secs_f64() };
     let report = flagged("--shard", run_tiles(&plan, &arguments.run, &params, &stages.control()))?;
     if let Some((first, _)) = report.failed.split_first() {
         let listed = report.failed.iter().take(MOST_LISTED).map(|why| format!("\n  {why}")).collect::<String>();

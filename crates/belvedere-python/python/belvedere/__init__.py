@@ -7,6 +7,7 @@
 >>> lit.to_geotiff(folder / "shadow.tif")
 """
 
+from . import city
 from ._answer import Answer
 from ._cloud import Cloud, read
 from ._core import __version__
@@ -28,6 +29,7 @@ __all__ = [
     "Sight",
     "Table",
     "__version__",
+    "city",
     "read",
     "simulate",
 ]

@@ -7,7 +7,7 @@ use belvedere::crs::Crs;
 use belvedere::io::write_cloud;
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
-use belvedere_tiles::{Plan, PlanParams, Question, RunParams, RunReport, Shard, run};
+use belvedere_tiles::{Plan, PlanParams, Question, RunParams, RunReport, Shard, Steps, run};
 use std::path::{Path, PathBuf};
 
 /// Writes the scan of a town of `extent` metres as two files that adjoin along a line from south to north.
@@ -62,5 +62,6 @@ pub(crate) fn plan(clouds: &[PathBuf], folder: &Path, tile_size: f64, questions:
 }
 
 pub(crate) fn run_all(plan: &Plan, folder: &Path) -> RunReport {
-    run(plan, folder, &RunParams { shard: Shard::default(), seconds: &|| 0.0 }, &Control::none()).unwrap()
+    run(plan, folder, &RunParams { shard: Shard::default(), steps: Steps::All, seconds: &|| 0.0 }, &Control::none())
+        .unwrap()
 }

@@ -4,7 +4,7 @@ use crate::common::{plan, run_all, suns, write_town};
 use belvedere::Error;
 use belvedere::control::{Control, Watcher};
 use belvedere::io::read_tif_u8;
-use belvedere_tiles::{Plan, PlanParams, RunParams, Shard, merge, run, status};
+use belvedere_tiles::{Plan, PlanParams, RunParams, Shard, Steps, merge, run, status};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -38,7 +38,7 @@ fn a_run_that_is_stopped_again_and_again_has_the_results_of_one_that_is_not() {
     let (straight, stopped) = (place.path().join("straight"), place.path().join("stopped"));
     run_all(&plan(&clouds, &straight, 64.0, suns()), &straight);
     let plan = plan(&clouds, &stopped, 64.0, suns());
-    let params = RunParams { shard: Shard::default(), seconds: &|| 0.0 };
+    let params = RunParams { shard: Shard::default(), steps: Steps::All, seconds: &|| 0.0 };
     let (mut stops, mut patience) = (0, 500);
     loop {
         let watcher = Impatient(AtomicUsize::new(patience));
@@ -66,12 +66,20 @@ fn shares_of_the_tiles_give_the_whole_together() {
     let (straight, shared) = (place.path().join("straight"), place.path().join("shared"));
     run_all(&plan(&clouds, &straight, 64.0, suns()), &straight);
     let plan = plan(&clouds, &shared, 64.0, suns());
-    for number in [2, 1, 3] {
-        let params = RunParams { shard: Shard { number, of: 3 }, seconds: &|| 0.0 };
-        assert!(run(&plan, &shared, &params, &Control::none()).unwrap().failed.is_empty());
-    }
+    let run_share = |number: usize, steps: Steps| {
+        let params = RunParams { shard: Shard { number, of: 3 }, steps, seconds: &|| 0.0 };
+        let report = run(&plan, &shared, &params, &Control::none()).unwrap();
+        assert!(report.failed.is_empty());
+        (report.balls_made, report.answers_made)
+    };
+    // balls first: then each is made once
+    let balls = [3, 1, 2].map(|number| run_share(number, Steps::Balls));
+    assert_eq!(balls.iter().map(|made| made.0).sum::<usize>(), plan.tiles.len());
+    assert!(balls.iter().all(|made| made.1 == 0) && !shared.join("shadow_5").exists());
+    let answers = [2, 1, 3].map(|number| run_share(number, Steps::All));
+    assert!(answers.iter().all(|made| made.0 == 0 && made.1 > 0), "{answers:?}");
     assert!(results(&straight) == results(&shared));
-    let params = RunParams { shard: Shard { number: 4, of: 3 }, seconds: &|| 0.0 };
+    let params = RunParams { shard: Shard { number: 4, of: 3 }, steps: Steps::All, seconds: &|| 0.0 };
     assert!(run(&plan, &shared, &params, &Control::none()).is_err());
 }
 

@@ -1,0 +1,158 @@
+"""Surveys larger than memory, tile by tile: `belvedere city` on one computer, or on a Dask cluster.
+
+A plan and all results lie in one folder, which all computers of a cluster must reach. What is done is kept there, so
+that a run that was interrupted, or that lost a worker, continues where it stopped.
+
+Examples
+--------
+>>> run = folder / "city"
+>>> _ = belvedere.city.plan(tile, run, sun=[(150, 20)], cell=2, tile_size=64)
+>>> belvedere.city.run(run)["is_complete"]  # or run(run, distributed.Client())
+True
+>>> _ = belvedere.city.merge(run, folder / "city.tif")
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sysconfig
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from ._errors import BelvedereError
+
+__all__ = ["merge", "plan", "run", "status"]
+
+#: Shares of the tiles for each thread of a cluster: enough that all have work until the end.
+SHARES_PER_THREAD = 4
+
+
+def plan(clouds: str | Path | Iterable[str | Path], folder: str | Path, **flags: object) -> dict[str, Any]:
+    """Reads all points once, and writes the plan of a run into `folder`. Returns what the run will need.
+
+    Parameters
+    ----------
+    clouds
+        Files, folders and catalogues (.vpc) of the survey.
+    folder
+        Folder for the plan and the results; created if it does not exist.
+    **flags
+        The flags of ``belvedere city plan`` with underscores: ``sun=[(150, 20)]``, ``time="2026-03-21T10:00+01:00"``,
+        ``sun_hours=True``, ``date="2026-03-21"``, ``sky_view=True``, ``cell=0.5``, ``memory="4G"``. A list repeats a
+        flag; the numbers of a tuple are joined by commas.
+
+    Examples
+    --------
+    >>> belvedere.city.plan(tile, folder / "plan", sky_view=True, directions=49, tile_size=64)["results"]
+    ['sky_view_factor']
+    """
+    files = [clouds] if isinstance(clouds, (str, Path)) else list(clouds)
+    words = [word for name, value in flags.items() for word in _typed(name, value)]
+    return _program("plan", *files, *words, "-o", folder)
+
+
+def run(folder: str | Path, client: Any = None, *, threads: int | None = None, retries: int = 3) -> dict[str, Any]:
+    """Computes the tiles that are not done yet. Returns `status` at the end.
+
+    Parameters
+    ----------
+    folder
+        Folder of the plan.
+    client
+        Client of a Dask cluster (`distributed.Client`), whose workers have this package and reach the folder under the
+        same path. Without it, all is computed on this computer.
+    threads
+        Threads that a tile is computed with [default: all processors; on a cluster one].
+    retries
+        How often a share of the tiles is tried again that failed, or whose worker was lost.
+
+    Raises
+    ------
+    BelvedereError
+        If tiles failed; all others are done.
+    """
+    if client is not None:
+        tiles = status(folder)["tiles"]
+        shares = max(1, min(tiles, SHARES_PER_THREAD * sum(client.nthreads().values())))
+        numbers = range(1, shares + 1)
+        # balls of all tiles first: results need those of neighbours
+        for more in (["--balls-only"], []):
+            jobs = client.map(
+                _share,
+                numbers,
+                folder=str(folder),
+                of=shares,
+                more=more,
+                threads=threads or 1,
+                retries=retries,
+                pure=False,
+            )
+            client.gather(jobs)
+    # what is left, and the list of all tiles
+    _program("run", folder, threads=threads)
+    return status(folder)
+
+
+def status(folder: str | Path) -> dict[str, Any]:
+    """Which tiles of each result are done, left or failed.
+
+    Examples
+    --------
+    >>> _ = belvedere.city.plan(tile, folder / "new", sky_view=True, tile_size=64)
+    >>> belvedere.city.status(folder / "new")["is_complete"]
+    False
+    """
+    return _program("status", folder)
+
+
+def merge(folder: str | Path, output: str | Path, *, result: str | None = None) -> dict[str, Any]:
+    """Writes the tiles of a result as one cloud-optimised GeoTIFF.
+
+    Parameters
+    ----------
+    folder
+        Folder of the plan.
+    output
+        Raster of all tiles (.tif).
+    result
+        Name of the result [default: the only one].
+    """
+    return _program("merge", folder, "-o", output, *(["--result", result] if result else []))
+
+
+def _typed(name: str, value: object) -> list[str]:
+    """A keyword as a flag."""
+    flag = "--" + name.replace("_", "-")
+    if value is None or value is False:
+        return []
+    if value is True:
+        return [flag]
+    if isinstance(value, list):
+        return [word for each in value for word in _typed(name, each)]
+    # with "=", so that a value that begins with a minus is no flag
+    return [f"{flag}={','.join(str(part) for part in value) if isinstance(value, tuple) else value}"]
+
+
+def _share(number: int, *, folder: str, of: int, more: list[str], threads: int) -> Mapping[str, Any]:
+    """A share of the tiles, on a worker. What is done already is not done again."""
+    return _program("run", folder, "--shard", f"{number}/{of}", *more, threads=threads)
+
+
+def _program(step: str, *words: object, threads: int | None = None) -> dict[str, Any]:
+    """The summary of ``belvedere city STEP``, by the program of this package."""
+    name = "belvedere.exe" if os.name == "nt" else "belvedere"
+    beside = Path(sysconfig.get_path("scripts"), name)
+    found = str(beside) if beside.exists() else shutil.which(name)
+    if found is None:
+        raise BelvedereError("the program belvedere is not installed beside this package; install the package again")
+    limit = [] if threads is None else ["--threads", str(threads)]
+    command = [found, "--json", "--progress", "none", *limit, "city", step, *(str(word) for word in words)]
+    ended = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False)
+    if ended.returncode != 0:
+        raise BelvedereError(ended.stderr.strip().removeprefix("error: ") or f"belvedere city {step} was stopped")
+    summary: dict[str, Any] = json.loads(ended.stdout)
+    return summary

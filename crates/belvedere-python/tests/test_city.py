@@ -1,0 +1,63 @@
+"""Cities in tiles, on this computer and on a Dask cluster that loses a worker."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+
+import belvedere
+import pytest
+
+
+def results(folder):
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.suffix in (".npz", ".tif")
+    }
+
+
+def test_a_killed_worker_loses_nothing(folder):
+    distributed = pytest.importorskip("distributed", reason="SKIPPED: distributed is not installed")
+    cloud = folder / "larger.laz"
+    belvedere.simulate("town", extent=110, density=2, seed=5).save(cloud)
+    questions = {"sun": [(150, 20)], "sky_view": True, "directions": 49, "tile_size": 64}
+    alone, shared = folder / "alone", folder / "shared"
+    for run in (alone, shared):
+        belvedere.city.plan(cloud, run, **questions)
+    expected = belvedere.city.run(alone)
+    assert expected["is_complete"] and expected["tiles"] >= 4
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None)
+    with cluster, distributed.Client(cluster) as client:
+        killed = []
+
+        def kill_one():
+            # as soon as the first balls are there
+            while not list(shared.glob("balls/*.json")):
+                time.sleep(0.02)
+            worker = next(iter(client.run(os.getpid).values()))
+            os.kill(worker, signal.SIGKILL)
+            killed.append(worker)
+
+        killer = threading.Thread(target=kill_one)
+        killer.start()
+        found = belvedere.city.run(shared, client)
+        killer.join()
+        assert killed and killed[0] not in client.run(os.getpid).values()
+    assert found["is_complete"]
+    assert results(shared) == results(alone)
+
+
+def test_flags_and_errors_are_those_of_the_program(folder, tile):
+    plan = belvedere.city.plan(tile, folder / "flags", sun=[(150, 20), (-30, 40)], sky_view=True, cell=4)
+    assert plan["results"] == ["shadow_150_20", "shadow_-30_40", "sky_view_factor"]
+    with pytest.raises(belvedere.BelvedereError, match="--sunny"):
+        belvedere.city.plan(tile, folder / "wrong", sunny=True)
+    with pytest.raises(belvedere.BelvedereError, match="questions are missing"):
+        belvedere.city.plan([tile], folder / "wrong", sky_view=False)
+    with pytest.raises(belvedere.BelvedereError, match=r"plan\.json"):
+        belvedere.city.run(folder / "nowhere")
+    with pytest.raises(belvedere.BelvedereError, match="--result"):
+        belvedere.city.merge(folder / "flags", folder / "flags.tif")
