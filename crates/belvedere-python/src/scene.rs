@@ -306,12 +306,6 @@ impl Scene {
         Ok(Self(Arc::new(Inner::new(model, Arc::clone(&self.0.cloud)))))
     }
 
-    /// Names of the meshes that were added.
-    #[getter]
-    fn added(&self) -> Vec<String> {
-        self.0.model.added().map_or(Vec::new(), |added| added.names().to_vec())
-    }
-
     #[getter]
     fn pulse_count(&self) -> Option<usize> {
         self.0.model.pulses().map(|pulses| pulses.starts.len())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import belvedere
 import numpy as np
 import pytest
@@ -289,7 +291,7 @@ def test_plans(scene, run_program, folder):
     faces = ["1 3 4 2", "3 5 6 4", "5 7 8 6", "7 1 2 8", "2 4 6 8"]
     lines = [f"v {a!r} {b!r} {c!r}" for a, b, c in ([float(v) for v in corner] for corner in corners)]
     (folder / "planned.obj").write_text("\n".join(lines + [f"f {face}" for face in faces]))
-    (folder / "hills.csv").write_text("azimuth,elevation\n90,2\n180,25\n270,8\n")
+    (folder / "hills.csv").write_text("azimuth,elevation\n90,2\n180,45\n270,8\n")
     box = [float(v) for v in (x - 20, y - 15, x + 20, y + 15)]
     area = [(box[0], box[1]), (box[2], box[1]), (box[2], box[3]), (box[0], box[3])]
     sun, flags = {"sun": (200, 25)}, ["--sun", "200,25"]
@@ -308,3 +310,12 @@ def test_plans(scene, run_program, folder):
         raster = planned.shadow(**sun)
         assert_same_raster(raster, folder / f"plan_{name}.tif", folder)
         assert not np.array_equal(raster.values, scene.shadow(**sun).values, equal_nan=True), name
+
+
+def test_plans_are_not_lost_without_a_word(scene, folder):
+    (folder / "hills.csv").write_text("0,30")
+    planned = scene.with_horizon(folder / "hills.csv")
+    with pytest.warns(belvedere.BelvedereWarning, match="not saved"):
+        planned.save(folder / "planned.npz")
+    with pytest.raises(TypeError, match="cannot be pickled"):
+        pickle.dumps(planned)

@@ -87,6 +87,8 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
     <belvedere.Scene: ... balls, carved with ... pulses, EPSG:7415 ...>
     """
 
+    _planned = False
+
     def __init__(
         self,
         cloud: Cloud | Source,
@@ -189,13 +191,13 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
         >>> _ = (folder / "wall.obj").write_text(chr(10).join(lines))
         >>> planned = scene.with_added(folder / "wall.obj")
         >>> ends = [(x, y - 5, high[2])], [(x, y + 5, high[2])]
-        >>> [int(s.lines_of_sight(*ends)["answer"][0]) for s in (scene, planned)]
+        >>> [int(s.line_of_sight(*ends)["answer"][0]) for s in (scene, planned)]
         [1, 0]
         """
         if not meshes:
             raise wrong("meshes", "missing", "give at least one file")
         core = self._core.with_added([os.fspath(mesh) for mesh in meshes])
-        return Scene._of(core, {} if self.cloud is None else self.cloud.report, self.report)
+        return self._plan(core, self.report)
 
     def without(
         self,
@@ -236,7 +238,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
                 raise wrong("polygon", "not made of corners", "give corners as (x, y)")
             rings = [[(float(x), float(y)) for x, y in ring] for ring in arrays]
         core, text = self._core.without(rings, 0 if class_ is None else int(class_))
-        return Scene._of(core, self.cloud.report, {**self.report, "cleared": json.loads(text)})
+        return self._plan(core, {**self.report, "cleared": json.loads(text)})
 
     def with_horizon(self, path: str | os.PathLike[str]) -> Scene:
         """The same scene before far terrain: directions to the sun and the sky below its horizon are blocked.
@@ -250,12 +252,10 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
         Examples
         --------
         >>> _ = (folder / "horizon.csv").write_text("0,30")
-        >>> float(scene.with_horizon(folder / "horizon.csv").shadow(sun=(180, 29)).values.max())
+        >>> float(np.nanmax(scene.with_horizon(folder / "horizon.csv").shadow(sun=(180, 29)).values))
         0.0
         """
-        return Scene._of(
-            self._core.with_horizon(os.fspath(path)), {} if self.cloud is None else self.cloud.report, self.report
-        )
+        return self._plan(self._core.with_horizon(os.fspath(path)), self.report)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a ball file: ``.npz`` keeps every bit; ``.ply .laz .las`` are for looking at.
@@ -264,6 +264,9 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
         --------
         >>> scene.save(folder / "balls.npz")
         """
+        if self._planned:
+            remark = "ball files do not keep added meshes, freed space and horizons: they are not saved"
+            warnings.warn(remark, BelvedereWarning, stacklevel=2)
         self._core.save(os.fspath(path))
 
     @classmethod
@@ -273,6 +276,12 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
         points = core.cloud
         scene.cloud = None if points is None else Cloud._of(points, of_cloud)
         scene.report = report
+        return scene
+
+    def _plan(self, core: NativeScene, report: dict[str, Any]) -> Scene:
+        """A scene made of this one, of which a ball file does not keep everything."""
+        scene = Scene._of(core, {} if self.cloud is None else self.cloud.report, report)
+        scene._planned = True
         return scene
 
     @property
@@ -319,8 +328,8 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
         return png_tag(_relief(self.cloud)) + details
 
     def __reduce__(self) -> tuple[Any, ...]:
-        if self._core.added:
-            raise TypeError("a scene with added meshes cannot be pickled; pickle the scene that they were added to")
+        if self._planned:
+            raise TypeError("a planned scene cannot be pickled; pickle the scene that it was made of")
         return _unpickled, (self._core.to_bytes(), self.cloud, self.report)
 
 
