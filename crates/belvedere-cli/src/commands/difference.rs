@@ -40,8 +40,12 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
             "csv" => {
                 let figures = change.report.figures();
                 let cells: Vec<[f64; 1]> = figures.iter().map(|(_, value)| [*value]).collect();
-                let columns: Vec<(&str, Cells<'_>)> =
-                    figures.iter().zip(&cells).map(|((name, _), value)| (*name, Cells::Real(value, 4))).collect();
+                let decimals = |name: &str| if name.starts_with("cells") { 0 } else { 4 };
+                let columns: Vec<(&str, Cells<'_>)> = figures
+                    .iter()
+                    .zip(&cells)
+                    .map(|((name, _), value)| (*name, Cells::Real(value, decimals(name))))
+                    .collect();
                 write_table(output, &columns)
             }
             "png" => write_png(output, &difference_map(&values, cell_area.sqrt(), place, &title)?),

@@ -237,7 +237,7 @@ impl Proof {
             }
             let start = *gap_from.get_or_insert(at);
             let reach = self.nearness + LOOK_AHEAD;
-            let clear = needles.nearest_distance(point(at), reach).unwrap_or(reach) - self.nearness;
+            let clear = needles.free_distance(point(at), reach) - self.nearness;
             if unseen + (at + clear.max(0.0)).min(to) - start > enough {
                 return f64::max(unseen + (at + clear.max(0.0)).min(to) - start, enough);
             }

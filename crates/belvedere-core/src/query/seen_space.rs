@@ -8,6 +8,8 @@ use std::sync::OnceLock;
 const SIDE_PER_NEARNESS: f64 = 0.45;
 /// Height of a box as a share of the nearness: leaning needles stay in low boxes.
 const HEIGHT_PER_NEARNESS: f64 = 1.0;
+/// The same where needles run in all directions: cubes.
+const HEIGHT_AMONG_FLAT: f64 = SIDE_PER_NEARNESS;
 /// Boxes above one another: bits of a word. Higher scenes get higher boxes, of which fewer are near one needle all the way up.
 const MOST_LAYERS: f64 = 64.0;
 /// Most columns, 160 MB; a larger survey gets larger boxes, and what these cannot prove is asked of the pulses.
@@ -81,7 +83,9 @@ impl SeenSpace {
         let rise = f64::from(needles.top()) - floor;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates; NaN becomes 0")]
         let whole = |count: f64| count as usize;
-        let layers = (rise / (HEIGHT_PER_NEARNESS * nearness)).ceil().clamp(1.0, MOST_LAYERS);
+        let per_nearness =
+            if needles.upright_count() < needles.len() { HEIGHT_AMONG_FLAT } else { HEIGHT_PER_NEARNESS };
+        let layers = (rise / (per_nearness * nearness)).ceil().clamp(1.0, MOST_LAYERS);
         let counts = extent.map(|extent| (extent / side).floor() + 1.0);
         let usable = reach > 0.0 && rise > 0.0 && rise.is_finite() && counts[0] * counts[1] < 2.0 * MOST_COLUMNS;
         let size = if usable { counts.map(whole) } else { [0; 2] };
@@ -107,6 +111,9 @@ impl SeenSpace {
         let low = [0, 1].map(|axis| self.low[axis] + first[axis] as f64 * self.side - room);
         let high = low.map(|low| low + TILE as f64 * self.side + 2.0 * room);
         needles.each_upright_over([low, high], |ends| self.mark(ends, [low, high], first, &mut boxes));
+        if needles.upright_count() < needles.len() {
+            self.mark_around_middles(needles, first, &mut boxes);
+        }
         Box::new(Tile::new(boxes))
     }
 
@@ -166,6 +173,22 @@ impl SeenSpace {
                     let near = |end: usize| (at[end][0] - middles[0][column]).powi(2) + aside[end] < square[end];
                     boxes[row * TILE + column] |= u64::from(near(0) & near(1)) << layer;
                 }
+            }
+        }
+    }
+
+    /// Marks those other boxes of a tile whose middle any needle passes so closely that all of the box is near to it.
+    fn mark_around_middles(&self, needles: &Needles, first: [usize; 2], boxes: &mut [u64; TILE * TILE]) {
+        let reach = self.nearness - half_diagonal(self.side).hypot(self.height / 2.0);
+        for (index, word) in boxes.iter_mut().enumerate() {
+            let cell = [first[0] + index % TILE, first[1] + index / TILE];
+            let [x, y] = [0, 1].map(|axis| self.low[axis] + (cell[axis] as f64 + 0.5) * self.side);
+            for layer in 0..self.layers {
+                if *word >> layer & 1 == 1 {
+                    continue;
+                }
+                let z = self.low[2] + (layer as f64 + 0.5) * self.height;
+                *word |= u64::from(needles.passes_within([x, y, z], reach)) << layer;
             }
         }
     }
@@ -231,14 +254,23 @@ mod tests {
 
     #[test]
     fn boxes_are_marked_where_one_needle_is_near_to_all_corners() {
-        // a plane in strips over 40 m, its pulses leaning to all sides
+        // from an aircraft, leaning to all sides, and from the ground, where fewer boxes that are near are found to be
+        assert_boxes([[-130.0, -80.0, 300.0], [170.0, 120.0, 300.0]], 0.75);
+        assert_boxes([[12.0, 18.0, 1.6], [12.5, 18.0, 1.6]], 0.5);
+    }
+
+    /// Asks for boxes near needles only, and for a share of all of them, under scanners between two places.
+    fn assert_boxes(scanners: [[f32; 3]; 2], least_share: f64) {
         #[expect(clippy::cast_possible_truncation, reason = "positions are f32")]
         let random = |i: u64, k: u64| uniform(6, 8 * i + k) as f32;
         let count = 3000;
         let returns: Vec<[f32; 3]> =
             (0..count).map(|i| [40.0 * random(i, 0) - 3.0, 40.0 * random(i, 1), 9.0 * random(i, 2).powi(3)]).collect();
-        let scanner: Vec<[f32; 3]> =
-            (0..count).map(|i| [300.0 * random(i, 3) - 130.0, 200.0 * random(i, 4) - 80.0, 300.0]).collect();
+        let scanner: Vec<[f32; 3]> = (0..count)
+            .map(|i| {
+                std::array::from_fn(|k| scanners[0][k] + random(i, 3 + k as u64) * (scanners[1][k] - scanners[0][k]))
+            })
+            .collect();
         let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
         let mut extent = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         for start in needles.lower_ends() {
@@ -289,6 +321,6 @@ mod tests {
             }
         }
         assert!(near_count > asked / 10 && near_count < asked * 9 / 10, "{near_count} of {asked}");
-        assert!(marked_count > near_count * 3 / 4, "{marked_count} of {near_count}");
+        assert!(marked_count as f64 > least_share * near_count as f64, "{marked_count} of {near_count}");
     }
 }

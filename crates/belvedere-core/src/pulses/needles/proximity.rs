@@ -5,8 +5,12 @@ use super::{GAP_M, Needle, Needles};
 use belvedere_data::vector::{dot, sub};
 use std::ops::ControlFlow;
 
-/// Pieces of a line shorter than this are not worth a step, metres.
-const LEAST_PIECE: f64 = 1e-3;
+/// Pieces of a line shorter than this are not worth a step, metres: more than boxes of the tree are padded by, so that the needles of a
+/// tripod, which all end at one place, need not all be asked where a line leaves what is near to that.
+const LEAST_PIECE: f64 = 4e-3;
+/// How much nearer than the nearest one known a needle must be to be looked for, metres: where needles end at one place all are equally
+/// near.
+const WORTH_LOOKING: f64 = 5e-3;
 
 /// Share of pulses that are not upright from which on a scanner is taken to stand on the ground: those of aircraft are steeper than
 /// 40°.
@@ -85,6 +89,21 @@ impl Needles {
     /// Distance of the nearest needle to `point`, local metres, if it is less than `within` metres.
     #[must_use]
     pub fn nearest_distance(&self, point: [f64; 3], within: f64) -> Option<f64> {
+        self.nearest_but(point, within, 0.0)
+    }
+
+    /// A distance from `point`, local metres, within which there is no needle: that of the nearest one, or a few millimetres less, at most
+    /// `within` metres.
+    #[must_use]
+    pub fn free_distance(&self, point: [f64; 3], within: f64) -> f64 {
+        // near by first: where pulses are dense, many thousands pass within some metres
+        let nearest =
+            [0.25, 0.5, 1.0].into_iter().find_map(|share| self.nearest_but(point, share * within, WORTH_LOOKING));
+        nearest.map_or(within, |distance| (distance - WORTH_LOOKING).max(0.0))
+    }
+
+    /// The distance of a needle that no other is nearer than by more than `slack` metres, if any is nearer than `within` metres.
+    fn nearest_but(&self, point: [f64; 3], within: f64, slack: f64) -> Option<f64> {
         let mut least = within * within;
         let mut found = false;
         let _: Option<()> = self.visit_near(point, within, |needles| {
@@ -94,7 +113,7 @@ impl Needles {
                     (least, found) = (square, true);
                 }
             }
-            ControlFlow::Continue(least.sqrt())
+            ControlFlow::Continue((least.sqrt() - slack).max(0.0))
         });
         found.then(|| least.sqrt())
     }
@@ -110,14 +129,17 @@ impl Needles {
 
     /// A piece of the line through `origin` along the unit vector `direction` on which one needle is nearer than `distance`
     /// metres everywhere: where it begins and ends, metres from the origin, `at` being well within. `None` where no needle is
-    /// that near at `at`, or stays so for less than a millimetre.
+    /// that near at `at`, or stays so for less than 4 mm.
     ///
     /// Of several needles it takes one that stays near for long, not always the one that does so longest.
     #[must_use]
     pub fn near_piece(&self, origin: [f64; 3], direction: [f64; 3], at: f64, distance: f64) -> Option<[f64; 2]> {
-        let point = std::array::from_fn(|i| origin[i] + at * direction[i]);
-        self.visit_near(point, distance, |needles| {
-            let pieces = needles.iter().filter_map(|needle| needle.near_piece(origin, direction, distance));
+        // a piece that is long enough is near there as well
+        let further = std::array::from_fn(|i| origin[i] + (at + LEAST_PIECE) * direction[i]);
+        self.visit_near(further, distance, |needles| {
+            let near = |needle: &&Needle| needle.square_distance(further) < distance * distance;
+            let pieces =
+                needles.iter().filter(near).filter_map(|needle| needle.near_piece(origin, direction, distance));
             let holding = pieces.filter(|[from, to]| *from <= at && *to > at + LEAST_PIECE);
             match holding.max_by(|a, b| a[1].total_cmp(&b[1])) {
                 Some(piece) => ControlFlow::Break(piece),
