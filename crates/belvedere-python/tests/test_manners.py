@@ -49,6 +49,8 @@ def test_ctrl_c_stops_within_a_fifth_of_a_second(tile):
         import belvedere, os, signal, threading, time
         scene = belvedere.Scene(belvedere.read({str(tile)!r}))
         scene.sky_view(directions=10, cell=5)
+        # who started the tests in the background may have had Ctrl-C ignored
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         sent = []
         def interrupt():
             time.sleep(0.5)
@@ -157,5 +159,11 @@ def test_results_do_not_depend_on_the_number_of_threads(tile, folder):
     assert outputs[0] == outputs[1] and len(outputs[0]) > 1000
 
 
-def test_signals_of_others_are_left_alone():
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+@pytest.mark.parametrize("of_others", [signal.default_int_handler, signal.SIG_IGN])
+def test_signals_of_others_are_left_alone(scene, of_others):
+    before = signal.signal(signal.SIGINT, of_others)
+    try:
+        scene.sky_view(directions=10, cell=5)
+        assert signal.getsignal(signal.SIGINT) is of_others
+    finally:
+        signal.signal(signal.SIGINT, before)
