@@ -1,5 +1,6 @@
 //! Space that is free because what stood there was cleared.
 
+use super::proof::clip;
 use crate::ground::MapGrid;
 use crate::ray_index::Ray;
 use belvedere_data::raster::Raster;
@@ -77,19 +78,6 @@ pub(super) fn outside(spaces: &[FreedSpace], ray: &Ray) -> Vec<[f64; 2]> {
         pieces.into_iter().for_each(|piece| space.cut(ray, piece, &mut outside));
         outside
     })
-}
-
-/// Cuts a piece of a line down to where one of its coordinates lies between two bounds.
-fn clip(piece: &mut [f64; 2], origin: f64, slope: f64, [low, high]: [f64; 2]) {
-    if slope == 0.0 {
-        if !(low..=high).contains(&origin) {
-            piece[1] = piece[0];
-        }
-        return;
-    }
-    let (a, b) = ((low - origin) / slope, (high - origin) / slope);
-    piece[0] = piece[0].max(a.min(b));
-    piece[1] = piece[1].min(a.max(b)).max(piece[0]);
 }
 
 #[cfg(test)]

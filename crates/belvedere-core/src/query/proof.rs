@@ -248,7 +248,7 @@ impl Proof {
 }
 
 /// Cuts the piece of a line down to where one of its coordinates lies between two bounds.
-fn clip(piece: &mut [f64; 2], origin: f64, slope: f64, [low, high]: [f64; 2]) {
+pub(super) fn clip(piece: &mut [f64; 2], origin: f64, slope: f64, [low, high]: [f64; 2]) {
     if slope == 0.0 {
         if !(low..=high).contains(&origin) {
             piece[1] = piece[0];
