@@ -1,0 +1,89 @@
+// From the server to the scene: points, meshes and balls, and how far it is prepared.
+import * as api from "./api.js";
+import { report } from "./messages.js";
+import { setColor } from "./paint.js";
+import { $, page } from "./state.js";
+import { startTime } from "./time.js";
+import { changed, cloud, draw, mover, renderer } from "./view.js";
+
+async function load(shown) {
+  const { scene } = page;
+  mover.show(scene.low, scene.high);
+  cloud.own.size.value = Math.min(Math.max(scene.spacing * 1.8, 0.02), 5);
+  cloud.own.most.value = 26 * renderer.getPixelRatio();
+  cloud.own.heights.value.set(scene.low[2], scene.high[2]);
+  page.loaded = [];
+  const order = scene.chunks.map((_, i) => i);
+  const one = async () => {
+    for (let number = order.shift(); number !== undefined; number = order.shift()) {
+      const { low, step } = scene.chunks[number];
+      const chunk = cloud.add(low, step, await api.points(number));
+      page.loaded.push({ chunk, number });
+      draw();
+    }
+  };
+  await Promise.all([one(), one(), one()]);
+  // values come in the order of the chunks
+  page.loaded.sort((a, b) => a.number - b.number);
+  cloud.chunks = page.loaded.map(({ chunk }) => chunk);
+  page.isLoaded = true;
+  changed();
+}
+function begin(state) {
+  const shown = state.shown;
+  const [, , up] = shown.metres_per_unit;
+  page.scene = {
+    ...shown, title: state.title, unit: up === 1 ? "m" : "ft", latitude_deg: null,
+    heights: [shown.low, shown.high].map((corner) => (corner[2] + shown.origin[2]) / up),
+  };
+  if (!shown.point_count && state.scene) Object.assign(page.scene, { low: state.scene.low, high: state.scene.high, spacing: 0.3 });
+  $("title").textContent = document.title = state.title;
+  document.title = `${state.title} – Belvedere`;
+  $("facts").textContent = shown.point_count ? `${shown.point_count.toLocaleString("en")} points` : "ball file";
+  $("crs").textContent = shown.crs;
+  const ways = [["height", "Height"], ...(shown.classes.length > 1 ? [["class", "Class"]] : []), ...(shown.has_intensity ? [["intensity", "Intensity"]] : []), ...(shown.has_color ? [["color", "Own colours"]] : []), ["none", "Plain"]];
+  $("color").replaceChildren(...ways.map(([value, text]) => new Option(text, value)));
+  setColor(shown.has_color ? "color" : ways.length > 3 && shown.classes.length > 1 ? "class" : "height");
+  return load(shown);
+}
+export async function watch() {
+  try {
+    const state = await api.state();
+    $("message").hidden = true;
+    if (state.failure) {
+      $("progress").hidden = true;
+      throw new api.Refused(state.failure);
+    }
+    if (state.shown && !page.scene && (state.shown.point_count || state.scene)) begin(state).catch(report);
+    for (page.meshes ??= 0; page.scene && page.meshes < (state.mesh_count ?? 0); page.meshes++) {
+      api.mesh(page.meshes).then((values) => { cloud.addMesh(values); $("meshes").hidden = false; draw(); }).catch(report);
+    }
+    if (state.scene && page.scene && !page.ready) {
+      Object.assign(page.scene, { ...state.scene, low: page.scene.low, high: page.scene.high });
+      page.ready = true;
+      startTime();
+      if (!state.shown.point_count) toggleBalls();
+      if (page.pending) page.ask();
+    }
+    $("progress").hidden = page.ready === true;
+    const bar = $("progress").querySelector("progress");
+    $("progress").querySelector("p").textContent = state.stage ? `Preparing: ${state.stage}` : "Preparing";
+    if (state.total > 0) Object.assign(bar, { max: state.total, value: state.done });
+    else bar.removeAttribute("value");
+    if (!api.exported || !page.ready) setTimeout(watch, page.ready ? 4000 : 250);
+  } catch (error) {
+    report(error);
+  }
+}
+export async function toggleBalls() {
+  const on = $("balls").getAttribute("aria-pressed") !== "true";
+  $("balls").setAttribute("aria-pressed", on);
+  try {
+    if (on && !cloud.balls) cloud.addBalls(await api.balls());
+  } catch (error) {
+    return report(error);
+  }
+  if (cloud.balls) cloud.balls.visible = on;
+  draw();
+}
+page.watch = watch;

@@ -1,0 +1,89 @@
+// Colours of the scene, and answers drawn in it.
+import * as api from "./api.js";
+import { escape } from "./charts.js";
+import * as colors from "./colors.js";
+import { report } from "./messages.js";
+import { $, page, root } from "./state.js";
+import { cloud, draw, toLocal } from "./view.js";
+
+export function paint() {
+  if (!page.scene || !cloud) return;
+  const name = $("color").value;
+  const now = colors.coloring(name, page.scene, page.answer);
+  const shown = page.onLayer && name === "answer" ? colors.plain(root.dataset.theme === "dark") : now;
+  cloud.paint(shown ?? colors.coloring("none"));
+  const legend = now?.legend;
+  page.legend = legend;
+  $("legend").innerHTML = !legend ? "" : `<b>${escape(legend.title)}</b>` + (legend.keys
+    ? legend.keys.map(({ color, text }) => `<div><i class="swatch" style="background:${color}"></i>${escape(text)}</div>`).join("")
+    : `<div class="ramp" style="background:${legend.gradient}"></div><div class="ends"><span>${escape(legend.ends[0])}</span><span>${escape(legend.ends[1])}</span></div>`);
+  draw();
+}
+export function setColor(name) {
+  $("color").value = name;
+  if (name === "color" && !page.hasColors) {
+    page.hasColors = true;
+    page.loaded.forEach(({ chunk, number }) => api.colors(number).then((values) => { cloud.setColors(chunk, values); draw(); }).catch(report));
+  }
+  paint();
+}
+function offerAnswer() {
+  const select = $("color");
+  if (![...select.options].some((option) => option.value === "answer")) select.add(new Option("Answer", "answer"));
+  page.before ??= select.value;
+  setColor("answer");
+}
+page.values = (bytes) => {
+  cloud.clearLayer();
+  page.onLayer = false;
+  cloud.setValues(bytes);
+  offerAnswer();
+};
+function quantised(rows) {
+  const low = [0, 1, 2].map((i) => rows.reduce((m, r) => Math.min(m, r[i]), Infinity));
+  const high = [0, 1, 2].map((i) => rows.reduce((m, r) => Math.max(m, r[i]), -Infinity));
+  const step = low.map((v, i) => Math.max((high[i] - v) / 65535, 1e-6));
+  const places = new Uint16Array(rows.length * 4);
+  rows.forEach((r, k) => [0, 1, 2].forEach((i) => { places[4 * k + i] = Math.round((r[i] - low[i]) / step[i]); }));
+  return [low, step, places];
+}
+page.cells = (answer) => {
+  const { first_center: [x, y], cell_m: cell, columns, rows } = answer.grid;
+  const heights = new Float32Array(answer.body, 0, columns * rows);
+  const answers = new Uint8Array(answer.body, 4 * columns * rows);
+  const known = [], values = [];
+  heights.forEach((z, i) => {
+    if (!Number.isFinite(z) || answers[i] > 2) return;
+    known.push([x + (i % columns) * cell, y - Math.floor(i / columns) * cell, z + 0.12]);
+    values.push(answers[i]);
+  });
+  page.answer = colors.ofAnswers({ tells_unproven: true });
+  page.answer.legend.title = "From where the place is seen";
+  page.onLayer = true;
+  cloud.layer(...quantised(known), new Uint8Array(values), cell * 1.25, page.answer);
+  offerAnswer();
+};
+page.hourCells = (answer) => {
+  const v = new Float32Array(answer.body);
+  const rows = Array.from({ length: v.length / 4 }, (_, i) => [v[4 * i], v[4 * i + 1], v[4 * i + 2] + 0.12]);
+  const low = 0, high = Math.max(answer.possible_hours, 0.1);
+  const values = new Uint8Array(rows.map((_, i) => Math.round(((v[4 * i + 3] - low) / (high - low)) * 255)));
+  page.answer = colors.ofHours(low, high);
+  page.onLayer = true;
+  cloud.layer(...quantised(rows), values, answer.cell_m * 1.3, page.answer);
+  offerAnswer();
+};
+page.plane = (answer) => {
+  const v = new Float32Array(answer.body);
+  const rows = Array.from({ length: v.length / 3 }, (_, i) => [v[3 * i], v[3 * i + 1], v[3 * i + 2] + 0.06]);
+  cloud.layer(...quantised(rows), new Uint8Array(rows.length).fill(1), cloud.own.size.value * 1.4, colors.ofAnswers({}));
+};
+page.line = (answer) => {
+  const [a, b] = page.places.map(({ local }) => local);
+  const at = answer.first_block ? toLocal(answer.first_block.place) : null;
+  page.marks = [
+    { line: [a, at ?? b], style: `stroke="${answer.answer === "unproven" ? "#4a86e8" : "#f5a300"}" stroke-width="4"` },
+    ...(at ? [{ line: [at, b], style: 'stroke="#2f3d73" stroke-width="3" stroke-dasharray="7 5"' }, { at, label: "blocked here", color: "#d1495b" }] : []),
+    { at: a, label: "A" }, { at: b, label: "B" },
+  ];
+};

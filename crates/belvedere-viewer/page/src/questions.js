@@ -1,0 +1,179 @@
+// Choosing a question, clicking its places, and what is said of the answer.
+import * as api from "./api.js";
+import { escape } from "./charts.js";
+import * as colors from "./colors.js";
+import { lost } from "./messages.js";
+import { setColor } from "./paint.js";
+import { csv, diagram, geojson, picture, save } from "./save.js";
+import { $, canvas, page, TOOLS } from "./state.js";
+import { setPlaying } from "./time.js";
+import { cloud, draw, placeAt, render, shownPlace, toFile } from "./view.js";
+
+export function choose(tool) {
+  page.tool = tool;
+  page.places = [];
+  page.marks = [];
+  page.last = null;
+  asking?.abort();
+  for (const button of $("tools").querySelectorAll("button")) button.setAttribute("aria-pressed", button.dataset.tool === tool.name);
+  $("tools").querySelector("p").textContent = tool.hint;
+  canvas.classList.toggle("asks", tool.name !== "look");
+  $("timebar").hidden = !tool.time;
+  $("timebar").querySelectorAll(".wide, #clock, #play").forEach((part) => { part.hidden = tool.time !== "hour"; });
+  setPlaying(false);
+  cloud?.clearLayer();
+  page.onLayer = false;
+  if (page.before) {
+    const before = page.before;
+    page.before = null;
+    $("color").querySelector("[value=answer]")?.remove();
+    setColor(before);
+  }
+  $("card").hidden = true;
+  if (tool.places === 0) ask();
+  else if (tool.height) card(`<p class="note">${escape(tool.hint)}</p>`);
+  draw();
+}
+page.choose = (name) => choose(TOOLS.find((tool) => tool.name === name));
+function field() {
+  const { tool } = page;
+  if (!tool.height) return "";
+  tool.above ??= tool.height[1];
+  return `<div class="field"><label for="above">${tool.height[0]}</label><span><input id="above" type="number" step="0.1" value="${tool.above}"> m</span></div>`;
+}
+function card(html, after) {
+  const box = $("card");
+  box.hidden = false;
+  box.innerHTML = `<header><h2>${escape(page.tool.title)}</h2><button aria-label="Close" title="Close (Esc)">×</button></header>${field()}${html}`;
+  box.querySelector("header button").onclick = () => choose(TOOLS[0]);
+  const above = box.querySelector("#above");
+  if (above) above.onchange = () => {
+    const value = Number.parseFloat(above.value);
+    if (!Number.isFinite(value)) return;
+    page.tool.above = value;
+    page.places.forEach((place, i) => { if (i === 0) place.local = lifted(place.clicked, value); });
+    if (page.last) ask();
+  };
+  after?.(box);
+}
+const lifted = ([x, y, z], above) => [x, y, z + above];
+
+export function click(x, y) {
+  const near = placeAt(x, y);
+  if (!near) return;
+  const found = cloud.nearest(near);
+  pick(found?.place ?? near, found?.class);
+}
+page.click = click;
+function pick(clicked, code) {
+  const { tool } = page;
+  if (tool.name === "look") {
+    const file = toFile(clicked);
+    page.marks = [{ at: clicked }];
+    card(`<p class="verdict" style="font-size:17px">${shownPlace(file)}</p><dl><dt>x, y, z</dt><dd>${escape(page.scene.crs)}</dd>`
+      + `${page.scene.classes.length ? `<dt>Class</dt><dd>${code} ${escape(colors.CLASSES[code]?.[0] ?? "")}</dd>` : ""}</dl><pre>${file.join(",")}</pre>`);
+    draw();
+    return;
+  }
+  if (tool.places === 0) return;
+  if (page.places.length >= tool.places) page.places = [];
+  const isFirst = page.places.length === 0;
+  page.places.push({ clicked, local: isFirst && tool.height ? lifted(clicked, tool.above ?? tool.height[1]) : clicked });
+  const labels = tool.places === 2 ? ["A", "B"] : [];
+  page.marks = page.places.map(({ local }, i) => ({ at: local, label: labels[i] }));
+  if (tool.places === Infinity) {
+    page.places.forEach(({ local }, i) => { if (i) page.marks.push({ line: [page.places[i - 1].local, local], style: 'stroke="#1d4e89" stroke-width="2.5"' }); });
+    card(`<p class="note">${page.places.length} corners. ${page.places.length < 3 ? "Click more." : "Press Enter or double-click to ask."}</p>`);
+  } else if (page.places.length === tool.places) ask();
+  else card(`<p class="note">Now click B.</p>`);
+  draw();
+}
+page.pick = pick;
+
+let asking;
+export async function ask(quick = false) {
+  const { tool } = page;
+  asking?.abort();
+  const mine = (asking = new AbortController());
+  if (!page.ready) {
+    card(`<p class="busy">The answer comes as soon as the scene is ready.</p>`);
+    page.pending = true;
+    return;
+  }
+  if (tool.time && page.scene.latitude_deg === null) {
+    card(`<p class="verdict">The location is unknown</p><p class="note">The sun needs to know where on earth the cloud lies. Start again with its reference system, for example <code>--crs EPSG:7415</code>.</p>`);
+    return;
+  }
+  const places = page.places.map(({ local }) => toFile(local));
+  const { date, zone, minutes } = page.time;
+  const clock = `${String(Math.floor(minutes / 60)).padStart(2, "0")}:${String(minutes % 60).padStart(2, "0")}`;
+  page.last = tool.places === 0 ? page.last : null;
+  const busy = setTimeout(() => { if (!page.last) card(`<p class="busy">Asking …</p>`); }, 150);
+  const start = performance.now();
+  try {
+    const first = tool.first?.(places, { date, zone, clock }, page);
+    if (first) {
+      const answer = await api.ask(...first, mine.signal);
+      if (mine.signal.aborted) return;
+      const shown = { ...answer, isFirst: true, took: performance.now() - start };
+      if (quick) page.last = shown;
+      showAnswer(tool, shown, places);
+      if (quick) return;
+      // whoever still moves the time waits for nothing else
+      if (tool.time) await new Promise((go) => setTimeout(go, 250));
+      if (mine.signal.aborted) return;
+    }
+    const answer = await api.ask(...tool.ask(places, { date, zone, clock }), mine.signal);
+    if (mine.signal.aborted) return;
+    answer.took = performance.now() - start;
+    page.last = answer;
+    if (tool.places === Infinity) page.marks = page.marks.concat({ line: [page.places.at(-1).local, page.places[0].local], style: 'stroke="#1d4e89" stroke-width="2.5"' });
+    showAnswer(tool, answer, places);
+  } catch (error) {
+    if (error.name === "AbortError") return;
+    if (error instanceof api.Lost) return lost(error);
+    card(`<p class="verdict">No answer</p><p class="note">${escape(error.message)}</p>`);
+  } finally {
+    clearTimeout(busy);
+    if (asking === mine) asking = null;
+  }
+}
+page.ask = ask;
+function showAnswer(tool, answer, places) {
+  const shown = tool.show(answer, page);
+  const html = shown.html ?? shown;
+  const where = places.length === 1 ? `<dl><dt>Place</dt><dd>${shownPlace(places[0])}</dd></dl>` : "";
+  const rows = tool.rows?.(answer, page);
+  const buttons = [
+    ...(rows ? ['<button data-save="csv">Table (.csv)</button>'] : []),
+    ...(tool.properties ? ['<button data-save="geojson">Map (.geojson)</button>'] : []),
+    '<button data-save="png">Picture (.png)</button>',
+  ].join("");
+  card(`${html}${where}<h3>The same on the command line</h3><pre id="command">${escape(answer.command)}</pre><div class="row"><button data-save="copy">Copy command</button>${buttons}</div>`
+    + `<p class="note" id="took">Answered in ${Math.round(answer.took)} ms.</p>`, (box) => {
+    shown.after?.(box);
+    box.querySelectorAll("[data-save]").forEach((button) => { button.onclick = () => saveAs(button, tool, answer, places); });
+  });
+  draw();
+}
+async function saveAs(button, tool, answer, places) {
+  const name = `${tool.name}-${page.scene.title.replace(/\..*$/, "")}`;
+  const kind = button.dataset.save;
+  if (kind === "copy") {
+    await navigator.clipboard?.writeText(answer.command).catch(() => {});
+    button.textContent = "Copied";
+  } else if (kind === "csv") save(`${name}.csv`, csv(tool.rows(answer, page)), "text/csv");
+  else if (kind === "geojson") {
+    const [shape, coordinates] = tool.geometry?.(places) ?? ["Point", places[0]];
+    save(`${name}.geojson`, geojson(name, [[shape, coordinates, tool.properties(answer)]], page.scene.crs), "application/geo+json");
+  } else {
+    const chart = $("card").querySelector("figure svg");
+    save(`${name}.png`, chart ? await diagram(chart) : await snapshot());
+  }
+}
+export async function snapshot() {
+  render();
+  const keys = page.legend?.keys ?? [];
+  const text = [page.scene.title, page.legend?.title].filter(Boolean).join(": ");
+  return picture(canvas, $("marks"), keys, text, `${page.scene.crs}; scale bar ${$("scale").textContent}`);
+}

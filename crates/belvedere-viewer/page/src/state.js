@@ -1,0 +1,11 @@
+// What all parts of the page share.
+import * as api from "./api.js";
+import { TOOLS as ALL } from "./tools.js";
+
+export const $ = (id) => document.getElementById(id);
+export const root = document.documentElement;
+export const canvas = $("view");
+// a page without a server answers what is stored in it
+export const TOOLS = ALL.filter(({ name }) => !api.exported || name === "look" || (name === "shadow" && api.exported.suns.length));
+export const page = { scene: null, tool: TOOLS[0], places: [], marks: [], answer: null, time: { date: "", zone: "UTC", minutes: 780 }, last: null };
+window.belvedere = page;

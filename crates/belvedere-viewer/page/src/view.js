@@ -1,0 +1,107 @@
+// The view: drawing the scene, from places to pixels and back, and what is drawn over it.
+import { Vector3, WebGLRenderer } from "three";
+import { Mover } from "./camera.js";
+import { escape } from "./charts.js";
+import { Cloud } from "./cloud.js";
+import { $, canvas, page, root } from "./state.js";
+
+export let renderer, cloud, mover;
+let waiting = false;
+let moved = 0;
+export function draw() {
+  if (waiting || !cloud) return;
+  waiting = true;
+  requestAnimationFrame(() => {
+    waiting = false;
+    const start = performance.now();
+    render();
+    renderer.getContext().finish();
+    const spent = performance.now() - start;
+    // fewer points while things move slowly, more where there is room
+    if (performance.now() - moved < 400) cloud.budget = Math.max(1e5, Math.min(2e7, cloud.budget * (spent > 60 ? 0.7 : spent < 20 ? 1.25 : 1)));
+    overlay();
+    page.frames = (page.frames ?? 0) + 1;
+  });
+}
+let rest;
+export function changed() {
+  moved = performance.now();
+  draw();
+  clearTimeout(rest);
+  // a full picture once nothing moves any more
+  rest = setTimeout(() => { const budget = cloud.budget; cloud.budget = Math.max(budget, 4e6); moved = 0; draw(); setTimeout(() => { cloud.budget = budget; }, 60); }, 350);
+}
+export function resize() {
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+  renderer.setSize(width, height, false);
+  cloud.resize(canvas.width, canvas.height);
+  mover.camera.aspect = width / height;
+  mover.camera.updateProjectionMatrix();
+  draw();
+}
+
+// ---- coordinates ----
+export const toFile = (local) => local.map((v, i) => Number(((v + page.scene.origin[i]) / page.scene.metres_per_unit[i]).toFixed(3)));
+export const toLocal = (file) => file.map((v, i) => v * page.scene.metres_per_unit[i] - page.scene.origin[i]);
+page.toFile = toFile;
+export const shownPlace = (file) => file.map((v) => v.toFixed(2)).join("  ");
+
+function onScreen(local) {
+  const v = new Vector3(...local).project(mover.camera);
+  return v.z > 1 || v.z < -1 ? null : [((v.x + 1) / 2) * canvas.clientWidth, ((1 - v.y) / 2) * canvas.clientHeight];
+}
+// The place that is drawn at a pixel of the page.
+export function placeAt(x, y) {
+  const ratio = canvas.width / canvas.clientWidth;
+  const depth = cloud.depthAt(x * ratio, y * ratio, Math.round(5 * ratio));
+  if (depth === null) return null;
+  const { camera } = mover;
+  const ray = new Vector3((x / canvas.clientWidth) * 2 - 1, 1 - (y / canvas.clientHeight) * 2, 0.5).unproject(camera).sub(camera.position).normalize();
+  const range = depth / ray.dot(camera.getWorldDirection(new Vector3()));
+  return camera.position.clone().addScaledVector(ray, range).toArray();
+}
+page.placeAt = placeAt;
+page.onScreen = onScreen;
+
+// ---- marks, scale, north ----
+function overlay() {
+  const parts = [];
+  const dot = (local, label, color = "#1d4e89") => {
+    const at = onScreen(local);
+    if (at) parts.push(`<circle cx="${at[0]}" cy="${at[1]}" r="6" fill="${color}" stroke="#fff" stroke-width="2"/>${label ? `<text x="${at[0] + 10}" y="${at[1] - 8}">${escape(label)}</text>` : ""}`);
+  };
+  const line = (a, b, style) => {
+    const [p, q] = [onScreen(a), onScreen(b)];
+    if (p && q) parts.push(`<path d="M${p}L${q}" fill="none" ${style}/>`);
+  };
+  for (const mark of page.marks) {
+    if (mark.line) line(...mark.line, mark.style);
+    else dot(mark.at, mark.label, mark.color);
+  }
+  $("marks").innerHTML = parts.join("");
+  const forward = mover.camera.getWorldDirection(new Vector3());
+  const up = mover.camera.up.clone().applyQuaternion(mover.camera.quaternion);
+  const facing = Math.hypot(forward.x, forward.y) > 0.02 ? Math.atan2(forward.x, forward.y) : Math.atan2(up.x, up.y);
+  const north = facing + ((page.scene?.grid_north_deg ?? 0) * Math.PI) / 180;
+  $("needle").setAttribute("transform", `rotate(${(-north * 180) / Math.PI})`);
+  const middle = mover.kind === "orbit" ? mover.camera.position.distanceTo(mover.orbit.target) : 20;
+  const metre = canvas.clientHeight / (2 * middle * Math.tan((mover.camera.fov * Math.PI) / 360));
+  const nice = [1, 2, 5].flatMap((k) => [0.01, 0.1, 1, 10, 100, 1000, 10000].map((t) => k * t)).sort((a, b) => a - b).filter((m) => m * metre <= 150).at(-1) ?? 0.01;
+  $("scale").firstElementChild.textContent = nice >= 1000 ? `${nice / 1000} km` : nice >= 1 ? `${nice} m` : `${nice * 100} cm`;
+  $("scale").lastElementChild.style.width = `${nice * metre}px`;
+  if (page.scene) $("drawn").textContent = `${cloud.drawn.toLocaleString("en")} of ${page.scene.point_count.toLocaleString("en")} points drawn`;
+}
+
+// Fails where the browser has no WebGL 2.
+export function open() {
+  renderer = new WebGLRenderer({ canvas, antialias: false, preserveDrawingBuffer: true });
+  cloud = page.cloud = new Cloud(renderer);
+  mover = page.mover = new Mover(canvas, changed);
+  mover.groundAt = (x, y) => cloud.groundAt(x, y);
+}
+
+// The scene as an image, without what is drawn over it.
+export function render() {
+  cloud.render(mover.camera, getComputedStyle(root).getPropertyValue("--ground").trim());
+}
