@@ -37,12 +37,7 @@ const CHUNK: usize = 1024;
 ///
 /// # Errors
 /// Those of reading the files and the balls, and of writing.
-pub fn answer(plan: &Plan, run: &Path, question: &Question, tile: TileId, control: &Control<'_>) -> Result<Record> {
-    answer_prepared(plan, run, (question, &question.prepare(control)?), tile, control)
-}
-
-/// The same for a question that is prepared already.
-pub(crate) fn answer_prepared(
+pub(crate) fn answer(
     plan: &Plan,
     run: &Path,
     (question, asked): (&Question, &Asked),

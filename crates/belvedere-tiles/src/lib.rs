@@ -1,7 +1,7 @@
 //! Surveys larger than memory: a city on one machine, a country on many.
 //!
 //! A [`Plan`] cuts the survey into tiles and keeps what every tile must know of the whole. Then each tile is a pure function of the plan and its
-//! number ([`make_balls`], [`answer`]): it reads a window of the inputs, writes its result and then its record, each of which appears whole. The
+//! number ([`make_balls`], and an answer to each question): it reads a window of the inputs, writes its result and then its record, each of which appears whole. The
 //! records are the ledger: what has one is done, and whatever was interrupted is done again by [`run`].
 //!
 //! Balls are made once for each tile, from the points of the tile and a margin around it, and belong to the tile that their point lies in. A question is
@@ -30,7 +30,6 @@ mod survey;
 mod values;
 mod window;
 
-pub use answer::answer;
 pub use grid::{TileGrid, TileId};
 pub use inputs::InputFile;
 pub use make_balls::make_balls;

@@ -1,6 +1,6 @@
 //! A run: all tiles that are not done yet, one after the other.
 
-use crate::answer::answer_prepared;
+use crate::answer::answer;
 use crate::grid::TileId;
 use crate::lines::{Lines, tiles};
 use crate::make_balls::make_balls;
@@ -151,8 +151,8 @@ impl Work<'_> {
 
     fn answer(&mut self, (question, asked): (&Question, &Asked), tile: TileId) -> Result<()> {
         let stage = Stage::Answer(question);
-        let record = self
-            .attempt(stage, tile, || answer_prepared(self.plan, self.folder, (question, asked), tile, self.control))?;
+        let record =
+            self.attempt(stage, tile, || answer(self.plan, self.folder, (question, asked), tile, self.control))?;
         self.report.answers_made += 1;
         self.report.unproven_cells += record.unproven_cells;
         self.report.damaged.extend(record.damaged);
