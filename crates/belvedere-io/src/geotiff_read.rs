@@ -1,7 +1,10 @@
 //! Values of GeoTIFF rasters.
 
+use std::io::{Read, Seek};
+use std::path::Path;
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::Tag;
+use tiff::{TiffError, TiffResult};
 
 use crate::geotiff::Georeference;
 use crate::source::Source;
@@ -49,8 +52,6 @@ pub struct PlacedRaster {
     pub values: Raster<f32>,
     /// Where it lies, if the file says so.
     pub place: Option<Georeference>,
-    /// What the values are, if the file says so.
-    pub description: Option<String>,
 }
 
 /// A raster of numbers of any kind, with its place on the map.
@@ -60,14 +61,10 @@ pub struct PlacedRaster {
 pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
     let input = source.into().open()?;
     let name = input.name;
-    let damaged = |e: tiff::TiffError| match e {
-        tiff::TiffError::IoError(source) => Error::io(&name)(source),
-        other => Error::malformed(&name, format!("is no raster that can be read: {other}")),
-    };
-    let mut decoder = Decoder::new(input.reader).map_err(damaged)?;
-    let (width, height) = decoder.dimensions().map_err(damaged)?;
+    let mut decoder = Decoder::new(input.reader).map_err(|e| damaged(&name, e))?;
+    let (size, values) = size_and_values(&mut decoder).map_err(|e| damaged(&name, e))?;
     #[expect(clippy::cast_possible_truncation, reason = "values of maps are f32")]
-    let values: Vec<f32> = match decoder.read_image().map_err(damaged)? {
+    let values: Vec<f32> = match values {
         DecodingResult::U8(values) => values.into_iter().map(f32::from).collect(),
         DecodingResult::I8(values) => values.into_iter().map(f32::from).collect(),
         DecodingResult::U16(values) => values.into_iter().map(f32::from).collect(),
@@ -82,8 +79,7 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
     #[expect(clippy::cast_possible_truncation, reason = "values of maps are f32")]
     let nodata = nodata.and_then(|text| text.trim().parse::<f64>().ok()).map(|nodata| nodata as f32);
     let values = values.into_iter().map(|v| if Some(v) == nodata || !v.is_finite() { f32::NAN } else { v }).collect();
-    let side = |count: u32| usize::try_from(count).unwrap_or(usize::MAX);
-    let values = Raster::from_values(side(width), side(height), values)
+    let values = Raster::from_values(size[0], size[1], values)
         .map_err(|_| Error::malformed(&name, "has more than one band; take one of them"))?;
     let keys = decoder.get_tag_u16_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
     let keys: Vec<u8> = keys.into_iter().flat_map(u16::to_le_bytes).collect();
@@ -103,21 +99,28 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
         }
         _ => None,
     };
-    let description = decoder.get_tag_ascii_string(Tag::ImageDescription).ok();
-    Ok(PlacedRaster { values, place, description })
+    Ok(PlacedRaster { values, place })
 }
 
 fn read<T: Copy>(source: Source<'_>, of_kind: impl Fn(DecodingResult) -> Option<Vec<T>>) -> Result<Raster<T>> {
     let input = source.open()?;
     let name = input.name;
-    let damaged = |e: tiff::TiffError| match e {
-        tiff::TiffError::IoError(source) => Error::io(&name)(source),
-        other => Error::malformed(&name, format!("is no raster that can be read: {other}")),
-    };
-    let mut decoder = Decoder::new(input.reader).map_err(damaged)?;
-    let (width, height) = decoder.dimensions().map_err(damaged)?;
-    let values = of_kind(decoder.read_image().map_err(damaged)?);
-    let values = values.ok_or_else(|| Error::malformed(&name, "has values of another kind than expected"))?;
-    let side = |count: u32| usize::try_from(count).unwrap_or(usize::MAX);
-    Raster::from_values(side(width), side(height), values)
+    let values = Decoder::new(input.reader).and_then(|mut decoder| size_and_values(&mut decoder));
+    let ([width, height], values) = values.map_err(|e| damaged(&name, e))?;
+    let values = of_kind(values).ok_or_else(|| Error::malformed(&name, "has values of another kind than expected"))?;
+    Raster::from_values(width, height, values)
+}
+
+/// Width and height, and the values.
+fn size_and_values<R: Read + Seek>(decoder: &mut Decoder<R>) -> TiffResult<([usize; 2], DecodingResult)> {
+    let (width, height) = decoder.dimensions()?;
+    let size = [width, height].map(|count| usize::try_from(count).unwrap_or(usize::MAX));
+    Ok((size, decoder.read_image()?))
+}
+
+fn damaged(name: &Path, error: TiffError) -> Error {
+    match error {
+        TiffError::IoError(source) => Error::io(name)(source),
+        other => Error::malformed(name, format!("is no raster that can be read: {other}")),
+    }
 }
