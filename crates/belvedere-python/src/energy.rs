@@ -3,7 +3,7 @@
 use crate::arrays::to_1d;
 use crate::errors::{exception, wrong};
 use crate::scene::{Inner, Scene};
-use crate::targets::{Column, Grid, Wanted, columns, grid_of_targets, ground_cloud, ground_points};
+use crate::targets::{Results, Wanted, ground_cloud, ground_points};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::irradiance::{
@@ -195,25 +195,26 @@ impl Scene {
         targets: Wanted<'py>,
         trees: Through,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Vec<Column<'py>>, Option<Grid>, String)> {
+    ) -> PyResult<(Results<'py>, String)> {
         let params = radiation.params()?;
         let source = py.detach(|| radiation.source(&params))?;
         let inner = Arc::clone(&self.0);
         let site = radiation.site(&source, &inner)?;
         let asked = targets.owned(py, &inner)?;
-        let (measures, grid, report) = run(py, progress, move |control| {
+        let (measures, found, report) = run(py, progress, move |control| {
             let trees = trees.of(&inner, control)?;
             let (seasons, report) = control.stage("computing radiation", 0, || {
                 period_seasons(&source.radiation(), &site, trees.as_ref(), &params, control)
             })?;
-            let targets = asked.targets(&inner, control)?;
+            let found = asked.targets(&inner, control)?;
+            let targets = &found.targets;
             let scene = inner.blockers(UnprovenAs::Visible, control)?;
             let obstacles = Obstacles { scene: &scene, trees: trees.as_ref() };
             let looks = targets.len() * look_count(&obstacles, &seasons);
             let sums = control
-                .stage("testing sun and sky", looks, || season_irradiation(obstacles, &targets, &seasons, control))?;
+                .stage("testing sun and sky", looks, || season_irradiation(obstacles, targets, &seasons, control))?;
             let groups = seasons.first().map_or(1, |season| season.radiation.group_count());
-            Ok((irradiation_measures(&sums, groups), grid_of_targets(&targets), report))
+            Ok((irradiation_measures(&sums, groups), found, report))
         })?;
         let report = serde_json::json!({
             "global_kwh_m2": report.ghi,
@@ -223,6 +224,6 @@ impl Scene {
             "night_hours": report.night_hours,
             "is_doubtful": report.is_doubtful(),
         });
-        Ok((columns(py, measures), grid, report.to_string()))
+        Ok((found.results(py, measures)?, report.to_string()))
     }
 }

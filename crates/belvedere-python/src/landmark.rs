@@ -1,12 +1,13 @@
 //! From where a landmark is seen, and how much of it.
 
 use crate::arrays::to_1d;
-use crate::errors::wrong;
+use crate::mesh::Mesh;
 use crate::observers::{eyes, places, skip, skipped};
 use crate::outlook::Looking;
 use crate::scene::{Inner, Scene, unproven_as};
 use crate::targets::{Cells, Column, Grid, ground_cloud, ground_points};
 use crate::work::run;
+use belvedere::Error;
 use belvedere::apps::eyes::EyesReport;
 use belvedere::apps::landmark::{
     LandmarkParams, LandmarkPoints, LandmarkView, MEASURES, landmark_points, landmark_views, observer_cell_for,
@@ -14,42 +15,22 @@ use belvedere::apps::landmark::{
 };
 use belvedere::apps::targets::{CellLevel, CellParams, CoveredCells, Targets};
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
-use belvedere::io::read_mesh;
 use belvedere::query::SurfacePieces;
-use belvedere::{Error, Mesh};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What the landmark is.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Landmark {
-    mesh: Option<PathBuf>,
+    mesh: Option<Py<Mesh>>,
     objects: Vec<String>,
     spacing: Option<f64>,
     seed: u64,
     class: Option<u8>,
     /// Rings of (x, y) in the coordinates of the file.
     polygon: Option<Vec<Vec<[f64; 2]>>>,
-}
-
-/// A mesh in the metres of a scene.
-pub(crate) fn mesh_of(path: &PathBuf, inner: &Inner) -> belvedere::Result<Mesh> {
-    let (mesh, _) = read_mesh(path)?;
-    let crs = &inner.frame().crs;
-    if mesh.crs.contradicts(crs) {
-        return Err(Error::UnusableCrs {
-            path: path.clone(),
-            what: format!(
-                "the mesh is in {}, but the scene is in {}; convert one of them",
-                mesh.crs.describe(),
-                crs.describe()
-            ),
-        });
-    }
-    Ok(mesh.scaled_to_metres(crs))
 }
 
 /// A ring in local metres.
@@ -62,19 +43,9 @@ pub(crate) fn local_ring(inner: &Inner, ring: &[[f64; 2]]) -> Vec<[f64; 2]> {
 }
 
 impl Landmark {
-    fn check(&self) -> PyResult<()> {
-        let given =
-            usize::from(self.mesh.is_some()) + usize::from(self.class.is_some()) + usize::from(self.polygon.is_some());
-        if given != 1 {
-            let value = format!("{given} given");
-            return Err(wrong("landmark", &value, "give one of mesh, target_class and target_polygon"));
-        }
-        Ok(())
-    }
-
     fn surface(&self, inner: &Inner) -> belvedere::Result<SurfacePieces> {
-        if let Some(path) = &self.mesh {
-            let mut mesh = mesh_of(path, inner)?;
+        if let Some(mesh) = &self.mesh {
+            let mut mesh = mesh.get().in_metres(inner)?;
             if let Some(missing) = self.objects.iter().find(|name| !mesh.object_names.contains(name)) {
                 return Err(Error::InvalidParameter {
                     name: "object",
@@ -114,7 +85,6 @@ impl Scene {
         unproven: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Views<'py>> {
-        landmark.check()?;
         let unproven = unproven_as(unproven)?;
         let earth = looking.earth()?;
         let points = ground_points(looking.ground.as_deref())?;

@@ -8,6 +8,7 @@ mod cloud;
 mod energy;
 mod errors;
 mod landmark;
+mod mesh;
 mod observers;
 mod outlook;
 mod pictures;
@@ -32,6 +33,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("NO_VALUE", belvedere::results::NO_VALUE)?;
     module.add_class::<cloud::Cloud>()?;
+    module.add_class::<mesh::Mesh>()?;
     module.add_class::<scene::Scene>()?;
     module.add_class::<system::System>()?;
     module.add_function(wrap_pyfunction!(cloud::read, module)?)?;

@@ -2,7 +2,8 @@
 
 use crate::cloud::{Cloud, Input, json};
 use crate::errors::{belvedere_error, exception, wrong};
-use crate::landmark::{local_ring, mesh_of};
+use crate::landmark::local_ring;
+use crate::mesh::Mesh;
 use crate::system::System;
 use crate::work::run;
 use belvedere::apps::horizon::convergence;
@@ -242,12 +243,12 @@ impl Scene {
         Ok(Self(Arc::new(Inner::new(model, cloud))))
     }
 
-    /// The same scene with the meshes of these files added.
-    fn with_added(&self, py: Python<'_>, meshes: Vec<PathBuf>) -> PyResult<Self> {
+    /// The same scene with meshes added.
+    fn with_added(&self, py: Python<'_>, meshes: Vec<Py<Mesh>>) -> PyResult<Self> {
         let inner = Arc::clone(&self.0);
         let model = run(py, None, move |_| {
-            meshes.iter().try_fold(inner.model.clone(), |model, path| {
-                model.with_added(&mesh_of(path, &inner)?, &path.display().to_string())
+            meshes.iter().map(Py::get).try_fold(inner.model.clone(), |model, mesh| {
+                model.with_added(&mesh.in_metres(&inner)?, &mesh.name.display().to_string())
             })
         })?;
         Ok(Self(Arc::new(Inner::new(model, Arc::clone(&self.0.cloud)))))

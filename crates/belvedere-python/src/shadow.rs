@@ -1,21 +1,21 @@
 //! Shadow.
 
-use crate::arrays::to_1d;
 use crate::errors::wrong;
 use crate::scene::Scene;
 use crate::sun::{Place, SunChoice};
-use crate::targets::{Grid, Wanted, grid_of_targets};
+use crate::targets::{Results, Wanted};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::rows::Obstacles;
 use belvedere::apps::shadow::{Edges, scene_shadow};
+use belvedere::apps::targets::Measure;
 use belvedere::query::UnprovenAs;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
 #[pymethods]
 impl Scene {
-    /// The share of each sun that reaches each target, and the grid of the targets.
+    /// The share of each sun that reaches each target.
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn shadow<'py>(
         &self,
@@ -26,7 +26,7 @@ impl Scene {
         edges: &str,
         trees: Through,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Vec<Bound<'py, PyAny>>, Option<Grid>)> {
+    ) -> PyResult<Vec<Results<'py>>> {
         let edges = match edges {
             "hard" => Edges::Hard,
             "soft" => Edges::Soft,
@@ -35,16 +35,21 @@ impl Scene {
         let inner = Arc::clone(&self.0);
         let asked = targets.owned(py, &inner)?;
         let suns = suns.suns(&inner, &place)?;
-        let (lit, grid) = run(py, progress, move |control| {
-            let targets = asked.targets(&inner, control)?;
+        let (lit, found) = run(py, progress, move |control| {
+            let found = asked.targets(&inner, control)?;
+            let targets = &found.targets;
             let scene = inner.blockers(UnprovenAs::Visible, control)?;
             let trees = trees.of(&inner, control)?;
             let obstacles = Obstacles { scene: &scene, trees: trees.as_ref() };
             let looks = targets.len() * obstacles.matrix_count();
             let lit =
-                control.stage("testing sun", looks, || scene_shadow(obstacles, &targets, &suns, edges, control))?;
-            Ok((lit, grid_of_targets(&targets)))
+                control.stage("testing sun", looks, || scene_shadow(obstacles, targets, &suns, edges, control))?;
+            Ok((lit, found))
         })?;
-        Ok((lit.into_iter().map(|values| to_1d(py, values).into_any()).collect(), grid))
+        lit.into_iter()
+            .map(|values| {
+                found.results(py, vec![Measure::new("lit", values).with_description("share of the sun, 0 in shadow")])
+            })
+            .collect()
     }
 }

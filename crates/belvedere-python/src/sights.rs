@@ -2,10 +2,14 @@
 
 use crate::arrays::{Places, to_1d, to_2d};
 use crate::errors::wrong;
+use crate::mesh::{Faces, rows_of};
 use crate::scene::{Scene, unproven_as};
 use crate::targets::{Asked, Wanted};
 use crate::work::run;
-use belvedere::query::{Answer, Curvature, EarthParams, UnprovenAs, Viewer};
+use belvedere::query::{
+    Answer, Curvature, EarthParams, MeshTargetParams, SurfacePieces, UnprovenAs, Viewer, seen_faces,
+};
+use belvedere::results::FaceRows;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -43,7 +47,7 @@ impl Scene {
             let positions = match asked {
                 Asked::Points { positions, .. } => positions,
                 Asked::Cloud { cloud, .. } => crate::targets::moved(&cloud, inner.frame())?,
-                Asked::Cells(_) => asked.targets(&inner, control)?.positions,
+                _ => asked.targets(&inner, control)?.targets.positions,
             };
             let scene = inner.blockers(unproven, control)?;
             let eye = Viewer::Eye(inner.frame().local_from_file(eye));
@@ -52,6 +56,32 @@ impl Scene {
             Ok(answers.into_iter().map(|answer| unproven.settle(answer) as u8).collect::<Vec<u8>>())
         })?;
         Ok(to_1d(py, answers).into_any())
+    }
+
+    /// How much one eye sees of each face and object of a mesh.
+    fn seen_of_mesh<'py>(
+        &self,
+        py: Python<'py>,
+        eye: [f64; 3],
+        faces: Faces,
+        unproven: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let unproven = unproven_as(unproven)?;
+        let inner = Arc::clone(&self.0);
+        let (mesh, params) = faces.owned(&inner)?;
+        let of_work = Arc::clone(&mesh);
+        let seen = run(py, progress, move |control| {
+            let surface = SurfacePieces::of_mesh(&of_work, inner.frame().origin, params.spacing, params.seed)?;
+            let scene = inner.blockers(unproven, control)?;
+            let eye = Viewer::Eye(inner.frame().local_from_file(eye));
+            seen_faces(&surface, eye, &MeshTargetParams::default(), |places| {
+                let answers =
+                    control.stage("testing targets", places.len(), || scene.visible_from(eye, places, control))?;
+                Ok(answers.into_iter().map(|answer| unproven.settle(answer)).collect())
+            })
+        })?;
+        rows_of(py, FaceRows::of_seen(&mesh, &seen))
     }
 
     /// What is known of the line of sight of each pair.

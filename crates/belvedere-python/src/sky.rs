@@ -3,7 +3,7 @@
 use crate::errors::{exception, wrong};
 use crate::scene::{Inner, Scene};
 use crate::sun::Place;
-use crate::targets::{Column, Grid, Wanted, columns, grid_of_targets};
+use crate::targets::{Results, Wanted};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::rows::Obstacles;
@@ -129,21 +129,22 @@ impl Scene {
         targets: Wanted<'py>,
         trees: Through,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Vec<Column<'py>>, Option<Grid>)> {
+    ) -> PyResult<Results<'py>> {
         let inner = Arc::clone(&self.0);
         let asked = targets.owned(py, &inner)?;
         let (plan, site) = days.plan(&inner, &place, &rules)?;
-        let (measures, grid) = run(py, progress, move |control| {
-            let targets = asked.targets(&inner, control)?;
+        let (measures, found) = run(py, progress, move |control| {
+            let found = asked.targets(&inner, control)?;
+            let targets = &found.targets;
             let scene = inner.blockers(UnprovenAs::Visible, control)?;
             let trees = trees.of(&inner, control)?;
             let obstacles = Obstacles { scene: &scene, trees: trees.as_ref() };
             let looks = targets.len() * obstacles.matrix_count();
             let sums = control
-                .stage("testing sun", looks, || scene_sun_hours(obstacles, &targets, &plan, Some(&site), control))?;
-            Ok((sums.into_measures(&plan, &targets), grid_of_targets(&targets)))
+                .stage("testing sun", looks, || scene_sun_hours(obstacles, targets, &plan, Some(&site), control))?;
+            Ok((sums.into_measures(&plan, targets), found))
         })?;
-        Ok((columns(py, measures), grid))
+        found.results(py, measures)
     }
 
     fn sky_view<'py>(
@@ -154,7 +155,7 @@ impl Scene {
         targets: Wanted<'py>,
         trees: Through,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Vec<Column<'py>>, Option<Grid>)> {
+    ) -> PyResult<Results<'py>> {
         let sky = match patches {
             None => SkyDirections::even(directions.unwrap_or(SKY_DIRECTIONS)),
             Some("tregenza") => SkyDirections::patches(1),
@@ -164,15 +165,16 @@ impl Scene {
         let sky = sky.map_err(exception)?;
         let inner = Arc::clone(&self.0);
         let asked = targets.owned(py, &inner)?;
-        let (seen, grid) = run(py, progress, move |control| {
-            let targets = asked.targets(&inner, control)?;
+        let (seen, found) = run(py, progress, move |control| {
+            let found = asked.targets(&inner, control)?;
+            let targets = &found.targets;
             let scene = inner.blockers(UnprovenAs::Visible, control)?;
             let trees = trees.of(&inner, control)?;
             let obstacles = Obstacles { scene: &scene, trees: trees.as_ref() };
             let looks = targets.len() * obstacles.matrix_count();
-            let seen = control.stage("testing sky", looks, || scene_sky_view(obstacles, &targets, &sky, control))?;
-            Ok((seen, grid_of_targets(&targets)))
+            let seen = control.stage("testing sky", looks, || scene_sky_view(obstacles, targets, &sky, control))?;
+            Ok((seen, found))
         })?;
-        Ok((columns(py, seen.into_measures()), grid))
+        found.results(py, seen.into_measures())
     }
 }

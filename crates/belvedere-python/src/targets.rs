@@ -1,18 +1,20 @@
-//! What is asked about: cells of a grid, points, or a cloud.
+//! What is asked about: cells of a grid, points, a cloud, or the faces of a mesh.
 
 use crate::arrays::{Places, fixed_rows, to_1d};
 use crate::cloud::Cloud;
 use crate::errors::wrong;
+use crate::mesh::{Faces, rows_of};
 use crate::scene::Inner;
-use belvedere::apps::targets::{CellLevel, CellParams, Measure, Targets};
+use belvedere::apps::targets::{CellLevel, CellParams, Measure, MeshParams, Targets};
 use belvedere::apps::viewshed::cell_for;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
 use belvedere::io::Georeference;
-use belvedere::results::georeference;
-use belvedere::{Error, Frame, PointCloud};
+use belvedere::results::{FaceRows, georeference};
+use belvedere::{Error, Frame, Mesh, PointCloud};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// What Python asks about.
@@ -21,6 +23,7 @@ use std::sync::Arc;
 pub(crate) struct Wanted<'py> {
     places: Option<Places<'py>>,
     cloud: Option<Py<Cloud>>,
+    faces: Option<Faces>,
     normals: Option<PyReadonlyArray2<'py, f32>>,
     surface: bool,
     cell: Option<f64>,
@@ -32,7 +35,14 @@ pub(crate) struct Wanted<'py> {
 pub(crate) enum Asked {
     Points { positions: Vec<[f32; 3]>, normals: Option<Vec<[f32; 3]>> },
     Cloud { cloud: Arc<PointCloud>, normals: Option<Vec<[f32; 3]>> },
+    Faces { mesh: Arc<Mesh>, params: MeshParams },
     Cells(Cells),
+}
+
+/// Targets, and the mesh whose faces they are.
+pub(crate) struct Found {
+    pub(crate) targets: Targets,
+    mesh: Option<Arc<Mesh>>,
 }
 
 /// Cells of a grid over the scene.
@@ -73,6 +83,10 @@ impl Wanted<'_> {
             check(cloud.len())?;
             return Ok(Asked::Cloud { cloud, normals });
         }
+        if let Some(faces) = &self.faces {
+            let (mesh, params) = faces.owned(inner)?;
+            return Ok(Asked::Faces { mesh, params });
+        }
         let level = if self.surface { CellLevel::Surface } else { CellLevel::Ground };
         let ground = ground_points(self.ground.as_deref())?;
         Ok(Asked::Cells(Cells { side: self.cell, height: self.height, level, ground }))
@@ -81,21 +95,27 @@ impl Wanted<'_> {
 
 impl Asked {
     /// The targets in the frame of the scene, without those outside its cloud.
-    pub(crate) fn targets(self, inner: &Inner, control: &Control<'_>) -> belvedere::Result<Targets> {
+    pub(crate) fn targets(self, inner: &Inner, control: &Control<'_>) -> belvedere::Result<Found> {
         let frame = inner.frame();
         let of = |positions, normals| {
             let cloud = PointCloud { positions, ..PointCloud::in_frame(frame.clone()) };
             Targets::of_points(&cloud, normals)
         };
+        let mut mesh_of = None;
         let mut targets = match self {
-            Self::Cells(cells) => return cells.targets(inner, control),
+            Self::Cells(cells) => return Ok(Found { targets: cells.targets(inner, control)?, mesh: None }),
             Self::Points { positions, normals } => of(positions, normals),
             Self::Cloud { cloud, normals } => of(moved(&cloud, frame)?, normals),
+            Self::Faces { mesh, params } => {
+                let targets = Targets::of_mesh(&mesh, frame, &params)?;
+                mesh_of = Some(mesh);
+                targets
+            }
         };
         if let Some(coverage) = inner.model.coverage() {
             targets.leave_out_outside(&coverage);
         }
-        Ok(targets)
+        Ok(Found { targets, mesh: mesh_of })
     }
 }
 
@@ -165,14 +185,20 @@ pub(crate) fn grid_of(grid: &MapGrid, frame: &Frame) -> Grid {
     (grid.width, grid.height, transform)
 }
 
-/// The grid of targets that are cells.
-pub(crate) fn grid_of_targets(targets: &Targets) -> Option<Grid> {
-    targets.ground().map(|ground| grid_of(&ground.grid, &targets.frame))
-}
-
 /// Name, description and values of a measure.
 pub(crate) type Column<'py> = (String, &'static str, Bound<'py, PyAny>);
+/// Columns of measures; then the grid where targets are cells; or, where they are the faces of a mesh, only their rows.
+pub(crate) type Results<'py> = (Vec<Column<'py>>, Option<Grid>, Option<Bound<'py, PyDict>>);
 
-pub(crate) fn columns(py: Python<'_>, measures: Vec<Measure>) -> Vec<Column<'_>> {
-    measures.into_iter().map(|m| (m.name, m.description, to_1d(py, m.values).into_any())).collect()
+impl Found {
+    /// Measures of the targets as Python takes them.
+    pub(crate) fn results<'py>(&self, py: Python<'py>, measures: Vec<Measure>) -> PyResult<Results<'py>> {
+        if let (Some(mesh), Some(surface)) = (&self.mesh, self.targets.surface()) {
+            let rows = rows_of(py, FaceRows::of_measures(mesh, surface, &measures))?;
+            return Ok((Vec::new(), None, Some(rows)));
+        }
+        let column = |measure: Measure| (measure.name, measure.description, to_1d(py, measure.values).into_any());
+        let grid = self.targets.ground().map(|ground| grid_of(&ground.grid, &self.targets.frame));
+        Ok((measures.into_iter().map(column).collect(), grid, None))
+    }
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import pickle
 
 import belvedere
@@ -83,6 +84,71 @@ def test_sky_view(scene, run_program, folder):
     run_program("sky-view", "tile.laz", "--cell", 2, "-o", "sky.tif", "--measures", "sky")
     for measure, raster in scene.sky_view(cell=2).items():
         assert_same_raster(raster, folder / "sky" / f"{measure}.tif", folder)
+
+
+@pytest.fixture(scope="session")
+def block(cloud, folder):
+    """A mesh of two objects above the town: a box with its walls, and a roof that leans."""
+    low, high = cloud.bounds
+    x, y = ((low + high) / 2)[:2].round()
+    z = float(round(high[2]))
+    corners = [(x + a, y + b, z + c) for c in (0, 3) for a, b in ((0, 0), (4, 0), (4, 4), (0, 4))]
+    corners += [(x + 6, y, z), (x + 9, y, z), (x + 9, y + 3, z + 2)]
+    quads = [(0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7), (4, 5, 6, 7)]
+    triangles = [row for a, b, c, d in quads for row in ((a, b, c), (a, c, d))] + [(8, 9, 10)]
+    lines = [f"v {x} {y} {z}" for x, y, z in corners] + ["o box"]
+    faces = [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]
+    (folder / "block.obj").write_text("\n".join([*lines, *faces[:-1], "o roof", faces[-1]]) + "\n")
+    objects = [0] * 10 + [1]
+    return belvedere.Mesh(corners, triangles, objects=objects, object_names=["box", "roof"])
+
+
+def rows_of(path):
+    """Rows of objects and of faces."""
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    return [row for row in rows if not row["face"]], [row for row in rows if row["face"]]
+
+
+def assert_same_rows(table, path):
+    for ours, rows in zip((table.objects, table), rows_of(path), strict=True):
+        assert list(ours["object"]) == [row["object"] for row in rows]
+        for name in set(ours) - {"object"}:
+            for value, row in zip(ours[name], rows, strict=True):
+                # to the digits that the program writes
+                digits = len(row[name].partition(".")[2])
+                assert abs(value - float(row[name])) <= 0.5000001 * 10.0**-digits, (name, row)
+
+
+def test_faces_of_a_mesh(scene, run_program, folder, block):
+    read = belvedere.Mesh.read(folder / "block.obj")
+    assert np.array_equal(read.vertices[read.triangles], block.vertices[block.triangles])
+    assert read.object_names == block.object_names and np.array_equal(read.objects, block.objects)
+    again = pickle.loads(pickle.dumps(block.sampled(spacing=1)))
+    asked = ["tile.laz", "--targets", "block.obj", "-o"]
+    run_program("shadow", *asked, "lit_faces.csv", "--sun", "200,25")
+    lit = scene.shadow(sun=(200, 25), targets=block)
+    assert_same_rows(lit, folder / "lit_faces.csv")
+    # no point of the town is as high: faces turned to the sun are lit, the others are not
+    assert lit["lit"][:10].tolist() == [1, 1, 0, 0, 0, 0, 1, 1, 1, 1]
+    run_program("sun-hours", *asked, "hours_faces.csv", "--date", "2026-03-21", "--zone", "Europe/Amsterdam")
+    day = {"date": "2026-03-21", "zone": "Europe/Amsterdam"}
+    assert_same_rows(scene.sun_hours(targets=block, **day), folder / "hours_faces.csv")
+    run_program("sky-view", *asked, "sky_faces.csv", "--spacing", 1, "--facing", "level")
+    assert_same_rows(scene.sky_view(targets=again.sampled(spacing=1, facing="level")), folder / "sky_faces.csv")
+    x, y, z = block.vertices[0]
+    run_program(
+        "query", *asked, "seen_faces.csv", "--eye", f"{x + 2},{y - 20},{z + 1}", "--look-at", f"{x + 2},{y},{z}"
+    )
+    seen = scene.visible((x + 2, y - 20, z + 1), read)
+    # of the box only the wall before the eye is turned to it
+    assert (seen["visible_share"][:10] > 0.99).tolist() == [True] * 2 + [False] * 8
+    landmark = scene.landmark(block, objects="box", observers=[(x + 2, y - 20, z + 1)])
+    from_file = scene.landmark(folder / "block.obj", objects="box", observers=[(x + 2, y - 20, z + 1)])
+    assert landmark["visible_area_m2"].tolist() == from_file["visible_area_m2"].tolist()
+    above = [(x + 2, y + 2, z - 0.5)], [(x + 2, y + 2, z + 9)]
+    planned = [s.line_of_sight(*above)["answer"][0] for s in (scene.with_added(block), scene.with_added(read))]
+    assert planned == [belvedere.Answer.BLOCKED] * 2
 
 
 def test_viewsheds(scene, run_program, folder, standing):

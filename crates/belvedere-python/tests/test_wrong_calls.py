@@ -12,6 +12,13 @@ NAIVE = datetime.datetime(2026, 6, 21, 15)
 PLACES = np.array([[155000.0, 463000.0, 5.0]])
 
 
+WALL = [(0, 0, 0), (4, 0, 0), (4, 0, 3)]
+
+
+def _wall(crs=None):
+    return belvedere.Mesh(WALL, [(0, 1, 2)], crs=crs)
+
+
 def hole(array):
     array = np.array(array, np.float64)
     array[0, 0] = np.nan
@@ -37,6 +44,12 @@ WRONG = {
     "targets of two columns": (lambda s, c, f: s.visible((1, 2, 3), PLACES[:, :2]), "targets", "(N, 3)"),
     "targets of one row without brackets": (lambda s, c, f: s.visible((1, 2, 3), PLACES[0]), "targets", "(N, 3)"),
     "targets with a hole": (lambda s, c, f: s.visible((1, 2, 3), hole(PLACES)), "targets", "remove"),
+    "triangle without vertex": (lambda s, c, f: belvedere.Mesh([(0, 0, 0)], [(0, 0, 1)]), "triangles", "1 vertices"),
+    "no triangle": (lambda s, c, f: belvedere.Mesh([(0, 0, 0)], np.empty((0, 3), int)), "triangles", "one triangle"),
+    "triangles of fractions": (lambda s, c, f: belvedere.Mesh([(0, 0, 0)], [(0, 0.5, 0)]), "triangles", "whole"),
+    "objects without name": (lambda s, c, f: belvedere.Mesh(WALL, [(0, 1, 2)], objects=[1]), "objects", "object_names"),
+    "normals of a mesh": (lambda s, c, f: s.sky_view(targets=_wall(), normals=PLACES), "normals", "level"),
+    "mesh elsewhere": (lambda s, c, f: s.sky_view(targets=_wall("EPSG:2154")), None, "convert"),
     "targets of text": (lambda s, c, f: s.visible((1, 2, 3), [["a", "b", "c"]]), "targets", "(N, 3)"),
     "an eye of two numbers": (lambda s, c, f: s.visible((1, 2), PLACES), "eye", "x, y, z"),
     "an eye that is not finite": (lambda s, c, f: s.visible((1, 2, np.inf), PLACES), "eye", "finite"),

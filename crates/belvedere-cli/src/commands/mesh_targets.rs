@@ -7,10 +7,9 @@ use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::Mesh;
-use belvedere::io::{Cells, write_mesh_values, write_table};
-use belvedere::query::{
-    BackFaces, MeshTargetParams, Scope, SeenArea, SurfacePieces, Viewer, seen_faces, seen_in_all, seen_objects,
-};
+use belvedere::io::write_mesh_values;
+use belvedere::query::{BackFaces, MeshTargetParams, Scope, SeenArea, SurfacePieces, Viewer, seen_faces, seen_in_all};
+use belvedere::results::FaceRows;
 use belvedere::view::View;
 use std::io::Read;
 use std::path::Path;
@@ -102,7 +101,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
             let unit = scene.cloud.frame.crs.metres_per_unit_xyz();
             write_mesh_values(output, &mesh, unit, "visible_share", &shares, [0.0, 1.0])
         }
-        _ => write_rows(output, &mesh, &faces),
+        _ => FaceRows::of_seen(&mesh, &faces).write(output),
     })?;
     summary.add("written", output.display().to_string());
     summary.add_seconds(stages.into_seconds());
@@ -122,39 +121,4 @@ fn told(faces: &[SeenArea], surface: &SurfacePieces, spacing: f64) -> Summary {
         .add("visible_percent", rounded(100.0 * all.visible_share(), 2))
         .add("unproven_m2", rounded(all.unproven, 2));
     section
-}
-
-/// A row for each object, without a face, then one for each face.
-fn write_rows(output: &Path, mesh: &Mesh, faces: &[SeenArea]) -> belvedere::Result<()> {
-    let names = &mesh.object_names;
-    let mut rows: Vec<(&str, Option<u64>, SeenArea)> = Vec::new();
-    if names.is_empty() {
-        rows.push(("", None, seen_in_all(faces)));
-    }
-    let objects = seen_objects(faces, &mesh.objects, names.len());
-    rows.extend(names.iter().zip(objects).map(|(name, seen)| (name.as_str(), None, seen)));
-    for ((face, seen), number) in faces.iter().enumerate().zip(0_u64..) {
-        let object = mesh.objects.get(face).and_then(|&object| names.get(object as usize));
-        rows.push((object.map_or("", String::as_str), Some(number), *seen));
-    }
-    let words: Vec<&str> = rows.iter().map(|row| row.0).collect();
-    let numbers: Vec<Option<u64>> = rows.iter().map(|row| row.1).collect();
-    let column = |value: &dyn Fn(&SeenArea) -> f64| -> Vec<f64> { rows.iter().map(|row| value(&row.2)).collect() };
-    let area = column(&|seen| seen.area);
-    let visible = column(&|seen| seen.visible);
-    let share = column(&SeenArea::visible_share);
-    let unproven = column(&|seen| seen.unproven);
-    let error = column(&SeenArea::standard_error);
-    write_table(
-        output,
-        &[
-            ("object", Cells::Words(&words)),
-            ("face", Cells::Whole(&numbers)),
-            ("area_m2", Cells::Real(&area, 4)),
-            ("visible_m2", Cells::Real(&visible, 4)),
-            ("visible_share", Cells::Real(&share, 4)),
-            ("unproven_m2", Cells::Real(&unproven, 4)),
-            ("standard_error_m2", Cells::Real(&error, 4)),
-        ],
-    )
 }

@@ -12,6 +12,7 @@ from ._answer import Answer
 from ._cloud import Cloud, read
 from ._core import __version__
 from ._errors import BelvedereError, BelvedereWarning
+from ._mesh import Mesh
 from ._raster import Raster, Rasters
 from ._scene import Scene
 from ._sights import Sight
@@ -23,6 +24,7 @@ __all__ = [
     "BelvedereError",
     "BelvedereWarning",
     "Cloud",
+    "Mesh",
     "Raster",
     "Rasters",
     "Scene",

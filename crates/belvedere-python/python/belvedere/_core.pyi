@@ -8,9 +8,10 @@ import numpy.typing as npt
 _Progress = Callable[[str, int, int], object] | None
 _Grid = tuple[int, int, Sequence[float]]
 _Columns = list[tuple[str, str, npt.NDArray[Any]]]
+_Results = tuple[_Columns, _Grid | None, dict[str, Any] | None]
 _CrsState = tuple[str | None, int | None, int | None, float, float, int]
 
-__all__ = ["NO_VALUE", "Cloud", "Crs", "Scene", "__version__", "read", "simulate", "write_geotiff"]
+__all__ = ["NO_VALUE", "Cloud", "Crs", "Mesh", "Scene", "__version__", "read", "simulate", "write_geotiff"]
 
 __version__: str
 NO_VALUE: float
@@ -65,6 +66,30 @@ class Cloud:
     def __len__(self) -> int: ...
 
 @final
+class Mesh:
+    def __new__(
+        cls,
+        vertices: npt.NDArray[np.float64],
+        triangles: npt.NDArray[np.uint32],
+        objects: npt.NDArray[np.uint32],
+        object_names: list[str],
+        crs: Crs | None,
+    ) -> Mesh: ...
+    @staticmethod
+    def read(input: object) -> Mesh: ...
+    @property
+    def vertices(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def triangles(self) -> npt.NDArray[np.uint32]: ...
+    @property
+    def objects(self) -> npt.NDArray[np.uint32]: ...
+    @property
+    def object_names(self) -> list[str]: ...
+    @property
+    def crs(self) -> Crs: ...
+    def __len__(self) -> int: ...
+
+@final
 class Scene:
     @staticmethod
     def build(cloud: Cloud, choices: dict[str, Any], progress: _Progress) -> tuple[Scene, str]: ...
@@ -72,7 +97,7 @@ class Scene:
     def load(input: object, cloud: Cloud | None, progress: _Progress) -> Scene: ...
     def save(self, path: str | os.PathLike[str]) -> None: ...
     def to_bytes(self) -> bytes: ...
-    def with_added(self, meshes: list[str]) -> Scene: ...
+    def with_added(self, meshes: list[Mesh]) -> Scene: ...
     def without(self, rings: list[list[tuple[float, float]]] | None, class_: int) -> tuple[Scene, str]: ...
     def with_horizon(self, path: str) -> Scene: ...
     @property
@@ -92,6 +117,9 @@ class Scene:
     def visible(
         self, eye: Sequence[float], targets: dict[str, Any], unproven: str, progress: _Progress
     ) -> npt.NDArray[np.uint8]: ...
+    def seen_of_mesh(
+        self, eye: Sequence[float], faces: dict[str, Any], unproven: str, progress: _Progress
+    ) -> dict[str, Any]: ...
     def on_ground(
         self,
         array: npt.NDArray[np.float64],
@@ -117,7 +145,7 @@ class Scene:
         edges: str,
         trees: dict[str, Any],
         progress: _Progress,
-    ) -> tuple[list[npt.NDArray[np.float32]], _Grid | None]: ...
+    ) -> list[_Results]: ...
     def sun_hours(
         self,
         days: dict[str, Any],
@@ -126,7 +154,7 @@ class Scene:
         targets: dict[str, Any],
         trees: dict[str, Any],
         progress: _Progress,
-    ) -> tuple[_Columns, _Grid | None]: ...
+    ) -> _Results: ...
     def sky_view(
         self,
         directions: int | None,
@@ -134,7 +162,7 @@ class Scene:
         targets: dict[str, Any],
         trees: dict[str, Any],
         progress: _Progress,
-    ) -> tuple[_Columns, _Grid | None]: ...
+    ) -> _Results: ...
     def viewshed(
         self,
         observers: npt.NDArray[np.float64],
@@ -170,7 +198,7 @@ class Scene:
     ) -> tuple[_Columns, _Grid | None, list[str]]: ...
     def irradiance(
         self, radiation: dict[str, Any], targets: dict[str, Any], trees: dict[str, Any], progress: _Progress
-    ) -> tuple[_Columns, _Grid | None, str]: ...
+    ) -> tuple[_Results, str]: ...
     def roof_planes(
         self,
         radiation: dict[str, Any],

@@ -118,7 +118,7 @@ class Energy:
             months=months,
             location=location,
         )
-        columns, grid, text = self._core.irradiance(
+        results, text = self._core.irradiance(
             radiation,
             wanted(targets, normals, _cells(cell, target_height, surface, ground)),
             {"share": through_trees, "leaves": leaves},
@@ -131,7 +131,7 @@ class Energy:
                 BelvedereWarning,
                 stacklevel=2,
             )
-        return measures(columns, grid, self._core.crs, targets)
+        return measures(results, self._core.crs, targets)
 
     def roof_planes(
         self,

@@ -22,6 +22,7 @@ from ._inputs import (
     number_pair,
     reporter,
 )
+from ._mesh import Mesh, native_mesh
 from ._outlook import _OBSERVERS, _looking, _warn
 from ._raster import Raster
 from ._sunlight import _DIRECTION, _days, _place
@@ -38,7 +39,7 @@ class Planning:
 
     def landmark(
         self,
-        mesh: str | os.PathLike[str] | None = None,
+        mesh: str | os.PathLike[str] | Mesh | None = None,
         *,
         target_class: int | None = None,
         target_polygon: npt.ArrayLike | None = None,
@@ -59,7 +60,7 @@ class Planning:
 
         Parameters
         ----------
-        mesh : path, optional
+        mesh : path or Mesh, optional
             The landmark as a mesh: ``.obj``, ``.ply`` or CityJSON.
         target_class : int, optional
             The points of this ASPRS class, in place of a mesh.
@@ -101,11 +102,14 @@ class Planning:
         True
         """
         check_finite(spacing=spacing)
+        given = sum(what is not None for what in (mesh, target_class, target_polygon))
+        if given != 1:
+            raise wrong("landmark", f"{given} given", "give one of mesh, target_class and target_polygon")
         ring = None
         if target_polygon is not None:
             ring = [[(x, y) for x, y, _ in _line(target_polygon, "target_polygon")]]
         what: dict[str, Any] = {
-            "mesh": None if mesh is None else os.fspath(mesh),
+            "mesh": None if mesh is None else native_mesh(mesh),
             "objects": as_list(objects),
             "spacing": spacing,
             "seed": seed,
@@ -127,7 +131,7 @@ class Planning:
         _warn(skipped)
         if places is not None:
             return Table({name: values for name, _, values in columns}, places=places, crs=self._core.crs.text)
-        return measures(columns, grid, self._core.crs, None)
+        return measures((columns, grid, None), self._core.crs, None)
 
     def comfort(
         self,

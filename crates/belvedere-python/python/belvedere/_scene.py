@@ -17,6 +17,7 @@ from ._core import Scene as NativeScene
 from ._energy import Energy
 from ._errors import BelvedereWarning, wrong
 from ._inputs import Progress, Source, as_list, check_finite, native_source, place, reporter
+from ._mesh import Mesh, native_mesh
 from ._outlook import Outlook
 from ._planning import Planning
 from ._raster import escaped
@@ -171,7 +172,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
         core = _core.Scene.load(native_source(source, name), None if cloud is None else cloud._core, reporter(progress))
         return cls._of(core, {} if cloud is None else cloud.report, {})
 
-    def with_added(self, *meshes: str | os.PathLike[str]) -> Scene:
+    def with_added(self, *meshes: str | os.PathLike[str] | Mesh) -> Scene:
         """The same scene with planned buildings: meshes (``.obj .ply .json``) in the coordinates of the cloud.
 
         Their triangles block lines of sight exactly as they are, from both sides, beside balls. A target within 1 mm
@@ -180,23 +181,21 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning):
 
         Parameters
         ----------
-        meshes : path
+        meshes : path or Mesh
 
         Examples
         --------
         >>> low, high = scene.bounds
         >>> x, y = ((low + high) / 2)[:2]
         >>> corners = [(x + a, y + b, low[2] + c) for a, b, c in [(-9, 0, -9), (9, 0, -9), (9, 0, 90), (-9, 0, 90)]]
-        >>> lines = ["v {} {} {}".format(*corner) for corner in corners] + ["f 1 2 3 4"]
-        >>> _ = (folder / "wall.obj").write_text(chr(10).join(lines))
-        >>> planned = scene.with_added(folder / "wall.obj")
+        >>> planned = scene.with_added(belvedere.Mesh(corners, [(0, 1, 2), (0, 2, 3)]))
         >>> ends = [(x, y - 5, high[2])], [(x, y + 5, high[2])]
         >>> [int(s.line_of_sight(*ends)["answer"][0]) for s in (scene, planned)]
         [1, 0]
         """
         if not meshes:
-            raise wrong("meshes", "missing", "give at least one file")
-        core = self._core.with_added([os.fspath(mesh) for mesh in meshes])
+            raise wrong("meshes", "missing", "give at least one mesh")
+        core = self._core.with_added([native_mesh(mesh) for mesh in meshes])
         return self._plan(core, self.report)
 
     def without(

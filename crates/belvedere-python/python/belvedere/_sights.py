@@ -10,8 +10,9 @@ import numpy.typing as npt
 from . import _core
 from ._answer import Answer
 from ._inputs import Places, Progress, check_finite, map_places, place, places, reporter
+from ._mesh import Mesh
 from ._table import Table
-from ._targets import Targets, wanted
+from ._targets import Targets, face_table, wanted
 
 
 class Sight(NamedTuple):
@@ -53,23 +54,26 @@ class Sights:
         *,
         unproven: str = "report",
         progress: Progress = None,
-    ) -> npt.NDArray[np.uint8]:
+    ) -> Any:
         """Which targets one eye can see.
 
         Parameters
         ----------
         eye : array_like, shape (3,)
             Place of the eye in the coordinates of the file: x, y, z.
-        targets : array_like, shape (N, 3), or Cloud
-            Places in the coordinates of the file. None means the cells of a grid, as for `shadow`.
+        targets : array_like, shape (N, 3), Cloud, or Mesh
+            Places in the coordinates of the file, or the faces of a mesh. None means the cells of a grid, as for
+            `shadow`.
         unproven : {'report', 'as-visible', 'as-blocked'}
             What to make of lines that nothing blocks but that cross space that no pulse came near.
         progress : bool or callable, optional
 
         Returns
         -------
-        ndarray, shape (N,), uint8
-            An `Answer` for each target.
+        ndarray, shape (N,), uint8; or Table
+            An `Answer` for each target. For a mesh a row for each face: ``object``, ``area_m2``, ``visible_m2``,
+            ``visible_share``, ``unproven_m2`` and ``standard_error_m2``; its attribute ``objects`` has the same for
+            each object. Faces that are turned away are not visible.
 
         Raises
         ------
@@ -81,7 +85,13 @@ class Sights:
         >>> seen = scene.visible(eye, targets)
         >>> seen.dtype, len(seen) == len(targets)
         (dtype('uint8'), True)
+        >>> x, y, z = eye
+        >>> wall = belvedere.Mesh([(x - 2, y + 9, z), (x, y + 9, z + 2), (x + 2, y + 9, z)], [(0, 1, 2)])
+        >>> scene.visible(eye, wall)
+        <belvedere.Table: 1 rows of object, area_m2, visible_m2, visible_share, unproven_m2, standard_error_m2>
         """
+        if isinstance(targets, Mesh):
+            return face_table(self._core.seen_of_mesh(place(eye, "eye"), targets._faces, unproven, reporter(progress)))
         chosen = wanted(targets, None, {})
         return self._core.visible(place(eye, "eye"), chosen, unproven, reporter(progress))
 

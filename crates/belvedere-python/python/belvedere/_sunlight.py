@@ -25,8 +25,7 @@ from ._inputs import (
     times,
     zone_text,
 )
-from ._raster import Raster
-from ._targets import Cells, RastersOrTable, Targets, measures, raster, wanted, warn_of_nothing
+from ._targets import Cells, RastersOrTable, Results, Targets, measures, wanted, warn_of_nothing
 
 _DIRECTION = "give azimuth and elevation in degrees, such as (180, 30)"
 
@@ -62,8 +61,9 @@ class Sunlight:
             Azimuth, clockwise from true north, and elevation of the sun, degrees. Several give several results.
         time : datetime, pandas Timestamp, ISO text, or several, optional
             When, in place of `sun`; with a time zone.
-        targets : array_like, shape (N, 3), or Cloud, optional
-            Places in the coordinates of the file. Without any, the cells of a grid over the scene.
+        targets : array_like, shape (N, 3), Cloud, or Mesh, optional
+            Places in the coordinates of the file, or the faces of a mesh. Without any, the cells of a grid over the
+            scene.
         normals : array_like, shape (N, 3), optional
             Unit vectors that targets face; what the sun meets from behind is in shadow.
         cell : float, optional
@@ -89,7 +89,8 @@ class Sunlight:
         Returns
         -------
         Raster, or ndarray of shape (N,), float32; a list of these for several suns
-            NaN for what is not tested: cells under a cover or without ground, and targets outside the cloud.
+            For a mesh a Table of its faces: ``object``, ``area_m2``, ``lit``. NaN for what is not tested: cells under
+            a cover or without ground, and targets outside the cloud.
 
         Raises
         ------
@@ -115,7 +116,7 @@ class Sunlight:
             normals,
             _cells(cell, target_height, surface, ground),
         )
-        shares, grid = self._core.shadow(
+        results = self._core.shadow(
             suns,
             _place(location, grid_north=grid_north),
             chosen,
@@ -123,16 +124,17 @@ class Sunlight:
             {"share": through_trees, "leaves": leaves},
             reporter(progress),
         )
-        description = "share of the sun, 0 in shadow"
-        if grid is None:
-            warn_of_nothing(shares[0])
-        results: list[Raster | npt.NDArray[np.float32]] = [
-            values
-            if grid is None
-            else raster(values, grid, self._core.crs, name="lit", description=description, nodata=float("nan"))
-            for values in shares
-        ]
-        return results[0] if is_one else results
+        made = [self._lit(result, targets) for result in results]
+        return made[0] if is_one else made
+
+    def _lit(self, results: Results, targets: Targets) -> Any:
+        """The share of one sun."""
+        columns, grid, faces = results
+        if grid is None and faces is None:
+            warn_of_nothing(columns[0][2])
+            return columns[0][2]
+        found = measures(results, self._core.crs, targets)
+        return found["lit"] if faces is None else found
 
     def sun_hours(
         self,
@@ -216,7 +218,7 @@ class Sunlight:
             sun_tolerance_deg=sun_tolerance_deg,
         )
         days = _days(date, period, year, time_step_min, min_sun_elevation_deg, sun_tolerance_deg)
-        columns, grid = self._core.sun_hours(
+        results = self._core.sun_hours(
             days,
             as_list(rule),
             _place(location, zone=zone, sun_elevation=sun_elevation, air=air),
@@ -224,7 +226,7 @@ class Sunlight:
             {"share": through_trees, "leaves": leaves},
             reporter(progress),
         )
-        return measures(columns, grid, self._core.crs, targets)
+        return measures(results, self._core.crs, targets)
 
     def sky_view(
         self,
@@ -267,14 +269,14 @@ class Sunlight:
         >>> sky["sky_view_factor"].shape == (len(targets),)
         True
         """
-        columns, grid = self._core.sky_view(
+        results = self._core.sky_view(
             directions,
             patches,
             wanted(targets, normals, _cells(cell, target_height, surface, ground)),
             {"share": through_trees, "leaves": None},
             reporter(progress),
         )
-        return measures(columns, grid, self._core.crs, targets)
+        return measures(results, self._core.crs, targets)
 
     def sun_position(
         self, time: Time | Iterable[Time], *, location: npt.ArrayLike | None = None

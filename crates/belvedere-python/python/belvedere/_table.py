@@ -29,6 +29,8 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
     panoramas : list of ndarray
         Of an isovist: ranges in metres for each observer that looks, infinite where nothing blocks. Columns run
         clockwise from south over west, north and east, rows from the zenith down.
+    objects : Table or None
+        Of the faces of a mesh: the same for each of its objects, or for the whole mesh where it has none.
 
     Examples
     --------
@@ -46,6 +48,7 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
         places: npt.NDArray[np.float64] | None = None,
         crs: str | None = None,
         panoramas: list[npt.NDArray[np.float32]] | None = None,
+        objects: Table | None = None,
     ) -> None:
         lengths = {len(values) for values in columns.values()}
         if len(lengths) > 1:
@@ -55,6 +58,7 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
         self.places = places
         self.crs = crs
         self.panoramas = [] if panoramas is None else panoramas
+        self.objects = objects
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
         return self._columns[name]

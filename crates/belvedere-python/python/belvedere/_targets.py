@@ -13,11 +13,12 @@ from . import _core
 from ._cloud import Cloud
 from ._errors import BelvedereWarning, wrong
 from ._inputs import Places, check_finite, places
+from ._mesh import Mesh
 from ._raster import Raster, Rasters
 from ._table import Table
 
-#: Cells of a grid (None), places of shape (N, 3), or the points of a cloud.
-Targets = Union[Places, Cloud, None]
+#: Cells of a grid (None), places of shape (N, 3), the points of a cloud, or the faces of a mesh.
+Targets = Union[Places, Cloud, Mesh, None]
 #: `Rasters` for the cells of a grid, a `Table` for other targets. Any, because users know which targets they gave.
 RastersOrTable = Union[Rasters, Any]
 
@@ -44,13 +45,15 @@ def wanted(targets: Targets, normals: npt.ArrayLike | None, cells: Cells) -> dic
     check_finite(cell=cells.get("cell"), target_height=cells.get("target_height"))
     turned = None
     if normals is not None:
+        if isinstance(targets, Mesh):
+            raise wrong("normals", "given", "a mesh has its own; Mesh.sampled(facing='level') turns its targets up")
         turned = np.asarray(places(normals, "normals"), np.float32)
         if not np.isfinite(turned).all():
             raise wrong("normals", "not finite", "give unit vectors of shape (N, 3)")
-    is_cloud = isinstance(targets, Cloud)
     return {
-        "places": None if targets is None or is_cloud else places(targets, "targets"),
+        "places": None if targets is None or isinstance(targets, (Cloud, Mesh)) else places(targets, "targets"),
         "cloud": targets._core if isinstance(targets, Cloud) else None,
+        "faces": targets._faces if isinstance(targets, Mesh) else None,
         "normals": turned,
         "surface": bool(cells.get("surface")),
         "cell": cells.get("cell"),
@@ -68,10 +71,18 @@ def raster(values: npt.NDArray[Any], grid: Grid, crs: _core.Crs, **named: Any) -
     return Raster(values.reshape(height, width), (a, b, c, d, e, f), crs, **named)
 
 
-def measures(
-    columns: list[tuple[str, str, npt.NDArray[Any]]], grid: Grid | None, crs: _core.Crs, targets: Targets
-) -> RastersOrTable:
-    """Columns of values as rasters where targets are cells, and as a table elsewhere."""
+#: Columns of measures, and the grid where targets are cells; for a mesh only the rows of its faces.
+Results = tuple[list[tuple[str, str, npt.NDArray[Any]]], Union[Grid, None], Union[dict[str, Any], None]]
+
+
+def measures(results: Results, crs: _core.Crs, targets: Targets) -> RastersOrTable:
+    """Measures as rasters where targets are cells, and as a table elsewhere."""
+    columns, grid, faces = results
+    if faces is not None:
+        table = face_table(faces)
+        first = next(name for name in table if name not in ("object", "area_m2"))
+        warn_of_nothing(table[first][table["area_m2"] > 0])
+        return table
     if grid is not None:
         nan = float("nan")
         made = {
@@ -80,6 +91,15 @@ def measures(
         return Rasters(made)
     warn_of_nothing(columns[0][2])
     return Table({name: values for name, _, values in columns}, places=coordinates(targets), crs=crs.text)
+
+
+def face_table(faces: dict[str, Any]) -> Table:
+    """A row for each face of a mesh, with a table of its objects."""
+    count = faces["object_count"]
+    names = np.array(faces["object"], object)
+    columns = {"object": names, **faces["columns"]}
+    objects = Table({name: values[:count] for name, values in columns.items()})
+    return Table({name: values[count:] for name, values in columns.items()}, objects=objects)
 
 
 def warn_of_nothing(values: npt.NDArray[Any]) -> None:
@@ -92,6 +112,6 @@ def warn_of_nothing(values: npt.NDArray[Any]) -> None:
 
 def coordinates(targets: Targets) -> npt.NDArray[np.float64] | None:
     """Places of targets that are no cells."""
-    if targets is None:
+    if targets is None or isinstance(targets, Mesh):
         return None
     return targets.xyz if isinstance(targets, Cloud) else np.asarray(targets, np.float64)

@@ -2,7 +2,7 @@
 
 use crate::apps::targets::{FaceMeans, Measure, object_areas};
 use crate::io::{Cells, write_mesh_values};
-use crate::query::SurfacePieces;
+use crate::query::{SeenArea, SurfacePieces, seen_in_all, seen_objects};
 use crate::{Frame, Mesh, Result};
 use std::path::Path;
 
@@ -18,23 +18,69 @@ pub(super) fn write_colored(
     write_mesh_values(path, mesh, frame.crs.metres_per_unit_xyz(), &measure.name, &values, measure.span(&values))
 }
 
-/// A row for each object, without a face, then one for each face; a row for all faces together where the mesh knows no objects.
-pub(super) fn write_table(path: &Path, mesh: &Mesh, surface: &SurfacePieces, measures: &[Measure]) -> Result<()> {
-    let areas = surface.face_areas();
-    let of_objects = object_areas(mesh, surface);
-    let object_count = of_objects.len();
-    let mut columns: Vec<(&str, Vec<f64>, usize)> = vec![("area_m2", [of_objects, areas.clone()].concat(), 4)];
-    for measure in measures {
-        let means = FaceMeans::new(mesh, surface, &measure.values);
-        columns.push((&measure.name, [means.objects, means.faces].concat(), measure.decimals));
+/// A table of the faces of a mesh: a row for each object (one in all where the mesh knows no objects), then one for each face.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FaceRows<'a> {
+    /// Object of each row; empty where there is none.
+    pub objects: Vec<&'a str>,
+    /// How many of the first rows are objects.
+    pub object_count: usize,
+    /// Name, values and digits after the point of each column.
+    pub columns: Vec<(&'a str, Vec<f64>, usize)>,
+}
+
+impl<'a> FaceRows<'a> {
+    /// Means of measures of the pieces of a mesh, by area.
+    #[must_use]
+    pub fn of_measures(mesh: &'a Mesh, surface: &SurfacePieces, measures: &'a [Measure]) -> Self {
+        let areas = surface.face_areas();
+        let of_objects = object_areas(mesh, surface);
+        let object_count = of_objects.len();
+        let objects = objects_of_rows(mesh, object_count, areas.len());
+        let mut columns: Vec<(&str, Vec<f64>, usize)> = vec![("area_m2", [of_objects, areas].concat(), 4)];
+        for measure in measures {
+            let means = FaceMeans::new(mesh, surface, &measure.values);
+            columns.push((&measure.name, [means.objects, means.faces].concat(), measure.decimals));
+        }
+        Self { objects, object_count, columns }
     }
-    let name_of = |object: Option<usize>| object.and_then(|object| mesh.object_names.get(object));
+
+    /// What a viewer sees of the faces of a mesh.
+    #[must_use]
+    pub fn of_seen(mesh: &'a Mesh, faces: &[SeenArea]) -> Self {
+        let mut seen = match mesh.object_names.len() {
+            0 => vec![seen_in_all(faces)],
+            count => seen_objects(faces, &mesh.objects, count),
+        };
+        let object_count = seen.len();
+        let objects = objects_of_rows(mesh, object_count, faces.len());
+        seen.extend_from_slice(faces);
+        let column = |name, value: &dyn Fn(&SeenArea) -> f64| (name, seen.iter().map(value).collect(), 4);
+        let columns = vec![
+            column("area_m2", &|seen| seen.area),
+            column("visible_m2", &|seen| seen.visible),
+            column("visible_share", &SeenArea::visible_share),
+            column("unproven_m2", &|seen| seen.unproven),
+            column("standard_error_m2", &SeenArea::standard_error),
+        ];
+        Self { objects, object_count, columns }
+    }
+
+    /// Writes the rows as a table, with the number of the face where a row is one.
+    ///
+    /// # Errors
+    /// Those of [`crate::io::write_table`].
+    pub fn write(&self, path: &Path) -> Result<()> {
+        let faces = (0_u64..).take(self.objects.len() - self.object_count).map(Some);
+        let numbers: Vec<Option<u64>> = std::iter::repeat_n(None, self.object_count).chain(faces).collect();
+        let mut cells = vec![("object", Cells::Words(&self.objects)), ("face", Cells::Whole(&numbers))];
+        cells.extend(self.columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))));
+        crate::io::write_table(path, &cells)
+    }
+}
+
+fn objects_of_rows(mesh: &Mesh, object_count: usize, face_count: usize) -> Vec<&str> {
     let of_face = |face: usize| mesh.objects.get(face).map(|&object| object as usize);
-    let objects = (0..object_count).map(Some).chain((0..areas.len()).map(of_face));
-    let words: Vec<&str> = objects.map(|object| name_of(object).map_or("", String::as_str)).collect();
-    let faces = (0_u64..).take(areas.len()).map(Some);
-    let numbers: Vec<Option<u64>> = std::iter::repeat_n(None, object_count).chain(faces).collect();
-    let mut cells = vec![("object", Cells::Words(&words)), ("face", Cells::Whole(&numbers))];
-    cells.extend(columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))));
-    crate::io::write_table(path, &cells)
+    let objects = (0..object_count).map(Some).chain((0..face_count).map(of_face));
+    objects.map(|object| object.and_then(|object| mesh.object_names.get(object)).map_or("", String::as_str)).collect()
 }

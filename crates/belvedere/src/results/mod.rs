@@ -14,6 +14,7 @@ mod map;
 
 #[cfg(feature = "figures")]
 pub use difference::difference_map;
+pub use faces::FaceRows;
 #[cfg(feature = "figures")]
 pub use map::measure_map;
 
@@ -76,7 +77,7 @@ pub fn write_measures(
         (Layout::Surface(surface), TakenFrom::Mesh(mesh)) => {
             match extension.as_str() {
                 "ply" => faces::write_colored(path, mesh, surface, &targets.frame, first),
-                _ => faces::write_table(path, mesh, surface, measures),
+                _ => FaceRows::of_measures(mesh, surface, measures).write(path),
             }?;
             Ok(WriteReport::default())
         }
