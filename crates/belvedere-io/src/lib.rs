@@ -110,7 +110,7 @@ pub use geotiff_read::{
 pub use horizon_profile::read_horizon;
 #[cfg(feature = "las")]
 pub use las::{LasHead, read_las_head};
-pub use mesh::read_mesh;
+pub use mesh::{read_mesh, read_mesh_in};
 pub use observers::{ObserverRow, RowsAre, read_observers};
 pub use outline::{GridPolygon, outlines};
 pub use output::{Output, WriteSeek};

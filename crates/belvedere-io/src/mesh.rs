@@ -7,7 +7,8 @@ use super::mesh_ply;
 use super::obj;
 use super::polygons::MeshReport;
 use super::source::{Source, unusable};
-use belvedere_data::{Mesh, Result};
+use belvedere_data::crs::Crs;
+use belvedere_data::{Error, Mesh, Result};
 
 /// The mesh of a source (`.obj`, `.ply`, or CityJSON as `.city.json`, `.json`, `.cityjson`) and what was left out of it.
 /// CityJSON is read at the highest level of detail of each object.
@@ -25,4 +26,20 @@ pub fn read_mesh<'a>(source: impl Into<Source<'a>>) -> Result<(Mesh, MeshReport)
         "json" | "cityjson" => read_cityjson(source, &LevelOfDetail::Highest),
         _ => Err(unusable(source.name(), "mesh", ".obj, .ply, .city.json, .json or .cityjson")),
     }
+}
+
+/// The same for a scene in the reference system `crs`, in metres.
+///
+/// # Errors
+/// Those of [`read_mesh`], and [`Error::UnusableCrs`] for a mesh in another system.
+pub fn read_mesh_in<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<(Mesh, MeshReport)> {
+    let source = source.into();
+    let path = source.name().to_owned();
+    let (mesh, report) = read_mesh(source)?;
+    if mesh.crs.contradicts(crs) {
+        let (own, other) = (mesh.crs.describe(), crs.describe());
+        let what = format!("the mesh is in {own}, but the scene is in {other}; convert one of them");
+        return Err(Error::UnusableCrs { path, what });
+    }
+    Ok((mesh.scaled_to_metres(crs), report))
 }

@@ -120,6 +120,15 @@ async function main() {
     const [picture] = await Promise.all([page.waitForEvent("download"), page.click("#picture")]);
     assert.equal(readFileSync(await picture.path()).subarray(1, 4).toString(), "PNG");
   });
+  await step("of many points a sample is answered first", async () => {
+    const asked = [];
+    page.on("request", (request) => { if (request.method() === "POST") asked.push(request.postDataJSON()?.points); });
+    await page.evaluate(() => { belvedere.scene.samples_first = true; });
+    await ask("seen", [ground], /is visible/);
+    await page.waitForFunction(() => belvedere.last && !/About/.test(document.getElementById("card").innerText), null, { timeout: 5000 });
+    assert.deepEqual(asked, ["sample", undefined]);
+    await page.evaluate(() => { belvedere.scene.samples_first = false; });
+  });
   await step("is B seen from A", async () => {
     await ask("line", [ground, roof], /B is (visible|blocked|unproven)[\s\S]*Length of the line/);
     assert.equal(await page.evaluate(() => document.querySelectorAll("#card figure svg").length), 1);
@@ -153,6 +162,36 @@ async function main() {
     await page.keyboard.press("Enter");
     await answered(page);
     assert.match(await text(page), /hours of sun[\s\S]*Ground in the area/);
+  });
+  await step("a plan: a building is drawn, and what it changes is shown", async () => {
+    const [x, y] = ground;
+    await page.keyboard.press("Escape");
+    await page.keyboard.press("0");
+    for (const place of [[x - 20, y], [x + 30, y + 4], [x + 34, y + 34], [x - 16, y + 30]]) await page.mouse.click(...place);
+    await page.keyboard.press("Enter");
+    await page.waitForFunction(() => belvedere.planned, null, { timeout: 10_000 });
+    assert.match(await text(page), /Building 1[\s\S]*town\/cloud\.laz --add planned\.obj/);
+    const [download] = await Promise.all([page.waitForEvent("download"), page.click("[data-file='0']")]);
+    const obj = readFileSync(await download.path(), "utf8");
+    assert.match(obj, /^v 15\d+\S* 46\d+\S* /m);
+    // the same as a file beside it, higher
+    writeFileSync(join(folder, "tower.obj"), obj.replaceAll(/^(v \S+ \S+) (\S+)$/gm, (_, xy, z) => `${xy} ${Number(z) + 10}`));
+    await page.setInputFiles("#meshfile", join(folder, "tower.obj"));
+    await page.waitForFunction(() => belvedere.planned?.triangles.length === 2 * 12 * 9, null, { timeout: 10_000 });
+    await page.selectOption("#when", "change");
+    await ask("shadow", [], /points lose the sun[\s\S]*before\.laz[\s\S]*--add planned\.obj --add tower\.obj[\s\S]*after\.laz/);
+    await page.waitForTimeout(300);
+    assert.ok(await pixels(page, [31, 95, 191]) > 20, "what loses the sun is blue");
+    await page.evaluate(() => { belvedere.last = null; belvedere.setWhen("before"); });
+    await answered(page);
+    assert.match(await text(page), /% is lit/);
+    assert.doesNotMatch(await text(page), /--add/);
+    await page.keyboard.press("0");
+    for (let i = 0; i < 2; i++) {
+      await page.click("[data-remove]");
+      await page.waitForFunction((left) => document.querySelectorAll("[data-remove]").length === left, 1 - i, { timeout: 10_000 });
+    }
+    assert.equal(await page.evaluate(() => belvedere.planned), null);
   });
   await step("everything by keyboard", async () => {
     await page.keyboard.press("Escape");

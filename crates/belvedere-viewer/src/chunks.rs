@@ -86,9 +86,9 @@ impl Chunks {
         Some(rows.iter().flat_map(of_point).collect())
     }
 
-    /// A byte for each point of the cloud, in the order in which points are sent.
-    pub(crate) fn in_order(&self, of_row: impl Fn(usize) -> u8 + Sync) -> Vec<u8> {
-        self.rows.par_iter().with_min_len(4096).map(|&row| of_row(row as usize)).collect()
+    /// Row in the cloud of each point, in the order in which points are sent.
+    pub(crate) fn rows(&self) -> &[u32] {
+        &self.rows
     }
 
     /// At most so many points, the same share of each chunk.
@@ -96,15 +96,24 @@ impl Chunks {
         if self.rows.len() <= most {
             return self;
         }
-        let (whole, mut rows) = (self.rows.len(), Vec::with_capacity(most));
+        let mut rows = Vec::with_capacity(most);
         let sampled = |chunk: &Chunk| {
-            let kept = self.rows[chunk.points.clone()].iter().take(chunk.points.len() * most / whole);
             let first = rows.len();
-            rows.extend(kept);
+            rows.extend_from_slice(self.share(chunk, most));
             Chunk { points: first..rows.len(), ..chunk.clone() }
         };
         let chunks = self.chunks.iter().map(sampled).collect();
         Self { chunks, rows, brightest: self.brightest }
+    }
+
+    /// Rows in the cloud of at most so many points, the same share of each chunk.
+    pub(crate) fn sampled_rows(&self, most: usize) -> impl Iterator<Item = u32> {
+        self.chunks.iter().flat_map(move |chunk| self.share(chunk, most)).copied()
+    }
+
+    fn share(&self, chunk: &Chunk, most: usize) -> &[u32] {
+        let whole = self.rows.len().max(1);
+        &self.rows[chunk.points.start..chunk.points.start + chunk.points.len() * most.min(whole) / whole]
     }
 
     /// Number of points sent.

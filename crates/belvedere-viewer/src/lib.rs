@@ -16,11 +16,13 @@
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
+mod asked_points;
 mod chunks;
 mod export;
 mod guard;
 mod loading;
 mod page;
+mod plans;
 mod questions;
 mod replies;
 mod routes;
@@ -29,4 +31,5 @@ mod server;
 
 pub use export::{ExportParams, ExportReport, export};
 pub use loading::Loading;
+pub use plans::quoted;
 pub use server::{SceneText, Viewer, ViewerParams};

@@ -2,7 +2,7 @@
 
 use crate::scene::{Scene, Shown};
 use belvedere::cloud::to_local;
-use belvedere::control::Watcher;
+use belvedere::control::{Control, Watcher};
 use belvedere::model::SceneModel;
 use belvedere::{Frame, Mesh, PointCloud};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -39,8 +39,10 @@ impl Loading {
     }
 
     /// Takes the model of the cloud shown, or of a ball file: questions are answered from now on.
-    pub fn finish(&self, model: SceneModel) {
+    pub fn finish(&self, mut model: SceneModel) {
         let shown = self.state().shown.clone();
+        // what cannot be indexed is said by the questions
+        let _ = model.index(&Control::none());
         let shown =
             shown.unwrap_or_else(|| Arc::new(Shown::new(Arc::new(PointCloud::in_frame(model.frame().clone())))));
         let scene = Arc::new(Scene::new(model, Arc::clone(&shown)));

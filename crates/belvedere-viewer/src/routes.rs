@@ -3,8 +3,10 @@
 use crate::guard::Guard;
 use crate::loading::Loading;
 use crate::page;
+use crate::plans::Plans;
 use crate::questions::{self, Asked};
-use crate::replies::{Refusal, binary, refused};
+use crate::replies::{Answer, Refusal, binary, refused};
+use crate::scene::Scene;
 use crate::server::{SceneText, ViewerParams};
 use axum::body::Bytes;
 use axum::extract::{DefaultBodyLimit, Path, Request, State};
@@ -22,6 +24,8 @@ use tokio::sync::Semaphore;
 
 /// Most bytes of a question: a polygon with a thousand corners.
 const MOST_BYTES: usize = 65_536;
+/// Most bytes of a mesh that is loaded.
+const MOST_MESH_BYTES: usize = 32 << 20;
 /// How long the rest of a request may take.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// Questions that wait or are answered; more are refused.
@@ -37,6 +41,7 @@ struct Shared {
     /// One question at a time has all threads.
     turn: Arc<Semaphore>,
     places: Arc<Semaphore>,
+    plans: Arc<Plans>,
 }
 
 pub(crate) fn app(guard: Arc<Guard>, loading: Loading, params: &ViewerParams) -> Router {
@@ -46,6 +51,7 @@ pub(crate) fn app(guard: Arc<Guard>, loading: Loading, params: &ViewerParams) ->
         title: params.title.clone(),
         turn: Arc::new(Semaphore::new(1)),
         places: Arc::new(Semaphore::new(MOST_QUESTIONS)),
+        plans: Arc::default(),
     };
     Router::new()
         .route("/{token}/", get(|| async { file("index.html") }))
@@ -56,6 +62,8 @@ pub(crate) fn app(guard: Arc<Guard>, loading: Loading, params: &ViewerParams) ->
         .route("/{token}/balls", get(balls))
         .route("/{token}/meshes/{mesh}", get(meshes))
         .route("/{token}/ask/{question}", post(ask))
+        .route("/{token}/plans/{plan}/ask/{question}", post(ask_of_plan))
+        .route("/{token}/plan-meshes/{name}", post(plan_mesh))
         .fallback(|| async { refused(StatusCode::NOT_FOUND, "there is nothing at this address") })
         .layer(DefaultBodyLimit::max(MOST_BYTES))
         .layer(from_fn_with_state(guard, check))
@@ -153,20 +161,73 @@ impl Drop for StopWhenDropped {
     }
 }
 
-async fn ask(State(shared): State<Arc<Shared>>, Path((_, name)): Path<(String, String)>, request: Request) -> Response {
-    let is_json = request
-        .headers()
-        .get(header::CONTENT_TYPE)
-        .is_some_and(|kind| kind.as_bytes().starts_with(b"application/json"));
-    if !is_json {
-        return refused(StatusCode::UNSUPPORTED_MEDIA_TYPE, "questions must be sent as application/json");
-    }
-    let body = tokio::time::timeout(PATIENCE, axum::body::to_bytes(request.into_body(), MOST_BYTES)).await;
-    let body: Bytes = match body {
-        Ok(Ok(body)) => body,
-        Ok(Err(_)) => return refused(StatusCode::PAYLOAD_TOO_LARGE, "the question is too long"),
-        Err(_) => return refused(StatusCode::REQUEST_TIMEOUT, "the question took too long to arrive"),
+async fn ask(state: State<Arc<Shared>>, Path((_, name)): Path<(String, String)>, request: Request) -> Response {
+    answer(state, None, name, request).await
+}
+
+async fn ask_of_plan(
+    state: State<Arc<Shared>>,
+    Path((_, plan, name)): Path<(String, usize, String)>,
+    request: Request,
+) -> Response {
+    answer(state, Some(plan), name, request).await
+}
+
+/// Answers a question of the scene as it is, or of that with a plan.
+async fn answer(State(shared): State<Arc<Shared>>, plan: Option<usize>, name: String, request: Request) -> Response {
+    let body = match body(request, "application/json", MOST_BYTES).await {
+        Ok(body) => body,
+        Err(response) => return response,
     };
+    let (text, plans) = (shared.text.clone(), Arc::clone(&shared.plans));
+    in_turn(&shared, move |scene, control| {
+        let planned = plan.map(|number| plans.get(number)).transpose()?;
+        let (scene, text) = planned.as_ref().map_or((scene, &text), |planned| (&*planned.scene, &planned.text));
+        questions::answer(&name, &body, &Asked { scene, text, plans: &plans, control })
+    })
+    .await
+}
+
+/// Takes a mesh file for plans.
+async fn plan_mesh(
+    State(shared): State<Arc<Shared>>,
+    Path((_, name)): Path<(String, String)>,
+    request: Request,
+) -> Response {
+    let body = match body(request, "application/octet-stream", MOST_MESH_BYTES).await {
+        Ok(body) => body,
+        Err(response) => return response,
+    };
+    let plans = Arc::clone(&shared.plans);
+    in_turn(&shared, move |scene, _| {
+        let number = plans.load(&name, &body, scene.model.frame())?;
+        Ok(Answer::of(json!({ "mesh": number, "name": name })))
+    })
+    .await
+}
+
+/// The body of a request of one type, which forms of other pages cannot send.
+async fn body(request: Request, kind: &str, most: usize) -> Result<Bytes, Response> {
+    let is_kind =
+        request.headers().get(header::CONTENT_TYPE).is_some_and(|own| own.as_bytes().starts_with(kind.as_bytes()));
+    if !is_kind {
+        return Err(refused(StatusCode::UNSUPPORTED_MEDIA_TYPE, &format!("this must be sent as {kind}")));
+    }
+    match tokio::time::timeout(PATIENCE, axum::body::to_bytes(request.into_body(), most)).await {
+        Ok(Ok(body)) => Ok(body),
+        Ok(Err(_)) => Err(refused(
+            StatusCode::PAYLOAD_TOO_LARGE,
+            &format!("what was sent is too long: the most is {} kB", most >> 10),
+        )),
+        Err(_) => Err(refused(StatusCode::REQUEST_TIMEOUT, "what was sent took too long to arrive")),
+    }
+}
+
+/// Does work on the scene when its turn comes, and stops when nobody waits for it any more.
+async fn in_turn(
+    shared: &Shared,
+    work: impl FnOnce(&Scene, &Control<'_>) -> Result<Answer, Refusal> + Send + 'static,
+) -> Response {
     let Some(scene) = shared.loading.now().scene else {
         return refused(StatusCode::SERVICE_UNAVAILABLE, "the scene is not ready yet");
     };
@@ -177,16 +238,14 @@ async fn ask(State(shared): State<Arc<Shared>>, Path((_, name)): Path<(String, S
     let waiting = Arc::new(Waiting::default());
     let of_work = Arc::clone(&waiting);
     let _stop = StopWhenDropped(waiting);
-    let text = shared.text.clone();
     let work = move || {
-        let control = Control::new(&*of_work);
-        let answer = questions::answer(&name, &body, &Asked { scene: &scene, text: &text, control: &control });
+        let answer = work(&scene, &Control::new(&*of_work));
         drop(turn);
         answer
     };
     match tokio::task::spawn_blocking(work).await {
         Ok(Ok(answer)) => answer.into_response(),
-        Ok(Err(Refusal(message))) => Refusal(message).into_response(),
+        Ok(Err(refusal)) => refusal.into_response(),
         Err(_) => failed(),
     }
 }

@@ -1,20 +1,20 @@
 //! What is shown and asked about, with what takes long to make made once.
 
+use crate::asked_points::{AskedPoints, SAMPLE};
 use crate::chunks::Chunks;
 use crate::questions::Roofs;
 use belvedere::apps::eyes::{EyeFault, fault_of};
 use belvedere::apps::horizon::convergence;
 use belvedere::apps::sun::Site;
-use belvedere::apps::targets::Targets;
 use belvedere::apps::viewshed::cell_for;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
-use belvedere::model::SceneModel;
-use belvedere::query::target_tree::TargetTree;
-use belvedere::query::{EarthParams, MedialScene, UnprovenAs};
-use belvedere::{Bounds, Error, PointCloud, Result};
+use belvedere::model::{ClearReport, ClearedArea, SceneModel};
+use belvedere::query::{MedialScene, Proof, UnprovenAs};
+use belvedere::{Bounds, Error, Mesh, PointCloud, Result};
+use serde::Deserialize;
 use serde_json::{Value, json};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A cloud, and its points as the page gets them.
 pub(crate) struct Shown {
@@ -28,11 +28,17 @@ pub(crate) struct Shown {
 pub(crate) struct Scene {
     pub(crate) model: SceneModel,
     pub(crate) shown: Arc<Shown>,
+    /// The points that are there: all that are shown but those that a plan clears.
+    cloud: Arc<PointCloud>,
+    /// For each point that is shown its row among those that are there; `None` where no plan clears any.
+    rows_there: Option<Vec<u32>>,
+    /// The pulses of the scene without a plan, indexed once for all plans.
+    proof: Option<Proof>,
     proving: Kept<MedialScene>,
     plain: Kept<MedialScene>,
     ground: Kept<Ground>,
-    tree: OnceLock<TargetTree>,
-    points: OnceLock<Targets>,
+    points: Kept<AskedPoints>,
+    sample: Kept<AskedPoints>,
     roofs: Kept<Roofs>,
 }
 
@@ -95,6 +101,8 @@ impl Shown {
             "classes": classes,
             "has_intensity": cloud.attributes.intensity.is_some(),
             "has_color": cloud.attributes.color.is_some(),
+            // answers for fewer points are there at once
+            "samples_first": cloud.len() > 2 * SAMPLE,
         })
     }
 }
@@ -103,30 +111,65 @@ impl Scene {
     pub(crate) fn new(model: SceneModel, shown: Arc<Shown>) -> Self {
         Self {
             model,
+            cloud: Arc::clone(&shown.cloud),
             shown,
+            rows_there: None,
+            proof: None,
             proving: Kept::new(),
             plain: Kept::new(),
             ground: Kept::new(),
-            tree: OnceLock::new(),
-            points: OnceLock::new(),
+            points: Kept::new(),
+            sample: Kept::new(),
             roofs: Kept::new(),
         }
+    }
+
+    /// The scene with a plan: what stands in areas is cleared, then meshes in metres are added.
+    pub(crate) fn planned(
+        &self,
+        areas: &[ClearedArea],
+        meshes: &[(String, Arc<Mesh>)],
+        control: &Control<'_>,
+    ) -> Result<(Self, ClearReport)> {
+        let (mut model, mut report) = (self.model.clone(), ClearReport::default());
+        let mut cloud = Arc::clone(&self.cloud);
+        for area in areas {
+            let (cleared, kept, of_area) = model.without(area, &cloud, control)?;
+            report.points_cleared += of_area.points_cleared;
+            (model, cloud) = (cleared, Arc::new(kept));
+        }
+        for (name, mesh) in meshes {
+            model = model.with_added(mesh, name)?;
+        }
+        model.index(control)?;
+        let mut planned = Self::new(model, Arc::clone(&self.shown));
+        planned.proof = self.blockers(UnprovenAs::Reported, control)?.proof().cloned();
+        if cloud.len() < self.cloud.len() {
+            planned.rows_there = Some(rows_there(&self.cloud, &cloud));
+            planned.cloud = cloud;
+        }
+        Ok((planned, report))
+    }
+
+    /// A byte for each point in the order in which points are sent: 1 for one that the plan clears.
+    pub(crate) fn cleared_in_order(&self) -> Vec<u8> {
+        let is_cleared = |&row: &u32| {
+            self.rows_there.as_ref().is_some_and(|rows| rows.get(row as usize).is_none_or(|&row| row == NOT_THERE))
+        };
+        self.shown.chunks.rows().iter().map(|row| u8::from(is_cleared(row))).collect()
     }
 
     /// Makes what most questions need. What fails here is said by the question that needs it.
     pub(crate) fn prepare(&self) {
         let control = Control::none();
         let _ = self.blockers(UnprovenAs::Visible, &control);
-        if !self.shown.cloud.is_empty() {
+        if !self.cloud.is_empty() {
             let _ = self.ground(&control);
-            self.tree();
-            self.points();
+            let _ = self.points(Points::Sample, &control);
+            let _ = self.points(Points::All, &control);
         }
         if let Ok(proving) = self.blockers(UnprovenAs::Reported, &control) {
-            // the first line of sight that nothing blocks indexes the pulses
-            let (low, high) = self.model.bounds().corners();
-            let middle = std::array::from_fn(|i| f64::midpoint(low[i], high[i]));
-            let _ = proving.line_of_sight([low[0], low[1], high[2]], middle, &EarthParams::default());
+            let _ = proving.proof().map(|proof| proof.prepare_all(&control));
         }
     }
 
@@ -148,25 +191,35 @@ impl Scene {
     /// What lines of sight are asked of. Pulses are left out where they make no difference.
     pub(crate) fn blockers(&self, unproven: UnprovenAs, control: &Control<'_>) -> Result<Arc<MedialScene>> {
         let kept = if unproven == UnprovenAs::Visible { &self.plain } else { &self.proving };
-        kept.get(|| self.model.scene(&self.model.rule(), unproven, control))
+        kept.get(|| match &self.proof {
+            Some(proof) if unproven != UnprovenAs::Visible => {
+                let blockers = self.model.scene(&self.model.rule(), UnprovenAs::Visible, control)?;
+                Ok(blockers.with_pulses(proof.clone()))
+            }
+            _ => self.model.scene(&self.model.rule(), unproven, control),
+        })
     }
 
     /// The points of the cloud, which the questions about all of it need.
     pub(crate) fn cloud(&self) -> Result<&PointCloud> {
-        if self.shown.cloud.is_empty() {
+        if self.cloud.is_empty() {
             return Err(Error::NoPoints { what: "a ball file has none; open it together with its cloud".to_owned() });
         }
-        Ok(&self.shown.cloud)
+        Ok(&self.cloud)
     }
 
-    /// The points ordered for viewers.
-    pub(crate) fn tree(&self) -> &TargetTree {
-        self.tree.get_or_init(|| TargetTree::new(&self.shown.cloud.positions))
-    }
-
-    /// The points as targets of the sun.
-    pub(crate) fn points(&self) -> &Targets {
-        self.points.get_or_init(|| Targets::of_points(&self.shown.cloud, None))
+    /// The points that a question about all of the cloud asks about.
+    pub(crate) fn points(&self, points: Points, control: &Control<'_>) -> Result<Arc<AskedPoints>> {
+        let cloud = self.cloud()?;
+        let chunks = &self.shown.chunks;
+        let place = |row: u32| match &self.rows_there {
+            Some(rows) => rows.get(row as usize).copied().filter(|&row| row != NOT_THERE),
+            None => Some(row),
+        };
+        match points {
+            Points::All => self.points.get(|| Ok(AskedPoints::all(cloud, chunks, place))),
+            Points::Sample => self.sample.get(|| AskedPoints::sample(cloud, chunks, place, control)),
+        }
     }
 
     /// Side of the cells of the ground, metres: that of the command line.
@@ -221,9 +274,29 @@ impl Scene {
     }
 }
 
+/// Row of a point that a plan clears.
+const NOT_THERE: u32 = u32::MAX;
+
+/// For each point of a cloud its row among those of it that were kept, in their order.
+fn rows_there(cloud: &PointCloud, kept: &PointCloud) -> Vec<u32> {
+    let mut kept = (0..).zip(&kept.positions).peekable();
+    let row = |position: &[f32; 3]| kept.next_if(|(_, own)| *own == position).map_or(NOT_THERE, |(row, _)| row);
+    cloud.positions.iter().map(row).collect()
+}
+
 /// Whether a place may lie inside an obstacle: what is seen of a target often is its inside.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Inside {
     Allowed,
     Refused,
+}
+
+/// Which points of the cloud are asked about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Points {
+    #[default]
+    All,
+    /// A fair sample, which answers for its neighbours.
+    Sample,
 }

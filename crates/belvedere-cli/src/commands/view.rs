@@ -12,7 +12,7 @@ use belvedere::apps::sun::{Date, Site, Zone};
 use belvedere::io::{atomic, is_ball_file};
 use belvedere::model::SceneModel;
 use belvedere::{Frame, PointCloud};
-use belvedere_viewer::{ExportParams, Loading, SceneText, Viewer, ViewerParams, export};
+use belvedere_viewer::{ExportParams, Loading, SceneText, Viewer, ViewerParams, export, quoted};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -223,30 +223,8 @@ fn typed(without: &[String]) -> String {
     kept.join(" ")
 }
 
-/// A word as a shell takes it for one.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-/=:,+@%".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        return word.to_owned();
-    }
-    format!("'{}'", word.replace('\'', "'\\''"))
-}
-
 fn print_url(url: &str, global: &Global) -> Result<()> {
     let line = if global.json { serde_json::json!({ "url": url }).to_string() } else { url.to_owned() };
     let mut output = std::io::stdout().lock();
     writeln!(output, "{line}").and_then(|()| output.flush()).context("standard output")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quoted;
-
-    #[test]
-    fn words_are_quoted_only_where_a_shell_would_part_them() {
-        assert_eq!(quoted("demo/town.laz"), "demo/town.laz");
-        assert_eq!(quoted("my town.laz"), "'my town.laz'");
-        assert_eq!(quoted("it's"), "'it'\\''s'");
-        assert_eq!(quoted(""), "''");
-    }
 }

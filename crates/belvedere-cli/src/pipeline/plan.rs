@@ -6,7 +6,7 @@ use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::crs::Crs;
-use belvedere::io::{Shape, read_geojson, read_mesh};
+use belvedere::io::{Shape, read_geojson, read_mesh_in};
 use belvedere::model::{ClearReport, ClearedArea, SceneModel};
 use belvedere::{Frame, Mesh};
 use std::path::Path;
@@ -85,20 +85,12 @@ pub(crate) fn planned(
 
 /// Reads a mesh in the coordinates of a reference system, as metres.
 pub(crate) fn mesh_in(path: &Path, crs: &Crs, stages: &mut Stages, summary: &mut Summary) -> Result<Mesh> {
-    let (mesh, report) = stages.run("reading mesh", 0, |_| read_mesh(path))?;
-    if mesh.crs.contradicts(crs) {
-        bail!(
-            "{}: the mesh is in {}, but the scene is in {}; convert one of them",
-            path.display(),
-            mesh.crs.describe(),
-            crs.describe()
-        );
-    }
+    let (mesh, report) = stages.run("reading mesh", 0, |_| read_mesh_in(path, crs))?;
     let mut section = Summary::default();
     section
         .add("triangles", mesh.triangles.len())
         .add("objects", mesh.object_names.len())
         .add("triangles_without_area", report.degenerate_triangle_count);
     summary.add("mesh", section);
-    Ok(mesh.scaled_to_metres(crs))
+    Ok(mesh)
 }

@@ -20,6 +20,18 @@ impl SceneModel {
         if self.is_carved() { BlockRule::carved() } else { BlockRule::uncarved() }
     }
 
+    /// Orders its balls into a tree, which all its scenes and copies then share.
+    ///
+    /// # Errors
+    /// Those of [`BallTree::new`]; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub fn index(&mut self, control: &Control<'_>) -> Result<()> {
+        if self.tree.is_none() {
+            let balls = self.balls();
+            self.tree = Some(control.stage("indexing balls", balls.len(), || BallTree::new(balls, &self.rule()))?);
+        }
+        Ok(())
+    }
+
     /// The scene that answers lines of sight by `rule`.
     ///
     /// Its answers tell unproven from visible where the pulses are known. With [`UnprovenAs::Visible`] that makes no difference, and

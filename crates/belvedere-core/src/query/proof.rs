@@ -46,19 +46,21 @@ impl Default for ProofParams {
     }
 }
 
-/// Pulses that tell how much of a line of sight none of them came near to. Their index is made when it is first needed.
+/// Pulses that tell how much of a line of sight none of them came near to. Their index is made when it is first needed, once for all clones.
+#[derive(Clone)]
 pub struct Proof {
     nearness: f64,
     params: ProofParams,
     pulses: Pulses,
-    index: Lazy<ProofIndex>,
+    index: Arc<Lazy<ProofIndex>>,
 }
 
 /// What a proof is made of.
+#[derive(Clone)]
 enum Pulses {
     /// Indexed already.
     Indexed(Arc<Needles>),
-    Columns(NeedleColumns),
+    Columns(Arc<NeedleColumns>),
 }
 
 /// Pulses, made ready for lines of sight.
@@ -108,7 +110,7 @@ impl Proof {
     pub fn from_columns(columns: NeedleColumns, params: &ProofParams) -> Result<Self> {
         columns.validate()?;
         let nearness = params.nearness.unwrap_or_else(|| nearness_of(lower_ends(&columns)));
-        Self::of_pulses(Pulses::Columns(columns), nearness, params)
+        Self::of_pulses(Pulses::Columns(Arc::new(columns)), nearness, params)
     }
 
     fn of_pulses(pulses: Pulses, nearness: f64, params: &ProofParams) -> Result<Self> {
@@ -123,7 +125,7 @@ impl Proof {
         if !(params.step.is_finite() && params.step > 0.0) {
             return invalid("step along unproven space", params.step, "finite and above zero metres");
         }
-        Ok(Self { nearness, params: *params, pulses, index: Lazy::new() })
+        Ok(Self { nearness, params: *params, pulses, index: Arc::new(Lazy::new()) })
     }
 
     /// Indexes the pulses, if no line of sight needed that before. All else does it by itself, but cannot be cancelled meanwhile.
@@ -132,6 +134,15 @@ impl Proof {
     /// [`Error::Cancelled`].
     pub fn prepare(&self, control: &Control<'_>) -> Result<()> {
         self.index.get_or_make(|| self.make_index(control)).map(|_| ())
+    }
+
+    /// The same for everything that lines of sight anywhere need, so that none of them waits.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn prepare_all(&self, control: &Control<'_>) -> Result<()> {
+        let ProofIndex { needles, seen_space, .. } = self.index.get_or_make(|| self.make_index(control))?;
+        seen_space.make_all(needles, control)
     }
 
     fn make_index(&self, control: &Control<'_>) -> Result<ProofIndex> {

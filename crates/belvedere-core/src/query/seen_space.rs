@@ -1,6 +1,9 @@
 //! Boxes of space that are near some pulse everywhere: most of a line of sight is proven by a look at these.
 
 use crate::pulses::Needles;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use rayon::prelude::*;
 use std::sync::OnceLock;
 
 /// Side of a box as a share of the nearness. A needle that passes the middle of a box within nearness − side/√2 is near to all of
@@ -101,6 +104,18 @@ impl SeenSpace {
             width,
             tiles: (0..width * rows).map(|_| OnceLock::new()).collect(),
         }
+    }
+
+    /// Makes all tiles that no line has run through yet.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub(super) fn make_all(&self, needles: &Needles, control: &Control<'_>) -> Result<()> {
+        self.tiles.par_iter().enumerate().try_for_each(|(number, tile)| {
+            control.check()?;
+            tile.get_or_init(|| self.tile(needles, [number % self.width * TILE, number / self.width * TILE]));
+            Ok(())
+        })
     }
 
     /// The boxes of the tile whose lowest column and row are `first`.

@@ -30,8 +30,9 @@ function shadowOf({ time }) {
   const sun = exported.suns.reduce((a, b) => (Math.abs(b.minutes - minutes) < Math.abs(a.minutes - minutes) ? b : a));
   const bits = bytesOf(sun.bits);
   const body = new Uint8Array(exported.state.shown.point_count);
-  body.forEach((_, i) => { body[i] = (bits[i >> 3] >> (i & 7)) & 1; });
-  return { ...sun, body: body.buffer };
+  let lit = 0;
+  for (let i = 0; i < body.length; i++) lit += body[i] = (bits[i >> 3] >> (i & 7)) & 1;
+  return { ...sun, lit, points: body.length, body: body.buffer };
 }
 
 export const state = async () => exported?.state ?? (await get("state")).json();
@@ -40,12 +41,18 @@ export const colors = async (chunk) => new Uint16Array(exported ? bytesOf(export
 export const mesh = async (number) => new Float32Array(await (await get(`meshes/${number}`)).arrayBuffer());
 export const balls = async () => new Float32Array(await (await get("balls")).arrayBuffer());
 
-// Asks a question: named values, and a byte for each of many places as `body`.
-export async function ask(question, values, signal) {
+// Asks a question of the scene, or of that with a plan: named values, and a byte for each of many places as `body`.
+export async function ask(question, values, signal, plan = null) {
   if (exported) return shadowOf(values);
-  const response = await get(`ask/${question}`, {
+  return answer(await get(`${plan === null ? "" : `plans/${plan}/`}ask/${question}`, {
     method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(values), signal,
-  });
+  }));
+}
+// Hands over a mesh file for plans.
+export const loadMesh = async (file) => answer(await get(`plan-meshes/${encodeURIComponent(file.name)}`, {
+  method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: file,
+}));
+async function answer(response) {
   const bytes = await response.arrayBuffer();
   const length = new DataView(bytes).getUint32(0, true);
   const head = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));

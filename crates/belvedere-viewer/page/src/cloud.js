@@ -10,12 +10,12 @@ vec4 packed(float d) { float v = clamp(d, 0.0, 0.9999999) * 16777215.0; float h 
 
 const VERTEX = `precision highp float; precision highp int;
 in uvec4 place; in uint value; in uint rgb565;
-uniform mat4 modelViewMatrix, projectionMatrix; uniform vec3 low, step3; uniform vec2 heights; uniform int mode; uniform float size, pixels, far, most;
+uniform mat4 modelViewMatrix, projectionMatrix; uniform vec3 low, step3; uniform vec2 heights; uniform int mode, cleared; uniform float size, pixels, far, most;
 uniform sampler2D table; out vec3 color; out float depth;
 void main() {
   vec3 local = low + vec3(place.xyz) * step3;
   vec4 view = modelViewMatrix * vec4(local, 1.0);
-  gl_Position = projectionMatrix * view;
+  gl_Position = int(value) == cleared ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * view;
   depth = -view.z / far;
   gl_PointSize = clamp(size * pixels / max(-view.z, 0.01), 1.6, most);
   float index = 0.0;
@@ -49,6 +49,8 @@ void main() { float d = at(uv); vec3 c = texture(shown, uv).rgb; if (d < -0.99 &
     if (t.a >= 0.5) sum += clamp(d - at(p), 0.0, 1.0); }
   color = vec4(c * max(exp(-strength * sum / 8.0), 0.3), 1.0); }`;
 
+// Value of a point that a plan clears: it is not drawn.
+const CLEARED = 254;
 const uniforms = (values) => Object.fromEntries(Object.entries(values).map(([name, value]) => [name, { value }]));
 
 export class Cloud {
@@ -59,7 +61,7 @@ export class Cloud {
     this.chunks = [];
     this.budget = 3e6;
     this.table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
-    this.own = uniforms({ table: this.table, mode: 2, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40 });
+    this.own = uniforms({ table: this.table, mode: 2, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40, cleared: CLEARED });
     this.target = new WebGLRenderTarget(1, 1, { count: 2, magFilter: NearestFilter, minFilter: NearestFilter });
     this.shade = new RawShaderMaterial({
       glslVersion: GLSL3, depthTest: false, depthWrite: false, fragmentShader: SHADE,
@@ -96,10 +98,15 @@ export class Cloud {
     return chunk;
   }
 
+  // Answers of the points; without any, only which of them a plan clears (`cleared`).
   setValues(bytes) {
+    const values = bytes ?? this.cleared?.map((is) => is * CLEARED);
     let first = 0;
     for (const chunk of this.chunks) {
-      chunk.geometry.getAttribute("value").copyArray(bytes.subarray(first, first + chunk.count)).needsUpdate = true;
+      const value = chunk.geometry.getAttribute("value");
+      if (values) value.copyArray(values.subarray(first, first + chunk.count));
+      else value.array.fill(0);
+      value.needsUpdate = true;
       first += chunk.count;
     }
   }
@@ -118,7 +125,7 @@ export class Cloud {
   layer(low, step, places, values, size, paint) {
     this.clearLayer();
     const table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
-    const shared = { ...this.own, ...uniforms({ table, mode: 4, size }) };
+    const shared = { ...this.own, ...uniforms({ table, mode: 4, size, cleared: -1 }) };
     this.add(low, step, places, values, shared, this.extra);
     this.paint(paint, shared);
     this.layerOwn = shared;
@@ -144,13 +151,24 @@ export class Cloud {
 
   // Triangles beside the cloud: nine numbers each.
   addMesh(values) {
+    (this.meshes ??= []).push(this.mesh(values, new Color(0.86, 0.84, 0.9)));
+  }
+
+  // Triangles of a plan, instead of those before.
+  setPlan(values) {
+    this.plan?.geometry.dispose();
+    if (this.plan) this.extra.remove(this.plan);
+    this.plan = values?.length ? this.mesh(values, new Color(0.87, 0.55, 0.75)) : null;
+  }
+
+  mesh(values, tint) {
     const geometry = new BufferGeometry().setAttribute("corner", new BufferAttribute(values, 3));
     geometry.setDrawRange(0, values.length / 3);
-    const own = { far: this.own.far, ...uniforms({ tint: new Color(0.86, 0.84, 0.9) }) };
+    const own = { far: this.own.far, ...uniforms({ tint }) };
     const mesh = new Mesh(geometry, new RawShaderMaterial({ glslVersion: GLSL3, side: DoubleSide, vertexShader: MESH_VERTEX, fragmentShader: MESH_FRAGMENT, uniforms: own }));
     mesh.frustumCulled = false;
     this.extra.add(mesh);
-    (this.meshes ??= []).push(mesh);
+    return mesh;
   }
 
   resize(width, height) {

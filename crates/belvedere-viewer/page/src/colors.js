@@ -69,4 +69,13 @@ export const ofLight = () => ({ mode: 4, table: named(LIGHT, "#777777"), legend:
 export const ofHours = (low, high) => ({
   mode: 4, table: ramp(SUN), legend: { title: "Hours of sun on the day", gradient: gradient(SUN), ends: [low, high].map((v) => `${v.toFixed(1)} h`) },
 });
+// Changes: gains orange, losses blue, as in maps of `belvedere difference`.
+export const ofChange = (title, [neither, both, gain, loss]) => {
+  const names = { 0: [neither, "#8b929b"], 1: [both, "#dde0e4"], 2: [gain, "#e8710a"], 3: [loss, "#1f5fbf"] };
+  return { mode: 4, table: named(names, "#30343a"), legend: { title, keys: keys(names, [2, 3, 1, 0]) } };
+};
+const CHANGE = ["#0b3c8c", "#1f5fbf", "#86aee0", "#dde0e4", "#f5b27a", "#e8710a", "#9c4400"].map(rgb);
+export const ofHoursChange = (most) => ({
+  mode: 4, table: ramp(CHANGE), legend: { title: "Change of the hours of sun", gradient: gradient(CHANGE), ends: [`−${most.toFixed(1)} h`, `+${most.toFixed(1)} h`] },
+});
 export const plain = (dark) => ({ mode: 4, table: named({}, dark ? "#5d6570" : "#b3bac3"), legend: null });

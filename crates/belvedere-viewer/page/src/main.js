@@ -4,6 +4,7 @@ import * as colors from "./colors.js";
 import { toggleBalls, watch } from "./loading.js";
 import { help, report } from "./messages.js";
 import { paint, setColor } from "./paint.js";
+import { setWhen } from "./plan.js";
 import { ask, choose, click, snapshot } from "./questions.js";
 import { save } from "./save.js";
 import { $, canvas, page, root, TOOLS } from "./state.js";
@@ -35,6 +36,7 @@ function listen() {
     });
   });
   $("color").onchange = () => setColor($("color").value);
+  $("when").onchange = () => setWhen($("when").value);
   $("motion").onchange = () => mover.setKind($("motion").value);
   $("home").onclick = () => { $("motion").value = "orbit"; mover.show(page.scene.low, page.scene.high); };
   $("top").onclick = () => { $("motion").value = "orbit"; mover.show(page.scene.low, page.scene.high, true); };
@@ -74,6 +76,7 @@ function key(event) {
   else if (name === "-") mover.zoom(1.18);
   else if (name === "c") cycle($("color"));
   else if (name === "m") cycle($("motion"));
+  else if (name === "v" && !$("plan").hidden) cycle($("when"));
   else if (name === "Escape") choose(TOOLS[0]);
   else if (name === " " && page.tool.time === "hour") $("play").click();
   else if ((name === "<" || name === "," || name === ">" || name === ".") && page.tool.time === "hour") {
@@ -86,13 +89,13 @@ function key(event) {
       $("crosshair").hidden = false;
       click(canvas.clientWidth / 2, canvas.clientHeight / 2);
     }
-  } else if (/^[1-9]$/.test(name) && TOOLS[Number(name) - 1]) choose(TOOLS[Number(name) - 1]);
+  } else if (/^[0-9]$/.test(name) && TOOLS[(Number(name) + 9) % 10]) choose(TOOLS[(Number(name) + 9) % 10]);
   else return;
   event.preventDefault();
 }
 
 function start() {
-  $("tools").innerHTML = `<h2>Questions</h2>${TOOLS.map((tool, i) => `<button data-tool="${tool.name}" aria-pressed="false" title="${tool.title} (${i + 1})">${tool.icon}<span>${tool.title}</span><kbd>${i + 1}</kbd></button>`).join("")}<p></p>`;
+  $("tools").innerHTML = `<h2>Questions</h2>${TOOLS.map((tool, i) => `<button data-tool="${tool.name}" aria-pressed="false" title="${tool.title} (${(i + 1) % 10})">${tool.icon}<span>${tool.title}</span><kbd>${(i + 1) % 10}</kbd></button>`).join("")}<p></p>`;
   for (const button of $("tools").querySelectorAll("button")) button.onclick = () => page.choose(button.dataset.tool);
   if (api.exported) $("balls").hidden = true;
   if (matchMedia("(prefers-color-scheme: dark)").matches) theme("dark");

@@ -15,8 +15,8 @@ export function report(error) {
   $("message").querySelector("button").onclick = () => { $("message").hidden = true; };
 }
 const KEYS = [
-  ["1 to 9", "Choose a question"], ["Enter", "Ask at the centre of the view"], ["Esc", "Close the answer"], ["Arrow keys", "Turn"], ["W A S D, Q E", "Move; down and up"],
-  ["+ and −", "Zoom"], ["H", "Whole scene"], ["T", "From above"], ["C", "Next colour"], ["M", "Next way of moving"], ["B", "Balls"], ["Space", "Play the day"],
+  ["1 to 9, 0", "Choose a question; plan"], ["Enter", "Ask at the centre of the view"], ["Esc", "Close the answer"], ["Arrow keys", "Turn"], ["W A S D, Q E", "Move; down and up"],
+  ["+ and −", "Zoom"], ["H", "Whole scene"], ["T", "From above"], ["C", "Next colour"], ["M", "Next way of moving"], ["V", "Before, after, change of a plan"], ["B", "Balls"], ["Space", "Play the day"],
   ["< and >", "Earlier or later"], ["P", "Save a picture"], ["L", "Light or dark"], ["?", "This help"],
 ];
 export function help() {

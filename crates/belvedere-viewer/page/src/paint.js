@@ -47,6 +47,14 @@ function quantised(rows) {
   rows.forEach((r, k) => [0, 1, 2].forEach((i) => { places[4 * k + i] = Math.round((r[i] - low[i]) / step[i]); }));
   return [low, step, places];
 }
+// Cells on the ground instead of values of points: places, values, size and colours.
+function onLayer(rows, values, size, coloring) {
+  page.answer = coloring;
+  page.onLayer = true;
+  cloud.setValues(null);
+  cloud.layer(...quantised(rows), new Uint8Array(values), size, coloring);
+  offerAnswer();
+}
 page.cells = (answer) => {
   const { first_center: [x, y], cell_m: cell, columns, rows } = answer.grid;
   const heights = new Float32Array(answer.body, 0, columns * rows);
@@ -57,21 +65,20 @@ page.cells = (answer) => {
     known.push([x + (i % columns) * cell, y - Math.floor(i / columns) * cell, z + 0.12]);
     values.push(answers[i]);
   });
-  page.answer = colors.ofAnswers({ tells_unproven: true });
-  page.answer.legend.title = "From where the place is seen";
-  page.onLayer = true;
-  cloud.layer(...quantised(known), new Uint8Array(values), cell * 1.25, page.answer);
-  offerAnswer();
+  const coloring = colors.ofAnswers({ tells_unproven: true });
+  coloring.legend.title = "From where the place is seen";
+  onLayer(known, values, cell * 1.25, coloring);
 };
 page.hourCells = (answer) => {
   const v = new Float32Array(answer.body);
   const rows = Array.from({ length: v.length / 4 }, (_, i) => [v[4 * i], v[4 * i + 1], v[4 * i + 2] + 0.12]);
   const low = 0, high = Math.max(answer.possible_hours, 0.1);
-  const values = new Uint8Array(rows.map((_, i) => Math.round(((v[4 * i + 3] - low) / (high - low)) * 255)));
-  page.answer = colors.ofHours(low, high);
-  page.onLayer = true;
-  cloud.layer(...quantised(rows), values, answer.cell_m * 1.3, page.answer);
-  offerAnswer();
+  onLayer(rows, rows.map((_, i) => Math.round(((v[4 * i + 3] - low) / (high - low)) * 255)), answer.cell_m * 1.3, colors.ofHours(low, high));
+};
+// Changes of hours: rows of x, y, z and hours.
+page.changedCells = (rows, cell) => {
+  const most = rows.reduce((m, r) => Math.max(m, Math.abs(r[3])), 0.1);
+  onLayer(rows.map(([x, y, z]) => [x, y, z + 0.12]), rows.map((r) => Math.round((r[3] / most + 1) * 127.5)), cell * 1.3, colors.ofHoursChange(most));
 };
 page.plane = (answer) => {
   const v = new Float32Array(answer.body);

@@ -3,9 +3,11 @@ import * as api from "./api.js";
 import { escape } from "./charts.js";
 import * as colors from "./colors.js";
 import { lost } from "./messages.js";
+import { finish, isChange, outline, panel, planAsked } from "./plan.js";
 import { setColor } from "./paint.js";
 import { csv, diagram, geojson, picture, save } from "./save.js";
 import { $, canvas, page, TOOLS } from "./state.js";
+import { changed } from "./change.js";
 import { setPlaying } from "./time.js";
 import { cloud, draw, placeAt, render, shownPlace, toFile } from "./view.js";
 
@@ -23,6 +25,7 @@ export function choose(tool) {
   setPlaying(false);
   cloud?.clearLayer();
   page.onLayer = false;
+  cloud?.setValues(null);
   if (page.before) {
     const before = page.before;
     page.before = null;
@@ -30,7 +33,8 @@ export function choose(tool) {
     setColor(before);
   }
   $("card").hidden = true;
-  if (tool.places === 0) ask();
+  if (tool.name === "plan") panel();
+  else if (tool.places === 0) ask();
   else if (tool.height) card(`<p class="note">${escape(tool.hint)}</p>`);
   draw();
 }
@@ -41,7 +45,7 @@ function field() {
   tool.above ??= tool.height[1];
   return `<div class="field"><label for="above">${tool.height[0]}</label><span><input id="above" type="number" step="0.1" value="${tool.above}"> m</span></div>`;
 }
-function card(html, after) {
+export function card(html, after) {
   const box = $("card");
   box.hidden = false;
   box.innerHTML = `<header><h2>${escape(page.tool.title)}</h2><button aria-label="Close" title="Close (Esc)">×</button></header>${field()}${html}`;
@@ -62,7 +66,9 @@ export function click(x, y) {
   const near = placeAt(x, y);
   if (!near) return;
   const found = cloud.nearest(near);
-  pick(found?.place ?? near, found?.class);
+  // what is planned has no points
+  const isPoint = found && (!cloud.plan || found.away < (2 * cloud.own.size.value) ** 2);
+  pick(isPoint ? found.place : near, found?.class);
 }
 page.click = click;
 function pick(clicked, code) {
@@ -79,6 +85,12 @@ function pick(clicked, code) {
   if (page.places.length >= tool.places) page.places = [];
   const isFirst = page.places.length === 0;
   page.places.push({ clicked, local: isFirst && tool.height ? lifted(clicked, tool.above ?? tool.height[1]) : clicked });
+  if (tool.name === "plan") {
+    page.marks = outline(page.places);
+    panel();
+    draw();
+    return;
+  }
   const labels = tool.places === 2 ? ["A", "B"] : [];
   page.marks = page.places.map(({ local }, i) => ({ at: local, label: labels[i] }));
   if (tool.places === Infinity) {
@@ -93,6 +105,7 @@ page.pick = pick;
 let asking;
 export async function ask(quick = false) {
   const { tool } = page;
+  if (tool.name === "plan") return finish();
   asking?.abort();
   const mine = (asking = new AbortController());
   if (!page.ready) {
@@ -110,10 +123,17 @@ export async function ask(quick = false) {
   page.last = tool.places === 0 ? page.last : null;
   const busy = setTimeout(() => { if (!page.last) card(`<p class="busy">Asking …</p>`); }, 150);
   const start = performance.now();
+  // with a plan, the change is that from the answer before it
+  const answered = async (question, values) => {
+    const after = await api.ask(question, values, mine.signal, planAsked());
+    if (!tool.change || !isChange()) return after;
+    return { ...after, before: await api.ask(question, values, mine.signal) };
+  };
   try {
-    const first = tool.first?.(places, { date, zone, clock }, page);
-    if (first) {
-      const answer = await api.ask(...first, mine.signal);
+    const [question, values] = tool.ask(places, { date, zone, clock });
+    // of many points a sample is answered first
+    if (tool.samples && page.scene.samples_first && !api.exported) {
+      const answer = await answered(question, { ...values, points: "sample" });
       if (mine.signal.aborted) return;
       const shown = { ...answer, isFirst: true, took: performance.now() - start };
       if (quick) page.last = shown;
@@ -123,7 +143,7 @@ export async function ask(quick = false) {
       if (tool.time) await new Promise((go) => setTimeout(go, 250));
       if (mine.signal.aborted) return;
     }
-    const answer = await api.ask(...tool.ask(places, { date, zone, clock }), mine.signal);
+    const answer = await answered(question, values);
     if (mine.signal.aborted) return;
     answer.took = performance.now() - start;
     page.last = answer;
@@ -140,16 +160,16 @@ export async function ask(quick = false) {
 }
 page.ask = ask;
 function showAnswer(tool, answer, places) {
-  const shown = tool.show(answer, page);
+  const shown = answer.before ? changed(tool, answer, page) : tool.show(answer, page);
   const html = shown.html ?? shown;
   const where = places.length === 1 ? `<dl><dt>Place</dt><dd>${shownPlace(places[0])}</dd></dl>` : "";
-  const rows = tool.rows?.(answer, page);
+  const rows = answer.before ? null : tool.rows?.(answer, page);
   const buttons = [
     ...(rows ? ['<button data-save="csv">Table (.csv)</button>'] : []),
-    ...(tool.properties ? ['<button data-save="geojson">Map (.geojson)</button>'] : []),
+    ...(tool.properties && !answer.before ? ['<button data-save="geojson">Map (.geojson)</button>'] : []),
     '<button data-save="png">Picture (.png)</button>',
   ].join("");
-  card(`${html}${where}<h3>The same on the command line</h3><pre id="command">${escape(answer.command)}</pre><div class="row"><button data-save="copy">Copy command</button>${buttons}</div>`
+  card(`${html}${where}<h3>The same on the command line</h3><pre id="command">${escape(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">Copy command</button>${buttons}</div>`
     + `<p class="note" id="took">Answered in ${Math.round(answer.took)} ms.</p>`, (box) => {
     shown.after?.(box);
     box.querySelectorAll("[data-save]").forEach((button) => { button.onclick = () => saveAs(button, tool, answer, places); });
@@ -160,7 +180,7 @@ async function saveAs(button, tool, answer, places) {
   const name = `${tool.name}-${page.scene.title.replace(/\..*$/, "")}`;
   const kind = button.dataset.save;
   if (kind === "copy") {
-    await navigator.clipboard?.writeText(answer.command).catch(() => {});
+    await navigator.clipboard?.writeText($("command").textContent).catch(() => {});
     button.textContent = "Copied";
   } else if (kind === "csv") save(`${name}.csv`, csv(tool.rows(answer, page)), "text/csv");
   else if (kind === "geojson") {

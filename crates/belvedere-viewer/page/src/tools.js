@@ -10,13 +10,18 @@ const count = (n) => n.toLocaleString("en");
 const percent = (part, whole) => `${((100 * part) / Math.max(whole, 1)).toFixed(1)} %`;
 const list = (rows) => `<dl>${rows.map(([name, value]) => `<dt>${escape(name)}</dt><dd>${escape(value)}</dd>`).join("")}</dl>`;
 
-function shares(answer, of) {
+// A first answer is one for a sample: its shares are about right, and its counts are those of the sample times the points it stands for.
+const about = (answer) => (answer.isFirst ? "About " : "");
+const FIRST = (answer) => `A first answer from a sample of ${count(answer.points)} points; the exact one follows …`;
+const estimated = (n) => { const unit = 10 ** Math.max(Math.floor(Math.log10(n)) - 1, 0); return `about ${count(Math.round(n / unit) * unit)}`; };
+
+function shares(answer, of, page) {
   const names = colors.ANSWERS();
   const rows = [[1, answer.visible], ...(answer.tells_unproven !== false ? [[2, answer.unproven]] : []), [0, answer.blocked]];
   const whole = rows.reduce((sum, [, n]) => sum + n, 0);
   return `<div class="shares">${rows.map(([code, n]) => `<span style="flex:${n} 0 0;background:${names[code][1]}"></span>`).join("")}</div>`
     + `<div class="key">${rows.map(([code, n]) => `<span><i class="swatch" style="background:${names[code][1]}"></i>${names[code][0]} ${percent(n, whole)}</span>`).join("")}</div>`
-    + list(rows.map(([code, n]) => [`${of} ${names[code][0]}`, count(n)]));
+    + list(rows.map(([code, n]) => [`${of} ${names[code][0]}`, answer.isFirst && n ? estimated((n * page.scene.point_count) / answer.points) : count(n)]));
 }
 
 const UNPROVEN = "Nothing blocks what is unproven, but part of the line runs through space that no laser pulse has seen.";
@@ -29,14 +34,14 @@ export const TOOLS = [
   {
     name: "seen", title: "What is seen from here", icon: icon(EYE), height: ["Eye above the clicked point", 1.7], places: 1,
     hint: "Click where somebody stands: ground, balcony or roof.",
-    // balls alone answer at once; the pulses then say what of it is proven
-    first: ([place], _, page) => (page.scene.tells_unproven ? ["seen", { place, proven: false }] : null),
+    samples: true,
     ask: ([place]) => ["seen", { place }],
+    change: { title: "What the plan changes", names: ["not visible before and after", "visible before and after", "visible only after", "visible only before"], gain: "come into view", loss: "are hidden" },
     show(answer, page) {
       page.answer = colors.ofAnswers(answer);
       page.values(new Uint8Array(answer.body));
       const whole = answer.visible + answer.blocked + answer.unproven;
-      return `<p class="verdict">${percent(answer.visible, whole)} is visible</p><p class="note">of the points of the cloud. ${answer.tells_unproven ? UNPROVEN : answer.isFirst ? "Next: how much of it the laser pulses prove …" : ""}</p>${shares(answer, "Points")}`;
+      return `<p class="verdict">${about(answer)}${percent(answer.visible, whole)} is visible</p><p class="note">of the points of the cloud. ${answer.isFirst ? FIRST(answer) : answer.tells_unproven ? UNPROVEN : ""}</p>${shares(answer, "Points", page)}`;
     },
     rows: (answer) => [["answer", "points"], ["visible", answer.visible], ["unproven", answer.unproven], ["blocked", answer.blocked]],
     properties: ({ visible, unproven, blocked }) => ({ visible, unproven, blocked }),
@@ -73,17 +78,15 @@ export const TOOLS = [
   {
     name: "shadow", title: "Shadow at a time", icon: icon('<circle cx="17" cy="6" r="3"/><path d="M4 20h16M9 20V10h5v10M9 20l-5-3"/>'), places: 0, time: "hour",
     hint: "Move the time, or play the day.",
-    // of many points a depth map answers first
-    first: (_, { date, clock, zone }, page) => (page.scene.point_count > 250_000 ? ["shadow", { time: `${date}T${clock}`, zone, exact: false }] : null),
+    samples: true,
     ask: (_, { date, clock, zone }) => ["shadow", { time: `${date}T${clock}`, zone }],
+    change: { title: "What the plan changes", names: ["in shadow before and after", "lit before and after", "lit only after", "lit only before"], gain: "gain the sun", loss: "lose the sun" },
     show(answer, page) {
       page.answer = colors.ofLight();
-      const bytes = new Uint8Array(answer.body);
-      page.values(bytes);
-      const lit = bytes.reduce((sum, v) => sum + (v === 1 ? 1 : 0), 0);
-      answer.lit_share = lit / Math.max(bytes.length, 1);
+      page.values(new Uint8Array(answer.body));
+      answer.lit_share = answer.lit / Math.max(answer.points, 1);
       const up = answer.elevation_deg > 0;
-      return `<p class="verdict">${up ? `${percent(lit, bytes.length)} is lit` : "The sun is below the horizon"}</p><p class="note">of the points of the cloud, ${escape(answer.time.replace("T", " "))}.${answer.isFirst ? " A first answer from a depth map; the exact one follows." : ""}</p>`
+      return `<p class="verdict">${up ? `${about(answer)}${percent(answer.lit, answer.points)} is lit` : "The sun is below the horizon"}</p><p class="note">of the points of the cloud, ${escape(answer.time.replace("T", " "))}. ${answer.isFirst ? FIRST(answer) : ""}</p>`
         + list([["Azimuth of the sun", `${answer.azimuth_deg.toFixed(1)}°`], ["Elevation of the sun", `${answer.elevation_deg.toFixed(1)}°`]]);
     },
     rows: (answer) => [["time", "azimuth_deg", "elevation_deg", "lit_share"], [answer.time, answer.azimuth_deg, answer.elevation_deg, answer.lit_share]],
@@ -128,7 +131,7 @@ export const TOOLS = [
     properties: ({ plane, kwh, kwh_m2, free_kwh_m2, min_loss, max_loss, tilt_deg, azimuth_deg, area_m2 }) => ({ plane, kwh, kwh_m2, free_kwh_m2, min_loss, max_loss, tilt_deg, azimuth_deg, area_m2 }),
   },
   {
-    name: "sun_area", title: "Sun hours of an area", icon: icon('<path d="M4 8 13 4l7 8-5 8-9-3z"/><circle cx="12.500" cy="11.500" r="2"/>'), places: Infinity, time: "date",
+    name: "sun_area", title: "Sun hours of an area", change: true, icon: icon('<path d="M4 8 13 4l7 8-5 8-9-3z"/><circle cx="12.500" cy="11.500" r="2"/>'), places: Infinity, time: "date",
     hint: "Click the corners, then press Enter or double-click.",
     ask: (places, { date, zone }) => ["sun_area", { corners: places.map(([x, y]) => [x, y]), date, zone }],
     show(answer, page) {
@@ -142,5 +145,9 @@ export const TOOLS = [
     },
     properties: ({ mean_hours, min_hours, max_hours, area_m2 }) => ({ mean_hours, min_hours, max_hours, area_m2 }),
     geometry: (places) => ["Polygon", [[...places, places[0]]]],
+  },
+  {
+    name: "plan", title: "Plan buildings", icon: icon('<path d="M4 20V9l6-4 6 4v11zM8 20v-5h4v5M19 4v6M16 7h6"/>'), places: Infinity,
+    hint: "Draw or load what is planned, clear what goes; then ask again.",
   },
 ];

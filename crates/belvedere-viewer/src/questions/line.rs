@@ -49,7 +49,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
 fn profile(asked: &Asked<'_>, pair: [[f64; 3]; 2], earth: &EarthParams) -> Value {
     let scene = asked.scene;
     let made = scene.blockers(UnprovenAs::Reported, asked.control).and_then(|blockers| {
-        let ground = if scene.shown.cloud.is_empty() { None } else { Some(scene.ground(asked.control)?) };
+        let ground = if scene.cloud().is_err() { None } else { Some(scene.ground(asked.control)?) };
         sight_profile(&blockers, ground.as_deref(), pair, earth, None, asked.control)
     });
     let Ok(profile) = made else { return Value::Null };

@@ -3,6 +3,7 @@
 mod around;
 mod line;
 mod places;
+mod plan;
 mod roof;
 mod seen;
 mod shadow;
@@ -10,6 +11,7 @@ mod sun;
 mod sun_area;
 mod who;
 
+use crate::plans::Plans;
 use crate::replies::{Answer, Refusal};
 use crate::scene::Scene;
 use crate::server::SceneText;
@@ -22,6 +24,8 @@ pub(crate) struct Asked<'a> {
     pub(crate) scene: &'a Scene,
     /// The scene on command lines.
     pub(crate) text: &'a SceneText,
+    /// What is planned in all tabs.
+    pub(crate) plans: &'a Plans,
     pub(crate) control: &'a Control<'a>,
 }
 
@@ -35,6 +39,7 @@ pub(crate) fn answer(name: &str, body: &[u8], asked: &Asked<'_>) -> Result<Answe
         "around" => around::answer(&parsed(body)?, asked),
         "who" => who::answer(&parsed(body)?, asked),
         "roof" => roof::answer(&parsed(body)?, asked),
+        "plan" => plan::answer(parsed(body)?, asked),
         "sun_area" => sun_area::answer(&parsed(body)?, asked),
         _ => Err(Refusal("there is no such question".to_owned())),
     }
@@ -42,11 +47,6 @@ pub(crate) fn answer(name: &str, body: &[u8], asked: &Asked<'_>) -> Result<Answe
 
 fn parsed<T: DeserializeOwned>(body: &[u8]) -> Result<T, Refusal> {
     serde_json::from_slice(body).map_err(|error| Refusal(format!("the question cannot be read: {error}")))
-}
-
-/// What questions take unless they say otherwise.
-fn yes() -> bool {
-    true
 }
 
 /// Centres and radii of the balls, local metres: four f32 each, little endian.

@@ -35,7 +35,11 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
     let date = Date::parse(&question.date)?;
     let ground = scene.ground(control)?;
     let grid = ground.grid;
-    let (mut targets, _) = Targets::of_cells(cloud, (*ground).clone(), &CellParams::default(), control)?;
+    let cells = CellParams::default();
+    let (mut targets, _) = Targets::of_cells(cloud, (*ground).clone(), &cells, control)?;
+    if let Some(added) = scene.model.added() {
+        targets.set_on_added(added, &cells);
+    }
     for (cell, position) in targets.positions.iter_mut().enumerate() {
         if !is_inside(&corners, grid.center(cell % grid.width.max(1), cell / grid.width.max(1))) {
             *position = [f32::NAN; 3];

@@ -1,0 +1,237 @@
+//! What if: plans that were drawn on the page, and the scenes with them.
+
+use crate::replies::Refusal;
+use crate::scene::Scene;
+use crate::server::SceneText;
+use belvedere::control::Control;
+use belvedere::io::{Source, read_mesh_in};
+use belvedere::model::{ClearReport, ClearedArea};
+use belvedere::{Frame, Mesh};
+use serde::Deserialize;
+use serde_json::json;
+use std::fmt::Write;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Plans that are kept: one for each of a few tabs. Each holds as much as the scene.
+const MOST_PLANS: usize = 4;
+/// Meshes that are kept.
+const MOST_MESHES: usize = 16;
+/// File in which the drawn buildings are saved, and that in which the cleared areas are.
+const BUILDINGS: &str = "planned.obj";
+const AREAS: &str = "cleared.geojson";
+
+/// What was drawn, in the coordinates of the file.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct Plan {
+    /// Corners of areas without what stands there now.
+    clear: Vec<Vec<[f64; 2]>>,
+    buildings: Vec<Building>,
+    /// Numbers of meshes that were loaded.
+    meshes: Vec<usize>,
+}
+
+/// A building with upright walls and a flat roof.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Building {
+    corners: Vec<[f64; 2]>,
+    /// Height of its foot in the file.
+    base: f64,
+    /// Height of its roof above that, metres.
+    height_m: f64,
+}
+
+/// A plan and the scene with it.
+pub(crate) struct Planned {
+    pub(crate) number: usize,
+    plan: Plan,
+    pub(crate) scene: Arc<Scene>,
+    /// The scene on command lines.
+    pub(crate) text: SceneText,
+    pub(crate) report: ClearReport,
+    /// Name and content of the files that the command lines need beside those of the scene.
+    pub(crate) files: Vec<(&'static str, String)>,
+    /// All that was added, metres.
+    pub(crate) added: Vec<Arc<Mesh>>,
+}
+
+/// Plans and loaded meshes of all tabs.
+#[derive(Default)]
+pub(crate) struct Plans(Mutex<Kept>);
+
+#[derive(Default)]
+struct Kept {
+    made: usize,
+    plans: Vec<Arc<Planned>>,
+    meshes: Vec<(String, Arc<Mesh>)>,
+}
+
+impl Plans {
+    /// The plan of a number, if it is still kept.
+    pub(crate) fn get(&self, number: usize) -> Result<Arc<Planned>, Refusal> {
+        let found = self.kept().plans.iter().find(|planned| planned.number == number).cloned();
+        found.ok_or_else(|| Refusal("The plan is not kept any more: change it, or load the page again.".to_owned()))
+    }
+
+    /// Takes a mesh file; returns its number.
+    pub(crate) fn load(&self, name: &str, bytes: &[u8], frame: &Frame) -> Result<usize, Refusal> {
+        let (mesh, _) = read_mesh_in(Source::bytes(name, bytes), &frame.crs)?;
+        let mut kept = self.kept();
+        if kept.meshes.len() >= MOST_MESHES {
+            return Err(Refusal(format!("No more than {MOST_MESHES} meshes can be loaded: start the program again.")));
+        }
+        kept.meshes.push((name.to_owned(), Arc::new(mesh)));
+        Ok(kept.meshes.len() - 1)
+    }
+
+    /// The scene with a plan.
+    pub(crate) fn make(
+        &self,
+        plan: Plan,
+        scene: &Scene,
+        text: &SceneText,
+        control: &Control<'_>,
+    ) -> Result<Arc<Planned>, Refusal> {
+        if let Some(planned) = self.kept().plans.iter().find(|planned| planned.plan == plan) {
+            return Ok(Arc::clone(planned));
+        }
+        if !plan.clear.is_empty() && text.cloud_beside.is_some() {
+            return Err(Refusal("Areas can be cleared only where the balls are built from the cloud: start the program with the cloud alone.".to_owned()));
+        }
+        if !plan.clear.is_empty() && scene.model.added().is_some() {
+            return Err(Refusal(
+                "Areas are cleared before meshes are added: start the program without --add, and load the mesh here."
+                    .to_owned(),
+            ));
+        }
+        let frame = scene.model.frame();
+        let areas = plan.clear.iter().map(|corners| area(corners, frame)).collect::<Result<Vec<_>, _>>()?;
+        let (mut files, mut input, mut meshes) = (Vec::new(), text.input.clone(), Vec::new());
+        if !areas.is_empty() {
+            files.push((AREAS, geojson(&plan.clear, frame)));
+            input.push_str(&format!(" --clear {AREAS}"));
+        }
+        if !plan.buildings.is_empty() {
+            let obj = obj(&plan.buildings, frame)?;
+            // read as the command will read it
+            let (mesh, _) = read_mesh_in(Source::bytes(BUILDINGS, &obj), &frame.crs)?;
+            meshes.push((BUILDINGS.to_owned(), Arc::new(mesh)));
+            files.push((BUILDINGS, obj));
+        }
+        for &number in &plan.meshes {
+            let mesh = self.kept().meshes.get(number).cloned();
+            meshes.push(mesh.ok_or_else(|| Refusal("The mesh is not kept any more: load it again.".to_owned()))?);
+        }
+        for (name, _) in &meshes {
+            input.push_str(&format!(" --add {}", quoted(name)));
+        }
+        let (scene, report) = scene.planned(&areas, &meshes, control)?;
+        let scene = Arc::new(scene);
+        let mut kept = self.kept();
+        kept.made += 1;
+        let planned = Arc::new(Planned {
+            number: kept.made,
+            plan,
+            scene: Arc::clone(&scene),
+            text: SceneText { input, cloud_beside: text.cloud_beside.clone() },
+            report,
+            files,
+            added: meshes.into_iter().map(|(_, mesh)| mesh).collect(),
+        });
+        if kept.plans.len() >= MOST_PLANS {
+            kept.plans.remove(0);
+        }
+        kept.plans.push(Arc::clone(&planned));
+        drop(kept);
+        // as for the scene without a plan
+        std::thread::spawn(move || scene.prepare());
+        Ok(planned)
+    }
+
+    fn kept(&self) -> MutexGuard<'_, Kept> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A word as a shell takes it for one.
+pub fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-/=:,+@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}
+
+fn check(corners: &[[f64; 2]]) -> Result<(), Refusal> {
+    if corners.len() < 3 || !corners.as_flattened().iter().all(|v| v.is_finite()) {
+        return Err(Refusal("A building or an area needs at least three corners.".to_owned()));
+    }
+    Ok(())
+}
+
+/// An area in local metres, as `--clear` takes it.
+fn area(corners: &[[f64; 2]], frame: &Frame) -> Result<ClearedArea, Refusal> {
+    check(corners)?;
+    let local = |&[x, y]: &[f64; 2]| {
+        let [x, y, _] = frame.local_from_file([x, y, 0.0]);
+        [x, y]
+    };
+    Ok(ClearedArea::Polygon(vec![corners.iter().map(local).collect()]))
+}
+
+/// Areas in the system of the cloud, which the file names: GeoJSON promises another.
+fn geojson(areas: &[Vec<[f64; 2]>], frame: &Frame) -> String {
+    let feature = |corners: &Vec<[f64; 2]>| {
+        let ring: Vec<&[f64; 2]> = corners.iter().chain(corners.first()).collect();
+        json!({ "type": "Feature", "properties": {}, "geometry": { "type": "Polygon", "coordinates": [ring] } })
+    };
+    let mut file = json!({ "type": "FeatureCollection", "features": areas.iter().map(feature).collect::<Vec<_>>() });
+    if let Some(code) = frame.crs.epsg {
+        file["crs"] = json!({ "type": "name", "properties": { "name": format!("urn:ogc:def:crs:EPSG::{code}") } });
+    }
+    file.to_string()
+}
+
+/// Buildings as an OBJ file: floor, roof and walls.
+fn obj(buildings: &[Building], frame: &Frame) -> Result<String, Refusal> {
+    let mut text = "# planned buildings, in the coordinates of the cloud\n".to_owned();
+    let mut first = 1;
+    for (number, Building { corners, base, height_m }) in buildings.iter().enumerate() {
+        check(corners)?;
+        if !(base.is_finite() && height_m.is_finite() && *height_m > 0.0) {
+            return Err(Refusal("A building needs a height above 0 m.".to_owned()));
+        }
+        let count = corners.len();
+        let _ = writeln!(text, "o building_{}", number + 1);
+        for z in [*base, base + height_m / frame.crs.vertical_metres_per_unit] {
+            for [x, y] in corners {
+                let _ = writeln!(text, "v {x} {y} {z}");
+            }
+        }
+        let words = |places: &mut dyn Iterator<Item = usize>| {
+            places.map(|place| (first + place).to_string()).collect::<Vec<_>>().join(" ")
+        };
+        let _ = writeln!(text, "f {}", words(&mut (0..count).rev()));
+        let _ = writeln!(text, "f {}", words(&mut (count..2 * count)));
+        for corner in 0..count {
+            let next = (corner + 1) % count;
+            let _ = writeln!(text, "f {}", words(&mut [corner, next, count + next, count + corner].into_iter()));
+        }
+        first += 2 * count;
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quoted;
+
+    #[test]
+    fn words_are_quoted_only_where_a_shell_would_part_them() {
+        assert_eq!(quoted("demo/town.laz"), "demo/town.laz");
+        assert_eq!(quoted("my town.laz"), "'my town.laz'");
+        assert_eq!(quoted("it's"), "'it'\\''s'");
+        assert_eq!(quoted(""), "''");
+    }
+}

@@ -1,0 +1,27 @@
+//! What if: the scene with what was drawn; other questions are then asked of it.
+
+use super::Asked;
+use crate::plans::Plan;
+use crate::replies::{Answer, Refusal};
+use belvedere::cloud::to_local;
+use serde_json::{Value, json};
+
+pub(super) fn answer(plan: Plan, asked: &Asked<'_>) -> Result<Answer, Refusal> {
+    let planned = asked.plans.make(plan, asked.scene, asked.text, asked.control)?;
+    let files: Vec<Value> = planned.files.iter().map(|(name, text)| json!({ "name": name, "content": text })).collect();
+    let origin = asked.scene.model.frame().origin;
+    let corners = planned
+        .added
+        .iter()
+        .flat_map(|mesh| (0..mesh.triangles.len()).filter_map(|index| mesh.corners(index)).flatten());
+    let triangles: Vec<u8> = corners.flat_map(|corner| to_local(corner, origin)).flat_map(f32::to_le_bytes).collect();
+    let head = json!({
+        "plan": planned.number,
+        "points_cleared": planned.report.points_cleared,
+        "triangle_bytes": triangles.len(),
+        "files": files,
+        "command": planned.text.input,
+    });
+    // the triangles, and for each point sent 1 if it is cleared
+    Ok(Answer { head, body: [triangles, planned.scene.cleared_in_order()].concat() })
+}
