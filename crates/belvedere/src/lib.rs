@@ -29,7 +29,7 @@
 //! | read and write clouds, meshes, rasters, tables, ball files | `io` |
 //! | from a cloud to a scene; what Belvedere does by default | [`model`] |
 //! | which lines of sight are free | [`query`] |
-//! | shadow, sun hours, sky view, irradiance, viewsheds, landmarks, solar envelopes, comfort | `apps` |
+//! | shadow, sun hours, sky view, irradiance, viewsheds, landmarks, cameras, solar envelopes, comfort | `apps` |
 //! | results of applications as files | `results` |
 //! | pictures and films | `figures` |
 //! | progress and cancellation of long work | [`control`] |

@@ -71,7 +71,7 @@ pub fn landmark_points(cloud: &PointCloud, which: &LandmarkPoints<'_>) -> Result
 }
 
 /// Whether a place lies within a rim and outside its holes: the rule of odd crossings over all rings.
-fn is_inside(rings: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {
+pub(crate) fn is_inside(rings: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {
     let mut inside = false;
     for ring in rings {
         let Some(mut previous) = ring.last() else { continue };

@@ -3,7 +3,7 @@
 //! | targets | made by |
 //! |---|---|
 //! | cells on the ground or on what stands on it | [`Targets::ground_cells`], [`Targets::surface_cells`], [`Targets::of_cells`] |
-//! | points of a cloud or of a file | [`Targets::of_points`] |
+//! | points of a cloud or of a file | [`Targets::of_points`], [`Targets::of_places`] |
 //! | faces of a mesh, in pieces | [`Targets::of_mesh`] |
 //! | places along routes | [`Targets::along_routes`] |
 //! | windows with a size, faces as windows | [`Targets::of_windows`], [`Targets::of_window_faces`] |
@@ -69,6 +69,12 @@ impl Targets {
     #[must_use]
     pub fn of_points(cloud: &PointCloud, normals: Option<Vec<[f32; 3]>>) -> Self {
         Self::at(cloud.frame.clone(), cloud.positions.clone(), normals, Layout::Points)
+    }
+
+    /// Places in local metres, level; one that is not finite is not asked about.
+    #[must_use]
+    pub fn of_places(places: &[[f64; 3]], frame: Frame) -> Self {
+        Self::at(frame, places.iter().map(|&place| to_f32(place)).collect(), None, Layout::Points)
     }
 
     fn at(frame: Frame, positions: Vec<[f32; 3]>, normals: Option<Vec<[f32; 3]>>, layout: Layout) -> Self {

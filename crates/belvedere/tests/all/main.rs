@@ -8,6 +8,8 @@ mod backends;
 mod ball_files;
 mod beams;
 mod blocking;
+mod camera_coverage;
+mod camera_placement;
 mod carving;
 mod certified;
 mod cleaning;

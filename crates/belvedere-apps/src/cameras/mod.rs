@@ -1,0 +1,30 @@
+//! Where to put cameras, watch posts and masts, so that few of them cover much.
+//!
+//! | step | function |
+//! |---|---|
+//! | cameras that could be put up | [`MountingParams::poses_at`], [`ground_places`], [`roof_places`] |
+//! | what is to be covered | [`crate::targets`], [`keep_within`], [`counted_weights`] |
+//! | which of them covers what | [`coverage`], and [`sees_private`] for those that must not be put up |
+//! | which to choose | [`place_cameras`] |
+//!
+//! A target is covered by a camera if it is in its picture, near enough for the wanted pixels per metre, and nothing hides it. Selections are made greedily and
+//! improved by exchanges; the linear relaxation bounds what any selection could cover, and a search closes the gap where the problem is small enough.
+
+mod bound;
+mod camera;
+mod candidates;
+mod greedy;
+mod placement;
+mod problem;
+mod search;
+mod sights;
+mod table;
+
+pub use camera::{Camera, Lens, Level, Picture};
+pub use candidates::{
+    CAMERA_HEIGHT, CAMERA_TARGET_HEIGHT, Motion, Mount, MountingParams, Pose, ROOF_CAMERA_HEIGHT, WeightedArea,
+    counted_weights, ground_places, keep_within, roof_places,
+};
+pub use placement::{Goal, Placement, PlacementParams, place_cameras};
+pub use sights::{CoverageParams, CoverageReport, coverage, sees_private};
+pub use table::CoverageTable;

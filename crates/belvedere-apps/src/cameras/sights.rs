@@ -1,0 +1,171 @@
+//! What cameras cover: lines of sight for what is in their pictures.
+
+use super::camera::Camera;
+use super::table::{CoverageTable, check_size};
+use crate::targets::Targets;
+use crate::viewshed::{Observer, SightLimits, ViewshedParams, viewshed};
+use belvedere_core::query::{Answer, EarthParams, MedialScene, UnprovenAs};
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// When a target that is in a picture is covered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CoverageParams {
+    /// Least pixels per metre, 0 or more. Default 0.
+    pub density: f64,
+    /// How lines of sight run over the earth.
+    pub earth: EarthParams,
+    /// What to make of lines of sight that nothing blocks but that are not proven: they cover if they count as visible. Default: reported, which covers nothing.
+    pub unproven: UnprovenAs,
+}
+
+belvedere_data::setters!(CoverageParams {
+    with_density(density: f64),
+    with_earth(earth: EarthParams),
+    with_unproven(unproven: UnprovenAs),
+});
+
+impl Default for CoverageParams {
+    fn default() -> Self {
+        Self { density: 0.0, earth: EarthParams::default(), unproven: UnprovenAs::Reported }
+    }
+}
+
+/// Lines of sight between places of cameras and targets in the picture of one of their cameras.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct CoverageReport {
+    /// All of them.
+    pub lines_of_sight: usize,
+    /// Those that nothing blocks.
+    pub visible: usize,
+    /// Those that nothing blocks, but that are not proven.
+    pub unproven: usize,
+}
+
+/// Which of `cameras` cover which of `targets`; control counts cameras. Cameras at one place should follow each other: their lines of sight are asked once.
+///
+/// # Errors
+/// Those of [`viewshed`], and [`belvedere_data::Error::InvalidParameter`] for a table of more than 8 GiB.
+pub fn coverage(
+    scene: &MedialScene,
+    cameras: &[Camera],
+    targets: &Targets,
+    params: &CoverageParams,
+    control: &Control<'_>,
+) -> Result<(CoverageTable, CoverageReport)> {
+    check_size(cameras.len(), targets.len())?;
+    let asked = Asked { scene, targets, eastward: eastward(targets), params };
+    let groups: Vec<&[Camera]> = cameras.chunk_by(|a, b| a.eye == b.eye).collect();
+    let rows: Vec<(Vec<u64>, CoverageReport)> =
+        groups.par_iter().map(|group| asked.rows(group, control)).collect::<Result<_>>()?;
+    let mut report = CoverageReport::default();
+    for (_, of_group) in &rows {
+        report.lines_of_sight += of_group.lines_of_sight;
+        report.visible += of_group.visible;
+        report.unproven += of_group.unproven;
+    }
+    let bits = rows.into_iter().flat_map(|(bits, _)| bits).collect();
+    Ok((CoverageTable::of_bits(targets.len(), bits), report))
+}
+
+/// Which of `cameras` have any of the `private` places in their picture, at whatever distance and density: one that cannot be proven hidden counts as
+/// seen. Control counts cameras.
+///
+/// # Errors
+/// Those of [`coverage`].
+pub fn sees_private(
+    scene: &MedialScene,
+    cameras: &[Camera],
+    private: &Targets,
+    earth: &EarthParams,
+    control: &Control<'_>,
+) -> Result<Vec<bool>> {
+    let without_limits = |camera: &Camera| Camera {
+        limits: SightLimits { distance: SightLimits::default().distance, ..camera.limits },
+        ..*camera
+    };
+    let cameras: Vec<Camera> = cameras.iter().map(without_limits).collect();
+    let params = CoverageParams::default().with_earth(*earth).with_unproven(UnprovenAs::Visible);
+    // what is seen from behind is seen
+    let private = Targets { normals: None, ..private.clone() };
+    let (table, _) = coverage(scene, &cameras, &private, &params, control)?;
+    Ok((0..cameras.len()).map(|camera| table.covered_by(camera).next().is_some()).collect())
+}
+
+/// Targets, and how they are asked about.
+struct Asked<'a> {
+    scene: &'a MedialScene,
+    targets: &'a Targets,
+    eastward: Vec<(f32, u32)>,
+    params: &'a CoverageParams,
+}
+
+/// The targets that are asked about, from west to east.
+fn eastward(targets: &Targets) -> Vec<(f32, u32)> {
+    let mut order: Vec<(f32, u32)> = (0..)
+        .zip(&targets.positions)
+        .filter(|&(row, _)| targets.is_asked(row as usize))
+        .map(|(row, p)| (p[0], row))
+        .collect();
+    order.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    order
+}
+
+impl Asked<'_> {
+    /// The rows of cameras at one place.
+    fn rows(&self, cameras: &[Camera], control: &Control<'_>) -> Result<(Vec<u64>, CoverageReport)> {
+        control.check()?;
+        let words = self.targets.len().div_ceil(64);
+        let mut bits = vec![0_u64; words * cameras.len()];
+        let mut report = CoverageReport::default();
+        let Some(eye) = cameras.first().map(|camera| camera.eye).filter(|eye| eye.iter().all(|v| v.is_finite())) else {
+            control.advance(cameras.len());
+            return Ok((bits, report));
+        };
+        let near = self.within_reach(eye, cameras);
+        // pictures first: most targets are in none
+        let mut in_picture = Vec::new();
+        for &(_, row) in near {
+            let target = self.targets.positions[row as usize].map(f64::from);
+            let normal = self.targets.normals.as_ref().and_then(|normals| normals.get(row as usize));
+            let normal = normal.map(|normal| normal.map(f64::from));
+            let mut is_covered = false;
+            for (camera, row_bits) in cameras.iter().zip(bits.chunks_exact_mut(words)) {
+                if camera.covers(target, normal, self.params.density) {
+                    row_bits[row as usize / 64] |= 1 << (row % 64);
+                    is_covered = true;
+                }
+            }
+            if is_covered {
+                in_picture.push(row);
+            }
+        }
+        let positions: Vec<[f32; 3]> = in_picture.iter().map(|&row| self.targets.positions[row as usize]).collect();
+        let params = ViewshedParams::default().with_earth(self.params.earth).with_unproven(self.params.unproven);
+        let observer = Observer { eye, ..Observer::default() };
+        let seen = viewshed(self.scene, &[observer], &positions, &params, &Control::none())?;
+        report.lines_of_sight = positions.len();
+        for (&row, answer) in in_picture.iter().zip(&seen.answers) {
+            report.visible += usize::from(*answer == Answer::Visible);
+            report.unproven += usize::from(*answer == Answer::Unproven);
+            if *answer != Answer::Visible {
+                for row_bits in bits.chunks_exact_mut(words) {
+                    row_bits[row as usize / 64] &= !(1 << (row % 64));
+                }
+            }
+        }
+        control.advance(cameras.len());
+        Ok((bits, report))
+    }
+
+    /// The targets of the strip from north to south in which the cameras reach anything.
+    fn within_reach(&self, eye: [f64; 3], cameras: &[Camera]) -> &[(f32, u32)] {
+        let reach = cameras.iter().map(|camera| camera.reach(self.params.density)).fold(0.0, f64::max);
+        let from = self.eastward.partition_point(|(x, _)| f64::from(*x) < eye[0] - reach);
+        let to = self.eastward.partition_point(|(x, _)| f64::from(*x) <= eye[0] + reach);
+        &self.eastward[from..to]
+    }
+}
