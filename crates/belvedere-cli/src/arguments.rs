@@ -1,6 +1,7 @@
 //! What can be typed: flags as entered. What they build is made in `pipeline` and in each command. Texts longer than a line are in `help/`.
 
 mod balls;
+mod cameras;
 mod city;
 #[cfg(feature = "compare")]
 mod compare;
@@ -24,6 +25,7 @@ mod view_page;
 pub(crate) use balls::{
     Balls, Cleaning, MethodChoice, NeighborChoice, Normals, OrientChoice, Orienting, Shrinking, SideChoice,
 };
+pub(crate) use cameras::{CameraLens, CameraTargets, Cameras};
 pub(crate) use city::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};
 #[cfg(feature = "compare")]
 pub(crate) use compare::Compare;
@@ -143,6 +145,8 @@ pub(crate) enum Command {
     Viewshed(Viewshed),
     /// Measure how much of a landmark observers see
     Landmark(Landmark),
+    /// Choose where to put cameras, so that few of them cover much
+    Cameras(Cameras),
     /// Measure the space that is visible from a point: volume, area, openness
     Isovist(Isovist),
     /// Compute the horizon elevation angle in each direction around a point

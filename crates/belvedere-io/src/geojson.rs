@@ -7,6 +7,7 @@ use serde_json::{Map, Value};
 
 use crate::output::Output;
 use belvedere_data::crs::{Crs, GeographicProjection};
+use belvedere_data::report::rounded;
 use belvedere_data::{Error, Result};
 
 /// Decimals of a degree: a centimetre.
@@ -19,6 +20,15 @@ const METRE_DECIMALS: i32 = 3;
 pub struct Area {
     /// For each polygon its outer ring, counter-clockwise, and its holes, clockwise, each closed; easting and northing in metres.
     pub polygons: Vec<Vec<Vec<[f64; 2]>>>,
+    /// What is known of it.
+    pub properties: Map<String, Value>,
+}
+
+/// A point with properties.
+#[derive(Clone, Debug, Default)]
+pub struct Spot {
+    /// Easting, northing and height, metres.
+    pub place: [f64; 3],
     /// What is known of it.
     pub properties: Map<String, Value>,
 }
@@ -41,10 +51,35 @@ pub enum GeojsonCoordinates {
 /// # Source
 /// RFC 7946, sections 3.1.7, 3.3 and 4.
 pub fn write_geojson_areas<'a>(output: impl Into<Output<'a>>, areas: &[Area], crs: &Crs) -> Result<GeojsonCoordinates> {
+    write_geojson(output, &[], areas, crs)
+}
+
+/// The same with points before the areas. Their heights are in the unit of the heights of `crs`.
+///
+/// # Errors
+/// Those of [`write_geojson_areas`].
+pub fn write_geojson<'a>(
+    output: impl Into<Output<'a>>,
+    spots: &[Spot],
+    areas: &[Area],
+    crs: &Crs,
+) -> Result<GeojsonCoordinates> {
     let output = output.into();
     let projection = crs.geographic_projection().ok();
     let coordinates = if projection.is_some() { GeojsonCoordinates::Wgs84 } else { GeojsonCoordinates::OfTheFile };
     let mut collection = FeatureCollection::default();
+    for spot in spots {
+        let [x, y, z] = spot.place;
+        let on_map = written_ring(&[[x, y]], projection.as_ref(), crs, output.name())?;
+        let height = rounded(z / crs.metres_per_unit_xyz()[2], METRE_DECIMALS);
+        let position: Vec<f64> =
+            on_map.iter().flat_map(|position| position.as_slice()).copied().chain([height]).collect();
+        collection.features.push(Feature {
+            geometry: Some(Geometry::new_point(Position::from(position))),
+            properties: Some(spot.properties.clone()),
+            ..Feature::default()
+        });
+    }
     for area in areas {
         let mut polygons = Vec::with_capacity(area.polygons.len());
         for polygon in &area.polygons {
@@ -85,8 +120,7 @@ fn written_ring(
             }
             None => (place.map(|v| v / crs.metres_per_unit), METRE_DECIMALS),
         };
-        let scale = 10.0_f64.powi(decimals);
-        Ok(Position::from(values.map(|v| (v * scale).round() / scale)))
+        Ok(Position::from(values.map(|v| rounded(v, decimals))))
     };
     ring.iter().map(written).collect()
 }

@@ -23,11 +23,30 @@ pub struct ObserverRow {
     pub azimuth_deg: [Option<f64>; 2],
     /// Least and greatest elevation, degrees.
     pub elevation_deg: [Option<f64>; 2],
+    /// Azimuth that a camera looks to, degrees.
+    pub heading_deg: Option<f64>,
+    /// Angle below the horizon that a camera looks to, degrees.
+    pub tilt_deg: Option<f64>,
+    /// Horizontal field of view of a camera, degrees.
+    pub fov_deg: Option<f64>,
+    /// How much it counts as a target.
+    pub weight: Option<f64>,
 }
 
 /// Names of the columns, and of the properties in GeoJSON, in the order of [`from_values`].
-const NAMES: [&str; 7] =
-    ["height", "min_distance", "max_distance", "azimuth_from", "azimuth_to", "elevation_from", "elevation_to"];
+const NAMES: [&str; 11] = [
+    "height",
+    "min_distance",
+    "max_distance",
+    "azimuth_from",
+    "azimuth_to",
+    "elevation_from",
+    "elevation_to",
+    "heading",
+    "tilt",
+    "fov",
+    "weight",
+];
 
 /// What the rows of a table are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +61,7 @@ pub enum RowsAre {
 ///
 /// A table has columns x and y in the coordinates of the cloud's file, and may have z (height of the eye; empty where it follows from
 /// the ground), height (above the ground, metres), min_distance and max_distance (metres), azimuth_from, azimuth_to,
-/// elevation_from and elevation_to (degrees). GeoJSON has these as properties; points are observers, lines are paths, and
+/// elevation_from, elevation_to, heading, tilt and fov (degrees) and weight. GeoJSON has these as properties; points are observers, lines are paths, and
 /// the corners of polygons are walked around.
 ///
 /// # Errors
@@ -72,7 +91,7 @@ fn of_table(source: Source<'_>, path: &Path, crs: &Crs, rows_are: RowsAre) -> Re
     let scale = crs.metres_per_unit_xyz();
     let (x, y) = (table.full_column(path, "x")?, table.full_column(path, "y")?);
     let z = table.column(path, "z")?;
-    let mut columns: [Option<&[f64]>; 7] = [None; 7];
+    let mut columns: [Option<&[f64]>; NAMES.len()] = [None; NAMES.len()];
     for (column, name) in columns.iter_mut().zip(NAMES) {
         *column = table.column(path, name)?;
     }
@@ -101,7 +120,7 @@ fn of_geojson(source: Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<Observer
         if corners.is_empty() {
             continue;
         }
-        let mut values = [None; 7];
+        let mut values = [None; NAMES.len()];
         for (value, name) in values.iter_mut().zip(NAMES) {
             *value = number(&feature.properties, name, path)?;
         }
@@ -123,11 +142,11 @@ fn number(properties: &Map<String, Value>, name: &str, path: &Path) -> Result<Op
     }
 }
 
-fn from_values(corners: Vec<[f64; 3]>, values: [Option<f64>; 7], path: &Path) -> Result<ObserverRow> {
+fn from_values(corners: Vec<[f64; 3]>, values: [Option<f64>; NAMES.len()], path: &Path) -> Result<ObserverRow> {
     if let Some(corner) = corners.iter().find(|c| !(c[0].is_finite() && c[1].is_finite())) {
         return Err(Error::malformed(path, format!("an observer has the position {corner:?}")));
     }
-    let [height, least, most, azimuth_from, azimuth_to, elevation_from, elevation_to] =
+    let [height, least, most, azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt, fov, weight] =
         values.map(|value| value.filter(|v| !v.is_nan()));
     Ok(ObserverRow {
         corners,
@@ -135,5 +154,9 @@ fn from_values(corners: Vec<[f64; 3]>, values: [Option<f64>; 7], path: &Path) ->
         distance: [least, most],
         azimuth_deg: [azimuth_from, azimuth_to],
         elevation_deg: [elevation_from, elevation_to],
+        heading_deg: heading,
+        tilt_deg: tilt,
+        fov_deg: fov,
+        weight,
     })
 }

@@ -14,6 +14,16 @@ pub struct GridPolygon {
     pub cell_count: usize,
 }
 
+impl GridPolygon {
+    /// Its rim and holes with the corners at their `place`.
+    pub fn rings(&self, place: impl Fn([usize; 2]) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+        std::iter::once(&self.rim)
+            .chain(&self.holes)
+            .map(|ring| ring.iter().map(|&corner| place(corner)).collect())
+            .collect()
+    }
+}
+
 const NONE: u32 = u32::MAX;
 
 /// The outlines of the cells that are `true`, in the order of their first cells. Cells that touch at a corner only are different

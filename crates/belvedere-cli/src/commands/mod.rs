@@ -1,6 +1,7 @@
 //! One file per command.
 
 mod balls;
+mod cameras;
 mod city;
 mod comfort;
 #[cfg(feature = "compare")]
@@ -62,6 +63,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
         Command::LineOfSight(arguments) => line_of_sight::run(arguments, global),
         Command::Viewshed(arguments) => viewshed::run(arguments, global),
         Command::Landmark(arguments) => landmark::run(arguments, global),
+        Command::Cameras(arguments) => cameras::run(arguments, global),
         Command::Isovist(arguments) => isovist::run(arguments, global),
         Command::Horizon(arguments) => horizon::run(arguments, global),
         Command::Shadow(arguments) => shadow::run(arguments, global),

@@ -4,7 +4,7 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 26] = [
+const COMMANDS: [&str; 27] = [
     "demo",
     "simulate",
     "info",
@@ -16,6 +16,7 @@ const COMMANDS: [&str; 26] = [
     "line-of-sight",
     "viewshed",
     "landmark",
+    "cameras",
     "isovist",
     "horizon",
     "envelope",

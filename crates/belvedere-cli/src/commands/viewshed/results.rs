@@ -8,8 +8,8 @@ use belvedere::apps::viewshed::Viewshed;
 use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp_colors, write_png};
 use belvedere::ground::{Ground, MapGrid, highest_points};
 use belvedere::io::{
-    Area, ExtraColumn, ExtraValues, GridPolygon, WriteReport, outlines, write_cloud, write_geojson_areas,
-    write_npy_f32_2d, write_npy_u32_bands, write_tif_f32, write_tif_u8, write_tif_u16, write_tif_u32,
+    Area, ExtraColumn, ExtraValues, WriteReport, outlines, write_cloud, write_geojson_areas, write_npy_f32_2d,
+    write_npy_u32_bands, write_tif_f32, write_tif_u8, write_tif_u16, write_tif_u32,
 };
 use belvedere::query::Answer;
 use belvedere::raster::Raster;
@@ -125,20 +125,15 @@ fn write_areas(output: &Path, seen: &Viewshed, grid: &MapGrid, cloud: &PointClou
         let mut area = Area::default();
         area.properties.insert("answer".to_owned(), name.into());
         area.properties.insert("area_m2".to_owned(), (cell_count as f64 * grid.cell * grid.cell).into());
-        area.polygons = polygons.iter().map(|polygon| rings(polygon, grid, cloud)).collect();
+        let place = |corner: [usize; 2]| {
+            let [x, y] = grid.corner_at(corner);
+            [x + cloud.frame.origin[0], y + cloud.frame.origin[1]]
+        };
+        area.polygons = polygons.iter().map(|polygon| polygon.rings(place)).collect();
         areas.push(area);
     }
     write_geojson_areas(output, &areas, &cloud.frame.crs)?;
     Ok(())
-}
-
-/// Rim and holes in metres of the system of the cloud.
-fn rings(polygon: &GridPolygon, grid: &MapGrid, cloud: &PointCloud) -> Vec<Vec<[f64; 2]>> {
-    let place = |&corner: &[usize; 2]| {
-        let [x, y] = grid.corner_at(corner);
-        [x + cloud.frame.origin[0], y + cloud.frame.origin[1]]
-    };
-    std::iter::once(&polygon.rim).chain(&polygon.holes).map(|ring| ring.iter().map(place).collect()).collect()
 }
 
 fn write_map(

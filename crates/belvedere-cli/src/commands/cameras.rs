@@ -1,0 +1,169 @@
+//! `belvedere cameras`.
+
+mod places;
+mod results;
+mod what;
+
+use super::sights::{Proving, blockers, ground, ground_cloud};
+use super::{check_output, warn_of_geojson};
+use crate::arguments::{Cameras, Global, Usage};
+use crate::pipeline::{self, Points, Scene, flagged};
+use crate::progress::Stages;
+use crate::summary::{Summary, percent, rounded};
+use anyhow::{Result, bail};
+use belvedere::apps::cameras::{
+    CoverageParams, Goal, Lens, Level, Placement, PlacementParams, Pose, counted_weights, coverage, place_cameras,
+    sees_private,
+};
+use belvedere::apps::landmark::observer_cell_for;
+use belvedere::ground::MapGrid;
+use results::Found;
+
+pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
+    check(arguments)?;
+    let earth = arguments.earth.params()?;
+    let lens = places::lens(&arguments.lens)?;
+    let mounting = places::mounting(&arguments.lens, lens);
+    let mut stages = Stages::new(global);
+    let mut summary = Summary::default();
+    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
+    warn_of_geojson(&arguments.output, &scene.cloud.frame.crs, &mut summary);
+    let north = arguments.north.of_scene(&scene);
+    north.report(&mut summary);
+    let bounds = scene.model.bounds().on_map();
+    let cell = arguments.targets.cell.unwrap_or_else(|| observer_cell_for(bounds.0, bounds.1));
+    let grid = flagged("--cell", map_grid(&scene, cell))?;
+    let (cloud, ground_points) = ground_cloud(&arguments.targets.ground, &mut scene, &mut stages)?;
+    let ground = ground(&cloud, ground_points, grid, &mut stages, &mut summary)?;
+    let mut section = Summary::default();
+    let (blockers, unproven) = blockers(
+        &scene,
+        arguments.scene.profile.into(),
+        &arguments.giving_way,
+        Proving::IfItDecides,
+        &mut stages,
+        &mut section,
+    )?;
+    summary.add("lines_of_sight", section);
+    let site = what::Site { scene: &scene, cloud: &cloud, ground: &ground };
+    let targets = what::targets(&arguments.targets, &site, global.seed, &mut stages, &mut summary)?;
+
+    let standing = places::Standing { site: &site, blockers: &blockers, mounting: &mounting, north: north.of_grid };
+    let existing = match &arguments.existing {
+        Some(path) => standing.existing(path, arguments.camera_height, &mut stages, &mut summary)?,
+        None => Vec::new(),
+    };
+    let mut candidates = standing.candidates(arguments, ground_points, &mut stages, &mut summary)?;
+    let given = candidates.len();
+    if let Some(path) = &arguments.lens.private {
+        let private = what::private(path, &arguments.targets, &site, &mut summary)?;
+        let cameras: Vec<_> = candidates.iter().map(|pose| pose.camera).collect();
+        let seen = stages.run("testing private places", cameras.len(), |control| {
+            sees_private(&blockers, &cameras, &private, &earth, control)
+        })?;
+        let mut seen = seen.into_iter();
+        candidates.retain(|_| !seen.next().unwrap_or(true));
+    }
+    let mut section = Summary::default();
+    section.add("count", given).add("see_private_places", given - candidates.len()).add("existing", existing.len());
+    summary.add("cameras_to_choose_from", section);
+    if candidates.is_empty() {
+        bail!(
+            "no camera is left to choose from; see the summary of `--json` for the reasons, and give more --candidates"
+        );
+    }
+
+    let poses: Vec<Pose> = existing.iter().chain(&candidates).copied().collect();
+    let cameras: Vec<_> = poses.iter().map(|pose| pose.camera).collect();
+    let density = density(arguments, &lens)?;
+    let params = CoverageParams::default().with_density(density).with_earth(earth).with_unproven(unproven);
+    let (table, report) = stages.run("testing lines of sight", cameras.len(), |control| {
+        coverage(&blockers, &cameras, &targets, &params, control)
+    })?;
+    let mut section = Summary::default();
+    section.add("pixels_per_m", rounded(density, 3)).add_report(&report).add("covered_pairs", table.pair_count());
+    summary.add("pictures", section);
+
+    let goal = match (arguments.goal.count, arguments.goal.coverage) {
+        (_, Some(percent)) => Goal::Coverage(percent / 100.0),
+        (count, None) => Goal::Count(count.unwrap_or(0)),
+    };
+    let params = PlacementParams::new(goal)
+        .with_existing((0..existing.len()).collect())
+        .with_required(u32::try_from(arguments.required)?)
+        .with_search_limit(arguments.search_limit);
+    let weights = counted_weights(&targets);
+    let placed = stages.run("choosing cameras", 0, |control| place_cameras(&table, &weights, &params, control));
+    let placed = flagged("--coverage", placed)?;
+    add_placement(&mut summary, &placed, &weights, arguments.required);
+    let found = Found::new(&poses, existing.len(), &table, &placed, &targets, north.of_grid);
+    for output in &arguments.output {
+        stages.run("writing", 0, |_| found.write(output, &cloud))?;
+    }
+    if let Some(output) = &arguments.curve {
+        stages.run("writing", 0, |_| found.write_curve(output))?;
+    }
+    let written = arguments.output.iter().chain(&arguments.curve);
+    summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
+    summary.add_seconds(stages.into_seconds());
+    Ok(summary)
+}
+
+fn check(arguments: &Cameras) -> Result<()> {
+    for output in &arguments.output {
+        check_output("-o", output, &["geojson", "tif", "tiff", "png", "csv"])?;
+        let is_map = ["tif", "tiff", "png"].contains(&super::extension(output).as_str());
+        if is_map && !what::are_cells(&arguments.targets) {
+            let output = output.display();
+            return Err(Usage(format!("{output}: rasters and maps need cells as targets; use .csv or .geojson")).into());
+        }
+    }
+    if let Some(output) = &arguments.curve {
+        check_output("--curve", output, &["csv"])?;
+    }
+    if arguments.goal.coverage.is_some_and(|percent| percent > 100.0) {
+        return Err(Usage("--coverage must be a percentage, above 0 to 100".to_owned()).into());
+    }
+    what::check(&arguments.targets)
+}
+
+/// Pixels per metre that are required.
+fn density(arguments: &Cameras, lens: &Lens) -> Result<f64> {
+    match arguments.lens.density {
+        Some(density) if density.0 > 0.0 && !lens.is_flat() => {
+            Err(Usage("--density needs a field of view below 180 degrees; use --max-distance instead".to_owned())
+                .into())
+        }
+        Some(density) => Ok(density.0),
+        None => Ok(if lens.is_flat() { Level::Detect.pixels_per_metre() } else { 0.0 }),
+    }
+}
+
+fn map_grid(scene: &Scene, cell: f64) -> belvedere::Result<MapGrid> {
+    let (low, high) = scene.model.bounds().on_map();
+    let [x, y, _] = scene.cloud.frame.origin;
+    MapGrid::covering(low, high, cell, [x, y])
+}
+
+fn add_placement(summary: &mut Summary, placed: &Placement, weights: &[f64], required: usize) {
+    let in_percent = |share: f64| rounded(100.0 * share, 3);
+    let counting: Vec<u32> =
+        weights.iter().zip(&placed.counts).filter(|(weight, _)| **weight > 0.0).map(|(_, count)| *count).collect();
+    let with = |least: usize| counting.iter().filter(|count| **count as usize >= least).count();
+    let mut section = Summary::default();
+    section
+        .add("new_cameras", placed.chosen.len())
+        .add("coverage_percent", in_percent(placed.coverage()))
+        .add("best_possible_percent", in_percent(placed.bound))
+        .add("at_most_below_best_percent", in_percent(placed.gap()))
+        .add("is_proven_optimum", placed.is_optimal())
+        .add("all_candidates_percent", in_percent(placed.reachable))
+        .add("existing_only_percent", in_percent(placed.curve.first().copied().unwrap_or(0.0)))
+        .add("targets_covered_percent", percent(with(required), counting.len()))
+        .add("targets_never_covered", counting.len() - with(1))
+        .add("branches_searched", placed.branches);
+    if let Some(least) = placed.least_count {
+        section.add("least_possible_cameras", least);
+    }
+    summary.add("coverage", section);
+}
