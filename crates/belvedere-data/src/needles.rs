@@ -6,7 +6,7 @@ use crate::{Error, Result};
 /// Ways that a pulse may go: along three axes, to both sides.
 const WAYS: u8 = 6;
 
-/// The empty piece of each pulse before its first return, one per row: 16 bytes each where all are upright and reach the same height,
+/// The empty piece of each pulse before its first return, and pieces between its returns, one per row: 16 bytes each where all are upright and reach the same height,
 /// up to 21 otherwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NeedleColumns {
@@ -25,6 +25,25 @@ pub struct NeedleColumns {
 }
 
 impl NeedleColumns {
+    /// Adds the rows of `other`, which rises no higher.
+    pub fn append(&mut self, mut other: Self) {
+        let [own, added] = [self.starts.len(), other.starts.len()];
+        let has_lengths = !self.lengths.is_empty() || !other.lengths.is_empty();
+        let has_ways = !self.ways.is_empty() || !other.ways.is_empty();
+        for (columns, count) in [(&mut *self, own), (&mut other, added)] {
+            if has_lengths && columns.lengths.is_empty() {
+                columns.lengths = vec![f32::INFINITY; count];
+            }
+            if has_ways && columns.ways.is_empty() {
+                columns.ways = vec![0; count];
+            }
+        }
+        self.starts.append(&mut other.starts);
+        self.slopes.append(&mut other.slopes);
+        self.lengths.append(&mut other.lengths);
+        self.ways.append(&mut other.ways);
+    }
+
     /// Checks that columns are equally long and all positions within [`FARTHEST`], lengths (which may be infinite) above zero.
     ///
     /// # Errors

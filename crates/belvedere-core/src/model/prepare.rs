@@ -8,7 +8,9 @@ use crate::clean::clean;
 use crate::neighbors::NeighborIndex;
 use crate::normals::estimate::estimate_within;
 use crate::normals::{Normals, Orientation, OrientedCloud, Scatter, orient};
-use crate::pulses::{FoundBy, Means, NeedleColumns, Needles, Pulses, ScannerReport, group, locate};
+use crate::pulses::{
+    FoundBy, Means, NeedleColumns, Needles, Pulses, ScannerReport, group, locate,
+};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, length, sub, unit};
 use belvedere_data::{Attributes, Bounds, Error, PointCloud, Result};
@@ -41,6 +43,8 @@ pub struct OrientedSurvey {
 /// What carving needs beside an oriented cloud.
 pub(super) struct CarvingInput {
     pub(super) needles: Needles,
+    /// What pulses prove empty between their returns; it proves, and does not carve.
+    pub(super) between_returns: Option<Needles>,
     /// Classes, numbers and counts of returns.
     pub(super) attributes: Attributes,
     /// Whether pulses are only assumed.
@@ -84,7 +88,12 @@ impl OrientedSurvey {
     /// What pulses prove empty, where carving was wanted and possible and pulses are known rather than assumed.
     #[must_use]
     pub fn pulses(&self) -> Option<NeedleColumns> {
-        self.carving.as_ref().filter(|input| !input.is_assumed).map(|input| input.needles.to_columns())
+        let input = self.carving.as_ref().filter(|input| !input.is_assumed)?;
+        let mut columns = input.needles.to_columns();
+        if let Some(between) = &input.between_returns {
+            columns.append(between.to_columns());
+        }
+        Some(columns)
     }
 }
 
@@ -303,5 +312,13 @@ fn carving_input(
         }
         Err(error) => return Err(error),
     };
-    Ok((Some(CarvingInput { needles, attributes, is_assumed: scanner.is_assumed, pulses }), report))
+    // scanners on the ground see stems from the side, and runs in tiles ask for no proof
+    let may_prove = !scanner.is_assumed && params.facts.is_none() && !needles.are_from_the_ground();
+    let between_returns = match pulses.as_ref().filter(|_| may_prove) {
+        Some(pulses) => Some(needles.between_returns(cloud, pulses, &params.needles, control)?),
+        None => None,
+    };
+    report.between_returns = between_returns.as_ref().map_or(0, Needles::len);
+    let is_assumed = scanner.is_assumed;
+    Ok((Some(CarvingInput { needles, between_returns, attributes, is_assumed, pulses }), report))
 }

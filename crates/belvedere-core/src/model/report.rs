@@ -52,6 +52,9 @@ pub struct PulsesReport {
     /// How many of them prove space empty.
     #[serde(flatten)]
     pub needles: NeedleReport,
+    /// Ways between two returns of a pulse that prove space empty as well; they do not carve.
+    #[serde(rename = "ways_between_returns")]
+    pub between_returns: usize,
     /// Why the crowns of trees could not be measured, if they could not: what is missing to tell pulses apart.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crowns_not_measured: Option<String>,

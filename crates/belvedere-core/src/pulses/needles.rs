@@ -1,5 +1,6 @@
 //! Pulses as proven-empty lines, indexed so that a pencil of balls finds the one that cuts it most.
 
+mod between_returns;
 mod columns;
 mod proximity;
 mod tree;

@@ -7,6 +7,7 @@ mod animations;
 mod backends;
 mod ball_files;
 mod beams;
+mod between_returns;
 mod blocking;
 mod camera_coverage;
 mod camera_placement;

@@ -58,7 +58,9 @@ fn a_model_is_what_the_stages_make_one_after_the_other() {
     let made = carved_balls(&input, &CarvedParams::default(), &none).unwrap();
     assert_eq!(model.balls().centers, made.balls.centers);
     assert_eq!(model.balls().radii, made.balls.radii);
-    assert_eq!(model.pulses(), Some(&needles.to_columns()));
+    let mut columns = needles.to_columns();
+    columns.append(needles.between_returns(&clean, &pulses, &NeedleParams::default(), &none).unwrap().to_columns());
+    assert_eq!(model.pulses(), Some(&columns));
     let sources: Vec<u32> = made.balls.source.iter().map(|&row| kept[row as usize]).collect();
     assert_eq!(model.balls().source, sources, "rows of the cloud as given");
     assert!(matches!(report.interior_balls, Some(BallsReport::Carved(_))));
