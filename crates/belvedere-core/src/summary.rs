@@ -1,6 +1,7 @@
 //! What a cloud holds, in numbers: for people who ask what can be done with a file.
 
 mod facades;
+mod survey;
 
 use belvedere_data::Bounds;
 use belvedere_data::Result;
@@ -9,6 +10,7 @@ use belvedere_data::control::Control;
 use std::collections::BTreeMap;
 
 pub use facades::{FacadeSummary, Walls};
+pub use survey::SurveyKind;
 
 /// Counts and ranges of a cloud.
 #[derive(Clone, Debug, Default)]

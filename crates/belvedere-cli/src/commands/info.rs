@@ -7,7 +7,7 @@ use anyhow::Result;
 use belvedere::io::{ReadOptions, is_ball_file, read_balls, read_cloud};
 use belvedere::model::ModelParts;
 use belvedere::pulses::{FoundBy, LocateParams, Means, ScannerReport, locate};
-use belvedere::summary::{CloudSummary, FacadeSummary};
+use belvedere::summary::{CloudSummary, FacadeSummary, SurveyKind};
 use belvedere::{Error, PointCloud};
 
 pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
@@ -37,6 +37,17 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     summary.add("file", files.collect::<Vec<_>>());
     summary.add("points", cloud.len());
     let facts = stages.run("counting points", 0, |control| CloudSummary::of(&cloud, control))?;
+    let (positions, scanner) = match stages.run("estimating scanner positions", 0, |control| {
+        locate(&cloud, &Means::Automatic, &LocateParams::default(), control)
+    }) {
+        Ok(found) => found,
+        Err(error @ Error::MissingAttribute { .. }) => {
+            let remarks = vec![error.to_string()];
+            (Vec::new(), ScannerReport { point_count: cloud.len(), remarks, ..ScannerReport::default() })
+        }
+        Err(error) => return Err(error.into()),
+    };
+    summary.add("survey", SurveyKind::of(&cloud, &facts, &positions, &scanner).to_string());
     if let Some((low, high)) = facts.bounds {
         summary.add("min_corner", low.map(|v| rounded(v, 3)).to_vec());
         summary.add("max_corner", high.map(|v| rounded(v, 3)).to_vec());
@@ -66,15 +77,6 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
             summary.add("pulses_per_m2_of_covered_ground", rounded(pulses.count / facts.occupied_area, 2));
         }
     }
-    let scanner = match stages.run("estimating scanner positions", 0, |control| {
-        locate(&cloud, &Means::Automatic, &LocateParams::default(), control)
-    }) {
-        Ok((_, report)) => report,
-        Err(error @ Error::MissingAttribute { .. }) => {
-            ScannerReport { point_count: cloud.len(), remarks: vec![error.to_string()], ..ScannerReport::default() }
-        }
-        Err(error) => return Err(error.into()),
-    };
     summary.add("scanner", Summary::of(&scanner));
     summary.add("scanner_by_line", sections(&scanner.lines()));
     summary.add("reading", Summary::of(&report));

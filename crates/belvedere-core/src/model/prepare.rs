@@ -9,7 +9,7 @@ use crate::neighbors::NeighborIndex;
 use crate::normals::estimate::estimate_within;
 use crate::normals::{Normals, Orientation, OrientedCloud, Scatter, orient};
 use crate::pulses::{
-    FoundBy, Means, NeedleColumns, Needles, Pulses, ScannerReport, group, locate,
+    FoundBy, LEAST_ASSUMED_SHARE, Means, NeedleColumns, Needles, Pulses, ScannerReport, group, locate,
 };
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, length, sub, unit};
@@ -18,9 +18,6 @@ use std::borrow::Cow;
 
 /// Points no farther from a line than this lie on it, metres: the step of coordinates in most files.
 const LINE_WIDTH: f64 = 1e-3;
-/// Share of the points with nothing above them from which on vertical pulses are a fair assumption. Clouds of aircraft have three
-/// quarters or more; where the scanner stood among walls it is a fifth, and carving by pulses that never were blocks most of what is visible.
-const LEAST_ASSUMED_SHARE: f64 = 0.5;
 
 /// A cloud that is ready for balls: cleaned, with outward normals, an index, and what its pulses prove empty.
 pub struct OrientedSurvey {

@@ -7,6 +7,7 @@ mod tree;
 
 pub use belvedere_data::needles::NeedleColumns;
 pub(crate) use columns::lower_ends;
+pub(crate) use proximity::come_from_the_ground;
 
 use crate::neighbors::Tangent;
 use belvedere_data::control::{Control, Stop};

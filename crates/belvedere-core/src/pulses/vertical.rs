@@ -7,6 +7,10 @@ use rayon::prelude::*;
 /// How far up the assumed scanner hangs over its point, metres: as high as surveys are flown, so that it is above everything.
 const HEIGHT: f32 = 1000.0;
 
+/// Share of the points with nothing above them from which on vertical pulses are a fair assumption. Clouds of aircraft have three
+/// quarters or more; where the scanner stood among walls it is a fifth, and carving by pulses that never were blocks most of what is visible.
+pub(crate) const LEAST_ASSUMED_SHARE: f64 = 0.5;
+
 /// Which points count as ends of vertical pulses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VerticalParams {

@@ -56,6 +56,7 @@ mod slender;
 mod solar_envelope;
 mod sun;
 mod sun_hours;
+mod survey_kinds;
 mod tau_balls;
 mod thin_surfaces;
 mod top_surface;

@@ -2,7 +2,7 @@
 
 use super::tree::{Node, Way};
 use super::{GAP_M, Needle, Needles};
-use belvedere_data::vector::{dot, sub};
+use belvedere_data::vector::{dot, sub, unit};
 use std::ops::ControlFlow;
 
 /// Pieces of a line shorter than this are not worth a step, metres: more than boxes of the tree are padded by, so that the needles of a
@@ -41,8 +41,7 @@ impl Needles {
     /// Whether they come from a scanner on the ground: many are too flat for an aircraft.
     #[must_use]
     pub fn are_from_the_ground(&self) -> bool {
-        let flat_count = self.len() - self.upright_count();
-        !self.is_empty() && flat_count as f64 >= LEAST_FLAT_SHARE * self.len() as f64
+        are_flat(self.len() - self.upright_count(), self.len())
     }
 
     /// Height that no needle rises above, local metres.
@@ -184,6 +183,23 @@ impl Needles {
         }
         state.1
     }
+}
+
+/// The same of pulses that are no needles yet: first returns, and where the scanner was, local metres. Those with an unknown scanner do not
+/// count.
+pub(crate) fn come_from_the_ground(pulses: impl Iterator<Item = ([f32; 3], [f32; 3])>) -> bool {
+    let way = |(end, scanner): ([f32; 3], [f32; 3])| Way::of(unit(sub(scanner.map(f64::from), end.map(f64::from)))?);
+    let (mut flat_count, mut count) = (0, 0);
+    for way in pulses.filter_map(way) {
+        count += 1;
+        flat_count += usize::from(way != Way::UP);
+    }
+    are_flat(flat_count, count)
+}
+
+/// Whether so many of all pulses are flat that no aircraft sent them.
+fn are_flat(flat_count: usize, count: usize) -> bool {
+    count > 0 && flat_count as f64 >= LEAST_FLAT_SHARE * count as f64
 }
 
 /// Whether the box of a node of upright needles lies over a rectangle at some height.
