@@ -4,6 +4,7 @@
 
 mod animation;
 mod canvas;
+mod curves_picture;
 mod depth_picture;
 mod font;
 mod horizon_picture;
@@ -15,6 +16,7 @@ mod profile_picture;
 pub use animation::write_apng;
 pub use belvedere_io::{class_color, in_shadow, ramp_colors};
 pub use canvas::{Canvas, Colors};
+pub use curves_picture::{Curves, curves_picture};
 pub use depth_picture::{camera_picture, depth_picture, panorama_picture};
 pub use horizon_picture::horizon_picture;
 pub use map_picture::{MapLegend, MapPicture, map_picture};

@@ -38,6 +38,7 @@ pub use queries::{QuerySet, QuerySite, Targets};
 pub use scan::airborne::{AirborneParams, DENSITY, scan_airborne};
 pub use scan::beam::BeamParams;
 pub use scan::mobile::{MobileParams, scan_mobile};
+pub use scan::regimes::Regime;
 pub use scan::scan_pattern::{MirrorMotion, ScanPattern};
 pub use scan::terrestrial::{Stations, TerrestrialParams, scan_terrestrial};
 pub use scan::{Scan, ScanReport, SensorPath};

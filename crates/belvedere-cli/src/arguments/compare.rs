@@ -1,9 +1,9 @@
 //! Flags of `compare`.
 
-use super::towns::{density, presets, within};
+use super::towns::{density, presets, regimes, within};
 use super::{Usage, at_most};
 use belvedere_baselines::methods::Listing;
-use belvedere_scenes::Preset;
+use belvedere_scenes::{Preset, Regime};
 use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -20,9 +20,14 @@ pub(crate) struct Compare {
     /// Side of a town in metres, 60 to 5000
     #[arg(long, value_name = "M", default_value_t = 150.0, value_parser = within::<60, 5000>, help_heading = "Simulated towns")]
     pub(crate) extent: f64,
-    /// Pulses per square metre, all strips together, 0.1 to 200
-    #[arg(long, value_name = "N", default_value_t = 10.0, value_parser = density, help_heading = "Simulated towns")]
-    pub(crate) density: f64,
+    /// Pulses per square metre, all strips together, 0.1 to 200, separated by commas
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "10", value_parser = density, help_heading = "Simulated towns")]
+    pub(crate) density: Vec<f64>,
+    /// Simulated scanners, separated by commas
+    ///
+    /// Each but the first differs from it in one way. tripods and car have no density. A car needs a street: --extent 100 or more.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "air", value_parser = regimes(), help_heading = "Simulated towns")]
+    pub(crate) regimes: Vec<Regime>,
     /// Point clouds of a real place, instead of simulated towns; needs --mesh
     #[arg(long = "clouds", value_name = "CLOUD", num_args = 1.., help_heading = "Real place with ground truth")]
     pub(crate) scene: Vec<PathBuf>,

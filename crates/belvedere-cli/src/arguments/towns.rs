@@ -1,6 +1,6 @@
 //! Flags of `simulate`, and what towns are given by.
 
-use belvedere_scenes::{EXTENT, Preset};
+use belvedere_scenes::{EXTENT, Preset, Regime};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -109,6 +109,14 @@ pub(super) fn presets() -> impl TypedValueParser<Value = Preset> {
     PossibleValuesParser::new(Preset::ALL.map(Preset::name)).map(|name| {
         // the parser lets no other name through
         Preset::ALL.into_iter().find(|preset| preset.name() == name).unwrap_or(Preset::Town)
+    })
+}
+
+/// Scanners by their names.
+pub(super) fn regimes() -> impl TypedValueParser<Value = Regime> {
+    PossibleValuesParser::new(Regime::ALL.map(Regime::name)).map(|name| {
+        // the parser lets no other name through
+        Regime::ALL.into_iter().find(|regime| regime.name() == name).unwrap_or(Regime::Air)
     })
 }
 

@@ -193,3 +193,29 @@ fn what_cannot_be_compared_is_refused() {
     place.refusal(1, "compare -o missing/out", &["missing"]);
     place.refusal(2, "compare --extent 60 --target-count 10 --methods magic -o out", &["magic", "paper-cone"]);
 }
+
+#[test]
+fn scanners_and_densities_are_kept_apart() {
+    let place = Workplace::new();
+    let run = "compare --extent 60 --regimes air,conical --density 2,4 --target-count 300 --methods dsm -o out";
+    let results = &place.summary(run)["results"];
+    let scanners: Vec<(&str, f64)> = results["methods"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|result| result["method"] == "dsm")
+        .map(|result| {
+            let scanner = &result["scanner"];
+            (scanner["name"].as_str().unwrap(), scanner["pulses_per_m2"].as_f64().unwrap())
+        })
+        .collect();
+    assert_eq!(scanners, [("air", 2.0), ("air", 4.0), ("conical", 2.0), ("conical", 4.0)]);
+    let points = |at: usize| results["places"][at]["points"].as_f64().unwrap();
+    assert!((points(1) / points(0) - 2.0).abs() < 0.2 && (points(3) / points(2) - 2.0).abs() < 0.2);
+    let page = fs::read_to_string(place.path("out/report.md")).unwrap();
+    assert!(page.contains("by scanner") && page.contains("| conical, 4 pulses/m² |"), "{page}");
+    for picture in ["errors_by_density.png", "town-60m-1-conical-4--dsm.png"] {
+        assert!(fs::read(place.path(&format!("out/pictures/{picture}"))).unwrap().starts_with(b"\x89PNG"));
+    }
+    place.refusal(2, "compare --regimes balloon -o out", &["--regimes", "balloon", "conical"]);
+}

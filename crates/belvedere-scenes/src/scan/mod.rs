@@ -5,6 +5,7 @@ pub(crate) mod beam;
 pub(crate) mod flight;
 pub(crate) mod mobile;
 pub(crate) mod recording;
+pub(crate) mod regimes;
 pub(crate) mod scan_pattern;
 pub(crate) mod stations;
 pub(crate) mod terrestrial;

@@ -18,8 +18,8 @@ use belvedere::summary::{CloudSummary, FacadeSummary};
 use belvedere::trajectory::Trajectory;
 use belvedere::{GpsTimeKind, PointCloud};
 use belvedere_scenes::{
-    AirborneParams, Material, MirrorMotion, Preset, Scan, ScanPattern, Scene, TerrestrialParams, TownParams, Truth,
-    scan_airborne, scan_terrestrial, town,
+    AirborneParams, Material, MirrorMotion, Preset, Regime, Scan, ScanPattern, Scene, TerrestrialParams, TownParams,
+    Truth, scan_airborne, scan_terrestrial, town,
 };
 
 /// Cloud and trajectory as they come back from files: positions of the cloud in file coordinates, and of the scanner at the
@@ -347,4 +347,20 @@ fn cityjson_parts_are_those_given_and_surfaces_say_what_they_are() {
     assert!((kinds["OuterCeilingSurface"] + 20.0).abs() < 1e-6, "{kinds:?}");
     assert!(roof > 1000.0 && (roof + ground - 20.0).abs() < 1e-6 * roof, "{kinds:?}");
     assert!(kinds["WallSurface"].abs() < 1e-6 * roof && kinds.len() == 4, "{kinds:?}");
+}
+
+#[test]
+fn scanners_that_fly_hit_the_ground_as_densely_as_wanted_and_others_from_where_they_stand() {
+    for regime in Regime::ALL {
+        let params = regime.town(Preset::Town.params(100.0, 3));
+        let scene = town(&params);
+        let scan = regime.scan(&scene, &params, 2.0);
+        let highest = scan.sensor_path.positions.iter().map(|p| p[2]).fold(f64::NEG_INFINITY, f64::max);
+        let density = scan.return_number.iter().filter(|&&number| number == 1).count() as f64 / 1e4;
+        if regime.flies() {
+            assert!(highest > 50.0 && (density / 2.0 - 1.0).abs() < 0.25, "{regime:?}: {highest} m, {density}");
+        } else {
+            assert!(highest < 20.0 && density > 20.0, "{regime:?}: {highest} m, {density}");
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use super::case::{Case, STREET, STREET_GROUP, Set};
 use super::memory::{reset_peak, resident_and_peak_mib};
 use super::results::{AblationRow, AnswerRow, AuditRow, Cost, MethodResult, Rated, Score};
+use super::scanners::Scanner;
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, NO_TOUCH};
 use belvedere::query::{Answer, UnprovenAs, Visibility};
@@ -32,12 +33,13 @@ pub(super) struct Shown {
 pub(super) fn judge(
     case: &Case,
     method: &Method<'_>,
-    (place, made_from): (&str, String),
+    (place, made_from, scanner): (&str, String, Option<Scanner>),
     seed: u64,
 ) -> (MethodResult, Option<Shown>) {
     let mut result = MethodResult {
         made_from,
         place: place.to_owned(),
+        scanner,
         method: method.key.clone(),
         title: method.title.clone(),
         page: method.page.to_owned(),

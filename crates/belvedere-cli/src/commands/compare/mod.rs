@@ -8,6 +8,7 @@ mod pictures;
 mod place;
 mod report;
 mod results;
+mod scanners;
 mod table;
 
 use crate::arguments::{Compare, Global, Usage};
@@ -109,8 +110,9 @@ fn compare_on(
             found.methods.push(result);
             continue;
         }
-        let (result, shown) = stages
-            .run("comparing methods", 0, |_| judge::judge(&case, method, (&name, made_from.clone()), global.seed));
+        let (result, shown) = stages.run("comparing methods", 0, |_| {
+            judge::judge(&case, method, (&name, made_from.clone(), place.scanner()), global.seed)
+        });
         if global.verbose {
             crate::summary::note(&format!("{name}: {}", method.title));
         }

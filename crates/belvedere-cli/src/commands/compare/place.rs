@@ -1,6 +1,7 @@
 //! Places to compare on: simulated towns, or a cloud with its exact mesh.
 
 use super::case::Ingredients;
+use super::scanners::Scanner;
 use crate::arguments::Compare;
 use crate::simulated::cloud_of;
 use anyhow::Result;
@@ -9,7 +10,7 @@ use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud, read_mesh, read_trajectory};
 use belvedere::trajectory::Trajectory;
 use belvedere_baselines::Model;
-use belvedere_scenes::{AirborneParams, Material, Preset, Scene, blocks, scan_airborne, town};
+use belvedere_scenes::{Material, Preset, Regime, Scene, blocks, town};
 use std::path::{Path, PathBuf};
 
 /// Names of the models of simulated towns.
@@ -17,7 +18,7 @@ pub(super) const MODELS: [&str; 3] = ["blocks", "no-trees", "exact"];
 
 /// A place by its description.
 pub(super) enum Place {
-    Simulated { preset: Preset, extent: f64, seed: u64, pulses_per_m2: f64 },
+    Simulated { preset: Preset, extent: f64, seed: u64, regime: Regime, pulses_per_m2: f64, is_only_scanner: bool },
     Given { clouds: Vec<PathBuf>, mesh: PathBuf, trajectory: Option<PathBuf>, models: Vec<(String, PathBuf)> },
 }
 
@@ -32,31 +33,62 @@ impl Place {
         // held-out pulses alone need no town, unless one was asked for
         let usual = if arguments.held_out.is_empty() { &[Preset::Town][..] } else { &[] };
         let presets = if arguments.presets.is_empty() { usual } else { &arguments.presets }.iter();
-        presets
-            .flat_map(|&preset| {
-                arguments.seeds.iter().map(move |&seed| Self::Simulated {
+        let scanners: Vec<(Regime, f64)> = arguments
+            .regimes
+            .iter()
+            .flat_map(|&regime| {
+                let densities = if regime.flies() { &arguments.density[..] } else { &arguments.density[..1] };
+                densities.iter().map(move |&density| (regime, density))
+            })
+            .collect();
+        let mut places = Vec::new();
+        for &preset in presets {
+            for &seed in &arguments.seeds {
+                places.extend(scanners.iter().map(|&(regime, pulses_per_m2)| Self::Simulated {
                     preset,
                     extent: arguments.extent,
                     seed,
-                    pulses_per_m2: arguments.density,
-                })
-            })
-            .collect()
+                    regime,
+                    pulses_per_m2,
+                    is_only_scanner: scanners.len() == 1,
+                }));
+            }
+        }
+        places
     }
 
     /// Name in tables and file names.
     pub(super) fn name(&self) -> String {
         match self {
-            Self::Simulated { preset, extent, seed, .. } => format!("{}-{extent:.0}m-{seed}", preset.name()),
+            Self::Simulated { preset, extent, seed, regime, pulses_per_m2, is_only_scanner } => {
+                let town = format!("{}-{extent:.0}m-{seed}", preset.name());
+                match (is_only_scanner, regime.flies()) {
+                    (true, _) => town,
+                    (false, true) => format!("{town}-{}-{pulses_per_m2}", regime.name()),
+                    (false, false) => format!("{town}-{}", regime.name()),
+                }
+            }
             Self::Given { clouds, .. } => file_name(clouds.first().map_or(Path::new("scene"), PathBuf::as_path)),
+        }
+    }
+
+    /// What scans it, where that is simulated.
+    pub(super) fn scanner(&self) -> Option<Scanner> {
+        match self {
+            Self::Simulated { regime, pulses_per_m2, .. } => {
+                let pulses_per_m2 = regime.flies().then_some(*pulses_per_m2);
+                Some(Scanner { name: regime.name().to_owned(), pulses_per_m2 })
+            }
+            Self::Given { .. } => None,
         }
     }
 
     /// Everything that its results depend on.
     pub(super) fn made_from(&self) -> String {
         match self {
-            Self::Simulated { preset, extent, seed, pulses_per_m2 } => {
-                format!("{} {extent} m, seed {seed}, {pulses_per_m2} pulses/m2", preset.name())
+            Self::Simulated { preset, extent, seed, regime, pulses_per_m2, .. } => {
+                let (preset, regime) = (preset.name(), regime.name());
+                format!("{preset} {extent} m, seed {seed}, {regime}, {pulses_per_m2} pulses/m2")
             }
             Self::Given { clouds, mesh, trajectory, models } => {
                 let files = clouds.iter().chain([mesh]).chain(trajectory).chain(models.iter().map(|(_, file)| file));
@@ -68,10 +100,10 @@ impl Place {
     /// Simulates or reads it.
     pub(super) fn make(&self) -> Result<Ingredients> {
         match self {
-            Self::Simulated { preset, extent, seed, pulses_per_m2 } => {
-                let scene = town(&preset.params(*extent, *seed));
-                let params = AirborneParams { seed: *seed, ..AirborneParams::covering(&scene, *pulses_per_m2) };
-                let scan = scan_airborne(&scene, &params);
+            Self::Simulated { preset, extent, seed, regime, pulses_per_m2, .. } => {
+                let params = regime.town(preset.params(*extent, *seed));
+                let scene = town(&params);
+                let scan = regime.scan(&scene, &params, *pulses_per_m2);
                 let cloud = cloud_of(&scan)?;
                 let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
                 let (trajectory, _) = Trajectory::from_records(path.collect());

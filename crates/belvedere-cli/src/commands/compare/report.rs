@@ -3,6 +3,7 @@
 use super::case::{STREET, STREET_GROUP};
 use super::pictures::LEGEND;
 use super::results::{AnswerRow, HeldOutResult, MethodResult, PlaceResult, Rated, Score, keep};
+use super::scanners::PICTURE as CURVES;
 use super::table::Table;
 use anyhow::{Context, Result, bail};
 use belvedere::io::atomic;
@@ -61,10 +62,11 @@ impl Found {
     /// Writes report.json, report.md and report.html into `folder`, and the tables into `page`.
     pub(super) fn write(&self, folder: &Path, page: Option<&Path>) -> Result<()> {
         keep(&folder.join("report.json"), &self.to_json()?)?;
+        let has_curves = self.write_curves(&folder.join("pictures"))?;
         let tables = self.tables();
         let markdown: String = tables.iter().map(Table::to_markdown).collect();
         write_text(&folder.join("report.md"), &markdown)?;
-        write_text(&folder.join("report.html"), &self.to_html(&tables))?;
+        write_text(&folder.join("report.html"), &self.to_html(&tables, has_curves))?;
         if let Some(page) = page {
             let text = std::fs::read_to_string(page).with_context(|| page.display().to_string())?;
             let parts = text
@@ -117,13 +119,15 @@ impl Found {
             });
             table.add(title, rates.chain(self.cost_cells(key)));
         }
-        let essence = if self.methods.is_empty() { String::new() } else { table.to_text() };
+        let by_scanner = self.by_scanner().map(|table| table.to_text()).unwrap_or_default();
+        let essence = if self.methods.is_empty() { String::new() } else { by_scanner + &table.to_text() };
         essence + &self.held_out_tables().iter().map(Table::to_text).collect::<String>()
     }
 
     fn tables(&self) -> Vec<Table> {
         let mut tables = Vec::new();
         if !self.methods.is_empty() {
+            tables.extend(self.by_scanner());
             tables.extend([self.balanced(), self.errors(), self.street(), self.worth_of_answers(), self.costs()]);
             tables.extend([self.place_table(), self.base_rates()]);
             tables.extend([self.audit(), self.ablation()]);
@@ -137,7 +141,7 @@ impl Found {
     }
 
     /// Keys and titles of all methods, in the order in which they occur first.
-    fn method_names(&self) -> Vec<(&str, &str)> {
+    pub(super) fn method_names(&self) -> Vec<(&str, &str)> {
         let mut names: Vec<(&str, &str)> = Vec::new();
         for result in &self.methods {
             if !names.iter().any(|(key, _)| *key == result.method) {
@@ -162,6 +166,12 @@ impl Found {
         let rated: Vec<Interval> =
             scores.filter_map(pick).map(|[value, low, high]| Interval { value, low, high }).collect();
         over_places(&rated, SEED)
+    }
+
+    /// False-blocked and false-visible of a method on one set and group of views, averaged over places.
+    pub(super) fn error_shares(&self, method: &str, asked: (&str, &str)) -> [Option<f64>; 2] {
+        let rate = |pick: &dyn Fn(&Score) -> Option<Rated>| self.rate(method, asked, pick).map(|i| i.value);
+        [rate(&|score| score.false_blocked), rate(&|score| score.false_visible)]
     }
 
     fn balanced(&self) -> Table {
@@ -430,8 +440,14 @@ impl Found {
         table
     }
 
-    fn to_html(&self, tables: &[Table]) -> String {
-        let mut body: String = tables.iter().map(Table::to_html).collect();
+    fn to_html(&self, tables: &[Table], has_curves: bool) -> String {
+        let mut body = String::new();
+        if has_curves {
+            body.push_str(&format!(
+                "<img src=\"pictures/{CURVES}\" alt=\"Errors by density\" style=\"max-width:100%\">\n"
+            ));
+        }
+        body.extend(tables.iter().map(Table::to_html));
         for place in &self.places {
             body.push_str(&format!(
                 "<h2>Pedestrians of {}, sun in the south-west</h2><p>{LEGEND}</p>\n<div>",
@@ -464,7 +480,7 @@ fn percent(share: f64) -> String {
     format!("{:.1}", 100.0 * share)
 }
 
-fn pair(first: Option<f64>, second: Option<f64>) -> String {
+pub(super) fn pair(first: Option<f64>, second: Option<f64>) -> String {
     match (first, second) {
         (None, None) => "–".to_owned(),
         (first, second) => {

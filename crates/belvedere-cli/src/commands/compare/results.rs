@@ -1,5 +1,6 @@
 //! What was found, as kept in JSON files so that an interrupted comparison goes on where it stopped.
 
+use super::scanners::Scanner;
 use anyhow::{Context, Result};
 use belvedere::io::atomic;
 use belvedere_baselines::agreement::Counts;
@@ -52,6 +53,8 @@ pub(super) struct MethodResult {
     /// What the result depends on; another one makes it stale.
     pub(super) made_from: String,
     pub(super) place: String,
+    /// What scanned it, where that was simulated.
+    pub(super) scanner: Option<Scanner>,
     pub(super) method: String,
     pub(super) title: String,
     pub(super) page: String,
