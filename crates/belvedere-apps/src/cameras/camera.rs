@@ -1,6 +1,7 @@
 //! What a camera can have in its picture, and how finely.
 
 use crate::viewshed::SightLimits;
+use belvedere_data::report::rounded;
 use belvedere_data::vector::{dot, length, sub};
 use belvedere_data::{Error, Result};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -80,8 +81,9 @@ impl Lens {
     /// # Errors
     /// [`Error::InvalidParameter`] for angles and pixels outside their range.
     pub fn validate(&self) -> Result<()> {
-        let invalid =
-            |name, value: f64, expected| Err(Error::InvalidParameter { name, value: format!("{value:.6}"), expected });
+        let invalid = |name, value: f64, expected| {
+            Err(Error::InvalidParameter { name, value: rounded(value, 6).to_string(), expected })
+        };
         if !(self.width > 0.0 && self.width <= TAU + 1e-9) {
             return invalid("field of view in degrees", self.width.to_degrees(), "above 0 to 360 degrees");
         }

@@ -44,10 +44,13 @@ pub(crate) struct Cameras {
     pub(crate) north: North,
     /// Cameras (.geojson), cameras per cell (.tif), map (.png) or a table of the targets (.csv); repeatable
     ///
-    /// .geojson: a point for each camera with its pose and what it adds, and the cells that it covers as areas, in WGS 84. .tif: the number of cameras that cover
+    /// .geojson: a point in WGS 84 for each camera with its pose and what it adds; it can be used as --existing. .tif: the number of cameras that cover
     /// each cell, 0 for blind spots, nodata 65535. .csv: a row for each target with the number of cameras that cover it and their numbers.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
+    /// Also write the cells that each camera covers as areas in WGS 84 (.geojson)
+    #[arg(long, value_name = "OUT", help_heading = "Result")]
+    pub(crate) footprints: Option<PathBuf>,
     /// Also write the coverage after each camera (.csv)
     #[arg(long, value_name = "OUT", help_heading = "Result")]
     pub(crate) curve: Option<PathBuf>,
@@ -89,9 +92,9 @@ pub(crate) struct CameraLens {
     /// Pixels across the picture [default: 1920]
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub(crate) pixels: Option<usize>,
-    /// Required pixels per metre: a number, or monitor, detect, observe, recognise or identify; none for no requirement
+    /// Required pixels per metre: a number, a level such as identify, or none [default: detect; none where --fov is 180 or more]
     ///
-    /// The levels of EN 62676-4 are 12.5, 25, 62.5, 125 and 250. Default: detect, and none where --fov is 180 or more.
+    /// The levels of EN 62676-4 are monitor (12.5), detect (25), observe (62.5), recognise (125) and identify (250).
     #[arg(long, value_name = "LEVEL")]
     pub(crate) density: Option<Density>,
     /// Number of headings to choose from at each place, evenly spread, 1 to 360 [default: 8]
@@ -131,7 +134,7 @@ pub(crate) struct CameraGoal {
 #[derive(Args)]
 #[command(next_help_heading = "Targets [default: cells on the ground]")]
 pub(crate) struct CameraTargets {
-    /// Targets: polygons with cells on the ground in them (.geojson), points (.csv .geojson or a cloud), or a mesh (.obj .json .ply with faces)
+    /// Polygons whose cells are the targets (.geojson), points (.csv .geojson or a cloud), or a mesh (.obj .json .ply)
     ///
     /// Column or property weight: how much each target counts; a cell in several polygons has the largest. Surfaces with normals (meshes, points of a cloud) count
     /// with the pixels per metre at the angle at which they are seen, and not from behind.

@@ -18,6 +18,7 @@ use belvedere::apps::cameras::{
 use belvedere::apps::landmark::observer_cell_for;
 use belvedere::ground::MapGrid;
 use results::Found;
+use std::path::PathBuf;
 
 pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     check(arguments)?;
@@ -27,7 +28,9 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
-    warn_of_geojson(&arguments.output, &scene.cloud.frame.crs, &mut summary);
+    let written: Vec<PathBuf> =
+        arguments.output.iter().chain(&arguments.curve).chain(&arguments.footprints).cloned().collect();
+    warn_of_geojson(&written, &scene.cloud.frame.crs, &mut summary);
     let north = arguments.north.of_scene(&scene);
     north.report(&mut summary);
     let bounds = scene.model.bounds().on_map();
@@ -103,8 +106,10 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     if let Some(output) = &arguments.curve {
         stages.run("writing", 0, |_| found.write_curve(output))?;
     }
-    let written = arguments.output.iter().chain(&arguments.curve);
-    summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
+    if let Some(output) = &arguments.footprints {
+        stages.run("writing", 0, |_| found.write_footprints(output))?;
+    }
+    summary.add("written", written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
 }
@@ -120,6 +125,12 @@ fn check(arguments: &Cameras) -> Result<()> {
     }
     if let Some(output) = &arguments.curve {
         check_output("--curve", output, &["csv"])?;
+    }
+    if let Some(output) = &arguments.footprints {
+        check_output("--footprints", output, &["geojson"])?;
+        if !what::are_cells(&arguments.targets) {
+            return Err(Usage("--footprints needs cells as targets".to_owned()).into());
+        }
     }
     if arguments.goal.coverage.is_some_and(|percent| percent > 100.0) {
         return Err(Usage("--coverage must be a percentage, above 0 to 100".to_owned()).into());

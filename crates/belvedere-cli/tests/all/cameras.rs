@@ -29,16 +29,25 @@ fn number(value: &Value) -> f64 {
 fn two_of_three_posts_see_all_but_what_the_house_hides_from_both() {
     let place = place();
     let run = place.summary(&format!(
-        "{HOUSE} --candidates posts.csv --fov 360 --max-distance 30 --count 2 -o cameras.geojson -o count.tif -o map.png -o cells.csv --curve curve.csv"
+        "{HOUSE} --candidates posts.csv --fov 360 --max-distance 30 --count 2 -o cameras.geojson -o count.tif -o map.png -o cells.csv --curve curve.csv --footprints areas.geojson"
     ));
     let coverage = &run["coverage"];
     assert_eq!((&coverage["new_cameras"], &coverage["is_proven_optimum"]), (&2.into(), &true.into()), "{run}");
     assert_eq!(coverage["coverage_percent"], coverage["best_possible_percent"]);
     let cameras: Value = serde_json::from_str(&place.text("cameras.geojson")).unwrap();
     let features = cameras["features"].as_array().unwrap();
-    let kinds: Vec<&str> = features.iter().map(|feature| feature["geometry"]["type"].as_str().unwrap()).collect();
-    assert_eq!(kinds, ["Point", "Point", "MultiPolygon", "MultiPolygon"]);
+    assert_eq!(features.len(), 2);
     assert_eq!(features[0]["geometry"]["coordinates"].as_array().unwrap().len(), 3);
+    let areas: Value = serde_json::from_str(&place.text("areas.geojson")).unwrap();
+    let area = |i: usize| number(&areas["features"][i]["properties"]["covered_m2"]);
+    let cells = |i: usize| number(&features[i]["properties"]["covered_targets"]);
+    assert!((0..2).all(|i| area(i) == 4.0 * cells(i) && area(i) > 1000.0), "cells of two metres: {areas}");
+    // the plan of one day is what exists on the next
+    let flags = "--candidates posts.csv --fov 360 --max-distance 30 --count 1";
+    let next = place.summary(&format!("{HOUSE} {flags} --existing cameras.geojson -o next.tif"));
+    let [before, after] = [number(&coverage["coverage_percent"]), number(&next["coverage"]["existing_only_percent"])];
+    // coordinates of the file are rounded to a centimetre
+    assert!((before - after).abs() < 0.3, "{before} {after}");
 
     // which posts were chosen follows from what they cover; truth is the exact house
     let [x, y, counts, by] = ["x", "y", "cameras", "covered_by"].map(|name| column(&place, "cells.csv", name));
@@ -85,7 +94,7 @@ fn existing_cameras_private_places_and_weights_change_what_is_chosen() {
     let found: Value = serde_json::from_str(&place.text("b.geojson")).unwrap();
     let first = &found["features"][0]["properties"];
     assert_eq!(
-        (&first["existing"], &first["heading_deg"], &first["targets"]),
+        (&first["existing"], &first["heading"], &first["targets"]),
         (&true.into(), &270.0.into(), &Value::Array(vec![]))
     );
     assert_eq!(found["features"].as_array().unwrap().len(), 3);

@@ -7,7 +7,7 @@ use belvedere::apps::cameras::{CoverageTable, Placement, Pose};
 use belvedere::apps::targets::Targets;
 use belvedere::figures::{MapLegend, MapPicture, map_picture, write_png};
 use belvedere::ground::{Ground, highest_points};
-use belvedere::io::{Area, Cells, Spot, outlines, write_geojson, write_table, write_tif_u16};
+use belvedere::io::{Area, Cells, Spot, outlines, write_geojson, write_geojson_areas, write_table, write_tif_u16};
 use belvedere::raster::Raster;
 use belvedere::report::rounded;
 use belvedere::results::georeference;
@@ -84,9 +84,10 @@ impl<'a> Found<'a> {
         self.poses[camera.row]
     }
 
+    /// A point for each camera, with the properties that `--existing` reads.
     fn write_cameras(&self, output: &Path) -> Result<()> {
         let frame = &self.targets.frame;
-        let (mut spots, mut areas) = (Vec::new(), Vec::new());
+        let mut spots = Vec::new();
         for (number, camera) in (1_u64..).zip(&self.chosen) {
             let pose = self.pose_of(camera);
             if !pose.camera.eye.iter().all(|v| v.is_finite()) {
@@ -98,12 +99,12 @@ impl<'a> Found<'a> {
             properties.insert("existing".to_owned(), (!camera.is_new).into());
             if pose.heading.is_finite() {
                 let heading = (pose.heading + self.north).to_degrees().rem_euclid(360.0);
-                properties.insert("heading_deg".to_owned(), rounded(heading, 3).into());
+                properties.insert("heading".to_owned(), rounded(heading, 3).into());
             }
             if pose.tilt.is_finite() {
-                properties.insert("tilt_deg".to_owned(), degrees(pose.tilt));
+                properties.insert("tilt".to_owned(), degrees(pose.tilt));
             }
-            properties.insert("fov_deg".to_owned(), degrees(pose.width));
+            properties.insert("fov".to_owned(), degrees(pose.width));
             if camera.is_new {
                 properties.insert("added_percent".to_owned(), rounded(camera.added, 4).into());
             }
@@ -112,11 +113,20 @@ impl<'a> Found<'a> {
                 let numbers: Vec<Value> = camera.covered.iter().map(|target| (target + 1).into()).collect();
                 properties.insert("targets".to_owned(), numbers.into());
             }
-            areas.extend(self.footprint(camera, number)?);
             let place: [f64; 3] = std::array::from_fn(|i| pose.camera.eye[i] + frame.origin[i]);
             spots.push(Spot { place, properties });
         }
-        write_geojson(output, &spots, &areas, &frame.crs)?;
+        write_geojson(output, &spots, &[], &frame.crs)?;
+        Ok(())
+    }
+
+    /// The cells that each camera covers.
+    pub(super) fn write_footprints(&self, output: &Path) -> Result<()> {
+        let mut areas = Vec::new();
+        for (number, camera) in (1..).zip(&self.chosen) {
+            areas.extend(self.footprint(camera, number)?);
+        }
+        write_geojson_areas(output, &areas, &self.targets.frame.crs)?;
         Ok(())
     }
 

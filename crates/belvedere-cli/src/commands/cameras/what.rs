@@ -31,7 +31,7 @@ enum Kind {
     Cloud,
 }
 
-/// The type of a file; polygons are recognised by the first shape of a GeoJSON file.
+/// The type of a file. GeoJSON with polygons holds areas.
 fn kind(path: &Path) -> Kind {
     match extension(path).as_str() {
         "geojson" => {
