@@ -12,9 +12,9 @@ use belvedere_data::{Error, Result};
 const ROUNDS: usize = 80;
 /// How often that is done again with the prices that were found. With 6 in place of 1, selections of random towns are up to 1.8 % better.
 const RESTARTS: usize = 6;
-/// Pairs of a camera and a target that the search may look at, if no limit is given: about half a minute.
-const SEARCHED_PAIRS: usize = 2_000_000_000;
-/// Pairs that a branch looks at, as a multiple of those in the table: two bounds of 40 rounds.
+/// Words, targets and covered pairs that the search may look at, if no limit is given: about half a minute.
+const MOST_LOOKS: usize = 4_000_000_000;
+/// How often a branch looks at each of them: the rounds of its bound.
 const LOOKS_PER_BRANCH: usize = 40;
 /// Most branches of a search, if no limit is given.
 const MOST_BRANCHES: usize = 20_000;
@@ -146,8 +146,9 @@ impl<'a> Solver<'a> {
         let mut fates = vec![Fate::Open; problem.table.camera_count()];
         params.existing.iter().for_each(|&camera| fates[camera] = Fate::In);
         let with = |fate: Fate| (0..fates.len()).filter(|&camera| fates[camera] == fate).collect::<Vec<usize>>();
-        let looks = LOOKS_PER_BRANCH * problem.table.pair_count().max(1);
-        let limit = params.search_limit.unwrap_or((SEARCHED_PAIRS / looks).min(MOST_BRANCHES));
+        let (cameras, targets) = (problem.table.camera_count(), problem.table.target_count());
+        let looks = LOOKS_PER_BRANCH * (problem.table.pair_count() + targets + cameras * targets.div_ceil(64)).max(1);
+        let limit = params.search_limit.unwrap_or((MOST_LOOKS / looks).min(MOST_BRANCHES));
         Self { problem, existing: with(Fate::In), candidates: with(Fate::Open), limit, fates }
     }
 
