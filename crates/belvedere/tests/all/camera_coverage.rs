@@ -168,7 +168,13 @@ fn in_a_scanned_town_coverage_agrees_with_the_exact_mesh() {
     let cameras: Vec<Camera> = eyes
         .flat_map(|eye| (0..4).map(move |i| Camera::fixed(eye, FRAC_PI_2 * f64::from(i), 0.3, &lens, [0.0, 38.0])))
         .collect();
-    let table = covered(&blockers, &cameras, &targets, 25.0);
+    let params = CoverageParams::default().with_density(25.0);
+    let (table, report) = coverage(&blockers, &cameras, &targets, &params, &none).unwrap();
+    // what is not proven covers only where it counts as visible
+    let params = params.with_unproven(UnprovenAs::Visible);
+    let (with_unproven, all_visible) = coverage(&blockers, &cameras, &targets, &params, &none).unwrap();
+    assert_eq!((all_visible.visible, all_visible.unproven), (report.visible + report.unproven, 0));
+    assert!(report.unproven > 100 && with_unproven.pair_count() > table.pair_count() + 100, "{report:?}");
     let truth = Truth::new(&exact);
     let file = |place: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| place[i] + cloud.frame.origin[i]) };
     let (mut right, mut missed, mut wrong) = (0, 0, 0);
