@@ -9,7 +9,7 @@ use ::las::{PointData, PointDataBuilder, Transform, Vector};
 
 use super::copc::{self, ChunkPlace};
 use super::las_columns::Columns;
-use super::las_extra::{ExtraField, ExtraNormals, find_columns, find_extra_normals};
+use super::las_extra::{ExtraField, ExtraNormals, described, find_columns, find_extra_normals};
 use super::las_header::{LasHeader, read_header};
 use super::laz::{ExtraBytes, LazReader, is_chunked};
 use super::part::{Coordinates, Part};
@@ -48,6 +48,11 @@ impl<'a> LasFile<'a> {
     /// The extra columns of these names, `None` for those the file lacks.
     pub(super) fn columns<const N: usize>(&self, names: [&str; N]) -> [Option<ExtraField>; N] {
         find_columns(&self.header, &self.format, names)
+    }
+
+    /// All extra columns of single numbers that the file describes.
+    pub(super) fn all_columns(&self) -> Vec<(String, ExtraField)> {
+        described(&self.header, &self.format).into_iter().filter(|(_, field)| field.is_number()).collect()
     }
 
     /// Points that the file really holds of those its header announces; a LAZ file is checked when it is decompressed.

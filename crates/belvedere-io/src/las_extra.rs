@@ -17,6 +17,11 @@ pub(super) struct ExtraField {
 }
 
 impl ExtraField {
+    /// Whether it is a number of a kind that is read.
+    pub(super) fn is_number(self) -> bool {
+        matches!(self.kind, 1..=6 | 9 | 10)
+    }
+
     pub(super) fn value(self, record: &[u8]) -> Option<f64> {
         let rest = record.get(self.at..)?;
         let raw = match self.kind {
@@ -45,7 +50,7 @@ fn extra_size(kind: u8, options: u8) -> usize {
 }
 
 /// The names of the extra bytes as the file describes them, and how to read each.
-fn described(header: &LasHeader, format: &Format) -> Vec<(String, ExtraField)> {
+pub(super) fn described(header: &LasHeader, format: &Format) -> Vec<(String, ExtraField)> {
     let mut at = usize::from(format.len().saturating_sub(format.extra_bytes));
     let mut fields = Vec::new();
     for descriptor in header.records("LASF_Spec", 4).flat_map(|record| record.as_chunks::<192>().0) {

@@ -25,6 +25,8 @@ pub(super) struct LasHeader {
     pub(super) adjusted_gps_time: bool,
     /// Whether the number of points of the old and the new field differ.
     pub(super) counts_differ: bool,
+    /// Whether Belvedere wrote the file.
+    pub(super) is_of_belvedere: bool,
     pub(super) records: Vec<Record>,
     /// Records that could not be read whole.
     pub(super) broken_records: usize,
@@ -74,6 +76,7 @@ pub(super) fn read_header(path: &Path, file: &mut (impl Read + Seek), size: u64)
     let long_points = if version.1 >= 4 && header_size >= 375 { fields.u64(247)? } else { 0 };
     let format = fields.u8(104)?;
     let mut header = LasHeader {
+        is_of_belvedere: bytes.get(58..90).is_some_and(|name| name.starts_with(b"belvedere\0")),
         version,
         format: format & 0x3f,
         compressed: format & 0xc0 != 0,

@@ -40,6 +40,8 @@ mod las_extra;
 #[cfg(feature = "las")]
 mod las_header;
 #[cfg(feature = "las")]
+mod las_results;
+#[cfg(feature = "las")]
 mod laz;
 #[cfg(feature = "npy")]
 mod masbcpp;
@@ -110,6 +112,8 @@ pub use geotiff_read::{
 pub use horizon_profile::read_horizon;
 #[cfg(feature = "las")]
 pub use las::{LasHead, read_las_head};
+#[cfg(feature = "las")]
+pub use las_results::{PointResults, has_point_results, read_point_results};
 pub use mesh::{read_mesh, read_mesh_in};
 pub use observers::{ObserverRow, RowsAre, read_observers};
 pub use outline::{GridPolygon, outlines};

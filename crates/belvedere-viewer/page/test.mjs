@@ -237,6 +237,21 @@ async function main() {
     child.kill("SIGKILL");
     await page.waitForFunction(() => /connection to Belvedere is lost/.test(document.getElementById("message").innerText), null, { timeout: 8000 });
   });
+  await step("results of other commands are shown", async () => {
+    execFileSync(program, ["shadow", "town/cloud.laz", "--time", "2026-06-21T17:00", "--zone", "Europe/Amsterdam", "--cell", "1", "-o", "lit.tif"], { cwd: folder, stdio: "ignore" });
+    writeFileSync(join(folder, "walk.geojson"), JSON.stringify({ type: "LineString", coordinates: [[154980, 462990], [155010, 463010]] }));
+    const { url: other } = await serve("town/cloud.laz", "lit.tif", "walk.geojson");
+    const shown = await open(browser, other);
+    await ready(shown);
+    await shown.waitForFunction(() => belvedere.shownResult && belvedere.cloud.meshes?.length === 1, null, { timeout: 10_000 });
+    await shown.waitForTimeout(300);
+    assert.match(await shown.evaluate(() => document.getElementById("legend").innerText), /lit\.tif/);
+    assert.ok(await pixels(shown, [255, 176, 0]) > 500, "cells in the sun are orange");
+    await shown.selectOption("#color", "class");
+    await shown.waitForTimeout(300);
+    assert.ok(await pixels(shown, [255, 176, 0]) < 200, "the raster is gone");
+    await shown.close();
+  });
   await step("a bad file is in words", async () => {
     writeFileSync(join(folder, "bad.laz"), "LASF, but no more");
     const bad = await serve("bad.laz");

@@ -1,10 +1,13 @@
 //! What happens to the files while the page is open already: reading, building, and what the page is told of it.
 
+use crate::results::{PointsOf, ResultFile};
 use crate::scene::{Scene, Shown};
 use belvedere::cloud::to_local;
 use belvedere::control::{Control, Watcher};
+use belvedere::io::{GeojsonFeature, PlacedRaster, PointResults};
 use belvedere::model::SceneModel;
-use belvedere::{Frame, Mesh, PointCloud};
+use belvedere::{Bounds, Frame, Mesh, PointCloud, Result};
+use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Takes what is read and built, and shows it on the page. As a [`Watcher`] it shows progress there.
@@ -20,6 +23,8 @@ pub(crate) struct State {
     pub(crate) scene: Option<Arc<Scene>>,
     /// Corners of the triangles of meshes, local metres, nine f32 each, little endian.
     pub(crate) meshes: Vec<Arc<[u8]>>,
+    /// Results of other commands.
+    pub(crate) results: Vec<Arc<ResultFile>>,
     pub(crate) failure: Option<String>,
 }
 
@@ -36,6 +41,42 @@ impl Loading {
         let local = corners.flat_map(|corner| to_local(corner, frame.origin));
         let bytes: Vec<u8> = local.flat_map(f32::to_le_bytes).collect();
         self.state().meshes.push(bytes.into());
+    }
+
+    /// Shows points with values, which lie over a scene of these bounds.
+    ///
+    /// # Errors
+    /// [`belvedere::Error::Malformed`] for points that all lie beside it.
+    pub fn show_point_results(
+        &self,
+        path: &Path,
+        results: (PointResults, PointsOf),
+        frame: &Frame,
+        bounds: &Bounds,
+    ) -> Result<()> {
+        let file = ResultFile::of_points(path, results, frame, bounds)?;
+        self.state().results.push(Arc::new(file));
+        Ok(())
+    }
+
+    /// Shows a raster on the ground.
+    ///
+    /// # Errors
+    /// [`belvedere::Error::Malformed`] for one without a place or beside the cloud, [`belvedere::Error::UnusableCrs`] for one in another system.
+    pub fn show_raster(&self, path: &Path, raster: PlacedRaster, frame: &Frame, bounds: &Bounds) -> Result<()> {
+        let file = ResultFile::of_raster(path, raster, frame, bounds)?;
+        self.state().results.push(Arc::new(file));
+        Ok(())
+    }
+
+    /// Shows points, lines and polygons, which lie on the ground unless they have heights.
+    ///
+    /// # Errors
+    /// [`belvedere::Error::Malformed`] for shapes that all lie beside the cloud.
+    pub fn show_shapes(&self, path: &Path, shapes: Vec<GeojsonFeature>, frame: &Frame, bounds: &Bounds) -> Result<()> {
+        let file = ResultFile::of_shapes(path, shapes, frame, bounds)?;
+        self.state().results.push(Arc::new(file));
+        Ok(())
     }
 
     /// Takes the model of the cloud shown, or of a ball file: questions are answered from now on.

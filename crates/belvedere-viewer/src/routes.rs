@@ -61,6 +61,7 @@ pub(crate) fn app(guard: Arc<Guard>, loading: Loading, params: &ViewerParams) ->
         .route("/{token}/colors/{chunk}", get(colors))
         .route("/{token}/balls", get(balls))
         .route("/{token}/meshes/{mesh}", get(meshes))
+        .route("/{token}/results/{file}", get(results))
         .route("/{token}/ask/{question}", post(ask))
         .route("/{token}/plans/{plan}/ask/{question}", post(ask_of_plan))
         .route("/{token}/plan-meshes/{name}", post(plan_mesh))
@@ -105,6 +106,7 @@ async fn state(State(shared): State<Arc<Shared>>) -> Json<Value> {
         "stage": stage, "total": total, "done": done,
         "failure": now.failure,
         "mesh_count": now.meshes.len(),
+        "results": now.results.iter().map(|file| file.describe()).collect::<Vec<_>>(),
         "shown": now.shown.map(|shown| shown.description.clone()),
         "scene": now.scene.map(|scene| scene.describe()),
     }))
@@ -186,6 +188,14 @@ async fn answer(State(shared): State<Arc<Shared>>, plan: Option<usize>, name: St
         questions::answer(&name, &body, &Asked { scene, text, plans: &plans, control })
     })
     .await
+}
+
+/// What is drawn of a file of results.
+async fn results(State(shared): State<Arc<Shared>>, Path((_, number)): Path<(String, usize)>) -> Response {
+    let Some(file) = shared.loading.now().results.get(number).cloned() else {
+        return refused(StatusCode::NOT_FOUND, "there is no such file of results");
+    };
+    in_turn(&shared, move |scene, control| Ok(file.drawn(scene, control)?)).await
 }
 
 /// Takes a mesh file for plans.

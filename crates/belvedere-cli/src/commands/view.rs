@@ -9,10 +9,10 @@ use crate::progress::Stages;
 use crate::summary::{Summary, note};
 use anyhow::{Context, Result, bail};
 use belvedere::apps::sun::{Date, Site, Zone};
-use belvedere::io::{atomic, is_ball_file};
+use belvedere::io::{atomic, has_point_results, is_ball_file, read_geojson, read_point_results, read_tif};
 use belvedere::model::SceneModel;
-use belvedere::{Frame, PointCloud};
-use belvedere_viewer::{ExportParams, Loading, SceneText, Viewer, ViewerParams, export, quoted};
+use belvedere::{Bounds, Frame, PointCloud};
+use belvedere_viewer::{ExportParams, Loading, PointsOf, SceneText, Viewer, ViewerParams, export, quoted};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -105,16 +105,20 @@ struct Files {
     balls: Option<PathBuf>,
     clouds: Vec<PathBuf>,
     meshes: Vec<PathBuf>,
+    /// Results of other commands.
+    results: Vec<PathBuf>,
 }
 
 impl Files {
     fn of(files: &[PathBuf]) -> Result<Self> {
-        let (mut balls, mut clouds, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut balls, mut clouds, mut meshes, mut results) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for path in files {
             if path.is_file() && is_mesh(path) {
                 &mut meshes
             } else if path.is_file() && is_ball_file(path)? {
                 &mut balls
+            } else if path.is_file() && !(clouds.is_empty() && is_las(path)) && are_results(path) {
+                &mut results
             } else {
                 &mut clouds
             }
@@ -124,8 +128,8 @@ impl Files {
         match (balls.len(), clouds.len()) {
             (2.., _) => refused("only one ball file can be shown at a time"),
             (1, 2..) => refused("a ball file can be shown with one cloud: give a single file or a folder"),
-            (0, 0) => refused("a mesh is shown with a cloud or a ball file: give one too"),
-            _ => Ok(Self { balls: balls.pop(), clouds, meshes }),
+            (0, 0) => refused("meshes, rasters and shapes are shown with a cloud or a ball file: give one too"),
+            _ => Ok(Self { balls: balls.pop(), clouds, meshes, results }),
         }
     }
 
@@ -134,8 +138,8 @@ impl Files {
         if let Some(balls) = &self.balls {
             return quoted(&balls.to_string_lossy());
         }
-        let meshes: Vec<String> = self.meshes.iter().map(|path| path.to_string_lossy().into_owned()).collect();
-        typed(&meshes)
+        let beside = self.meshes.iter().chain(&self.results);
+        typed(&beside.map(|path| path.to_string_lossy().into_owned()).collect::<Vec<_>>())
     }
 
     /// The cloud that shows the ground of a ball file.
@@ -163,6 +167,7 @@ fn load(
         let cloud = Arc::new(pipeline::read(&input.input, stages, summary)?);
         loading.show(&cloud);
         show_meshes(files, &arguments.plan.add, &cloud.frame, loading, stages, summary)?;
+        show_results(files, &cloud.frame, &cloud.bounds().unwrap_or_default(), loading, stages)?;
         let crs = &cloud.frame.crs;
         let params = params::model(&arguments.cleaning, &arguments.orienting, params, crs, stages)?;
         let built = SceneModel::build(&cloud, &params, &stages.control());
@@ -172,6 +177,7 @@ fn load(
     input.input.clouds = vec![balls.clone()];
     let scene = pipeline::scene(&input, Points::Keep, stages, summary)?;
     show_meshes(files, &arguments.plan.add, scene.model.frame(), loading, stages, summary)?;
+    show_results(files, scene.model.frame(), &scene.model.bounds(), loading, stages)?;
     let mut shown = None;
     if !files.clouds.is_empty() {
         input.input.clouds.clone_from(&files.clouds);
@@ -201,6 +207,39 @@ fn show_meshes(
         loading.show_mesh(&mesh, frame);
     }
     Ok(())
+}
+
+fn show_results(files: &Files, frame: &Frame, bounds: &Bounds, loading: &Loading, stages: &mut Stages) -> Result<()> {
+    // the columns of the cloud itself come last
+    let own =
+        files.clouds.first().filter(|path| path.is_file() && is_las(path) && has_point_results(*path).unwrap_or(false));
+    for path in files.results.iter().chain(own) {
+        stages.run("reading results", 0, |_| {
+            if has_extension(path, &["tif", "tiff"]) {
+                loading.show_raster(path, read_tif(path)?, frame, bounds)
+            } else if has_extension(path, &["geojson"]) {
+                loading.show_shapes(path, read_geojson(path, &frame.crs)?, frame, bounds)
+            } else {
+                let points = if Some(path) == own { PointsOf::Cloud } else { PointsOf::Other };
+                loading.show_point_results(path, (read_point_results(path)?, points), frame, bounds)
+            }
+        })?;
+    }
+    Ok(())
+}
+
+/// Whether a file holds results of another command.
+fn are_results(path: &Path) -> bool {
+    // what cannot be read is refused as a cloud, on the page too
+    has_extension(path, &["tif", "tiff", "geojson"]) || (is_las(path) && has_point_results(path).unwrap_or(false))
+}
+
+fn is_las(path: &Path) -> bool {
+    has_extension(path, &["las", "laz"])
+}
+
+fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    path.extension().is_some_and(|own| extensions.iter().any(|extension| own.eq_ignore_ascii_case(extension)))
 }
 
 /// The files and flags of the scene as they were typed, for a shell, without the files named.

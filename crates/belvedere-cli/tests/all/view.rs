@@ -78,7 +78,11 @@ impl Page {
     }
 
     fn ask_at(&self, question: &str, values: &Value) -> (Value, Vec<u8>) {
-        let (status, mut reply) = self.request("POST", question, &values.to_string());
+        self.answer("POST", question, &values.to_string())
+    }
+
+    fn answer(&self, method: &str, question: &str, body: &str) -> (Value, Vec<u8>) {
+        let (status, mut reply) = self.request(method, question, body);
         assert_eq!(status, 200, "{question}: {}", String::from_utf8_lossy(&reply));
         let length = u32::from_le_bytes(reply[..4].try_into().unwrap()) as usize;
         let body = reply.split_off(4 + length);
@@ -465,4 +469,97 @@ fn answers_with_a_plan_are_those_of_the_command_with_its_files() {
     ] {
         refused(page.request("POST", "ask/plan", &broken.to_string()), text);
     }
+}
+
+#[test]
+fn results_of_other_commands_are_shown_where_they_lie() {
+    let place = Workplace::new();
+    assert_eq!(place.run("simulate town -o town --extent 60").status, 0);
+    let shadow = "shadow town/cloud.laz --time 2026-06-21T17:00 --zone Europe/Amsterdam";
+    for targets in ["--cell 1 -o lit.tif", "--cell 1 -o cells.csv", "--self -o lit.laz", "--self -o points.csv"] {
+        place.summary(&format!("{shadow} {targets}"));
+    }
+    let [x, y, z, lit] = ["x", "y", "z", "lit"].map(|name| column(&place, "cells.csv", name));
+    let start = [&x, &y].map(|values| (values.iter().sum::<f64>() / values.len() as f64).round());
+    let walk = json!({ "type": "FeatureCollection", "features": [
+        { "type": "Feature", "properties": {}, "geometry": { "type": "LineString", "coordinates": [start, [start[0] + 10.0, start[1]]] } },
+        { "type": "Feature", "properties": {}, "geometry": { "type": "Point", "coordinates": [start[0], start[1], 50.0] } },
+    ] });
+    place.write("walk.geojson", walk.to_string());
+    let page = Page::open(&place, "town/cloud.laz lit.tif lit.laz walk.geojson");
+    let state = page.state();
+    let described: Vec<Value> =
+        state["results"].as_array().unwrap().iter().map(|file| json!([file["name"], file["columns"]])).collect();
+    // the columns of the simulated cloud itself come last
+    let own = json!(["cloud.laz", ["lit_110_20", "lit_180_65", "lit_240_35"]]);
+    assert_eq!(
+        described,
+        [json!(["lit.tif", [""]]), json!(["lit.laz", ["lit", "unproven"]]), json!(["walk.geojson", []]), own]
+    );
+    let (head, _) = page.ask("shadow", &json!({ "time": "2026-06-21T17:00", "zone": "Europe/Amsterdam" }));
+    assert!(head["command"].as_str().unwrap().starts_with("belvedere shadow town/cloud.laz --time"), "{head}");
+
+    let origin = [0, 1, 2].map(|i| state["shown"]["origin"][i].as_f64().unwrap());
+    let layer = |number: usize| -> (Vec<[f64; 3]>, Vec<u8>) {
+        let (head, mut body) = page.answer("GET", &format!("results/{number}"), "");
+        let count = head["count"].as_u64().unwrap() as usize;
+        let mut values = body.split_off(8 * count);
+        values.truncate(count);
+        let at = |key: &str, axis: usize| head[key][axis].as_f64().unwrap();
+        let place = |bytes: &[u8]| {
+            let steps = |axis: usize| f64::from(u16::from_le_bytes([bytes[2 * axis], bytes[2 * axis + 1]]));
+            [0, 1, 2].map(|axis| origin[axis] + at("low", axis) + steps(axis) * at("step", axis))
+        };
+        assert_eq!(head["columns"][0]["are_codes"], true, "{head}");
+        (body.chunks(8).map(place).collect(), values)
+    };
+    // the cells of the raster, on the ground
+    let (places, values) = layer(0);
+    let rows = |rows: &mut dyn Iterator<Item = ([f64; 2], f64)>| {
+        let mut rows: Vec<[i64; 3]> =
+            rows.map(|([x, y], v)| [(x * 2.0).round() as i64, (y * 2.0).round() as i64, v as i64]).collect();
+        rows.sort_unstable();
+        rows
+    };
+    let sent = rows(&mut places.iter().zip(&values).map(|(place, &value)| ([place[0], place[1]], f64::from(value))));
+    let known = (0..x.len()).filter(|&i| lit[i].is_finite());
+    let written = rows(&mut known.map(|i| ([x[i], y[i]], lit[i])));
+    assert_eq!(sent, written);
+    let (lowest, highest) =
+        z.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &z| (low.min(z), high.max(z)));
+    assert!(places.iter().all(|place| place[2] > lowest - 0.3 && place[2] < highest + 0.5), "{lowest} to {highest}");
+    // the points of the cloud with their column
+    let (places, values) = layer(1);
+    let of_points = column(&place, "points.csv", "lit");
+    assert!(places.len() == of_points.len() && values.len() == of_points.len());
+    let count = |values: &mut dyn Iterator<Item = f64>| values.filter(|&v| v == 1.0).count();
+    assert_eq!(count(&mut values.iter().map(|&v| f64::from(v))), count(&mut of_points.into_iter()));
+    // a line of 10 m in pieces of 2 m along the ground, and a pin of three lines
+    let (head, body) = page.answer("GET", "results/2", "");
+    assert!(head["lines"] == 8 && body.len() == 8 * 24, "{head}");
+    let end = |number: usize| -> [f64; 3] {
+        let number = |i: usize| f64::from(f32::from_le_bytes(body[12 * number + 4 * i..][..4].try_into().unwrap()));
+        [0, 1, 2].map(|i| number(i) + origin[i])
+    };
+    assert!(
+        (end(0)[0] - start[0]).abs() < 0.01 && (end(9)[0] - start[0] - 10.0).abs() < 0.01,
+        "{:?} {:?}",
+        end(0),
+        end(9)
+    );
+    assert!((end(10)[2] - 50.0).abs() < 0.01 && (end(11)[2] - 54.0).abs() < 0.01, "{:?}", end(11));
+    assert_eq!(page.request("GET", "results/4", "").0, 404);
+    drop(page);
+
+    // alone, points with results are the cloud too
+    let alone = Page::open(&place, "lit.laz").state();
+    assert!(alone["results"][0]["columns"][0] == "lit" && alone["shown"]["point_count"].as_u64().unwrap() > 1000);
+
+    place.write("far.geojson", "{\"type\":\"Point\",\"coordinates\":[100000,400000]}");
+    place.write("bad.tif", "not a raster");
+    for (file, message) in [("far.geojson", "far.geojson: lies beside the cloud"), ("bad.tif", "bad.tif")] {
+        let run = place.run(&format!("view town/cloud.laz {file} --no-browser"));
+        assert!(run.status == 1 && run.stderr.contains(message), "{run:?}");
+    }
+    place.refusal(2, "view lit.tif --no-browser", &["give one too"]);
 }

@@ -39,6 +39,7 @@ export const state = async () => exported?.state ?? (await get("state")).json();
 export const points = async (chunk) => new Uint16Array(exported ? bytesOf(exported.points[chunk]).buffer : await (await get(`points/${chunk}`)).arrayBuffer());
 export const colors = async (chunk) => new Uint16Array(exported ? bytesOf(exported.colors[chunk]).buffer : await (await get(`colors/${chunk}`)).arrayBuffer());
 export const mesh = async (number) => new Float32Array(await (await get(`meshes/${number}`)).arrayBuffer());
+export const result = async (number) => answer(await get(`results/${number}`));
 export const balls = async () => new Float32Array(await (await get("balls")).arrayBuffer());
 
 // Asks a question of the scene, or of that with a plan: named values, and a byte for each of many places as `body`.

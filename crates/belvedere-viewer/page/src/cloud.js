@@ -122,10 +122,10 @@ export class Cloud {
   }
 
   // A set of points of its own, such as cells, painted apart.
-  layer(low, step, places, values, size, paint) {
+  layer(low, step, places, values, size, paint, none = -1) {
     this.clearLayer();
     const table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
-    const shared = { ...this.own, ...uniforms({ table, mode: 4, size, cleared: -1 }) };
+    const shared = { ...this.own, ...uniforms({ table, mode: 4, size, cleared: none }) };
     this.add(low, step, places, values, shared, this.extra);
     this.paint(paint, shared);
     this.layerOwn = shared;
@@ -152,6 +152,20 @@ export class Cloud {
   // Triangles beside the cloud: nine numbers each.
   addMesh(values) {
     (this.meshes ??= []).push(this.mesh(values, new Color(0.86, 0.84, 0.9)));
+  }
+
+  // Lines beside the cloud, six numbers each, as bands of a width: lines of the graphics card are a pixel wide.
+  addLines(values, width) {
+    const corners = [];
+    const band = (a, b, aside) => { const [p, q, r, t] = [a.map((v, i) => v - aside[i]), a.map((v, i) => v + aside[i]), b.map((v, i) => v - aside[i]), b.map((v, i) => v + aside[i])]; corners.push(...p, ...q, ...r, ...q, ...t, ...r); };
+    for (let i = 0; i < values.length; i += 6) {
+      const [a, b] = [[...values.subarray(i, i + 3)], [...values.subarray(i + 3, i + 6)]];
+      const [dx, dy] = [b[0] - a[0], b[1] - a[1]], flat = Math.hypot(dx, dy), half = width / 2;
+      if (flat > 1e-3) band(a, b, [(-dy / flat) * half, (dx / flat) * half, 0]);
+      band(a, b, flat > 1e-3 ? [0, 0, half] : [half, 0, 0]);
+      if (flat <= 1e-3) band(a, b, [0, half, 0]);
+    }
+    (this.meshes ??= []).push(this.mesh(new Float32Array(corners), new Color(0.85, 0.05, 0.4)));
   }
 
   // Triangles of a plan, instead of those before.

@@ -78,4 +78,15 @@ const CHANGE = ["#0b3c8c", "#1f5fbf", "#86aee0", "#dde0e4", "#f5b27a", "#e8710a"
 export const ofHoursChange = (most) => ({
   mode: 4, table: ramp(CHANGE), legend: { title: "Change of the hours of sun", gradient: gradient(CHANGE), ends: [`−${most.toFixed(1)} h`, `+${most.toFixed(1)} h`] },
 });
+// Results of other commands: codes have colours of their own, measures a ramp.
+export const ofCodes = (title, name, greatest) => {
+  const names = name === "answer" ? ANSWERS() : name === "lit" ? LIGHT : Object.fromEntries(["#8f969f", "#ffb000", "#3f7be0", "#3d8c47", "#a4508b"].map((color, code) => [code, [`${code}`, color]]));
+  return { mode: 4, table: named(names, "#30343a"), legend: { title, keys: keys(names, Array.from({ length: greatest + 1 }, (_, code) => code)) } };
+};
+const short = (v) => (Math.abs(v) >= 100 ? v.toFixed(0) : Number(v.toPrecision(3)).toString());
+export const ofValues = (title, least, greatest) => {
+  // the greatest value is byte 253
+  const table = ramp(SUN);
+  return { mode: 4, table: table.map((_, i) => table[Math.min(Math.round((i * 255) / 253), 255)]), legend: { title, gradient: gradient(SUN), ends: [short(least), short(greatest)] } };
+};
 export const plain = (dark) => ({ mode: 4, table: named({}, dark ? "#5d6570" : "#b3bac3"), legend: null });

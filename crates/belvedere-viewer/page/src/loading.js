@@ -2,6 +2,7 @@
 import * as api from "./api.js";
 import { report } from "./messages.js";
 import { setColor } from "./paint.js";
+import { offer } from "./results.js";
 import { $, page } from "./state.js";
 import { startTime } from "./time.js";
 import { changed, cloud, draw, mover, renderer } from "./view.js";
@@ -64,6 +65,7 @@ export async function watch() {
       startTime();
       if (!state.shown.point_count) toggleBalls();
       if (page.pending) page.ask();
+      offer(state.results).catch(report);
     }
     $("progress").hidden = page.ready === true;
     const bar = $("progress").querySelector("progress");

@@ -3,14 +3,15 @@ import * as api from "./api.js";
 import { escape } from "./charts.js";
 import * as colors from "./colors.js";
 import { report } from "./messages.js";
+import { showResult } from "./results.js";
 import { $, page, root } from "./state.js";
 import { cloud, draw, toLocal } from "./view.js";
 
 export function paint() {
   if (!page.scene || !cloud) return;
   const name = $("color").value;
-  const now = colors.coloring(name, page.scene, page.answer);
-  const shown = page.onLayer && name === "answer" ? colors.plain(root.dataset.theme === "dark") : now;
+  const now = page.shownResult ?? colors.coloring(name, page.scene, page.answer);
+  const shown = page.shownResult || (page.onLayer && name === "answer") ? colors.plain(root.dataset.theme === "dark") : now;
   cloud.paint(shown ?? colors.coloring("none"));
   const legend = now?.legend;
   page.legend = legend;
@@ -21,6 +22,15 @@ export function paint() {
 }
 export function setColor(name) {
   $("color").value = name;
+  if (page.shownResult) {
+    page.shownResult = null;
+    cloud.clearLayer();
+    cloud.scene.visible = true;
+  }
+  if (name.startsWith("result ")) {
+    showResult(name).then((coloring) => { page.shownResult = coloring; paint(); }).catch(report);
+    return;
+  }
   if (name === "color" && !page.hasColors) {
     page.hasColors = true;
     page.loaded.forEach(({ chunk, number }) => api.colors(number).then((values) => { cloud.setColors(chunk, values); draw(); }).catch(report));

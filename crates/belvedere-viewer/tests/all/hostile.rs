@@ -157,6 +157,36 @@ fn huge_false_and_slow_requests_do_no_harm() {
     assert_eq!(sent(&host, form.as_bytes()).0, 415);
     let delete = format!("DELETE /{token}/state HTTP/1.1\r\n{own}Connection: close\r\n\r\n");
     assert_eq!(sent(&host, delete.as_bytes()).0, 405);
+    // the same for meshes and plans: a mesh that is too large, a form, a broken one, a plan with a million corners, and one that nobody made
+    let mesh = |kind: &str, name: &str, body: &str| {
+        let length = body.len();
+        let head = format!(
+            "POST /{token}/plan-meshes/{name} HTTP/1.1\r\n{own}Content-Type: {kind}\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n"
+        );
+        sent(&host, format!("{head}{body}").as_bytes())
+    };
+    let binary = "application/octet-stream";
+    assert!([0, 413].contains(&mesh(binary, "a.obj", &"v 1 2 3\n".repeat(5_000_000)).0));
+    assert_eq!(mesh("text/plain", "a.obj", "v 1 2 3").0, 415);
+    for name in ["a.obj", "a.ply", "a.json", "a", "..%2F..%2Fetc%2Fpasswd.obj"] {
+        let (status, text) = mesh(binary, name, "f 1 2 99999999\n{]");
+        assert!(status == 422 && text.contains("error") && !text.contains("root:"), "{name}: {status} {text}");
+    }
+    let plan = |path: &str, body: &str| {
+        let length = body.len();
+        let head = format!(
+            "POST /{token}/{path} HTTP/1.1\r\n{own}Content-Type: application/json\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n"
+        );
+        sent(&host, format!("{head}{body}").as_bytes())
+    };
+    assert!([0, 413].contains(&plan("ask/plan", &format!("{{\"clear\":[[{}[0,0]]]}}", "[0,0],".repeat(1_000_000))).0));
+    for body in
+        ["{\"clear\":[[[1e999,0],[1,1],[2,2]]]}", "{\"meshes\":[-1]}", "{\"meshes\":[99]}", "{\"buildings\":[{}]}"]
+    {
+        assert_eq!(plan("ask/plan", body).0, 422, "{body}");
+    }
+    assert_eq!(plan("plans/7/ask/seen", "{\"place\":[2,2,1.7]}").0, 422);
+    assert_eq!(plan("plans/x/ask/seen", "{}").0, 400);
     // 8: deep nesting, and a head without end
     assert_eq!(asked(&host, &token, &"[".repeat(60_000)).0, 422);
     let long = format!("GET /{token}/state HTTP/1.1\r\n{own}X: {}\r\n\r\n", "a".repeat(2_000_000));
