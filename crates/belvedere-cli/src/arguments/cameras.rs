@@ -134,7 +134,7 @@ pub(crate) struct CameraGoal {
 #[derive(Args)]
 #[command(next_help_heading = "Targets [default: cells on the ground]")]
 pub(crate) struct CameraTargets {
-    /// Polygons whose cells are the targets (.geojson), points (.csv .geojson or a cloud), or a mesh (.obj .json .ply)
+    /// Polygons with cells (.geojson), points (.csv .geojson or a cloud), or a mesh (.obj .json .ply with faces)
     ///
     /// Column or property weight: how much each target counts; a cell in several polygons has the largest. Surfaces with normals (meshes, points of a cloud) count
     /// with the pixels per metre at the angle at which they are seen, and not from behind.
