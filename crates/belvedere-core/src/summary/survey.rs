@@ -76,7 +76,9 @@ impl SurveyKind {
         let has_times = counted.gps_time.is_some_and(|times| times.can_tell_pulses_apart(cloud.len()));
         let has_angles = counted.scan_angle_deg.is_some_and(|[least, most]| least < most);
         let has_returns = counted.multi_return_share.is_some_and(|share| share > 0.0);
-        let is_laser = has_times || has_angles || has_returns;
+        // readers of LAS give the column in any case, and what was made from photographs leaves it empty
+        let has_intensities = cloud.attributes.intensity.iter().flatten().any(|&intensity| intensity > 0);
+        let is_laser = has_times || has_angles || has_returns || has_intensities;
         let is_ground = !is_from_above || is_uneven(&cloud.positions, counted.cell_size);
         let carved_by = if is_from_above {
             "carved by pulses that are assumed to be vertical, which prove nothing"

@@ -111,6 +111,7 @@ fn real_clouds_are_named_for_what_they_are() {
         ("amsterdam_ahn3/ahn_2386_9702.laz", ["from the air", known, "2 % of the points"]),
         ("bresse_lidarhd/870000_6618000.subset.50mx100m.las", ["from the air", known, "classes of vegetation"]),
         ("tls_e57/pumpAVisualReferenceImage.e57", ["from the ground", "poses", "nothing"]),
+        ("autzen/autzen_stadium_340x320m.laz", ["from the air without pulses", "assumed", "GPS times"]),
         ("tudelft_ahn4_small/small.laz", ["from the air without pulses", "assumed", "GPS times"]),
     ] {
         let Some(cloud) = read(file) else { continue };
