@@ -1,5 +1,6 @@
 //! The one error type of the library.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Result of every fallible function of this crate.
@@ -10,7 +11,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 #[non_exhaustive]
 pub enum Error {
     /// The operating system refused to read or write a file.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {}", path.display(), refusal(source))]
     Io {
         /// The file.
         path: PathBuf,
@@ -114,6 +115,17 @@ pub enum Error {
         /// From where it can look.
         what: &'static str,
     },
+}
+
+/// What the operating system says, in words that say what to do where these are known.
+fn refusal(source: &std::io::Error) -> String {
+    match source.kind() {
+        ErrorKind::NotFound => "there is no such file or folder; check the path".to_owned(),
+        ErrorKind::PermissionDenied => "access is denied; check the permissions".to_owned(),
+        ErrorKind::UnexpectedEof => "ends too early; is the file complete?".to_owned(),
+        ErrorKind::StorageFull => "the disk is full; free some space".to_owned(),
+        _ => source.to_string(),
+    }
 }
 
 impl Error {

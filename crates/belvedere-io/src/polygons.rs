@@ -49,7 +49,7 @@ impl<'a> MeshBuilder<'a> {
     /// indices run out.
     pub(super) fn push_vertex(&mut self, vertex: [f64; 3]) -> Result<u32> {
         if !vertex.iter().all(|v| v.abs() < MAX_COORDINATE) {
-            let what = format!("vertex {} is {vertex:?}; coordinates must be finite metres", self.mesh.vertices.len());
+            let what = format!("a vertex lies at {vertex:?}; coordinates must be finite metres");
             return Err(Error::malformed(self.path, what));
         }
         let index = u32::try_from(self.mesh.vertices.len())

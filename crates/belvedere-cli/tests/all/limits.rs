@@ -57,7 +57,7 @@ fn files_that_are_not_there_are_told_before_a_cloud_is_read() {
         ("balls junk.laz --orient mesh=no.obj -o o.npz", "no.obj"),
         ("envelope junk.laz --parcel no.geojson --protect no.geojson --date 2024-03-21 -o o.tif", "no.geojson"),
     ] {
-        place.refusal(1, arguments, &[&format!("error: {file}: No such file")]);
+        place.refusal(1, arguments, &[&format!("error: {file}: there is no such file")]);
     }
 }
 

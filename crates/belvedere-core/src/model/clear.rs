@@ -267,7 +267,8 @@ fn grid_over(area: &ClearedArea, cloud: &PointCloud) -> Result<Option<MapGrid>> 
             let high = [0, 1].map(|axis| bound(axis, f64::max, f64::NEG_INFINITY));
             let (first, last) = bounds.on_map();
             if corners().flatten().any(|v| !v.is_finite()) || rings.first().is_none_or(|ring| ring.len() < 3) {
-                return invalid(format!("{} rings", rings.len()), "a polygon of at least 3 finite corners");
+                let corners = rings.first().map_or(0, Vec::len);
+                return invalid(format!("{corners} corners"), "a polygon of at least 3 finite corners");
             }
             if (0..2).any(|axis| low[axis] > last[axis] || high[axis] < first[axis]) {
                 let [x, y] = [0, 1].map(|axis| low[axis] + cloud.frame.origin[axis]);

@@ -128,3 +128,46 @@ fn near_range(direction: [f64; 3]) -> f64 {
     let across = direction[0].abs().max(direction[1].abs());
     (NEAR[1] / direction[2]).min(NEAR[0] / across)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::blocking::BlockRule;
+    use crate::query::backend::Line;
+    use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls};
+    use belvedere_data::random::uniform;
+
+    #[test]
+    fn many_targets_are_swept_and_few_are_not() {
+        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+        let place = |seed: u64, i: u64| {
+            std::array::from_fn(|axis| (uniform(seed + axis as u64, i) * [100.0, 100.0, 20.0][axis]) as f32)
+        };
+        let count = 300;
+        let balls = MedialBalls {
+            centers: (0..count).map(|i| place(1, i)).collect(),
+            radii: vec![1.0; 300],
+            source: vec![0; 300],
+            touch: vec![LIMIT_TOUCH; 300],
+            separation_angles: vec![f32::NAN; 300],
+        };
+        let tree = Arc::new(BallTree::new(&balls, &BlockRule::default()).unwrap());
+        let directions: Vec<[f64; 3]> = (0..64)
+            .map(|i| {
+                let (sine, azimuth) = ((f64::from(i) + 0.5) / 64.0, 2.4 * f64::from(i));
+                let across = (1.0 - sine * sine).sqrt();
+                [across * azimuth.cos(), across * azimuth.sin(), sine]
+            })
+            .collect();
+        let prepared = Cpu.prepare(&tree).unwrap();
+        let share_settled = |targets: &[[f32; 3]]| {
+            let settled = prepared.settle(targets, &directions, &Control::none()).unwrap();
+            let of_target = |target| (0..directions.len()).filter(|&d| settled.line(target, d) != Line::Open).count();
+            let lines: usize = (0..targets.len()).map(of_target).sum();
+            lines as f64 / (targets.len() * directions.len()) as f64
+        };
+        let targets: Vec<[f32; 3]> = (0..4096).map(|i| place(7, i)).collect();
+        assert!(share_settled(&targets) > 0.5);
+        assert_eq!(share_settled(&targets[..64]), 0.0);
+    }
+}
