@@ -120,6 +120,8 @@ pub enum Error {
 /// What the operating system says, in words that say what to do where these are known.
 fn refusal(source: &std::io::Error) -> String {
     match source.kind() {
+        // readers and writers that know more have said it
+        _ if source.get_ref().is_some() => source.to_string(),
         ErrorKind::NotFound => "there is no such file or folder; check the path".to_owned(),
         ErrorKind::PermissionDenied => "access is denied; check the permissions".to_owned(),
         ErrorKind::UnexpectedEof => "ends too early; is the file complete?".to_owned(),
