@@ -187,10 +187,11 @@ pub(crate) fn note(text: &str) {
 /// Says what went wrong, with its causes.
 pub(crate) fn print_error(error: &anyhow::Error) {
     let mut text = error.to_string();
-    for cause in error.chain().skip(1) {
+    for (cause, of) in error.chain().skip(1).zip(error.chain()) {
+        let is_said = matches!(of.downcast_ref(), Some(belvedere::Error::Io { .. }));
         let cause = cause.to_string();
         // errors that already print their cause need not say it twice
-        if !text.contains(&cause) {
+        if !is_said && !text.contains(&cause) {
             text.push_str(": ");
             text.push_str(&cause);
         }

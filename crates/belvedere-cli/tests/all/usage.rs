@@ -94,7 +94,7 @@ fn files_that_cannot_be_used_are_named() {
     place.write("comma.csv", "1,5 2,5 3,5\n2,5 2,5 3,5\n");
     place.write("other.docx", "1 2 3\n");
     for (name, word) in [
-        ("missing.laz", "no such file"),
+        ("missing.laz", "there is no such file or folder; check the path\n"),
         ("truncated.laz", ""),
         ("empty.laz", ""),
         ("empty.xyz", "no points"),
