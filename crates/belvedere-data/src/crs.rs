@@ -12,6 +12,7 @@ pub mod text;
 mod wkt;
 
 use crate::{Error, Result};
+use std::path::Path;
 
 /// Metres per US survey foot, 1200/3937 exactly.
 pub const US_SURVEY_FOOT: f64 = 1200.0 / 3937.0;
@@ -170,6 +171,19 @@ impl Crs {
     pub fn contradicts(&self, other: &Self) -> bool {
         let is_known = |crs: &Self| crs.kind != CrsKind::Unknown;
         is_known(self) && is_known(other) && !self.same_system(other)
+    }
+
+    /// Refuses what is in this system where it contradicts that of the scene it is for; `what` is what the file at `path` holds, such as "mesh".
+    ///
+    /// # Errors
+    /// [`Error::UnusableCrs`].
+    pub fn check_for(&self, scene: &Self, what: &str, path: &Path) -> Result<()> {
+        if !self.contradicts(scene) {
+            return Ok(());
+        }
+        let (own, other) = (self.describe(), scene.describe());
+        let what = format!("the {what} is in {own}, but the scene is in {other}; convert one of them");
+        Err(Error::UnusableCrs { path: path.to_owned(), what })
     }
 
     /// Whether two files in these systems can be put together: the same horizontal system in the same units.

@@ -13,6 +13,7 @@ pub mod horizon;
 pub mod mesh;
 pub mod model;
 pub mod needles;
+pub mod polygon;
 pub mod random;
 pub mod raster;
 pub mod report;

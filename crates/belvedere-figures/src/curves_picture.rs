@@ -2,6 +2,7 @@
 
 use crate::font::{HEIGHT, draw_text, fitted, text_width};
 use crate::picture::{INK, PAPER, Picture};
+use crate::round_step::round_step;
 
 /// Size of the diagram, pixels, and of a dot of its text.
 const SIZE: [usize; 2] = [760, 460];
@@ -94,9 +95,7 @@ const STEPS: f64 = 5.0;
 
 /// The least round step of which five reach `highest`.
 fn step_for(highest: f64) -> f64 {
-    let rough = (highest / STEPS).max(0.1);
-    let power = 10.0_f64.powf(rough.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|&step| step >= rough * (1.0 - 1e-9)).unwrap_or(rough)
+    round_step((highest / STEPS).max(0.1))
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture, `as` saturates")]

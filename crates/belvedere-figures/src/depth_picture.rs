@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::font::{HEIGHT, draw_text, fitted, text_width};
 use crate::picture::{INK, PAPER, Picture, text_scale};
+use crate::round_step::round_step;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{cross, dot, sub, unit};
 use belvedere_data::view::{View, panorama_direction};
@@ -233,10 +234,7 @@ fn with_legend(map: &Picture, colors: &DepthColors, title: &str, legend: &str) -
 
 /// Step and values of about five round numbers within a range.
 fn ticks(low: f64, high: f64) -> (f64, Vec<f64>) {
-    let rough = (high - low) / 5.0;
-    let power = 10.0_f64.powf(rough.log10().floor());
-    let step =
-        [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|&s| s >= rough * 0.999).unwrap_or(power * 10.0);
+    let step = round_step(0.999 * (high - low) / 5.0);
     let first = (low / step).ceil();
     let values = (0..12).map(|i| (first + f64::from(i)) * step).take_while(|&v| v <= high + 1e-9 * step).collect();
     (step, values)

@@ -12,6 +12,7 @@ mod map_picture;
 mod picture;
 mod png;
 mod profile_picture;
+mod round_step;
 
 pub use animation::write_apng;
 pub use belvedere_io::{class_color, in_shadow, ramp_colors};

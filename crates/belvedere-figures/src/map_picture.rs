@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::font::{HEIGHT, draw_text, fitted, text_width};
 use crate::picture::{INK, PAPER, Picture, text_scale};
+use crate::round_step::round_step;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
 use belvedere_io::Georeference;
@@ -260,12 +261,6 @@ impl Axes {
             draw_text(sheet, from, (top + at).saturating_sub(4 * scale), text, scale, INK);
         }
     }
-}
-
-/// The least of 1, 2 and 5 times a power of ten that is at least `least`.
-fn round_step(least: f64) -> f64 {
-    let power = 10.0_f64.powf(least.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|&step| step >= least * (1.0 - 1e-9)).unwrap_or(power)
 }
 
 /// Round values between `low` and `high`, and either end that is half a step or more from the next of them (counts begin at 1): the

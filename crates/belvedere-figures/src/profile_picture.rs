@@ -2,6 +2,7 @@
 
 use crate::font::{HEIGHT, draw_text, fitted, text_width};
 use crate::picture::{INK, PAPER, Picture};
+use crate::round_step::round_step;
 
 /// Size of the diagram, pixels, and of a dot of its text.
 const SIZE: [usize; 2] = [1100, 420];
@@ -105,9 +106,7 @@ fn pixel(v: f64) -> usize {
 
 /// About six round numbers between two values, as written.
 fn ticks(low: f64, high: f64) -> Vec<(f64, String)> {
-    let rough = (high - low) / 6.0;
-    let power = 10.0_f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|&s| s >= rough).unwrap_or(rough);
+    let step = round_step((high - low) / 6.0);
     let decimals = usize::from(step < 1.0);
     (0..20)
         .map(|i| ((low / step).ceil() + f64::from(i)) * step)

@@ -8,7 +8,7 @@ use super::obj;
 use super::polygons::MeshReport;
 use super::source::{Source, unusable};
 use belvedere_data::crs::Crs;
-use belvedere_data::{Error, Mesh, Result};
+use belvedere_data::{Mesh, Result};
 
 /// The mesh of a source (`.obj`, `.ply`, or CityJSON as `.city.json`, `.json`, `.cityjson`) and what was left out of it.
 /// CityJSON is read at the highest level of detail of each object.
@@ -31,15 +31,11 @@ pub fn read_mesh<'a>(source: impl Into<Source<'a>>) -> Result<(Mesh, MeshReport)
 /// The same for a scene in the reference system `crs`, in metres.
 ///
 /// # Errors
-/// Those of [`read_mesh`], and [`Error::UnusableCrs`] for a mesh in another system.
+/// Those of [`read_mesh`], and [`belvedere_data::Error::UnusableCrs`] for a mesh in another system.
 pub fn read_mesh_in<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<(Mesh, MeshReport)> {
     let source = source.into();
     let path = source.name().to_owned();
     let (mesh, report) = read_mesh(source)?;
-    if mesh.crs.contradicts(crs) {
-        let (own, other) = (mesh.crs.describe(), crs.describe());
-        let what = format!("the mesh is in {own}, but the scene is in {other}; convert one of them");
-        return Err(Error::UnusableCrs { path, what });
-    }
+    mesh.crs.check_for(crs, "mesh", &path)?;
     Ok((mesh.scaled_to_metres(crs), report))
 }

@@ -63,7 +63,9 @@ impl Table {
     /// [`Error::Malformed`] where it is missing, or a cell is empty, text or not finite.
     pub fn full_column(&self, path: &Path, name: &str) -> Result<&[f64]> {
         let column = self.column(path, name)?.ok_or_else(|| {
-            Error::malformed(path, format!("there is no column {name}; the header has {}", self.names().join(", ")))
+            let header = Some(self.names().join(", ")).filter(|names| !names.is_empty());
+            let header = header.map_or("the file is empty".to_owned(), |names| format!("the header has {names}"));
+            Error::malformed(path, format!("there is no column {name}; {header}"))
         })?;
         if let Some(row) = column.iter().position(|v| !v.is_finite()) {
             return Err(Error::malformed(path, format!("row {}: {name} is empty or not finite", row + 1)));

@@ -6,7 +6,6 @@ use crate::errors::{exception, wrong};
 use crate::scene::Inner;
 use crate::system::System;
 use crate::work::run;
-use belvedere::Error;
 use belvedere::apps::targets::{Facing, MeshParams};
 use belvedere::io::read_mesh;
 use belvedere::results::FaceRows;
@@ -107,14 +106,10 @@ impl Mesh {
     /// The mesh in the metres of a scene.
     ///
     /// # Errors
-    /// [`Error::UnusableCrs`] for another reference system than that of the scene.
+    /// [`belvedere::Error::UnusableCrs`] for another reference system than that of the scene.
     pub(crate) fn in_metres(&self, inner: &Inner) -> belvedere::Result<belvedere::Mesh> {
         let crs = &inner.frame().crs;
-        if self.mesh.crs.contradicts(crs) {
-            let [mesh, scene] = [self.mesh.crs.describe(), crs.describe()];
-            let what = format!("the mesh is in {mesh}, but the scene is in {scene}; convert one of them");
-            return Err(Error::UnusableCrs { path: self.name.clone(), what });
-        }
+        self.mesh.crs.check_for(crs, "mesh", &self.name)?;
         Ok((*self.mesh).clone().scaled_to_metres(crs))
     }
 }

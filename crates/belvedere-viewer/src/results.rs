@@ -78,11 +78,7 @@ impl ResultFile {
         let Some(place) = &raster.place else {
             return Err(Error::malformed(path, "does not say where it lies on the map: write it as a GeoTIFF"));
         };
-        if place.crs.contradicts(&frame.crs) {
-            let (own, other) = (place.crs.describe(), frame.crs.describe());
-            let what = format!("the raster is in {own}, but the scene is in {other}; convert one of them");
-            return Err(Error::UnusableCrs { path: path.to_owned(), what });
-        }
+        place.crs.check_for(&frame.crs, "raster", path)?;
         let size = [raster.values.width(), raster.values.height()];
         let all = (0..size[1]).flat_map(|row| (0..size[0]).map(move |column| [column, row]));
         check_places(path, all.map(|cell| center(place, cell, frame)).map(|[x, y]| [x, y, 0.0]), bounds)?;

@@ -1,11 +1,12 @@
 //! Cameras that could be put up, and what they are to look at.
 
 use super::camera::{Camera, Lens};
-use crate::landmark::is_inside;
+use crate::roof_planes::BUILDING;
 use crate::targets::{CellLevel, CellParams, Targets};
 use crate::viewshed::SightLimits;
 use belvedere_core::ground::{Ground, highest_points};
 use belvedere_data::control::Control;
+use belvedere_data::polygon::is_inside;
 use belvedere_data::{Error, PointCloud, Result};
 use std::f64::consts::TAU;
 
@@ -17,8 +18,6 @@ pub const ROOF_CAMERA_HEIGHT: f64 = 1.0;
 pub const CAMERA_TARGET_HEIGHT: f64 = 1.5;
 /// Least height of a roof above the ground, metres: lower ones are cars and hedges.
 const LEAST_ROOF: f64 = 2.0;
-/// ASPRS class of buildings.
-const BUILDING: u8 = 6;
 
 /// Whether cameras are turned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

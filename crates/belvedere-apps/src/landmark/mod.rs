@@ -6,7 +6,6 @@ mod points;
 mod report;
 
 pub use measures::{LandmarkMeasure, MEASURES};
-pub(crate) use points::is_inside;
 pub use points::{LandmarkPoints, landmark_points};
 pub use report::{BestView, LandmarkReport};
 

@@ -5,6 +5,7 @@ use belvedere_core::neighbors::NeighborIndex;
 use belvedere_core::normals::estimate::{Neighborhood, estimate};
 use belvedere_core::query::SurfacePieces;
 use belvedere_data::control::Control;
+use belvedere_data::polygon::is_inside;
 use belvedere_data::{Error, PointCloud, Result};
 
 /// Greatest radius of the surface that a point stands for, metres: walls that few pulses reach have points a metre apart.
@@ -68,38 +69,4 @@ pub fn landmark_points(cloud: &PointCloud, which: &LandmarkPoints<'_>) -> Result
     let normals = estimate(&points, &index, Neighborhood::default(), &Control::none())?;
     let surface = SurfacePieces::of_points(&points, &normals.vectors, MOST_RADIUS, &Control::none())?;
     Ok((rows, surface))
-}
-
-/// Whether a place lies within a rim and outside its holes: the rule of odd crossings over all rings.
-pub(crate) fn is_inside(rings: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {
-    let mut inside = false;
-    for ring in rings {
-        let Some(mut previous) = ring.last() else { continue };
-        for corner in ring {
-            let ([ax, ay], [bx, by]) = (*previous, *corner);
-            if (ay > y) != (by > y) && x < ax + (y - ay) / (by - ay) * (bx - ax) {
-                inside = !inside;
-            }
-            previous = corner;
-        }
-    }
-    inside
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn holes_and_closed_rings_are_understood() {
-        let rim = vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [0.0, 0.0]];
-        let hole = vec![[4.0, 4.0], [6.0, 4.0], [6.0, 6.0], [4.0, 6.0]];
-        let polygon = [rim, hole];
-        for (place, expected) in
-            [([1.0, 1.0], true), ([5.0, 5.0], false), ([5.0, 3.0], true), ([11.0, 5.0], false), ([-1.0, 4.0], false)]
-        {
-            assert_eq!(is_inside(&polygon, place), expected, "{place:?}");
-        }
-        assert!(!is_inside(&[], [0.0; 2]));
-    }
 }

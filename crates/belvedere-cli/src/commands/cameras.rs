@@ -4,7 +4,7 @@ mod places;
 mod results;
 mod what;
 
-use super::sights::{Proving, blockers, ground, ground_cloud};
+use super::sights::{ground, ground_cloud, proving_blockers};
 use super::{check_output, warn_of_geojson};
 use crate::arguments::{Cameras, Global, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
@@ -38,16 +38,8 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     let grid = flagged("--cell", map_grid(&scene, cell))?;
     let (cloud, ground_points) = ground_cloud(&arguments.targets.ground, &mut scene, &mut stages)?;
     let ground = ground(&cloud, ground_points, grid, &mut stages, &mut summary)?;
-    let mut section = Summary::default();
-    let (blockers, unproven) = blockers(
-        &scene,
-        arguments.scene.profile.into(),
-        &arguments.giving_way,
-        Proving::IfItDecides,
-        &mut stages,
-        &mut section,
-    )?;
-    summary.add("lines_of_sight", section);
+    let profile = arguments.scene.profile.into();
+    let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
     let site = what::Site { scene: &scene, cloud: &cloud, ground: &ground };
     let targets = what::targets(&arguments.targets, &site, global.seed, &mut stages, &mut summary)?;
 
@@ -70,10 +62,11 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     let mut section = Summary::default();
     section.add("count", given).add("see_private_places", given - candidates.len()).add("existing", existing.len());
     summary.add("cameras_to_choose_from", section);
+    if given == 0 {
+        bail!("there is no place for a camera: all lie inside obstacles, below the ground or outside the cloud");
+    }
     if candidates.is_empty() {
-        bail!(
-            "no camera is left to choose from; see the summary of `--json` for the reasons, and give more --candidates"
-        );
+        bail!("all {given} cameras have a private place in their picture; give other --candidates, or more --headings");
     }
 
     let poses: Vec<Pose> = existing.iter().chain(&candidates).copied().collect();
@@ -115,10 +108,11 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
 }
 
 fn check(arguments: &Cameras) -> Result<()> {
+    let are_cells = what::are_cells(&arguments.targets);
     for output in &arguments.output {
         check_output("-o", output, &["geojson", "tif", "tiff", "png", "csv"])?;
         let is_map = ["tif", "tiff", "png"].contains(&super::extension(output).as_str());
-        if is_map && !what::are_cells(&arguments.targets) {
+        if is_map && !are_cells {
             let output = output.display();
             return Err(Usage(format!("{output}: rasters and maps need cells as targets; use .csv or .geojson")).into());
         }
@@ -128,14 +122,14 @@ fn check(arguments: &Cameras) -> Result<()> {
     }
     if let Some(output) = &arguments.footprints {
         check_output("--footprints", output, &["geojson"])?;
-        if !what::are_cells(&arguments.targets) {
+        if !are_cells {
             return Err(Usage("--footprints needs cells as targets".to_owned()).into());
         }
     }
     if arguments.goal.coverage.is_some_and(|percent| percent > 100.0) {
         return Err(Usage("--coverage must be a percentage, above 0 to 100".to_owned()).into());
     }
-    what::check(&arguments.targets)
+    what::check(&arguments.targets, are_cells)
 }
 
 /// Pixels per metre that are required.

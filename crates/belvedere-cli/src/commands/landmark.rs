@@ -3,7 +3,7 @@
 mod results;
 mod what;
 
-use super::sights::{self, Proving, blockers, ground_cloud, skip_unfit};
+use super::sights::{self, ground_cloud, proving_blockers, skip_unfit};
 use super::surroundings::rows_as_given;
 use super::{check_output, extension};
 use crate::arguments::{Global, Landmark, Usage};
@@ -31,16 +31,8 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     let rows = rows(arguments, &scene.cloud)?;
     let (cloud, points) = ground_cloud(&arguments.ground, &mut scene, &mut stages)?;
     let ground = sights::ground(&cloud, points, grid, &mut stages, &mut summary)?;
-    let mut section = Summary::default();
-    let (blockers, unproven) = blockers(
-        &scene,
-        arguments.scene.profile.into(),
-        &arguments.giving_way,
-        Proving::IfItDecides,
-        &mut stages,
-        &mut section,
-    )?;
-    summary.add("lines_of_sight", section);
+    let profile = arguments.scene.profile.into();
+    let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
 
     let height = arguments.observer_height.unwrap_or(OBSERVER_HEIGHT);
     let places: Vec<[f64; 3]>;

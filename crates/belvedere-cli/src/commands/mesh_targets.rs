@@ -58,12 +58,9 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     let scene = pipeline::scene(&arguments.scene, Points::LetGo, &mut stages, &mut summary)?;
     let mesh = mesh_of(path, &scene, &mut stages, &mut summary)?;
     let views = arguments.view.views(&scene, &mut summary)?;
-    let mut section = Summary::default();
     let giving_way = GivingWay { shell: arguments.shell, unproven: arguments.unproven };
     let profile = arguments.scene.profile.into();
-    let (blockers, unproven) =
-        sights::blockers(&scene, profile, &giving_way, sights::Proving::IfItDecides, &mut stages, &mut section)?;
-    summary.add("lines_of_sight", section);
+    let (blockers, unproven) = sights::proving_blockers(&scene, profile, &giving_way, &mut stages, &mut summary)?;
     if let Some(view) = views.first().filter(|view| view.is_central()) {
         let note = sights::enclosure_note(&blockers, view.frame.eye, "the eye");
         summary.add("notes", note.into_iter().collect::<Vec<_>>());

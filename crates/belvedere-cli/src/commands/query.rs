@@ -223,13 +223,6 @@ pub(super) fn points_of_file(
         stages.run("reading targets", 0, |control| read_cloud(&[path.to_owned()], &options, control))?;
     pipeline::check_every_row(&report)?;
     summary.add("reading_targets", Summary::of(&report));
-    if cloud.frame.crs.contradicts(&frame.crs) {
-        bail!(
-            "{}: the targets are in {}, but the scene is in {}; convert one of them",
-            path.display(),
-            cloud.frame.crs.describe(),
-            frame.crs.describe()
-        );
-    }
+    cloud.frame.crs.check_for(&frame.crs, "cloud of targets", path)?;
     Ok(cloud.moved_to(frame))
 }

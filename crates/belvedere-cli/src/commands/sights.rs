@@ -60,6 +60,20 @@ pub(crate) fn blockers(
     Ok((blockers, unproven_as))
 }
 
+/// [`blockers`] that prove where that can change an answer, with their report.
+pub(crate) fn proving_blockers(
+    scene: &Scene,
+    profile: Profile,
+    flags: &GivingWay,
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<(MedialScene, UnprovenAs)> {
+    let mut section = Summary::default();
+    let found = blockers(scene, profile, flags, Proving::IfItDecides, stages, &mut section)?;
+    summary.add("lines_of_sight", section);
+    Ok(found)
+}
+
 /// How near pulses must pass and how much may be unseen, where pulses tell visible from unproven.
 pub(crate) fn add_proof(scene: &MedialScene, section: &mut Summary) {
     if let Some(proof) = scene.proof() {
@@ -101,14 +115,7 @@ pub(crate) fn ground_cloud(
                 read_cloud(std::slice::from_ref(path), &ReadOptions::default(), control)
             })?;
             let frame = &scene.cloud.frame;
-            if cloud.frame.crs.contradicts(&frame.crs) {
-                bail!(
-                    "{}: the ground is in {}, but the scene is in {}; convert one of them",
-                    path.display(),
-                    cloud.frame.crs.describe(),
-                    frame.crs.describe()
-                );
-            }
+            cloud.frame.crs.check_for(&frame.crs, "ground", path)?;
             // a scene that knows no system takes that of its ground
             let own = Some(cloud.frame.crs.clone()).filter(|crs| crs.kind != belvedere::crs::CrsKind::Unknown);
             let mut cloud = cloud.moved_to(frame);

@@ -7,7 +7,7 @@ use crate::interrupt;
 use crate::pipeline::{self, Points, flagged, params};
 use crate::progress::Stages;
 use crate::summary::{Summary, note};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use belvedere::apps::sun::{Date, Site, Zone};
 use belvedere::io::{atomic, has_point_results, is_ball_file, read_geojson, read_point_results, read_tif};
 use belvedere::model::SceneModel;
@@ -183,10 +183,7 @@ fn load(
         input.input.clouds.clone_from(&files.clouds);
         let cloud = pipeline::read(&input.input, stages, summary)?;
         let frame = scene.model.frame();
-        if cloud.frame.crs.contradicts(&frame.crs) {
-            let (cloud, balls) = (cloud.frame.crs.describe(), frame.crs.describe());
-            bail!("the cloud is in {cloud}, but the balls are in {balls}; convert one of them");
-        }
+        cloud.frame.crs.check_for(&frame.crs, "cloud", &files.clouds[0])?;
         let cloud = Arc::new(cloud.moved_to(frame));
         loading.show(&cloud);
         shown = Some(cloud);

@@ -3,7 +3,7 @@
 mod results;
 mod who;
 
-use super::sights::{OUTSIDE_CLOUD, Proving, blockers, enclosure_note, ground, ground_cloud, skip_unfit};
+use super::sights::{OUTSIDE_CLOUD, enclosure_note, ground, ground_cloud, proving_blockers, skip_unfit};
 use super::{check_output, warn_of_geojson};
 use crate::arguments::{Global, Viewshed};
 use crate::pipeline::{self, Points, flagged};
@@ -50,16 +50,8 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
         false => arguments.looking.target_height.unwrap_or(TARGET_HEIGHT),
     };
     flagged("--target-height, --observer-height", finite(target_height))?;
-    let mut section = Summary::default();
-    let (blockers, unproven) = blockers(
-        &scene,
-        arguments.scene.profile.into(),
-        &arguments.giving_way,
-        Proving::IfItDecides,
-        &mut stages,
-        &mut section,
-    )?;
-    summary.add("lines_of_sight", section);
+    let profile = arguments.scene.profile.into();
+    let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
     let who = if is_reverse { "target" } else { "observer" };
     let report = skip_observers(&mut observers, &blockers, &ground, (who, &cloud), &mut stages, &mut summary)?;
     let key = if is_reverse { "target" } else { "observers" };

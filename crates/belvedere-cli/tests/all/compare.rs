@@ -218,4 +218,5 @@ fn scanners_and_densities_are_kept_apart() {
         assert!(fs::read(place.path(&format!("out/pictures/{picture}"))).unwrap().starts_with(b"\x89PNG"));
     }
     place.refusal(2, "compare --regimes balloon -o out", &["--regimes", "balloon", "conical"]);
+    place.refusal(1, "compare --regimes car --extent 60 --methods dsm -o no", &["the car passes nothing", "--extent"]);
 }

@@ -7,6 +7,7 @@ use crate::neighbors::NeighborIndex;
 use crate::query::FreedSpace;
 use belvedere_data::balls::LIMIT_TOUCH;
 use belvedere_data::control::Control;
+use belvedere_data::polygon::is_inside;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{sub, unit};
 use belvedere_data::{Bounds, Error, PointCloud, Result};
@@ -355,20 +356,6 @@ fn tops(area: &ClearedArea, cloud: &PointCloud, is_cleared: &[bool], grid: &MapG
         }
     }
     tops
-}
-
-/// Whether a place on the map lies within rings, holes excepted: the rule of odd crossings.
-fn is_inside(rings: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {
-    let mut inside = false;
-    for ring in rings {
-        for (i, &[x0, y0]) in ring.iter().enumerate() {
-            let [x1, y1] = ring[(i + 1) % ring.len()];
-            if (y0 > y) != (y1 > y) && x < x0 + (y - y0) / (y1 - y0) * (x1 - x0) {
-                inside = !inside;
-            }
-        }
-    }
-    inside
 }
 
 fn of_rows<T: Copy>(values: &[T], rows: &[usize]) -> Vec<T> {

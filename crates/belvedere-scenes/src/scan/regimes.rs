@@ -5,7 +5,6 @@ use crate::scan::airborne::{AirborneParams, scan_airborne};
 use crate::scan::beam::BeamParams;
 use crate::scan::mobile::{MobileParams, scan_mobile};
 use crate::scan::scan_pattern::{MirrorMotion, ScanPattern};
-
 use crate::scan::terrestrial::{Stations, TerrestrialParams, scan_terrestrial};
 use crate::scene::Scene;
 use crate::town::TownParams;

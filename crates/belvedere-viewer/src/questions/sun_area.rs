@@ -6,6 +6,7 @@ use crate::replies::{Answer, Refusal};
 use belvedere::apps::sun::{Binning, Date, DayParams, Period, SunSchedule, Zone, sun_days};
 use belvedere::apps::sun_hours::{SunPlan, scene_sun_hours};
 use belvedere::apps::targets::{CellParams, Targets};
+use belvedere::polygon::is_inside;
 use belvedere::query::UnprovenAs;
 use serde::Deserialize;
 use serde_json::json;
@@ -24,11 +25,12 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
     if question.corners.len() < 3 {
         return Err(Refusal("An area needs at least three corners.".to_owned()));
     }
-    let corners: Vec<[f64; 2]> = question
+    let corners = question
         .corners
         .iter()
         .map(|&[x, y]| local(asked, [x, y, 0.0]).map(|[x, y, _]| [x, y]))
-        .collect::<Result<_, _>>()?;
+        .collect::<Result<Vec<[f64; 2]>, _>>()?;
+    let outline = [corners];
     let cloud = scene.cloud()?;
     let site = scene.site()?;
     let zone = Zone::parse(&question.zone)?;
@@ -41,7 +43,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         targets.set_on_added(added, &cells);
     }
     for (cell, position) in targets.positions.iter_mut().enumerate() {
-        if !is_inside(&corners, grid.center(cell % grid.width.max(1), cell / grid.width.max(1))) {
+        if !is_inside(&outline, grid.center(cell % grid.width.max(1), cell / grid.width.max(1))) {
             *position = [f32::NAN; 3];
         }
     }
@@ -79,11 +81,4 @@ fn of_rows(asked: &Asked<'_>, targets: &Targets, rows: &[usize]) -> Targets {
     let mut cloud = belvedere::PointCloud::in_frame(asked.scene.model.frame().clone());
     cloud.positions = rows.iter().map(|&row| targets.positions[row]).collect();
     Targets::of_points(&cloud, None)
-}
-
-/// Whether a place on the map lies inside a polygon: an odd number of edges lies west of it.
-fn is_inside(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
-    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-    edges.filter(|([ax, ay], [bx, by])| (*ay > y) != (*by > y) && x > ax + (y - ay) / (by - ay) * (bx - ax)).count() % 2
-        == 1
 }

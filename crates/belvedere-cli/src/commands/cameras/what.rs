@@ -50,8 +50,8 @@ pub(super) fn are_cells(flags: &CameraTargets) -> bool {
 }
 
 /// Refuses flags of other targets.
-pub(super) fn check(flags: &CameraTargets) -> Result<()> {
-    if flags.cell.is_some() && !are_cells(flags) {
+pub(super) fn check(flags: &CameraTargets, are_cells: bool) -> Result<()> {
+    if flags.cell.is_some() && !are_cells {
         return Err(Usage("--cell applies only to targets that are cells: polygons, or no --targets".to_owned()).into());
     }
     if flags.spacing.is_some() && !flags.targets.as_deref().is_some_and(is_mesh) {

@@ -4,7 +4,7 @@ use super::case::Ingredients;
 use super::scanners::Scanner;
 use crate::arguments::Compare;
 use crate::simulated::cloud_of;
-use anyhow::Result;
+use anyhow::{Result, bail};
 use belvedere::Mesh;
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud, read_mesh, read_trajectory};
@@ -104,6 +104,13 @@ impl Place {
                 let params = regime.town(preset.params(*extent, *seed));
                 let scene = town(&params);
                 let scan = regime.scan(&scene, &params, *pulses_per_m2);
+                if scan.x.is_empty() {
+                    bail!(
+                        "the {} passes nothing in {}: give a larger --extent, 100 at least",
+                        regime.name(),
+                        self.name()
+                    );
+                }
                 let cloud = cloud_of(&scan)?;
                 let path = scan.sensor_path.times.iter().copied().zip(scan.sensor_path.positions.iter().copied());
                 let (trajectory, _) = Trajectory::from_records(path.collect());
