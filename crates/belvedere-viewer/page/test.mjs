@@ -220,12 +220,20 @@ async function main() {
     await page.evaluate(() => { document.getElementById("zone").value = "Mars"; belvedere.time.zone = "Mars"; belvedere.choose("shadow"); });
     await page.waitForFunction(() => /No answer[\s\S]*Mars/.test(document.getElementById("card").innerText), null, { timeout: 5000 });
   });
-  await step("a page in one file shows the shadows of a day without a server", async () => {
-    execFileSync(program, ["view", "town/cloud.laz", "--export", "page.html", "--date", "2026-06-21", "--zone", "Europe/Amsterdam"], { cwd: folder, stdio: "ignore" });
+  await step("a page in one file shows the shadows of a day and the views of viewpoints without a server", async () => {
+    const viewpoints = ["--observer", "155000,463000", "--observer", "154985,463010,30"];
+    execFileSync(program, ["view", "town/cloud.laz", "--export", "page.html", "--date", "2026-06-21", "--zone", "Europe/Amsterdam", ...viewpoints], { cwd: folder, stdio: "ignore" });
     const alone = await open(browser, `file://${join(folder, "page.html")}`);
     await ready(alone);
-    assert.equal(await alone.evaluate(() => document.querySelectorAll("#tools button").length), 2);
+    assert.equal(await alone.evaluate(() => document.querySelectorAll("#tools button").length), 3);
     await alone.keyboard.press("2");
+    await answered(alone);
+    const [first, command] = await alone.evaluate(() => [belvedere.last.visible, document.getElementById("command").innerText]);
+    assert.match(command, /belvedere viewshed town\/cloud\.laz --observer 155000,463000 -o seen\.laz/);
+    await alone.selectOption("#viewpoint", "1");
+    await alone.waitForFunction((before) => belvedere.last.visible > before && belvedere.marks.length === 2, first, { timeout: 5000 });
+    assert.ok(await pixels(alone, [255, 176, 0]) > 500, "visible points are orange");
+    await alone.keyboard.press("3");
     await answered(alone);
     assert.match(await text(alone), /% is lit[\s\S]*belvedere shadow town\/cloud\.laz --time 2026-06-21T/);
     const noon = await alone.evaluate(() => belvedere.last.lit_share);

@@ -1,18 +1,20 @@
-//! The page as one file that needs no server: its points, and the shadows of the hours of a day.
+//! The page as one file that needs no server: its points, the shadows of the hours of a day, and what is seen from viewpoints.
 
 use crate::chunks::Chunks;
 use crate::page;
 use crate::scene::{Scene, Shown};
-use crate::server::SceneText;
+use crate::scene_text::{SceneText, typed};
+use belvedere::apps::eyes::fault_of;
 use belvedere::apps::shadow::{Edges, ShadowSun, scene_shadow};
 use belvedere::apps::sun::{Date, Refraction, SunPosition, Zone, sun_position_with};
-use belvedere::apps::targets::Targets;
+use belvedere::apps::targets::{Targets, set_on_ground};
 use belvedere::apps::tree_light::Season;
+use belvedere::apps::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, ViewshedParams, viewshed};
 use belvedere::control::Control;
 use belvedere::model::SceneModel;
-use belvedere::query::UnprovenAs;
+use belvedere::query::{Answer, AnswerCounts, UnprovenAs};
 use belvedere::report::rounded;
-use belvedere::{PointCloud, Result};
+use belvedere::{Error, PointCloud, Result};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -30,6 +32,8 @@ pub struct ExportParams {
     pub scene: SceneText,
     /// The day whose shadows are in the file, and how its clocks run; `None` for a file without shadows.
     pub day: Option<(Date, Zone)>,
+    /// Eyes whose views are in the file, in the coordinates of the cloud's file; 1.7 m above the ground where z is NaN.
+    pub viewpoints: Vec<[f64; 3]>,
 }
 
 /// What is in a file.
@@ -41,12 +45,15 @@ pub struct ExportReport {
     pub points_left_out: usize,
     /// Hours of the day whose shadows are in the file.
     pub suns: usize,
+    /// Viewpoints whose views are in the file.
+    pub viewpoints: usize,
 }
 
 /// The page of a cloud and its model as one file.
 ///
 /// # Errors
-/// [`belvedere::Error::MissingAttribute`] for a day without a known location, and [`belvedere::Error::Cancelled`].
+/// [`Error::MissingAttribute`] for a day without a known location, [`Error::InvalidParameter`] for a viewpoint that nobody can look
+/// from, and [`Error::Cancelled`].
 pub fn export(
     cloud: &Arc<PointCloud>,
     model: SceneModel,
@@ -56,16 +63,20 @@ pub fn export(
     let chunks = Chunks::new(cloud).sample(MOST_POINTS);
     let shown = Arc::new(Shown::of(Arc::clone(cloud), chunks));
     let scene = Scene::new(model, Arc::clone(&shown));
+    let mut sent = PointCloud::in_frame(scene.model.frame().clone());
+    sent.positions = scene.shown.chunks.positions(&scene.shown.cloud);
     let suns = match &params.day {
-        Some((date, zone)) => suns(&scene, *date, zone, &params.scene, control)?,
+        Some((date, zone)) => suns(&scene, &sent, (*date, zone), &params.scene, control)?,
         None => Vec::new(),
     };
+    let viewpoints = viewpoints(&scene, &sent, params, control)?;
     let numbers = 0..shown.chunks.chunks.len();
     let of_chunks = |bytes: &dyn Fn(usize) -> Option<Vec<u8>>| -> Vec<String> {
         numbers.clone().filter_map(bytes).map(|bytes| base64(&bytes)).collect()
     };
     let points = shown.chunks.len();
-    let report = ExportReport { points, points_left_out: cloud.len() - points, suns: suns.len() };
+    let report =
+        ExportReport { points, points_left_out: cloud.len() - points, suns: suns.len(), viewpoints: viewpoints.len() };
     let mut description = shown.description.clone();
     description["point_count"] = points.into();
     let data = json!({
@@ -75,12 +86,19 @@ pub fn export(
         "points": of_chunks(&|number| shown.chunks.points(number, cloud)),
         "colors": of_chunks(&|number| shown.chunks.colors(number, cloud)),
         "suns": suns,
+        "viewpoints": viewpoints,
     });
     Ok((html(&data), report))
 }
 
 /// The suns of the whole hours of a day, and a bit for each point in the order in which points are sent: 1 for lit.
-fn suns(scene: &Scene, date: Date, zone: &Zone, text: &SceneText, control: &Control<'_>) -> Result<Vec<Value>> {
+fn suns(
+    scene: &Scene,
+    sent: &PointCloud,
+    (date, zone): (Date, &Zone),
+    text: &SceneText,
+    control: &Control<'_>,
+) -> Result<Vec<Value>> {
     let site = scene.site()?;
     let mut hours = Vec::new();
     for hour in 0..24 {
@@ -94,29 +112,59 @@ fn suns(scene: &Scene, date: Date, zone: &Zone, text: &SceneText, control: &Cont
     let season = Some(Season::on(date, &site));
     let kinds: Vec<ShadowSun> =
         hours.iter().map(|(_, _, position)| ShadowSun { to_sun: position.to_sun(&site), season }).collect();
-    let mut sent = PointCloud::in_frame(scene.model.frame().clone());
-    sent.positions = scene.shown.chunks.positions(&scene.shown.cloud);
     let blockers = scene.blockers(UnprovenAs::Visible, control)?;
-    let targets = Targets::of_points(&sent, None);
+    let targets = Targets::of_points(sent, None);
     let lit = scene_shadow(&*blockers, &targets, &kinds, Edges::Hard, control)?;
-    let points = text.cloud_beside.as_ref().map_or("--self".to_owned(), |cloud| format!("--targets {cloud}"));
     let of_hour = |((hour, time, position), lit): (&(i32, String, SunPosition), &Vec<f32>)| {
         json!({
             "minutes": 60 * hour,
             "time": time,
             "azimuth_deg": rounded(position.azimuth.to_degrees(), 4),
             "elevation_deg": rounded(position.elevation.to_degrees(), 4),
-            "command": format!("belvedere shadow {} --time {date}T{hour:02}:00 --zone {} {points} -o shadow.laz", text.input, zone.name()),
-            "bits": base64(&bits(lit)),
+            "command": text.shadow(&format!("{date}T{hour:02}:00"), zone.name()),
+            "bits": base64(&packed(lit, 1, |&share| u8::from(share > 0.0))),
         })
     };
     Ok(hours.iter().zip(&lit).map(of_hour).collect())
 }
 
-/// A bit for each share, 1 where it is above 0, lowest bits first.
-fn bits(shares: &[f32]) -> Vec<u8> {
-    let byte = |eight: &[f32]| (0..).zip(eight).fold(0, |byte, (i, &share)| byte | u8::from(share > 0.0) << i);
-    shares.chunks(8).map(byte).collect()
+/// The viewpoints, and two bits for each point in the order in which points are sent: 0 blocked, 1 visible, 2 unproven, 3 no answer.
+fn viewpoints(scene: &Scene, sent: &PointCloud, params: &ExportParams, control: &Control<'_>) -> Result<Vec<Value>> {
+    if params.viewpoints.is_empty() {
+        return Ok(Vec::new());
+    }
+    let frame = scene.model.frame();
+    let mut eyes: Vec<[f64; 3]> = params.viewpoints.iter().map(|&place| frame.local_from_file(place)).collect();
+    let ground = scene.ground(control)?;
+    set_on_ground(eyes.iter_mut().map(|eye| (eye, OBSERVER_HEIGHT)), &ground);
+    let blockers = scene.blockers(UnprovenAs::Reported, control)?;
+    let of_eye = |(&eye, place): (&[f64; 3], &[f64; 3])| {
+        // without z the height follows from the ground
+        let place = if place[2].is_nan() { &place[..2] } else { &place[..] };
+        if fault_of(&blockers, Some(&ground), eye).is_some() {
+            let expected = "inside the cloud, above the ground and outside obstacles";
+            return Err(Error::InvalidParameter { name: "the viewpoint", value: typed(place), expected });
+        }
+        let observer = Observer { eye, limits: SightLimits::default() };
+        let seen = viewshed(&blockers, &[observer], &sent.positions, &ViewshedParams::default(), control)?;
+        let counts = AnswerCounts::of(&seen.answers);
+        Ok(json!({
+            "place": frame.file_from_local(eye).map(|v| rounded(v, 3)),
+            "visible": counts.visible,
+            "blocked": counts.blocked,
+            "unproven": counts.unproven,
+            "tells_unproven": blockers.proof().is_some(),
+            "command": params.scene.seen(place),
+            "answers": base64(&packed(&seen.answers, 2, |&answer| (answer as u8).min(Answer::OutsideView as u8))),
+        }))
+    };
+    eyes.iter().zip(&params.viewpoints).map(of_eye).collect()
+}
+
+/// So many bits for each value, lowest bits first.
+fn packed<T>(values: &[T], width: usize, code: impl Fn(&T) -> u8) -> Vec<u8> {
+    let byte = |some: &[T]| (0..).step_by(width).zip(some).fold(0, |byte, (shift, value)| byte | code(value) << shift);
+    values.chunks(8 / width).map(byte).collect()
 }
 
 fn base64(bytes: &[u8]) -> String {
@@ -151,7 +199,7 @@ fn html(data: &Value) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{base64, bits};
+    use super::{base64, packed};
 
     #[test]
     fn bytes_become_text_as_rfc_4648_says() {
@@ -163,7 +211,8 @@ mod tests {
     }
 
     #[test]
-    fn lit_points_have_their_bit() {
-        assert_eq!(bits(&[1.0, 0.0, f32::NAN, 0.5, 0.0, 0.0, 0.0, 0.0, 1.0]), [0b1001, 1]);
+    fn values_have_their_bits() {
+        assert_eq!(packed(&[1, 0, 0, 1, 0, 0, 0, 0, 1], 1, |&bit| bit), [0b1001, 1]);
+        assert_eq!(packed(&[1, 0, 2, 3, 2], 2, |&code| code), [0b1110_0001, 2]);
     }
 }

@@ -28,10 +28,12 @@ mod replies;
 mod results;
 mod routes;
 mod scene;
+mod scene_text;
 mod server;
 
 pub use export::{ExportParams, ExportReport, export};
 pub use loading::Loading;
 pub use plans::quoted;
 pub use results::PointsOf;
-pub use server::{SceneText, Viewer, ViewerParams};
+pub use scene_text::SceneText;
+pub use server::{Viewer, ViewerParams};

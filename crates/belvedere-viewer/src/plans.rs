@@ -2,7 +2,7 @@
 
 use crate::replies::Refusal;
 use crate::scene::Scene;
-use crate::server::SceneText;
+use crate::scene_text::SceneText;
 use belvedere::control::Control;
 use belvedere::io::{Source, read_mesh_in};
 use belvedere::model::{ClearReport, ClearedArea};

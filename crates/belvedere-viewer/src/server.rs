@@ -3,6 +3,7 @@
 use crate::guard::Guard;
 use crate::loading::Loading;
 use crate::routes;
+use crate::scene_text::SceneText;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use std::net::{Ipv4Addr, SocketAddr};
@@ -29,15 +30,6 @@ pub struct ViewerParams {
     pub scene: SceneText,
     /// What the page is called.
     pub title: String,
-}
-
-/// A scene as it is typed on command lines.
-#[derive(Clone, Debug, Default)]
-pub struct SceneText {
-    /// Its files and flags.
-    pub input: String,
-    /// The cloud beside a ball file, which shows the ground and the points.
-    pub cloud_beside: Option<String>,
 }
 
 /// A running server. It ends when it is dropped.

@@ -2,7 +2,7 @@
 
 use super::check_output;
 use super::mesh_targets::is_mesh;
-use crate::arguments::{Global, MethodChoice, SceneInput, Usage, ViewPage};
+use crate::arguments::{Global, MethodChoice, Place, SceneInput, Usage, ViewPage};
 use crate::interrupt;
 use crate::pipeline::{self, Points, flagged, params};
 use crate::progress::Stages;
@@ -89,6 +89,7 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
         title: title(&arguments.scene.input.clouds),
         scene: SceneText { input: files.typed(), cloud_beside: files.cloud_beside() },
         day,
+        viewpoints: arguments.observer.iter().map(|&Place([x, y], z)| [x, y, z.unwrap_or(f64::NAN)]).collect(),
     };
     let exported = stages.run("making the page", 0, |control| export(&cloud, model, &params, control));
     let (page, report) = exported?;
@@ -246,7 +247,7 @@ fn typed(without: &[String]) -> String {
     let mut skips = false;
     for word in words {
         let is_of_page = ["view", "--no-browser", "--quiet", "--verbose", "-v", "--json"].contains(&word.as_str());
-        let has_value = ["--port", "--export", "--date", "--zone", "--threads", "--seed", "--progress"];
+        let has_value = ["--port", "--export", "--date", "--zone", "--observer", "--threads", "--seed", "--progress"];
         if std::mem::take(&mut skips) || is_of_page {
             continue;
         }

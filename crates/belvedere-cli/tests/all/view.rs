@@ -337,10 +337,13 @@ fn a_ball_file_and_its_cloud_are_ready_without_building() {
 }
 
 #[test]
-fn a_page_is_written_as_one_file_with_the_shadows_of_a_day() {
+fn a_page_is_written_as_one_file_with_the_shadows_of_a_day_and_views() {
     let place = Workplace::new();
     assert_eq!(place.run("simulate town -o town --extent 60").status, 0);
-    let run = place.summary("view town/cloud.laz --export page.html --date 2026-06-21 --zone Europe/Amsterdam");
+    let viewpoints = "--observer 155000,463000 --observer 154985,463010,30";
+    let run = place.summary(&format!(
+        "view town/cloud.laz --export page.html --date 2026-06-21 --zone Europe/Amsterdam {viewpoints}"
+    ));
     let text = place.text("page.html");
     // the sun rises at 5:18 and sets at 22:03 there
     assert_eq!(run["suns"], 17);
@@ -363,8 +366,22 @@ fn a_page_is_written_as_one_file_with_the_shadows_of_a_day() {
     };
     let bits: u32 = sun["bits"].as_str().unwrap().bytes().map(|c| digit(c).count_ones()).sum();
     assert_eq!(bits as usize, lit);
+    // as much is visible from a viewpoint as the command says; each point has two bits there
+    assert_eq!(run["viewpoints"], 2);
+    for viewpoint in data["viewpoints"].as_array().unwrap() {
+        let command = viewpoint["command"].as_str().unwrap().replace("seen.laz", "seen.csv");
+        place.summary(command.strip_prefix("belvedere ").unwrap());
+        let answers = column(&place, "seen.csv", "answer");
+        for (key, code) in [("visible", 1.0), ("unproven", 2.0), ("blocked", 0.0)] {
+            let count = answers.iter().filter(|answer| **answer == code).count();
+            assert_eq!(viewpoint[key], count, "{key}");
+        }
+        assert_eq!(viewpoint["answers"].as_str().unwrap().len(), answers.len().div_ceil(4).div_ceil(3) * 4);
+    }
     place.refusal(2, "view town/cloud.laz --export page.txt", &["--export", "html"]);
     place.refusal(2, "view town/cloud.laz --export page.html --date yesterday", &["--date"]);
+    place.refusal(2, "view town/cloud.laz --observer 155000,463000", &["--export"]);
+    place.refusal(1, "view town/cloud.laz --export page.html --observer 155000,463000,-90", &["viewpoint", "above"]);
 }
 
 #[cfg(unix)]

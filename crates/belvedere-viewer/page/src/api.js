@@ -35,6 +35,13 @@ function shadowOf({ time }) {
   return { ...sun, lit, points: body.length, body: body.buffer };
 }
 
+function seenFrom({ viewpoint }) {
+  const answer = exported.viewpoints[viewpoint];
+  const packed = bytesOf(answer.answers);
+  const body = new Uint8Array(exported.state.shown.point_count).map((_, i) => (packed[i >> 2] >> (2 * (i & 3))) & 3);
+  return { ...answer, points: body.length, body: body.buffer };
+}
+
 export const state = async () => exported?.state ?? (await get("state")).json();
 export const points = async (chunk) => new Uint16Array(exported ? bytesOf(exported.points[chunk]).buffer : await (await get(`points/${chunk}`)).arrayBuffer());
 export const colors = async (chunk) => new Uint16Array(exported ? bytesOf(exported.colors[chunk]).buffer : await (await get(`colors/${chunk}`)).arrayBuffer());
@@ -44,7 +51,7 @@ export const balls = async () => new Float32Array(await (await get("balls")).arr
 
 // Asks a question of the scene, or of that with a plan: named values, and a byte for each of many places as `body`.
 export async function ask(question, values, signal, plan = null) {
-  if (exported) return shadowOf(values);
+  if (exported) return question === "seen" ? seenFrom(values) : shadowOf(values);
   return answer(await get(`${plan === null ? "" : `plans/${plan}/`}ask/${question}`, {
     method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(values), signal,
   }));

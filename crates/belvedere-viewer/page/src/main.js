@@ -8,6 +8,7 @@ import { setWhen } from "./plan.js";
 import { ask, choose, click, snapshot } from "./questions.js";
 import { save } from "./save.js";
 import { $, canvas, page, root, TOOLS } from "./state.js";
+import { ofViewpoints } from "./viewpoints.js";
 import { again, isPlaying, setPlaying, showClock, step } from "./time.js";
 import { cloud, draw, mover, open, placeAt, resize, shownPlace, toFile } from "./view.js";
 
@@ -97,7 +98,11 @@ function key(event) {
 function start() {
   $("tools").innerHTML = `<h2>Questions</h2>${TOOLS.map((tool, i) => `<button data-tool="${tool.name}" aria-pressed="false" title="${tool.title} (${(i + 1) % 10})">${tool.icon}<span>${tool.title}</span><kbd>${(i + 1) % 10}</kbd></button>`).join("")}<p></p>`;
   for (const button of $("tools").querySelectorAll("button")) button.onclick = () => page.choose(button.dataset.tool);
-  if (api.exported) $("balls").hidden = true;
+  if (api.exported) {
+    $("balls").hidden = true;
+    const seen = TOOLS.find(({ name }) => name === "seen");
+    if (seen) Object.assign(seen, ofViewpoints({ ...seen }));
+  }
   if (matchMedia("(prefers-color-scheme: dark)").matches) theme("dark");
   try {
     open();

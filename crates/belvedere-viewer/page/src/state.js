@@ -6,6 +6,7 @@ export const $ = (id) => document.getElementById(id);
 export const root = document.documentElement;
 export const canvas = $("view");
 // a page without a server answers what is stored in it
-export const TOOLS = ALL.filter(({ name }) => !api.exported || name === "look" || (name === "shadow" && api.exported.suns.length));
+const isStored = ({ name }) => name === "look" || (name === "shadow" && api.exported.suns.length) || (name === "seen" && api.exported.viewpoints.length);
+export const TOOLS = api.exported ? ALL.filter(isStored) : ALL;
 export const page = { scene: null, tool: TOOLS[0], places: [], marks: [], answer: null, time: { date: "", zone: "UTC", minutes: 780 }, last: null };
 window.belvedere = page;

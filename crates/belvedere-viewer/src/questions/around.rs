@@ -1,10 +1,11 @@
 //! Sky view and isovist here: how open a place is.
 
 use super::Asked;
-use super::places::{command, command_at, local, number, typed};
+use super::places::{command_at, local, number};
 use super::sun::at;
 use crate::replies::{Answer, Refusal};
 use crate::scene::Inside;
+use crate::scene_text::typed;
 use belvedere::apps::isovist::{IsovistParams, isovist};
 use belvedere::apps::sky_view::{SKY_DIRECTIONS, SkyDirections, scene_sky_view};
 use belvedere::query::UnprovenAs;
@@ -49,7 +50,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "command": format!(
             "{}\n{}",
             command_at(asked, question.place, "sky-view", "-o sky.csv"),
-            command(asked, "isovist", &format!("--observer {} -o isovist.json", typed(&question.place))),
+            asked.text.command("isovist", &format!("--observer {} -o isovist.json", typed(&question.place))),
         ),
     });
     Ok(Answer { head, body: panorama.values().iter().map(|&range| brightness(range)).collect() })

@@ -1,8 +1,9 @@
 //! Is B seen from A: the answer, the place that blocks, and the profile.
 
 use super::Asked;
-use super::places::{command_on_ground, local, number, rounded, shown, typed};
+use super::places::{local, number, rounded, shown};
 use crate::replies::{Answer, Refusal};
+use crate::scene_text::typed;
 use belvedere::apps::profile::sight_profile;
 use belvedere::query::{Answer as Sight, EarthParams, UnprovenAs};
 use serde::Deserialize;
@@ -40,7 +41,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "first_block": block,
         "unproven_m": if scene.model.pulses().is_some() { number(sight.unproven_length, 3) } else { Value::Null },
         "profile": profile(asked, [observer, target], &earth),
-        "command": command_on_ground(asked, "line-of-sight", &format!("{ends} -o line.csv --profile-out profile.png")),
+        "command": asked.text.command_on_ground("line-of-sight", &format!("{ends} -o line.csv --profile-out profile.png")),
     });
     Ok(Answer::of(head))
 }

@@ -14,7 +14,7 @@ mod who;
 use crate::plans::Plans;
 use crate::replies::{Answer, Refusal};
 use crate::scene::Scene;
-use crate::server::SceneText;
+use crate::scene_text::SceneText;
 use belvedere::control::Control;
 pub(crate) use roof::Roofs;
 use serde::de::DeserializeOwned;

@@ -1,7 +1,7 @@
 //! Energy of the roof here: of the plane that was clicked, under a year of clear sky.
 
 use super::Asked;
-use super::places::{command_on_ground, local, number, rounded};
+use super::places::{local, number, rounded};
 use crate::replies::{Answer, Refusal};
 use crate::scene::Scene;
 use belvedere::apps::irradiance::{
@@ -95,7 +95,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> std::result::Res
         "year": CLEAR_SKY_YEAR,
         "planes": roofs.planes.len(),
         "roofs_m2": rounded(roofs.planes.iter().map(|plane| plane.area).sum(), 1),
-        "command": command_on_ground(asked, "irradiance", "--clear-sky ineichen --months --planes roofs.csv"),
+        "command": asked.text.command_on_ground("irradiance", "--clear-sky ineichen --months --planes roofs.csv"),
     });
     let points = plane.points.iter().filter_map(|&row| roofs.points.get(row as usize));
     Ok(Answer { head, body: points.flatten().flat_map(|v| v.to_le_bytes()).collect() })

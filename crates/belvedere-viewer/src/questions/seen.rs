@@ -1,7 +1,7 @@
 //! What is seen from here: an answer for each point of the cloud.
 
 use super::Asked;
-use super::places::{command_on_ground, local, typed};
+use super::places::local;
 use crate::replies::{Answer, Refusal};
 use crate::scene::{Inside, Points};
 use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, viewshed_among};
@@ -35,7 +35,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "blocked": counts.blocked,
         "unproven": counts.unproven,
         "tells_unproven": blockers.proof().is_some(),
-        "command": command_on_ground(asked, "viewshed", &format!("--observer {} -o seen.laz", typed(&question.place))),
+        "command": asked.text.seen(&question.place),
     });
     Ok(Answer { head, body: points.in_order(|row| seen.answers[row] as u8) })
 }

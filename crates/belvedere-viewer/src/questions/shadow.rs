@@ -1,7 +1,7 @@
 //! Shadow at this time: for each point of the cloud whether the sun reaches it.
 
 use super::Asked;
-use super::places::{command, rounded};
+use super::places::rounded;
 use crate::replies::{Answer, Refusal};
 use crate::scene::Points;
 use belvedere::apps::shadow::{Edges, ShadowSun, scene_shadow};
@@ -46,7 +46,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "elevation_deg": rounded(position.elevation.to_degrees(), 4),
         "to_sun": position.to_sun(&site),
         "time": zone.display(instant),
-        "command": command_of(asked, &question.time, zone.name()),
+        "command": asked.text.shadow(&question.time, zone.name()),
     });
     let code = |row: usize| match lit.get(row) {
         Some(share) if *share > 0.0 => CODES[1],
@@ -54,10 +54,4 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         _ => CODES[2],
     };
     Ok(Answer { head, body: points.in_order(code) })
-}
-
-/// The command for the points of the cloud, which a ball file has beside it.
-fn command_of(asked: &Asked<'_>, time: &str, zone: &str) -> String {
-    let points = asked.text.cloud_beside.as_ref().map_or("--self".to_owned(), |cloud| format!("--targets {cloud}"));
-    command(asked, "shadow", &format!("--time {time} --zone {zone} {points} -o shadow.laz"))
 }

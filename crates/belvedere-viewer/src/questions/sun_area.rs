@@ -1,7 +1,7 @@
 //! Sun hours of an area that was drawn: of the cells on the ground whose middle lies in it.
 
 use super::Asked;
-use super::places::{command_on_ground, local, number, rounded};
+use super::places::{local, number, rounded};
 use crate::replies::{Answer, Refusal};
 use belvedere::apps::sun::{Binning, Date, DayParams, Period, SunSchedule, Zone, sun_days};
 use belvedere::apps::sun_hours::{SunPlan, scene_sun_hours};
@@ -69,7 +69,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "min_hours": number(f64::from(least), 3),
         "max_hours": number(f64::from(most), 3),
         "possible_hours": rounded(plan.period().possible_hours(), 3),
-        "command": command_on_ground(asked, "sun-hours", &format!("--date {} --zone {} -o sun.tif", question.date, zone.name())),
+        "command": asked.text.command_on_ground("sun-hours", &format!("--date {} --zone {} -o sun.tif", question.date, zone.name())),
     });
     let body =
         few.positions.iter().zip(&hours).flat_map(|(&[x, y, z], &hours)| [x, y, z, hours]).flat_map(f32::to_le_bytes);

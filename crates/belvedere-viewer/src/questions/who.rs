@@ -1,9 +1,10 @@
 //! Who sees this: the cells from which a person would see the place.
 
 use super::Asked;
-use super::places::{command_on_ground, local, typed};
+use super::places::local;
 use crate::replies::{Answer, Refusal};
 use crate::scene::Inside;
+use crate::scene_text::typed;
 use belvedere::apps::targets::{CellParams, CoveredCells, Targets};
 use belvedere::apps::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, ViewshedParams, tested_height, viewshed};
 use belvedere::query::{AnswerCounts, UnprovenAs};
@@ -36,7 +37,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "unproven": counts.unproven,
         "visible_m2": super::places::rounded(counts.visible as f64 * grid.cell * grid.cell, 1),
         "grid": { "first_center": low, "cell_m": grid.cell, "columns": grid.width, "rows": grid.height },
-        "command": command_on_ground(asked, "viewshed", &format!("--target {} -o who.tif", typed(&question.place))),
+        "command": asked.text.command_on_ground("viewshed", &format!("--target {} -o who.tif", typed(&question.place))),
     });
     let heights = ground.heights.values().iter().flat_map(|height| height.to_le_bytes());
     let answers = seen.answers.iter().map(|&answer| answer as u8);

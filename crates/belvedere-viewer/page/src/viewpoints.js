@@ -1,0 +1,27 @@
+// What is seen from the viewpoints of a page without a server, where nothing else can be asked.
+import * as api from "./api.js";
+import { escape } from "./charts.js";
+import { $ } from "./state.js";
+import { shownPlace, toLocal } from "./view.js";
+
+let chosen = 0;
+const name = (number) => `Viewpoint ${number + 1}`;
+
+// The question about a clicked place, asked of a viewpoint of the file.
+export function ofViewpoints(tool) {
+  return {
+    ...tool, height: null, places: 0, samples: false, hint: "Choose a viewpoint: its view is in this file.",
+    ask: () => ["seen", { viewpoint: chosen }],
+    show(answer, page) {
+      const { viewpoints } = api.exported;
+      page.marks = viewpoints.map(({ place }, i) => ({ at: toLocal(place), label: name(i), color: i === chosen ? "#d1495b" : undefined }));
+      const options = viewpoints.map((_, i) => `<option value="${i}"${i === chosen ? " selected" : ""}>${name(i)}</option>`).join("");
+      return {
+        html: `<div class="field"><label for="viewpoint">Viewpoint</label><select id="viewpoint">${options}</select></div>`
+          + `<p class="note">${escape(shownPlace(answer.place))}</p>${tool.show(answer, page)}`,
+        after() { $("viewpoint").onchange = () => { chosen = Number($("viewpoint").value); page.ask(); }; },
+      };
+    },
+    geometry: () => ["Point", api.exported.viewpoints[chosen].place],
+  };
+}

@@ -1,0 +1,41 @@
+//! The command lines that give the same answers as the page.
+
+/// The scene as it is typed on the command line.
+#[derive(Clone, Debug, Default)]
+pub struct SceneText {
+    /// Its files and flags.
+    pub input: String,
+    /// The cloud beside a ball file, which shows the ground and the points.
+    pub cloud_beside: Option<String>,
+}
+
+impl SceneText {
+    /// A command with this scene.
+    pub(crate) fn command(&self, name: &str, flags: &str) -> String {
+        format!("belvedere {name} {} {flags}", self.input)
+    }
+
+    /// The same for commands that need the ground, which a ball file does not have.
+    pub(crate) fn command_on_ground(&self, name: &str, flags: &str) -> String {
+        match &self.cloud_beside {
+            Some(cloud) => self.command(name, &format!("--ground cloud={cloud} {flags}")),
+            None => self.command(name, flags),
+        }
+    }
+
+    /// The shadow on the points of the cloud, which a ball file has beside it.
+    pub(crate) fn shadow(&self, time: &str, zone: &str) -> String {
+        let points = self.cloud_beside.as_ref().map_or("--self".to_owned(), |cloud| format!("--targets {cloud}"));
+        self.command("shadow", &format!("--time {time} --zone {zone} {points} -o shadow.laz"))
+    }
+
+    /// What an eye sees of the points of the cloud.
+    pub(crate) fn seen(&self, eye: &[f64]) -> String {
+        self.command_on_ground("viewshed", &format!("--observer {} -o seen.laz", typed(eye)))
+    }
+}
+
+/// Coordinates as they are typed.
+pub(crate) fn typed(place: &[f64]) -> String {
+    place.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+}
