@@ -126,7 +126,7 @@ impl Scene {
             })?;
             Ok((views, grid, report))
         })?;
-        let skipped = skipped(&inner, &report)?;
+        let skipped = skipped(&inner, "observer", &report)?;
         #[expect(clippy::cast_possible_truncation, reason = "measures are f32")]
         let of = |value: &dyn Fn(&LandmarkView) -> f64| views.iter().map(|view| value(view) as f32).collect();
         let columns = MEASURES.iter().map(|measure| {

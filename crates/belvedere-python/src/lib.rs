@@ -4,6 +4,7 @@
 //! is done without the interpreter, and results become arrays.
 
 mod arrays;
+mod cameras;
 mod cloud;
 mod energy;
 mod errors;

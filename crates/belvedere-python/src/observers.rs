@@ -83,19 +83,19 @@ pub(crate) fn skip(
 ///
 /// # Errors
 /// Where none is left.
-pub(crate) fn skipped(inner: &Inner, report: &EyesReport) -> PyResult<Vec<String>> {
+pub(crate) fn skipped(inner: &Inner, who: &str, report: &EyesReport) -> PyResult<Vec<String>> {
     let sentences: Vec<String> = report
         .faults
         .iter()
         .map(|skipped| {
             let [x, y, _] = inner.frame().file_from_local(skipped.place);
-            format!("observer {} at {x:.3},{y:.3} is skipped: {}", skipped.row, skipped.fault)
+            format!("{who} {} at {x:.3},{y:.3} is skipped: {}", skipped.row, skipped.fault)
         })
         .collect();
     match (sentences.first(), report.faults.first()) {
         (Some(first), Some(fault)) if report.skipped == report.count => {
-            let message = format!("no observer is left: {first}");
-            Err(belvedere_error(&message, "observers", &format!("{:?}", fault.place), &fault.fault.to_string()))
+            let message = format!("no {who} is left: {first}");
+            Err(belvedere_error(&message, &format!("{who}s"), &format!("{:?}", fault.place), &fault.fault.to_string()))
         }
         _ => Ok(sentences),
     }

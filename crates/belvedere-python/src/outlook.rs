@@ -112,7 +112,7 @@ impl Scene {
             })?;
             Ok((seen, grid, report))
         })?;
-        let skipped = skipped(&inner, &report)?;
+        let skipped = skipped(&inner, "observer", &report)?;
         let answers: Vec<u8> = seen.answers.iter().map(|&answer| answer as u8).collect();
         Ok((to_1d(py, answers).into_any(), to_1d(py, seen.counts).into_any(), grid, skipped))
     }
@@ -148,7 +148,7 @@ impl Scene {
                 control.stage("computing horizons", eyes.len(), || horizons(&scene, &eyes, &params, control))?;
             Ok((found, report))
         })?;
-        let skipped = skipped(&inner, &report)?;
+        let skipped = skipped(&inner, "observer", &report)?;
         let elevation = |skyline: &Vec<belvedere::query::SkylinePoint>, azimuth: usize| {
             skyline.get(azimuth).map_or(f64::NAN, |point| point.elevation.to_degrees())
         };
@@ -194,7 +194,7 @@ impl Scene {
             })?;
             Ok((stand, isovists, report))
         })?;
-        let skipped = skipped(&inner, &report)?;
+        let skipped = skipped(&inner, "observer", &report)?;
         let north = place.grid_north_of(&inner);
         let dict = PyDict::new(py);
         let of_file: Vec<[f64; 3]> = stand.iter().map(|&eye| inner.frame().file_from_local(eye)).collect();

@@ -65,6 +65,18 @@ pub(crate) fn ground_points(text: Option<&str>) -> PyResult<GroundPoints> {
 }
 
 impl Wanted<'_> {
+    pub(crate) fn cell(&self) -> Option<f64> {
+        self.cell
+    }
+
+    pub(crate) fn height(&self) -> Option<f64> {
+        self.height
+    }
+
+    pub(crate) fn ground(&self) -> Option<&str> {
+        self.ground.as_deref()
+    }
+
     pub(crate) fn owned(&self, py: Python<'_>, inner: &Inner) -> PyResult<Asked> {
         let normals: Option<Vec<[f32; 3]>> = self.normals.as_ref().map(|n| fixed_rows(n, "normals")).transpose()?;
         let check = |count: usize| match &normals {

@@ -34,7 +34,7 @@ def test_documented_defaults_are_those_of_the_command_line(program):
         of_command = flags[name.replace("_", "-")]
         flag = "--" + parameter.replace("_", "-")
         if flag not in of_command:
-            flag = {"--fov-deg": "--fov", "--width": "--size"}[flag]
+            flag = {"--fov-deg": "--fov", "--width": "--size", "--tilts-deg": "--tilt"}[flag]
         default = of_command[flag]
         words = [number, number.strip("()").replace(", ", "x")]
         count += 1

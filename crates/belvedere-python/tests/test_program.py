@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import pickle
 
 import belvedere
@@ -296,6 +297,62 @@ def test_landmarks(scene, run_program, folder, standing):
     assert {path.stem for path in (folder / "landmark").iterdir()} == set(rasters)
     for measure, raster in rasters.items():
         assert_same_raster(raster, folder / "landmark" / f"{measure}.tif", folder)
+
+
+def test_cameras(scene, run_program, folder, standing):
+    """Grids and given places, fixed and turning, with private places and a camera that stays."""
+    run_program(
+        "cameras", "tile.laz", "--on-roofs", 12, "--count", 3, "--max-distance", 50, "--density", "monitor",
+        "-o", "cameras.tif", "-o", "cameras.geojson", "--search-limit", 200,
+    )  # fmt: skip
+    placed = scene.cameras("roofs", spacing=12, count=3, max_distance=50, density="monitor", search_limit=200)
+    assert_same_raster(placed.counts, folder / "cameras.tif", folder)
+    features = json.loads((folder / "cameras.geojson").read_text())["features"]
+    assert [f["properties"]["covered_targets"] for f in features] == placed.cameras["covered_targets"].tolist()
+    headings = np.array([f["properties"]["heading"] for f in features])
+    assert np.abs(headings - placed.cameras["heading_deg"]).max() < 6e-4
+    assert [len(rows) for rows in placed.covered] == placed.cameras["covered_targets"].tolist()
+    assert (placed.counts.values[placed.counts.values != 65535] > 0).mean() * 100 == pytest.approx(
+        placed.coverage_percent, abs=1e-9
+    )
+
+    x, y = standing
+    posts = [(x + dx, y + dy) for dx in (-6, 0, 6) for dy in (-6, 0, 6)]
+    (folder / "posts.csv").write_text("x,y\n" + "".join(f"{a!r},{b!r}\n" for a, b in posts))
+    (folder / "private.csv").write_text(f"x,y\n{x + 3!r},{y + 9!r}\n")
+    run_program(
+        "cameras", "tile.laz", "--candidates", "posts.csv", "--private", "private.csv", "--coverage", 30, "--cell", 4,
+        "--density", "none", "--headings", 6, "--tilt", 10, "--tilt", 40, "-o", "some.tif",
+    )  # fmt: skip
+    with pytest.warns(belvedere.BelvedereWarning, match=r"candidate 1 .* inside an obstacle"):
+        some = scene.cameras(
+            posts, private=(x + 3, y + 9), coverage_percent=30, cell=4, density="none", headings=6, tilts_deg=(10, 40)
+        )
+    assert_same_raster(some.counts, folder / "some.tif", folder)
+    assert some.coverage_percent >= 30 and some.least_possible_cameras <= len(some.covered)
+    more = scene.cameras(posts[2:], count=1, cell=4, density="none", existing=some.cameras, headings=6)
+    assert more.existing_only_percent == pytest.approx(some.coverage_percent, abs=0.2)
+    assert more.cameras["is_existing"].tolist() == [True] * len(some.covered) + [False]
+
+
+def test_cameras_of_places(scene, cloud, standing):
+    x, y = standing
+    targets = cloud.xyz[::400] + [0, 0, 1.0]
+    weights = np.zeros(len(targets))
+    weights[:10] = 1
+    placed = scene.cameras([(x, y), (x + 5, y)], count=2, fov_deg=360, targets=targets, weights=weights)
+    assert set(np.flatnonzero(placed.counts["cameras"] != 65535)) == set(range(10))
+    assert all((rows < 10).all() for rows in placed.covered)
+    with pytest.raises(belvedere.BelvedereError, match="weights"):
+        scene.cameras(standing, count=1, targets=targets, weights=[1, 2])
+    with pytest.raises(belvedere.BelvedereError, match="one of"):
+        scene.cameras(standing)
+    with pytest.raises(belvedere.BelvedereError, match="'sharp'"):
+        scene.cameras(standing, count=1, density="sharp")
+    with pytest.raises(belvedere.BelvedereError, match="distance"):
+        scene.cameras(standing, count=1, fov_deg=360, density=50)
+    with pytest.raises(belvedere.BelvedereError, match="roofs"):
+        scene.cameras("trees", count=1)
 
 
 def test_irradiance(scene, run_program, folder):

@@ -116,6 +116,24 @@ impl Lens {
     pub fn density(&self) -> Option<f64> {
         self.is_flat().then(|| self.pixels / (2.0 * (self.width / 2.0).tan()))
     }
+
+    /// Pixels per metre that are required: those given, or else those of [`Level::Detect`]; 0, for no requirement, without a flat picture.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a density below 0, and for one above 0 without a flat picture.
+    pub fn required_density(&self, given: Option<f64>) -> Result<f64> {
+        let invalid = |density: f64, expected| {
+            Err(Error::InvalidParameter { name: "pixels per metre", value: density.to_string(), expected })
+        };
+        match given {
+            None => Ok(if self.is_flat() { Level::Detect.pixels_per_metre() } else { 0.0 }),
+            Some(density) if !(density >= 0.0 && density.is_finite()) => invalid(density, "0 or more"),
+            Some(density) if density > 0.0 && !self.is_flat() => {
+                invalid(density, "none where the field of view is 180 degrees or more; limit the distance instead")
+            }
+            Some(density) => Ok(density),
+        }
+    }
 }
 
 /// A camera in its place.

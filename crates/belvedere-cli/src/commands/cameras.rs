@@ -12,8 +12,7 @@ use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::cameras::{
-    CoverageParams, Goal, Lens, Level, Placement, PlacementParams, Pose, counted_weights, coverage, place_cameras,
-    sees_private,
+    CoverageParams, Goal, Placement, PlacementParams, Pose, counted_weights, coverage, place_cameras, sees_private,
 };
 use belvedere::apps::landmark::observer_cell_for;
 use belvedere::ground::MapGrid;
@@ -71,7 +70,8 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
 
     let poses: Vec<Pose> = existing.iter().chain(&candidates).copied().collect();
     let cameras: Vec<_> = poses.iter().map(|pose| pose.camera).collect();
-    let density = density(arguments, &lens)?;
+    let density =
+        flagged("--density, --max-distance", lens.required_density(arguments.lens.density.map(|density| density.0)))?;
     let params = CoverageParams::default().with_density(density).with_earth(earth).with_unproven(unproven);
     let (table, report) = stages.run("testing lines of sight", cameras.len(), |control| {
         coverage(&blockers, &cameras, &targets, &params, control)
@@ -130,18 +130,6 @@ fn check(arguments: &Cameras) -> Result<()> {
         return Err(Usage("--coverage must be a percentage, above 0 to 100".to_owned()).into());
     }
     what::check(&arguments.targets, are_cells)
-}
-
-/// Pixels per metre that are required.
-fn density(arguments: &Cameras, lens: &Lens) -> Result<f64> {
-    match arguments.lens.density {
-        Some(density) if density.0 > 0.0 && !lens.is_flat() => {
-            Err(Usage("--density needs a field of view below 180 degrees; use --max-distance instead".to_owned())
-                .into())
-        }
-        Some(density) => Ok(density.0),
-        None => Ok(if lens.is_flat() { Level::Detect.pixels_per_metre() } else { 0.0 }),
-    }
 }
 
 fn map_grid(scene: &Scene, cell: f64) -> belvedere::Result<MapGrid> {

@@ -9,6 +9,7 @@
 
 from . import city
 from ._answer import Answer
+from ._cameras import Placement
 from ._cloud import Cloud, read
 from ._core import __version__
 from ._errors import BelvedereError, BelvedereWarning
@@ -25,6 +26,7 @@ __all__ = [
     "BelvedereWarning",
     "Cloud",
     "Mesh",
+    "Placement",
     "Raster",
     "Rasters",
     "Scene",

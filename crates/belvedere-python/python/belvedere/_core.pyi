@@ -196,6 +196,14 @@ class Scene:
         unproven: str,
         progress: _Progress,
     ) -> tuple[_Columns, _Grid | None, list[str]]: ...
+    def cameras(
+        self,
+        choice: dict[str, Any],
+        targets: dict[str, Any],
+        place: dict[str, Any],
+        unproven: str,
+        progress: _Progress,
+    ) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any], npt.NDArray[np.uint32], _Grid | None, list[str]]: ...
     def irradiance(
         self, radiation: dict[str, Any], targets: dict[str, Any], trees: dict[str, Any], progress: _Progress
     ) -> tuple[_Results, str]: ...

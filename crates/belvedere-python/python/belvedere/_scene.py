@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._cameras import Cameras
 from ._cloud import Cloud, read
 from ._core import Scene as NativeScene
 from ._energy import Energy
@@ -25,7 +26,7 @@ from ._sights import Sights
 from ._sunlight import Sunlight
 
 
-class Scene(Sights, Outlook, Sunlight, Energy, Planning):
+class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
     """A scene that answers what can be seen: medial balls, cut with the space that laser pulses prove empty.
 
     Parameters

@@ -126,8 +126,11 @@ fn height(flags: &CameraTargets) -> f64 {
 fn cells(flags: &CameraTargets, site: &Site<'_>) -> Result<Targets> {
     let params = CellParams::default().with_height(height(flags));
     let control = belvedere::control::Control::none();
-    let (targets, _) =
+    let (mut targets, _) =
         flagged("--target-height", Targets::of_cells(site.cloud, site.ground.clone(), &params, &control))?;
+    if let Some(added) = site.scene.model.added() {
+        targets.set_on_added(added, &params);
+    }
     Ok(targets)
 }
 

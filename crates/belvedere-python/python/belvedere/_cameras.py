@@ -1,0 +1,263 @@
+"""Where cameras, observers and masts cover most."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._errors import wrong
+from ._inputs import Progress, check_finite, map_places, reporter
+from ._mesh import Mesh
+from ._outlook import _warn
+from ._raster import Raster
+from ._sunlight import _place
+from ._table import Table
+from ._targets import Targets, coordinates, raster, wanted
+
+_PLACES = "give x and y, or x, y and z: shape (N, 2) or (N, 3)"
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Cameras that were chosen, and what is proven of the choice.
+
+    Attributes
+    ----------
+    cameras : Table
+        ``heading_deg``, ``tilt_deg`` and ``fov_deg`` (NaN for cameras that turn or see all around), ``is_existing``,
+        ``added_percent`` and ``covered_targets``; its `places` are where the cameras stand.
+    counts : Raster or Table
+        How many cameras cover each target: a raster (65535 where nothing counts) where targets are cells, a column
+        ``cameras`` elsewhere.
+    covered : list of ndarray
+        For each camera the rows of the targets that it covers. Cells are counted row by row from the north.
+    coverage_percent : float
+        Share of the weight of all targets that is covered.
+    best_possible_percent : float
+        The share that no choice of as many cameras can exceed.
+    is_proven_optimum : bool
+        Whether no other choice is better.
+    all_candidates_percent : float
+        The share that all candidates together cover.
+    existing_only_percent : float
+        The share that the existing cameras cover.
+    least_possible_cameras : int or None
+        The number of new cameras below which no choice reaches the coverage that was wanted.
+    cameras_to_choose_from : int
+        Cameras that could be chosen: headings and tilts of all places.
+
+    Examples
+    --------
+    >>> placed = scene.cameras(standing, count=1, fov_deg=360)
+    >>> placed.coverage_percent <= placed.best_possible_percent
+    True
+    """
+
+    cameras: Table
+    counts: Union[Raster, Table]
+    covered: list[npt.NDArray[np.uint64]]
+    coverage_percent: float
+    best_possible_percent: float
+    is_proven_optimum: bool
+    all_candidates_percent: float
+    existing_only_percent: float
+    least_possible_cameras: Union[int, None]
+    cameras_to_choose_from: int
+
+
+class Cameras:
+    """Where cameras, observers and masts cover most."""
+
+    _core: _core.Scene
+
+    def cameras(
+        self,
+        candidates: str | npt.ArrayLike,
+        *,
+        count: int | None = None,
+        coverage_percent: float | None = None,
+        targets: Targets = None,
+        weights: npt.ArrayLike | None = None,
+        existing: npt.ArrayLike | Table | None = None,
+        private: npt.ArrayLike | None = None,
+        spacing: float = 5.0,
+        camera_height: float | None = None,
+        target_height: float | None = None,
+        cell: float | None = None,
+        ground: str | None = None,
+        fov_deg: float | None = None,
+        vertical_fov_deg: float | None = None,
+        pixels: float | None = None,
+        density: str | float | None = None,
+        headings: int | None = None,
+        tilts_deg: npt.ArrayLike | None = None,
+        turning: bool = False,
+        min_distance: float | None = None,
+        max_distance: float | None = None,
+        per_target: int = 1,
+        search_limit: int | None = None,
+        unproven: str = "report",
+        curvature: str | None = None,
+        refraction: float | None = None,
+        grid_north: bool = False,
+        progress: Progress = None,
+    ) -> Placement:
+        """Which of many possible cameras to put up, with a proven bound on the best choice.
+
+        Parameters
+        ----------
+        candidates : array_like, shape (N, 2) or (N, 3), or {'ground', 'roofs'}
+            Places in the coordinates of the file; without z, `camera_height` above the ground. Or a grid of places
+            above the ground or above roofs.
+        count : int, optional
+            Cover as much as possible with so many new cameras.
+        coverage_percent : float, optional
+            In place of a count: cover this share of the targets with as few new cameras as possible.
+        targets : array_like, shape (N, 3), Cloud or Mesh, optional
+            What is to be covered; the cells of the ground if not given.
+        weights : array_like, shape (N,), optional
+            How much each target counts; all alike if not given. Only for places and clouds.
+        existing : array_like, shape (N, 2), (N, 3) or (N, 5), or Table, optional
+            Cameras that stay: x, y, z, heading and tilt in degrees (without these two for cameras that turn or see all
+            around), or the table of an earlier choice.
+        private : array_like, shape (N, 2) or (N, 3), optional
+            Places that no camera may have in its picture; without z, `target_height` above the ground.
+        spacing : float, optional
+            Side of the cells of a grid of candidates, metres.
+        camera_height : float, optional
+            Metres above the ground; 4 if not given, or 1 above roofs.
+        target_height : float, optional
+            Metres above the ground; 1.5 if not given.
+        cell : float, optional
+            Side of the cells that are targets, metres; 2 if not given, more for large scenes.
+        ground : {'auto', 'class', 'found'}, optional
+            Which points are ground, as for `viewshed`.
+        fov_deg, vertical_fov_deg : float, optional
+            Field of view, degrees; 90 if not given, in a picture of 16:9. From 180 on the camera sees all around: a
+            person, a fisheye lens, a mast.
+        pixels : float, optional
+            Across the picture; 1920 if not given.
+        density : str or float, optional
+            Pixels per metre that are needed, or a level of EN 62676-4: 'monitor', 'detect' (default), 'observe',
+            'recognise', 'identify'; or 'none'.
+        headings : int, optional
+            Headings to choose from at each place; 8 if not given.
+        tilts_deg : array_like, shape (T,), optional
+            Angles below the horizon to choose from; 15 if not given.
+        turning : bool, optional
+            Whether cameras turn and tilt to each target.
+        min_distance, max_distance : float, optional
+            Horizontal distances at which cameras are good, metres.
+        per_target : int, optional
+            Cameras that each target needs; one with fewer counts in proportion.
+        search_limit : int, optional
+            Most branches of the search for the proven optimum; 0 for no search.
+        unproven : {'report', 'as-visible', 'as-blocked'}
+            What is not proven visible covers a target only 'as-visible'.
+        curvature, refraction, grid_north, progress : optional
+            As for `viewshed`.
+
+        Returns
+        -------
+        Placement
+
+        Raises
+        ------
+        BelvedereError
+            Where no candidate is left, where all of them do not reach the coverage, and for parameters out of range.
+
+        Warns
+        -----
+        BelvedereWarning
+            Of given candidates and existing cameras that cannot look: inside an obstacle, below the ground, outside the
+            cloud.
+
+        References
+        ----------
+        docs/methods/cameras.md
+
+        Examples
+        --------
+        >>> placed = scene.cameras("ground", spacing=20, count=2, turning=True, max_distance=40)
+        >>> len(placed.cameras["heading_deg"]), placed.counts.values.dtype
+        (2, dtype('uint16'))
+        """
+        if isinstance(candidates, str) and candidates not in ("ground", "roofs"):
+            raise wrong("candidates", repr(candidates), "give places, 'ground' or 'roofs'")
+        given = None if isinstance(candidates, str) else map_places(candidates, "candidates", _PLACES)
+        check_finite(spacing=spacing, camera_height=camera_height, fov_deg=fov_deg, vertical_fov_deg=vertical_fov_deg)
+        check_finite(pixels=pixels, min_distance=min_distance, coverage_percent=coverage_percent, refraction=refraction)
+        if isinstance(targets, Mesh) and weights is not None:
+            raise wrong("weights", "given", "the targets of a mesh have the weights of their areas")
+        if targets is None and weights is not None:
+            raise wrong("weights", "given", "cells count alike; give targets, or leave this out")
+        wanted_targets = wanted(targets, None, {"cell": cell, "target_height": None, "ground": None})
+        wanted_targets.update(height=target_height, ground=ground)
+        check_finite(target_height=target_height)
+        choice: dict[str, Any] = {
+            "candidates": None if given is None else given.tolist(),
+            "on_roofs": isinstance(candidates, str) and candidates == "roofs",
+            "spacing": float(spacing),
+            "camera_height": camera_height,
+            "existing": _existing(existing).tolist(),
+            "private": [] if private is None else map_places(private, "private", _PLACES).tolist(),
+            "weights": None if weights is None else _weights(weights, targets).tolist(),
+            "fov": fov_deg,
+            "vertical_fov": vertical_fov_deg,
+            "pixels": pixels,
+            "density": density,
+            "headings": headings,
+            "tilts": None if tilts_deg is None else [float(tilt) for tilt in np.atleast_1d(np.asarray(tilts_deg))],
+            "turning": turning,
+            "min_distance": min_distance,
+            "max_distance": max_distance,
+            "count": count,
+            "coverage": coverage_percent,
+            "per_target": per_target,
+            "search_limit": search_limit,
+            "curvature": curvature,
+            "refraction": refraction,
+        }
+        columns, whole, counts, grid, skipped = self._core.cameras(
+            choice, wanted_targets, _place(None, grid_north=grid_north), unproven, reporter(progress)
+        )
+        _warn(skipped)
+        crs = self._core.crs
+        of_targets: Raster | Table
+        small = np.where(counts == np.uint32(2**32 - 1), 65535, np.minimum(counts, 65534)).astype(np.uint16)
+        if grid is None:
+            of_targets = Table({"cameras": small}, places=coordinates(targets), crs=crs.text)
+        else:
+            text = "number of cameras that cover the cell, 65535 nodata"
+            of_targets = raster(small, grid, crs, name="cameras", description=text, nodata=65535.0)
+        places = columns.pop("place")
+        return Placement(Table(columns, places=places, crs=crs.text), of_targets, **whole)
+
+
+def _existing(given: npt.ArrayLike | Table | None) -> npt.NDArray[np.float64]:
+    """Rows of x, y, z, heading and tilt, NaN where they are not given."""
+    if given is None:
+        return np.empty((0, 5))
+    if isinstance(given, Table):
+        if given.places is None:
+            raise wrong("existing", "a table without places", "give the cameras of an earlier choice")
+        return np.column_stack([given.places, given["heading_deg"], given["tilt_deg"]]).astype(np.float64)
+    advice = "give x, y, z, heading and tilt, or x and y, or x, y and z: shape (N, 5), (N, 2) or (N, 3)"
+    array = np.atleast_2d(np.asarray(given, np.float64))
+    if array.ndim == 2 and array.shape[1] == 5:
+        return array
+    places = map_places(array, "existing", advice)
+    return np.column_stack([places, np.full((len(places), 2), np.nan)])
+
+
+def _weights(weights: npt.ArrayLike, targets: Targets) -> npt.NDArray[np.float64]:
+    array = np.asarray(weights, np.float64)
+    places = coordinates(targets)
+    rows = 0 if places is None else len(places)
+    if array.shape != (rows,):
+        raise wrong("weights", f"an array of shape {array.shape}", f"give one for each of the {rows} targets")
+    return array
