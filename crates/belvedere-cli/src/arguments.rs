@@ -38,7 +38,7 @@ pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, S
 pub(crate) use query::{DepthMap, Query, UnprovenChoice};
 pub(crate) use scene::{AreaChoice, CloudInput, Plan, ProfileChoice, SceneConfig, SceneInput, UpChoice};
 pub(crate) use shadow::Shadow;
-pub(crate) use sky::{FacingChoice, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
+pub(crate) use sky::{FacingChoice, FarTerrain, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
 pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};
 pub(crate) use surroundings::{BelowChoice, Eyes, Horizon, Isovist, Landmark, MeshTargets};
 pub(crate) use towns::{PatternChoice, ScannerChoice, Simulate};

@@ -7,6 +7,7 @@ pub mod balls;
 pub mod cloud;
 pub mod control;
 pub mod crs;
+pub mod elevation;
 pub mod error;
 pub mod frame;
 pub mod horizon;
@@ -24,6 +25,7 @@ pub mod view;
 pub mod weather;
 
 pub use cloud::{Attributes, GpsTimeKind, PointCloud};
+pub use elevation::ElevationGrid;
 pub use error::{Error, Result};
 pub use frame::{Bounds, Frame};
 pub use mesh::Mesh;

@@ -82,6 +82,8 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
     let values = Raster::from_values(size[0], size[1], values)
         .map_err(|_| Error::malformed(&name, "has more than one band; take one of them"))?;
     let keys = decoder.get_tag_u16_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
+    // coordinates that count from the middles of pixels instead of their corners (GTRasterTypeGeoKey, PixelIsPoint)
+    let of_middles = keys.as_chunks::<4>().0.iter().any(|&[key, _, _, value]| key == 1025 && value == 2);
     let keys: Vec<u8> = keys.into_iter().flat_map(u16::to_le_bytes).collect();
     let crs = Crs::from_geotiff_keys(&keys).unwrap_or_default();
     let numbers = |decoder: &mut Decoder<_>, tag| decoder.get_tag_f64_vec(tag).unwrap_or_default();
@@ -99,6 +101,12 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
         }
         _ => None,
     };
+    let to_corner = |place: Georeference| {
+        let half = |i: usize| (place.column_step[i] + place.row_step[i]) / 2.0;
+        let upper_left = [place.upper_left[0] - half(0), place.upper_left[1] - half(1)];
+        Georeference { upper_left, ..place }
+    };
+    let place = if of_middles { place.map(to_corner) } else { place };
     Ok(PlacedRaster { values, place })
 }
 
@@ -121,6 +129,10 @@ fn size_and_values<R: Read + Seek>(decoder: &mut Decoder<R>) -> TiffResult<([usi
 fn damaged(name: &Path, error: TiffError) -> Error {
     match error {
         TiffError::IoError(source) => Error::io(name)(source),
+        TiffError::LimitsExceeded => {
+            let what = "has more than 256 MB of values; make its cells larger or cut out a part, for example: gdalwarp -tr 20 20 -r average IN.tif OUT.tif";
+            Error::malformed(name, what)
+        }
         other => Error::malformed(name, format!("is no raster that can be read: {other}")),
     }
 }

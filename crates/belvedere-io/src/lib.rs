@@ -74,6 +74,8 @@ mod saved_matrix;
 mod source;
 mod stations;
 mod table;
+#[cfg(feature = "tiff")]
+mod terrain;
 mod text_rows;
 mod trajectory;
 mod vpc;
@@ -128,6 +130,8 @@ pub use saved_matrix::{
 pub use source::{ReadSeek, Source};
 pub use stations::read_stations;
 pub use table::{Cells, Table, read_table, write_table};
+#[cfg(feature = "tiff")]
+pub use terrain::read_terrain;
 pub use text_rows::{TextRows, read_text_rows, with_columns_read, write_text_rows};
 pub use trajectory::{TrajectoryReport, read_trajectory};
 pub use weather::read_weather;

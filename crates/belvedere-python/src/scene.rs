@@ -11,7 +11,8 @@ use belvedere::clean::CleanParams;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{
-    Output, is_ball_file, read_balls, read_horizon, read_mesh, read_stations, read_trajectory, write_balls,
+    Output, is_ball_file, read_balls, read_horizon, read_mesh, read_stations, read_terrain, read_trajectory,
+    write_balls,
 };
 use belvedere::medial::{CarvedParams, Rule, ShrinkMethod, ShrinkParams, Trees};
 use belvedere::model::{BallParams, ClearedArea, ModelParams, OrientBy, SceneModel};
@@ -292,6 +293,16 @@ impl Scene {
             inner.model.clone().without(&area, &inner.cloud, control)
         })?;
         Ok((Self(Arc::new(Inner::new(model, Arc::new(cloud)))), json(&report)?))
+    }
+
+    /// The same scene before the terrain of an elevation raster.
+    fn with_terrain(&self, py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let inner = Arc::clone(&self.0);
+        let model = run(py, None, move |_| {
+            let terrain = read_terrain(&path, inner.frame())?;
+            inner.model.clone().with_terrain(terrain, &path.display().to_string())
+        })?;
+        Ok(Self(Arc::new(Inner::new(model, Arc::clone(&self.0.cloud)))))
     }
 
     /// The same scene before the far terrain of a file.

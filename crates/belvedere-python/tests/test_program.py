@@ -415,6 +415,10 @@ def test_plans(scene, run_program, folder):
     lines = [f"v {a!r} {b!r} {c!r}" for a, b, c in ([float(v) for v in corner] for corner in corners)]
     (folder / "planned.obj").write_text("\n".join(lines + [f"f {face}" for face in faces]))
     (folder / "hills.csv").write_text("azimuth,elevation\n90,2\n180,45\n270,8\n")
+    heights = np.full((200, 200), low[2], np.float32)
+    heights[140:] += 1000
+    transform = (20.0, 0.0, float(x) - 2000, 0.0, -20.0, float(y) + 2000)
+    belvedere.Raster(heights, transform, scene._core.crs).to_geotiff(folder / "dtm.tif")
     box = [float(v) for v in (x - 20, y - 15, x + 20, y + 15)]
     area = [(box[0], box[1]), (box[2], box[1]), (box[2], box[3]), (box[0], box[3])]
     sun, flags = {"sun": (200, 25)}, ["--sun", "200,25"]
@@ -428,6 +432,7 @@ def test_plans(scene, run_program, folder):
             ["--clear", ",".join(repr(v) for v in box), "--add", "planned.obj"],
         ),
         ("hills", scene.with_horizon(folder / "hills.csv"), ["--horizon", "hills.csv"]),
+        ("terrain", scene.with_terrain(folder / "dtm.tif"), ["--terrain", "dtm.tif"]),
     ]:
         run_program("shadow", "tile.laz", *flags, *more, "-o", f"plan_{name}.tif")
         raster = planned.shadow(**sun)

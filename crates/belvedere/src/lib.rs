@@ -59,9 +59,12 @@ pub use belvedere_apps as apps;
 pub use belvedere_core::{
     blocking, clean, depth, ground, medial, model, neighbors, normals, pulses, query, ray_index, summary, triangle_tree,
 };
-pub use belvedere_data::{Attributes, Bounds, Error, Frame, GpsTimeKind, Mesh, PointCloud, Result, cloud};
 pub use belvedere_data::{
-    control, crs, error, frame, mesh, polygon, random, raster, report, trajectory, vector, view, weather,
+    Attributes, Bounds, ElevationGrid, Error, Frame, GpsTimeKind, Mesh, PointCloud, Result, cloud,
+};
+pub use belvedere_data::{
+    control, crs, elevation, error, frame, horizon, mesh, polygon, random, raster, report, trajectory, vector, view,
+    weather,
 };
 #[cfg(feature = "figures")]
 pub use belvedere_figures as figures;

@@ -33,18 +33,31 @@ pub(crate) struct SkyPlaces {
     /// Cells of a grid are always level.
     #[arg(long, value_enum, value_name = "HOW", help_heading = "Targets")]
     pub(crate) facing: Option<FacingChoice>,
-    /// Horizon of far terrain: a file of PVGIS (.json .csv), or a table of azimuth and elevation in degrees (.csv)
-    ///
-    /// Directions below it are blocked for all targets. Azimuths of PVGIS count from south and those of other tables clockwise from true north;
-    /// between rows the elevation is linear.
-    #[arg(long, value_name = "FILE", help_heading = "Plan")]
-    pub(crate) horizon: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) far: FarTerrain,
     /// Also write a mask of the cells near the edge of the cloud (.tif): 1 near the edge, 0 not, nodata 255
     ///
     /// A cell is near the edge if more than 5 % of the light comes from directions that leave the cloud below its highest point: objects beyond the
     /// cloud, as high as that, could block them. Directions count by the sine of their elevation.
     #[arg(long = "edge-mask", value_name = "OUT", help_heading = "Targets")]
     pub(crate) edge_mask: Option<PathBuf>,
+}
+
+/// What stands beyond the cloud.
+#[derive(Args)]
+pub(crate) struct FarTerrain {
+    /// Terrain beyond the cloud: elevation raster (DTM) in the coordinate system of the cloud (.tif)
+    ///
+    /// Each place has its own horizon, exact for the cells of the raster, with the curvature of the earth and refraction. Within the extent of the cloud, and one cell
+    /// around it, the raster blocks nothing. Cells without a value block nothing.
+    #[arg(long, value_name = "DTM", help_heading = "Far terrain")]
+    pub(crate) terrain: Option<PathBuf>,
+    /// Horizon of far terrain: a file of PVGIS (.json .csv), or a table of azimuth and elevation in degrees (.csv)
+    ///
+    /// Directions below it are blocked for all targets. Azimuths of PVGIS count from south and those of other tables clockwise from true north;
+    /// between rows the elevation is linear.
+    #[arg(long, value_name = "FILE", help_heading = "Far terrain")]
+    pub(crate) horizon: Option<PathBuf>,
 }
 
 #[derive(Args)]

@@ -1,6 +1,6 @@
 //! Flags of mesh targets, landmarks, isovists and horizons.
 
-use super::{Earth, GivingWay, GroundChoice, North, Place, SceneInput, above_zero};
+use super::{Earth, FarTerrain, GivingWay, GroundChoice, North, Place, SceneInput, above_zero};
 use belvedere::query::BackFaces;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -162,6 +162,8 @@ pub(crate) struct Horizon {
     /// Angle between two azimuths in degrees; it must divide 360 [default: 1]
     #[arg(long = "angle-step-deg", value_name = "DEG", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Result")]
     pub(crate) step: Option<f64>,
+    #[command(flatten)]
+    pub(crate) far: FarTerrain,
     #[command(flatten)]
     pub(crate) north: North,
     /// Elevations below the horizontal plane through the observer

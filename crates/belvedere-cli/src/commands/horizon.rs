@@ -31,6 +31,7 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
     let mut summary = Summary::default();
     let points = if needs_ground(&arguments.eyes) { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
+    arguments.far.set(&mut scene, &mut stages, &mut summary)?;
     let mut places = eyes(&arguments.eyes, &mut scene, &mut stages, &mut summary)?;
     check_formats(arguments, places.len())?;
     let north = match places.first() {

@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
     let needs_points = !arguments.planes.is_empty() || arguments.places.needs_points();
     let points = if needs_points { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
-    arguments.places.set_horizon(&mut scene, &mut stages, &mut summary)?;
+    arguments.places.far.set(&mut scene, &mut stages, &mut summary)?;
     warn_of_geojson(&arguments.planes, &scene.cloud.frame.crs, &mut summary);
     let site = radiation::site(arguments, &scene, weather.as_ref(), &mut summary)?;
     let profile = arguments.scene.profile.into();

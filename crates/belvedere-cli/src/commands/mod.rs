@@ -11,6 +11,7 @@ mod depth_map;
 mod describe;
 mod difference;
 mod envelope;
+mod far_terrain;
 mod horizon;
 mod info;
 mod irradiance;

@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     let mut summary = Summary::default();
     let points = if arguments.places.needs_points() { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
-    arguments.places.set_horizon(&mut scene, &mut stages, &mut summary)?;
+    arguments.places.far.set(&mut scene, &mut stages, &mut summary)?;
     let suns = suns(arguments, &scene, &mut summary)?;
     let asked = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
     let edges = if arguments.suns.soft { Edges::Soft } else { Edges::Hard };

@@ -20,7 +20,7 @@ pub(crate) fn run(arguments: &SkyView, global: &Global) -> Result<Summary> {
     let mut summary = Summary::default();
     let points = if arguments.places.needs_points() { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
-    arguments.places.set_horizon(&mut scene, &mut stages, &mut summary)?;
+    arguments.places.far.set(&mut scene, &mut stages, &mut summary)?;
     let asked = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
     asked.report_edge(&arguments.places, &scene, &sky.directions, &mut stages, &mut summary)?;
     let mut section = Summary::default();

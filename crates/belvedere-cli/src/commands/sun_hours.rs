@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
     let mut summary = Summary::default();
     let points = if arguments.places.needs_points() { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
-    arguments.places.set_horizon(&mut scene, &mut stages, &mut summary)?;
+    arguments.places.far.set(&mut scene, &mut stages, &mut summary)?;
     let site = arguments.sun.site(&scene, &mut summary)?;
     let (plan, zone) = plan(arguments, &site, rules, &params, &suns, &mut summary)?;
     let asked = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
@@ -137,14 +137,19 @@ fn matrix_params(scene: &Scene, arguments: &SunHours) -> BlockRule {
 
 /// The number by which a matrix knows the balls that it was made of.
 fn matrix_scene(scene: &Scene, arguments: &SunHours) -> u64 {
-    scene_fingerprint(scene.model.balls(), scene.model.added(), scene.model.horizon(), &matrix_params(scene, arguments))
+    scene_fingerprint(
+        scene.model.balls(),
+        scene.model.added(),
+        scene.model.far_terrain(),
+        &matrix_params(scene, arguments),
+    )
 }
 
 /// Refuses bits that were kept for other places or balls.
 fn check_kept(kept: &MatrixHead, targets: &Targets, scene: u64) -> Result<()> {
     if kept.scene != scene {
         bail!(
-            "--load-matrix: the matrix is for other balls, or for another --add, --horizon, --shell or --ball-profile; make it again with --save-matrix"
+            "--load-matrix: the matrix is for other balls, or for another --add, --terrain, --horizon, --shell or --ball-profile; make it again with --save-matrix"
         );
     }
     let same = |a: &[f32; 3], b: &[f32; 3]| a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());

@@ -4,17 +4,17 @@ use super::mesh_targets::{self, mesh_of};
 use super::query::{points_of_file, text_rows_for};
 use super::sights::{OUTSIDE_CLOUD, ground, ground_cloud};
 use super::{check_output, extension};
-use crate::arguments::{FacingChoice, North, SkyOutputs, SkyPlaces, Usage};
+use crate::arguments::{FacingChoice, SkyOutputs, SkyPlaces, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
-use crate::summary::{Summary, rounded};
+use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::edge::{EdgeReport, near_edge};
 use belvedere::apps::targets::{CellLevel, CellParams, Facing, Measure, MeshParams, Targets};
 use belvedere::apps::viewshed::cell_for;
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::{MapGrid, highest_points};
-use belvedere::io::{Georeference, atomic, read_horizon, write_tif_u8};
+use belvedere::io::{Georeference, atomic, write_tif_u8};
 use belvedere::query::AddedMeshes;
 use belvedere::raster::Raster;
 use belvedere::results::{TakenFrom, georeference, measure_map, write_measures, write_raster};
@@ -81,19 +81,6 @@ impl SkyPlaces {
                 Usage("--facing normals applies only to points and meshes; cells are horizontal".to_owned()).into()
             );
         }
-        Ok(())
-    }
-
-    /// Puts the scene before the far terrain that was given.
-    pub(crate) fn set_horizon(&self, scene: &mut Scene, stages: &mut Stages, summary: &mut Summary) -> Result<()> {
-        let Some(path) = &self.horizon else { return Ok(()) };
-        let horizon = stages.run("reading horizon", 0, |_| read_horizon(path))?;
-        let north = North { grid_north: false }.of_scene(scene);
-        let highest = horizon.rows().iter().map(|row| row[1]).fold(f64::NEG_INFINITY, f64::max);
-        let mut section = Summary::default();
-        section.add("azimuths", horizon.rows().len()).add("max_elevation_deg", rounded(highest.to_degrees(), 3));
-        summary.add("far_horizon", section);
-        scene.model = std::mem::take(&mut scene.model).with_horizon(horizon.turned(-north.of_grid));
         Ok(())
     }
 

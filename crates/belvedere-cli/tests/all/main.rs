@@ -13,6 +13,7 @@ mod conventions;
 mod depth_maps;
 mod determinism;
 mod envelopes;
+mod far_terrain;
 mod given_rows;
 mod help_examples;
 mod implausible;

@@ -15,6 +15,7 @@ mod params;
 mod prepare;
 mod questions;
 mod report;
+mod terrain;
 
 pub use belvedere_data::model::ModelParts;
 pub use clear::{ClearReport, ClearedArea};
@@ -22,13 +23,13 @@ pub use facts::{SurveyExtremes, SurveyFacts};
 pub use params::{BallParams, ModelParams, OrientBy};
 pub use prepare::OrientedSurvey;
 pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesReport};
+pub use terrain::TerrainReport;
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
 use crate::pulses::NeedleColumns;
-use crate::query::{AddedMeshes, BallTree, FreedSpace};
+use crate::query::{AddedMeshes, BallTree, FarTerrain, FreedSpace};
 use belvedere_data::horizon::HorizonProfile;
-use belvedere_data::{Bounds, Error, Frame, Mesh, Result};
-use std::sync::Arc;
+use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Mesh, Result};
 
 /// A scene that answers what is visible: balls that block lines of sight, and the pulses that prove others free.
 ///
@@ -47,8 +48,8 @@ pub struct SceneModel {
     added: Option<AddedMeshes>,
     /// Space that was cleared.
     freed: Vec<FreedSpace>,
-    /// Far terrain, azimuths from grid north.
-    horizon: Option<Arc<HorizonProfile>>,
+    /// What stands beyond the cloud.
+    far_terrain: FarTerrain,
 }
 
 impl SceneModel {
@@ -91,14 +92,28 @@ impl SceneModel {
     /// The same model before far terrain: directions below `horizon`, azimuths from grid north, are blocked for all targets alike. It is not saved.
     #[must_use]
     pub fn with_horizon(mut self, horizon: HorizonProfile) -> Self {
-        self.horizon = Some(Arc::new(horizon));
+        self.far_terrain = self.far_terrain.with_profile(horizon);
         self
     }
 
-    /// The horizon of far terrain, if one was given.
+    /// The same model before the terrain of an elevation raster, local metres, which `name` names in errors: directions below the horizon of a target are blocked for it. Within the box of
+    /// the cloud on the map, and a cell of the raster around it, terrain blocks nothing: what stands there the cloud tells. It is not saved.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for terrain that does not reach the cloud, or lies far above or below it.
+    pub fn with_terrain(mut self, terrain: ElevationGrid, name: &str) -> Result<Self> {
+        let coverage = self.coverage();
+        if let Some(coverage) = &coverage {
+            terrain::check(&terrain, name, coverage.bounds(), self.frame())?;
+        }
+        self.far_terrain = self.far_terrain.with_grid(terrain, coverage.map(|coverage| coverage.bounds().on_map()));
+        Ok(self)
+    }
+
+    /// What stands beyond the cloud, as far as that was given.
     #[must_use]
-    pub fn horizon(&self) -> Option<&HorizonProfile> {
-        self.horizon.as_deref()
+    pub fn far_terrain(&self) -> &FarTerrain {
+        &self.far_terrain
     }
 
     /// Everything that is saved of a model: what a ball file holds.

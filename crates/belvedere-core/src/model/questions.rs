@@ -64,6 +64,6 @@ impl SceneModel {
 
     /// A scene of balls with what else blocks, and where the cloud lies.
     fn completed(&self, scene: MedialScene) -> MedialScene {
-        scene.with_coverage(self.coverage()).with_added(self.added.clone()).with_horizon(self.horizon.clone())
+        scene.with_coverage(self.coverage()).with_added(self.added.clone()).with_far_terrain(self.far_terrain.clone())
     }
 }

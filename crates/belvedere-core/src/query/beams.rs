@@ -95,7 +95,7 @@ impl MedialScene {
         if !targets.nodes.is_empty() && !is_eye_outside(self, viewer) {
             sweep.run(0, &mut |place| {
                 let target = targets.positions()[place];
-                let is_hidden = (self.added.is_some() || self.horizon.is_some())
+                let is_hidden = (self.added.is_some() || !self.far_terrain.is_empty())
                     && viewer
                         .line_of_sight(place, target)
                         .is_some_and(|(towards, range)| self.is_behind_others(target.map(f64::from), towards, range));

@@ -93,6 +93,12 @@ impl EarthParams {
         (1.0 - self.refraction) * span * span / (2.0 * self.radius)
     }
 
+    /// By how much places sink for each square metre of their distance on the map: 0 over a plane.
+    #[must_use]
+    pub(super) fn fall_rate(&self) -> f64 {
+        if self.curvature == Curvature::Off { 0.0 } else { self.fall(1.0) }
+    }
+
     /// How far the line lies below the straight one between its ends, metres, at the share `share` of the horizontal length
     /// `span`, metres.
     #[must_use]

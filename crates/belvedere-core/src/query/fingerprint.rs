@@ -2,10 +2,10 @@
 
 use crate::blocking::{BlockRule, Profile};
 use crate::medial::MedialBalls;
-use crate::query::AddedMeshes;
+use crate::query::{AddedMeshes, FarTerrain};
 use belvedere_data::horizon::HorizonProfile;
 
-/// A number that differs, but for one chance in 10¹⁹, between scenes whose balls, added triangles, horizon or parameters differ in any bit; the same on any machine.
+/// A number that differs, but for one chance in 10¹⁹, between scenes whose balls, added triangles, far terrain or parameters differ in any bit; the same on any machine.
 ///
 /// # Source
 /// FNV-1a of 64 bits (Fowler, Noll & Vo), taken over words of 32 bits.
@@ -13,7 +13,7 @@ use belvedere_data::horizon::HorizonProfile;
 pub fn scene_fingerprint(
     balls: &MedialBalls,
     added: Option<&AddedMeshes>,
-    horizon: Option<&HorizonProfile>,
+    far_terrain: &FarTerrain,
     params: &BlockRule,
 ) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
@@ -28,8 +28,14 @@ pub fn scene_fingerprint(
         center.iter().for_each(|v| mix(v.to_bits()));
         mix(radius.to_bits());
     }
-    for number in horizon.map_or(&[][..], HorizonProfile::rows).as_flattened() {
+    for number in far_terrain.profile().map_or(&[][..], HorizonProfile::rows).as_flattened() {
         halves(*number).into_iter().for_each(&mut mix);
+    }
+    if let Some(grid) = far_terrain.grid() {
+        for number in [grid.north_west(), grid.cell()].as_flattened() {
+            halves(*number).into_iter().for_each(&mut mix);
+        }
+        grid.heights().values().iter().for_each(|height| mix(height.to_bits()));
     }
     for corner in added.map_or(&[][..], AddedMeshes::triangles).as_flattened().as_flattened() {
         halves(*corner).into_iter().for_each(&mut mix);

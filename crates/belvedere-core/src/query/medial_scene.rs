@@ -5,6 +5,7 @@ use super::backend::{Backend, Prepared};
 use super::ball_tree::BallTree;
 use super::certified::{line_in_view, viewer_of};
 use super::cpu::Cpu;
+use super::far_terrain::FarTerrain;
 use super::freed_space::{FreedSpace, outside};
 use super::lazy::Lazy;
 use super::{Answer, Blocker, Coverage, Proof, Sight, Viewer, Visibility};
@@ -13,7 +14,6 @@ use crate::medial::MedialBalls;
 use crate::ray_index::Ray;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
-use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::view::View;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -41,7 +41,7 @@ pub struct MedialScene {
     coverage: Option<Coverage>,
     pub(super) added: Option<AddedMeshes>,
     pub(super) freed: Vec<FreedSpace>,
-    pub(super) horizon: Option<Arc<HorizonProfile>>,
+    pub(super) far_terrain: FarTerrain,
     backend: Box<dyn Backend>,
     prepared: Lazy<Box<dyn Prepared>>,
 }
@@ -65,7 +65,7 @@ impl MedialScene {
             coverage: None,
             added: None,
             freed: Vec::new(),
-            horizon: None,
+            far_terrain: FarTerrain::default(),
             backend: Box::new(Cpu),
             prepared: Lazy::new(),
         }
@@ -127,10 +127,10 @@ impl MedialScene {
         self
     }
 
-    /// The same balls before far terrain: every direction below its horizon, azimuths from grid north, is blocked. Lines of sight that end are not.
+    /// The same balls before far terrain: every direction below its horizon is blocked. Lines of sight that end are not.
     #[must_use]
-    pub fn with_horizon(mut self, horizon: Option<Arc<HorizonProfile>>) -> Self {
-        self.horizon = horizon;
+    pub fn with_far_terrain(mut self, far_terrain: FarTerrain) -> Self {
+        self.far_terrain = far_terrain;
         self
     }
 
@@ -283,13 +283,7 @@ impl MedialScene {
     #[inline]
     pub(super) fn is_behind_others(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         self.added.as_ref().is_some_and(|added| added.blocks(target, towards, range))
-            || (range == f64::INFINITY && self.is_below_horizon(towards))
-    }
-
-    /// Whether a unit vector points below the horizon of far terrain.
-    #[inline]
-    pub(super) fn is_below_horizon(&self, direction: [f64; 3]) -> bool {
-        self.horizon.as_ref().is_some_and(|horizon| horizon.hides(direction))
+            || (range == f64::INFINITY && self.far_terrain.hides(target, towards))
     }
 
     /// The ball of a row of the index as what blocks.

@@ -113,9 +113,9 @@ impl MedialScene {
                 }
             });
         }
-        if let Some(horizon) = &self.horizon {
-            for (number, point) in skyline.iter_mut().enumerate() {
-                let elevation = horizon.elevation_at(first + number as f64 * step);
+        if !self.far_terrain.is_empty() {
+            let elevations = self.far_terrain.elevations(eye, [first, step], count, earth);
+            for (point, elevation) in skyline.iter_mut().zip(elevations) {
                 if elevation > point.elevation {
                     *point = SkylinePoint { elevation, ..EMPTY };
                 }

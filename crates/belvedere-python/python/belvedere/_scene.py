@@ -257,6 +257,23 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         """
         return self._plan(self._core.with_horizon(os.fspath(path)), self.report)
 
+    def with_terrain(self, path: str | os.PathLike[str]) -> Scene:
+        """The same scene before the terrain of an elevation raster: each place has its own horizon.
+
+        Horizons are exact for the cells of the raster, with the curvature of the earth and refraction. Within the
+        extent of the cloud, and one cell around it, the raster blocks nothing.
+
+        Parameters
+        ----------
+        path : path
+            Heights of the ground (DTM, ``.tif``) in the coordinate system of the cloud.
+
+        Examples
+        --------
+        >>> lit = scene.with_terrain("dtm.tif").shadow(sun=(180, 20))  # doctest: +SKIP
+        """
+        return self._plan(self._core.with_terrain(os.fspath(path)), self.report)
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a ball file: ``.npz`` keeps every bit; ``.ply .laz .las`` are for looking at.
 
@@ -265,7 +282,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         >>> scene.save(folder / "balls.npz")
         """
         if self._planned:
-            remark = "ball files do not keep added meshes, freed space and horizons: they are not saved"
+            remark = "ball files do not keep added meshes, freed space and far terrain: they are not saved"
             warnings.warn(remark, BelvedereWarning, stacklevel=2)
         self._core.save(os.fspath(path))
 

@@ -22,6 +22,7 @@ mod common;
 mod crowns;
 mod depth_map;
 mod exposure;
+mod far_terrain;
 mod ground;
 mod horizons;
 mod irradiance_models;

@@ -5,6 +5,7 @@ mod looking;
 
 use super::MedialScene;
 use super::backend::{BLOCK, WORD};
+use super::far_terrain::hide_behind_terrain;
 use super::target_tree::TargetTree;
 use behind_added::hide_behind_added;
 use belvedere_data::control::Control;
@@ -157,16 +158,8 @@ impl MedialScene {
         if let Some(added) = self.added().filter(|_| width > 0) {
             hide_behind_added(added, tree.positions(), directions, &mut words, control)?;
         }
-        if self.horizon.is_some() {
-            let mut above = vec![0; width];
-            for (column, _) in
-                directions.iter().enumerate().filter(|(_, direction)| !self.is_below_horizon(**direction))
-            {
-                above[column / WORD] |= 1 << (column % WORD);
-            }
-            words.par_chunks_mut(width.max(1)).for_each(|row| {
-                row.iter_mut().zip(&above).for_each(|(word, above)| *word &= above);
-            });
+        if !self.far_terrain.is_empty() {
+            hide_behind_terrain(&self.far_terrain, tree.positions(), directions, &mut words, control)?;
         }
         Ok(VisibilityMatrix { places, direction_count: directions.len(), width, words })
     }

@@ -1,0 +1,35 @@
+//! Flags of what stands beyond the cloud.
+
+use crate::arguments::{FarTerrain, North};
+use crate::pipeline::{Scene, flagged};
+use crate::progress::Stages;
+use crate::summary::{Summary, rounded};
+use anyhow::Result;
+use belvedere::io::{read_horizon, read_terrain};
+use belvedere::model::TerrainReport;
+
+impl FarTerrain {
+    /// Puts the scene before the far terrain that was given.
+    pub(crate) fn set(&self, scene: &mut Scene, stages: &mut Stages, summary: &mut Summary) -> Result<()> {
+        if let Some(path) = &self.terrain {
+            let model = std::mem::take(&mut scene.model);
+            let frame = model.frame().clone();
+            let terrain = stages.run("reading terrain", 0, |_| read_terrain(path, &frame))?;
+            let report = TerrainReport::of(&terrain, model.bounds(), &frame);
+            let name = path.display().to_string();
+            scene.model =
+                flagged("--terrain", stages.run("ordering terrain", 0, |_| model.with_terrain(terrain, &name)))?;
+            summary.add("terrain", Summary::of(&report));
+        }
+        if let Some(path) = &self.horizon {
+            let horizon = stages.run("reading horizon", 0, |_| read_horizon(path))?;
+            let north = North { grid_north: false }.of_scene(scene);
+            let highest = horizon.rows().iter().map(|row| row[1]).fold(f64::NEG_INFINITY, f64::max);
+            let mut section = Summary::default();
+            section.add("azimuths", horizon.rows().len()).add("max_elevation_deg", rounded(highest.to_degrees(), 3));
+            summary.add("far_horizon", section);
+            scene.model = std::mem::take(&mut scene.model).with_horizon(horizon.turned(-north.of_grid));
+        }
+        Ok(())
+    }
+}

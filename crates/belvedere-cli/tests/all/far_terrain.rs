@@ -1,0 +1,99 @@
+//! Elevation rasters around the house whose ground is level.
+
+use crate::common::{EAST, NORTH, Workplace, at, column, house};
+use belvedere::crs::Crs;
+use belvedere::io::{Georeference, write_tif_f32};
+use belvedere::raster::Raster;
+
+const HOUSE: &str = "house.laz --orient given --method tau";
+/// Cells of the raster, metres, and their number a side.
+const CELL: f64 = 20.0;
+const COUNT: usize = 200;
+
+/// Writes a raster around the house, heights of (x, y) from its middle.
+fn write_terrain(place: &Workplace, name: &str, code: u32, east: f64, height: impl Fn(f64, f64) -> f32) {
+    let side = CELL * COUNT as f64 / 2.0;
+    let middle = |i: usize| (i as f64 + 0.5) * CELL - side;
+    let values = (0..COUNT * COUNT).map(|i| height(middle(i % COUNT), -middle(i / COUNT))).collect();
+    let raster = Raster::from_values(COUNT, COUNT, values).unwrap();
+    let georeference = Georeference {
+        upper_left: [EAST - side + east, NORTH + side],
+        column_step: [CELL, 0.0],
+        row_step: [0.0, -CELL],
+        crs: Crs::from_epsg(code).unwrap(),
+    };
+    write_tif_f32(place.path(name).as_path(), &raster, Some(&georeference), Some(-9999.0), None).unwrap();
+}
+
+/// A plain with a mountain range in the south: 400 m high from 1510 m on.
+fn range(_: f64, y: f64) -> f32 {
+    if y < -1500.0 { 400.0 } else { 0.0 }
+}
+
+#[test]
+fn each_place_has_the_horizon_of_the_terrain() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    write_terrain(&place, "dtm.tif", 28992, 0.0, range);
+    let [x, y, z] = at(0.0, 0.0, 12.0);
+    place.write("places.csv", format!("x,y,z\n{x},{y},{z}\n"));
+    // due south from 12 m above the plain, of which the curved earth takes 0.15 m
+    let expected = (387.85f64 / 1510.0).atan().to_degrees();
+    for (sun, lit) in
+        [("180", expected - 0.02), ("180", expected + 0.02), ("0", 0.5), ("270", 0.5)].map(|(azimuth, elevation)| {
+            (format!("{azimuth},{elevation:.3}"), f64::from(u8::from(azimuth != "180" || elevation > expected)))
+        })
+    {
+        let flags = format!("--targets places.csv --terrain dtm.tif --grid-north --sun {sun}");
+        let run = place.summary(&format!("shadow {HOUSE} {flags} -o lit.csv"));
+        assert_eq!(column(&place, "lit.csv", "lit"), [lit], "{sun}");
+        let report = &run["terrain"];
+        assert_eq!((&report["cells"], &report["highest_m"]), (&40_000.into(), &400.0.into()));
+        assert_eq!((&report["cell_m"], &report["without_height_percent"]), (&20.0.into(), &0.0.into()));
+        assert_eq!(report["reach_m"], 1975.0);
+    }
+    // profiles for PVGIS and pvlib: elevations clockwise from north
+    let eye = format!("--observer {x},{y},{z}");
+    place.summary(&format!("horizon {HOUSE} {eye} --terrain dtm.tif --grid-north -o h.csv -o h.txt -o h.png"));
+    let elevations = column(&place, "h.csv", "elevation");
+    let lines: Vec<f64> = place.text("h.txt").lines().map(|line| line.parse().unwrap()).collect();
+    assert_eq!((elevations.len(), lines.len()), (360, 360));
+    assert!((elevations[180] - expected).abs() < 2e-4 && (lines[180] - expected).abs() < 0.006);
+    for (azimuth, elevation) in elevations.iter().enumerate() {
+        let south = -(azimuth as f64).to_radians().cos();
+        let seen = if south > 0.8 { (387.85 / 1510.0 * south).atan().to_degrees() } else { 0.0 };
+        if !(0.6..=0.8).contains(&south) {
+            assert!((elevation - seen).abs() < 0.02, "{azimuth}: {elevation} {seen}");
+        }
+    }
+    // such a profile, read back, hides the same of the sky
+    place.summary(&format!("horizon {HOUSE} {eye} --terrain dtm.tif -o north.csv"));
+    let share = |flags: &str| {
+        place.summary(&format!("sky-view {HOUSE} --targets places.csv {flags} --directions 20000 -o sky.csv"));
+        column(&place, "sky.csv", "sky_openness")[0]
+    };
+    let (by_terrain, by_profile, free) = (share("--terrain dtm.tif"), share("--horizon north.csv"), share(""));
+    assert!((by_terrain - by_profile).abs() < 5e-4 && by_terrain < free - 0.02, "{by_terrain} {by_profile} {free}");
+    let both = share("--terrain dtm.tif --horizon north.csv");
+    assert!(both <= by_terrain.min(by_profile));
+}
+
+#[test]
+fn terrain_that_does_not_fit_is_refused_by_name() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let shadow = format!("shadow {HOUSE} --sun 180,25 --cell 1 -o lit.csv --terrain");
+    write_terrain(&place, "utm.tif", 25_831, 0.0, range);
+    place.refusal(1, &format!("{shadow} utm.tif"), &["utm.tif", "EPSG:25831", "gdalwarp -t_srs EPSG:28992"]);
+    write_terrain(&place, "degrees.tif", 4326, 0.0, range);
+    place.refusal(1, &format!("{shadow} degrees.tif"), &["degrees.tif", "degrees", "gdalwarp"]);
+    write_terrain(&place, "far.tif", 28992, 9000.0, range);
+    place.refusal(2, &format!("{shadow} far.tif"), &["--terrain", "far.tif", "coordinates of the cloud"]);
+    write_terrain(&place, "high.tif", 28992, 0.0, |_, _| 140.0);
+    place.refusal(2, &format!("{shadow} high.tif"), &["--terrain", "high.tif", "140.0", "zero and unit"]);
+    write_terrain(&place, "empty.tif", 28992, 0.0, |_, _| f32::NAN);
+    place.refusal(1, &format!("{shadow} empty.tif"), &["empty.tif", "values"]);
+    place.write("text.tif", "no raster");
+    place.refusal(1, &format!("{shadow} text.tif"), &["text.tif"]);
+    place.refusal(1, &format!("{shadow} missing.tif"), &["missing.tif"]);
+}

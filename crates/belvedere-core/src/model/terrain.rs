@@ -1,0 +1,81 @@
+//! Whether an elevation raster can be the terrain around a cloud.
+
+use belvedere_data::report::{percent, rounded};
+use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Result};
+use serde::Serialize;
+
+/// How far heights of terrain may lie above or below all points of a cloud, metres: more than any error of a raster of 90 m cells, less than 30 m for which
+/// heights above an ellipsoid and above the sea differ in most countries, and than a height in feet taken for metres in all but the lowest.
+const MOST_OFFSET: f32 = 25.0;
+
+/// What an elevation raster holds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TerrainReport {
+    /// Number of cells.
+    pub cells: usize,
+    /// Cells without a height, which block nothing.
+    pub without_height_percent: f64,
+    /// The longer side of a cell.
+    pub cell_m: f64,
+    /// Lowest and highest height, metres.
+    pub lowest_m: f64,
+    /// See [`TerrainReport::lowest_m`].
+    pub highest_m: f64,
+    /// The least distance that the raster reaches beyond the cloud: mountains farther away are not known.
+    pub reach_m: f64,
+}
+
+impl TerrainReport {
+    /// What `terrain` holds around a cloud between `cloud`, both local metres of `frame`.
+    #[must_use]
+    pub fn of(terrain: &ElevationGrid, cloud: Bounds, frame: &Frame) -> Self {
+        let ([west, south], [east, north]) = terrain.on_map();
+        let (low, high) = cloud.on_map();
+        let reach = [low[0] - west, low[1] - south, east - high[0], north - high[1]];
+        let [lowest, highest] = terrain.height_range(terrain.on_map()).unwrap_or_default();
+        let height = |local: f32| rounded(frame.origin[2] + f64::from(local), 1);
+        let cells = terrain.heights().values().len();
+        Self {
+            cells,
+            without_height_percent: percent(terrain.unknown_count(), cells),
+            cell_m: rounded(terrain.cell()[0].max(terrain.cell()[1]), 3),
+            lowest_m: height(lowest),
+            highest_m: height(highest),
+            reach_m: rounded(reach.into_iter().fold(f64::INFINITY, f64::min), 0),
+        }
+    }
+}
+
+/// Refuses terrain, which `name` names, that does not reach the cloud between `cloud`, local metres, or whose heights are not those of the cloud.
+pub(super) fn check(terrain: &ElevationGrid, name: &str, cloud: Bounds, frame: &Frame) -> Result<()> {
+    let ([west, south], [east, north]) = terrain.on_map();
+    let (low, high) = cloud.on_map();
+    let invalid = |value: String, expected| Err(Error::InvalidParameter { name: "terrain", value, expected });
+    if west > low[0] || south > low[1] || east < high[0] || north < high[1] {
+        let file = |[x, y]: [f64; 2]| {
+            let [x, y, _] = frame.file_from_local([x, y, 0.0]);
+            format!("{x:.1}, {y:.1}")
+        };
+        let value = format!(
+            "{name}, which lies between {} and {} while the cloud lies between {} and {}",
+            file([west, south]),
+            file([east, north]),
+            file(low),
+            file(high)
+        );
+        return invalid(value, "in the coordinates of the cloud, with all of the cloud in it");
+    }
+    let Some([lowest, highest]) = terrain.height_range((low, high)) else { return Ok(()) };
+    if lowest > cloud.high[2] + MOST_OFFSET || highest < cloud.low[2] - MOST_OFFSET {
+        let z = |local: f32| frame.origin[2] + f64::from(local);
+        let value = format!(
+            "{name}, which is {:.1} to {:.1} m high at the cloud, whose heights are {:.1} to {:.1} m",
+            z(lowest),
+            z(highest),
+            z(cloud.low[2]),
+            z(cloud.high[2])
+        );
+        return invalid(value, "of the same heights as the cloud: the same zero and unit");
+    }
+    Ok(())
+}

@@ -1,0 +1,102 @@
+//! What stands beyond the cloud and hides the sky above the horizon: a profile for all places, an elevation raster, or both.
+
+mod relief;
+mod rows;
+
+use super::EarthParams;
+use belvedere_data::ElevationGrid;
+use belvedere_data::horizon::HorizonProfile;
+use rayon::prelude::*;
+use relief::{Places, Relief};
+pub(super) use rows::hide_behind_terrain;
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+/// Azimuths handed to a thread at once.
+const CHUNK: usize = 90;
+
+/// Far terrain: a direction is blocked for a place if it is below the horizon there.
+///
+/// A profile is the same for all places. A raster gives each place its own horizon, exact for heights that are bilinear between the middles of its cells,
+/// over the curved earth. What lies within the box of the cloud on the map, or within a cell of the raster around it, is left to the cloud. Cells without
+/// a height block nothing.
+#[derive(Clone, Debug, Default)]
+pub struct FarTerrain {
+    /// Azimuths from grid north.
+    profile: Option<Arc<HorizonProfile>>,
+    relief: Option<Arc<Relief>>,
+    earth: EarthParams,
+}
+
+impl FarTerrain {
+    /// The same with a profile for all places, azimuths from grid north, in place of one that it has.
+    #[must_use]
+    pub fn with_profile(mut self, profile: HorizonProfile) -> Self {
+        self.profile = Some(Arc::new(profile));
+        self
+    }
+
+    /// The same with a raster, in place of one that it has; within the box `cloud` on the map, local metres, it blocks nothing.
+    #[must_use]
+    pub fn with_grid(mut self, grid: ElevationGrid, cloud: Option<([f64; 2], [f64; 2])>) -> Self {
+        self.relief = Some(Arc::new(Relief::new(grid, cloud)));
+        self
+    }
+
+    /// The profile of all places, if there is one.
+    #[must_use]
+    pub fn profile(&self) -> Option<&HorizonProfile> {
+        self.profile.as_deref()
+    }
+
+    /// The raster, if there is one.
+    #[must_use]
+    pub fn grid(&self) -> Option<&ElevationGrid> {
+        self.relief.as_ref().map(|relief| relief.grid())
+    }
+
+    /// Whether nothing is known of what stands beyond the cloud.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.profile.is_none() && self.relief.is_none()
+    }
+
+    /// Whether the unit vector `direction` points below the horizon of `place`, local metres.
+    #[must_use]
+    pub fn hides(&self, place: [f64; 3], direction: [f64; 3]) -> bool {
+        self.profile.as_ref().is_some_and(|profile| profile.hides(direction))
+            || self.relief.as_ref().is_some_and(|relief| {
+                let (along, tangent) = on_map(direction);
+                relief.hides(place, along, tangent, &self.earth)
+            })
+    }
+
+    /// Elevations of the horizon of `place`, local metres, over the earth of `earth`: at `count` azimuths from grid north, the first `first` and `step`
+    /// apart, radians; −π/2 where there is no terrain.
+    #[must_use]
+    pub fn elevations(&self, place: [f64; 3], [first, step]: [f64; 2], count: usize, earth: &EarthParams) -> Vec<f64> {
+        let mut elevations = vec![-FRAC_PI_2; count];
+        elevations.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, elevations)| {
+            let mut guess = None;
+            for (i, elevation) in elevations.iter_mut().enumerate() {
+                let azimuth = first + (chunk * CHUNK + i) as f64 * step;
+                if let Some(profile) = &self.profile {
+                    *elevation = profile.elevation_at(azimuth);
+                }
+                if let Some(relief) = &self.relief
+                    && let Some(top) = relief.top(place, azimuth.sin_cos().into(), earth, guess)
+                {
+                    guess = Some(top.span);
+                    *elevation = elevation.max(top.tangent.atan());
+                }
+            }
+        });
+        elevations
+    }
+}
+
+/// Where a unit vector points to on the map, a unit vector, and the tangent of its elevation: infinite upright.
+fn on_map([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
+    let across = x.hypot(y);
+    if across > 0.0 { ([x / across, y / across], z / across) } else { ([0.0, 1.0], z * f64::INFINITY) }
+}

@@ -1,0 +1,338 @@
+//! An elevation raster and the maxima of its blocks: exact horizons without a look at every cell.
+
+use super::super::EarthParams;
+use belvedere_data::ElevationGrid;
+use std::ops::ControlFlow;
+
+/// Smallest step of a line in cells for each metre: a line along an axis is turned by less than its rounding, so that no quotient is 0 / 0.
+const LEAST_SLOPE: f64 = 1e-14;
+
+/// Heights between the nodes of a raster, bilinear in each patch of four nodes, with the highest node of all blocks of patches of 2, 4, 8, … a side.
+#[derive(Debug)]
+pub(super) struct Relief {
+    grid: ElevationGrid,
+    /// For blocks of 2, 4, 8, … patches a side; the last is one block.
+    levels: Vec<Level>,
+    /// The box on the map, local metres, within which terrain blocks nothing: that of the cloud, and a cell around it.
+    within: [[f64; 2]; 2],
+}
+
+#[derive(Debug)]
+struct Level {
+    width: usize,
+    /// The highest node of each block, −∞ where no patch of it is known.
+    highest: Vec<f32>,
+}
+
+/// Places on the map with heights, from which lines leave alike: a box, or one place.
+#[derive(Clone, Copy)]
+pub(super) struct Places {
+    pub(super) low: [f64; 3],
+    pub(super) high: [f64; 3],
+}
+
+/// Where terrain stands highest before a place.
+#[derive(Clone, Copy)]
+pub(super) struct Top {
+    /// Tangent of its elevation.
+    pub(super) tangent: f64,
+    /// Its distance on the map, metres.
+    pub(super) span: f64,
+}
+
+/// Lines from places in one direction on the map. Distances along them count from each place: there a line lies as far from that of the middle as its place
+/// from the middle.
+struct Lines {
+    /// The middle of the places in columns and rows of nodes, and their half size in both.
+    start: [f64; 2],
+    half: [f64; 2],
+    /// Columns and rows for each metre, and the inverse.
+    step: [f64; 2],
+    inverse: [f64; 2],
+    /// The lowest height, metres.
+    low: f64,
+    /// Distances from which terrain counts for the first and for all of the places, metres.
+    from: [f64; 2],
+    /// What terrain sinks by for each square metre of distance.
+    fall: f64,
+}
+
+impl Relief {
+    /// The terrain of `grid` beyond the box `cloud` on the map, local metres.
+    pub(super) fn new(grid: ElevationGrid, cloud: Option<([f64; 2], [f64; 2])>) -> Self {
+        let (width, height) = (grid.heights().width(), grid.heights().height());
+        let patch = |column, row| {
+            let corners = corners(&grid, column, row);
+            if corners.iter().any(|v| v.is_nan()) {
+                f32::NEG_INFINITY
+            } else {
+                corners.into_iter().fold(f32::NEG_INFINITY, f32::max)
+            }
+        };
+        let mut levels = vec![Level::halved([width - 1, height - 1], patch)];
+        while let Some(last) = levels.last().filter(|level| level.highest.len() > 1) {
+            let size = [last.width, last.highest.len() / last.width];
+            let next = Level::halved(size, |column, row| last.highest[row * last.width + column]);
+            levels.push(next);
+        }
+        // between the last points of the cloud and the first whole patch beyond them neither says what stands there
+        let room = grid.cell()[0].max(grid.cell()[1]);
+        let within = cloud.map_or([[f64::NAN; 2]; 2], |(low, high)| [low.map(|v| v - room), high.map(|v| v + room)]);
+        Self { grid, levels, within }
+    }
+
+    pub(super) fn grid(&self) -> &ElevationGrid {
+        &self.grid
+    }
+
+    /// The highest terrain from a place in a direction on the map, a unit vector. Exact for the bilinear surface over the curved earth, whatever
+    /// `guess` is: a distance where terrain may be high, which saves time if it is.
+    pub(super) fn top(&self, place: [f64; 3], along: [f64; 2], earth: &EarthParams, guess: Option<f64>) -> Option<Top> {
+        let lines = self.lines(&Places { low: place, high: place }, along, earth);
+        let mut top = Top { tangent: f64::NEG_INFINITY, span: f64::NAN };
+        if let Some(span) = guess {
+            /// Part of the distance on both sides that is looked through first.
+            const NEAR: f64 = 0.03;
+            self.raise(&lines, [span * (1.0 - NEAR), span * (1.0 + NEAR)], &mut top);
+        }
+        self.raise(&lines, [lines.from[0], f64::INFINITY], &mut top);
+        (top.tangent > f64::NEG_INFINITY).then_some(top)
+    }
+
+    /// Raises `top` to the highest terrain on a line between two distances.
+    fn raise(&self, lines: &Lines, spans: [f64; 2], top: &mut Top) {
+        let spans = [spans[0].max(lines.from[0]), spans[1]];
+        let _ = self.descend(lines, spans, top, &mut |corners, place, spans, top| {
+            if let Some(found) = lines.top_of_patch(corners, place, spans)
+                && found.tangent > top.tangent
+            {
+                *top = found;
+            }
+            ControlFlow::Continue(())
+        });
+    }
+
+    /// Whether terrain rises above the line from a place in a direction on the map with the tangent of its elevation.
+    pub(super) fn hides(&self, place: [f64; 3], along: [f64; 2], tangent: f64, earth: &EarthParams) -> bool {
+        let lines = self.lines(&Places { low: place, high: place }, along, earth);
+        let mut limit = Top { tangent, span: 0.0 };
+        let hit =
+            self.descend(&lines, [lines.from[0], f64::INFINITY], &mut limit, &mut |corners, place, spans, limit| {
+                match lines.top_of_patch(corners, place, spans) {
+                    Some(found) if found.tangent > limit.tangent => ControlFlow::Break(()),
+                    _ => ControlFlow::Continue(()),
+                }
+            });
+        hit.is_break()
+    }
+
+    /// Whether terrain may rise above a line from any of these places. Never false where [`Relief::hides`] is true for one of them.
+    pub(super) fn may_hide(&self, places: &Places, along: [f64; 2], tangent: f64, earth: &EarthParams) -> bool {
+        let lines = self.lines(places, along, earth);
+        let mut limit = Top { tangent: tangent - rounding(tangent), span: 0.0 };
+        // a patch is only reached if its highest corner, as near as it may be, rises above the lines
+        let hit = self.descend(&lines, [lines.from[0], f64::INFINITY], &mut limit, &mut |corners, _, spans, limit| {
+            let highest = corners.into_iter().fold(f32::NEG_INFINITY, f32::max);
+            let rises = !corners.iter().any(|v| v.is_nan()) && lines.may_rise(highest, spans, limit.tangent);
+            if rises { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        hit.is_break()
+    }
+
+    /// Whether terrain is known to rise above the lines from all of these places `span` metres away. Never true where [`Relief::hides`] is false for one
+    /// of them.
+    pub(super) fn hides_all(
+        &self,
+        places: &Places,
+        along: [f64; 2],
+        tangent: f64,
+        span: f64,
+        earth: &EarthParams,
+    ) -> bool {
+        let lines = self.lines(places, along, earth);
+        if !(span > lines.from[1]) {
+            return false;
+        }
+        let line = places.high[2] + (tangent + rounding(tangent)) * span + lines.fall * span * span;
+        let size = [self.grid.heights().width(), self.grid.heights().height()];
+        let bounds = [0, 1].map(|axis| {
+            let middle = lines.start[axis] + lines.step[axis] * span;
+            // wider by more than what is rounded
+            [middle - lines.half[axis] - 1e-6, middle + lines.half[axis] + 1e-6]
+        });
+        if (0..2).any(|axis| bounds[axis][0] < 0.0 || bounds[axis][1] >= (size[axis] - 1) as f64) {
+            return false;
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the grid")]
+        let [columns, rows] = bounds.map(|[from, to]| from as usize..=to as usize + 1);
+        rows.into_iter().all(|row| {
+            columns.clone().all(|column| self.grid.heights().get(column, row).is_some_and(|v| f64::from(v) > line))
+        })
+    }
+
+    /// How lines leave `places`.
+    fn lines(&self, places: &Places, along: [f64; 2], earth: &EarthParams) -> Lines {
+        let ([west, north], cell) = (self.grid.north_west(), self.grid.cell());
+        let middle = [0, 1].map(|i| f64::midpoint(places.low[i], places.high[i]));
+        let half = [0, 1].map(|i| (places.high[i] - places.low[i]) / 2.0);
+        let away = |slope: f64| if slope.abs() < LEAST_SLOPE { LEAST_SLOPE } else { slope };
+        let step = [away(along[0] / cell[0]), away(-along[1] / cell[1])];
+        let corner = |is_forward: bool| {
+            [0, 1].map(|i| if (along[i] > 0.0) == is_forward { places.high[i] } else { places.low[i] })
+        };
+        let [forward, rear] = [true, false].map(corner);
+        let from = match [forward, rear].map(|place| self.exit(place, along)) {
+            [Some(first), Some(last)] => [first, last],
+            [None, None] => [self.nearest(); 2],
+            _ => [self.nearest(), f64::INFINITY],
+        };
+        Lines {
+            start: [(middle[0] - west) / cell[0], (north - middle[1]) / cell[1]],
+            half: [half[0] / cell[0], half[1] / cell[1]],
+            step,
+            inverse: step.map(|v| 1.0 / v),
+            low: places.low[2],
+            from,
+            fall: earth.fall_rate(),
+        }
+    }
+
+    /// From which distance terrain counts at least, metres.
+    fn nearest(&self) -> f64 {
+        self.grid.cell()[0].max(self.grid.cell()[1])
+    }
+
+    /// Where the line from a place leaves the box of the cloud, metres, and [`Relief::nearest`] at least; `None` for a place outside.
+    fn exit(&self, place: [f64; 2], along: [f64; 2]) -> Option<f64> {
+        let [low, high] = self.within;
+        let to_side = |axis: usize| match along[axis] {
+            slope if slope > 0.0 => (high[axis] - place[axis]) / slope,
+            slope if slope < 0.0 => (low[axis] - place[axis]) / slope,
+            _ => f64::INFINITY,
+        };
+        let is_inside = (0..2).all(|i| low[i] <= place[i] && place[i] <= high[i]);
+        is_inside.then(|| to_side(0).min(to_side(1)).max(self.nearest()))
+    }
+
+    /// Calls `visit` for every patch within `spans` of the lines that may rise above `top`, nearest blocks first, until it breaks off.
+    fn descend(
+        &self,
+        lines: &Lines,
+        spans: [f64; 2],
+        top: &mut Top,
+        visit: &mut impl FnMut([f32; 4], [usize; 2], [f64; 2], &mut Top) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        self.descend_from(self.levels.len(), [0, 0], lines, spans, top, visit)
+    }
+
+    /// The same below a block of `1 << level` patches a side.
+    fn descend_from(
+        &self,
+        level: usize,
+        block: [usize; 2],
+        lines: &Lines,
+        spans: [f64; 2],
+        top: &mut Top,
+        visit: &mut impl FnMut([f32; 4], [usize; 2], [f64; 2], &mut Top) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let size = [self.grid.heights().width() - 1, self.grid.heights().height() - 1];
+        let Some(below) = level.checked_sub(1) else {
+            return visit(corners(&self.grid, block[0], block[1]), block, spans, top);
+        };
+        let of_level = &self.levels[below];
+        let highest = of_level.highest[block[1] * of_level.width + block[0]];
+        if !lines.may_rise(highest, spans, top.tangent) {
+            return ControlFlow::Continue(());
+        }
+        // the nearer half of each axis first
+        let turned = lines.step.map(|step| usize::from(step < 0.0));
+        for part in 0..4 {
+            let part = [(part & 1) ^ turned[0], (part >> 1) ^ turned[1]];
+            let child = [2 * block[0] + part[0], 2 * block[1] + part[1]];
+            if child[0] << below >= size[0] || child[1] << below >= size[1] {
+                continue;
+            }
+            let spans = lines.within(child, below, spans);
+            if spans[0] <= spans[1] {
+                self.descend_from(below, child, lines, spans, top, visit)?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl Level {
+    /// The level above one of `size` blocks with these maxima.
+    fn halved(size: [usize; 2], highest: impl Fn(usize, usize) -> f32) -> Self {
+        let [width, height] = size.map(|count| count.div_ceil(2));
+        let block = |i: usize| {
+            let (column, row) = (2 * (i % width), 2 * (i / width));
+            let rows = row..(row + 2).min(size[1]);
+            let values = rows.flat_map(|row| (column..(column + 2).min(size[0])).map(move |column| [column, row]));
+            values.map(|[column, row]| highest(column, row)).fold(f32::NEG_INFINITY, f32::max)
+        };
+        Self { width, highest: (0..width * height).map(block).collect() }
+    }
+}
+
+impl Lines {
+    /// The part of `spans` in which any of the lines is over a block of `1 << level` patches a side; empty where the first is above the second.
+    #[inline]
+    fn within(&self, block: [usize; 2], level: usize, mut spans: [f64; 2]) -> [f64; 2] {
+        for (axis, first) in block.into_iter().enumerate() {
+            let (low, high) = ((first << level) as f64, ((first + 1) << level) as f64);
+            let one = (low - self.half[axis] - self.start[axis]) * self.inverse[axis];
+            let other = (high + self.half[axis] - self.start[axis]) * self.inverse[axis];
+            spans = [spans[0].max(one.min(other)), spans[1].min(one.max(other))];
+        }
+        spans
+    }
+
+    /// Whether terrain as high as `highest` somewhere within `spans` may rise above the lines with the tangent `tangent`.
+    #[inline]
+    fn may_rise(&self, highest: f32, [from, to]: [f64; 2], tangent: f64) -> bool {
+        let rise = f64::from(highest) - self.low;
+        let slope = tangent + self.fall * from;
+        rise > slope * if slope > 0.0 { from } else { to }
+    }
+
+    /// The highest place of a patch on the line between two distances, the tangent of its elevation and its distance; `None` where it is not known.
+    fn top_of_patch(&self, corners: [f32; 4], patch: [usize; 2], [from, to]: [f64; 2]) -> Option<Top> {
+        let [a, b, c, d] = corners.map(f64::from);
+        if !(a + b + c + d).is_finite() {
+            return None;
+        }
+        let (u, v) = (self.start[0] - patch[0] as f64, self.start[1] - patch[1] as f64);
+        let ([du, dv], (east, south, twist)) = (self.step, (b - a, c - a, a - b - c + d));
+        // height above the place less the fall, as a quadratic of the distance
+        let constant = a + east * u + south * v + twist * u * v - self.low;
+        let linear = east * du + south * dv + twist * (u * dv + v * du);
+        let square = twist * du * dv - self.fall;
+        let tangent = |span: f64| square * span + linear + constant / span;
+        let mut top = Top { tangent: tangent(from), span: from };
+        let mut consider = |span: f64| {
+            let tangent = tangent(span);
+            if tangent > top.tangent {
+                top = Top { tangent, span };
+            }
+        };
+        consider(to);
+        if constant < 0.0 && square < 0.0 {
+            consider((constant / square).sqrt().clamp(from, to));
+        }
+        Some(top)
+    }
+}
+
+/// More than what is rounded in the tangent of an elevation.
+fn rounding(tangent: f64) -> f64 {
+    1e-9 * (1.0 + tangent.abs())
+}
+
+/// Heights of the nodes of a patch: north-west, north-east, south-west, south-east.
+#[inline]
+fn corners(grid: &ElevationGrid, column: usize, row: usize) -> [f32; 4] {
+    let (heights, width) = (grid.heights().values(), grid.heights().width());
+    let first = row * width + column;
+    [heights[first], heights[first + 1], heights[first + width], heights[first + width + 1]]
+}

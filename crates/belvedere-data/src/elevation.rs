@@ -1,0 +1,117 @@
+//! Heights of terrain on a grid, such as those of an elevation raster around a cloud.
+
+use crate::raster::Raster;
+use crate::{Error, Result};
+
+/// Heights at the nodes of a grid along the axes of a frame, and between four neighbouring nodes bilinearly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElevationGrid {
+    heights: Raster<f32>,
+    north_west: [f64; 2],
+    cell: [f64; 2],
+}
+
+impl ElevationGrid {
+    /// The grid of `heights`, local metres, rows from the north, NaN where nothing is known. The first height is that at `north_west`, local
+    /// metres; columns lie `cell[0]` metres apart to the east and rows `cell[1]` to the south.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for fewer than 2 x 2 heights, none that is known, a cell that is not above zero, or a place that is not finite.
+    pub fn new(mut heights: Raster<f32>, north_west: [f64; 2], cell: [f64; 2]) -> Result<Self> {
+        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let (width, height) = (heights.width(), heights.height());
+        if width < 2 || height < 2 {
+            return invalid("size of the terrain", format!("{width} x {height} cells"), "at least 2 x 2 cells");
+        }
+        if !cell.iter().all(|side| side.is_finite() && *side > 0.0) || !north_west.iter().all(|v| v.is_finite()) {
+            let value = format!("{cell:?} m from {north_west:?} m on");
+            return invalid("cell of the terrain", value, "above zero, at a finite place");
+        }
+        heights.values_mut().iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = f32::NAN);
+        if heights.values().iter().all(|v| v.is_nan()) {
+            return invalid("terrain", "without a height".to_owned(), "a raster in which some cells have values");
+        }
+        Ok(Self { heights, north_west, cell })
+    }
+
+    /// Heights of the nodes, local metres, rows from the north; NaN where nothing is known.
+    #[must_use]
+    pub fn heights(&self) -> &Raster<f32> {
+        &self.heights
+    }
+
+    /// Local position of the first node on the map.
+    #[must_use]
+    pub fn north_west(&self) -> [f64; 2] {
+        self.north_west
+    }
+
+    /// Distances of columns and of rows, metres.
+    #[must_use]
+    pub fn cell(&self) -> [f64; 2] {
+        self.cell
+    }
+
+    /// Lowest and highest corner on the map, local metres: where the outermost nodes lie.
+    #[must_use]
+    pub fn on_map(&self) -> ([f64; 2], [f64; 2]) {
+        let [west, north] = self.north_west;
+        let east = west + (self.heights.width() - 1) as f64 * self.cell[0];
+        let south = north - (self.heights.height() - 1) as f64 * self.cell[1];
+        ([west, south], [east, north])
+    }
+
+    /// Number of nodes without a height.
+    #[must_use]
+    pub fn unknown_count(&self) -> usize {
+        self.heights.values().iter().filter(|v| v.is_nan()).count()
+    }
+
+    /// Lowest and highest height of the nodes within a box on the map, local metres; `None` where it holds no node with a height.
+    #[must_use]
+    pub fn height_range(&self, (low, high): ([f64; 2], [f64; 2])) -> Option<[f32; 2]> {
+        let [west, north] = self.north_west;
+        let (width, height) = (self.heights.width(), self.heights.height());
+        let columns = nodes_between((low[0] - west) / self.cell[0], (high[0] - west) / self.cell[0], width)?;
+        let rows = nodes_between((north - high[1]) / self.cell[1], (north - low[1]) / self.cell[1], height)?;
+        let known = rows.flat_map(|row| columns.clone().filter_map(move |column| self.heights.get(column, row)));
+        let known = known.filter(|v| !v.is_nan());
+        known.fold(None, |range: Option<[f32; 2]>, v| {
+            Some(range.map_or([v, v], |[low, high]| [low.min(v), high.max(v)]))
+        })
+    }
+}
+
+/// The whole numbers from `from` to `to` below `count`, if there are any.
+fn nodes_between(from: f64, to: f64, count: usize) -> Option<std::ops::Range<usize>> {
+    let (first, end) = (from.ceil().max(0.0), (to.floor() + 1.0).min(count as f64));
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers up to the count")]
+    (first < end).then_some(first as usize..end as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_knows_where_its_nodes_lie_and_what_is_around_them() {
+        let heights = Raster::from_values(3, 2, vec![1.0, 2.0, 3.0, 4.0, f32::INFINITY, 6.0]).unwrap();
+        let grid = ElevationGrid::new(heights, [10.0, 50.0], [5.0, 20.0]).unwrap();
+        assert_eq!(grid.on_map(), ([10.0, 30.0], [20.0, 50.0]));
+        assert_eq!(grid.unknown_count(), 1);
+        assert_eq!(grid.height_range(([0.0, 0.0], [99.0, 99.0])), Some([1.0, 6.0]));
+        assert_eq!(grid.height_range(([14.0, 29.0], [20.0, 31.0])), Some([6.0, 6.0]));
+        assert_eq!(grid.height_range(([14.0, 29.0], [16.0, 31.0])), None);
+        for outside in [([-9.0, -9.0], [9.0, 99.0]), ([21.0, -9.0], [99.0, 99.0]), ([11.0, 31.0], [14.0, 49.0])] {
+            assert_eq!(grid.height_range(outside), None, "{outside:?}");
+        }
+        let raster = |width, values: &[f32]| Raster::from_values(width, values.len() / width, values.to_vec()).unwrap();
+        for (heights, cell) in [
+            (raster(1, &[1.0, 2.0]), [1.0; 2]),
+            (raster(2, &[f32::NAN; 4]), [1.0; 2]),
+            (raster(2, &[1.0; 4]), [0.0, 1.0]),
+        ] {
+            assert!(ElevationGrid::new(heights, [0.0; 2], cell).is_err());
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Elevation rasters of the terrain around a cloud.
+
+use crate::geotiff_read::read_placed;
+use crate::source::Source;
+use belvedere_data::crs::{Crs, CrsKind};
+use belvedere_data::raster::Raster;
+use belvedere_data::{ElevationGrid, Error, Frame, Result};
+use std::path::Path;
+
+/// The terrain of a GeoTIFF raster in the local coordinates of `frame`: heights of the ground (DTM) in the middles of its cells. The raster must be in the
+/// reference system of the frame, or name none, which is then taken as that of the frame; its rows must run from north to south.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Malformed`] for what is no raster of one band, has no place on the map, is turned, or has no heights;
+/// [`Error::UnusableCrs`] for degrees and for another system, with a conversion to run first.
+pub fn read_terrain<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Result<ElevationGrid> {
+    let source = source.into();
+    let name = source.name().to_owned();
+    let raster = read_placed(source)?;
+    let Some(place) = raster.place else {
+        return Err(Error::malformed(
+            &name,
+            "has no place on the map; give a GeoTIFF, for example of gdal_translate -a_ullr",
+        ));
+    };
+    check_system(&place.crs, &frame.crs, &name)?;
+    let ([east, turned], [also_turned, down]) = (place.column_step, place.row_step);
+    if !(east > 0.0 && down < 0.0 && turned == 0.0 && also_turned == 0.0) {
+        let what = "is turned or upside down; make its rows run from north to south first: gdalwarp IN.tif OUT.tif";
+        return Err(Error::malformed(&name, what));
+    }
+    let system = if place.crs.kind == CrsKind::Unknown { &frame.crs } else { &place.crs };
+    let [unit, _, height_unit] = system.metres_per_unit_xyz();
+    let local = |height: &f32| f64::from(*height) * height_unit - frame.origin[2];
+    #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+    let heights = raster.values.values().iter().map(|height| local(height) as f32).collect();
+    let heights = Raster::from_values(raster.values.width(), raster.values.height(), heights)?;
+    let cell = [east * unit, -down * unit];
+    let [x, y] = place.upper_left;
+    let north_west = [x * unit - frame.origin[0] + cell[0] / 2.0, y * unit - frame.origin[1] - cell[1] / 2.0];
+    ElevationGrid::new(heights, north_west, cell).map_err(|error| Error::malformed(&name, error.to_string()))
+}
+
+/// Refuses degrees, and a system that contradicts that of the scene.
+fn check_system(terrain: &Crs, scene: &Crs, name: &Path) -> Result<()> {
+    let is_plane = matches!(terrain.kind, CrsKind::Unknown | CrsKind::Projected | CrsKind::Local);
+    if is_plane && !terrain.contradicts(scene) {
+        return Ok(());
+    }
+    let target = match scene.epsg {
+        Some(code) => format!("EPSG:{code}"),
+        None => "SYSTEM_OF_THE_SCENE".to_owned(),
+    };
+    let what = format!(
+        "the terrain is in {}, but the scene is in {}; convert it first, for example: gdalwarp -t_srs {target} -r bilinear IN.tif OUT.tif",
+        terrain.describe(),
+        scene.describe()
+    );
+    Err(Error::UnusableCrs { path: name.to_owned(), what })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geotiff::{Georeference, write_f32};
+
+    fn terrain(crs: Crs, steps: [[f64; 2]; 2], values: Vec<f32>, frame: &Frame) -> Result<ElevationGrid> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("dtm.tif");
+        let place = Georeference { upper_left: [1000.0, 2000.0], column_step: steps[0], row_step: steps[1], crs };
+        let raster = Raster::from_values(3, values.len() / 3, values).unwrap();
+        write_f32(path.as_path(), &raster, Some(&place), Some(-9999.0), None).unwrap();
+        read_terrain(path.as_path(), frame)
+    }
+
+    const NORTH_UP: [[f64; 2]; 2] = [[10.0, 0.0], [0.0, -20.0]];
+
+    #[test]
+    #[cfg(feature = "crs")]
+    fn terrain_in_feet_lies_where_it_should_and_nodata_is_unknown() {
+        let feet = Crs::from_epsg(2992).unwrap();
+        let frame = Frame { origin: [300.0, 600.0, 50.0], crs: feet.clone() };
+        let found = terrain(feet, NORTH_UP, vec![100.0, 200.0, f32::NAN, 400.0, 500.0, 600.0], &frame).unwrap();
+        let close = |a: [f64; 2], b: [f64; 2]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9);
+        assert!(close(found.cell(), [3.048, 6.096]));
+        assert!(close(found.north_west(), [1005.0 * 0.3048 - 300.0, 1990.0 * 0.3048 - 600.0]));
+        let heights = found.heights().values();
+        assert!((heights[1] - (200.0 * 0.3048 - 50.0)).abs() < 1e-4 && heights[2].is_nan());
+    }
+
+    #[test]
+    #[cfg(feature = "crs")]
+    fn another_system_degrees_and_turned_rasters_are_refused_with_what_to_do() {
+        let values = || vec![1.0; 6];
+        let rd = Frame { origin: [0.0; 3], crs: Crs::from_epsg(28_992).unwrap() };
+        for (code, named) in [(25_832, "EPSG:25832"), (4326, "degrees")] {
+            let error = terrain(Crs::from_epsg(code).unwrap(), NORTH_UP, values(), &rd).unwrap_err().to_string();
+            for part in ["dtm.tif", named, "gdalwarp -t_srs EPSG:28992"] {
+                assert!(error.contains(part), "{error}");
+            }
+        }
+        let degrees = terrain(Crs::from_epsg(4326).unwrap(), NORTH_UP, values(), &Frame::default());
+        assert!(degrees.unwrap_err().to_string().contains("degrees"));
+        for steps in [[[10.0, 1.0], [1.0, -20.0]], [[10.0, 0.0], [0.0, 20.0]]] {
+            let error = terrain(rd.crs.clone(), steps, values(), &rd).unwrap_err().to_string();
+            assert!(error.contains("dtm.tif") && error.contains("gdalwarp"), "{error}");
+        }
+        let error = terrain(rd.crs.clone(), NORTH_UP, vec![f32::NAN; 6], &rd).unwrap_err().to_string();
+        assert!(error.contains("dtm.tif") && error.contains("values"), "{error}");
+        // a compound system of the scene is that of a raster without heights of its own
+        let compound = Frame { origin: [0.0; 3], crs: Crs::from_epsg(7415).unwrap() };
+        assert!(terrain(rd.crs.clone(), NORTH_UP, values(), &compound).is_ok());
+        assert!(terrain(Crs::default(), NORTH_UP, values(), &rd).is_ok());
+    }
+}
