@@ -10,6 +10,7 @@ GROUPS = {
     "viewshed": "Visibility",
     "line-of-sight": "Visibility",
     "landmark": "Visibility",
+    "cameras": "Visibility",
     "shadow": "Sun and sky",
     "sun-hours": "Sun and sky",
     "sky-view": "Sun and sky",
@@ -20,6 +21,7 @@ TITLES = {
     "viewshed": "Viewshed",
     "line-of-sight": "Line of sight",
     "landmark": "Visibility of a landmark",
+    "cameras": "Where to put cameras",
     "shadow": "Shadow",
     "sun-hours": "Sun hours",
     "sky-view": "Sky view factor",
@@ -37,6 +39,8 @@ GEOMETRIES = {
 }
 # Names of layers that say more than those of their flags.
 NAMES = {"--pairs": "Lines from observers to targets", "--protect": "Lines, polygons or points to protect from shadow"}
+# Results that are no areas although they are written as GeoJSON.
+OUTPUT_LABELS = {("cameras", "OUTPUT_AREAS"): "Cameras as points"}
 UNITS = {"degree": "degrees", "minute": "minutes", "m2": "square metres"}
 # A label longer than this makes the dialog too wide.
 LONGEST_LABEL = 60
@@ -151,7 +155,7 @@ def _parameter(command, described):
         is_required=described["required"] and kind != "written",
         is_repeatable=described["repeatable"],
         is_advanced=not is_usual and (described["builds_balls"] or described["heading"] in RARE),
-        outputs=_outputs(described, key) if kind == "written" else (),
+        outputs=_outputs(command, described, key) if kind == "written" else (),
     )
 
 
@@ -214,7 +218,7 @@ def _default(described, kind):
     return None
 
 
-def _outputs(described, key):
+def _outputs(command, described, key):
     text = described["text"].replace("Also write ", "", 1).replace("Also save ", "", 1)
     name = key.replace("_", " ").capitalize()
     short = text.split(" (")[0].split(":")[0]
@@ -230,7 +234,8 @@ def _outputs(described, key):
         formats = tuple(one for one in extensions if one in left)
         if formats and (described["repeatable"] or not found):
             is_usual = is_main and not found
-            found.append(Output(key if not found else key + suffix, kind, own_label, formats, is_usual))
+            own_key = key if not found else key + suffix
+            found.append(Output(own_key, kind, OUTPUT_LABELS.get((command, own_key), own_label), formats, is_usual))
             left[:] = [one for one in left if one not in formats]
 
     take("raster", "_RASTER", "Result as a raster" if is_main else label, ".tif")

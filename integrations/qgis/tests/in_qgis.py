@@ -1,4 +1,4 @@
-"""The eight algorithms in QGIS: `in_qgis.py QGIS_PROCESS PLUGINS_FOLDER MAPS_FOLDER`; called by `integrations/qgis/test`."""
+"""All algorithms in QGIS: `in_qgis.py QGIS_PROCESS PLUGINS_FOLDER MAPS_FOLDER`; called by `integrations/qgis/test`."""
 
 import os
 import subprocess
@@ -119,6 +119,14 @@ def check_algorithms():
         },
         "line_of_sight": {"PAIRS": geojson("lines", fan), "OUTPUT": "sights.gpkg"},
         "landmark": {"TARGET_POLYGON": geojson("building", [building]), "CELL": 16, "OUTPUT": "landmark.tif"},
+        "cameras": {
+            "ON_ROOFS": 25,
+            "COUNT": 3,
+            "MAX_DISTANCE": 80,
+            "CELL": 4,
+            "OUTPUT": "covered.tif",
+            "OUTPUT_AREAS": "cameras.gpkg",
+        },
         "shadow": {"TIME": "2026-06-21T18:00+02:00", "SURFACE": "true", "OUTPUT": "shadow.tif"},
         "sun_hours": {"DATE": "2026-03-21", "CELL": 2, "OUTPUT": "sun_hours.tif"},
         "sky_view": {"CELL": 2, "DIRECTIONS": 145, "OUTPUT": "sky_view.tif"},
@@ -150,6 +158,7 @@ def check_results():
     rasters = {
         "viewshed.tif": QgsPalettedRasterRenderer,
         "landmark.tif": QgsSingleBandPseudoColorRenderer,
+        "covered.tif": QgsSingleBandPseudoColorRenderer,
         "shadow.tif": QgsSingleBandPseudoColorRenderer,
         "sun_hours.tif": QgsSingleBandPseudoColorRenderer,
         "sky_view.tif": QgsSingleBandPseudoColorRenderer,
@@ -160,6 +169,7 @@ def check_results():
         "areas.gpkg": QgsCategorizedSymbolRenderer,
         "sights.gpkg": QgsCategorizedSymbolRenderer,
         "roofs.gpkg": QgsGraduatedSymbolRenderer,
+        "cameras.gpkg": QgsGraduatedSymbolRenderer,
     }
     layers = {}
     for name, renderer in {**rasters, **vectors}.items():
@@ -174,6 +184,12 @@ def check_results():
     for feature in sights:
         first = feature.geometry().constGet().startPoint()
         assert abs(first.x() - 85036) < 1e-3 and abs(first.y() - 447527) < 1e-3 and -2 < first.z() < 4, first.asWkt()
+
+    # cameras stand above roofs, and no cell has more of them than there are
+    cameras = list(layers["cameras.gpkg"].getFeatures())
+    counts = [value for value in values(layers["covered.tif"]) if value is not None]
+    assert len(cameras) == 3 and 1 <= max(counts) <= 3 and min(counts) == 0, (len(cameras), max(counts))
+    assert all(feature.geometry().constGet().z() > 3 for feature in cameras)
 
     # what the program writes itself is the same
     direct = FOLDER / "direct.tif"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-EIGHT = {"viewshed", "line-of-sight", "landmark", "shadow", "sun-hours", "sky-view", "irradiance", "envelope"}
+ALL = {"viewshed", "line-of-sight", "landmark", "cameras", "shadow", "sun-hours", "sky-view", "irradiance", "envelope"}
 
 
 def parameter(commands, command, flag):
@@ -12,7 +12,7 @@ def parameter(commands, command, flag):
 
 
 def test_every_algorithm_has_a_cloud_a_result_and_help(commands):
-    assert set(commands) == EIGHT
+    assert set(commands) == ALL
     for command in commands.values():
         assert command.parameters[0].kind == "files" and command.parameters[0].is_required
         assert [output.is_usual for output in command.outputs].count(True) == 1, command.name
@@ -38,6 +38,9 @@ def test_every_algorithm_has_a_cloud_a_result_and_help(commands):
         ("line-of-sight", "--random", {"kind": "integer"}),
         ("landmark", "--targets", {"kind": "file"}),
         ("landmark", "--target-polygon", {"kind": "layer", "geometry": "polygon"}),
+        ("cameras", "--candidates", {"kind": "layer", "geometry": "any"}),
+        ("cameras", "--on-roofs", {"kind": "number"}),
+        ("cameras", "--private", {"kind": "layer"}),
         ("shadow", "--sun", {"kind": "text", "is_repeatable": True}),
         ("shadow", "--soft", {"kind": "flag", "default": False}),
         ("sun-hours", "--time-step-min", {"kind": "number", "default": 10.0}),
@@ -60,6 +63,9 @@ def test_a_result_becomes_a_destination_for_each_kind_of_layer(commands):
     assert kinds("viewshed")["OUTPUT_AREAS"] == ("vector", (".geojson",))
     assert kinds("viewshed")["OUTPUT_FILE"] == ("file", (".png", ".laz", ".las", ".ply"))
     assert kinds("viewshed")["HEIGHTS"] == ("raster", (".tif",))
+    assert kinds("cameras")["OUTPUT"] == ("raster", (".tif",))
+    cameras = {output.key: output.label for output in commands["cameras"].outputs}
+    assert cameras["OUTPUT_AREAS"] == "Cameras as points"
     assert kinds("line-of-sight")["OUTPUT"] == ("table", (".csv",))
     assert kinds("irradiance")["PLANES"] == ("vector", (".geojson",))
     assert kinds("sky-view")["MEASURES"] == ("folder", ())

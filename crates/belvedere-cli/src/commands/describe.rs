@@ -74,7 +74,7 @@ fn parameter(argument: &Arg) -> Value {
         "value_name": argument.get_value_names().filter(|_| takes_value).and_then(<[_]>::first).map(|name| name.as_str()),
         "unit": unit(argument),
         "written": takes_value && written_files::is_written(argument),
-        "formats": formats(&short_text),
+        "formats": if matches!(kind(argument), "path" | "text") { formats(&short_text) } else { Vec::new() },
         "choices": choices,
         "required": argument.is_required_set(),
         "repeatable": matches!(argument.get_action(), ArgAction::Append),

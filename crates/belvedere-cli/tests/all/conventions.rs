@@ -148,6 +148,8 @@ fn every_parameter_is_described_in_one_short_line_with_its_type() {
     assert_eq!(parameter("shadow", "--measures")["type"], "folder");
     let parcel = parameter("envelope", "--parcel");
     assert_eq!((&parcel["written"], &parcel["formats"][0]), (&false.into(), &".geojson".into()), "{parcel}");
+    // its text names GeoJSON, but its value is a number
+    assert_eq!(parameter("cameras", "--distance-step-m")["formats"].as_array().unwrap().len(), 0);
     let view = commands.iter().find(|one| one["name"] == "query").unwrap()["required_one_of"].to_string();
     assert!(view.contains("--sun") && view.contains("--self"), "{view}");
 }
