@@ -2,20 +2,23 @@
 
 use std::io::{Read, Seek};
 use std::path::Path;
-use tiff::decoder::{Decoder, DecodingResult};
+use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{TiffError, TiffResult};
 
 use crate::geotiff::Georeference;
-use crate::source::Source;
+use crate::source::{Input, Reader, Source};
 use belvedere_data::crs::Crs;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
 
+/// Most bytes of values for each byte of a file: LZW comes to 1365, Deflate to 1032.
+const MOST_PACKED: u64 = 1400;
+
 /// The values of a raster of bytes.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Malformed`] for what is no such raster. More than 256 MB of values are refused.
+/// [`Error::Io`], and [`Error::Malformed`] for what is no such raster. More than 256 MB of values are refused, and more than the file can hold.
 pub fn read_u8<'a>(source: impl Into<Source<'a>>) -> Result<Raster<u8>> {
     read(source.into(), |values| match values {
         DecodingResult::U8(values) => Some(values),
@@ -59,10 +62,9 @@ pub struct PlacedRaster {
 /// # Errors
 /// [`Error::Io`], and [`Error::Malformed`] for what is no raster of one band.
 pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
-    let input = source.into().open()?;
-    let name = input.name;
-    let mut decoder = Decoder::new(input.reader).map_err(|e| damaged(&name, e))?;
-    let (size, values) = size_and_values(&mut decoder).map_err(|e| damaged(&name, e))?;
+    let Input { name, reader, size } = source.into().open()?;
+    let mut decoder = decoder(reader, size).map_err(|e| damaged(&name, e))?;
+    let ([width, height], values) = size_and_values(&mut decoder).map_err(|e| damaged(&name, e))?;
     #[expect(clippy::cast_possible_truncation, reason = "values of maps are f32")]
     let values: Vec<f32> = match values {
         DecodingResult::U8(values) => values.into_iter().map(f32::from).collect(),
@@ -79,7 +81,7 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
     #[expect(clippy::cast_possible_truncation, reason = "values of maps are f32")]
     let nodata = nodata.and_then(|text| text.trim().parse::<f64>().ok()).map(|nodata| nodata as f32);
     let values = values.into_iter().map(|v| if Some(v) == nodata || !v.is_finite() { f32::NAN } else { v }).collect();
-    let values = Raster::from_values(size[0], size[1], values)
+    let values = Raster::from_values(width, height, values)
         .map_err(|_| Error::malformed(&name, "has more than one band; take one of them"))?;
     let keys = decoder.get_tag_u16_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
     // coordinates that count from the middles of pixels instead of their corners (GTRasterTypeGeoKey, PixelIsPoint)
@@ -111,12 +113,20 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
 }
 
 fn read<T: Copy>(source: Source<'_>, of_kind: impl Fn(DecodingResult) -> Option<Vec<T>>) -> Result<Raster<T>> {
-    let input = source.open()?;
-    let name = input.name;
-    let values = Decoder::new(input.reader).and_then(|mut decoder| size_and_values(&mut decoder));
+    let Input { name, reader, size } = source.open()?;
+    let values = decoder(reader, size).and_then(|mut decoder| size_and_values(&mut decoder));
     let ([width, height], values) = values.map_err(|e| damaged(&name, e))?;
     let values = of_kind(values).ok_or_else(|| Error::malformed(&name, "has values of another kind than expected"))?;
     Raster::from_values(width, height, values)
+}
+
+/// A decoder that allocates no more than a file of `size` bytes can hold.
+fn decoder(reader: Reader<'_>, size: u64) -> TiffResult<Decoder<Reader<'_>>> {
+    let most = usize::try_from(size.saturating_mul(MOST_PACKED)).unwrap_or(usize::MAX);
+    let mut limits = Limits::default();
+    limits.decoding_buffer_size = limits.decoding_buffer_size.min(most);
+    limits.intermediate_buffer_size = limits.intermediate_buffer_size.min(most);
+    Ok(Decoder::new(reader)?.with_limits(limits))
 }
 
 /// Width and height, and the values.
@@ -130,7 +140,7 @@ fn damaged(name: &Path, error: TiffError) -> Error {
     match error {
         TiffError::IoError(source) => Error::io(name)(source),
         TiffError::LimitsExceeded => {
-            let what = "has more than 256 MB of values; make its cells larger or cut out a part, for example: gdalwarp -tr 20 20 -r average IN.tif OUT.tif";
+            let what = "has more than 256 MB of values, or claims more than its bytes can hold; make its cells larger or cut out a part, for example: gdalwarp -tr 20 20 -r average IN.tif OUT.tif";
             Error::malformed(name, what)
         }
         other => Error::malformed(name, format!("is no raster that can be read: {other}")),

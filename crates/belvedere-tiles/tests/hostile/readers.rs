@@ -1,0 +1,182 @@
+//! Every reader of the library as a function of bytes, and what it may cost. Shared with `fuzz/`, which looks for files that break it.
+
+use std::hint::black_box;
+use std::path::Path;
+
+use belvedere::Result;
+use belvedere::control::Control;
+use belvedere::crs::Crs;
+use belvedere::io::{
+    ReadOptions, RowsAre, Source, Within, cloud_files, has_point_results, is_ball_file, read_balls, read_cloud,
+    read_geojson, read_horizon, read_las_head, read_matrix, read_mesh, read_observers, read_point_results,
+    read_stations, read_table, read_text_rows, read_tif, read_trajectory, read_weather,
+};
+use belvedere::model::SceneModel;
+use belvedere_tiles::{Plan, status};
+use peak_alloc::PeakAlloc;
+
+#[global_allocator]
+static ALLOCATOR: PeakAlloc = PeakAlloc;
+
+/// Memory that a file may take: so many times its size, and what tables and decoders take for a file of any size, bytes.
+const TIMES_FILE: usize = 20;
+const BESIDE_FILE: usize = 64 << 20;
+/// The same for rasters, which LZW packs up to 1400 times: bytes, and then as f32.
+const TIMES_RASTER: usize = 1400 * 5;
+
+/// A reader, and the name of the files that it is tried on.
+pub(crate) struct Reader {
+    /// Its extension selects the format.
+    pub(crate) file: &'static str,
+    /// Whether the bytes were read, rather than refused.
+    pub(crate) read: fn(&'static str, &[u8]) -> bool,
+}
+
+/// All readers.
+pub(crate) const READERS: &[Reader] = &[
+    Reader { file: "cloud.las", read: cloud },
+    Reader { file: "cloud.laz", read: cloud },
+    Reader { file: "window.laz", read: window },
+    Reader { file: "head.laz", read: head },
+    Reader { file: "cloud.e57", read: cloud },
+    Reader { file: "cloud.ptx", read: cloud },
+    Reader { file: "cloud.ply", read: cloud },
+    Reader { file: "cloud.pcd", read: cloud },
+    Reader { file: "cloud.npy", read: cloud },
+    Reader { file: "cloud.xyz", read: cloud },
+    Reader { file: "balls.npz", read: balls },
+    Reader { file: "balls.ply", read: balls },
+    Reader { file: "balls.laz", read: balls },
+    Reader { file: "mesh.obj", read: |file, bytes| settle(read_mesh(Source::bytes(file, bytes))) },
+    Reader { file: "mesh.ply", read: |file, bytes| settle(read_mesh(Source::bytes(file, bytes))) },
+    Reader { file: "mesh.json", read: |file, bytes| settle(read_mesh(Source::bytes(file, bytes))) },
+    Reader { file: "shapes.geojson", read: |file, bytes| settle(read_geojson(Source::bytes(file, bytes), &dutch())) },
+    Reader {
+        file: "observers.csv",
+        read: |file, bytes| settle(read_observers(Source::bytes(file, bytes), &dutch(), RowsAre::Places)),
+    },
+    Reader {
+        file: "observers.geojson",
+        read: |file, bytes| settle(read_observers(Source::bytes(file, bytes), &dutch(), RowsAre::Places)),
+    },
+    Reader { file: "stations.csv", read: |file, bytes| settle(read_stations(Source::bytes(file, bytes), &dutch())) },
+    Reader { file: "table.csv", read: |file, bytes| settle(read_table(Source::bytes(file, bytes))) },
+    Reader { file: "rows.csv", read: |file, bytes| settle(read_text_rows(Source::bytes(file, bytes))) },
+    Reader { file: "path.csv", read: |file, bytes| settle(read_trajectory(Source::bytes(file, bytes), &dutch())) },
+    Reader { file: "path.sbet", read: |file, bytes| settle(read_trajectory(Source::bytes(file, bytes), &dutch())) },
+    Reader { file: "horizon.csv", read: |file, bytes| settle(read_horizon(Source::bytes(file, bytes))) },
+    Reader { file: "weather.csv", read: |file, bytes| settle(read_weather(Source::bytes(file, bytes))) },
+    Reader { file: "matrix.npz", read: |file, bytes| settle(read_matrix(Source::bytes(file, bytes))) },
+    Reader { file: "raster.tif", read: |file, bytes| settle(read_tif(Source::bytes(file, bytes))) },
+    Reader { file: "tiles.vpc", read: |file, bytes| in_folder(file, bytes, catalogue) },
+    Reader { file: "plan.json", read: |file, bytes| in_folder(file, bytes, plan) },
+    Reader { file: "record.json", read: |file, bytes| in_folder(file, bytes, record) },
+    Reader { file: "system.wkt", read: system },
+];
+
+/// Reads `bytes` as the file that `reader` reads; `false` where it refuses them.
+///
+/// # Panics
+/// Where the reader does, and where it takes more memory than a file of this size may.
+pub(crate) fn check(reader: &Reader, bytes: &[u8]) -> bool {
+    let whole = if reader.file.ends_with("e57") { with_checksums(bytes) } else { bytes.to_vec() };
+    let before = ALLOCATOR.current_usage();
+    ALLOCATOR.reset_peak_usage();
+    let is_read = (reader.read)(reader.file, &whole);
+    let taken = ALLOCATOR.peak_usage().saturating_sub(before);
+    let times = if reader.file.ends_with("tif") { TIMES_RASTER } else { TIMES_FILE };
+    let most = times * bytes.len() + BESIDE_FILE;
+    assert!(taken <= most, "{} of {} bytes took {taken} bytes of memory, more than {most}", reader.file, bytes.len());
+    is_read
+}
+
+/// Whatever was read is dropped, and what was refused has a reason.
+fn settle<T>(found: Result<T>) -> bool {
+    match found {
+        Ok(found) => {
+            black_box(found);
+            true
+        }
+        Err(error) => {
+            assert!(error.to_string().len() > 10, "{error}");
+            false
+        }
+    }
+}
+
+fn dutch() -> Crs {
+    Crs::from_epsg(28_992).unwrap_or_default()
+}
+
+fn cloud(file: &'static str, bytes: &[u8]) -> bool {
+    let found = read_cloud([Source::bytes(file, bytes)], &ReadOptions::default().with_row_numbers(), &Control::none());
+    settle(found.and_then(|(cloud, _)| cloud.validate()))
+}
+
+/// The points of a box, by the hierarchy or the chunks of the file.
+fn window(file: &'static str, bytes: &[u8]) -> bool {
+    let within = Within::File { low: [0.0, 0.0, -1000.0], high: [500.0, 447_005.0, 1000.0] };
+    let options = ReadOptions::default().with_points_within(within);
+    settle(read_cloud([Source::bytes(file, bytes)], &options, &Control::none()).and_then(|(cloud, _)| cloud.validate()))
+}
+
+/// What is looked at before the points.
+fn head(file: &'static str, bytes: &[u8]) -> bool {
+    let source = || Source::bytes(file, bytes);
+    settle(read_point_results(source()));
+    settle(is_ball_file(source())) & settle(has_point_results(source())) & settle(read_las_head(source()))
+}
+
+/// Balls, and the scene that they are.
+fn balls(file: &'static str, bytes: &[u8]) -> bool {
+    settle(read_balls(Source::bytes(file, bytes)).and_then(SceneModel::from_parts))
+}
+
+fn system(_file: &'static str, bytes: &[u8]) -> bool {
+    str::from_utf8(bytes).is_ok_and(|text| settle(Crs::parse(text).map(|crs| crs.metres_per_unit_xyz())))
+}
+
+fn in_folder(file: &'static str, bytes: &[u8], read: fn(&Path) -> bool) -> bool {
+    let Ok(folder) = tempfile::tempdir() else { return false };
+    std::fs::write(folder.path().join(file), bytes).is_ok() && read(folder.path())
+}
+
+fn catalogue(folder: &Path) -> bool {
+    settle(cloud_files(&[folder.join("tiles.vpc")]))
+}
+
+fn plan(folder: &Path) -> bool {
+    let found = Plan::read(folder);
+    if let Ok(plan) = &found {
+        black_box((plan.estimate(), plan.bounds(), plan.frame().is_ok(), status(plan, folder).is_complete()));
+    }
+    settle(found)
+}
+
+/// A record of the balls of a tile of the plan that lies beside it among the inputs.
+fn record(folder: &Path) -> bool {
+    let plan = include_bytes!("inputs/plan.json/valid");
+    let place = folder.join("balls");
+    let is_there = std::fs::write(folder.join("plan.json"), plan)
+        .and_then(|()| std::fs::create_dir(&place))
+        .and_then(|()| std::fs::write(place.join("e2422_n7233.npz"), []))
+        .and_then(|()| std::fs::rename(folder.join("record.json"), place.join("e2422_n7233.json")));
+    let (Ok(()), Ok(plan)) = (is_there, Plan::read(folder)) else { return false };
+    status(&plan, folder).stages.iter().any(|stage| stage.done > 0)
+}
+
+/// The bytes with the right checksum at the end of each page of an E57 file, which few files with changes have.
+fn with_checksums(bytes: &[u8]) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    for page in bytes.as_chunks_mut::<1024>().0 {
+        let crc = crc32c(&page[..1020]).to_be_bytes();
+        page[1020..].copy_from_slice(&crc);
+    }
+    bytes
+}
+
+fn crc32c(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ if crc & 1 == 1 { 0x82f6_3b78 } else { 0 })
+    })
+}
