@@ -9,6 +9,7 @@ use belvedere_core::model::SceneModel;
 use belvedere_core::query::{BlockRule, MedialScene};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
+use serde::{Deserialize, Serialize};
 
 /// First and last day of the year that deciduous trees of the northern hemisphere are in leaf.
 const IN_LEAF: [u32; 2] = [97, 300];
@@ -43,7 +44,7 @@ impl Foliage {
 }
 
 /// What share of the light gets through a crown, 0 to 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Transmissivity {
     /// In leaf. Default 0.03: that of SOLWEIG, within the 0.01 to 0.05 measured on single trees in full leaf.
     pub in_leaf: f64,
@@ -106,7 +107,8 @@ impl Transmissivity {
 }
 
 /// Whether trees carry leaves on a date.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Leaves {
     /// By the date, as [`Foliage::on_day`] has it; in leaf where a question has no date. Default.
     #[default]
@@ -118,7 +120,7 @@ pub enum Leaves {
 }
 
 /// A day at a place, as far as trees are concerned.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Season {
     /// Day of the year, 1 to 366.
     pub day_of_year: u32,

@@ -10,16 +10,16 @@ use crate::values::{UNPROVEN, Values};
 use crate::window;
 use belvedere::apps::eyes::skip_unfit_eyes;
 use belvedere::apps::irradiance::{irradiation_measures, season_irradiation};
-use belvedere::apps::shadow::shadow;
+use belvedere::apps::shadow::{Edges, scene_shadow};
 use belvedere::apps::sky_view::{SKY_TARGET_HEIGHT, scene_sky_view};
 use belvedere::apps::sun_hours::scene_sun_hours;
-use belvedere::apps::targets::{Layout, Targets};
+use belvedere::apps::targets::{Layout, Measure, Targets};
 use belvedere::apps::viewshed::{Masks, Observer, ViewshedParams, viewshed};
 use belvedere::clean::clean;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid, SurfaceParams, top_surface};
 use belvedere::io::atomic;
-use belvedere::query::Answer;
+use belvedere::query::{AddedMeshes, Answer};
 use belvedere::raster::Raster;
 use belvedere::results::georeference;
 use belvedere::vector::sub;
@@ -32,21 +32,24 @@ const RIM: usize = 2;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
 
+/// What is asked of tiles.
+#[derive(Clone, Copy)]
+pub(crate) struct Task<'a> {
+    pub(crate) question: &'a Question,
+    pub(crate) asked: &'a Asked,
+    /// What is planned.
+    pub(crate) added: Option<&'a AddedMeshes>,
+}
+
 /// Answers a question for the cells of a tile on top of what stands there, with the balls that are in the folder of the run, and writes the answer
 /// and its record. Where balls that can matter are missing, answers are unproven.
 ///
 /// # Errors
 /// Those of reading the files and the balls, and of writing.
-pub(crate) fn answer(
-    plan: &Plan,
-    run: &Path,
-    (question, asked): (&Question, &Asked),
-    tile: TileId,
-    control: &Control<'_>,
-) -> Result<Record> {
-    let stage = Stage::Answer(question);
+pub(crate) fn answer(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Control<'_>) -> Result<Record> {
+    let stage = Stage::Answer(task.question);
     atomic::make_folder(&stage.folder(run))?;
-    let record = answered(plan, run, (question, asked), tile, control)?;
+    let record = answered(plan, run, task, tile, control)?;
     record.write(plan, run, stage, tile)?;
     Ok(record)
 }
@@ -57,13 +60,8 @@ fn area_of_cells(plan: &Plan, tile: TileId) -> crate::grid::Area {
     plan.grid().core(tile).widened(farthest + (RIM + 1) as f64 * plan.cell)
 }
 
-fn answered(
-    plan: &Plan,
-    run: &Path,
-    (question, asked): (&Question, &Asked),
-    tile: TileId,
-    control: &Control<'_>,
-) -> Result<Record> {
+fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Control<'_>) -> Result<Record> {
+    let Task { question, asked, added } = task;
     let core = plan.grid().core(tile);
     let nothing = |points: usize| Ok(Record { points, ..Record::default() });
     if Lines::of(asked, core, 0.0).is_empty() {
@@ -71,7 +69,7 @@ fn answered(
     }
     let cloud = control.stage("reading", 0, || window::read(plan, &area_of_cells(plan, tile), control))?;
     let points = cloud.len();
-    let targets = control.stage("computing top surface", 0, || cells(plan, tile, &cloud, control))?;
+    let targets = control.stage("computing top surface", 0, || cells(plan, tile, &cloud, added, control))?;
     let (cells, Layout::Cells(ground)) = (targets.asked_count(), &targets.layout) else { return nothing(points) };
     if cells == 0 {
         return nothing(points);
@@ -79,7 +77,7 @@ fn answered(
     let known = targets.positions.iter().filter(|p| p[2].is_finite());
     let lowest = known.map(|p| f64::from(p[2])).fold(f64::INFINITY, f64::min);
     let lines = Lines::of(asked, core, lowest);
-    let obstacles = control.stage("reading balls", 0, || Obstacles::gather(plan, run, &lines, control))?;
+    let obstacles = control.stage("reading balls", 0, || Obstacles::gather(plan, run, &lines, added, control))?;
     let found = control.stage("testing lines of sight", cells, || ask(asked, &obstacles, &targets, control))?;
     if found.values.are_nothing() && found.unproven_cells == 0 {
         return Ok(Record { points, damaged: obstacles.damaged, ..Record::default() });
@@ -108,7 +106,7 @@ struct Found {
 }
 
 fn ask(asked: &Asked, obstacles: &Obstacles, targets: &Targets, control: &Control<'_>) -> Result<Found> {
-    let scene = &obstacles.scene;
+    let light = obstacles.of_light();
     let (width, height) = match &targets.layout {
         Layout::Cells(ground) => (ground.grid.width, ground.grid.height),
         _ => (targets.len(), 1),
@@ -116,35 +114,58 @@ fn ask(asked: &Asked, obstacles: &Obstacles, targets: &Targets, control: &Contro
     let (numbers, directions) = match asked {
         Asked::Viewshed(observers) => return see(observers, obstacles, targets, [width, height], control),
         Asked::Shadow(sun) => {
-            let lit = shadow(scene, targets, *sun, control)?;
-            let is_unknown = unknown_towards(obstacles, targets, &[sun.to_sun]);
-            let code = |(&lit, &is_unknown): (&f32, &bool)| match lit {
-                lit if lit.is_nan() => None,
-                lit if lit > 0.0 && is_unknown => Some(UNPROVEN),
-                lit => Some(u8::from(lit > 0.0)),
-            };
-            let codes: Vec<Option<u8>> = lit.iter().zip(&is_unknown).map(code).collect();
-            let unproven_cells = codes.iter().filter(|&&code| code == Some(UNPROVEN)).count();
-            let values = Values::of_codes(width, height, codes.into_iter())?;
-            return Ok(Found { values, unproven_cells, skipped_observers: 0 });
+            let lit = scene_shadow(light, targets, &[*sun], Edges::Hard, control)?.pop().unwrap_or_default();
+            let directions = std::slice::from_ref(&sun.to_sun);
+            if light.trees.is_none() {
+                return codes(&lit, directions, obstacles, targets, [width, height]);
+            }
+            (lit, directions)
         }
-        Asked::Sky(sky) => (scene_sky_view(scene, targets, sky, control)?.into_measures(), &sky.directions[..]),
-        Asked::SunHours(plan) => {
-            let sums = scene_sun_hours(scene, targets, plan, None, control)?;
-            (sums.into_measures(plan, targets), plan.directions())
+        Asked::SunRule { plan, site } => {
+            let sums = scene_sun_hours(light, targets, plan, Some(site), control)?;
+            // the rule comes after the measures of its days
+            let is_met = sums.into_measures(plan, targets).pop().map(|measure| measure.values).unwrap_or_default();
+            return codes(&is_met, plan.directions(), obstacles, targets, [width, height]);
+        }
+        Asked::Sky(sky) => (first(scene_sky_view(light, targets, sky, control)?.into_measures()), &sky.directions[..]),
+        Asked::SunHours { plan, site } => {
+            let sums = scene_sun_hours(light, targets, plan, Some(site), control)?;
+            (first(sums.into_measures(plan, targets)), plan.directions())
         }
         Asked::Irradiance { seasons, directions } => {
-            let sums = season_irradiation(scene, targets, seasons, control)?;
-            (irradiation_measures(&sums, 1), &directions[..])
+            let sums = season_irradiation(light, targets, seasons, control)?;
+            (first(irradiation_measures(&sums, 1)), &directions[..])
         }
     };
-    // the first measure is what the question is named after
-    let numbers = numbers.into_iter().next().map(|measure| measure.values).unwrap_or_default();
     let is_unknown = unknown_towards(obstacles, targets, directions);
     let unproven_cells =
         numbers.iter().zip(&is_unknown).filter(|(v, is_unknown)| v.is_finite() && **is_unknown).count();
     let known = numbers.iter().zip(&is_unknown).map(|(&v, &is_unknown)| if is_unknown { f32::NAN } else { v });
     Ok(Found { values: Values::of_numbers(width, height, known)?, unproven_cells, skipped_observers: 0 })
+}
+
+/// The first measure is what a question is named after.
+fn first(measures: Vec<Measure>) -> Vec<f32> {
+    measures.into_iter().next().map(|measure| measure.values).unwrap_or_default()
+}
+
+/// Codes of targets that are lit or not: those that missing balls may block in one of `directions` are unproven rather than lit.
+fn codes(
+    lit: &[f32],
+    directions: &[[f64; 3]],
+    obstacles: &Obstacles,
+    targets: &Targets,
+    [width, height]: [usize; 2],
+) -> Result<Found> {
+    let is_unknown = unknown_towards(obstacles, targets, directions);
+    let code = |(&lit, &is_unknown): (&f32, &bool)| match lit {
+        lit if lit.is_nan() => None,
+        lit if lit > 0.0 && is_unknown => Some(UNPROVEN),
+        lit => Some(u8::from(lit > 0.0)),
+    };
+    let codes: Vec<Option<u8>> = lit.iter().zip(&is_unknown).map(code).collect();
+    let unproven_cells = codes.iter().filter(|&&code| code == Some(UNPROVEN)).count();
+    Ok(Found { values: Values::of_codes(width, height, codes.into_iter())?, unproven_cells, skipped_observers: 0 })
 }
 
 /// Of each target, whether missing balls may block it in any of `directions`.
@@ -204,8 +225,14 @@ fn see(
     Ok(Found { values, unproven_cells, skipped_observers: skipped })
 }
 
-/// The cells of a tile as targets on top of what stands there.
-fn cells(plan: &Plan, tile: TileId, cloud: &PointCloud, control: &Control<'_>) -> Result<Targets> {
+/// The cells of a tile as targets on top of what stands there, or will.
+fn cells(
+    plan: &Plan,
+    tile: TileId,
+    cloud: &PointCloud,
+    added: Option<&AddedMeshes>,
+    control: &Control<'_>,
+) -> Result<Targets> {
     let (kept, _) = clean(cloud, &plan.facts.cleaning(&plan.model().clean), control)?;
     let positions: Vec<[f32; 3]> = kept.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
     let core = plan.grid().core(tile);
@@ -225,7 +252,10 @@ fn cells(plan: &Plan, tile: TileId, cloud: &PointCloud, control: &Control<'_>) -
     let grid = MapGrid { corner: [core.low[0], core.high[1]], cell: plan.cell, width: count, height: count };
     let places = (0..count).flat_map(|row| (0..count).map(move |column| (column, row)));
     let of_cell = |(column, row): (usize, usize)| heights.get(column + RIM, row + RIM).unwrap_or(f32::NAN);
-    let heights = Raster::from_values(count, count, places.clone().map(of_cell).collect())?;
+    let mut heights = Raster::from_values(count, count, places.clone().map(of_cell).collect())?;
+    if let Some(added) = added {
+        added.raise(&mut heights, &grid);
+    }
     let position = |(column, row): (usize, usize)| {
         let [x, y] = grid.center(column, row);
         let z = f64::from(heights.get(column, row).unwrap_or(f32::NAN)) + SKY_TARGET_HEIGHT;
@@ -255,7 +285,7 @@ mod tests {
         balls.push(0, [10.0, 0.0, 2.0], 2.0, 0);
         let scene = MedialScene::new(&balls, &BlockRule::carved()).unwrap();
         let missing = vec![(Area { low: [-5.0, 10.0], high: [5.0, 20.0] }, 30.0)];
-        let obstacles = Obstacles { scene, ball_count: 1, missing, damaged: Vec::new() };
+        let obstacles = Obstacles { scene, trees: None, ball_count: 1, missing, damaged: Vec::new() };
         let positions = vec![
             [-20.0, 0.0, 2.0],  // free
             [20.0, 0.0, 2.0],   // behind the ball

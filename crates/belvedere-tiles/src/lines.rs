@@ -35,7 +35,7 @@ impl<'a> Lines<'a> {
         let to = match asked {
             Asked::Shadow(sun) => To::Directions(std::slice::from_ref(&sun.to_sun)),
             Asked::Sky(sky) => To::Directions(&sky.directions),
-            Asked::SunHours(plan) => To::Directions(plan.directions()),
+            Asked::SunHours { plan, .. } | Asked::SunRule { plan, .. } => To::Directions(plan.directions()),
             Asked::Irradiance { directions, .. } => To::Directions(directions),
             Asked::Viewshed(observers) => {
                 let is_near = |eye: &[f64; 3], reach: f64| targets.distance(&Area::at(*eye)) <= reach;

@@ -63,7 +63,7 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Resul
     let (tiles, cells) = results(plan, folder, question)?;
     let frame = plan.frame()?;
     let place = georeference(&cells, &frame);
-    let (kind, no_data) = question.kind().in_vrt();
+    let (kind, no_data) = plan.kind_of(question).in_vrt();
     let mut text = format!("<VRTDataset rasterXSize=\"{}\" rasterYSize=\"{}\">\n", cells.width, cells.height);
     if let Some(system) = wkt_line(&frame.crs) {
         let system = system.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
@@ -106,13 +106,13 @@ pub fn merge(plan: &Plan, folder: &Path, question: &Question, output: &Path, con
         });
     }
     let place = georeference(&cells, &plan.frame()?);
-    let mut all = question.kind().nothing(width, height);
+    let mut all = plan.kind_of(question).nothing(width, height);
     for &tile in &tiles {
         control.check()?;
         let stage = Stage::Answer(question);
         let Some(record) = Record::read(plan, folder, stage, tile) else { continue };
         let path = stage.result(folder, tile);
-        let values = question.kind().read(Source::bytes(&path, &record.read_result(&path)?))?;
+        let values = plan.kind_of(question).read(Source::bytes(&path, &record.read_result(&path)?))?;
         all.put(&values, place_of(plan, &cells, tile))?;
     }
     all.write_cog(output, &place)?;

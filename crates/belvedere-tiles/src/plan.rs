@@ -2,7 +2,8 @@
 
 use crate::grid::{Area, TileGrid, TileId, block_area};
 use crate::inputs::{Columns, InputFile, hash};
-use crate::question::Question;
+use crate::planned::{LightTrees, SideFile, added_meshes};
+use crate::question::{Question, ValueKind};
 use crate::record::Stage;
 use crate::survey::{Block, survey};
 use crate::window;
@@ -12,6 +13,7 @@ use belvedere::crs::Crs;
 use belvedere::ground::{Ground, GroundParams, SurfaceParams};
 use belvedere::io::{LasHead, atomic, cloud_files};
 use belvedere::model::{ModelParams, SurveyFacts};
+use belvedere::query::{AddedMeshes, Coverage};
 use belvedere::{Bounds, Error, Frame, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -20,7 +22,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Version of the layout of plans and records.
-const LAYOUT: u32 = 3;
+const LAYOUT: u32 = 4;
 /// Corners that the origin of local coordinates is one of, metres: of blocks of 64 m, and few, so that neighbouring surveys share it.
 const ORIGIN_STEP: f64 = 1024.0;
 /// Farthest that a point may lie from the origin, metres: up to here f32 keeps a millimetre.
@@ -80,6 +82,12 @@ pub struct Plan {
     pub halo: f64,
     /// What is asked.
     pub questions: Vec<Question>,
+    /// Meshes of what is planned, which block beside what was surveyed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    meshes: Vec<SideFile>,
+    /// Trees, where they let light through.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) trees: Option<LightTrees>,
     /// Tiles that may hold points, from the south-west.
     pub tiles: Vec<TileId>,
     low: [f32; 3],
@@ -182,6 +190,8 @@ impl Plan {
             // in steps, so that it does not look more exact than it is
             halo: facts.halo(&model).ceil(),
             questions: Vec::new(),
+            meshes: Vec::new(),
+            trees: None,
             tiles: Vec::new(),
             low: bounds.low,
             high: bounds.high,
@@ -340,6 +350,50 @@ impl Plan {
         }
         questions.iter().try_for_each(|question| question.prepare(control).map(|_| ()))?;
         Ok(Self { questions, ..self })
+    }
+
+    /// This with meshes of what is planned, such as buildings: their triangles block exactly, beside what was surveyed, and cells below them are
+    /// asked about on top of them.
+    ///
+    /// # Errors
+    /// Those of reading meshes, and [`Error::InvalidParameter`] for one that does not lie on the survey.
+    pub fn with_meshes(self, meshes: Vec<SideFile>) -> Result<Self> {
+        added_meshes(&meshes, &self.frame()?, Coverage::of(self.bounds()).as_ref())?;
+        Ok(Self { meshes, ..self })
+    }
+
+    /// This with trees that let light through, where questions ask for light.
+    ///
+    /// # Errors
+    /// [`Error::MissingAttribute`] for a survey whose pulses do not say what vegetation is.
+    pub fn with_light_through_trees(self, trees: LightTrees) -> Result<Self> {
+        if !(self.facts.carves && self.facts.measures_crowns) {
+            return Err(Error::MissingAttribute {
+                attribute: "return numbers and GPS times",
+                needed_for: "knowing which balls are vegetation",
+                advice: "use a survey that has them, or opaque trees",
+            });
+        }
+        Ok(Self { trees: Some(trees), ..self })
+    }
+
+    /// Share of the pulses that get through crowns, in the places that the plan looked at.
+    #[must_use]
+    pub fn share_of_pulses_through_crowns(&self) -> f64 {
+        self.facts.whole.transmission
+    }
+
+    /// The meshes of what is planned; `None` without any.
+    ///
+    /// # Errors
+    /// Those of reading meshes, and [`Error::Malformed`] for one that changed since the plan was made.
+    pub(crate) fn added(&self) -> Result<Option<AddedMeshes>> {
+        added_meshes(&self.meshes, &self.frame()?, None)
+    }
+
+    /// What the values of a result are.
+    pub(crate) fn kind_of(&self, question: &Question) -> ValueKind {
+        question.kind(self.trees.is_none())
     }
 
     /// Puts places on the map, local metres, on the ground: each that has no height gets `height` metres above the ground there.

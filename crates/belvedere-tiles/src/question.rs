@@ -1,17 +1,17 @@
 //! What is asked of a city.
 
-use crate::inputs::hash;
+use crate::planned::SideFile;
 use belvedere::apps::irradiance::{ClearSky, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons};
 use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sky_view::SkyDirections;
 use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, SunSchedule, Zone, sun_days};
-use belvedere::apps::sun_hours::SunPlan;
+use belvedere::apps::sun_hours::{SunPlan, SunRule};
+use belvedere::apps::tree_light::Season;
 use belvedere::apps::viewshed::{Observer, SightLimits};
 use belvedere::control::Control;
-use belvedere::io::read_weather;
+use belvedere::io::{Source, read_weather};
 use belvedere::{Error, Result};
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
 
 /// A question that has an answer for each cell on top of what stands there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,6 +24,9 @@ pub enum Question {
         name: String,
         /// Unit vector from the scene to the sun: x east, y grid north, z up.
         to_sun: [f64; 3],
+        /// The season, by which trees have leaves; `None` where no date is known.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        season: Option<Season>,
     },
     /// The sky view factor of cells.
     SkyView {
@@ -32,6 +35,15 @@ pub enum Question {
     },
     /// Hours of sun a day, the mean over some days.
     SunHours(SunQuestion),
+    /// Whether a rule of sunlight is met on all of its days: 1 met, 0 not, 2 unproven.
+    SunRule {
+        /// Name of the folder of its results.
+        name: String,
+        /// The rule, as [`SunRule::parse`] reads it.
+        rule: String,
+        /// Its days.
+        days: SunQuestion,
+    },
     /// Energy of sun and sky on level cells over a period, kWh/m².
     Irradiance {
         /// Where the survey lies.
@@ -76,9 +88,7 @@ pub enum Radiation {
     /// Rows of weather, each cut into parts.
     Weather {
         /// The file.
-        file: PathBuf,
-        /// Fingerprint of its bytes when the plan was made.
-        fingerprint: String,
+        file: SideFile,
         /// Parts of each row.
         parts: usize,
     },
@@ -106,7 +116,8 @@ pub(crate) enum ValueKind {
 pub(crate) enum Asked {
     Shadow(ShadowSun),
     Sky(SkyDirections),
-    SunHours(Box<SunPlan>),
+    SunHours { plan: Box<SunPlan>, site: Site },
+    SunRule { plan: Box<SunPlan>, site: Site },
     Irradiance { seasons: Vec<SeasonRadiation>, directions: Vec<[f64; 3]> },
     Viewshed(Vec<Observer>),
 }
@@ -142,27 +153,13 @@ impl SunQuestion {
 }
 
 impl Radiation {
-    /// The rows of a weather file as it is now.
-    ///
-    /// # Errors
-    /// [`Error::Io`].
-    pub fn of_weather(file: &Path, parts: usize) -> Result<Self> {
-        let file = std::path::absolute(file).map_err(Error::io(file))?;
-        let fingerprint = hash(&std::fs::read(&file).map_err(Error::io(&file))?);
-        Ok(Self::Weather { file, fingerprint, parts })
-    }
-
     fn seasons(&self, site: &Site, params: &IrradianceParams, control: &Control<'_>) -> Result<Vec<SeasonRadiation>> {
         params.validate()?;
         let gather = |source: &RadiationSource<'_>| Ok(period_seasons(source, site, None, params, control)?.0);
         match self {
-            Self::Weather { file, fingerprint, parts } => {
-                let bytes = std::fs::read(file).map_err(Error::io(file))?;
-                if hash(&bytes) != *fingerprint {
-                    let what = "is no longer what it was when the plan was made; make the plan again";
-                    return Err(Error::malformed(file, what));
-                }
-                gather(&RadiationSource::Weather { weather: &read_weather(file)?, parts: *parts })
+            Self::Weather { file, parts } => {
+                let weather = read_weather(Source::bytes(file.path(), &file.read()?))?;
+                gather(&RadiationSource::Weather { weather: &weather, parts: *parts })
             }
             Self::ClearSky { clear_sky, year } => {
                 gather(&RadiationSource::ClearSky { clear_sky: *clear_sky, year: *year })
@@ -176,7 +173,7 @@ impl Question {
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
-            Self::Shadow { name, .. } => name,
+            Self::Shadow { name, .. } | Self::SunRule { name, .. } => name,
             Self::SkyView { .. } => "sky_view_factor",
             Self::SunHours { .. } => "sun_hours",
             Self::Irradiance { .. } => "irradiance",
@@ -184,9 +181,11 @@ impl Question {
         }
     }
 
-    pub(crate) fn kind(&self) -> ValueKind {
+    /// What its values are, where trees are `opaque` or let light through.
+    pub(crate) fn kind(&self, opaque: bool) -> ValueKind {
         match self {
-            Self::Shadow { .. } => ValueKind::Codes,
+            Self::Shadow { .. } if !opaque => ValueKind::Numbers,
+            Self::Shadow { .. } | Self::SunRule { .. } => ValueKind::Codes,
             Self::Viewshed { eyes, .. } if eyes.len() == 1 => ValueKind::Codes,
             Self::Viewshed { .. } => ValueKind::Counts,
             Self::SkyView { .. } | Self::SunHours { .. } | Self::Irradiance { .. } => ValueKind::Numbers,
@@ -201,15 +200,23 @@ impl Question {
     pub(crate) fn prepare(&self, control: &Control<'_>) -> Result<Asked> {
         let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
         match self {
-            Self::Shadow { to_sun, .. } if to_sun[2] > 0.0 => {
-                Ok(Asked::Shadow(ShadowSun { to_sun: *to_sun, season: None }))
+            Self::Shadow { to_sun, season, .. } if to_sun[2] > 0.0 => {
+                Ok(Asked::Shadow(ShadowSun { to_sun: *to_sun, season: *season }))
             }
             Self::Shadow { to_sun, .. } => {
                 let elevation = to_sun[2].clamp(-1.0, 1.0).asin().to_degrees();
                 invalid("elevation of the sun", format!("{elevation:.3} degrees"), "above the horizon")
             }
             Self::SkyView { directions } => Ok(Asked::Sky(SkyDirections::even(*directions)?)),
-            Self::SunHours(days) => Ok(Asked::SunHours(Box::new(SunPlan::new(days.schedule()?, Vec::new())))),
+            Self::SunHours(days) => {
+                let plan = SunPlan::new(days.schedule()?, Vec::new());
+                Ok(Asked::SunHours { plan: Box::new(plan), site: days.site })
+            }
+            Self::SunRule { name, rule, days } => {
+                let schedule = days.schedule()?;
+                let rules = vec![(name.clone(), SunRule::parse(rule)?, schedule.clone())];
+                Ok(Asked::SunRule { plan: Box::new(SunPlan::new(schedule, rules)), site: days.site })
+            }
             Self::Irradiance { site, radiation, params } => {
                 let seasons = radiation.seasons(&site.validate()?, params, control)?;
                 let directions = seasons.iter().flat_map(|season| season.radiation.directions()).collect();

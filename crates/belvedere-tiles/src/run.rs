@@ -1,12 +1,11 @@
 //! A run: all tiles that are not done yet, one after the other.
 
-use crate::answer::answer;
+use crate::answer::{Task, answer};
 use crate::grid::TileId;
 use crate::lines::{Lines, tiles};
 use crate::make_balls::make_balls;
 use crate::merge::write_catalogue;
 use crate::plan::Plan;
-use crate::question::{Asked, Question};
 use crate::record::{Outcome, Record, Stage};
 use crate::report::write_report;
 use belvedere::control::Control;
@@ -85,8 +84,10 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
         work.balls(tile)?;
     }
     let questions = if params.steps == Steps::All { &plan.questions[..] } else { &[] };
+    let added = if questions.is_empty() { None } else { plan.added()? };
     for question in questions {
         let asked = question.prepare(control)?;
+        let task = Task { question, asked: &asked, added: added.as_ref() };
         for tile in own() {
             // what was unproven for lack of balls may have them now
             let record = work.settled(Stage::Answer(question), tile);
@@ -102,7 +103,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             for other in tiles(plan, &Lines::of(&asked, core, lowest)) {
                 work.missing_balls(other)?;
             }
-            work.answer((question, &asked), tile)?;
+            work.answer(task, tile)?;
         }
     }
     for question in questions {
@@ -149,10 +150,9 @@ impl Work<'_> {
         Ok(())
     }
 
-    fn answer(&mut self, (question, asked): (&Question, &Asked), tile: TileId) -> Result<()> {
-        let stage = Stage::Answer(question);
-        let record =
-            self.attempt(stage, tile, || answer(self.plan, self.folder, (question, asked), tile, self.control))?;
+    fn answer(&mut self, task: Task<'_>, tile: TileId) -> Result<()> {
+        let stage = Stage::Answer(task.question);
+        let record = self.attempt(stage, tile, || answer(self.plan, self.folder, task, tile, self.control))?;
         self.report.answers_made += 1;
         self.report.unproven_cells += record.unproven_cells;
         self.report.damaged.extend(record.damaged);

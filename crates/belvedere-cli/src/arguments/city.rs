@@ -1,8 +1,8 @@
 //! Flags of runs over whole cities.
 
 use super::{
-    ClearSkyChoice, North, Numbers, Place, RadiationModel, SunPeriod, SunPlace, above_zero, at_least_one, finite,
-    known_crs,
+    ClearSkyChoice, North, Numbers, Place, RadiationModel, SunPeriod, SunPlace, ThroughTrees, above_zero, at_least_one,
+    finite, known_crs,
 };
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -46,6 +46,11 @@ pub(crate) struct CityPlan {
     /// Map the hours of sun a day, for --date, or --from and --to
     #[arg(long, help_heading = "Questions")]
     pub(crate) sun_hours: bool,
+    /// Map where a daylight rule is met; repeatable
+    ///
+    /// nl-light, nl-strict, the-hague, bre-equinox, or your own as HOURS@DAYS, such as 1.5@03-21, 1@shortest-day, and with a minimum sun elevation of 10 degrees 2@02-19..10-21>10.
+    #[arg(long, value_name = "RULE", help_heading = "Questions")]
+    pub(crate) rule: Vec<String>,
     /// Map the solar energy of a year in kWh for each square metre, with --weather or --clear-sky
     #[arg(long, help_heading = "Questions")]
     pub(crate) irradiance: bool,
@@ -96,6 +101,13 @@ pub(crate) struct CityPlan {
     pub(crate) model: RadiationModel,
     #[command(flatten)]
     pub(crate) north: North,
+    #[command(flatten)]
+    pub(crate) trees: ThroughTrees,
+    /// Add a mesh to the survey, such as a planned building (.obj .ply .json); repeatable
+    ///
+    /// Its triangles block exactly as they are, and cells lie on top of it. Coordinates are those of the survey.
+    #[arg(long, value_name = "MESH", help_heading = "Plan")]
+    pub(crate) add: Vec<PathBuf>,
     /// Side of the cells of results in metres: a whole number of sixty-fourths, such as 0.25, 0.5, 1 or 2
     #[arg(long, value_name = "M", default_value_t = 1.0, value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Tiles")]

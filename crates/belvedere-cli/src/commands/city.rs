@@ -9,8 +9,10 @@ use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::Error;
+use belvedere::apps::tree_light::Transmissivity;
 use belvedere_tiles::{
-    Plan, PlanParams, Question, RunParams, Shard, Steps, merge, run as run_tiles, status as status_of,
+    LightTrees, Plan, PlanParams, Question, RunParams, Shard, SideFile, Steps, merge, run as run_tiles,
+    status as status_of,
 };
 use std::time::Instant;
 
@@ -44,6 +46,7 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         Error::InvalidParameter { name: "memory for a tile", .. } => Usage(format!("--memory: {error}")).into(),
         other => anyhow::Error::from(other),
     })?;
+    let plan = planned(plan, arguments)?;
     let questions = questions::questions(arguments, &plan, &stages.control(), &mut summary)?;
     let plan = plan.with_questions(questions, &stages.control()).map_err(|error| match error {
         Error::InvalidParameter { name: "elevation of the sun", .. } => {
@@ -68,6 +71,19 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         .add("written", arguments.output.display().to_string());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
+}
+
+/// The plan with what will be built, and with light through trees.
+fn planned(plan: Plan, arguments: &CityPlan) -> Result<Plan> {
+    let meshes = arguments.add.iter().map(|path| SideFile::new(path)).collect::<belvedere::Result<Vec<_>>>()?;
+    let plan = flagged("--add", plan.with_meshes(meshes))?;
+    let measured = || Transmissivity::constant(plan.share_of_pulses_through_crowns()).ok();
+    match arguments.trees.chosen(measured)? {
+        Some((transmissivity, leaves)) => {
+            Ok(flagged("--through-trees", plan.with_light_through_trees(LightTrees { transmissivity, leaves }))?)
+        }
+        None => Ok(plan),
+    }
 }
 
 fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {

@@ -172,7 +172,8 @@ enum Suns<'a> {
     Among(&'a [[f64; 3]], f64),
 }
 
-fn rules(typed: &[String]) -> Result<Vec<(&'static str, SunRule)>> {
+/// The rules that were typed, each with the name of its column.
+pub(super) fn rules(typed: &[String]) -> Result<Vec<(&'static str, SunRule)>> {
     let mut own = OWN_RULES.into_iter();
     let mut rules: Vec<(&'static str, SunRule)> = Vec::new();
     for text in typed {

@@ -1,4 +1,5 @@
 //! A flown town as files, and plans of it.
+#![expect(clippy::cast_possible_truncation, reason = "cells of a town are few")]
 
 use belvedere::apps::shadow::ShadowSun;
 use belvedere::cloud::to_local;
@@ -8,6 +9,7 @@ use belvedere::io::write_cloud;
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
 use belvedere_tiles::{Plan, PlanParams, Question, RunParams, RunReport, Shard, Steps, run};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Writes the scan of a town of `extent` metres as two files that adjoin along a line from south to north.
@@ -49,6 +51,7 @@ pub(crate) fn suns() -> Vec<Question> {
     let sun = |elevation: f64| Question::Shadow {
         name: format!("shadow_{elevation}"),
         to_sun: ShadowSun::at(2.2, elevation.to_radians()).to_sun,
+        season: None,
     };
     [5.0, 20.0, 60.0].map(sun).to_vec()
 }
@@ -64,4 +67,18 @@ pub(crate) fn plan(clouds: &[PathBuf], folder: &Path, tile_size: f64, questions:
 pub(crate) fn run_all(plan: &Plan, folder: &Path) -> RunReport {
     run(plan, folder, &RunParams { shard: Shard::default(), steps: Steps::All, seconds: &|| 0.0 }, &Control::none())
         .unwrap()
+}
+
+/// Values of all cells by their place in local cells, without those of no data.
+pub(crate) fn cells<T: Copy + PartialEq>(plan: &Plan, values: &[T], width: usize, none: T) -> BTreeMap<[i64; 2], T> {
+    let grid = plan.grid();
+    let place = |number: i64| number as f64 * grid.size;
+    let west = plan.tiles.iter().map(|tile| tile.east).min().unwrap();
+    let north = plan.tiles.iter().map(|tile| tile.north).max().unwrap();
+    let corner = [place(west), place(north + 1)].map(|v| (v / plan.cell).round() as i64);
+    let cell = |(number, &value): (usize, &T)| {
+        let [column, row] = [number % width, number / width].map(|v| v as i64);
+        (value != none).then_some(([corner[0] + column, corner[1] - row], value))
+    };
+    values.iter().enumerate().filter_map(cell).collect()
 }

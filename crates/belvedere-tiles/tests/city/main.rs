@@ -3,5 +3,6 @@
 
 mod common;
 mod hostile;
+mod planned;
 mod robust;
 mod seams;

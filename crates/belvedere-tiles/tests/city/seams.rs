@@ -1,7 +1,6 @@
 //! Tiles of any size give the balls and the answers of one tile over all.
-#![expect(clippy::cast_possible_truncation, reason = "cells of a town are few")]
 
-use crate::common::{plan, run_all, suns, write_town};
+use crate::common::{cells, plan, run_all, suns, write_town};
 use belvedere::apps::irradiance::{ClearSky, IrradianceParams, clear_instants};
 use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, SunStep, Zone, sun_days};
 use belvedere::control::Control;
@@ -9,20 +8,6 @@ use belvedere::io::{read_balls, read_tif_f32, read_tif_u8, read_tif_u16};
 use belvedere_tiles::{Plan, Question, Radiation, SunQuestion, merge, status};
 use std::collections::BTreeMap;
 use std::path::Path;
-
-/// Values of all cells by their place in local cells, without those of no data.
-fn cells<T: Copy + PartialEq>(plan: &Plan, values: &[T], width: usize, none: T) -> BTreeMap<[i64; 2], T> {
-    let grid = plan.grid();
-    let place = |number: i64| number as f64 * grid.size;
-    let west = plan.tiles.iter().map(|tile| tile.east).min().unwrap();
-    let north = plan.tiles.iter().map(|tile| tile.north).max().unwrap();
-    let corner = [place(west), place(north + 1)].map(|v| (v / plan.cell).round() as i64);
-    let cell = |(number, &value): (usize, &T)| {
-        let [column, row] = [number % width, number / width].map(|v| v as i64);
-        (value != none).then_some(([corner[0] + column, corner[1] - row], value))
-    };
-    values.iter().enumerate().filter_map(cell).collect()
-}
 
 /// Centres and radii of all balls of a run, as bits, sorted.
 fn balls(plan: &Plan, folder: &Path) -> Vec<[u32; 4]> {
@@ -73,7 +58,7 @@ fn all_questions(eyes: [[f64; 3]; 2]) -> Vec<Question> {
 fn suns_of_the_day() -> Vec<(Question, f64)> {
     let days = sun_days(&site(), &Zone::mean_solar(&site()), &day(), &params()).unwrap();
     let question = |(number, step): (usize, &SunStep)| {
-        let question = Question::Shadow { name: format!("step_{number}"), to_sun: step.direction };
+        let question = Question::Shadow { name: format!("step_{number}"), to_sun: step.direction, season: None };
         (question, (step.end - step.start) / 3600.0)
     };
     days[0].steps.iter().enumerate().map(question).collect()

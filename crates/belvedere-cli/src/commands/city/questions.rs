@@ -3,23 +3,27 @@
 use crate::arguments::{CityPlan, Numbers, Usage};
 use crate::commands::irradiance::radiation;
 use crate::commands::shadow::moment;
+use crate::commands::sun_hours::rules;
 use crate::pipeline::flagged;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::irradiance::PARTS;
 use belvedere::apps::shadow::ShadowSun;
-use belvedere::apps::sun::{Binning, sun_position_with};
+use belvedere::apps::sun::{Binning, Period, sun_position_with};
+use belvedere::apps::tree_light::Season;
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::control::Control;
-use belvedere_tiles::{Plan, Question, Radiation, SunQuestion};
+use belvedere_tiles::{Plan, Question, Radiation, SideFile, SunQuestion};
 
 /// Refuses what cannot be asked, before the survey is read.
 pub(super) fn check(arguments: &CityPlan) -> Result<()> {
     let usage = |text: &str| Err(Usage(text.to_owned()).into());
     let has_suns = !arguments.suns.is_empty() || !arguments.times.is_empty();
-    let has_maps = arguments.sky_view || arguments.sun_hours || arguments.irradiance;
+    let has_maps = arguments.sky_view || arguments.sun_hours || arguments.irradiance || !arguments.rule.is_empty();
     if !has_suns && !has_maps && arguments.observers.is_empty() {
-        return usage("questions are missing: give --sun, --time, --sun-hours, --irradiance, --sky-view or --observer");
+        return usage(
+            "questions are missing: give --sun, --time, --sun-hours, --rule, --irradiance, --sky-view or --observer",
+        );
     }
     match (arguments.sun_hours, arguments.when.is_given()) {
         (true, false) => return usage("--sun-hours needs --date DAY, or --from and --to"),
@@ -27,6 +31,7 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
         _ => {}
     }
     arguments.when.check(&arguments.sun)?;
+    rules(&arguments.rule)?;
     for time in &arguments.times {
         arguments.sun.instant("--time", time)?;
     }
@@ -51,10 +56,10 @@ pub(super) fn questions(
     let sun = |typed: &Numbers<2>| {
         let [azimuth, elevation] = typed.0;
         let to_sun = ShadowSun::at(azimuth.to_radians() - north.of_grid, elevation.to_radians()).to_sun;
-        Question::Shadow { name: format!("shadow_{azimuth}_{elevation}"), to_sun }
+        Question::Shadow { name: format!("shadow_{azimuth}_{elevation}"), to_sun, season: None }
     };
     let mut questions: Vec<Question> = arguments.suns.iter().map(sun).collect();
-    if !arguments.times.is_empty() || arguments.sun_hours {
+    if !arguments.times.is_empty() || arguments.sun_hours || !arguments.rule.is_empty() {
         let site = arguments.sun.site_of(&frame, &bounds, summary)?;
         let mut times: Vec<&str> = arguments.times.iter().map(String::as_str).collect();
         times.extend(arguments.when.times());
@@ -63,19 +68,30 @@ pub(super) fn questions(
             let instant = arguments.sun.instant("--time", time)?;
             let position = flagged("--time", sun_position_with(&site, instant, arguments.sun.refraction()?))?;
             let name = format!("shadow_{}", moment(&zone, instant));
-            questions.push(Question::Shadow { name, to_sun: position.to_sun(&site) });
+            let season = zone.date_at(instant).ok().map(|date| Season::on(date, &site));
+            questions.push(Question::Shadow { name, to_sun: position.to_sun(&site), season });
         }
         if let Some(period) = arguments.when.period(&arguments.sun, &site, &zone)? {
             let params = arguments.when.params(&arguments.sun)?;
             let days = flagged("--zone", SunQuestion::new(site, &zone, &period, params, Binning::Auto))?;
             questions.push(Question::SunHours(days));
         }
+        for (column, rule) in rules(&arguments.rule)? {
+            let dates = flagged("--year", rule.days.dates(arguments.when.year, &site, &zone))?;
+            let least_elevation = arguments.when.least_elevation.map_or(rule.least_elevation, f64::to_radians);
+            let params = arguments.when.params(&arguments.sun)?.with_least_elevation(least_elevation);
+            let days = SunQuestion::new(site, &zone, &Period::Days(dates), params, Binning::Auto);
+            let days = flagged("--zone", days)?;
+            questions.push(Question::SunRule { name: column.to_owned(), rule: rule.name, days });
+        }
     }
     if arguments.irradiance {
         let site = arguments.sun.site_of(&frame, &bounds, summary)?;
         let params = radiation::params(&arguments.model)?;
         let radiation = match &arguments.weather {
-            Some(file) => Radiation::of_weather(file, arguments.model.parts.unwrap_or(PARTS))?,
+            Some(file) => {
+                Radiation::Weather { file: SideFile::new(file)?, parts: arguments.model.parts.unwrap_or(PARTS) }
+            }
             None => Radiation::ClearSky {
                 clear_sky: radiation::clear_sky(arguments.clear_sky, &arguments.model, &params),
                 year: arguments.when.year,

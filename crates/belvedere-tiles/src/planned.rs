@@ -1,0 +1,79 @@
+//! What a plan changes of the survey: buildings that are planned, and trees that let light through.
+
+use crate::inputs::hash;
+use belvedere::apps::tree_light::{Leaves, Transmissivity};
+use belvedere::crs::Crs;
+use belvedere::io::{Source, read_mesh_in};
+use belvedere::query::{AddedMeshes, Coverage};
+use belvedere::{Error, Frame, Mesh, Result};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// A file beside the survey, as it was when the plan was made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SideFile {
+    path: PathBuf,
+    /// FNV-1a of 64 bits of its bytes, as hexadecimal digits.
+    fingerprint: String,
+}
+
+impl SideFile {
+    /// A file as it is now.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn new(path: &Path) -> Result<Self> {
+        let path = std::path::absolute(path).map_err(Error::io(path))?;
+        let fingerprint = hash(&std::fs::read(&path).map_err(Error::io(&path))?);
+        Ok(Self { path, fingerprint })
+    }
+
+    /// Where it lies.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Its bytes, refused unless they are what they were.
+    ///
+    /// # Errors
+    /// [`Error::Io`], and [`Error::Malformed`] for a file that changed since.
+    pub(crate) fn read(&self) -> Result<Vec<u8>> {
+        let bytes = std::fs::read(&self.path).map_err(Error::io(&self.path))?;
+        if hash(&bytes) != self.fingerprint {
+            let what = "is no longer what it was when the plan was made; make the plan again";
+            return Err(Error::malformed(&self.path, what));
+        }
+        Ok(bytes)
+    }
+
+    fn mesh(&self, crs: &Crs) -> Result<Mesh> {
+        Ok(read_mesh_in(Source::bytes(&self.path, &self.read()?), crs)?.0)
+    }
+}
+
+/// Trees that let a share of the light through, rather than none.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LightTrees {
+    /// What share of the light gets through a crown.
+    pub transmissivity: Transmissivity,
+    /// Whether trees have leaves.
+    pub leaves: Leaves,
+}
+
+/// The triangles of `meshes` in local metres of `frame`; `None` without a mesh. They must meet the space of `coverage`.
+///
+/// # Errors
+/// Those of [`SideFile::read`], of [`read_mesh_in`] and of [`AddedMeshes::new`].
+pub(crate) fn added_meshes(
+    meshes: &[SideFile],
+    frame: &Frame,
+    coverage: Option<&Coverage>,
+) -> Result<Option<AddedMeshes>> {
+    let mut added = None;
+    for file in meshes {
+        let mesh = file.mesh(&frame.crs)?;
+        let name = file.path.display().to_string();
+        added = Some(AddedMeshes::new(&mesh, &name, frame.origin, coverage, added.as_ref())?);
+    }
+    Ok(added)
+}

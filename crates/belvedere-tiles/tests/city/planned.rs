@@ -1,0 +1,178 @@
+//! Planned buildings and light through trees, tile by tile: the same as over all, and right.
+
+use crate::common::{cells, plan, run_all, suns, write_town};
+use belvedere::apps::shadow::ShadowSun;
+use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, Zone};
+use belvedere::apps::tree_light::{Leaves, Transmissivity};
+use belvedere::control::Control;
+use belvedere::io::{read_tif_f32, read_tif_u8};
+use belvedere_tiles::{LightTrees, Plan, Question, SideFile, SunQuestion, merge};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// A planned block across a corner of four tiles, higher than everything else, file coordinates.
+const LOW: [f64; 3] = [155_000.0, 462_970.0, -50.0];
+const HIGH: [f64; 3] = [155_016.0, 462_984.0, 60.0];
+
+type Cells<T> = BTreeMap<[i64; 2], T>;
+
+/// The block as a mesh file.
+fn block(folder: &Path) -> PathBuf {
+    let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2 & 1].map(|end| end == 1);
+    let mut text = String::new();
+    for i in 0..8 {
+        let ends = corner(i);
+        let [x, y, z]: [f64; 3] = std::array::from_fn(|axis| if ends[axis] { HIGH[axis] } else { LOW[axis] });
+        text.push_str(&format!("v {x} {y} {z}\n"));
+    }
+    for [a, b, c, d] in [[1, 2, 4, 3], [5, 6, 8, 7], [1, 2, 6, 5], [3, 4, 8, 7], [1, 3, 7, 5], [2, 4, 8, 6]] {
+        text.push_str(&format!("f {a} {b} {c}\nf {a} {c} {d}\n"));
+    }
+    let path = folder.join("block.obj");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+/// Whether a line from `place` meets the block.
+fn meets_block(place: [f64; 3], towards: [f64; 3]) -> bool {
+    let (mut from, mut to) = (0.0_f64, f64::INFINITY);
+    for axis in 0..3 {
+        let [a, b] = [LOW[axis], HIGH[axis]].map(|end| (end - place[axis]) / towards[axis]);
+        (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
+    }
+    from <= to
+}
+
+fn codes(plan: &Plan, folder: &Path, question: &Question) -> Cells<u8> {
+    let path = folder.join("merged.tif");
+    merge(plan, folder, question, &path, &Control::none()).unwrap();
+    let raster = read_tif_u8(&path).unwrap();
+    cells(plan, raster.values(), raster.width(), 255)
+}
+
+fn numbers(plan: &Plan, folder: &Path, question: &Question) -> Cells<f32> {
+    let path = folder.join("merged.tif");
+    merge(plan, folder, question, &path, &Control::none()).unwrap();
+    let raster = read_tif_f32(&path).unwrap();
+    cells(plan, raster.values(), raster.width(), -9999.0)
+}
+
+/// A plan with what is changed of it, run to its end.
+fn done(
+    clouds: &[PathBuf],
+    folder: &Path,
+    size: f64,
+    questions: &[Question],
+    change: impl FnOnce(Plan) -> Plan,
+) -> Plan {
+    change(plan(clouds, folder, size, questions.to_vec())).write(folder).unwrap();
+    let plan = Plan::read(folder).unwrap();
+    let report = run_all(&plan, folder);
+    assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
+    plan
+}
+
+/// Two hours of sun on a day in spring, with few suns.
+fn rule() -> Question {
+    let site = Site { latitude: 0.91, longitude: 0.09, height: 10.0, convergence: 0.02 };
+    let params = DayParams::default().with_step(3600.0).with_least_elevation(0.14);
+    let days = Period::Days(vec![Date::new(2026, 3, 21).unwrap()]);
+    let days = SunQuestion::new(site, &Zone::mean_solar(&site), &days, params, Binning::Auto).unwrap();
+    Question::SunRule { name: "bre_equinox".to_owned(), rule: "bre-equinox".to_owned(), days }
+}
+
+#[test]
+fn a_planned_building_blocks_exactly_whatever_the_tiles() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 100.0, 1.0);
+    let mesh = block(place.path());
+    let questions = [suns()[1].clone(), Question::SkyView { directions: 25 }, rule()];
+    let folders = ["plain", "whole", "tiles"].map(|name| place.path().join(name));
+    let add = |plan: Plan| plan.with_meshes(vec![SideFile::new(&mesh).unwrap()]).unwrap();
+    let plain = done(&clouds, &folders[0], 512.0, &questions, |plan| plan);
+    let whole = done(&clouds, &folders[1], 512.0, &questions, add);
+    let tiles = done(&clouds, &folders[2], 64.0, &questions, add);
+    assert!(tiles.tiles.len() >= 4 && whole.tiles.len() == 1);
+    let shadows = [(&plain, 0), (&whole, 1), (&tiles, 2)].map(|(plan, i)| codes(plan, &folders[i], &questions[0]));
+    assert!(shadows[1] == shadows[2], "shadows of tiles differ");
+    let skies = [(&whole, 1), (&tiles, 2)].map(|(plan, i)| numbers(plan, &folders[i], &questions[1]));
+    assert!(skies[0] == skies[1], "sky views of tiles differ");
+    let rules = [(&plain, 0), (&whole, 1), (&tiles, 2)].map(|(plan, i)| codes(plan, &folders[i], &questions[2]));
+    assert!(rules[1] == rules[2], "rules of tiles differ");
+    assert!(rules[0].values().filter(|&&code| code == 1).count() > 2000);
+    // a building takes light and gives none, but on top of it
+    let to_sun = ShadowSun::at(2.2, 20_f64.to_radians()).to_sun;
+    let origin = whole.frame().unwrap().origin;
+    let [bottom, top] = [whole.bounds().low[2], whole.bounds().high[2]].map(|z| f64::from(z) + origin[2]);
+    let mut counts = [0; 3];
+    for (&[east, north], &code) in &shadows[1] {
+        let [x, y] = [east as f64 + 0.5, north as f64 - 0.5];
+        if (LOW[0]..HIGH[0]).contains(&x) && (LOW[1]..HIGH[1]).contains(&y) {
+            assert_eq!((code, rules[1][&[east, north]]), (1, 1), "{x} {y} on top of it");
+            assert!(skies[0][&[east, north]] > 0.999, "{x} {y} on top of it");
+            counts[0] += 1;
+            continue;
+        }
+        // cells lie somewhere between the lowest and the highest point
+        let heights = (0..=40).map(|step| bottom + (top - bottom + 0.1) * f64::from(step) / 40.0);
+        let hits = heights.filter(|&z| meets_block([x, y, z], to_sun)).count();
+        match hits {
+            41 => assert_eq!(code, 0, "{x} {y} in its shadow"),
+            0 => assert_eq!(code, shadows[0][&[east, north]], "{x} {y} out of its shadow"),
+            _ => continue,
+        }
+        counts[if hits == 41 { 1 } else { 2 }] += 1;
+        assert!(rules[1][&[east, north]] <= rules[0][&[east, north]], "{x} {y}");
+    }
+    assert!(counts[0] == 16 * 14 && counts[1] > 300 && counts[2] > 5000, "{counts:?}");
+    assert!(rules[1].iter().any(|(cell, &code)| code < rules[0][cell]), "no cell loses its hours");
+    // a mesh that changed since the plan is refused by name
+    std::fs::write(&mesh, "v 0 0 0\n").unwrap();
+    std::fs::remove_dir_all(folders[2].join("sky_view_factor")).unwrap();
+    let run = belvedere_tiles::run(
+        &tiles,
+        &folders[2],
+        &belvedere_tiles::RunParams { shard: Default::default(), steps: Default::default(), seconds: &|| 0.0 },
+        &Control::none(),
+    );
+    let error = run.unwrap_err().to_string();
+    assert!(error.contains("block.obj") && error.contains("make the plan again"), "{error}");
+}
+
+#[test]
+fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 100.0, 1.0);
+    let questions = [suns()[1].clone(), Question::SkyView { directions: 25 }];
+    let through = |share: f64| {
+        move |plan: Plan| {
+            let transmissivity = Transmissivity::constant(share).unwrap();
+            plan.with_light_through_trees(LightTrees { transmissivity, leaves: Leaves::ByDate }).unwrap()
+        }
+    };
+    let folder = |name: &str| place.path().join(name);
+    let opaque = done(&clouds, &folder("opaque"), 512.0, &questions, |plan| plan);
+    let none = done(&clouds, &folder("none"), 512.0, &questions, through(1.0));
+    let half = done(&clouds, &folder("half"), 512.0, &questions, through(0.5));
+    let tiles = done(&clouds, &folder("tiles"), 64.0, &questions, through(0.5));
+    let shadow = codes(&opaque, &folder("opaque"), &questions[0]);
+    let [without, found, of_tiles] = [(&none, "none"), (&half, "half"), (&tiles, "tiles")]
+        .map(|(plan, name)| numbers(plan, &folder(name), &questions[0]));
+    assert!(found == of_tiles, "shadows of tiles differ");
+    let mut counts = [0; 3];
+    for (cell, &share) in &found {
+        let (expected, kind) = match (shadow[cell], without[cell]) {
+            (1, 1.0) => (1.0, 2),
+            (0, 1.0) => (0.5, 1),
+            (0, 0.0) => (0.0, 0),
+            odd => panic!("{cell:?}: {odd:?}"),
+        };
+        assert_eq!(share, expected, "{cell:?}");
+        counts[kind] += 1;
+    }
+    assert!(counts.iter().all(|&count| count > 100), "{counts:?}");
+    let [opaque, none, half, tiles] = [(&opaque, "opaque"), (&none, "none"), (&half, "half"), (&tiles, "tiles")]
+        .map(|(plan, name)| numbers(plan, &folder(name), &questions[1]));
+    assert!(half == tiles, "sky views of tiles differ");
+    assert!(half.iter().all(|(cell, &v)| (v - 0.5 * (opaque[cell] + none[cell])).abs() < 1e-6));
+}
