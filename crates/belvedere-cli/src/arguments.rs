@@ -86,6 +86,9 @@ pub(crate) struct Global {
     /// Number of threads, at most 1024; it does not change results [default: all processors]
     #[arg(long, global = true, value_name = "N", value_parser = at_most::<1024>)]
     pub(crate) threads: Option<usize>,
+    /// What tests many directions at many places; it does not change results: auto, cpu, gpu, or the number of a device
+    #[arg(long, global = true, value_name = "DEVICE", default_value = "auto")]
+    pub(crate) device: DeviceChoice,
     /// Seed of the random numbers
     #[arg(long, global = true, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
@@ -107,6 +110,30 @@ pub(crate) struct Global {
     /// Print only errors
     #[arg(long, global = true, conflicts_with_all = ["verbose", "json"])]
     pub(crate) quiet: bool,
+}
+
+/// What tests many directions at many places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DeviceChoice {
+    Automatic,
+    Cpu,
+    Gpu,
+    Number(usize),
+}
+
+impl std::str::FromStr for DeviceChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "auto" => Ok(Self::Automatic),
+            "cpu" => Ok(Self::Cpu),
+            "gpu" => Ok(Self::Gpu),
+            number => number.parse().map(Self::Number).map_err(|_| {
+                "give auto, cpu, gpu, or the number of a device as `belvedere info` lists them".to_owned()
+            }),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

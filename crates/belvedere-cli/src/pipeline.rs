@@ -9,6 +9,7 @@ use crate::arguments::{
     CloudInput, MethodChoice, OrientChoice, ProfileChoice, SceneInput, SizeChoice, UnprovenChoice, UpChoice, Usage,
     ViewChoice,
 };
+use crate::device::with_device;
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
@@ -108,7 +109,7 @@ pub(crate) fn scene(
     if clears {
         plan::clear(&mut scene, &arguments.plan, stages, summary)?;
     }
-    scene.model = planned(scene.model, &arguments.plan, stages, summary)?;
+    scene.model = with_device(planned(scene.model, &arguments.plan, stages, summary)?);
     Ok(scene)
 }
 

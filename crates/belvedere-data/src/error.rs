@@ -52,6 +52,12 @@ pub enum Error {
         /// Which system was found and which conversion to run first.
         what: String,
     },
+    /// A graphics processor is missing, or fails.
+    #[error("{what}")]
+    Device {
+        /// What is wrong, and what to do.
+        what: String,
+    },
     /// The caller asked the work to stop ([`crate::control::Control`]). Nothing was written.
     #[error("cancelled; nothing was written")]
     Cancelled,

@@ -84,6 +84,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     summary.add("missing", missing(&cloud, &facts));
     summary.add("usable_for", can_serve(&cloud, &facts, &scanner));
     summary.add("duplicate_points", facts.duplicate_count);
+    crate::device::list(&mut summary);
     Ok(summary)
 }
 

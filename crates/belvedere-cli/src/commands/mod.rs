@@ -52,6 +52,14 @@ pub(crate) fn run(cli: &Cli) -> Result<Summary> {
     if let Some(threads) = global.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().context("--threads")?;
     }
+    crate::device::choose(global)?;
+    let mut summary = run_command(cli)?;
+    crate::device::report(&mut summary);
+    Ok(summary)
+}
+
+fn run_command(cli: &Cli) -> Result<Summary> {
+    let global = &cli.global;
     match &cli.command {
         Command::Demo(arguments) => demo::run(arguments, global),
         Command::Simulate(arguments) => simulate::run(arguments, global),

@@ -247,7 +247,8 @@ fn typed(without: &[String]) -> String {
     let mut skips = false;
     for word in words {
         let is_of_page = ["view", "--no-browser", "--quiet", "--verbose", "-v", "--json"].contains(&word.as_str());
-        let has_value = ["--port", "--export", "--date", "--zone", "--observer", "--threads", "--seed", "--progress"];
+        let has_value =
+            ["--port", "--export", "--date", "--zone", "--observer", "--threads", "--device", "--seed", "--progress"];
         if std::mem::take(&mut skips) || is_of_page {
             continue;
         }

@@ -27,9 +27,10 @@ pub use terrain::TerrainReport;
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
 use crate::pulses::NeedleColumns;
-use crate::query::{AddedMeshes, BallTree, FarTerrain, FreedSpace};
+use crate::query::{AddedMeshes, Backend, BallTree, FarTerrain, FreedSpace};
 use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Mesh, Result};
+use std::sync::Arc;
 
 /// A scene that answers what is visible: balls that block lines of sight, and the pulses that prove others free.
 ///
@@ -50,6 +51,8 @@ pub struct SceneModel {
     freed: Vec<FreedSpace>,
     /// What stands beyond the cloud.
     far_terrain: FarTerrain,
+    /// What settles lines of sight in bulk; `None` for the processor.
+    backend: Option<Arc<dyn Backend>>,
 }
 
 impl SceneModel {
@@ -93,6 +96,13 @@ impl SceneModel {
     #[must_use]
     pub fn with_horizon(mut self, horizon: HorizonProfile) -> Self {
         self.far_terrain = self.far_terrain.with_profile(horizon);
+        self
+    }
+
+    /// The same model, whose scenes have lines of sight settled in bulk by `backend`. Answers stay the same. It is not saved.
+    #[must_use]
+    pub fn with_backend(mut self, backend: Arc<dyn Backend>) -> Self {
+        self.backend = Some(backend);
         self
     }
 

@@ -5,6 +5,7 @@ use crate::medial::without_vegetation;
 use crate::query::{BallTree, BlockRule, Coverage, MedialScene, Proof, ProofParams, UnprovenAs};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
+use std::sync::Arc;
 
 impl SceneModel {
     /// Over which space the cloud of this model lies; `None` where its bounds say nothing.
@@ -64,6 +65,11 @@ impl SceneModel {
 
     /// A scene of balls with what else blocks, and where the cloud lies.
     fn completed(&self, scene: MedialScene) -> MedialScene {
-        scene.with_coverage(self.coverage()).with_added(self.added.clone()).with_far_terrain(self.far_terrain.clone())
+        let scene = scene.with_coverage(self.coverage()).with_added(self.added.clone());
+        let scene = scene.with_far_terrain(self.far_terrain.clone());
+        match &self.backend {
+            Some(backend) => scene.with_backend(Arc::clone(backend)),
+            None => scene,
+        }
     }
 }

@@ -12,7 +12,7 @@ use belvedere_data::view::View;
 use std::sync::Arc;
 
 /// Whatever can answer lines of sight in bulk: the processor ([`super::Cpu`]), or another device.
-pub trait Backend: Send + Sync {
+pub trait Backend: Send + Sync + std::fmt::Debug {
     /// Takes the balls and the rule by which they block ([`crate::blocking`]).
     ///
     /// # Errors

@@ -42,7 +42,7 @@ pub struct MedialScene {
     pub(super) added: Option<AddedMeshes>,
     pub(super) freed: Vec<FreedSpace>,
     pub(super) far_terrain: FarTerrain,
-    backend: Box<dyn Backend>,
+    backend: Arc<dyn Backend>,
     prepared: Lazy<Box<dyn Prepared>>,
 }
 
@@ -66,14 +66,14 @@ impl MedialScene {
             added: None,
             freed: Vec::new(),
             far_terrain: FarTerrain::default(),
-            backend: Box::new(Cpu),
+            backend: Arc::new(Cpu),
             prepared: Lazy::new(),
         }
     }
 
     /// The same balls, whose lines of sight are settled in bulk by another backend. Answers stay the same.
     #[must_use]
-    pub fn with_backend(mut self, backend: Box<dyn Backend>) -> Self {
+    pub fn with_backend(mut self, backend: Arc<dyn Backend>) -> Self {
         self.backend = backend;
         self.prepared = Lazy::new();
         self

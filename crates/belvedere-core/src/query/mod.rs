@@ -17,7 +17,7 @@ mod beams;
 pub mod certified;
 mod clear_height;
 pub mod coverage;
-mod cpu;
+pub mod cpu;
 pub mod earth;
 mod far_terrain;
 mod fingerprint;

@@ -19,6 +19,7 @@ use belvedere::view::View;
 use std::sync::Arc;
 
 /// A backend that knows less than the processor: of every so many lines and pixels it knows nothing.
+#[derive(Debug)]
 struct Forgetful {
     share_open: f64,
 }
@@ -109,7 +110,7 @@ fn whatever_a_backend_leaves_open_the_matrix_is_the_same() {
             .map(|&direction| exact.visible(Viewer::Direction(direction), &targets).unwrap())
             .collect();
         for share_open in [0.0, 0.4, 1.0] {
-            let backed = scene(&rule).with_backend(Box::new(Forgetful { share_open }));
+            let backed = scene(&rule).with_backend(Arc::new(Forgetful { share_open }));
             let matrix = backed.visibility_matrix(&targets, &directions, &Control::none()).unwrap();
             for (direction, answers) in one_by_one.iter().enumerate() {
                 for (target, answer) in answers.iter().enumerate() {
@@ -128,7 +129,7 @@ fn whatever_a_backend_leaves_open_views_show_the_same() {
     let around = View::panorama([30.0, 31.0, 4.0], 64).unwrap();
     let exact = scene(&BlockRule::carved());
     for share_open in [0.3, 1.0] {
-        let backed = scene(&BlockRule::carved()).with_backend(Box::new(Forgetful { share_open }));
+        let backed = scene(&BlockRule::carved()).with_backend(Arc::new(Forgetful { share_open }));
         for (views, viewer) in
             [(vec![view], Viewer::Direction([0.48, 0.6, 0.64])), (around.to_vec(), Viewer::Eye([30.0, 31.0, 4.0]))]
         {

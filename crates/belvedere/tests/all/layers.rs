@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 
 /// The crates of the library, and the crates of ours that each may import.
-const CRATES: [(&str, &[&str]); 12] = [
+const CRATES: [(&str, &[&str]); 13] = [
     ("data", &[]),
     ("io", &["data"]),
     ("figures", &["data", "io"]),
     ("core", &["data"]),
     ("apps", &["data", "core"]),
-    ("", &["data", "io", "figures", "core", "apps"]),
+    ("gpu", &["data", "core"]),
+    ("", &["data", "io", "figures", "core", "apps", "gpu"]),
     ("tiles", &[""]),
     ("scenes", &[]),
     ("baselines", &[""]),
@@ -36,7 +37,7 @@ const LEVELS: [(&str, u8); 13] = [
 ];
 
 /// Crates of others that only one file or folder may name.
-const ONE_HOME: [(&str, &str); 27] = [
+const ONE_HOME: [(&str, &str); 29] = [
     ("ab_glyph::", "figures/src/font.rs"),
     ("colorous::", "io/src/colors.rs"),
     ("las::", "io/src/"),
@@ -50,6 +51,8 @@ const ONE_HOME: [(&str, &str); 27] = [
     ("tobj::", "io/src/obj.rs"),
     ("earcut::", "io/src/"),
     ("ply_rs_bw::", "io/src/"),
+    ("pollster::", "gpu/src/device.rs"),
+    ("wgpu::", "gpu/src/"),
     ("png::", "figures/src/png.rs"),
     ("delaunator::", "core/src/ground/triangulate.rs"),
     ("nalgebra::", "core/src/pulses/estimate/"),

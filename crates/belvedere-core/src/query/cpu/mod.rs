@@ -7,6 +7,11 @@
 mod nearby;
 mod space_layers;
 mod sweep;
+mod whole_cells;
+
+pub use space_layers::SpaceLayers;
+pub use sweep::{Swept, sweep_all};
+pub use whole_cells::{Heading, Place};
 
 use super::backend::{BLOCK, Backend, Bits, Prepared, Settled, WORD, WORDS};
 use super::ball_tree::BallTree;
@@ -18,9 +23,7 @@ use belvedere_data::control::Control;
 use belvedere_data::view::View;
 use nearby::{NEAR, Nearby};
 use rayon::prelude::*;
-use space_layers::SpaceLayers;
 use std::sync::Arc;
-use sweep::{Descending, Swept, sweep};
 
 /// Directions from which on it pays to gather what is near a target, and to sweep them.
 const WORTH_GATHERING: usize = 16;
@@ -37,11 +40,12 @@ pub struct Cpu;
 
 impl Backend for Cpu {
     fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn Prepared>> {
-        Ok(Box::new(PreparedBalls { tree: Arc::clone(balls), layers: Lazy::new() }))
+        Ok(Box::new(PreparedBalls::new(balls)))
     }
 }
 
-struct PreparedBalls {
+/// Balls made ready for the processor. Another device that only sweeps takes over the rest from here ([`PreparedBalls::settle_by`]).
+pub struct PreparedBalls {
     tree: Arc<BallTree>,
     layers: Lazy<SpaceLayers>,
 }
@@ -53,6 +57,32 @@ impl Prepared for PreparedBalls {
     }
 
     fn settle(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], control: &Control<'_>) -> Result<Settled> {
+        self.settle_by(targets, directions, control, &sweep_all)
+    }
+}
+
+/// Sweeps directions for targets, as [`sweep_all`]: the same bits for the same input.
+pub type Sweep<'a> =
+    &'a (dyn Fn(&SpaceLayers, &[Option<Place>], &[Heading], &Control<'_>) -> Result<Vec<Swept>> + Sync);
+
+impl PreparedBalls {
+    /// The balls of a tree.
+    #[must_use]
+    pub fn new(balls: &Arc<BallTree>) -> Self {
+        Self { tree: Arc::clone(balls), layers: Lazy::new() }
+    }
+
+    /// As [`Prepared::settle`], with directions swept by `sweep`, which is called once at most.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled), and those of `sweep`.
+    pub fn settle_by(
+        &self,
+        targets: &[[f32; 3]],
+        directions: &[[f64; 3]],
+        control: &Control<'_>,
+        sweep: Sweep<'_>,
+    ) -> Result<Settled> {
         let mut settled = Settled::new(targets.len(), directions.len());
         let lines = targets.len() as f64 * directions.len() as f64;
         let is_worth_it = self.layers.is_made() || lines > WORTH_SWEEPING * self.tree.balls().len() as f64;
@@ -63,16 +93,17 @@ impl Prepared for PreparedBalls {
         if targets.len() * WORDS_PER_LINE < layers.word_count() {
             return Ok(settled);
         }
-        let descending = Descending::new(layers, targets);
+        let places: Vec<Option<Place>> = targets.par_iter().map(|target| Place::new(layers, *target)).collect();
         let near: Vec<f64> = directions.iter().map(|direction| near_range(*direction)).collect();
-        let swept: Vec<Option<Swept>> = directions
-            .par_iter()
+        let headings: Vec<Option<Heading>> = directions
+            .iter()
             .zip(&near)
-            .map(|(direction, near)| {
-                control.check()?;
-                Ok(sweep(layers, &descending, *direction, near.max(self.tree.rule().bias)))
-            })
-            .collect::<Result<_>>()?;
+            .map(|(direction, near)| Heading::new(layers, *direction, near.max(self.tree.rule().bias)))
+            .collect();
+        let steep: Vec<Heading> = headings.iter().flatten().cloned().collect();
+        let mut of_steep = sweep(layers, &places, &steep, control)?.into_iter();
+        let swept: Vec<Option<Swept>> =
+            headings.iter().map(|heading| heading.as_ref().and_then(|_| of_steep.next())).collect();
         let blocks =
             settled.free.par_chunks_mut(directions.len()).zip(settled.blocked.par_chunks_mut(directions.len()));
         blocks.zip(targets.par_chunks(BLOCK)).enumerate().try_for_each(|(block, ((free, blocked), targets))| {
@@ -94,9 +125,7 @@ impl Prepared for PreparedBalls {
         }
         Ok(settled)
     }
-}
 
-impl PreparedBalls {
     /// Blocks those lines of a block of targets that a ball near the target blocks.
     fn leave_near(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], free: &mut [Bits], blocked: &mut [Bits]) {
         let mut nearby = Nearby::default();

@@ -1,35 +1,35 @@
 //! One direction swept through the layers of space from the top down: 64 lines of sight at a time.
 
 use super::space_layers::SpaceLayers;
+use super::whole_cells::{Heading, Place};
 use crate::query::backend::WORD;
-
-/// Most cells that a line of sight moves on in a layer; flatter directions are not swept.
-const MOST_SLOPE: f64 = 24.0;
-/// By how much the place of a target is widened, cells: more than f64 errs.
-const ROUNDING: f64 = 1e-6;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use rayon::prelude::*;
 
 /// Targets from the highest down.
-pub(super) struct Descending {
-    /// Positions in cells from the corner of the layers, with their places in the order of the tree.
-    targets: Vec<([f64; 3], u32)>,
+struct Descending {
+    /// With their places in the order of the tree.
+    targets: Vec<(Place, u32)>,
 }
 
 impl Descending {
-    pub(super) fn new(space: &SpaceLayers, positions: &[[f32; 3]]) -> Self {
-        let in_cells = |p: &[f32; 3]| std::array::from_fn(|i| (f64::from(p[i]) - space.low[i]) / space.cell);
-        let mut targets: Vec<([f64; 3], u32)> = positions.iter().map(in_cells).zip(0..).collect();
+    fn new(places: &[Option<Place>]) -> Self {
+        let mut targets: Vec<(Place, u32)> =
+            places.iter().zip(0..).filter_map(|(place, number)| Some(((*place)?, number))).collect();
         // stable: equal heights stay in the order of the tree
-        targets.sort_by(|a, b| b.0[2].total_cmp(&a.0[2]));
+        targets.sort_by_key(|(place, _)| std::cmp::Reverse(place.height));
         Self { targets }
     }
 }
 
 /// What a sweep settles: a bit for each target, 64 a word, in the order of the tree.
-pub(super) struct Swept {
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Swept {
     /// No ball is reached beyond the near space of the target.
-    pub(super) free: Vec<u64>,
+    pub free: Vec<u64>,
     /// A ball blocks.
-    pub(super) blocked: Vec<u64>,
+    pub blocked: Vec<u64>,
 }
 
 /// A square of the lines of sight, as they meet the lowest level, a bit for each cell.
@@ -74,8 +74,9 @@ impl Lines {
     }
 
     #[inline]
-    fn get(&self, [x, y]: [i64; 2]) -> bool {
-        let [Ok(x), Ok(y)] = [x - self.first[0], y - self.first[1]].map(usize::try_from) else { return false };
+    fn get(&self, [x, y]: [i32; 2]) -> bool {
+        let from_first = [i64::from(x) - self.first[0], i64::from(y) - self.first[1]];
+        let [Ok(x), Ok(y)] = from_first.map(usize::try_from) else { return false };
         if x >= self.size[0] || y >= self.size[1] {
             return false;
         }
@@ -83,40 +84,42 @@ impl Lines {
     }
 }
 
-/// Sweeps `direction` for targets whose lines of sight are known up to `near` metres from them; `None` for a direction that is too flat.
+/// Sweeps `headings`, one after the other, for targets in `places`; lines of those that have none stay open.
 ///
-/// Lines of sight are sorted by the cell in which they meet the lowest level. Those of a cell lie over two by two cells of a layer, the
-/// same ones until they pass a side of a cell to the east or north: each layer is added once for each stretch between two
-/// such passages, moved by whole cells.
-pub(super) fn sweep(space: &SpaceLayers, targets: &Descending, direction: [f64; 3], near: f64) -> Option<Swept> {
-    // cells that a line moves on in a layer
-    let slope = [direction[0] / direction[2], direction[1] / direction[2]];
-    if !(direction[2] > 0.0 && slope[0].abs().max(slope[1].abs()) <= MOST_SLOPE) {
-        return None;
-    }
-    let rise = near * direction[2] / space.cell;
-    let depth = space.size[2];
-    let range = |axis: usize| {
-        let (a, b) = (whole(0.0), whole(depth as f64 * slope[axis]));
-        [a.min(b) - 1, a.max(b) + 1]
+/// # Errors
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+pub fn sweep_all(
+    space: &SpaceLayers,
+    places: &[Option<Place>],
+    headings: &[Heading],
+    control: &Control<'_>,
+) -> Result<Vec<Swept>> {
+    let descending = Descending::new(places);
+    let word_count = places.len().div_ceil(WORD);
+    let of_heading = |heading| {
+        control.check()?;
+        Ok(sweep(space, &descending, word_count, heading))
     };
-    let ranges = [range(0), range(1)];
+    headings.par_iter().map(of_heading).collect()
+}
+
+/// Sweeps a direction.
+///
+/// Lines of sight are sorted by the cell in which they meet the lowest level. Each layer is added once for each stretch between two passages of
+/// sides of cells, moved by whole cells.
+fn sweep(space: &SpaceLayers, targets: &Descending, word_count: usize, heading: &Heading) -> Swept {
+    let depth = space.size[2];
+    let ranges = [0, 1].map(|axis| heading.range(axis, depth));
     let first = [-ranges[0][1], -ranges[1][1]];
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a range runs upward")]
     let size = std::array::from_fn(|axis| space.size[axis] + (ranges[axis][1] - ranges[axis][0]) as usize + 1);
     let mut reached = Lines::new(first, size);
     let mut filled = Lines::new(first, size);
-    let word_count = targets.targets.len().div_ceil(WORD);
     let mut swept = Swept { free: vec![0; word_count], blocked: vec![0; word_count] };
     let mut left = targets.targets.iter().peekable();
-    let mut answer = |(at, place): &([f64; 3], u32), reached: &Lines, filled: &Lines| {
-        let line: [f64; 2] = std::array::from_fn(|i| at[i] - at[2] * slope[i]);
-        let cell = line.map(whole);
-        // on the rim of a cell the line may belong to its neighbour
-        if (0..2).any(|i| !(ROUNDING..1.0 - ROUNDING).contains(&(line[i] - cell[i] as f64))) {
-            return;
-        }
-        let (word, bit) = (*place as usize / WORD, *place as usize % WORD);
+    let mut answer = |(place, number): &(Place, u32), reached: &Lines, filled: &Lines| {
+        let Some(cell) = place.cell(heading) else { return };
+        let (word, bit) = (*number as usize / WORD, *number as usize % WORD);
         swept.blocked[word] |= u64::from(filled.get(cell)) << bit;
         swept.free[word] |= u64::from(!reached.get(cell)) << bit;
     };
@@ -125,12 +128,13 @@ pub(super) fn sweep(space: &SpaceLayers, targets: &Descending, direction: [f64; 
         if left.peek().is_none() {
             break;
         }
-        moves_in(slope, layer as f64, &mut moves);
+        heading.moves_in(layer, &mut moves);
         for &by in &moves {
             reached.add(space, &space.reached, layer, by);
         }
         // of those that start in this layer it is not known which of its cells they meet
-        while let Some(target) = left.next_if(|(at, _)| at[2] + rise - ROUNDING >= layer as f64) {
+        let is_in = |place: &Place| i64::from(place.layer(heading)) >= layer as i64;
+        while let Some(target) = left.next_if(|(place, _)| is_in(place)) {
             answer(target, &reached, &filled);
         }
         for &by in &moves {
@@ -140,34 +144,5 @@ pub(super) fn sweep(space: &SpaceLayers, targets: &Descending, direction: [f64; 
     for target in left {
         answer(target, &reached, &filled);
     }
-    Some(swept)
-}
-
-/// By how many whole cells lines of sight have moved in each stretch of a layer.
-fn moves_in(slope: [f64; 2], layer: f64, moves: &mut Vec<[i64; 2]>) {
-    moves.clear();
-    let mut level = layer;
-    let mut by = slope.map(|slope| whole(level * slope));
-    loop {
-        moves.push(by);
-        // where the next side of a cell is passed
-        let next: [f64; 2] = std::array::from_fn(|axis| match slope[axis] {
-            up if up > 0.0 => (by[axis] + 1) as f64 / up,
-            down if down < 0.0 => by[axis] as f64 / down,
-            _ => f64::INFINITY,
-        });
-        let axis = usize::from(next[1] < next[0]);
-        level = level.max(next[axis]);
-        if !(level < layer + 1.0) {
-            return;
-        }
-        by[axis] += if slope[axis] > 0.0 { 1 } else { -1 };
-    }
-}
-
-/// The whole number below.
-#[expect(clippy::cast_possible_truncation, reason = "cells of a scene")]
-fn whole(value: f64) -> i64 {
-    let toward_zero = value as i64;
-    toward_zero - i64::from(toward_zero as f64 > value)
+    swept
 }

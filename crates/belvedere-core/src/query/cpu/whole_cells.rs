@@ -1,0 +1,133 @@
+//! Targets and directions in whole numbers: every device finds the same cell for the same line of sight, because no step rounds.
+//!
+//! A line of sight belongs to the cell in which it meets the lowest level of the layers. With the place (x, y, z) of its target in cells and the
+//! slope s of its direction this is x − z·s. Heights have 18 bits of fraction and slopes 26, so that their product has 44, as x and y have: the
+//! difference is exact. What was rounded before, heights and slopes, moves the line by less than 24 · 2⁻¹⁸ + 4096 · 2⁻²⁷ < 2⁻¹² cells. A line
+//! closer than that to the border of its cell has none ([`Place::cell`]) and stays open.
+
+use super::space_layers::SpaceLayers;
+
+/// Bits of the fraction of a height, in cells.
+const HEIGHT_BITS: u32 = 18;
+/// Bits of the fraction of a slope, in cells that a line moves on in a layer.
+const SLOPE_BITS: u32 = 26;
+/// Bits of the fraction of a place along x or y, in cells.
+const ACROSS_BITS: u32 = HEIGHT_BITS + SLOPE_BITS;
+/// A line closer than this part of a cell (2 to the power of minus this) to a border may belong to the next cell.
+const BORDER_BITS: u32 = 12;
+/// Most cells that a target lies above or below the lowest layer: 2 km where cells are 0.5 m. Lines of others stay open.
+const MOST_HEIGHT: f64 = 4096.0;
+/// Most cells that a target lies from the corner along x or y: 131 km where cells are 0.5 m.
+const MOST_ACROSS: f64 = 262_144.0;
+/// Most cells that a line of sight moves on in a layer; flatter directions are not swept.
+const MOST_SLOPE: f64 = 24.0;
+
+/// A target, in cells from the corner of the layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Along x and y, with 44 bits of fraction.
+    pub across: [i64; 2],
+    /// Above the lowest layer, with 18 bits of fraction.
+    pub height: i32,
+}
+
+impl Place {
+    /// Where a target, local metres, lies; `None` for one too far from the layers.
+    #[must_use]
+    pub fn new(space: &SpaceLayers, position: [f32; 3]) -> Option<Self> {
+        let at: [f64; 3] = std::array::from_fn(|i| (f64::from(position[i]) - space.low[i]) / space.cell);
+        let is_near = at[0].abs() < MOST_ACROSS && at[1].abs() < MOST_ACROSS && at[2].abs() < MOST_HEIGHT;
+        #[expect(clippy::cast_possible_truncation, reason = "the limits above fit")]
+        is_near.then(|| Self {
+            across: [at[0], at[1]].map(|v| (v * (1_i64 << ACROSS_BITS) as f64).floor() as i64),
+            height: (at[2] * f64::from(1 << HEIGHT_BITS)).floor() as i32,
+        })
+    }
+
+    /// The cell in which the line of sight of this target meets the lowest level, along x and y; `None` where it may be the next one.
+    #[must_use]
+    #[inline]
+    pub fn cell(&self, heading: &Heading) -> Option<[i32; 2]> {
+        let line: [i32; 2] = std::array::from_fn(|i| {
+            let line = self.across[i] - i64::from(self.height) * i64::from(heading.slope[i]);
+            // 2¹⁹ cells and 12 bits of fraction are 31 bits
+            (line >> (ACROSS_BITS - BORDER_BITS)) as i32
+        });
+        let last = (1 << BORDER_BITS) - 1;
+        line.iter().all(|line| (1..last).contains(&(line & last))).then(|| line.map(|line| line >> BORDER_BITS))
+    }
+
+    /// The layer in which the line of sight leaves the near space of this target; below zero for one below all layers.
+    #[must_use]
+    #[inline]
+    pub fn layer(&self, heading: &Heading) -> i32 {
+        (self.height + heading.rise) >> HEIGHT_BITS
+    }
+}
+
+/// A direction that is swept.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Heading {
+    /// Cells that a line moves on in a layer along x and y, with 26 bits of fraction.
+    pub slope: [i32; 2],
+    /// How many layers above its target a line leaves the near space of the target, with 18 bits of fraction.
+    pub rise: i32,
+    /// The slope itself.
+    slope_exact: [f64; 2],
+}
+
+impl Heading {
+    /// The unit vector `direction` for targets whose lines of sight are known up to `near` metres from them; `None` for one that is too flat.
+    #[must_use]
+    pub fn new(space: &SpaceLayers, direction: [f64; 3], near: f64) -> Option<Self> {
+        let slope = [direction[0] / direction[2], direction[1] / direction[2]];
+        let rise = near * direction[2] / space.cell;
+        let is_swept = direction[2] > 0.0 && slope[0].abs().max(slope[1].abs()) <= MOST_SLOPE && rise < MOST_HEIGHT;
+        #[expect(clippy::cast_possible_truncation, reason = "the limits above fit")]
+        is_swept.then(|| Self {
+            slope: slope.map(|v| (v * f64::from(1 << SLOPE_BITS)).round() as i32),
+            rise: (rise * f64::from(1 << HEIGHT_BITS)).floor() as i32,
+            slope_exact: slope,
+        })
+    }
+
+    /// By how many whole cells, least and most, lines of sight move in `depth` layers along an axis.
+    pub(super) fn range(&self, axis: usize, depth: usize) -> [i64; 2] {
+        let (a, b) = (whole(0.0), whole(depth as f64 * self.slope_exact[axis]));
+        [a.min(b) - 1, a.max(b) + 1]
+    }
+
+    /// By how many whole cells along x and y lines of sight have moved in each stretch of a layer, into `moves`.
+    ///
+    /// Those of a cell lie over two by two cells of the layer, the same ones until they pass a side of a cell to the east or north: a stretch
+    /// runs from one such passage to the next.
+    pub fn moves_in(&self, layer: usize, moves: &mut Vec<[i64; 2]>) {
+        let slope = self.slope_exact;
+        let layer = layer as f64;
+        moves.clear();
+        let mut level = layer;
+        let mut by = slope.map(|slope| whole(level * slope));
+        loop {
+            moves.push(by);
+            // where the next side of a cell is passed
+            let next: [f64; 2] = std::array::from_fn(|axis| match slope[axis] {
+                up if up > 0.0 => (by[axis] + 1) as f64 / up,
+                down if down < 0.0 => by[axis] as f64 / down,
+                _ => f64::INFINITY,
+            });
+            let axis = usize::from(next[1] < next[0]);
+            level = level.max(next[axis]);
+            if !(level < layer + 1.0) {
+                return;
+            }
+            by[axis] += if slope[axis] > 0.0 { 1 } else { -1 };
+        }
+    }
+}
+
+/// The whole number below.
+#[expect(clippy::cast_possible_truncation, reason = "cells of a scene")]
+fn whole(value: f64) -> i64 {
+    let toward_zero = value as i64;
+    toward_zero - i64::from(toward_zero as f64 > value)
+}

@@ -1,0 +1,30 @@
+//! Lines of sight on a graphics processor, with the same bits as on the CPU.
+//!
+//! [`Gpu`] is a [`Backend`](belvedere_core::query::Backend): it sweeps many directions through the layers of space in whole numbers, which every device computes
+//! alike, and leaves all else to the CPU. When there is no device, too little memory, or the device is lost in the middle of the work, the CPU does what is
+//! left, and [`Gpu::notes`] says so in a line.
+//!
+//! ```no_run
+//! use belvedere_core::query::MedialScene;
+//! use belvedere_gpu::{Choice, Gpu};
+//! use std::sync::Arc;
+//!
+//! # fn example(scene: MedialScene) -> belvedere_data::Result<()> {
+//! let gpu = Arc::new(Gpu::new(Choice::Gpu)?);
+//! let scene = scene.with_backend(gpu.clone());
+//! // ... questions about many directions ...
+//! for note in gpu.notes() {
+//!     // what the CPU had to do instead, and why
+//! }
+//! # Ok(())
+//! # }
+//! ```
+
+#![forbid(unsafe_code)]
+
+mod backend;
+mod device;
+mod sweep;
+
+pub use backend::{Choice, Gpu};
+pub use device::{DeviceInfo, DeviceKind, devices};

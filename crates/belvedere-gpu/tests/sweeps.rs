@@ -1,0 +1,244 @@
+//! What the device sweeps has the bits of the CPU: on random and hostile balls, on whole scenes, and when the device is lost in the middle.
+//!
+//! The tests run on every device of the computer, software ones among them (Debian: `mesa-vulkan-drivers`).
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::cast_possible_truncation, reason = "the numbers of tests are small, or made to be f32")]
+
+use belvedere::apps::sky_view::SkyDirections;
+use belvedere::control::Control;
+use belvedere::io::{ReadOptions, read_cloud};
+use belvedere::medial::MedialBalls;
+use belvedere::model::{ModelParams, SceneModel};
+use belvedere::query::{Backend, BallTree, BlockRule, Cpu, Line, MedialScene, UnprovenAs};
+use belvedere::random::uniform;
+use belvedere_gpu::{Choice, DeviceInfo, Gpu, devices};
+use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+fn skipped(what: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "SKIPPED {what}");
+}
+
+fn devices_or_skip(test: &str) -> Vec<DeviceInfo> {
+    let found = devices();
+    if found.is_empty() {
+        skipped(&format!("{test}: this computer has no device with a driver for Vulkan, Metal or DirectX 12"));
+    }
+    found
+}
+
+fn balls_of(balls: impl Iterator<Item = ([f64; 3], f64)>) -> MedialBalls {
+    let mut all = MedialBalls::default();
+    for (center, radius) in balls {
+        all.centers.push(center.map(|v| v as f32));
+        all.radii.push(radius as f32);
+        all.source.push(0);
+        all.touch.push(0);
+        all.separation_angles.push(1.0);
+    }
+    all
+}
+
+/// Balls in a box of some size.
+fn random_balls(count: u64, size: [f64; 3], largest: f64) -> impl Iterator<Item = ([f64; 3], f64)> {
+    (0..count).map(move |i| {
+        let random = |k: u64| uniform(21, 4 * i + k);
+        let center = std::array::from_fn(|axis| (random(axis as u64) - 0.5) * size[axis]);
+        (center, largest * random(3).powi(3))
+    })
+}
+
+/// The directions of a sky view, and some along axes, flat and downward.
+fn directions() -> Vec<[f64; 3]> {
+    let mut directions = SkyDirections::even(577).unwrap().directions;
+    directions.extend([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.6, 0.0, 0.8]]);
+    for rise in [0.02_f64, 0.05, -0.1] {
+        directions.push([(1.0 - rise * rise).sqrt(), 0.0, rise]);
+    }
+    directions
+}
+
+/// Targets in a box of some size and around it, and some very far away.
+fn targets(count: u64, size: [f64; 3]) -> Vec<[f32; 3]> {
+    let mut targets: Vec<[f32; 3]> = (0..count)
+        .map(|i| {
+            let random = |k: u64| uniform(22, 4 * i + k);
+            std::array::from_fn(|axis| (1.2 * (random(axis as u64) - 0.5) * size[axis]) as f32)
+        })
+        .collect();
+    for far in [3e3, 1e5, 9e6] {
+        targets.extend([[far, 0.0, 0.0], [0.0, -far, 0.0], [0.0, 0.0, far], [0.0, 0.0, -far]]);
+    }
+    // on borders of cells, as far as there are any
+    targets.extend((0..64_u8).map(|i| [0.5 * f32::from(i), -0.5 * f32::from(i), 0.0]));
+    targets
+}
+
+/// Compares what a device and the CPU settle, and says how many lines were not left open.
+fn assert_equal_on(
+    device: &DeviceInfo,
+    balls: &MedialBalls,
+    rule: &BlockRule,
+    targets: &[[f32; 3]],
+    what: &str,
+) -> usize {
+    let tree = Arc::new(BallTree::new(balls, rule).unwrap());
+    let directions = directions();
+    let gpu = Gpu::new(Choice::Number(device.number)).unwrap();
+    let settle =
+        |backend: &dyn Backend| backend.prepare(&tree).unwrap().settle(targets, &directions, &Control::none()).unwrap();
+    let (on_device, on_cpu) = (settle(&gpu), settle(&Cpu));
+    // with more layers than this the moves of a line would not fit, and the CPU does all
+    let fits = what != "a scene higher than 4096 cells";
+    assert_eq!(gpu.notes().is_empty(), fits, "{what} on {}: {:?}", device.name, gpu.notes());
+    assert!(on_device == on_cpu, "{what}: {} settles other lines than the CPU", device.name);
+    let lines = (0..targets.len()).flat_map(|target| (0..directions.len()).map(move |direction| (target, direction)));
+    lines.filter(|&(target, direction)| on_cpu.line(target, direction) != Line::Open).count()
+}
+
+#[test]
+fn sweeps_of_random_and_hostile_balls_equal_the_cpu() {
+    let size = [60.0, 60.0, 15.0];
+    let plain: Vec<_> = random_balls(2000, size, 2.0).collect();
+    let with = |others: &[([f64; 3], f64)]| balls_of(plain.iter().chain(others).copied());
+    let hostile = [
+        ("random balls", with(&[]), BlockRule::carved()),
+        ("a bias", with(&[]), BlockRule { bias: 0.7, ..BlockRule::default() }),
+        ("balls of radius zero", balls_of(plain.iter().map(|(center, _)| (*center, 0.0))), BlockRule::carved()),
+        ("a huge ball below", with(&[([0.0, 0.0, -9e6], 9e6)]), BlockRule::carved()),
+        ("a ball far away", with(&[([8e6, -8e6, 5e6], 1.0)]), BlockRule::carved()),
+        ("a tower of 1.5 km", with(&[([0.0, 0.0, 1500.0], 3.0)]), BlockRule::carved()),
+        (
+            "a scene higher than 4096 cells",
+            balls_of([([0.0; 3], 1.0), ([5.0, 5.0, 4000.0], 2.0)].into_iter()),
+            BlockRule::carved(),
+        ),
+        (
+            "balls that are no numbers",
+            with(&[([f64::NAN, 0.0, 0.0], 1.0), ([0.0; 3], f64::NAN), ([0.0; 3], f64::INFINITY)]),
+            BlockRule::carved(),
+        ),
+        ("many balls", balls_of(random_balls(200_000, size, 0.4)), BlockRule::carved()),
+        ("a single ball", balls_of([([0.0; 3], 20.0)].into_iter()), BlockRule::carved()),
+        ("no balls", MedialBalls::default(), BlockRule::carved()),
+    ];
+    for device in devices_or_skip("sweeps_of_random_and_hostile_balls_equal_the_cpu") {
+        for (what, balls, rule) in &hostile {
+            let known = assert_equal_on(&device, balls, rule, &targets(3000, size), what);
+            let is_plain = ["random balls", "a bias", "a single ball"].contains(what);
+            assert!(!is_plain || known > 500_000, "{what}: only {known} lines are settled");
+        }
+    }
+}
+
+/// A scene is the same with each device; the share of lines that the sweep settles is printed.
+fn assert_scene_is_equal(name: &str, model: &SceneModel) {
+    let scene = |model: &SceneModel| model.scene(&model.rule(), UnprovenAs::Visible, &Control::none()).unwrap();
+    let (low, high) = model.bounds().corners();
+    // on the points' own box, with the ground at its lowest quarter
+    let targets: Vec<[f32; 3]> = (0..3_000_u64)
+        .map(|i| {
+            let random = |k: u64| uniform(23, 4 * i + k);
+            let up = if i % 4 == 0 { random(2) } else { 0.2 * random(2) };
+            [0, 1, 2].map(|axis| {
+                let share = if axis == 2 { up } else { random(axis as u64) };
+                (low[axis] + share * (high[axis] - low[axis])) as f32
+            })
+        })
+        .collect();
+    let directions = SkyDirections::even(577).unwrap().directions;
+    let on_cpu = scene(model).visibility_matrix(&targets, &directions, &Control::none()).unwrap();
+    let free: u32 = (0..targets.len()).flat_map(|row| on_cpu.row(row)).map(|word| word.count_ones()).sum();
+    assert!(free > 100_000, "{name}: {free} lines are free");
+    for device in devices() {
+        let gpu = Arc::new(Gpu::new(Choice::Number(device.number)).unwrap());
+        let with_gpu = model.clone().with_backend(gpu.clone());
+        let on_device = scene(&with_gpu).visibility_matrix(&targets, &directions, &Control::none()).unwrap();
+        assert!(gpu.notes().is_empty(), "{name} on {}: {:?}", device.name, gpu.notes());
+        assert!(on_device == on_cpu, "{name}: answers on {} are others than on the CPU", device.name);
+        let tree = model.scene(&model.rule(), UnprovenAs::Visible, &Control::none()).unwrap();
+        let known = assert_equal_on(&device, model.balls(), tree.params(), &targets, name);
+        assert!(known > targets.len() * 300, "{name}: only {known} lines are settled");
+    }
+}
+
+#[test]
+fn the_town_of_the_demo_has_the_same_answers() {
+    if devices_or_skip("the_town_of_the_demo_has_the_same_answers").is_empty() {
+        return;
+    }
+    let town = town(&TownParams { extent: 100.0, ..TownParams::default() });
+    let scan = scan_airborne(&town, &AirborneParams::default());
+    let mut cloud = belvedere::PointCloud::default();
+    cloud.positions = (0..scan.len())
+        .map(|i| [scan.x[i], scan.y[i], scan.z[i]])
+        .map(|place| belvedere::cloud::to_local(place, [scan.x[0], scan.y[0], scan.z[0]]))
+        .collect();
+    let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &Control::none()).unwrap();
+    assert_scene_is_equal("the town of the demo", &model);
+}
+
+#[test]
+fn real_tiles_have_the_same_answers() {
+    let test = "real_tiles_have_the_same_answers";
+    if devices_or_skip(test).is_empty() {
+        return;
+    }
+    for tile in ["delft_ahn3/ahn3_cropped_2.laz", "bresse_lidarhd/870000_6618000.subset.50mx100m.las"] {
+        let Some(path) = data(test, &format!("data/{tile}")) else { continue };
+        let (cloud, _) = read_cloud([&path], &ReadOptions::new(), &Control::none()).unwrap();
+        let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &Control::none()).unwrap();
+        assert_scene_is_equal(tile, &model);
+    }
+}
+
+/// The file at `relative` under `BELVEDERE_TEST_DATA` (default: `shared` beside the repository), or `None` after saying that the test is skipped.
+fn data(test: &str, relative: &str) -> Option<PathBuf> {
+    let root = std::env::var_os("BELVEDERE_TEST_DATA")
+        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared")), PathBuf::from);
+    let path = root.join(relative);
+    if !path.exists() {
+        skipped(&format!("{test}: {relative} is not under BELVEDERE_TEST_DATA"));
+        return None;
+    }
+    Some(path)
+}
+
+#[test]
+fn a_device_lost_in_the_middle_loses_nothing() {
+    let size = [60.0, 60.0, 15.0];
+    let balls = balls_of(random_balls(2000, size, 2.0));
+    let (targets, directions) = (targets(3000, size), directions());
+    let scene = || MedialScene::new(&balls, &BlockRule::carved()).unwrap();
+    let whole = scene().visibility_matrix(&targets, &directions, &Control::none()).unwrap();
+    for device in devices_or_skip("a_device_lost_in_the_middle_loses_nothing") {
+        for headings in [0, 1, 150] {
+            let gpu = Arc::new(Gpu::failing_after(device.number, headings).unwrap());
+            let backed = scene().with_backend(gpu.clone());
+            assert!(gpu.device().is_some());
+            let matrix = backed.visibility_matrix(&targets, &directions, &Control::none()).unwrap();
+            assert!(matrix == whole, "lost after {headings} directions");
+            let notes = gpu.notes();
+            assert!(notes.len() == 1 && notes[0].contains("the CPU does the rest"), "{notes:?}");
+            assert!(gpu.device().is_none());
+            // and asked again it does not try again
+            assert!(backed.visibility_matrix(&targets, &directions, &Control::none()).unwrap() == whole);
+            assert_eq!(gpu.notes().len(), 1);
+        }
+    }
+}
+
+#[test]
+fn a_missing_device_is_named_and_a_missing_gpu_is_no_error() {
+    let error = Gpu::new(Choice::Number(999)).unwrap_err().to_string();
+    assert!(error.contains("there is no device 999"), "{error}");
+    let gpu = Gpu::new(Choice::Gpu).unwrap();
+    let has_gpu = devices().iter().any(|info| info.kind != belvedere_gpu::DeviceKind::Software);
+    assert_eq!(gpu.device().is_some(), has_gpu);
+    assert_eq!(gpu.notes().is_empty(), has_gpu, "{:?}", gpu.notes());
+    // software is never taken by itself, and nothing is said about it
+    let automatic = Gpu::new(Choice::Automatic).unwrap();
+    assert!(automatic.device().is_none() && automatic.notes().is_empty());
+}
