@@ -76,6 +76,8 @@ mod stations;
 mod table;
 #[cfg(feature = "tiff")]
 mod terrain;
+#[cfg(feature = "tiff")]
+mod terrain_in_degrees;
 mod text_rows;
 mod trajectory;
 mod vpc;

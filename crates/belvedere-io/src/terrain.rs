@@ -2,17 +2,19 @@
 
 use crate::geotiff_read::read_placed;
 use crate::source::Source;
+use crate::terrain_in_degrees::{is_like_wgs_84, projected};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::raster::Raster;
 use belvedere_data::{ElevationGrid, Error, Frame, Result};
 use std::path::Path;
 
 /// The terrain of a GeoTIFF raster in the local coordinates of `frame`: heights of the ground (DTM) in the middles of its cells. The raster must be in the
-/// reference system of the frame, or name none, which is then taken as that of the frame; its rows must run from north to south.
+/// reference system of the frame, or name none, which is then taken as that of the frame, or be in degrees (WGS 84, ETRS89, NAD83; heights in metres): it is then projected, with
+/// bilinear heights. Its rows must run from north to south.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for what is no raster of one band, has no place on the map, is turned, or has no heights;
-/// [`Error::UnusableCrs`] for degrees and for another system, with a conversion to run first.
+/// [`Error::UnusableCrs`] for another system, with a conversion to run first.
 pub fn read_terrain<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Result<ElevationGrid> {
     let source = source.into();
     let name = source.name().to_owned();
@@ -23,12 +25,16 @@ pub fn read_terrain<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Result<
             "has no place on the map; give a GeoTIFF, for example of gdal_translate -a_ullr",
         ));
     };
-    check_system(&place.crs, &frame.crs, &name)?;
     let ([east, turned], [also_turned, down]) = (place.column_step, place.row_step);
     if !(east > 0.0 && down < 0.0 && turned == 0.0 && also_turned == 0.0) {
         let what = "is turned or upside down; make its rows run from north to south first: gdalwarp IN.tif OUT.tif";
         return Err(Error::malformed(&name, what));
     }
+    let is_in_degrees = place.crs.kind == CrsKind::Geographic && is_like_wgs_84(place.crs.epsg);
+    if is_in_degrees && frame.crs.kind == CrsKind::Projected {
+        return projected(&raster.values, &place, frame, &name);
+    }
+    check_system(&place.crs, &frame.crs, &name)?;
     let system = if place.crs.kind == CrsKind::Unknown { &frame.crs } else { &place.crs };
     let [unit, _, height_unit] = system.metres_per_unit_xyz();
     let local = |height: &f32| f64::from(*height) * height_unit - frame.origin[2];
@@ -93,7 +99,7 @@ mod tests {
     fn another_system_degrees_and_turned_rasters_are_refused_with_what_to_do() {
         let values = || vec![1.0; 6];
         let rd = Frame { origin: [0.0; 3], crs: Crs::from_epsg(28_992).unwrap() };
-        for (code, named) in [(25_832, "EPSG:25832"), (4326, "degrees")] {
+        for (code, named) in [(25_832, "EPSG:25832"), (4289, "degrees")] {
             let error = terrain(Crs::from_epsg(code).unwrap(), NORTH_UP, values(), &rd).unwrap_err().to_string();
             for part in ["dtm.tif", named, "gdalwarp -t_srs EPSG:28992"] {
                 assert!(error.contains(part), "{error}");

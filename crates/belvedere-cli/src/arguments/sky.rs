@@ -46,7 +46,7 @@ pub(crate) struct SkyPlaces {
 /// What stands beyond the cloud.
 #[derive(Args)]
 pub(crate) struct FarTerrain {
-    /// Terrain beyond the cloud: elevation raster (DTM) in the coordinate system of the cloud (.tif)
+    /// Terrain beyond the cloud: elevation raster (DTM) in the coordinate system of the cloud or in degrees (.tif)
     ///
     /// Each place has its own horizon, exact for the cells of the raster, with the curvature of the earth and refraction. Within the extent of the cloud, and one cell
     /// around it, the raster blocks nothing. Cells without a value block nothing.

@@ -85,7 +85,7 @@ fn terrain_that_does_not_fit_is_refused_by_name() {
     let shadow = format!("shadow {HOUSE} --sun 180,25 --cell 1 -o lit.csv --terrain");
     write_terrain(&place, "utm.tif", 25_831, 0.0, range);
     place.refusal(1, &format!("{shadow} utm.tif"), &["utm.tif", "EPSG:25831", "gdalwarp -t_srs EPSG:28992"]);
-    write_terrain(&place, "degrees.tif", 4326, 0.0, range);
+    write_terrain(&place, "degrees.tif", 4289, 0.0, range);
     place.refusal(1, &format!("{shadow} degrees.tif"), &["degrees.tif", "degrees", "gdalwarp"]);
     write_terrain(&place, "far.tif", 28992, 9000.0, range);
     place.refusal(2, &format!("{shadow} far.tif"), &["--terrain", "far.tif", "coordinates of the cloud"]);

@@ -266,7 +266,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         Parameters
         ----------
         path : path
-            Heights of the ground (DTM, ``.tif``) in the coordinate system of the cloud.
+            Heights of the ground (DTM, ``.tif``) in the coordinate system of the cloud, or in degrees.
 
         Examples
         --------

@@ -49,6 +49,8 @@ struct Lines {
     /// Columns and rows for each metre, and the inverse.
     step: [f64; 2],
     inverse: [f64; 2],
+    /// Distance that a line of another place than the middle needs more or less to the same column and row, metres at most.
+    room: [f64; 2],
     /// The lowest height, metres.
     low: f64,
     /// Distances from which terrain counts for the first and for all of the places, metres.
@@ -91,8 +93,8 @@ impl Relief {
         let lines = self.lines(&Places { low: place, high: place }, along, earth);
         let mut top = Top { tangent: f64::NEG_INFINITY, span: f64::NAN };
         if let Some(span) = guess {
-            /// Part of the distance on both sides that is looked through first.
-            const NEAR: f64 = 0.03;
+            /// Part of the distance on both sides that is looked through first: a cell or two of usual rasters where mountains are.
+            const NEAR: f64 = 0.003;
             self.raise(&lines, [span * (1.0 - NEAR), span * (1.0 + NEAR)], &mut top);
         }
         self.raise(&lines, [lines.from[0], f64::INFINITY], &mut top);
@@ -191,6 +193,7 @@ impl Relief {
             half: [half[0] / cell[0], half[1] / cell[1]],
             step,
             inverse: step.map(|v| 1.0 / v),
+            room: [0, 1].map(|i| half[i] / cell[i] / step[i].abs()),
             low: places.low[2],
             from,
             fall: earth.fall_rate(),
@@ -214,6 +217,11 @@ impl Relief {
         is_inside.then(|| to_side(0).min(to_side(1)).max(self.nearest()))
     }
 
+    /// Numbers of patches.
+    fn size(&self) -> [usize; 2] {
+        [self.grid.heights().width() - 1, self.grid.heights().height() - 1]
+    }
+
     /// Calls `visit` for every patch within `spans` of the lines that may rise above `top`, nearest blocks first, until it breaks off.
     fn descend(
         &self,
@@ -222,6 +230,10 @@ impl Relief {
         top: &mut Top,
         visit: &mut impl FnMut([f32; 4], [usize; 2], [f64; 2], &mut Top) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
+        let spans = lines.over(self.size(), spans);
+        if spans[0] > spans[1] {
+            return ControlFlow::Continue(());
+        }
         self.descend_from(self.levels.len(), [0, 0], lines, spans, top, visit)
     }
 
@@ -235,7 +247,7 @@ impl Relief {
         top: &mut Top,
         visit: &mut impl FnMut([f32; 4], [usize; 2], [f64; 2], &mut Top) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let size = [self.grid.heights().width() - 1, self.grid.heights().height() - 1];
+        let size = self.size();
         let Some(below) = level.checked_sub(1) else {
             return visit(corners(&self.grid, block[0], block[1]), block, spans, top);
         };
@@ -244,16 +256,23 @@ impl Relief {
         if !lines.may_rise(highest, spans, top.tangent) {
             return ControlFlow::Continue(());
         }
-        // the nearer half of each axis first
-        let turned = lines.step.map(|step| usize::from(step < 0.0));
-        for part in 0..4 {
-            let part = [(part & 1) ^ turned[0], (part >> 1) ^ turned[1]];
-            let child = [2 * block[0] + part[0], 2 * block[1] + part[1]];
-            if child[0] << below >= size[0] || child[1] << below >= size[1] {
-                continue;
+        // where the lines pass the middle of the block: the nearer half of each axis ends there, and the farther one begins
+        let middle = [0, 1].map(|axis| {
+            let line = ((2 * block[axis] + 1) << below) as f64;
+            (line - lines.start[axis]) * lines.inverse[axis]
+        });
+        for part in 0..4_usize {
+            let (mut spans, mut child) = (spans, [0; 2]);
+            for axis in 0..2 {
+                let is_farther = part >> axis & 1 == 1;
+                if is_farther {
+                    spans[0] = spans[0].max(middle[axis] - lines.room[axis]);
+                } else {
+                    spans[1] = spans[1].min(middle[axis] + lines.room[axis]);
+                }
+                child[axis] = 2 * block[axis] + usize::from(is_farther == (lines.step[axis] > 0.0));
             }
-            let spans = lines.within(child, below, spans);
-            if spans[0] <= spans[1] {
+            if spans[0] <= spans[1] && child[0] << below < size[0] && child[1] << below < size[1] {
                 self.descend_from(below, child, lines, spans, top, visit)?;
             }
         }
@@ -276,14 +295,12 @@ impl Level {
 }
 
 impl Lines {
-    /// The part of `spans` in which any of the lines is over a block of `1 << level` patches a side; empty where the first is above the second.
-    #[inline]
-    fn within(&self, block: [usize; 2], level: usize, mut spans: [f64; 2]) -> [f64; 2] {
-        for (axis, first) in block.into_iter().enumerate() {
-            let (low, high) = ((first << level) as f64, ((first + 1) << level) as f64);
-            let one = (low - self.half[axis] - self.start[axis]) * self.inverse[axis];
-            let other = (high + self.half[axis] - self.start[axis]) * self.inverse[axis];
-            spans = [spans[0].max(one.min(other)), spans[1].min(one.max(other))];
+    /// The part of `spans` in which any of the lines is over the first `size` patches; empty where the first is above the second.
+    fn over(&self, size: [usize; 2], mut spans: [f64; 2]) -> [f64; 2] {
+        for (axis, count) in size.into_iter().enumerate() {
+            let one = -self.start[axis] * self.inverse[axis];
+            let other = (count as f64 - self.start[axis]) * self.inverse[axis];
+            spans = [spans[0].max(one.min(other) - self.room[axis]), spans[1].min(one.max(other) + self.room[axis])];
         }
         spans
     }
