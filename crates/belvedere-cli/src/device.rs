@@ -57,8 +57,8 @@ pub(crate) fn with_device(model: SceneModel) -> SceneModel {
 pub(crate) fn report(summary: &mut Summary) {
     #[cfg(feature = "gpu")]
     if let Some(gpu) = CHOSEN.get() {
-        if let Some(device) = gpu.device() {
-            summary.add("device", device.name);
+        if let Some(device) = gpu.used() {
+            summary.add("device", device.name.clone());
         }
         for note in gpu.notes() {
             summary.warn(note);

@@ -8,7 +8,7 @@ use belvedere_core::query::{Backend, BallTree, Prepared, Settled};
 use belvedere_data::control::Control;
 use belvedere_data::view::View;
 use belvedere_data::{Error, Result};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Lines of sight from which on [`Choice::Automatic`] takes a device: to find one and to make it ready takes the time of some millions on the CPU.
 const WORTH_A_DEVICE: usize = 1 << 26;
@@ -35,6 +35,8 @@ struct Shared {
     choice: Choice,
     state: Mutex<State>,
     notes: Mutex<Vec<String>>,
+    /// The device that swept anything.
+    used: OnceLock<DeviceInfo>,
     /// For tests: after so many headings the device fails.
     fails_after: Option<usize>,
 }
@@ -81,10 +83,16 @@ impl Gpu {
 
     fn with_failure(choice: Choice, fails_after: Option<usize>) -> Self {
         let (state, notes) = (Mutex::new(State::Unopened), Mutex::default());
-        Self { shared: Arc::new(Shared { choice, state, notes, fails_after }) }
+        Self { shared: Arc::new(Shared { choice, state, notes, used: OnceLock::new(), fails_after }) }
     }
 
-    /// The device that is in use; `None` where the CPU does all, also as long as [`Choice::Automatic`] has not needed one.
+    /// The device that some question was answered with. Small questions are the CPU's.
+    #[must_use]
+    pub fn used(&self) -> Option<&DeviceInfo> {
+        self.shared.used.get()
+    }
+
+    /// The device that is ready; `None` where the CPU does all, also as long as [`Choice::Automatic`] has not needed one.
     #[must_use]
     pub fn device(&self) -> Option<DeviceInfo> {
         match &*self.shared.lock() {
@@ -212,7 +220,10 @@ impl OnDevice {
     ) -> Result<Vec<Swept>> {
         let mut swept = Vec::with_capacity(headings.len());
         match self.sweep_on_device(sweeper, space, places, headings, control, &mut swept) {
-            Ok(()) => return Ok(swept),
+            Ok(()) => {
+                self.shared.used.get_or_init(|| sweeper.device.info.clone());
+                return Ok(swept);
+            }
             Err(Error::Device { what }) => {
                 let name = &sweeper.device.info.name;
                 self.shared.note(format!("{name}: {what}; the CPU does the rest, with the same results"));

@@ -9,6 +9,7 @@ use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud};
 use belvedere::medial::MedialBalls;
 use belvedere::model::{ModelParams, SceneModel};
+use belvedere::query::cpu::{Heading, Place, SpaceLayers, sweep_all};
 use belvedere::query::{Backend, BallTree, BlockRule, Cpu, Line, MedialScene, UnprovenAs};
 use belvedere::random::uniform;
 use belvedere_gpu::{Choice, DeviceInfo, Gpu, devices};
@@ -94,6 +95,16 @@ fn assert_equal_on(
     let fits = what != "a scene higher than 4096 cells";
     assert_eq!(gpu.notes().is_empty(), fits, "{what} on {}: {:?}", device.name, gpu.notes());
     assert!(on_device == on_cpu, "{what}: {} settles other lines than the CPU", device.name);
+    // the same without the question whether a sweep pays
+    let space = SpaceLayers::new(tree.balls(), rule, &Control::none()).unwrap();
+    let places: Vec<Option<Place>> = targets.iter().map(|target| Place::new(&space, *target)).collect();
+    let some = directions.iter().step_by(60);
+    let headings: Vec<Heading> = some.filter_map(|direction| Heading::new(&space, *direction, 0.6)).collect();
+    let fresh = Gpu::new(Choice::Number(device.number)).unwrap();
+    match fresh.sweep(&space, &places, &headings, &Control::none()) {
+        Ok(swept) => assert!(swept == sweep_all(&space, &places, &headings, &Control::none()).unwrap(), "{what}"),
+        Err(error) => assert!(!fits && error.to_string().contains("too high"), "{what}: {error}"),
+    }
     let lines = (0..targets.len()).flat_map(|target| (0..directions.len()).map(move |direction| (target, direction)));
     lines.filter(|&(target, direction)| on_cpu.line(target, direction) != Line::Open).count()
 }
