@@ -34,7 +34,7 @@ mod window;
 pub use grid::{TileGrid, TileId};
 pub use inputs::InputFile;
 pub use make_balls::make_balls;
-pub use merge::{Merged, merge, write_catalogue};
+pub use merge::{Merged, merge, merged_within, write_catalogue};
 pub use plan::{Estimate, Plan, PlanFrame, PlanParams};
 pub use planned::{LightTrees, SideFile};
 pub use question::{Question, Radiation, SunQuestion};

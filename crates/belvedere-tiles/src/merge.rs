@@ -4,10 +4,11 @@ use crate::grid::TileId;
 use crate::plan::Plan;
 use crate::question::Question;
 use crate::record::{Outcome, Record, Stage};
+use crate::values::Values;
 use belvedere::control::Control;
 use belvedere::crs::text::wkt_line;
 use belvedere::ground::MapGrid;
-use belvedere::io::{Source, atomic};
+use belvedere::io::{Georeference, PlacedRaster, Source, atomic};
 use belvedere::results::georeference;
 use belvedere::{Error, Result};
 use std::fmt::Write as _;
@@ -26,25 +27,25 @@ pub struct Merged {
     pub without_result: usize,
 }
 
-/// Tiles with a result, and the grid of cells around all tiles of the plan.
-fn results(plan: &Plan, folder: &Path, question: &Question) -> Result<(Vec<TileId>, MapGrid)> {
+/// Those of `tiles` with a result, and the grid of cells around all of them.
+fn results(plan: &Plan, folder: &Path, question: &Question, tiles: &[TileId]) -> Result<(Vec<TileId>, MapGrid)> {
     let has_result = |tile: &TileId| {
         Record::read(plan, folder, Stage::Answer(question), *tile).is_some_and(|record| record.outcome == Outcome::Done)
     };
     let grid = plan.grid();
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for &tile in &plan.tiles {
+    for &tile in tiles {
         let core = grid.core(tile);
         low = [0, 1].map(|axis| low[axis].min(core.low[axis]));
         high = [0, 1].map(|axis| high[axis].max(core.high[axis]));
     }
-    if plan.tiles.is_empty() {
-        return Err(Error::NoPoints { what: "the plan has no tile".to_owned() });
+    if tiles.is_empty() {
+        return Err(Error::NoPoints { what: "the plan has no tile there".to_owned() });
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
     let count = |axis: usize| ((high[axis] - low[axis]) / plan.cell).round() as usize;
     let cells = MapGrid { corner: [low[0], high[1]], cell: plan.cell, width: count(0), height: count(1) };
-    Ok((plan.tiles.iter().copied().filter(has_result).collect(), cells))
+    Ok((tiles.iter().copied().filter(has_result).collect(), cells))
 }
 
 /// Column and row of the first cell of a tile, and cells along its side.
@@ -60,7 +61,7 @@ fn place_of(plan: &Plan, cells: &MapGrid, tile: TileId) -> [usize; 3] {
 /// # Errors
 /// [`Error::Io`].
 pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Result<Merged> {
-    let (tiles, cells) = results(plan, folder, question)?;
+    let (tiles, cells) = results(plan, folder, question, &plan.tiles)?;
     let frame = plan.frame()?;
     let place = georeference(&cells, &frame);
     let (kind, no_data) = plan.kind_of(question).in_vrt();
@@ -96,7 +97,41 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Resul
 /// # Errors
 /// [`Error::InvalidParameter`] for more cells than fit into memory; those of reading and writing rasters.
 pub fn merge(plan: &Plan, folder: &Path, question: &Question, output: &Path, control: &Control<'_>) -> Result<Merged> {
-    let (tiles, cells) = results(plan, folder, question)?;
+    let (values, place, merged) = gather(plan, folder, question, &plan.tiles, control)?;
+    values.write_cog(output, &place)?;
+    Ok(merged)
+}
+
+/// The results of a question that are there, of the tiles that touch the box from `low` to `high` on the map, metres of the reference system.
+///
+/// # Errors
+/// [`Error::NoPoints`] where the plan has no tile there, [`Error::InvalidParameter`] for more cells than fit into memory; those of reading rasters.
+pub fn merged_within(
+    plan: &Plan,
+    folder: &Path,
+    question: &Question,
+    (low, high): ([f64; 2], [f64; 2]),
+    control: &Control<'_>,
+) -> Result<PlacedRaster> {
+    let (grid, origin) = (plan.grid(), plan.frame()?.origin);
+    let touches = |tile: &TileId| {
+        let core = grid.core(*tile);
+        (0..2).all(|i| core.low[i] < high[i] - origin[i] && core.high[i] > low[i] - origin[i])
+    };
+    let tiles: Vec<TileId> = plan.tiles.iter().copied().filter(touches).collect();
+    let (values, place, _) = gather(plan, folder, question, &tiles, control)?;
+    Ok(PlacedRaster { values: values.numbers()?, place: Some(place) })
+}
+
+/// The results of `tiles` that are there, in one raster around all of them.
+fn gather(
+    plan: &Plan,
+    folder: &Path,
+    question: &Question,
+    tiles: &[TileId],
+    control: &Control<'_>,
+) -> Result<(Values, Georeference, Merged)> {
+    let (with_result, cells) = results(plan, folder, question, tiles)?;
     let (width, height) = (cells.width, cells.height);
     if width.saturating_mul(height) > MOST_CELLS {
         return Err(Error::InvalidParameter {
@@ -105,9 +140,8 @@ pub fn merge(plan: &Plan, folder: &Path, question: &Question, output: &Path, con
             expected: "at most 268 million cells; open the .vrt, or convert it with gdal_translate",
         });
     }
-    let place = georeference(&cells, &plan.frame()?);
     let mut all = plan.kind_of(question).nothing(width, height);
-    for &tile in &tiles {
+    for &tile in &with_result {
         control.check()?;
         let stage = Stage::Answer(question);
         let Some(record) = Record::read(plan, folder, stage, tile) else { continue };
@@ -115,6 +149,6 @@ pub fn merge(plan: &Plan, folder: &Path, question: &Question, output: &Path, con
         let values = plan.kind_of(question).read(Source::bytes(&path, &record.read_result(&path)?))?;
         all.put(&values, place_of(plan, &cells, tile))?;
     }
-    all.write_cog(output, &place)?;
-    Ok(Merged { tiles: tiles.len(), without_result: plan.tiles.len() - tiles.len() })
+    let merged = Merged { tiles: with_result.len(), without_result: tiles.len() - with_result.len() };
+    Ok((all, georeference(&cells, &plan.frame()?), merged))
 }

@@ -235,7 +235,9 @@ impl Plan {
         atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(Error::io(&path)))
     }
 
-    fn path(folder: &Path) -> PathBuf {
+    /// Where the plan of a run lies.
+    #[must_use]
+    pub fn path(folder: &Path) -> PathBuf {
         folder.join("plan.json")
     }
 

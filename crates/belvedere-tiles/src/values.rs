@@ -81,6 +81,18 @@ impl Values {
         }
     }
 
+    /// As numbers, NaN where there is no value.
+    ///
+    /// # Errors
+    /// Those of [`Raster::from_values`].
+    pub(crate) fn numbers(&self) -> Result<Raster<f32>> {
+        match self {
+            Self::Codes(raster) => numbers(raster, NO_CODE),
+            Self::Counts(raster) => numbers(raster, NO_COUNT),
+            Self::Numbers(raster) => numbers(raster, NO_VALUE),
+        }
+    }
+
     /// Puts the values of a tile at a column and row of this.
     ///
     /// # Errors
@@ -118,6 +130,11 @@ impl Values {
             Self::Numbers(raster) => write_tif_f32(path, raster, Some(place), Some(NO_VALUE), None),
         }
     }
+}
+
+fn numbers<T: Copy + PartialEq + Into<f32>>(raster: &Raster<T>, nothing: T) -> Result<Raster<f32>> {
+    let number = |&value: &T| if value == nothing { f32::NAN } else { value.into() };
+    Raster::from_values(raster.width(), raster.height(), raster.values().iter().map(number).collect())
 }
 
 fn put<T: Copy>(all: &mut Raster<T>, tile: &Raster<T>, [column, row, side]: [usize; 3]) -> Result<()> {

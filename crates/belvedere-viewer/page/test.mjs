@@ -214,6 +214,13 @@ async function main() {
     await other.click("#tools [data-tool=seen]");
     await other.mouse.click(...ground);
     await answered(other);
+    // a plan is that of its tab, also when it is loaded again
+    const [low] = await other.evaluate(() => [belvedere.toFile(belvedere.scene.low)]);
+    await other.evaluate(([x, y, z]) => belvedere.changePlan((plan) => plan.buildings.push({ corners: [[x + 20, y + 20], [x + 30, y + 20], [x + 30, y + 30]], base: z, height_m: 9 })), low);
+    await other.reload();
+    await ready(other);
+    await other.waitForFunction(() => belvedere.planned?.triangles.length === 8 * 9, null, { timeout: 10_000 });
+    assert.equal(await page.evaluate(() => belvedere.planned), null);
     await other.close();
   });
   await step("a refusal is in words", async () => {

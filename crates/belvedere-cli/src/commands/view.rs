@@ -12,6 +12,7 @@ use belvedere::apps::sun::{Date, Site, Zone};
 use belvedere::io::{atomic, has_point_results, is_ball_file, read_geojson, read_point_results, read_tif};
 use belvedere::model::SceneModel;
 use belvedere::{Bounds, Frame, PointCloud};
+use belvedere_tiles::{Plan, merged_within};
 use belvedere_viewer::{ExportParams, Loading, PointsOf, SceneText, Viewer, ViewerParams, export, quoted};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -108,13 +109,18 @@ struct Files {
     meshes: Vec<PathBuf>,
     /// Results of other commands.
     results: Vec<PathBuf>,
+    /// Folders of `belvedere city`.
+    runs: Vec<PathBuf>,
 }
 
 impl Files {
     fn of(files: &[PathBuf]) -> Result<Self> {
         let (mut balls, mut clouds, mut meshes, mut results) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut runs = Vec::new();
         for path in files {
-            if path.is_file() && is_mesh(path) {
+            if Plan::path(path).is_file() {
+                &mut runs
+            } else if path.is_file() && is_mesh(path) {
                 &mut meshes
             } else if path.is_file() && is_ball_file(path)? {
                 &mut balls
@@ -125,12 +131,15 @@ impl Files {
             }
             .push(path.clone());
         }
+        if let (Some(run), true) = (runs.first(), clouds.is_empty() && balls.is_empty()) {
+            clouds = Plan::read(run)?.inputs.into_iter().map(|file| file.path).collect();
+        }
         let refused = |what: &str| Err(Usage(what.to_owned()).into());
         match (balls.len(), clouds.len()) {
             (2.., _) => refused("only one ball file can be shown at a time"),
             (1, 2..) => refused("a ball file can be shown with one cloud: give a single file or a folder"),
             (0, 0) => refused("meshes, rasters and shapes are shown with a cloud or a ball file: give one too"),
-            _ => Ok(Self { balls: balls.pop(), clouds, meshes, results }),
+            _ => Ok(Self { balls: balls.pop(), clouds, meshes, results, runs }),
         }
     }
 
@@ -139,8 +148,11 @@ impl Files {
         if let Some(balls) = &self.balls {
             return quoted(&balls.to_string_lossy());
         }
-        let beside = self.meshes.iter().chain(&self.results);
-        typed(&beside.map(|path| path.to_string_lossy().into_owned()).collect::<Vec<_>>())
+        let beside = self.meshes.iter().chain(&self.results).chain(&self.runs);
+        let rest = typed(&beside.map(|path| path.to_string_lossy().into_owned()).collect::<Vec<_>>());
+        let is_typed = |path: &PathBuf| std::env::args_os().any(|word| word == path.as_os_str());
+        let of_runs = self.clouds.iter().filter(|path| !is_typed(path)).map(|path| quoted(&path.to_string_lossy()));
+        of_runs.chain(Some(rest).filter(|rest| !rest.is_empty())).collect::<Vec<_>>().join(" ")
     }
 
     /// The cloud that shows the ground of a ball file.
@@ -222,6 +234,15 @@ fn show_results(files: &Files, frame: &Frame, bounds: &Bounds, loading: &Loading
                 loading.show_point_results(path, (read_point_results(path)?, points), frame, bounds)
             }
         })?;
+    }
+    let on_map = |corner: [f32; 3]| [0, 1].map(|i| f64::from(corner[i]) + frame.origin[i]);
+    for run in &files.runs {
+        let plan = Plan::read(run)?;
+        for question in &plan.questions {
+            let area = (on_map(bounds.low), on_map(bounds.high));
+            let raster = stages.run("reading results", 0, |control| merged_within(&plan, run, question, area, control));
+            loading.show_raster(&run.join(question.name()), raster?, frame, bounds)?;
+        }
     }
     Ok(())
 }

@@ -489,6 +489,32 @@ fn answers_with_a_plan_are_those_of_the_command_with_its_files() {
 }
 
 #[test]
+fn a_city_run_is_shown_with_its_cloud_or_a_part_of_it() {
+    let place = Workplace::new();
+    assert_eq!(place.run("simulate town -o town --extent 60").status, 0);
+    place.summary("city plan town/cloud.laz --sun 235,30 --sky-view --tile-size 32 -o run");
+    place.summary("city run run");
+    place.summary("city merge run --result sky_view_factor -o sky.tif");
+    let of_run = Page::open(&place, "run");
+    let of_file = Page::open(&place, "town/cloud.laz sky.tif");
+    let names = |page: &Page| -> Vec<Value> {
+        page.state()["results"].as_array().unwrap().iter().map(|result| result["name"].clone()).collect()
+    };
+    assert_eq!(names(&of_run)[..2], ["shadow_235_30", "sky_view_factor"]);
+    let cells = |page: &Page, number: usize| {
+        let reply = page.request("GET", &format!("results/{number}"), "").1;
+        // behind a description, which has the name
+        let length = u32::from_le_bytes(reply[..4].try_into().unwrap()) as usize;
+        reply[4 + length..].to_vec()
+    };
+    assert!(cells(&of_run, 1) == cells(&of_file, 0) && cells(&of_run, 1).len() > 10_000);
+    // commands name the cloud, and not the run
+    let (head, _) = of_run.ask("shadow", &json!({ "time": "2026-06-21T17:00", "zone": "Europe/Amsterdam" }));
+    let command = head["command"].as_str().unwrap();
+    assert!(command.starts_with("belvedere shadow") && command.contains("town/cloud.laz --time"), "{command}");
+}
+
+#[test]
 fn results_of_other_commands_are_shown_where_they_lie() {
     let place = Workplace::new();
     assert_eq!(place.run("simulate town -o town --extent 60").status, 0);

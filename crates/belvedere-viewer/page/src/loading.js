@@ -2,6 +2,7 @@
 import * as api from "./api.js";
 import { report } from "./messages.js";
 import { setColor } from "./paint.js";
+import { restore } from "./plan.js";
 import { offer } from "./results.js";
 import { $, page } from "./state.js";
 import { startTime } from "./time.js";
@@ -64,6 +65,7 @@ export async function watch() {
       page.ready = true;
       startTime();
       if (!state.shown.point_count) toggleBalls();
+      if (!api.exported) restore().catch(report);
       if (page.pending) page.ask();
       offer(state.results).catch(report);
     }

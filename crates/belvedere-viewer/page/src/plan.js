@@ -13,6 +13,8 @@ const HINTS = {
   building: "Click the corners of the building, then press Enter or double-click.",
   area: "Click around what shall go, such as a tree or a house, then press Enter or double-click.",
 };
+// the address has the token of the program that the plan was made for
+const KEPT = `plan ${location.pathname}`;
 let drawing = "building";
 let height = 12;
 page.plan = { clear: [], buildings: [], meshes: [] };
@@ -41,19 +43,25 @@ export function setWhen(when) {
 }
 page.setWhen = setWhen;
 
+// Has the scene with the plan made.
+async function make() {
+  if (isEmpty(page.plan)) {
+    page.planned = null;
+    return;
+  }
+  const answer = await api.ask("plan", page.plan);
+  const triangles = new Float32Array(answer.body.slice(0, answer.triangle_bytes));
+  page.planned = { ...answer, triangles, cleared: answer.points_cleared ? new Uint8Array(answer.body, answer.triangle_bytes) : null };
+}
 async function change(edit) {
   const before = structuredClone(page.plan);
   edit(page.plan);
   page.places = [];
   page.marks = [];
   try {
-    if (isEmpty(page.plan)) page.planned = null;
-    else {
-      panel(`<p class="busy">Changing the scene …</p>`);
-      const answer = await api.ask("plan", page.plan);
-      const triangles = new Float32Array(answer.body.slice(0, answer.triangle_bytes));
-      page.planned = { ...answer, triangles, cleared: answer.points_cleared ? new Uint8Array(answer.body, answer.triangle_bytes) : null };
-    }
+    if (!isEmpty(page.plan)) panel(`<p class="busy">Changing the scene …</p>`);
+    await make();
+    sessionStorage.setItem(KEPT, JSON.stringify([page.plan, page.loadedMeshes]));
     if (page.when === "before") page.when = $("when").value = "after";
     show();
     panel(page.plan.clear.length > before.clear.length && !page.planned?.points_cleared ? `<p class="note">Nothing stands in this area.</p>` : "");
@@ -65,6 +73,16 @@ async function change(edit) {
   draw();
 }
 page.changePlan = change;
+
+// The plan of this tab before it was loaded again.
+export async function restore() {
+  const kept = sessionStorage.getItem(KEPT);
+  if (!kept) return;
+  [page.plan, page.loadedMeshes] = JSON.parse(kept);
+  await make();
+  show();
+  draw();
+}
 
 // Takes the corners that were clicked.
 export function finish() {
