@@ -165,7 +165,8 @@ impl<'a> LazReader<'a> {
 }
 
 /// Whether an arithmetic-coded stream begins with a value below its interval. From 0xFFFFFFFF the decoder yields the
-/// same symbol forever without consuming a byte, on which the laz crate (0.13) recurses until the stack overflows.
+/// same symbol forever without consuming a byte, on which the laz crate (0.13) recurses until the stack overflows, or looks for symbols
+/// that are not in its tables.
 fn begins_soundly(stream: &[u8]) -> bool {
     stream.first_chunk() != Some(&[0xff; 4])
 }
@@ -216,6 +217,10 @@ fn check_chunk_count(path: &Path, file: &mut Reader<'_>, header: &LasHeader, siz
     let count = table_start(file, SeekFrom::Start(at))? >> 32;
     if count * u64::from(header.record_length) > size {
         return Err(Error::malformed(path, format!("claims {count} LAZ chunks, more than its {size} bytes can hold")));
+    }
+    let mut stream = [0; 4];
+    if count > 0 && file.read_exact(&mut stream).is_ok() && !begins_soundly(&stream) {
+        return Err(Error::malformed(path, "has a damaged LAZ chunk table"));
     }
     file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
     Ok(())

@@ -18,7 +18,9 @@ pub(crate) struct Lines<'a> {
     pub(crate) targets: Area,
     /// Local metres.
     pub(crate) lowest: f64,
-    pub(crate) to: To<'a>,
+    to: To<'a>,
+    /// Least slope of the directions, metres of height for each metre on the map.
+    flattest: f64,
 }
 
 /// Where lines of sight run to.
@@ -43,7 +45,16 @@ impl<'a> Lines<'a> {
                 To::Eyes(near.map(|observer| observer.eye).collect())
             }
         };
-        Self { targets, lowest, to }
+        Self::new(targets, lowest, to)
+    }
+
+    fn new(targets: Area, lowest: f64, to: To<'a>) -> Self {
+        let slope = |d: &[f64; 3]| d[2] / d[0].hypot(d[1]).max(1e-12);
+        let flattest = match &to {
+            To::Directions(directions) => directions.iter().map(slope).fold(f64::INFINITY, f64::min),
+            To::Eyes(_) => f64::INFINITY,
+        };
+        Self { targets, lowest, to, flattest }
     }
 
     /// Whether there is no line at all.
@@ -67,9 +78,7 @@ impl<'a> Lines<'a> {
         if rise < 0.0 {
             return false;
         }
-        let slope = |d: &[f64; 3]| d[2] / d[0].hypot(d[1]).max(1e-12);
-        let flattest = directions.iter().map(slope).fold(f64::INFINITY, f64::min);
-        if self.targets.distance(area) * flattest > rise {
+        if self.targets.distance(area) * self.flattest > rise {
             return false;
         }
         directions.len() > FEW || directions.iter().any(|direction| self.meets_along(direction, area, rise))
@@ -164,7 +173,7 @@ mod tests {
         // a sun in the east, 45 degrees high
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let directions = [[half, 0.0, half]];
-        let lines = Lines { targets: TARGETS, lowest: 0.0, to: To::Directions(&directions) };
+        let lines = Lines::new(TARGETS, 0.0, To::Directions(&directions));
         for (area, top, expected) in [
             (place(150.0, 50.0), 60.0, true),
             (place(150.0, 50.0), 40.0, false),
@@ -177,7 +186,7 @@ mod tests {
         }
         // many directions: whatever the azimuth
         let many = vec![[0.0, half, half]; FEW + 1];
-        let lines = Lines { targets: TARGETS, lowest: 0.0, to: To::Directions(&many) };
+        let lines = Lines::new(TARGETS, 0.0, To::Directions(&many));
         assert!(lines.may_meet(&place(150.0, 50.0), 60.0));
         assert!(!lines.may_meet(&place(150.0, 50.0), 40.0));
     }
@@ -185,7 +194,7 @@ mod tests {
     #[test]
     fn only_what_stands_between_eye_and_targets_and_high_enough_may_block_the_view() {
         // an eye 300 m east of the targets and 40 m above them
-        let lines = Lines { targets: TARGETS, lowest: 0.0, to: To::Eyes(vec![[400.0, 50.0, 40.0]]) };
+        let lines = Lines::new(TARGETS, 0.0, To::Eyes(vec![[400.0, 50.0, 40.0]]));
         for (area, top, expected) in [
             (place(110.0, 50.0), 3.0, true),
             (place(110.0, 50.0), -1.0, false),
@@ -201,7 +210,7 @@ mod tests {
             assert_eq!(lines.may_meet(&area, top), expected, "{area:?} {top}");
         }
         // an eye below the targets, among them
-        let lines = Lines { targets: TARGETS, lowest: 10.0, to: To::Eyes(vec![[50.0, 50.0, 2.0]]) };
+        let lines = Lines::new(TARGETS, 10.0, To::Eyes(vec![[50.0, 50.0, 2.0]]));
         assert!(lines.may_meet(&place(70.0, 70.0), 3.0));
         assert!(!lines.may_meet(&place(70.0, 70.0), 1.0));
         assert!(!lines.may_meet(&place(120.0, 70.0), 90.0));
