@@ -220,18 +220,14 @@ fn show_meshes(
 }
 
 fn show_results(files: &Files, frame: &Frame, bounds: &Bounds, loading: &Loading, stages: &mut Stages) -> Result<()> {
-    // the columns of the cloud itself come last
-    let own =
-        files.clouds.first().filter(|path| path.is_file() && is_las(path) && has_point_results(*path).unwrap_or(false));
-    for path in files.results.iter().chain(own) {
+    for path in &files.results {
         stages.run("reading results", 0, |_| {
             if has_extension(path, &["tif", "tiff"]) {
                 loading.show_raster(path, read_tif(path)?, frame, bounds)
             } else if has_extension(path, &["geojson"]) {
                 loading.show_shapes(path, read_geojson(path, &frame.crs)?, frame, bounds)
             } else {
-                let points = if Some(path) == own { PointsOf::Cloud } else { PointsOf::Other };
-                loading.show_point_results(path, (read_point_results(path)?, points), frame, bounds)
+                loading.show_point_results(path, (read_point_results(path)?, PointsOf::Other), frame, bounds)
             }
         })?;
     }
@@ -243,6 +239,14 @@ fn show_results(files: &Files, frame: &Frame, bounds: &Bounds, loading: &Loading
             let raster = stages.run("reading results", 0, |control| merged_within(&plan, run, question, area, control));
             loading.show_raster(&run.join(question.name()), raster?, frame, bounds)?;
         }
+    }
+    // the columns of the cloud itself come last
+    let own =
+        files.clouds.first().filter(|path| path.is_file() && is_las(path) && has_point_results(*path).unwrap_or(false));
+    if let Some(path) = own {
+        stages.run("reading results", 0, |_| {
+            loading.show_point_results(path, (read_point_results(path)?, PointsOf::Cloud), frame, bounds)
+        })?;
     }
     Ok(())
 }
