@@ -239,6 +239,7 @@ async function main() {
     assert.match(command, /belvedere viewshed town\/cloud\.laz --observer 155000,463000 -o seen\.laz/);
     await alone.selectOption("#viewpoint", "1");
     await alone.waitForFunction((before) => belvedere.last.visible > before && belvedere.marks.length === 2, first, { timeout: 5000 });
+    await alone.waitForTimeout(300);
     assert.ok(await pixels(alone, [255, 176, 0]) > 500, "visible points are orange");
     await alone.keyboard.press("3");
     await answered(alone);
