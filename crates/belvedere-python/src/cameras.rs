@@ -11,7 +11,7 @@ use crate::work::run;
 use belvedere::apps::cameras::{
     CAMERA_HEIGHT, CAMERA_TARGET_HEIGHT, CoverageParams, CoverageTable, Goal, Lens, Level, Motion, Mount,
     MountingParams, Placement, PlacementParams, Pose, ROOF_CAMERA_HEIGHT, counted_weights, coverage, ground_places,
-    place_cameras, roof_places, sees_private,
+    leave_out_private, place_cameras, roof_places,
 };
 use belvedere::apps::eyes::{EyesReport, skip_unfit_eyes};
 use belvedere::apps::landmark::observer_cell_for;
@@ -224,17 +224,17 @@ impl Scene {
                 targets.weights.clone_from(weights);
             }
             let scene = inner.blockers(unproven, control)?;
-            let ground = cells.ground_within(&inner, (low, high), control)?;
+            let ground = match targets.ground() {
+                Some(ground) => ground.clone(),
+                None => cells.ground_within(&inner, (low, high), control)?,
+            };
             let standing = choice.poses(&inner, &scene, &ground, (&mounting, north, points), control)?;
             let mut candidates = standing.candidates.clone();
             if !choice.private.is_empty() {
-                let cameras: Vec<_> = candidates.iter().map(|pose| pose.camera).collect();
                 let private = choice.private(&inner, &ground, target_height);
-                let seen = control.stage("testing private places", cameras.len(), || {
-                    sees_private(&scene, &cameras, &private, &earth, control)
+                control.stage("testing private places", candidates.len(), || {
+                    leave_out_private(&scene, &mut candidates, &private, &earth, control)
                 })?;
-                let mut seen = seen.into_iter();
-                candidates.retain(|_| !seen.next().unwrap_or(true));
             }
             let allowed = candidates.len();
             if allowed == 0 {

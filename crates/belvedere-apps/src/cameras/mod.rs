@@ -4,7 +4,7 @@
 //! |---|---|
 //! | cameras that could be put up | [`MountingParams::poses_at`], [`ground_places`], [`roof_places`] |
 //! | what is to be covered | [`crate::targets`], [`keep_within`], [`counted_weights`] |
-//! | which of them covers what | [`coverage`], and [`sees_private`] for those that must not be put up |
+//! | which of them covers what | [`coverage`], and [`leave_out_private`] for those that must not be put up |
 //! | which to choose | [`place_cameras`] |
 //!
 //! A target is covered by a camera if it is in its picture, near enough for the wanted pixels per metre, and nothing hides it. Selections are made greedily and
@@ -26,5 +26,5 @@ pub use candidates::{
     counted_weights, ground_places, keep_within, roof_places,
 };
 pub use placement::{Goal, Placement, PlacementParams, place_cameras};
-pub use sights::{CoverageParams, CoverageReport, coverage, sees_private};
+pub use sights::{CoverageParams, CoverageReport, coverage, leave_out_private, sees_private};
 pub use table::CoverageTable;

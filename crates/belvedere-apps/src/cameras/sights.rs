@@ -1,6 +1,7 @@
 //! What cameras cover: lines of sight for what is in their pictures.
 
 use super::camera::Camera;
+use super::candidates::Pose;
 use super::table::{CoverageTable, check_size};
 use crate::targets::Targets;
 use crate::viewshed::{Observer, SightLimits, ViewshedParams, viewshed};
@@ -93,6 +94,23 @@ pub fn sees_private(
     let private = Targets { normals: None, ..private.clone() };
     let (table, _) = coverage(scene, &cameras, &private, &params, control)?;
     Ok((0..cameras.len()).map(|camera| table.covered_by(camera).next().is_some()).collect())
+}
+
+/// Leaves out of `poses` those whose cameras have any of the `private` places in their picture ([`sees_private`]).
+///
+/// # Errors
+/// Those of [`coverage`].
+pub fn leave_out_private(
+    scene: &MedialScene,
+    poses: &mut Vec<Pose>,
+    private: &Targets,
+    earth: &EarthParams,
+    control: &Control<'_>,
+) -> Result<()> {
+    let cameras: Vec<Camera> = poses.iter().map(|pose| pose.camera).collect();
+    let mut seen = sees_private(scene, &cameras, private, earth, control)?.into_iter();
+    poses.retain(|_| seen.next() == Some(false));
+    Ok(())
 }
 
 /// Targets, and how they are asked about.

@@ -12,7 +12,7 @@ use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::cameras::{
-    CoverageParams, Goal, Placement, PlacementParams, Pose, counted_weights, coverage, place_cameras, sees_private,
+    CoverageParams, Goal, Placement, PlacementParams, Pose, counted_weights, coverage, leave_out_private, place_cameras,
 };
 use belvedere::apps::landmark::observer_cell_for;
 use belvedere::ground::MapGrid;
@@ -51,12 +51,9 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     let given = candidates.len();
     if let Some(path) = &arguments.lens.private {
         let private = what::private(path, &arguments.targets, &site, &mut summary)?;
-        let cameras: Vec<_> = candidates.iter().map(|pose| pose.camera).collect();
-        let seen = stages.run("testing private places", cameras.len(), |control| {
-            sees_private(&blockers, &cameras, &private, &earth, control)
+        stages.run("testing private places", given, |control| {
+            leave_out_private(&blockers, &mut candidates, &private, &earth, control)
         })?;
-        let mut seen = seen.into_iter();
-        candidates.retain(|_| !seen.next().unwrap_or(true));
     }
     let mut section = Summary::default();
     section.add("count", given).add("see_private_places", given - candidates.len()).add("existing", existing.len());
