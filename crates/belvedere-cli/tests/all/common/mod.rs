@@ -1,6 +1,8 @@
 //! Runs the program in a folder of its own, and a house to run it on.
 #![expect(clippy::unwrap_used, clippy::panic, reason = "tests stop at the first surprise")]
 
+pub(crate) mod page;
+
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
