@@ -1,4 +1,5 @@
-//! How much faster than a cast over every cell are the horizons of an elevation raster, 360 azimuths of a place, in 41 km of mountains at 10 m?
+//! How much faster than a cast over every cell are the horizons of an elevation raster, and the question whether it blocks a direction, in 41 km of
+//! mountains at 10 m?
 //!
 //! Run with `RAYON_NUM_THREADS=1`: only one of the two uses threads.
 #![allow(missing_docs, reason = "the macros of criterion write functions without")]
@@ -6,37 +7,25 @@
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "indices of cells")]
 
 use belvedere::ElevationGrid;
-use belvedere::query::{EarthParams, FarTerrain};
+use belvedere::apps::sky_view::SkyDirections;
+use belvedere::control::Control;
+use belvedere::medial::MedialBalls;
+use belvedere::query::{BlockRule, EarthParams, FarTerrain, MedialScene};
 use belvedere::random::uniform;
-use belvedere::raster::Raster;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use mountains::mountains;
 use std::f64::consts::TAU;
+
+#[path = "../../belvedere/tests/all/mountains.rs"]
+mod mountains;
 
 /// Nodes a side, and their distance, metres.
 const COUNT: usize = 4097;
 const CELL: f64 = 10.0;
 const AZIMUTHS: usize = 360;
 
-/// Ridges and valleys of all sizes, up to some 2000 m high, the largest 12 km wide.
-fn mountains() -> ElevationGrid {
-    let waves: Vec<[f64; 4]> = (0..14)
-        .map(|i| {
-            let width = 12_000.0 / 1.6f64.powi(i);
-            let turn = TAU * uniform(5, 2 * i as u64);
-            [turn.sin() / width, turn.cos() / width, uniform(5, 2 * i as u64 + 1), width / 12_000.0]
-        })
-        .collect();
-    let height = |i: usize| {
-        let (x, y) = ((i % COUNT) as f64 * CELL, (i / COUNT) as f64 * -CELL);
-        let ridge = |[a, b, phase, size]: &[f64; 4]| size * (1.0 - (TAU / 2.0 * (a * x + b * y + phase)).sin().abs());
-        (800.0 * waves.iter().map(ridge).sum::<f64>()) as f32
-    };
-    let heights = Raster::from_values(COUNT, COUNT, (0..COUNT * COUNT).map(height).collect()).unwrap();
-    ElevationGrid::new(heights, [0.0, 0.0], [CELL; 2]).unwrap()
-}
-
-/// The tangent of the horizon by a walk over all lines of the grid, with a height between two nodes on each.
-fn cast(grid: &ElevationGrid, place: [f64; 3], azimuth: f64, earth: &EarthParams) -> f64 {
+/// The tangent of the horizon by a walk over all lines of the grid, with a height between two nodes on each, as far as the first that is above `limit`.
+fn cast(grid: &ElevationGrid, place: [f64; 3], azimuth: f64, limit: f64, earth: &EarthParams) -> f64 {
     let heights = grid.heights().values();
     let (sin, cos) = azimuth.sin_cos();
     let step = [sin / CELL, -cos / CELL];
@@ -56,7 +45,7 @@ fn cast(grid: &ElevationGrid, place: [f64; 3], azimuth: f64, earth: &EarthParams
         spans[axis] += apart[axis];
         let along = start[1 - axis] + step[1 - axis] * span;
         let line = (start[axis] + step[axis] * span).round();
-        if !(along >= 0.0 && along < (COUNT - 1) as f64 && line >= 0.0 && line < COUNT as f64) {
+        if highest > limit || !(along >= 0.0 && along < (COUNT - 1) as f64 && line >= 0.0 && line < COUNT as f64) {
             return highest;
         }
         let (node, share) = (along as usize, along.fract());
@@ -68,7 +57,7 @@ fn cast(grid: &ElevationGrid, place: [f64; 3], azimuth: f64, earth: &EarthParams
 }
 
 fn horizons(c: &mut Criterion) {
-    let far = FarTerrain::default().with_grid(mountains(), None);
+    let far = FarTerrain::default().with_grid(mountains(COUNT, CELL, 2000.0), None);
     let (grid, earth) = (far.grid().unwrap(), EarthParams::default());
     let places: Vec<[f64; 3]> = (0..20)
         .map(|i| {
@@ -87,8 +76,37 @@ fn horizons(c: &mut Criterion) {
     });
     group.bench_function("every cell", |b| {
         let azimuth = |i: usize| 0.5 + i as f64 * TAU / AZIMUTHS as f64;
-        let all = |&place: &[f64; 3]| (0..AZIMUTHS).map(|i| cast(grid, place, azimuth(i), &earth)).sum::<f64>();
+        let all = |&place: &[f64; 3]| {
+            (0..AZIMUTHS).map(|i| cast(grid, place, azimuth(i), f64::INFINITY, &earth)).sum::<f64>()
+        };
         b.iter(|| places.iter().map(all).sum::<f64>());
+    });
+    group.finish();
+
+    let directions = SkyDirections::even(600).unwrap().directions;
+    let mut group = c.benchmark_group("is a direction blocked, of 600 over the sky and 20 places there");
+    group.sample_size(10);
+    group.throughput(Throughput::Elements((places.len() * directions.len()) as u64));
+    group.bench_function("maxima of blocks", |b| {
+        let blocked = |&place: &[f64; 3]| directions.iter().filter(|&&d| far.hides(place, d)).count();
+        b.iter(|| places.iter().map(blocked).sum::<usize>());
+    });
+    group.bench_function("every cell", |b| {
+        let is_blocked = |place: [f64; 3], [x, y, z]: [f64; 3]| {
+            let tangent = z / x.hypot(y);
+            cast(grid, place, x.atan2(y), tangent, &earth) > tangent
+        };
+        let blocked = |&place: &[f64; 3]| directions.iter().filter(|&&d| is_blocked(place, d)).count();
+        b.iter(|| places.iter().map(blocked).sum::<usize>());
+    });
+    // cells of 1 m side by side at the first place, in a scene without balls
+    let scene = MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap();
+    let scene = scene.with_far_terrain(far.clone());
+    let [x, y, z] = places[0].map(|v| v as f32);
+    let cells: Vec<[f32; 3]> = (0..512_u16).map(|i| [x + f32::from(i % 32), y + f32::from(i / 32), z]).collect();
+    group.throughput(Throughput::Elements((cells.len() * directions.len()) as u64));
+    group.bench_function("maxima of blocks, 512 cells of 1 m", |b| {
+        b.iter(|| scene.visibility_matrix(&cells, &directions, &Control::none()).unwrap());
     });
     group.finish();
 }

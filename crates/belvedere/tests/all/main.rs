@@ -35,6 +35,7 @@ mod masbcpp;
 mod medial_scene;
 mod mesh_targets;
 mod meshes;
+mod mountains;
 mod neighbors;
 mod orientation;
 mod outlines;
