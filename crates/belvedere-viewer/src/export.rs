@@ -141,9 +141,10 @@ fn viewpoints(scene: &Scene, sent: &PointCloud, params: &ExportParams, control: 
     let of_eye = |(&eye, place): (&[f64; 3], &[f64; 3])| {
         // without z the height follows from the ground
         let place = if place[2].is_nan() { &place[..2] } else { &place[..] };
-        if fault_of(&blockers, Some(&ground), eye).is_some() {
+        if let Some(fault) = fault_of(&blockers, Some(&ground), eye) {
+            let value = format!("{} ({fault})", typed(place));
             let expected = "inside the cloud, above the ground and outside obstacles";
-            return Err(Error::InvalidParameter { name: "the viewpoint", value: typed(place), expected });
+            return Err(Error::InvalidParameter { name: "the viewpoint", value, expected });
         }
         let observer = Observer { eye, limits: SightLimits::default() };
         let seen = viewshed(&blockers, &[observer], &sent.positions, &ViewshedParams::default(), control)?;
