@@ -64,6 +64,9 @@ pub struct Parts {
 /// Most parts of a node of a [`RayIndex`].
 pub const PARTS: usize = 8;
 
+/// Words of a node: see [`RayIndex::node_words`].
+pub const NODE_WORDS: usize = 20;
+
 /// What a node of a [`RayIndex`] is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
@@ -242,6 +245,35 @@ impl RayIndex {
             }
         }
         Some(Parts { parts, centers, half_sizes })
+    }
+
+    /// The nodes as words, for devices that trace rays themselves, in the layout of compressed nodes (Ylitie, Karras & Laine 2017) with lowest and highest sides
+    /// axis by axis: lowest corner from [`RayIndex::center`] (three f32); exponents of the steps along x, y, z and a bit for each part that is a
+    /// node (four bytes); first node; first row; the eight parts (a byte each, for rows their count as bits above five bits of their
+    /// offset); lowest and highest sides of the parts in steps, along x, y and z (eight bytes each).
+    pub fn node_words(&self) -> impl ExactSizeIterator<Item = [u32; NODE_WORDS]> + '_ {
+        self.tree.nodes.iter().map(|node| {
+            let [x, y, z] = node.p.to_array().map(f32::to_bits);
+            let [ex, ey, ez] = node.e;
+            let mut words = [0; NODE_WORDS];
+            let head =
+                [x, y, z, u32::from_le_bytes([ex, ey, ez, node.imask]), node.child_base_idx, node.primitive_base_idx];
+            words[..head.len()].copy_from_slice(&head);
+            let sides = [
+                &node.child_meta,
+                &node.child_min_x,
+                &node.child_max_x,
+                &node.child_min_y,
+                &node.child_max_y,
+                &node.child_min_z,
+                &node.child_max_z,
+            ];
+            let bytes = sides.into_iter().flat_map(|bytes| bytes.as_chunks::<4>().0);
+            for (word, bytes) in words[head.len()..].iter_mut().zip(bytes) {
+                *word = u32::from_le_bytes(*bytes);
+            }
+            words
+        })
     }
 
     /// The part of a ray inside the box of the scene, as the tree takes it, or `None` where it misses the box.

@@ -1,17 +1,19 @@
-//! The device as a backend: what it sweeps, and what happens when it cannot.
+//! The device as a backend: what it decides, and what happens when it cannot.
 
 use crate::device::{Device, DeviceInfo, DeviceKind, devices};
-use crate::sweep::{Loaded, Sweeper};
+use crate::lines::{Liner, Loaded};
 use belvedere_core::depth::DepthBounds;
-use belvedere_core::query::cpu::{Heading, Place, PreparedBalls, SpaceLayers, Swept, sweep_all};
-use belvedere_core::query::{Backend, BallTree, Prepared, Settled};
+use belvedere_core::query::cpu::PreparedBalls;
+use belvedere_core::query::{Backend, BallTree, Prepared, Profile, Settled, Viewers};
 use belvedere_data::control::Control;
 use belvedere_data::view::View;
 use belvedere_data::{Error, Result};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// Lines of sight from which on [`Choice::Automatic`] takes a device: to find one and to make it ready takes the time of some millions on the CPU.
-const WORTH_A_DEVICE: usize = 1 << 26;
+/// Lines of sight from which on [`Choice::Automatic`] looks for a device: to find one and to make it ready takes the time of some millions on the CPU.
+const WORTH_A_DEVICE: usize = 1 << 24;
+/// Lines of sight from which on a device that is ready is asked: a question to it takes the time of some thousands on the CPU.
+const WORTH_ASKING: usize = 1 << 14;
 
 /// Which device is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,9 +37,9 @@ struct Shared {
     choice: Choice,
     state: Mutex<State>,
     notes: Mutex<Vec<String>>,
-    /// The device that swept anything.
+    /// The device that decided anything.
     used: OnceLock<DeviceInfo>,
-    /// For tests: after so many headings the device fails.
+    /// For tests: after so many directions the device fails.
     fails_after: Option<usize>,
 }
 
@@ -45,7 +47,7 @@ struct Shared {
 enum State {
     /// Not yet needed.
     Unopened,
-    Ready(Arc<Sweeper>),
+    Ready(Arc<Liner>),
     /// There is none, or it failed.
     Gone,
 }
@@ -61,10 +63,10 @@ impl Gpu {
         match choice {
             Choice::Automatic => {}
             Choice::Number(number) => {
-                *gpu.shared.lock() = State::Ready(Arc::new(Sweeper::new(Device::open(number)?)?));
+                *gpu.shared.lock() = State::Ready(Arc::new(Liner::new(Device::open(number)?)?));
             }
             Choice::Gpu => {
-                gpu.shared.sweeper(usize::MAX);
+                gpu.shared.liner(usize::MAX);
             }
         }
         Ok(gpu)
@@ -75,9 +77,9 @@ impl Gpu {
     /// # Errors
     /// Those of [`Gpu::new`].
     #[doc(hidden)]
-    pub fn failing_after(number: usize, headings: usize) -> Result<Self> {
-        let gpu = Self::with_failure(Choice::Number(number), Some(headings));
-        *gpu.shared.lock() = State::Ready(Arc::new(Sweeper::new(Device::open(number)?)?));
+    pub fn failing_after(number: usize, directions: usize) -> Result<Self> {
+        let gpu = Self::with_failure(Choice::Number(number), Some(directions));
+        *gpu.shared.lock() = State::Ready(Arc::new(Liner::new(Device::open(number)?)?));
         Ok(gpu)
     }
 
@@ -96,30 +98,9 @@ impl Gpu {
     #[must_use]
     pub fn device(&self) -> Option<DeviceInfo> {
         match &*self.shared.lock() {
-            State::Ready(sweeper) => Some(sweeper.device.info.clone()),
+            State::Ready(liner) => Some(liner.device.info.clone()),
             State::Unopened | State::Gone => None,
         }
-    }
-
-    /// Sweeps `headings` through layers on the device: the same bits as [`sweep_all`]. For benches and tests; questions go through
-    /// [`Backend::prepare`].
-    ///
-    /// # Errors
-    /// [`Error::Cancelled`], and [`Error::Device`] where there is no device, or it fails.
-    pub fn sweep(
-        &self,
-        space: &SpaceLayers,
-        places: &[Option<Place>],
-        headings: &[Heading],
-        control: &Control<'_>,
-    ) -> Result<Vec<Swept>> {
-        let Some(sweeper) = self.shared.sweeper(usize::MAX) else {
-            return Err(Error::Device { what: "there is no graphics processor to sweep with".to_owned() });
-        };
-        let mut swept = Vec::with_capacity(headings.len());
-        let loaded = sweeper.load(space)?;
-        sweeper.sweep(space, &loaded, places, headings, control, &mut |of_heading| swept.push(of_heading))?;
-        Ok(swept)
     }
 
     /// What the CPU had to do instead, and why, a line each.
@@ -142,11 +123,11 @@ impl Shared {
     }
 
     /// The device for a question about so many lines of sight, made ready if it is not yet.
-    fn sweeper(&self, lines: usize) -> Option<Arc<Sweeper>> {
+    fn liner(&self, lines: usize) -> Option<Arc<Liner>> {
         let mut state = self.lock();
         if matches!(*state, State::Unopened) && (self.choice != Choice::Automatic || lines >= WORTH_A_DEVICE) {
             *state = match self.open() {
-                Ok(Some(sweeper)) => State::Ready(Arc::new(sweeper)),
+                Ok(Some(liner)) => State::Ready(Arc::new(liner)),
                 Ok(None) => State::Gone,
                 Err(error) => {
                     self.note(format!("{error}; the CPU does all instead, with the same results"));
@@ -155,12 +136,12 @@ impl Shared {
             };
         }
         match &*state {
-            State::Ready(sweeper) => Some(Arc::clone(sweeper)),
+            State::Ready(liner) => Some(Arc::clone(liner)),
             State::Unopened | State::Gone => None,
         }
     }
 
-    fn open(&self) -> Result<Option<Sweeper>> {
+    fn open(&self) -> Result<Option<Liner>> {
         let of_kind = |kind| move |info: &DeviceInfo| info.kind == kind;
         let found = devices();
         let separate = found.iter().find(|info| of_kind(DeviceKind::Separate)(info));
@@ -169,7 +150,7 @@ impl Shared {
             _ => separate.or_else(|| found.iter().find(|info| of_kind(DeviceKind::Integrated)(info))),
         };
         match chosen {
-            Some(info) => Ok(Some(Sweeper::new(Device::open(info.number)?)?)),
+            Some(info) => Ok(Some(Liner::new(Device::open(info.number)?)?)),
             None if self.choice == Choice::Automatic => Ok(None),
             None => Err(Error::Device { what: "there is no graphics processor with a driver".to_owned() }),
         }
@@ -178,13 +159,14 @@ impl Shared {
 
 impl Backend for Gpu {
     fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn Prepared>> {
-        let cpu = PreparedBalls::new(balls);
-        Ok(Box::new(OnDevice { cpu, shared: Arc::clone(&self.shared), loaded: Mutex::default() }))
+        let (tree, cpu) = (Arc::clone(balls), PreparedBalls::new(balls));
+        Ok(Box::new(OnDevice { tree, cpu, shared: Arc::clone(&self.shared), loaded: Mutex::default() }))
     }
 }
 
-/// Balls whose layers are in the memory of the device once they are needed there.
+/// Balls that are in the memory of the device once they are needed there.
 struct OnDevice {
+    tree: Arc<BallTree>,
     cpu: PreparedBalls,
     shared: Arc<Shared>,
     /// One question at a time: together they could need more memory than there is.
@@ -197,64 +179,75 @@ impl Prepared for OnDevice {
     }
 
     fn settle(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], control: &Control<'_>) -> Result<Settled> {
-        let lines = targets.len().saturating_mul(directions.len());
-        self.cpu.settle_by(targets, directions, control, &|space, places, headings, control| match self
-            .shared
-            .sweeper(lines)
-        {
-            Some(sweeper) => self.sweep(&sweeper, space, places, headings, control),
-            None => sweep_all(space, places, headings, control),
-        })
+        match self.decide(targets, Viewers::Directions(directions), control)? {
+            Some((settled, finished)) if finished == directions.len() => Ok(settled),
+            Some((mut settled, finished)) => {
+                let rest = directions.get(finished..).unwrap_or_default();
+                settled.set_directions(finished, &self.cpu.settle(targets, rest, control)?);
+                Ok(settled)
+            }
+            None => self.cpu.settle(targets, directions, control),
+        }
+    }
+
+    fn settle_few(&self, targets: &[[f32; 3]], viewers: Viewers<'_>, control: &Control<'_>) -> Result<Option<Settled>> {
+        let decided = self.decide(targets, viewers, control)?;
+        Ok(decided.filter(|(_, finished)| *finished == viewers.len()).map(|(settled, _)| settled))
     }
 }
 
 impl OnDevice {
-    /// Sweeps on the device; on the CPU what the device does not finish.
-    fn sweep(
+    /// What the device decides, and for how many of the viewers it did before it failed, if it did; `None` where it is not asked.
+    fn decide(
         &self,
-        sweeper: &Sweeper,
-        space: &SpaceLayers,
-        places: &[Option<Place>],
-        headings: &[Heading],
+        targets: &[[f32; 3]],
+        viewers: Viewers<'_>,
         control: &Control<'_>,
-    ) -> Result<Vec<Swept>> {
-        let mut swept = Vec::with_capacity(headings.len());
-        match self.sweep_on_device(sweeper, space, places, headings, control, &mut swept) {
+    ) -> Result<Option<(Settled, usize)>> {
+        let lines = targets.len().saturating_mul(viewers.len());
+        let is_worth_it = lines >= WORTH_ASKING && self.tree.rule().profile == Profile::Sphere;
+        let Some(liner) = is_worth_it.then(|| self.shared.liner(lines)).flatten() else { return Ok(None) };
+        let mut settled = Settled::new(targets.len(), viewers.len());
+        let mut finished = 0;
+        let mut done = |free: &[u32], blocked: &[u32]| {
+            settled.set_direction(finished, free, blocked);
+            finished += 1;
+        };
+        match self.decide_on(&liner, targets, viewers, control, &mut done) {
             Ok(()) => {
-                self.shared.used.get_or_init(|| sweeper.device.info.clone());
-                return Ok(swept);
+                self.shared.used.get_or_init(|| liner.device.info.clone());
             }
             Err(Error::Device { what }) => {
-                let name = &sweeper.device.info.name;
+                let name = &liner.device.info.name;
                 self.shared.note(format!("{name}: {what}; the CPU does the rest, with the same results"));
                 *self.shared.lock() = State::Gone;
             }
             Err(other) => return Err(other),
         }
-        let rest = headings.get(swept.len()..).unwrap_or_default();
-        swept.extend(sweep_all(space, places, rest, control)?);
-        Ok(swept)
+        Ok(Some((settled, finished)))
     }
 
-    fn sweep_on_device(
+    fn decide_on(
         &self,
-        sweeper: &Sweeper,
-        space: &SpaceLayers,
-        places: &[Option<Place>],
-        headings: &[Heading],
+        liner: &Liner,
+        targets: &[[f32; 3]],
+        viewers: Viewers<'_>,
         control: &Control<'_>,
-        swept: &mut Vec<Swept>,
+        done: &mut dyn FnMut(&[u32], &[u32]),
     ) -> Result<()> {
         let mut loaded = self.loaded.lock().unwrap_or_else(PoisonError::into_inner);
         let loaded = match &mut *loaded {
             Some(loaded) => loaded,
-            empty => empty.insert(sweeper.load(space)?),
+            empty => empty.insert(liner.load(&self.tree)?),
         };
-        let asked = headings.get(..self.shared.fails_after.unwrap_or(usize::MAX)).unwrap_or(headings);
-        sweeper.sweep(space, loaded, places, asked, control, &mut |of_heading| swept.push(of_heading))?;
-        if asked.len() < headings.len() {
-            return Err(Error::Device { what: "the device was lost: a test".to_owned() });
-        }
-        Ok(())
+        let Some(most) = self.shared.fails_after.filter(|most| *most < viewers.len()) else {
+            return liner.decide(loaded, targets, viewers, control, done);
+        };
+        let asked = match viewers {
+            Viewers::Directions(directions) => Viewers::Directions(directions.get(..most).unwrap_or_default()),
+            Viewers::Eyes(eyes) => Viewers::Eyes(eyes.get(..most).unwrap_or_default()),
+        };
+        liner.decide(loaded, targets, asked, control, done)?;
+        Err(Error::Device { what: "the device was lost: a test".to_owned() })
     }
 }

@@ -1,7 +1,10 @@
 //! The devices of this computer, and one made ready. All errors of wgpu end here, as lines of text.
 
 use belvedere_data::{Error, Result};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
+
+/// Bytes that are copied to a device at a time.
+const PART_BYTES: usize = 1 << 25;
 
 /// What a device is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +36,13 @@ pub struct DeviceInfo {
     pub most_bytes: u64,
 }
 
-fn instance() -> wgpu::Instance {
+/// The interfaces to devices, found once. Drivers were seen to crash where several threads look for devices at the same time: whoever does holds this.
+fn instance() -> MutexGuard<'static, wgpu::Instance> {
+    static INSTANCE: LazyLock<Mutex<wgpu::Instance>> = LazyLock::new(|| Mutex::new(new_instance()));
+    INSTANCE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn new_instance() -> wgpu::Instance {
     let mut wanted = wgpu::InstanceDescriptor::new_without_display_handle();
     wanted.backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
     // no layers of validation, which are for work on shaders
@@ -41,14 +50,14 @@ fn instance() -> wgpu::Instance {
     wgpu::Instance::new(wanted)
 }
 
-fn adapters() -> Vec<wgpu::Adapter> {
-    pollster::block_on(instance().enumerate_adapters(wgpu::Backends::all()))
+fn adapters(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
+    pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()))
 }
 
 /// All devices of this computer, in the order of their numbers.
 #[must_use]
 pub fn devices() -> Vec<DeviceInfo> {
-    adapters().iter().enumerate().map(|(number, adapter)| info_of(number, adapter)).collect()
+    adapters(&instance()).iter().enumerate().map(|(number, adapter)| info_of(number, adapter)).collect()
 }
 
 fn info_of(number: usize, adapter: &wgpu::Adapter) -> DeviceInfo {
@@ -105,7 +114,8 @@ impl Device {
     /// # Errors
     /// [`Error::Device`] where there is no such device, or the driver refuses.
     pub(crate) fn open(number: usize) -> Result<Self> {
-        let adapters = adapters();
+        let instance = instance();
+        let adapters = adapters(&instance);
         let count = adapters.len();
         let Some(adapter) = adapters.into_iter().nth(number) else {
             let what = format!("there is no device {number}; this computer has {count}, see `belvedere info`");
@@ -125,6 +135,44 @@ impl Device {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| of_errors.note(said(&error))));
         device.set_device_lost_callback(move |_, why| of_loss.note(format!("the device was lost: {why}")));
         Ok(Self { info, device, queue, trouble })
+    }
+}
+
+impl Device {
+    /// The largest buffer, bytes.
+    pub(crate) fn limit(&self) -> usize {
+        usize::try_from(self.info.most_bytes).unwrap_or(usize::MAX)
+    }
+
+    /// Waits for a piece of work, or for all.
+    ///
+    /// # Errors
+    /// [`Error::Device`] where the device is lost.
+    pub(crate) fn wait_for(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<()> {
+        let until = wgpu::PollType::Wait { submission_index, timeout: None };
+        match self.device.poll(until) {
+            Ok(_) => self.trouble.check(),
+            Err(error) => Err(Error::Device { what: format!("the device does not answer: {error}") }),
+        }
+    }
+
+    /// A buffer of `size` bytes that shaders read. On a device without memory left it holds nothing, and the trouble is noted.
+    pub(crate) fn filled_buffer(&self, size: usize, bytes: impl Iterator<Item = u8>) -> wgpu::Buffer {
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            // none is empty
+            size: size.next_multiple_of(16).max(16) as u64,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut bytes = bytes.peekable();
+        let mut at = 0;
+        while bytes.peek().is_some() {
+            let part: Vec<u8> = bytes.by_ref().take(PART_BYTES).collect();
+            self.queue.write_buffer(&buffer, at, &part);
+            at += part.len() as u64;
+        }
+        buffer
     }
 }
 

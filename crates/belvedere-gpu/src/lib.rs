@@ -1,8 +1,8 @@
 //! Lines of sight on a graphics processor, with the same bits as on the CPU.
 //!
-//! [`Gpu`] is a [`Backend`](belvedere_core::query::Backend): it sweeps many directions through the layers of space in whole numbers, which every device computes
-//! alike, and leaves all else to the CPU. When there is no device, too little memory, or the device is lost in the middle of the work, the CPU does what is
-//! left, and [`Gpu::notes`] says so in a line.
+//! [`Gpu`] is a [`Backend`](belvedere_core::query::Backend): it follows lines of sight through the tree of balls in single precision, decides those that rounding cannot change, and leaves
+//! the others to the CPU, which decides exactly. When there is no device, too little memory, or the device is lost in the middle of the work, the CPU does what
+//! is left, and [`Gpu::notes`] says so in a line.
 //!
 //! ```no_run
 //! use belvedere_core::query::MedialScene;
@@ -12,7 +12,7 @@
 //! # fn example(scene: MedialScene) -> belvedere_data::Result<()> {
 //! let gpu = Arc::new(Gpu::new(Choice::Gpu)?);
 //! let scene = scene.with_backend(gpu.clone());
-//! // ... questions about many directions ...
+//! // ... questions about many lines of sight ...
 //! for note in gpu.notes() {
 //!     // what the CPU had to do instead, and why
 //! }
@@ -24,7 +24,7 @@
 
 mod backend;
 mod device;
-mod sweep;
+mod lines;
 
 pub use backend::{Choice, Gpu};
 pub use device::{DeviceInfo, DeviceKind, devices};

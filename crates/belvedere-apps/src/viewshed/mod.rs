@@ -234,40 +234,43 @@ impl Asked<'_> {
     }
 
     fn band(&self, observers: &[Observer], threading: Threading, control: &Control<'_>) -> Result<Band> {
-        let mut band = Band { seen: vec![0; self.targets.len()], unproven: Vec::new(), seen_counts: Vec::new() };
-        for (number, observer) in observers.iter().enumerate() {
-            control.check()?;
-            let mut count = 0;
-            let mut note = |row: usize, answer: Answer| match self.params.unproven.settle(answer) {
-                Answer::Visible => {
-                    band.seen[row] |= 1 << number;
-                    count += 1;
-                }
-                #[expect(clippy::cast_possible_truncation, reason = "targets are numbered with 32 bits")]
-                Answer::Unproven => band.unproven.push(row as u32),
-                _ => {}
-            };
-            if !observer.eye.iter().all(|v| v.is_finite()) {
-                // a skipped observer
-            } else if self.bends(observer) || threading == Threading::Shared {
-                let answers = self.seen_by(observer, control)?;
-                answers.into_iter().enumerate().for_each(|(row, answer)| note(row, answer));
-            } else {
-                self.scene.visible_among(Viewer::Eye(observer.eye), self.tree, control, |place| {
-                    let target = self.tree.positions()[place].map(f64::from);
-                    if observer.limits.allow(observer.eye, target) {
-                        let answer = match self.params.unproven {
-                            UnprovenAs::Visible => Answer::Visible,
-                            _ => self.scene.answer_unblocked_from(observer.eye, target),
-                        };
-                        note(self.tree.rows()[place] as usize, answer);
-                    }
-                })?;
+        let (mut seen, mut unproven) = (vec![0; self.targets.len()], Vec::new());
+        let mut seen_counts = vec![0; observers.len()];
+        let mut note = |number: usize, row: usize, answer: Answer| match self.params.unproven.settle(answer) {
+            Answer::Visible => {
+                seen[row] |= 1 << number;
+                seen_counts[number] += 1;
             }
-            band.seen_counts.push(count);
-            control.advance(1);
+            #[expect(clippy::cast_possible_truncation, reason = "targets are numbered with 32 bits")]
+            Answer::Unproven => unproven.push(row as u32),
+            _ => {}
+        };
+        let can_look = |observer: &Observer| observer.eye.iter().all(|v| v.is_finite());
+        if threading == Threading::Shared || observers.iter().any(|observer| can_look(observer) && self.bends(observer))
+        {
+            for (number, observer) in observers.iter().enumerate() {
+                control.check()?;
+                if can_look(observer) {
+                    let answers = self.seen_by(observer, control)?;
+                    answers.into_iter().enumerate().for_each(|(row, answer)| note(number, row, answer));
+                }
+                control.advance(1);
+            }
+        } else {
+            let eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
+            let visit = |number: usize, place: usize| {
+                let (observer, target) = (&observers[number], self.tree.positions()[place].map(f64::from));
+                if observer.limits.allow(observer.eye, target) {
+                    let answer = match self.params.unproven {
+                        UnprovenAs::Visible => Answer::Visible,
+                        _ => self.scene.answer_unblocked_from(observer.eye, target),
+                    };
+                    note(number, self.tree.rows()[place] as usize, answer);
+                }
+            };
+            self.scene.visible_among_each(&eyes, self.tree, control, visit, |_| control.advance(1))?;
         }
-        Ok(band)
+        Ok(Band { seen, unproven, seen_counts })
     }
 
     /// Whether any line of sight of an observer is curved.

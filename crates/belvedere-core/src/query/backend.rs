@@ -35,6 +35,40 @@ pub trait Prepared: Send + Sync {
     /// # Errors
     /// As [`Prepared::depth`].
     fn settle(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], control: &Control<'_>) -> Result<Settled>;
+
+    /// What is certain of the lines of sight of each of `targets` to each of a few `viewers`, which stand in the place of directions in what is
+    /// returned; `None`, the default, where this backend is no faster than what is done without it: lines of sight one by one, or a tree of targets.
+    ///
+    /// # Errors
+    /// As [`Prepared::depth`].
+    fn settle_few(&self, targets: &[[f32; 3]], viewers: Viewers<'_>, control: &Control<'_>) -> Result<Option<Settled>> {
+        let _ = (targets, viewers, control);
+        Ok(None)
+    }
+}
+
+/// Viewers of one kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Viewers<'a> {
+    /// Infinitely far away, in the directions of these unit vectors.
+    Directions(&'a [[f64; 3]]),
+    /// At these places, local metres.
+    Eyes(&'a [[f64; 3]]),
+}
+
+impl Viewers<'_> {
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        let (Self::Directions(vectors) | Self::Eyes(vectors)) = self;
+        vectors.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
 }
 
 /// What is known of a line of sight.
@@ -58,7 +92,7 @@ pub(super) const BLOCK: usize = WORDS * WORD;
 /// A bit for each target of a block.
 pub(super) type Bits = [u64; WORDS];
 
-/// What a backend settled: for each target and direction whether the line of sight is free, blocked or still open.
+/// What a backend settled: for each target and direction, or viewer, whether the line of sight is free, blocked or still open.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
     direction_count: usize,
@@ -85,6 +119,35 @@ impl Settled {
             if let Some(bits) = bits.get_mut(at) {
                 bits[word] = bits[word] & !bit | if line == of { bit } else { 0 };
             }
+        }
+    }
+
+    /// Sets what is known of all lines of a direction: a bit for each target, 32 a word, of those that are free and of those that are blocked. Bits beyond the
+    /// last target must not be set.
+    pub fn set_direction(&mut self, direction: usize, free: &[u32], blocked: &[u32]) {
+        for (bits, words) in [(&mut self.free, free), (&mut self.blocked, blocked)] {
+            let of_direction = bits.iter_mut().skip(direction).step_by(self.direction_count.max(1));
+            for (bits, words) in of_direction.zip(words.chunks(2 * WORDS)) {
+                for (word, halves) in bits.iter_mut().zip(words.chunks(2)) {
+                    *word = halves.iter().rev().fold(0, |word, half| word << 32 | u64::from(*half));
+                }
+            }
+        }
+    }
+
+    /// Sets what is known of all lines of the directions from `first` on: what `known` holds of the same targets.
+    pub fn set_directions(&mut self, first: usize, known: &Self) {
+        let count = known.direction_count;
+        let parts = [(&mut self.free, &known.free), (&mut self.blocked, &known.blocked)];
+        for (bits, known) in parts {
+            for (bits, known) in bits.chunks_mut(self.direction_count.max(1)).zip(known.chunks(count.max(1))) {
+                for (bits, known) in bits.iter_mut().skip(first).zip(known) {
+                    *bits = *known;
+                }
+            }
+        }
+        for (range, known) in self.open_from.iter_mut().skip(first).zip(&known.open_from) {
+            *range = *known;
         }
     }
 

@@ -10,6 +10,7 @@
 mod beam;
 mod blockers;
 
+use super::backend::{Line, Settled, Viewers};
 use super::medial_scene::MedialScene;
 use super::target_tree::{LEAF, TargetNode, TargetTree};
 use super::{Answer, Viewer};
@@ -47,6 +48,10 @@ impl MedialScene {
     /// [`Error::Cancelled`].
     pub fn answer_among(&self, viewer: Viewer<'_>, targets: &TargetTree, control: &Control<'_>) -> Result<Vec<Answer>> {
         let sweep = Sweep::new(self, viewer, targets, control)?;
+        let settled = match viewer {
+            Viewer::Eye(eye) => self.settled_few(targets, Viewers::Eyes(&[eye]), control)?,
+            _ => None,
+        };
         let mut answers = vec![Answer::OutsideView; targets.len()];
         let subtrees = targets.subtrees(SHARE);
         let eye_outside = is_eye_outside(self, viewer);
@@ -57,7 +62,14 @@ impl MedialScene {
                 let places = targets.nodes[subtree].first..targets.nodes[subtree].first + targets.nodes[subtree].count;
                 let first = places.start;
                 let mut seen = vec![false; places.len()];
-                sweep.run(subtree, &mut |place| seen[place - first] = true);
+                match &settled {
+                    Some(settled) => {
+                        for (place, seen) in places.clone().zip(&mut seen) {
+                            *seen = self.sees(viewer, targets.positions()[place], settled.line(place, 0));
+                        }
+                    }
+                    None => sweep.run(subtree, &mut |place| seen[place - first] = true),
+                }
                 places
                     .map(|place| {
                         let target = targets.positions()[place];
@@ -94,17 +106,80 @@ impl MedialScene {
         let sweep = Sweep::new(self, viewer, targets, control)?;
         if !targets.nodes.is_empty() && !is_eye_outside(self, viewer) {
             sweep.run(0, &mut |place| {
-                let target = targets.positions()[place];
-                let is_hidden = (self.added.is_some() || !self.far_terrain.is_empty())
-                    && viewer
-                        .line_of_sight(place, target)
-                        .is_some_and(|(towards, range)| self.is_behind_others(target.map(f64::from), towards, range));
-                if !is_hidden && !self.is_outside_cloud(target.map(f64::from)) {
+                if !self.is_hidden_otherwise(viewer, targets.positions()[place]) {
                     visit(place);
                 }
             });
         }
         control.check()
+    }
+
+    /// The same for each of `eyes`, local metres, one after the other: `visit` gets the number of the eye too. An eye that is not finite sees nothing.
+    /// `looked` is called with the number of each eye after it.
+    ///
+    /// # Errors
+    /// As [`MedialScene::answer_among`].
+    pub fn visible_among_each(
+        &self,
+        eyes: &[[f64; 3]],
+        targets: &TargetTree,
+        control: &Control<'_>,
+        mut visit: impl FnMut(usize, usize),
+        looked: impl Fn(usize),
+    ) -> Result<()> {
+        let settled = self.settled_few(targets, Viewers::Eyes(eyes), control)?;
+        for (number, &eye) in eyes.iter().enumerate() {
+            control.check()?;
+            let viewer = Viewer::Eye(eye);
+            match &settled {
+                _ if !eye.iter().all(|v| v.is_finite()) => {}
+                None => self.visible_among(viewer, targets, control, |place| visit(number, place))?,
+                Some(_) if is_eye_outside(self, viewer) => {}
+                Some(settled) => {
+                    for (place, &target) in targets.positions().iter().enumerate() {
+                        let sees = self.sees(viewer, target, settled.line(place, number));
+                        if sees && !self.is_hidden_otherwise(viewer, target) {
+                            visit(number, place);
+                        }
+                    }
+                }
+            }
+            looked(number);
+        }
+        Ok(())
+    }
+
+    /// What the backend settles of the targets of a tree at once, if it is fast at that.
+    fn settled_few(
+        &self,
+        targets: &TargetTree,
+        viewers: Viewers<'_>,
+        control: &Control<'_>,
+    ) -> Result<Option<Settled>> {
+        if self.ball_count() == 0 {
+            return Ok(None);
+        }
+        self.prepared()?.settle_few(targets.positions(), viewers, control)
+    }
+
+    /// Whether no ball blocks the line of sight of a target of which `line` is known; true for one at the viewer itself.
+    pub(super) fn sees(&self, viewer: Viewer<'_>, target: [f32; 3], line: Line) -> bool {
+        match (line, viewer.line_of_sight(0, target)) {
+            (Line::Free, _) | (Line::Open, None) => true,
+            (Line::Blocked, _) => false,
+            (Line::Open, Some((towards, range))) => {
+                !self.tree().blocks(&self.ray(target.map(f64::from), towards, range))
+            }
+        }
+    }
+
+    /// Whether anything but balls hides a target, or it lies outside the cloud.
+    fn is_hidden_otherwise(&self, viewer: Viewer<'_>, target: [f32; 3]) -> bool {
+        let is_hidden = (self.added.is_some() || !self.far_terrain.is_empty())
+            && viewer
+                .line_of_sight(0, target)
+                .is_some_and(|(towards, range)| self.is_behind_others(target.map(f64::from), towards, range));
+        is_hidden || self.is_outside_cloud(target.map(f64::from))
     }
 
     /// Whether the view from `eye` of a target that no ball blocks is proven, both local metres; [`Answer::OutsideView`] where the two

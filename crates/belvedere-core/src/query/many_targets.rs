@@ -1,12 +1,15 @@
 //! Many targets of one viewer: the way of answering follows from how many there are.
 
+use super::backend::Viewers;
 use super::certified::{CertifiedMap, Scope};
 use super::target_tree::TargetTree;
 use super::{Answer, MedialScene, Viewer};
 use crate::blocking::Profile;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
+use belvedere_data::vector::unit;
 use belvedere_data::view::View;
+use rayon::prelude::*;
 
 /// Targets of an eye from which on ordering them into a tree costs less than the lines of sight that it saves.
 const TREE_FROM: usize = 10_000;
@@ -15,6 +18,8 @@ const TREE_FROM: usize = 10_000;
 const MAP_FROM: usize = 16_000_000;
 /// Pixel of these bounds, metres, where targets are many enough; smaller ones settle a little more but are more to draw.
 const PIXEL: f64 = 0.5;
+/// Targets handed to a thread at once.
+const CHUNK: usize = 1024;
 /// Targets for each pixel, at least.
 const TARGETS_PER_PIXEL: f64 = 16.0;
 
@@ -36,6 +41,11 @@ impl MedialScene {
                 control.advance(targets.len());
                 Ok(answers)
             }
+            Viewer::Direction(to_viewer)
+                if let Some(answers) = self.visible_by_backend(to_viewer, targets, control)? =>
+            {
+                Ok(answers)
+            }
             Viewer::Direction(to_viewer) if targets.len() >= MAP_FROM && self.params().profile == Profile::Sphere => {
                 self.visible_by_map(to_viewer, targets, control)
             }
@@ -44,6 +54,34 @@ impl MedialScene {
                 Ok(self.marked(viewer, targets, self.answer_each(targets, control, line)?))
             }
         }
+    }
+
+    /// The same by lines of sight that the backend settles, if it is fast at that.
+    fn visible_by_backend(
+        &self,
+        to_viewer: [f64; 3],
+        targets: &[[f32; 3]],
+        control: &Control<'_>,
+    ) -> Result<Option<Vec<Answer>>> {
+        let viewer = Viewer::Direction(to_viewer);
+        let Some(towards) = unit(to_viewer).filter(|_| self.ball_count() > 0) else { return Ok(None) };
+        let settled = self.prepared()?.settle_few(targets, Viewers::Directions(&[towards]), control)?;
+        let Some(settled) = settled else { return Ok(None) };
+        let mut answers = vec![Answer::OutsideView; targets.len()];
+        let chunks = answers.par_chunks_mut(CHUNK).zip(targets.par_chunks(CHUNK)).enumerate();
+        chunks.try_for_each(|(chunk, (answers, targets))| {
+            control.check()?;
+            for (i, (answer, &target)) in answers.iter_mut().zip(targets).enumerate() {
+                let Some((towards, range)) = viewer.line_of_sight(0, target) else { continue };
+                *answer = match self.sees(viewer, target, settled.line(CHUNK * chunk + i, 0)) {
+                    true => self.answer_unblocked(target.map(f64::from), towards, range),
+                    false => Answer::Blocked,
+                };
+            }
+            control.advance(targets.len());
+            Ok(())
+        })?;
+        Ok(Some(self.marked(viewer, targets, answers)))
     }
 
     /// The same by bounds of depth, for spheres.

@@ -9,10 +9,6 @@ mod space_layers;
 mod sweep;
 mod whole_cells;
 
-pub use space_layers::SpaceLayers;
-pub use sweep::{Swept, sweep_all};
-pub use whole_cells::{Heading, Place};
-
 use super::backend::{BLOCK, Backend, Bits, Prepared, Settled, WORD, WORDS};
 use super::ball_tree::BallTree;
 use super::lazy::Lazy;
@@ -23,7 +19,10 @@ use belvedere_data::control::Control;
 use belvedere_data::view::View;
 use nearby::{NEAR, Nearby};
 use rayon::prelude::*;
+use space_layers::SpaceLayers;
 use std::sync::Arc;
+use sweep::{Swept, sweep_all};
+use whole_cells::{Heading, Place};
 
 /// Directions from which on it pays to gather what is near a target, and to sweep them.
 const WORTH_GATHERING: usize = 16;
@@ -44,7 +43,7 @@ impl Backend for Cpu {
     }
 }
 
-/// Balls made ready for the processor. Another device that only sweeps takes over the rest from here ([`PreparedBalls::settle_by`]).
+/// Balls made ready for the processor: also what another device falls back to.
 pub struct PreparedBalls {
     tree: Arc<BallTree>,
     layers: Lazy<SpaceLayers>,
@@ -57,32 +56,6 @@ impl Prepared for PreparedBalls {
     }
 
     fn settle(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], control: &Control<'_>) -> Result<Settled> {
-        self.settle_by(targets, directions, control, &sweep_all)
-    }
-}
-
-/// Sweeps directions for targets, as [`sweep_all`]: the same bits for the same input.
-pub type Sweep<'a> =
-    &'a (dyn Fn(&SpaceLayers, &[Option<Place>], &[Heading], &Control<'_>) -> Result<Vec<Swept>> + Sync);
-
-impl PreparedBalls {
-    /// The balls of a tree.
-    #[must_use]
-    pub fn new(balls: &Arc<BallTree>) -> Self {
-        Self { tree: Arc::clone(balls), layers: Lazy::new() }
-    }
-
-    /// As [`Prepared::settle`], with directions swept by `sweep`, which is called once at most.
-    ///
-    /// # Errors
-    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled), and those of `sweep`.
-    pub fn settle_by(
-        &self,
-        targets: &[[f32; 3]],
-        directions: &[[f64; 3]],
-        control: &Control<'_>,
-        sweep: Sweep<'_>,
-    ) -> Result<Settled> {
         let mut settled = Settled::new(targets.len(), directions.len());
         let lines = targets.len() as f64 * directions.len() as f64;
         let is_worth_it = self.layers.is_made() || lines > WORTH_SWEEPING * self.tree.balls().len() as f64;
@@ -101,7 +74,7 @@ impl PreparedBalls {
             .map(|(direction, near)| Heading::new(layers, *direction, near.max(self.tree.rule().bias)))
             .collect();
         let steep: Vec<Heading> = headings.iter().flatten().cloned().collect();
-        let mut of_steep = sweep(layers, &places, &steep, control)?.into_iter();
+        let mut of_steep = sweep_all(layers, &places, &steep, control)?.into_iter();
         let swept: Vec<Option<Swept>> =
             headings.iter().map(|heading| heading.as_ref().and_then(|_| of_steep.next())).collect();
         let blocks =
@@ -124,6 +97,14 @@ impl PreparedBalls {
             }
         }
         Ok(settled)
+    }
+}
+
+impl PreparedBalls {
+    /// The balls of a tree.
+    #[must_use]
+    pub fn new(balls: &Arc<BallTree>) -> Self {
+        Self { tree: Arc::clone(balls), layers: Lazy::new() }
     }
 
     /// Blocks those lines of a block of targets that a ball near the target blocks.

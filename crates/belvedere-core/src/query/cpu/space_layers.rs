@@ -17,19 +17,19 @@ const MARGIN: f64 = 1e-3;
 const CHUNK: usize = 4096;
 
 /// Cells of space in level layers from the lowest up, rows from the south, cells from the west, 64 a word.
-pub struct SpaceLayers {
+pub(super) struct SpaceLayers {
     /// Lowest corner, local metres.
-    pub low: [f64; 3],
+    pub(super) low: [f64; 3],
     /// Side of a cell, metres.
-    pub cell: f64,
+    pub(super) cell: f64,
     /// Cells along each axis, margins among them: the lowest along x and y are empty.
-    pub size: [usize; 3],
+    pub(super) size: [usize; 3],
     /// Words of a row.
-    pub width: usize,
+    pub(super) width: usize,
     /// Bit i, j: whether any ball reaches one of the cells i, i + 1, j, j + 1.
-    pub reached: Vec<u64>,
+    pub(super) reached: Vec<u64>,
     /// Bit i, j: whether each of the cells i, i + 1, j, j + 1 is filled by one ball, however it gives way.
-    pub filled: Vec<u64>,
+    pub(super) filled: Vec<u64>,
     /// For each layer the first row that anything reaches, and the row after the last.
     taken: Vec<[usize; 2]>,
 }
@@ -39,7 +39,7 @@ impl SpaceLayers {
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-    pub fn new(balls: &[Ball], rule: &BlockRule, control: &Control<'_>) -> Result<Self> {
+    pub(super) fn new(balls: &[Ball], rule: &BlockRule, control: &Control<'_>) -> Result<Self> {
         let (low, high) = balls
             .par_iter()
             .with_min_len(CHUNK)

@@ -25,11 +25,11 @@ impl Descending {
 
 /// What a sweep settles: a bit for each target, 64 a word, in the order of the tree.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Swept {
+pub(super) struct Swept {
     /// No ball is reached beyond the near space of the target.
-    pub free: Vec<u64>,
+    pub(super) free: Vec<u64>,
     /// A ball blocks.
-    pub blocked: Vec<u64>,
+    pub(super) blocked: Vec<u64>,
 }
 
 /// A square of the lines of sight, as they meet the lowest level, a bit for each cell.
@@ -88,7 +88,7 @@ impl Lines {
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-pub fn sweep_all(
+pub(super) fn sweep_all(
     space: &SpaceLayers,
     places: &[Option<Place>],
     headings: &[Heading],

@@ -1,4 +1,4 @@
-//! Targets and directions in whole numbers: every device finds the same cell for the same line of sight, because no step rounds.
+//! Targets and directions in whole numbers: the same line of sight has the same cell wherever it is asked for, because no step rounds.
 //!
 //! A line of sight belongs to the cell in which it meets the lowest level of the layers. With the place (x, y, z) of its target in cells and the
 //! slope s of its direction this is x − z·s. Heights have 18 bits of fraction and slopes 26, so that their product has 44, as x and y have: the
@@ -24,17 +24,17 @@ const MOST_SLOPE: f64 = 24.0;
 
 /// A target, in cells from the corner of the layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub(super) struct Place {
     /// Along x and y, with 44 bits of fraction.
-    pub across: [i64; 2],
+    pub(super) across: [i64; 2],
     /// Above the lowest layer, with 18 bits of fraction.
-    pub height: i32,
+    pub(super) height: i32,
 }
 
 impl Place {
     /// Where a target, local metres, lies; `None` for one too far from the layers.
     #[must_use]
-    pub fn new(space: &SpaceLayers, position: [f32; 3]) -> Option<Self> {
+    pub(super) fn new(space: &SpaceLayers, position: [f32; 3]) -> Option<Self> {
         let at: [f64; 3] = std::array::from_fn(|i| (f64::from(position[i]) - space.low[i]) / space.cell);
         let is_near = at[0].abs() < MOST_ACROSS && at[1].abs() < MOST_ACROSS && at[2].abs() < MOST_HEIGHT;
         #[expect(clippy::cast_possible_truncation, reason = "the limits above fit")]
@@ -47,7 +47,7 @@ impl Place {
     /// The cell in which the line of sight of this target meets the lowest level, along x and y; `None` where it may be the next one.
     #[must_use]
     #[inline]
-    pub fn cell(&self, heading: &Heading) -> Option<[i32; 2]> {
+    pub(super) fn cell(&self, heading: &Heading) -> Option<[i32; 2]> {
         let line: [i32; 2] = std::array::from_fn(|i| {
             let line = self.across[i] - i64::from(self.height) * i64::from(heading.slope[i]);
             // 2¹⁹ cells and 12 bits of fraction are 31 bits
@@ -60,18 +60,18 @@ impl Place {
     /// The layer in which the line of sight leaves the near space of this target; below zero for one below all layers.
     #[must_use]
     #[inline]
-    pub fn layer(&self, heading: &Heading) -> i32 {
+    pub(super) fn layer(&self, heading: &Heading) -> i32 {
         (self.height + heading.rise) >> HEIGHT_BITS
     }
 }
 
 /// A direction that is swept.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Heading {
+pub(super) struct Heading {
     /// Cells that a line moves on in a layer along x and y, with 26 bits of fraction.
-    pub slope: [i32; 2],
+    pub(super) slope: [i32; 2],
     /// How many layers above its target a line leaves the near space of the target, with 18 bits of fraction.
-    pub rise: i32,
+    pub(super) rise: i32,
     /// The slope itself.
     slope_exact: [f64; 2],
 }
@@ -79,7 +79,7 @@ pub struct Heading {
 impl Heading {
     /// The unit vector `direction` for targets whose lines of sight are known up to `near` metres from them; `None` for one that is too flat.
     #[must_use]
-    pub fn new(space: &SpaceLayers, direction: [f64; 3], near: f64) -> Option<Self> {
+    pub(super) fn new(space: &SpaceLayers, direction: [f64; 3], near: f64) -> Option<Self> {
         let slope = [direction[0] / direction[2], direction[1] / direction[2]];
         let rise = near * direction[2] / space.cell;
         let is_swept = direction[2] > 0.0 && slope[0].abs().max(slope[1].abs()) <= MOST_SLOPE && rise < MOST_HEIGHT;
@@ -101,7 +101,7 @@ impl Heading {
     ///
     /// Those of a cell lie over two by two cells of the layer, the same ones until they pass a side of a cell to the east or north: a stretch
     /// runs from one such passage to the next.
-    pub fn moves_in(&self, layer: usize, moves: &mut Vec<[i64; 2]>) {
+    pub(super) fn moves_in(&self, layer: usize, moves: &mut Vec<[i64; 2]>) {
         let slope = self.slope_exact;
         let layer = layer as f64;
         moves.clear();

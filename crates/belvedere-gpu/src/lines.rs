@@ -1,0 +1,296 @@
+//! Lines of sight decided on a device: balls and their tree as words, and the words that come back. The arithmetic is in `lines.wgsl`.
+
+use crate::device::Device;
+use belvedere_core::query::{BallTree, Viewers};
+use belvedere_core::ray_index::NODE_WORDS;
+use belvedere_data::control::Control;
+use belvedere_data::model::FARTHEST;
+use belvedere_data::vector::dot;
+use belvedere_data::{Error, Result};
+use std::time::{Duration, Instant};
+
+/// Targets of a group of threads.
+const GROUP: usize = 64;
+/// Lines of sight of the first piece of work: below a tenth of a second on a small device, so that its picture does not freeze and no driver gives it up.
+const FIRST_LINES: usize = 1 << 20;
+/// Lines of sight of a piece, at most.
+const MOST_LINES: usize = 1 << 28;
+/// A piece that took no longer than this is followed by one of twice its size.
+const SHORT: Duration = Duration::from_millis(10);
+/// A piece that took longer than this is followed by one of half its size.
+const LONG: Duration = Duration::from_millis(80);
+/// Groups along an axis that every device allows.
+const MOST_GROUPS: usize = 65_535;
+/// Bytes of results that are made at a time, free and blocked lines each.
+const MOST_BYTES: usize = 1 << 25;
+/// Bytes of `Scene` in the shader.
+const SCENE_BYTES: usize = 64;
+/// Bytes of `Viewer` in the shader.
+const VIEWER_BYTES: usize = 32;
+/// How much farther than their sides boxes reach, as a share of how far from the middle of the tree lines start: the room that f32 needs, twice.
+const WIDENING: f64 = 2e-6;
+/// By how much the length of a direction may differ from one: what f64 rounds, and then some.
+const UNIT: f64 = 1e-12;
+
+/// A device with the shader.
+#[derive(Debug)]
+pub(crate) struct Liner {
+    pub(crate) device: Device,
+    pipeline: wgpu::ComputePipeline,
+}
+
+/// Balls and their tree in the memory of a device.
+#[derive(Debug)]
+pub(crate) struct Loaded {
+    nodes: wgpu::Buffer,
+    balls: wgpu::Buffer,
+    /// The first words of `Scene`.
+    scene: Vec<u8>,
+}
+
+impl Liner {
+    /// # Errors
+    /// [`Error::Device`] where the device cannot run the shader.
+    pub(crate) fn new(device: Device) -> Result<Self> {
+        let module = device.device.create_shader_module(wgpu::include_wgsl!("lines.wgsl"));
+        let pipeline = device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("lines"),
+            layout: None,
+            module: &module,
+            entry_point: Some("lines"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        device.trouble.check()?;
+        Ok(Self { device, pipeline })
+    }
+
+    /// Brings balls and their tree into the memory of the device.
+    ///
+    /// # Errors
+    /// [`Error::Device`] where they do not fit.
+    pub(crate) fn load(&self, tree: &BallTree) -> Result<Loaded> {
+        let (index, rule) = (tree.index(), tree.rule());
+        let nodes = index.node_words();
+        let (node_bytes, ball_bytes) = (4 * NODE_WORDS * nodes.len(), 16 * tree.balls().len());
+        let (bytes, most) = (node_bytes.max(ball_bytes), self.device.limit());
+        if bytes > most {
+            let what = format!("the scene takes {bytes} bytes of a device that allows {most}");
+            return Err(Error::Device { what });
+        }
+        let numbers = tree.balls().iter().flat_map(|ball| {
+            let [x, y, z] = ball.center;
+            [x, y, z, ball.radius].map(f32::to_le_bytes)
+        });
+        let loaded = Loaded {
+            nodes: self.device.filled_buffer(node_bytes, nodes.flatten().flat_map(u32::to_le_bytes)),
+            balls: self.device.filled_buffer(ball_bytes, numbers.flatten()),
+            scene: scene_bytes(index.center(), index.half_size(), rule.shell, rule.bias),
+        };
+        self.device.trouble.check()?;
+        Ok(loaded)
+    }
+
+    /// What is certain of the lines of sight of `targets`, (M, 3) local metres, to each of `viewers`. What is finished goes to `done` viewer by viewer: a
+    /// bit for each target, 32 a word, of the lines that are free and of those that are blocked.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`], and [`Error::Device`] where the device fails: what was handed to `done` before is right.
+    pub(crate) fn decide(
+        &self,
+        loaded: &Loaded,
+        targets: &[[f32; 3]],
+        viewers: Viewers<'_>,
+        control: &Control<'_>,
+        done: &mut dyn FnMut(&[u32], &[u32]),
+    ) -> Result<()> {
+        let bytes = 12 * targets.len();
+        if bytes > self.device.limit() {
+            let what = format!("{} targets at once are too many for the device", targets.len());
+            return Err(Error::Device { what });
+        }
+        if targets.is_empty() {
+            (0..viewers.len()).for_each(|_| done(&[], &[]));
+            return Ok(());
+        }
+        let on_device = self.device.filled_buffer(bytes, targets.iter().flat_map(|target| target_bytes(*target)));
+        let word_count = 2 * targets.len().div_ceil(GROUP);
+        let most = (MOST_BYTES.min(self.device.limit()) / (4 * word_count)).clamp(1, MOST_GROUPS);
+        let viewers: Vec<[u8; VIEWER_BYTES]> = match viewers {
+            Viewers::Directions(directions) => directions.iter().map(|direction| direction_bytes(*direction)).collect(),
+            Viewers::Eyes(eyes) => eyes.iter().map(|eye| eye_bytes(*eye)).collect(),
+        };
+        let mut piece = FIRST_LINES;
+        for viewers in viewers.chunks(most) {
+            let [free, blocked] = self.run(loaded, &on_device, targets.len(), viewers, &mut piece, control)?;
+            for (free, blocked) in free.chunks(word_count).zip(blocked.chunks(word_count)) {
+                done(free, blocked);
+            }
+        }
+        Ok(())
+    }
+
+    /// The words of free and of blocked lines, viewer after viewer; `piece` is how many lines a piece of work has, and follows from the time that it
+    /// takes.
+    fn run(
+        &self,
+        loaded: &Loaded,
+        targets: &wgpu::Buffer,
+        target_count: usize,
+        viewers: &[[u8; VIEWER_BYTES]],
+        piece: &mut usize,
+        control: &Control<'_>,
+    ) -> Result<[Vec<u32>; 2]> {
+        let device = &self.device.device;
+        let group_count = target_count.div_ceil(GROUP);
+        let word_count = 2 * group_count;
+        let bytes = 4 * (word_count * viewers.len()) as u64;
+        let result = || {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("results"),
+                size: bytes,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            })
+        };
+        let [free, blocked] = [result(), result()];
+        let read_back = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("results on their way back"),
+            size: 2 * bytes,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("scene"),
+            size: SCENE_BYTES as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let on_device = self.device.filled_buffer(VIEWER_BYTES * viewers.len(), viewers.iter().flatten().copied());
+        self.device.trouble.check()?;
+        let buffers = [&uniform, &loaded.nodes, &loaded.balls, targets, &on_device, &free, &blocked];
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .collect();
+        let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("lines"),
+            layout: &self.pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        let groups = group_count.min(MOST_GROUPS);
+        let mut before: Option<(wgpu::SubmissionIndex, Instant)> = None;
+        for first_group in (0..group_count).step_by(groups) {
+            let groups = groups.min(group_count - first_group);
+            let mut first_viewer = 0;
+            while first_viewer < viewers.len() {
+                control.check()?;
+                let count = (*piece / (GROUP * groups)).clamp(1, viewers.len() - first_viewer);
+                let of_piece = [target_count, first_viewer, word_count, 2 * first_group];
+                let scene: Vec<u8> = (loaded.scene.iter().copied())
+                    .chain(of_piece.into_iter().flat_map(|count| whole(count).to_le_bytes()))
+                    .chain([0; 4])
+                    .collect();
+                self.device.queue.write_buffer(&uniform, 0, &scene);
+                let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                {
+                    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+                    pass.set_pipeline(&self.pipeline);
+                    pass.set_bind_group(0, &bindings, &[]);
+                    pass.dispatch_workgroups(whole(groups), whole(count), 1);
+                }
+                let this = (self.device.queue.submit([encoder.finish()]), Instant::now());
+                // two pieces are under way at a time, so that the device does not wait
+                if let Some((before, start)) = before.replace(this) {
+                    self.device.wait_for(Some(before))?;
+                    *piece = match start.elapsed() {
+                        time if time < SHORT => MOST_LINES.min(2 * *piece),
+                        time if time > LONG => (*piece / 2).max(1),
+                        _ => *piece,
+                    };
+                }
+                self.device.trouble.check()?;
+                first_viewer += count;
+            }
+        }
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_buffer_to_buffer(&free, 0, &read_back, 0, bytes);
+        encoder.copy_buffer_to_buffer(&blocked, 0, &read_back, bytes, bytes);
+        self.device.queue.submit([encoder.finish()]);
+        read_back.slice(..).map_async(wgpu::MapMode::Read, |_| ());
+        self.device.wait_for(None)?;
+        self.device.trouble.check()?;
+        let words = |from: u64| -> Result<Vec<u32>> {
+            let bytes = read_back
+                .slice(from..from + bytes)
+                .get_mapped_range()
+                .map_err(|error| Error::Device { what: format!("no results come back: {error}") })?;
+            Ok(bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect())
+        };
+        Ok([words(0)?, words(bytes)?])
+    }
+}
+
+/// The words of `Scene` that are the same for all targets.
+fn scene_bytes(center: [f64; 3], half_size: [f64; 3], shell: f64, bias: f64) -> Vec<u8> {
+    let (rounded, rest) = split(center);
+    let size = half_size.into_iter().fold(0.0, f64::max);
+    let farthest = 4.0 * size;
+    let numbers = [
+        rounded[0],
+        rounded[1],
+        rounded[2],
+        single(shell),
+        rest[0],
+        rest[1],
+        rest[2],
+        single(WIDENING * (farthest + size)),
+        single(bias).next_down(),
+        single(bias).next_up(),
+        single(farthest),
+    ];
+    numbers.into_iter().flat_map(f32::to_le_bytes).collect()
+}
+
+/// `Viewer` of the shader for a unit vector. Lines of sight along one that is none stay open.
+fn direction_bytes(direction: [f64; 3]) -> [u8; VIEWER_BYTES] {
+    let is_unit = (dot(direction, direction) - 1.0).abs() < UNIT;
+    viewer_bytes(direction, if is_unit { 1 } else { 0 })
+}
+
+/// `Viewer` of the shader for an eye. Lines of sight to one that is not finite, or too far away, stay open.
+fn eye_bytes(eye: [f64; 3]) -> [u8; VIEWER_BYTES] {
+    viewer_bytes(eye, if eye.iter().all(|v| v.abs() <= f64::from(FARTHEST)) { 2 } else { 0 })
+}
+
+fn viewer_bytes(at: [f64; 3], kind: u32) -> [u8; VIEWER_BYTES] {
+    let at = if kind == 0 { [0.0; 3] } else { at };
+    let ([x, y, z], [rest_x, rest_y, rest_z]) = split(at);
+    let words = [x, y, z, f32::from_bits(kind), rest_x, rest_y, rest_z, 0.0];
+    let mut bytes = [0; VIEWER_BYTES];
+    for (bytes, word) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(words) {
+        *bytes = word.to_le_bytes();
+    }
+    bytes
+}
+
+/// A place as the sum of two in single precision: rounded, and what was rounded.
+fn split(place: [f64; 3]) -> ([f32; 3], [f32; 3]) {
+    let rounded = place.map(single);
+    (rounded, std::array::from_fn(|axis| single(place[axis] - f64::from(rounded[axis]))))
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the shader leaves room for what is rounded, or has it as well")]
+fn single(v: f64) -> f32 {
+    v as f32
+}
+
+/// A target as the shader reads it; the lines of sight of one that is not finite stay open.
+fn target_bytes(target: [f32; 3]) -> impl Iterator<Item = u8> {
+    target.into_iter().flat_map(|v| if v.is_finite() { v } else { f32::MAX }.to_le_bytes())
+}
+
+/// A count that is known to be small: targets and results are bounded by the size of buffers.
+fn whole(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}
