@@ -60,10 +60,10 @@ export function coloring(name, scene, answer) {
   }
 }
 
-export const ofAnswers = (counts) => {
+export const ofAnswers = (counts, title = "From the clicked place") => {
   const names = ANSWERS();
   const codes = [1, ...(counts.tells_unproven ? [2] : []), 0];
-  return { mode: 4, table: named(names, "#30343a"), legend: { title: "From the clicked place", keys: keys(names, codes) } };
+  return { mode: 4, table: named(names, "#30343a"), legend: { title, keys: keys(names, codes) } };
 };
 export const ofLight = () => ({ mode: 4, table: named(LIGHT, "#777777"), legend: { title: "Sun", keys: keys(LIGHT, [1, 0]) } });
 export const ofHours = (low, high) => ({

@@ -6,11 +6,11 @@ import { restore } from "./plan.js";
 import { offer } from "./results.js";
 import { $, page } from "./state.js";
 import { startTime } from "./time.js";
-import { changed, cloud, draw, mover, renderer } from "./view.js";
+import { changed, cloud, draw, renderer, showAll } from "./view.js";
 
 async function load(shown) {
   const { scene } = page;
-  mover.show(scene.low, scene.high);
+  showAll();
   cloud.own.size.value = Math.min(Math.max(scene.spacing * 1.8, 0.02), 5);
   cloud.own.most.value = 26 * renderer.getPixelRatio();
   cloud.own.heights.value.set(scene.low[2], scene.high[2]);

@@ -10,12 +10,12 @@ import { save } from "./save.js";
 import { $, canvas, page, root, TOOLS } from "./state.js";
 import { ofViewpoints } from "./viewpoints.js";
 import { again, isPlaying, setPlaying, showClock, step } from "./time.js";
-import { cloud, draw, mover, open, placeAt, resize, shownPlace, toFile } from "./view.js";
+import { cloud, draw, mover, open, placeAt, resize, showAll, shownPlace, toFile } from "./view.js";
 
 function theme(name) {
   root.dataset.theme = name;
   $("theme").textContent = name === "dark" ? "Light" : "Dark";
-  if (page.last && page.tool.name === "seen") page.answer = colors.ofAnswers(page.last);
+  if (page.last && page.tool.name === "seen") page.answer = colors.ofAnswers(page.last, page.last.viewpoint);
   paint();
 }
 function listen() {
@@ -39,8 +39,8 @@ function listen() {
   $("color").onchange = () => setColor($("color").value);
   $("when").onchange = () => setWhen($("when").value);
   $("motion").onchange = () => mover.setKind($("motion").value);
-  $("home").onclick = () => { $("motion").value = "orbit"; mover.show(page.scene.low, page.scene.high); };
-  $("top").onclick = () => { $("motion").value = "orbit"; mover.show(page.scene.low, page.scene.high, true); };
+  $("home").onclick = () => { $("motion").value = "orbit"; showAll(); };
+  $("top").onclick = () => { $("motion").value = "orbit"; showAll(true); };
   $("theme").onclick = () => theme(root.dataset.theme === "dark" ? "light" : "dark");
   $("picture").onclick = async () => save(`${page.scene.title.replace(/\..*$/, "")}.png`, await snapshot());
   $("balls").onclick = toggleBalls;
@@ -56,6 +56,13 @@ function listen() {
   $("hour").oninput = () => { page.time.minutes = Number($("hour").value); showClock(); again(); };
   $("zone").onchange = () => { page.time.zone = $("zone").value.trim(); again(); };
   addEventListener("resize", resize);
+  // panels stand below the bar and above the time, however many lines these take
+  const heights = new ResizeObserver(() => {
+    root.style.setProperty("--bar", `${$("bar").offsetHeight}px`);
+    root.style.setProperty("--time", `${$("timebar").offsetHeight}px`);
+  });
+  heights.observe($("bar"));
+  heights.observe($("timebar"));
   addEventListener("keydown", key);
 }
 function cycle(select) {

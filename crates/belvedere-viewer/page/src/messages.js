@@ -1,7 +1,7 @@
 // Messages and help.
 import * as api from "./api.js";
 import { escape } from "./charts.js";
-import { $, page } from "./state.js";
+import { $, page, TOOLS } from "./state.js";
 
 export function lost(error) {
   $("message").hidden = false;
@@ -14,15 +14,23 @@ export function report(error) {
   $("message").innerHTML = `<strong>${escape(error.message)}</strong><br><button>Close</button>`;
   $("message").querySelector("button").onclick = () => { $("message").hidden = true; };
 }
-const KEYS = [
-  ["1 to 9, 0", "Choose a question; plan"], ["Enter", "Ask at the centre of the view"], ["Esc", "Close the answer"], ["Arrow keys", "Turn"], ["W A S D, Q E", "Move; down and up"],
-  ["+ and −", "Zoom"], ["H", "Whole scene"], ["T", "From above"], ["C", "Next colour"], ["M", "Next way of moving"], ["V", "Before, after, change of a plan"], ["B", "Balls"], ["Space", "Play the day"],
-  ["< and >", "Earlier or later"], ["P", "Save a picture"], ["L", "Light or dark"], ["?", "This help"],
+const KEYS = () => [
+  [`1 to ${Math.min(TOOLS.length, 9)}${TOOLS.length > 9 ? ", 0" : ""}`, "Choose a question"], ["Enter", "Ask at the centre of the view"], ["Esc", "Close the answer"], ["Arrow keys", "Turn"], ["W A S D, Q E", "Move; down and up"],
+  ["+ and −", "Zoom"], ["H", "Whole scene"], ["T", "From above"], ["C", "Next colour"], ["M", "Next way of moving"],
+  ...(api.exported ? [] : [["V", "Before, after, change of a plan"], ["B", "Balls"]]),
+  ...(TOOLS.some(({ time }) => time === "hour") ? [["Space", "Play the day"], ["< and >", "Earlier or later"]] : []),
+  ["P", "Save a picture"], ["L", "Light or dark"], ["?", "This help"],
 ];
+const HOW = () => (api.exported
+  ? "Choose a question on the left. This file holds the answers that were computed when it was made, each with the command that gives the same."
+  : "Choose a question on the left, then click a place. Every answer is computed by the program on this computer, and shows the command that gives the same.");
+const MOVING = () => (matchMedia("(hover: none)").matches
+  ? "Orbit: one finger turns, two fingers move and zoom. Walk: eyes 1.7 m above the ground; drag to look around."
+  : "Orbit: drag to turn, right drag to move, wheel to zoom. Walk: eyes 1.7 m above the ground. Fly: W goes where you look.");
 export function help() {
   const box = $("keys");
-  box.innerHTML = `<h2>Belvedere</h2><p>Choose a question on the left, then click a place. Every answer is computed by the program on this computer, and shows the command that gives the same.</p>`
-    + `<table>${KEYS.map(([key, what]) => `<tr><td><kbd>${escape(key)}</kbd></td><td>${escape(what)}</td></tr>`).join("")}</table>`
-    + `<p>Orbit: drag to turn, right drag to move, wheel to zoom. Walk: eyes 1.7 m above the ground. Fly: W goes where you look.</p><form method="dialog"><button autofocus>Close</button></form>`;
+  box.innerHTML = `<h2>Belvedere</h2><p>${HOW()}</p>`
+    + `<table>${KEYS().map(([key, what]) => `<tr><td><kbd>${escape(key)}</kbd></td><td>${escape(what)}</td></tr>`).join("")}</table>`
+    + `<p>${MOVING()}</p><form method="dialog"><button autofocus>Close</button></form>`;
   box.showModal();
 }

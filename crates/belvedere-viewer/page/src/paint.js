@@ -75,9 +75,7 @@ page.cells = (answer) => {
     known.push([x + (i % columns) * cell, y - Math.floor(i / columns) * cell, z + 0.12]);
     values.push(answers[i]);
   });
-  const coloring = colors.ofAnswers({ tells_unproven: true });
-  coloring.legend.title = "From where the place is seen";
-  onLayer(known, values, cell * 1.25, coloring);
+  onLayer(known, values, cell * 1.25, colors.ofAnswers({ tells_unproven: true }, "From where the place is seen"));
 };
 page.hourCells = (answer) => {
   const v = new Float32Array(answer.body);

@@ -38,7 +38,7 @@ export const TOOLS = [
     ask: ([place]) => ["seen", { place }],
     change: { title: "What the plan changes", names: ["not visible before and after", "visible before and after", "visible only after", "visible only before"], gain: "come into view", loss: "are hidden" },
     show(answer, page) {
-      page.answer = colors.ofAnswers(answer);
+      page.answer = colors.ofAnswers(answer, answer.viewpoint);
       page.values(new Uint8Array(answer.body));
       const whole = answer.visible + answer.blocked + answer.unproven;
       return `<p class="verdict">${about(answer)}${percent(answer.visible, whole)} is visible</p><p class="note">of the points of the cloud. ${answer.isFirst ? FIRST(answer) : answer.tells_unproven ? UNPROVEN : ""}</p>${shares(answer, "Points", page)}`;

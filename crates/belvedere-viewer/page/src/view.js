@@ -41,6 +41,13 @@ export function resize() {
   draw();
 }
 
+// All of the scene, between the bars and beside the questions.
+export function showAll(flat = false) {
+  const bars = 2 * Math.max($("bar").offsetHeight, $("status").offsetHeight);
+  const shares = [1 - (1.2 * $("tools").offsetWidth) / canvas.clientWidth, 0.97 - bars / canvas.clientHeight];
+  mover.show(page.scene.low, page.scene.high, flat, shares.map((share) => Math.max(share, 0.3)));
+}
+
 // ---- coordinates ----
 export const toFile = (local) => local.map((v, i) => Number(((v + page.scene.origin[i]) / page.scene.metres_per_unit[i]).toFixed(3)));
 export const toLocal = (file) => file.map((v, i) => v * page.scene.metres_per_unit[i] - page.scene.origin[i]);
@@ -81,7 +88,7 @@ function overlay() {
   }
   $("marks").innerHTML = parts.join("");
   const forward = mover.camera.getWorldDirection(new Vector3());
-  const up = mover.camera.up.clone().applyQuaternion(mover.camera.quaternion);
+  const up = new Vector3(0, 1, 0).applyQuaternion(mover.camera.quaternion);
   const facing = Math.hypot(forward.x, forward.y) > 0.02 ? Math.atan2(forward.x, forward.y) : Math.atan2(up.x, up.y);
   const north = facing + ((page.scene?.grid_north_deg ?? 0) * Math.PI) / 180;
   $("needle").setAttribute("transform", `rotate(${(-north * 180) / Math.PI})`);

@@ -14,7 +14,8 @@ export function ofViewpoints(tool) {
     ask: () => ["seen", { viewpoint: chosen }],
     show(answer, page) {
       const { viewpoints } = api.exported;
-      page.marks = viewpoints.map(({ place }, i) => ({ at: toLocal(place), label: name(i), color: i === chosen ? "#d1495b" : undefined }));
+      page.marks = viewpoints.map(({ place }, i) => ({ at: toLocal(place), label: i === chosen ? `${name(i)}, shown` : name(i), color: i === chosen ? "#d1495b" : undefined }));
+      answer.viewpoint = `From viewpoint ${chosen + 1}`;
       const options = viewpoints.map((_, i) => `<option value="${i}"${i === chosen ? " selected" : ""}>${name(i)}</option>`).join("");
       return {
         html: `<div class="field"><label for="viewpoint">Viewpoint</label><select id="viewpoint">${options}</select></div>`
