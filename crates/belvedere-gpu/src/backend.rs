@@ -162,6 +162,14 @@ impl Backend for Gpu {
         let (tree, cpu) = (Arc::clone(balls), PreparedBalls::new(balls));
         Ok(Box::new(OnDevice { tree, cpu, shared: Arc::clone(&self.shared), loaded: Mutex::default() }))
     }
+
+    fn device(&self) -> Option<String> {
+        Self::device(self).map(|info| info.name)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        Self::notes(self)
+    }
 }
 
 /// Balls that are in the memory of the device once they are needed there.

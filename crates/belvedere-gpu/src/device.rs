@@ -156,20 +156,18 @@ impl Device {
         }
     }
 
-    /// A buffer of `size` bytes that shaders read. On a device without memory left it holds nothing, and the trouble is noted.
-    pub(crate) fn filled_buffer(&self, size: usize, bytes: impl Iterator<Item = u8>) -> wgpu::Buffer {
+    /// A buffer of these bytes that shaders read. On a device without memory left it holds nothing, and the trouble is noted.
+    pub(crate) fn filled_buffer(&self, bytes: &[u8]) -> wgpu::Buffer {
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             // none is empty
-            size: size.next_multiple_of(16).max(16) as u64,
+            size: bytes.len().next_multiple_of(16).max(16) as u64,
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let mut bytes = bytes.peekable();
         let mut at = 0;
-        while bytes.peek().is_some() {
-            let part: Vec<u8> = bytes.by_ref().take(PART_BYTES).collect();
-            self.queue.write_buffer(&buffer, at, &part);
+        for part in bytes.chunks(PART_BYTES) {
+            self.queue.write_buffer(&buffer, at, part);
             at += part.len() as u64;
         }
         buffer

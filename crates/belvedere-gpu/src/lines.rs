@@ -7,6 +7,8 @@ use belvedere_data::control::Control;
 use belvedere_data::model::FARTHEST;
 use belvedere_data::vector::dot;
 use belvedere_data::{Error, Result};
+use bytemuck::cast_slice;
+use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 /// Targets of a group of threads.
@@ -71,20 +73,22 @@ impl Liner {
     /// [`Error::Device`] where they do not fit.
     pub(crate) fn load(&self, tree: &BallTree) -> Result<Loaded> {
         let (index, rule) = (tree.index(), tree.rule());
-        let nodes = index.node_words();
-        let (node_bytes, ball_bytes) = (4 * NODE_WORDS * nodes.len(), 16 * tree.balls().len());
-        let (bytes, most) = (node_bytes.max(ball_bytes), self.device.limit());
+        let nodes: Vec<[u32; NODE_WORDS]> = index.node_words().collect();
+        let balls: Vec<[f32; 4]> = (tree.balls().iter())
+            .map(|ball| {
+                let [x, y, z] = ball.center;
+                [x, y, z, ball.radius]
+            })
+            .collect();
+        let (nodes, balls): (&[u8], &[u8]) = (cast_slice(&nodes), cast_slice(&balls));
+        let (bytes, most) = (nodes.len().max(balls.len()), self.device.limit());
         if bytes > most {
             let what = format!("the scene takes {bytes} bytes of a device that allows {most}");
             return Err(Error::Device { what });
         }
-        let numbers = tree.balls().iter().flat_map(|ball| {
-            let [x, y, z] = ball.center;
-            [x, y, z, ball.radius].map(f32::to_le_bytes)
-        });
         let loaded = Loaded {
-            nodes: self.device.filled_buffer(node_bytes, nodes.flatten().flat_map(u32::to_le_bytes)),
-            balls: self.device.filled_buffer(ball_bytes, numbers.flatten()),
+            nodes: self.device.filled_buffer(nodes),
+            balls: self.device.filled_buffer(balls),
             scene: scene_bytes(index.center(), index.half_size(), rule.shell, rule.bias),
         };
         self.device.trouble.check()?;
@@ -113,7 +117,8 @@ impl Liner {
             (0..viewers.len()).for_each(|_| done(&[], &[]));
             return Ok(());
         }
-        let on_device = self.device.filled_buffer(bytes, targets.iter().flat_map(|target| target_bytes(*target)));
+        let finite = finite_targets(targets);
+        let on_device = self.device.filled_buffer(cast_slice(&finite));
         let word_count = 2 * targets.len().div_ceil(GROUP);
         let most = (MOST_BYTES.min(self.device.limit()) / (4 * word_count)).clamp(1, MOST_GROUPS);
         let viewers: Vec<[u8; VIEWER_BYTES]> = match viewers {
@@ -166,7 +171,7 @@ impl Liner {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let on_device = self.device.filled_buffer(VIEWER_BYTES * viewers.len(), viewers.iter().flatten().copied());
+        let on_device = self.device.filled_buffer(viewers.as_flattened());
         self.device.trouble.check()?;
         let buffers = [&uniform, &loaded.nodes, &loaded.balls, targets, &on_device, &free, &blocked];
         let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
@@ -285,9 +290,13 @@ fn single(v: f64) -> f32 {
     v as f32
 }
 
-/// A target as the shader reads it; the lines of sight of one that is not finite stay open.
-fn target_bytes(target: [f32; 3]) -> impl Iterator<Item = u8> {
-    target.into_iter().flat_map(|v| if v.is_finite() { v } else { f32::MAX }.to_le_bytes())
+/// Targets as the shader reads them; the lines of sight of one that is not finite stay open.
+fn finite_targets(targets: &[[f32; 3]]) -> Cow<'_, [[f32; 3]]> {
+    if targets.as_flattened().iter().all(|v| v.is_finite()) {
+        return Cow::Borrowed(targets);
+    }
+    let finite = |target: &[f32; 3]| target.map(|v| if v.is_finite() { v } else { f32::MAX });
+    Cow::Owned(targets.iter().map(finite).collect())
 }
 
 /// A count that is known to be small: targets and results are bounded by the size of buffers.

@@ -6,6 +6,7 @@
 mod arrays;
 mod cameras;
 mod cloud;
+mod device;
 mod energy;
 mod errors;
 mod landmark;
@@ -38,6 +39,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<scene::Scene>()?;
     module.add_class::<system::System>()?;
     module.add_function(wrap_pyfunction!(cloud::read, module)?)?;
+    module.add_function(wrap_pyfunction!(device::devices, module)?)?;
     module.add_function(wrap_pyfunction!(raster::write_geotiff, module)?)?;
     module.add_function(wrap_pyfunction!(simulate::simulate, module)?)?;
     Ok(())

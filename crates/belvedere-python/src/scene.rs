@@ -1,6 +1,7 @@
 //! Scenes: from clouds and ball files.
 
 use crate::cloud::{Cloud, Input, json};
+use crate::device::backend;
 use crate::errors::{belvedere_error, exception, wrong};
 use crate::landmark::local_ring;
 use crate::mesh::Mesh;
@@ -316,6 +317,25 @@ impl Scene {
             Ok(inner.model.clone().with_horizon(read_horizon(&path)?.turned(-of_grid)))
         })?;
         Ok(Self(Arc::new(Inner::new(model, Arc::clone(&self.0.cloud)))))
+    }
+
+    /// The same scene, whose lines of sight a device decides.
+    fn with_device(&self, py: Python<'_>, device: String) -> PyResult<Self> {
+        let inner = Arc::clone(&self.0);
+        let model = run(py, None, move |_| Ok(inner.model.clone().with_backend(backend(&device)?)))?;
+        Ok(Self(Arc::new(Inner::new(model, Arc::clone(&self.0.cloud)))))
+    }
+
+    /// The name of the device that is ready to be asked, if any is.
+    #[getter]
+    fn device(&self) -> Option<String> {
+        self.0.model.backend().and_then(|backend| backend.device())
+    }
+
+    /// What the processor had to do instead of the device, and why, a line each.
+    #[getter]
+    fn device_notes(&self) -> Vec<String> {
+        self.0.model.backend().map_or_else(Vec::new, |backend| backend.notes())
     }
 
     #[getter]

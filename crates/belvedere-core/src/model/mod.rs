@@ -106,6 +106,12 @@ impl SceneModel {
         self
     }
 
+    /// What settles the lines of sight of its scenes in bulk, if not the processor.
+    #[must_use]
+    pub fn backend(&self) -> Option<&Arc<dyn Backend>> {
+        self.backend.as_ref()
+    }
+
     /// The same model before the terrain of an elevation raster, local metres, which `name` names in errors: directions below the horizon of a target are blocked for it. Within the box of
     /// the cloud on the map, and a cell of the raster around it, terrain blocks nothing: what stands there the cloud tells. It is not saved.
     ///

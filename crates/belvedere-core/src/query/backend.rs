@@ -18,6 +18,16 @@ pub trait Backend: Send + Sync + std::fmt::Debug {
     /// # Errors
     /// What the device reports.
     fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn Prepared>>;
+
+    /// The name of the device that is ready to be asked; `None`, the default, for the processor.
+    fn device(&self) -> Option<String> {
+        None
+    }
+
+    /// What the processor had to do instead, and why, a line each.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// Balls made ready by a backend. What takes long to make is made on first use and kept.

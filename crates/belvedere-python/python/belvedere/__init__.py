@@ -12,6 +12,7 @@ from ._answer import Answer
 from ._cameras import Placement
 from ._cloud import Cloud, read
 from ._core import __version__
+from ._devices import Device, devices
 from ._errors import BelvedereError, BelvedereWarning
 from ._mesh import Mesh
 from ._raster import Raster, Rasters
@@ -25,6 +26,7 @@ __all__ = [
     "BelvedereError",
     "BelvedereWarning",
     "Cloud",
+    "Device",
     "Mesh",
     "Placement",
     "Raster",
@@ -34,6 +36,7 @@ __all__ = [
     "Table",
     "__version__",
     "city",
+    "devices",
     "read",
     "simulate",
 ]

@@ -274,6 +274,40 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         """
         return self._plan(self._core.with_terrain(os.fspath(path)), self.report)
 
+    def with_device(self, device: str | int = "auto") -> Scene:
+        """The same scene, whose lines of sight a graphics processor decides: the same results, sooner.
+
+        Wheels are built without graphics processors: the page on graphics processors tells how to build one with them.
+
+        Parameters
+        ----------
+        device : str or int
+            ``"auto"``: a graphics card, for questions of many lines of sight. ``"cpu"``. ``"gpu"``: the first graphics
+            card, or else integrated graphics; where there is none, the CPU, with a warning. A number: that of
+            :func:`belvedere.devices`.
+
+        Examples
+        --------
+        >>> scene.with_device("cpu").device is None
+        True
+        """
+        core = self._core.with_device(str(device))
+        for note in core.device_notes:
+            warnings.warn(note, BelvedereWarning, stacklevel=2)
+        scene = Scene._of(core, {} if self.cloud is None else self.cloud.report, self.report)
+        scene._planned = self._planned
+        return scene
+
+    @property
+    def device(self) -> str | None:
+        """The graphics processor that is ready to decide lines of sight; None for the CPU."""
+        return self._core.device
+
+    @property
+    def device_notes(self) -> list[str]:
+        """What the CPU had to do instead of the device, and why, a line each."""
+        return self._core.device_notes
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a ball file: ``.npz`` keeps every bit; ``.ply .laz .las`` are for looking at.
 
