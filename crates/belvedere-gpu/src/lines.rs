@@ -31,6 +31,10 @@ const SCENE_BYTES: usize = 64;
 const VIEWER_BYTES: usize = 32;
 /// How much farther than their sides boxes reach, as a share of how far from the middle of the tree lines start: the room that f32 needs, twice.
 const WIDENING: f64 = 2e-6;
+/// Kinds of viewers in the shader.
+const NOBODY: u32 = 0;
+const DIRECTION: u32 = 1;
+const EYE: u32 = 2;
 /// By how much the length of a direction may differ from one: what f64 rounds, and then some.
 const UNIT: f64 = 1e-12;
 
@@ -260,16 +264,16 @@ fn scene_bytes(center: [f64; 3], half_size: [f64; 3], shell: f64, bias: f64) -> 
 /// `Viewer` of the shader for a unit vector. Lines of sight along one that is none stay open.
 fn direction_bytes(direction: [f64; 3]) -> [u8; VIEWER_BYTES] {
     let is_unit = (dot(direction, direction) - 1.0).abs() < UNIT;
-    viewer_bytes(direction, if is_unit { 1 } else { 0 })
+    viewer_bytes(direction, if is_unit { DIRECTION } else { NOBODY })
 }
 
 /// `Viewer` of the shader for an eye. Lines of sight to one that is not finite, or too far away, stay open.
 fn eye_bytes(eye: [f64; 3]) -> [u8; VIEWER_BYTES] {
-    viewer_bytes(eye, if eye.iter().all(|v| v.abs() <= f64::from(FARTHEST)) { 2 } else { 0 })
+    viewer_bytes(eye, if eye.iter().all(|v| v.abs() <= f64::from(FARTHEST)) { EYE } else { NOBODY })
 }
 
 fn viewer_bytes(at: [f64; 3], kind: u32) -> [u8; VIEWER_BYTES] {
-    let at = if kind == 0 { [0.0; 3] } else { at };
+    let at = if kind == NOBODY { [0.0; 3] } else { at };
     let ([x, y, z], [rest_x, rest_y, rest_z]) = split(at);
     let words = [x, y, z, f32::from_bits(kind), rest_x, rest_y, rest_z, 0.0];
     let mut bytes = [0; VIEWER_BYTES];

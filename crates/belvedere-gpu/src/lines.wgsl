@@ -56,8 +56,9 @@ const FREE: u32 = 0u;
 const BLOCKED: u32 = 1u;
 const OPEN: u32 = 2u;
 
+// Kinds of viewers; all others are eyes.
+const NOBODY: u32 = 0u;
 const DIRECTION: u32 = 1u;
-const EYE: u32 = 2u;
 
 // What f32 may misplace a line beside a ball by, as a share of the distance of the centre plus the radius: 2^-19, and thrice that for a line to an eye,
 // whose direction is computed in f32.
@@ -102,7 +103,7 @@ fn block(ball: vec4<f32>, place: vec3<f32>, sight: Sight) -> u32 {
     if beside >= most + room {
         return FREE;
     }
-    let exit_most = along + room + (1.0 + ROOT_ROOM) * sqrt((most - beside + room) * (most + beside + room));
+    let exit_most = along + room + (1.0 + ROOT_ROOM) * sqrt(max(most - beside + room, 0.0) * (most + beside + room));
     if exit_most <= scene.bias_low {
         return FREE;
     }
@@ -112,7 +113,7 @@ fn block(ball: vec4<f32>, place: vec3<f32>, sight: Sight) -> u32 {
         if end_least >= sight.reach.y {
             return FREE;
         }
-        let end_most = along + room + (1.0 + ROOT_ROOM) * sqrt((radius - beside + room) * (radius + beside + room));
+        let end_most = along + room + (1.0 + ROOT_ROOM) * sqrt(max(radius - beside + room, 0.0) * (radius + beside + room));
         if end_most >= sight.reach.x {
             return OPEN;
         }
@@ -246,7 +247,7 @@ fn lines(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
         let place = vec3<f32>(targets[3u * number], targets[3u * number + 1u], targets[3u * number + 2u]);
         let viewer = viewers[viewer_number];
         var state = OPEN;
-        if viewer.kind != 0u {
+        if viewer.kind != NOBODY {
             state = line(place, sight_of(place, viewer));
         }
         if state == FREE {
