@@ -160,9 +160,9 @@ fn assert_eyes_are_equal_on(device: &DeviceInfo, tree: &Arc<BallTree>, targets: 
     let (on_cpu, on_device) = (seen(&scene), seen(&scene.with_backend(gpu)));
     let by_eye =
         |seen: &[(usize, usize)], eye: usize| seen.iter().filter(|(of, _)| *of == eye).copied().collect::<Vec<_>>();
-    for number in 0..eyes.len() {
+    for (number, eye) in eyes.iter().enumerate() {
         let [cpu, gpu] = [&on_cpu.0, &on_device.0].map(|seen| by_eye(seen, number));
-        assert!(gpu == cpu, "{what} on {}: {:?} sees other targets", device.name, eyes[number]);
+        assert!(gpu == cpu, "{what} on {}: {eye:?} sees other targets", device.name);
     }
     assert!(on_device.1 == on_cpu.1, "{what} on {}: answers among a tree of targets", device.name);
     assert!(on_device.2 == on_cpu.2, "{what} on {}: answers of many targets", device.name);

@@ -162,3 +162,21 @@ def test_rasters_and_tables_are_understood_by_other_packages(scene, folder, eye,
 def test_laspy_objects_and_paths_become_scenes(tile, scene):
     laspy = pytest.importorskip("laspy")
     assert repr(belvedere.Scene(laspy.read(tile))) == repr(belvedere.Scene(tile)) == repr(scene)
+
+
+def test_a_device_changes_no_result(scene, eye, targets):
+    """Wheels have no graphics processors: the CPU is named, all others are refused in words."""
+    other = scene.with_device("cpu")
+    assert other.device is None
+    assert other.device_notes == []
+    assert np.array_equal(other.visible(eye, targets), scene.visible(eye, targets))
+    with pytest.raises(belvedere.BelvedereError, match="auto, cpu, gpu, or the number of a device"):
+        scene.with_device("fast")
+    if found := belvedere.devices():
+        on_device = scene.with_device(found[0].number)
+        assert on_device.device == found[0].name
+        sky, same = scene.sky_view(targets=targets), on_device.sky_view(targets=targets)
+        assert all(np.array_equal(same[name], sky[name], equal_nan=True) for name in sky)
+    else:
+        with pytest.raises(belvedere.BelvedereError, match="without the cargo feature `gpu`"):
+            scene.with_device(0)
