@@ -4,7 +4,7 @@
 //! only, so that no application holds the matrix of all targets: memory stays bounded however many targets and directions there are. Rows do
 //! not depend on each other, and no result depends on how targets are cut into blocks.
 
-use crate::tree_light::TreeLight;
+use crate::tree_light::{Crowns, TreeLight};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
@@ -36,6 +36,72 @@ impl Obstacles<'_> {
     }
 }
 
+/// Obstacles that do not fit into memory, and are looked at part by part.
+pub trait ObstacleParts: Sync {
+    /// What crowns let through, where they do; `None` where trees are opaque.
+    fn crowns(&self) -> Option<Crowns>;
+
+    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and what each would see without trees where
+    /// these let light through: the bits that one scene of all parts would give. Progress counts targets, once for each matrix.
+    ///
+    /// # Errors
+    /// Those of [`MedialScene::visibility_matrix`] and of reading the parts.
+    fn look(
+        &self,
+        targets: &[[f32; 3]],
+        directions: &[[f64; 3]],
+        control: &Control<'_>,
+    ) -> Result<(VisibilityMatrix, Option<VisibilityMatrix>)>;
+}
+
+/// All that may stand between targets and the sky.
+#[derive(Clone, Copy)]
+pub enum Surroundings<'a> {
+    /// At once.
+    Whole(Obstacles<'a>),
+    /// Part by part.
+    InParts(&'a dyn ObstacleParts),
+}
+
+impl<'a> From<Obstacles<'a>> for Surroundings<'a> {
+    fn from(obstacles: Obstacles<'a>) -> Self {
+        Self::Whole(obstacles)
+    }
+}
+
+impl<'a> From<&'a MedialScene> for Surroundings<'a> {
+    fn from(scene: &'a MedialScene) -> Self {
+        Self::Whole(scene.into())
+    }
+}
+
+impl Surroundings<'_> {
+    /// What crowns let through, where they do; `None` where trees are opaque.
+    #[must_use]
+    pub fn crowns(&self) -> Option<Crowns> {
+        match self {
+            Self::Whole(obstacles) => obstacles.trees.map(|trees| trees.crowns),
+            Self::InParts(parts) => parts.crowns(),
+        }
+    }
+
+    fn look(
+        &self,
+        targets: &[[f32; 3]],
+        directions: &[[f64; 3]],
+        control: &Control<'_>,
+    ) -> Result<(VisibilityMatrix, Option<VisibilityMatrix>)> {
+        match self {
+            Self::Whole(obstacles) => {
+                let matrix = obstacles.scene.visibility_matrix(targets, directions, control)?;
+                let opaque = obstacles.trees.map(|trees| trees.opaque.visibility_matrix(targets, directions, control));
+                Ok((matrix, opaque.transpose()?))
+            }
+            Self::InParts(parts) => parts.look(targets, directions, control),
+        }
+    }
+}
+
 /// The rows of some targets.
 #[derive(Clone, Debug)]
 pub struct RowBlock {
@@ -48,20 +114,20 @@ pub struct RowBlock {
 }
 
 /// Asks which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and hands the rows to `fold`, block after
-/// block in the order of the targets. A target that is not finite sees nothing. Progress counts targets,
-/// [`Obstacles::matrix_count`] times each.
+/// block in the order of the targets. A target that is not finite sees nothing. Progress counts targets, twice each where trees let light
+/// through.
 ///
 /// # Errors
-/// Those of [`MedialScene::visibility_matrix`] and of `fold`, and [`Error::Cancelled`].
+/// Those of [`MedialScene::visibility_matrix`], of [`ObstacleParts::look`] and of `fold`, and [`Error::Cancelled`].
 pub fn fold_rows(
-    obstacles: Obstacles<'_>,
+    surroundings: Surroundings<'_>,
     targets: &[[f32; 3]],
     directions: &[[f64; 3]],
     control: &Control<'_>,
     fold: impl FnMut(RowBlock) -> Result<()>,
 ) -> Result<()> {
-    let of_target = directions.len().max(1) * obstacles.matrix_count();
-    fold_blocks(obstacles, targets, directions, (BLOCK_BITS / of_target).max(1), control, fold)
+    let of_target = directions.len().max(1) * (1 + usize::from(surroundings.crowns().is_some()));
+    fold_blocks(surroundings, targets, directions, (BLOCK_BITS / of_target).max(1), control, fold)
 }
 
 /// As [`fold_rows`], with blocks of `block` targets.
@@ -69,7 +135,7 @@ pub fn fold_rows(
 /// # Errors
 /// Those of [`fold_rows`], and [`Error::InvalidParameter`] for blocks without a target.
 pub fn fold_blocks(
-    obstacles: Obstacles<'_>,
+    surroundings: Surroundings<'_>,
     targets: &[[f32; 3]],
     directions: &[[f64; 3]],
     block: usize,
@@ -82,9 +148,7 @@ pub fn fold_blocks(
     }
     for (number, of_block) in targets.chunks(block).enumerate() {
         control.check()?;
-        let matrix = obstacles.scene.visibility_matrix(of_block, directions, control)?;
-        let without_trees =
-            obstacles.trees.map(|trees| trees.opaque.visibility_matrix(of_block, directions, control)).transpose()?;
+        let (matrix, without_trees) = surroundings.look(of_block, directions, control)?;
         let first = number * block;
         fold(RowBlock { rows: first..first + of_block.len(), matrix, without_trees })?;
     }

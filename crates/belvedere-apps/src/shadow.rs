@@ -1,6 +1,6 @@
 //! Shadow: what of the sun reaches a place, its disc taken as a point or as it is.
 
-use crate::rows::{Obstacles, check_normals, fold_rows, normals_of};
+use crate::rows::{Surroundings, check_normals, fold_rows, normals_of};
 use crate::targets::Targets;
 use crate::tree_light::{Season, through_crowns};
 use belvedere_core::query::{Answer, MedialScene, VisibilityMatrix};
@@ -65,7 +65,7 @@ impl ShadowSun {
 /// # Errors
 /// Those of [`fold_rows`] and [`lit_shares`].
 pub fn scene_shadow<'a>(
-    obstacles: impl Into<Obstacles<'a>>,
+    obstacles: impl Into<Surroundings<'a>>,
     targets: &Targets,
     suns: &[ShadowSun],
     edges: Edges,
@@ -81,9 +81,9 @@ pub fn scene_shadow<'a>(
         let mut first = 0;
         for ((lit, of_sun), sun) in lit.iter_mut().zip(&directions).zip(suns) {
             let mut shares = lit_shares(&block.matrix, first, of_sun, normals)?;
-            if let (Some(matrix), Some(trees)) = (&block.without_trees, obstacles.trees) {
+            if let (Some(matrix), Some(crowns)) = (&block.without_trees, obstacles.crowns()) {
                 let without = lit_shares(matrix, first, of_sun, normals)?;
-                shares = through_crowns(&shares, &without, trees.share(sun.season))?;
+                shares = through_crowns(&shares, &without, crowns.share(sun.season))?;
             }
             lit.extend(shares);
             first += of_sun.len();

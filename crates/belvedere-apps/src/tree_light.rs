@@ -136,14 +136,34 @@ impl Season {
     }
 }
 
-/// A scene without its vegetation, and what share of the light its vegetation lets through.
-pub struct TreeLight {
-    /// The balls that are not vegetation.
-    pub opaque: MedialScene,
+/// What crowns let through, and when.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crowns {
     /// What share of the light gets through a crown.
     pub transmissivity: Transmissivity,
     /// Whether trees carry leaves.
     pub leaves: Leaves,
+}
+
+impl Crowns {
+    /// Share of the light that gets through crowns in a season; `None` where a question has no date.
+    #[must_use]
+    pub fn share(&self, season: Option<Season>) -> f64 {
+        let foliage = match (self.leaves, season) {
+            (Leaves::Off, _) => Foliage::Bare,
+            (Leaves::ByDate, Some(Season { day_of_year, latitude })) => Foliage::on_day(day_of_year, latitude),
+            (Leaves::On, _) | (Leaves::ByDate, None) => Foliage::InLeaf,
+        };
+        self.transmissivity.of(foliage)
+    }
+}
+
+/// A scene without its vegetation, and what share of the light its vegetation lets through.
+pub struct TreeLight {
+    /// The balls that are not vegetation.
+    pub opaque: MedialScene,
+    /// What the vegetation lets through.
+    pub crowns: Crowns,
 }
 
 impl TreeLight {
@@ -159,18 +179,13 @@ impl TreeLight {
         control: &Control<'_>,
     ) -> Result<Self> {
         let opaque = model.scene_without_vegetation(rule, control)?;
-        Ok(Self { opaque, transmissivity, leaves })
+        Ok(Self { opaque, crowns: Crowns { transmissivity, leaves } })
     }
 
-    /// Share of the light that gets through crowns in a season; `None` where a question has no date.
+    /// As [`Crowns::share`].
     #[must_use]
     pub fn share(&self, season: Option<Season>) -> f64 {
-        let foliage = match (self.leaves, season) {
-            (Leaves::Off, _) => Foliage::Bare,
-            (Leaves::ByDate, Some(Season { day_of_year, latitude })) => Foliage::on_day(day_of_year, latitude),
-            (Leaves::On, _) | (Leaves::ByDate, None) => Foliage::InLeaf,
-        };
-        self.transmissivity.of(foliage)
+        self.crowns.share(season)
     }
 }
 

@@ -2,14 +2,16 @@
 
 use crate::grid::TileId;
 use crate::lines::Lines;
-use crate::obstacles::Obstacles;
+use crate::obstacles::{Found, whole_scene};
+use crate::parts::Parts;
 use crate::plan::Plan;
-use crate::question::{Asked, Question};
+use crate::question::{Asked, Light, Question};
 use crate::record::{Outcome, Record, Stage, Stamp};
 use crate::values::{UNPROVEN, Values};
 use crate::window;
 use belvedere::apps::eyes::skip_unfit_eyes;
 use belvedere::apps::irradiance::{irradiation_measures, season_irradiation};
+use belvedere::apps::rows::Surroundings;
 use belvedere::apps::shadow::{Edges, scene_shadow};
 use belvedere::apps::sky_view::{SKY_TARGET_HEIGHT, scene_sky_view};
 use belvedere::apps::sun_hours::scene_sun_hours;
@@ -19,7 +21,7 @@ use belvedere::clean::clean;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid, SurfaceParams, top_surface};
 use belvedere::io::atomic;
-use belvedere::query::{AddedMeshes, Answer};
+use belvedere::query::{AddedMeshes, Answer, MedialScene};
 use belvedere::raster::Raster;
 use belvedere::results::georeference;
 use belvedere::vector::sub;
@@ -39,6 +41,8 @@ pub(crate) struct Task<'a> {
     pub(crate) asked: &'a Asked,
     /// What is planned.
     pub(crate) added: Option<&'a AddedMeshes>,
+    /// Most balls that are asked together.
+    pub(crate) most_balls: usize,
 }
 
 /// Answers a question for the cells of a tile on top of what stands there, with the balls that are in the folder of the run, and writes the answer
@@ -61,7 +65,7 @@ fn area_of_cells(plan: &Plan, tile: TileId) -> crate::grid::Area {
 }
 
 fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Control<'_>) -> Result<Record> {
-    let Task { question, asked, added } = task;
+    let Task { question, asked, added, most_balls } = task;
     let core = plan.grid().core(tile);
     let nothing = |points: usize| Ok(Record { points, ..Record::default() });
     if Lines::of(asked, core, 0.0).is_empty() {
@@ -77,10 +81,19 @@ fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Con
     let known = targets.positions.iter().filter(|p| p[2].is_finite());
     let lowest = known.map(|p| f64::from(p[2])).fold(f64::INFINITY, f64::min);
     let lines = Lines::of(asked, core, lowest);
-    let obstacles = control.stage("reading balls", 0, || Obstacles::gather(plan, run, &lines, added, control))?;
-    let found = control.stage("testing lines of sight", cells, || ask(asked, &obstacles, &targets, control))?;
+    let (found, balls) = match asked {
+        Asked::Viewshed(observers) => {
+            let (scene, balls) = whole_scene(plan, run, &lines, added, control)?;
+            let look = || see(observers, (&scene, &balls), &targets, [ground.grid.width, ground.grid.height], control);
+            (control.stage("testing lines of sight", cells, look)?, balls)
+        }
+        Asked::Light(light) => {
+            let parts = Parts::around((plan, run, tile), &lines, added, most_balls, control)?;
+            lit(light, parts, &targets, [ground.grid.width, ground.grid.height], control)?
+        }
+    };
     if found.values.are_nothing() && found.unproven_cells == 0 {
-        return Ok(Record { points, damaged: obstacles.damaged, ..Record::default() });
+        return Ok(Record { points, damaged: balls.damaged, ..Record::default() });
     }
     let place = georeference(&ground.grid, &targets.frame);
     let path = Stage::Answer(question).result(run, tile);
@@ -88,9 +101,10 @@ fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Con
     Ok(Record {
         outcome: Outcome::Done,
         result: Some(Stamp::of(&path)?),
-        damaged: obstacles.damaged,
+        damaged: balls.damaged,
         points,
-        balls: obstacles.ball_count,
+        balls: balls.ball_count,
+        most_balls: balls.most_held,
         cells,
         unproven_cells: found.unproven_cells,
         skipped_observers: found.skipped_observers,
@@ -99,49 +113,53 @@ fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Con
 }
 
 /// What was found of the cells of a tile.
-struct Found {
+struct Answered {
     values: Values,
     unproven_cells: usize,
     skipped_observers: usize,
 }
 
-fn ask(asked: &Asked, obstacles: &Obstacles, targets: &Targets, control: &Control<'_>) -> Result<Found> {
-    let light = obstacles.of_light();
-    let (width, height) = match &targets.layout {
-        Layout::Cells(ground) => (ground.grid.width, ground.grid.height),
-        _ => (targets.len(), 1),
-    };
-    let (numbers, directions) = match asked {
-        Asked::Viewshed(observers) => return see(observers, obstacles, targets, [width, height], control),
-        Asked::Shadow(sun) => {
-            let lit = scene_shadow(light, targets, &[*sun], Edges::Hard, control)?.pop().unwrap_or_default();
-            let directions = std::slice::from_ref(&sun.to_sun);
-            if light.trees.is_none() {
-                return codes(&lit, directions, obstacles, targets, [width, height]);
-            }
-            (lit, directions)
-        }
-        Asked::SunRule { plan, site } => {
-            let sums = scene_sun_hours(light, targets, plan, Some(site), control)?;
+/// What of the light reaches targets, and what became of the balls.
+fn lit(
+    light: &Light,
+    parts: Parts<'_>,
+    targets: &Targets,
+    size: [usize; 2],
+    control: &Control<'_>,
+) -> Result<(Answered, Found)> {
+    let around = Surroundings::InParts(&parts);
+    let numbers = match light {
+        Light::Shadow(sun) => scene_shadow(around, targets, &[*sun], Edges::Hard, control)?.pop().unwrap_or_default(),
+        Light::SunRule { plan, site } => {
+            let sums = scene_sun_hours(around, targets, plan, Some(site), control)?;
             // the rule comes after the measures of its days
-            let is_met = sums.into_measures(plan, targets).pop().map(|measure| measure.values).unwrap_or_default();
-            return codes(&is_met, plan.directions(), obstacles, targets, [width, height]);
+            sums.into_measures(plan, targets).pop().map(|measure| measure.values).unwrap_or_default()
         }
-        Asked::Sky(sky) => (first(scene_sky_view(light, targets, sky, control)?.into_measures()), &sky.directions[..]),
-        Asked::SunHours { plan, site } => {
-            let sums = scene_sun_hours(light, targets, plan, Some(site), control)?;
-            (first(sums.into_measures(plan, targets)), plan.directions())
+        Light::Sky(sky) => first(scene_sky_view(around, targets, sky, control)?.into_measures()),
+        Light::SunHours { plan, site } => {
+            first(scene_sun_hours(around, targets, plan, Some(site), control)?.into_measures(plan, targets))
         }
-        Asked::Irradiance { seasons, directions } => {
-            let sums = season_irradiation(light, targets, seasons, control)?;
-            (first(irradiation_measures(&sums, 1)), &directions[..])
+        Light::Irradiance { seasons, .. } => {
+            first(irradiation_measures(&season_irradiation(around, targets, seasons, control)?, 1))
         }
     };
-    let is_unknown = unknown_towards(obstacles, targets, directions);
-    let unproven_cells =
-        numbers.iter().zip(&is_unknown).filter(|(v, is_unknown)| v.is_finite() && **is_unknown).count();
-    let known = numbers.iter().zip(&is_unknown).map(|(&v, &is_unknown)| if is_unknown { f32::NAN } else { v });
-    Ok(Found { values: Values::of_numbers(width, height, known)?, unproven_cells, skipped_observers: 0 })
+    let is_yes_or_no = match light {
+        Light::Shadow(_) => around.crowns().is_none(),
+        Light::SunRule { .. } => true,
+        Light::Sky(_) | Light::SunHours { .. } | Light::Irradiance { .. } => false,
+    };
+    let balls = parts.into_found();
+    let is_unknown = unknown_towards(&balls, targets, light.directions());
+    let answered =
+        if is_yes_or_no { codes(&numbers, &is_unknown, size)? } else { measured(&numbers, &is_unknown, size)? };
+    Ok((answered, balls))
+}
+
+/// Numbers of targets: those that missing balls may change are not known.
+fn measured(numbers: &[f32], is_unknown: &[bool], [width, height]: [usize; 2]) -> Result<Answered> {
+    let unproven_cells = numbers.iter().zip(is_unknown).filter(|(v, is_unknown)| v.is_finite() && **is_unknown).count();
+    let known = numbers.iter().zip(is_unknown).map(|(&v, &is_unknown)| if is_unknown { f32::NAN } else { v });
+    Ok(Answered { values: Values::of_numbers(width, height, known)?, unproven_cells, skipped_observers: 0 })
 }
 
 /// The first measure is what a question is named after.
@@ -149,32 +167,25 @@ fn first(measures: Vec<Measure>) -> Vec<f32> {
     measures.into_iter().next().map(|measure| measure.values).unwrap_or_default()
 }
 
-/// Codes of targets that are lit or not: those that missing balls may block in one of `directions` are unproven rather than lit.
-fn codes(
-    lit: &[f32],
-    directions: &[[f64; 3]],
-    obstacles: &Obstacles,
-    targets: &Targets,
-    [width, height]: [usize; 2],
-) -> Result<Found> {
-    let is_unknown = unknown_towards(obstacles, targets, directions);
+/// Codes of targets that are lit or not: those that missing balls may block are unproven rather than lit.
+fn codes(lit: &[f32], is_unknown: &[bool], [width, height]: [usize; 2]) -> Result<Answered> {
     let code = |(&lit, &is_unknown): (&f32, &bool)| match lit {
         lit if lit.is_nan() => None,
         lit if lit > 0.0 && is_unknown => Some(UNPROVEN),
         lit => Some(u8::from(lit > 0.0)),
     };
-    let codes: Vec<Option<u8>> = lit.iter().zip(&is_unknown).map(code).collect();
+    let codes: Vec<Option<u8>> = lit.iter().zip(is_unknown).map(code).collect();
     let unproven_cells = codes.iter().filter(|&&code| code == Some(UNPROVEN)).count();
-    Ok(Found { values: Values::of_codes(width, height, codes.into_iter())?, unproven_cells, skipped_observers: 0 })
+    Ok(Answered { values: Values::of_codes(width, height, codes.into_iter())?, unproven_cells, skipped_observers: 0 })
 }
 
 /// Of each target, whether missing balls may block it in any of `directions`.
-fn unknown_towards(obstacles: &Obstacles, targets: &Targets, directions: &[[f64; 3]]) -> Vec<bool> {
+fn unknown_towards(balls: &Found, targets: &Targets, directions: &[[f64; 3]]) -> Vec<bool> {
     let is_unknown = |position: &[f32; 3]| {
         let position = position.map(f64::from);
-        !obstacles.missing.is_empty()
+        !balls.missing.is_empty()
             && position.iter().all(|v| v.is_finite())
-            && directions.iter().any(|&direction| obstacles.is_unknown(position, direction, f64::INFINITY))
+            && directions.iter().any(|&direction| balls.is_unknown(position, direction, f64::INFINITY))
     };
     targets.positions.par_iter().with_min_len(CHUNK).map(is_unknown).collect()
 }
@@ -182,20 +193,20 @@ fn unknown_towards(obstacles: &Obstacles, targets: &Targets, directions: &[[f64;
 /// What observers see of targets.
 fn see(
     observers: &[Observer],
-    obstacles: &Obstacles,
+    (scene, balls): (&MedialScene, &Found),
     targets: &Targets,
     [width, height]: [usize; 2],
     control: &Control<'_>,
-) -> Result<Found> {
+) -> Result<Answered> {
     let mut observers = observers.to_vec();
     let mut eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
-    let skipped = skip_unfit_eyes(&obstacles.scene, None, &mut eyes, control)?.skipped;
+    let skipped = skip_unfit_eyes(scene, None, &mut eyes, control)?.skipped;
     observers.iter_mut().zip(eyes).for_each(|(observer, eye)| observer.eye = eye);
     let params = ViewshedParams::default().with_masks(Masks::Kept);
-    let seen = viewshed(&obstacles.scene, &observers, &targets.positions, &params, control)?;
+    let seen = viewshed(scene, &observers, &targets.positions, &params, control)?;
     let is_unknown = |target: [f32; 3], eye: [f64; 3]| {
         let target = target.map(f64::from);
-        !obstacles.missing.is_empty() && obstacles.is_unknown(target, sub(eye, target), 1.0)
+        !balls.missing.is_empty() && balls.is_unknown(target, sub(eye, target), 1.0)
     };
     let bit =
         |row: usize, number: usize| seen.masks.get(number / 32).is_some_and(|band| band[row] >> (number % 32) & 1 == 1);
@@ -222,7 +233,7 @@ fn see(
         }
     };
     let unproven_cells = unproven.iter().filter(|&&count| count > 0).count();
-    Ok(Found { values, unproven_cells, skipped_observers: skipped })
+    Ok(Answered { values, unproven_cells, skipped_observers: skipped })
 }
 
 /// The cells of a tile as targets on top of what stands there, or will.
@@ -276,16 +287,15 @@ mod tests {
     use belvedere::apps::viewshed::SightLimits;
     use belvedere::blocking::BlockRule;
     use belvedere::medial::MedialBalls;
-    use belvedere::query::MedialScene;
 
     #[test]
     fn views_that_missing_tiles_may_block_are_unproven_and_never_seen() {
         // a ball of 2 m in the east, and nothing known of a place in the north
-        let mut balls = MedialBalls::default();
-        balls.push(0, [10.0, 0.0, 2.0], 2.0, 0);
-        let scene = MedialScene::new(&balls, &BlockRule::carved()).unwrap();
+        let mut east = MedialBalls::default();
+        east.push(0, [10.0, 0.0, 2.0], 2.0, 0);
+        let scene = MedialScene::new(&east, &BlockRule::carved()).unwrap();
         let missing = vec![(Area { low: [-5.0, 10.0], high: [5.0, 20.0] }, 30.0)];
-        let obstacles = Obstacles { scene, trees: None, ball_count: 1, missing, damaged: Vec::new() };
+        let balls = Found { missing, ..Found::default() };
         let positions = vec![
             [-20.0, 0.0, 2.0],  // free
             [20.0, 0.0, 2.0],   // behind the ball
@@ -305,13 +315,13 @@ mod tests {
         };
         let limits = SightLimits { distance: [0.0, 50.0], ..SightLimits::default() };
         let low = Observer { eye: [0.0, 0.0, 2.0], limits };
-        let found = see(&[low], &obstacles, &targets, [7, 1], &Control::none()).unwrap();
+        let found = see(&[low], (&scene, &balls), &targets, [7, 1], &Control::none()).unwrap();
         let Values::Codes(codes) = &found.values else { panic!("codes of one observer") };
         assert_eq!(codes.values(), [1, 0, 2, 1, 1, 255, 255]);
         assert_eq!((found.unproven_cells, found.skipped_observers), (1, 0));
         // another high above, and one inside the ball, which sees nothing
         let observers = [low, Observer { eye: [0.0, 0.0, 80.0], limits }, Observer { eye: [10.0, 0.0, 2.0], limits }];
-        let found = see(&observers, &obstacles, &targets, [7, 1], &Control::none()).unwrap();
+        let found = see(&observers, (&scene, &balls), &targets, [7, 1], &Control::none()).unwrap();
         let Values::Counts(counts) = &found.values else { panic!("counts of several observers") };
         assert_eq!(counts.values(), [2, 1, 1, 2, 2, 65_535, 65_535]);
         assert_eq!((found.unproven_cells, found.skipped_observers), (1, 1));

@@ -20,6 +20,7 @@ mod lines;
 mod make_balls;
 mod merge;
 mod obstacles;
+mod parts;
 mod plan;
 mod planned;
 mod question;

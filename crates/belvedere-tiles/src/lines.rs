@@ -35,10 +35,7 @@ impl<'a> Lines<'a> {
     /// The lines of sight of a question from cells over an area.
     pub(crate) fn of(asked: &'a Asked, targets: Area, lowest: f64) -> Self {
         let to = match asked {
-            Asked::Shadow(sun) => To::Directions(std::slice::from_ref(&sun.to_sun)),
-            Asked::Sky(sky) => To::Directions(&sky.directions),
-            Asked::SunHours { plan, .. } | Asked::SunRule { plan, .. } => To::Directions(plan.directions()),
-            Asked::Irradiance { directions, .. } => To::Directions(directions),
+            Asked::Light(light) => To::Directions(light.directions()),
             Asked::Viewshed(observers) => {
                 let is_near = |eye: &[f64; 3], reach: f64| targets.distance(&Area::at(*eye)) <= reach;
                 let near = observers.iter().filter(|observer| is_near(&observer.eye, observer.limits.distance[1]));
@@ -46,6 +43,11 @@ impl<'a> Lines<'a> {
             }
         };
         Self::new(targets, lowest, to)
+    }
+
+    /// Lines of sight from targets over an area, none lower than `lowest`, along unit vectors upward.
+    pub(crate) fn towards(targets: Area, lowest: f64, directions: &'a [[f64; 3]]) -> Self {
+        Self::new(targets, lowest, To::Directions(directions))
     }
 
     fn new(targets: Area, lowest: f64, to: To<'a>) -> Self {
@@ -82,6 +84,24 @@ impl<'a> Lines<'a> {
             return false;
         }
         directions.len() > FEW || directions.iter().any(|direction| self.meets_along(direction, area, rise))
+    }
+
+    /// Those of the directions in `columns` of `directions` in which something on one of the blocks of 64 m with the highest `tops` may block.
+    pub(crate) fn columns_meeting(
+        &self,
+        directions: &[[f64; 3]],
+        columns: &[usize],
+        tops: &[([i32; 2], f32)],
+    ) -> Vec<usize> {
+        let rise = |top: f32| f64::from(top) - self.lowest + ROOM;
+        let blocks: Vec<(Area, f64)> =
+            tops.iter().map(|&(block, top)| (block_area(block), rise(top))).filter(|(_, rise)| *rise >= 0.0).collect();
+        let is_met = |column: &usize| {
+            directions
+                .get(*column)
+                .is_some_and(|direction| blocks.iter().any(|(area, rise)| self.meets_along(direction, area, *rise)))
+        };
+        columns.iter().copied().filter(is_met).collect()
     }
 
     /// The same for one direction, of which it is known which way on the map it runs.

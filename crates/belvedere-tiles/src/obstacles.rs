@@ -4,97 +4,126 @@ use crate::grid::{Area, CELL, TileId, block_area};
 use crate::lines::{Lines, MOST_BALL, passes, tiles};
 use crate::make_balls::{make_balls, square_of};
 use crate::plan::Plan;
-use crate::planned::LightTrees;
 use crate::record::{Outcome, Record, Stage};
-use belvedere::apps::rows;
-use belvedere::apps::tree_light::TreeLight;
 use belvedere::blocking::BlockRule;
 use belvedere::control::Control;
 use belvedere::io::{Source, read_balls};
-use belvedere::medial::{MedialBalls, vegetation_of_transmission};
+use belvedere::medial::{MedialBalls, PULSE_TOUCH};
 use belvedere::model::ModelParts;
 use belvedere::query::{AddedMeshes, MedialScene};
 use belvedere::{Error, Result};
 use std::path::Path;
 
-/// What blocks lines of sight from a tile.
-pub(crate) struct Obstacles {
-    pub(crate) scene: MedialScene,
-    /// Where trees let light through, the rest of it.
-    pub(crate) trees: Option<TreeLight>,
+/// The balls of a tile as its record tells of them.
+pub(crate) struct BallTile {
+    pub(crate) tile: TileId,
     pub(crate) ball_count: usize,
+    /// Blocks of 64 m that balls reach into, and the highest top of them there, local metres.
+    pub(crate) tops: Vec<([i32; 2], f32)>,
+}
+
+/// What became of the balls that may matter for an answer.
+#[derive(Debug, Default)]
+pub(crate) struct Found {
+    /// Balls that were asked.
+    pub(crate) ball_count: usize,
+    /// Most of them that were held at a time, where they were asked in parts.
+    pub(crate) most_held: usize,
     /// Where balls are missing: what may stand there, and how high.
     pub(crate) missing: Vec<(Area, f64)>,
     /// Balls that were found damaged, and were made again.
     pub(crate) damaged: Vec<String>,
 }
 
-impl Obstacles {
-    /// Gathers the balls of the tiles that may matter for `lines`, as far as they are there, and what is `added`. Damaged ones are made again.
-    ///
-    /// # Errors
-    /// Those of [`MedialScene::new`] and of writing records, and [`Error::Cancelled`].
-    pub(crate) fn gather(
-        plan: &Plan,
-        run: &Path,
-        lines: &Lines<'_>,
-        added: Option<&AddedMeshes>,
-        control: &Control<'_>,
-    ) -> Result<Self> {
-        let mut balls = MedialBalls::default();
-        // those that are no vegetation, where trees let light through
-        let mut opaque = plan.trees.map(|_| MedialBalls::default());
-        let mut missing = Vec::new();
-        let mut damaged = Vec::new();
-        for tile in tiles(plan, lines) {
-            control.check()?;
-            let Some(record) = Record::read(plan, run, Stage::Balls, tile) else {
-                missing.extend(unknown(plan, tile));
-                continue;
-            };
-            let may_meet = |&(block, top): &([i32; 2], f32)| lines.may_meet(&block_area(block), top.into());
-            match record.outcome {
-                Outcome::Done if record.tops.iter().any(may_meet) => {
-                    match sound(plan, run, tile, &record, &mut damaged, control)? {
-                        Some(found) => {
-                            add(&mut balls, &found, lines, |_| true);
-                            if let Some(opaque) = &mut opaque {
-                                let vegetation = vegetation_of_transmission(&found.transmission);
-                                add(opaque, &found, lines, |row| vegetation.get(row) != Some(&true));
-                            }
-                        }
-                        None => missing.extend(unknown(plan, tile)),
-                    }
-                }
-                Outcome::Done | Outcome::Nothing => {}
-                Outcome::Failed(_) => missing.extend(unknown(plan, tile)),
-            }
-        }
-        let rule = if plan.facts.carves { BlockRule::carved() } else { BlockRule::uncarved() };
-        let ball_count = balls.len();
-        let scene = |balls: &MedialBalls| {
-            let scene = control.stage("indexing balls", balls.len(), || MedialScene::new(balls, &rule))?;
-            Ok(scene.with_added(added.cloned()))
-        };
-        let trees = match (plan.trees, opaque) {
-            (Some(LightTrees { transmissivity, leaves }), Some(opaque)) => {
-                Some(TreeLight { opaque: scene(&opaque)?, transmissivity, leaves })
-            }
-            _ => None,
-        };
-        Ok(Self { scene: scene(&balls)?, trees, ball_count, missing, damaged })
-    }
-
-    /// What light meets on its way.
-    pub(crate) fn of_light(&self) -> rows::Obstacles<'_> {
-        rows::Obstacles { scene: &self.scene, trees: self.trees.as_ref() }
-    }
-
+impl Found {
     /// Whether a line of sight from a target, local metres, may meet what is missing: along `way`, to an end after `length` times that or without
     /// end.
     pub(crate) fn is_unknown(&self, target: [f64; 3], way: [f64; 3], length: f64) -> bool {
         self.missing.iter().any(|(area, top)| passes(target, way, length, area, *top))
     }
+
+    /// Reads the balls of a tile, as far as they are there. Damaged ones are made again.
+    ///
+    /// # Errors
+    /// Those of writing records, and [`Error::Cancelled`].
+    pub(crate) fn read(
+        &mut self,
+        plan: &Plan,
+        run: &Path,
+        tile: TileId,
+        control: &Control<'_>,
+    ) -> Result<Option<ModelParts>> {
+        let balls = match Record::read(plan, run, Stage::Balls, tile) {
+            Some(record) if record.outcome == Outcome::Done => {
+                sound(plan, run, tile, &record, &mut self.damaged, control)?
+            }
+            _ => None,
+        };
+        if balls.is_none() {
+            self.missing.extend(unknown(plan, tile));
+        }
+        Ok(balls)
+    }
+}
+
+/// The tiles with balls that may matter for `lines`; those that are missing are noted in `found`.
+///
+/// # Errors
+/// [`Error::Cancelled`].
+pub(crate) fn ball_tiles(
+    plan: &Plan,
+    run: &Path,
+    lines: &Lines<'_>,
+    found: &mut Found,
+    control: &Control<'_>,
+) -> Result<Vec<BallTile>> {
+    let mut ball_tiles = Vec::new();
+    let may_meet = |&(block, top): &([i32; 2], f32)| lines.may_meet(&block_area(block), top.into());
+    for tile in tiles(plan, lines) {
+        control.check()?;
+        match Record::read(plan, run, Stage::Balls, tile) {
+            Some(Record { outcome: Outcome::Done, balls, tops, .. }) if tops.iter().any(may_meet) => {
+                ball_tiles.push(BallTile { tile, ball_count: balls, tops });
+            }
+            Some(Record { outcome: Outcome::Done | Outcome::Nothing, .. }) => {}
+            Some(Record { outcome: Outcome::Failed(_), .. }) | None => found.missing.extend(unknown(plan, tile)),
+        }
+    }
+    Ok(ball_tiles)
+}
+
+/// The scene of all balls that may matter for `lines` and of what is `added`, and what became of these balls.
+///
+/// # Errors
+/// Those of [`MedialScene::new`] and of writing records, and [`Error::Cancelled`].
+pub(crate) fn whole_scene(
+    plan: &Plan,
+    run: &Path,
+    lines: &Lines<'_>,
+    added: Option<&AddedMeshes>,
+    control: &Control<'_>,
+) -> Result<(MedialScene, Found)> {
+    let mut found = Found::default();
+    let mut balls = MedialBalls::default();
+    control.stage("reading balls", 0, || {
+        for BallTile { tile, .. } in ball_tiles(plan, run, lines, &mut found, control)? {
+            control.check()?;
+            if let Some(more) = found.read(plan, run, tile, control)? {
+                for row in may_block(&more.balls, lines) {
+                    push(&mut balls, &more.balls, row);
+                }
+            }
+        }
+        Ok(())
+    })?;
+    found.ball_count = balls.len();
+    let scene = control.stage("indexing balls", balls.len(), || MedialScene::new(&balls, &rule(plan)))?;
+    Ok((scene.with_added(added.cloned()), found))
+}
+
+/// How balls of tiles block.
+pub(crate) fn rule(plan: &Plan) -> BlockRule {
+    if plan.facts.carves { BlockRule::carved() } else { BlockRule::uncarved() }
 }
 
 /// The balls of a tile. Those that are not what was written are named and made again; `None` where that fails.
@@ -124,14 +153,19 @@ fn sound(
     }
 }
 
-/// Adds those of `more` that may block one of `lines`, and whose row `is_meant`.
-fn add(balls: &mut MedialBalls, more: &ModelParts, lines: &Lines<'_>, is_meant: impl Fn(usize) -> bool) {
-    let more = &more.balls;
-    for (row, (&center, &radius)) in more.centers.iter().zip(&more.radii).enumerate() {
-        if is_meant(row) && lines.may_meet(&square_of(center, radius), f64::from(center[2]) + f64::from(radius)) {
-            let touch = more.touch.get(row).copied().unwrap_or(belvedere::medial::PULSE_TOUCH);
-            balls.push(0, center, radius, touch);
-        }
+/// The rows of balls that may block one of `lines`.
+pub(crate) fn may_block<'a>(balls: &'a MedialBalls, lines: &'a Lines<'_>) -> impl Iterator<Item = usize> + 'a {
+    let rows = balls.centers.iter().zip(&balls.radii).enumerate();
+    rows.filter(|(_, (center, radius))| {
+        lines.may_meet(&square_of(**center, **radius), f64::from(center[2]) + f64::from(**radius))
+    })
+    .map(|(row, _)| row)
+}
+
+/// Adds a ball of `more`.
+pub(crate) fn push(balls: &mut MedialBalls, more: &MedialBalls, row: usize) {
+    if let (Some(&center), Some(&radius)) = (more.centers.get(row), more.radii.get(row)) {
+        balls.push(0, center, radius, more.touch.get(row).copied().unwrap_or(PULSE_TOUCH));
     }
 }
 

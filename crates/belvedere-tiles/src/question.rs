@@ -114,12 +114,29 @@ pub(crate) enum ValueKind {
 
 /// A question with all that follows from its parameters.
 pub(crate) enum Asked {
+    Light(Light),
+    Viewshed(Vec<Observer>),
+}
+
+/// What of the light of some directions is asked for.
+pub(crate) enum Light {
     Shadow(ShadowSun),
     Sky(SkyDirections),
     SunHours { plan: Box<SunPlan>, site: Site },
     SunRule { plan: Box<SunPlan>, site: Site },
     Irradiance { seasons: Vec<SeasonRadiation>, directions: Vec<[f64; 3]> },
-    Viewshed(Vec<Observer>),
+}
+
+impl Light {
+    /// Where it comes from, unit vectors.
+    pub(crate) fn directions(&self) -> &[[f64; 3]] {
+        match self {
+            Self::Shadow(sun) => std::slice::from_ref(&sun.to_sun),
+            Self::Sky(sky) => &sky.directions,
+            Self::SunHours { plan, .. } | Self::SunRule { plan, .. } => plan.directions(),
+            Self::Irradiance { directions, .. } => directions,
+        }
+    }
 }
 
 impl SunQuestion {
@@ -201,26 +218,26 @@ impl Question {
         let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
         match self {
             Self::Shadow { to_sun, season, .. } if to_sun[2] > 0.0 => {
-                Ok(Asked::Shadow(ShadowSun { to_sun: *to_sun, season: *season }))
+                Ok(Asked::Light(Light::Shadow(ShadowSun { to_sun: *to_sun, season: *season })))
             }
             Self::Shadow { to_sun, .. } => {
                 let elevation = to_sun[2].clamp(-1.0, 1.0).asin().to_degrees();
                 invalid("elevation of the sun", format!("{elevation:.3} degrees"), "above the horizon")
             }
-            Self::SkyView { directions } => Ok(Asked::Sky(SkyDirections::even(*directions)?)),
+            Self::SkyView { directions } => Ok(Asked::Light(Light::Sky(SkyDirections::even(*directions)?))),
             Self::SunHours(days) => {
                 let plan = SunPlan::new(days.schedule()?, Vec::new());
-                Ok(Asked::SunHours { plan: Box::new(plan), site: days.site })
+                Ok(Asked::Light(Light::SunHours { plan: Box::new(plan), site: days.site }))
             }
             Self::SunRule { name, rule, days } => {
                 let schedule = days.schedule()?;
                 let rules = vec![(name.clone(), SunRule::parse(rule)?, schedule.clone())];
-                Ok(Asked::SunRule { plan: Box::new(SunPlan::new(schedule, rules)), site: days.site })
+                Ok(Asked::Light(Light::SunRule { plan: Box::new(SunPlan::new(schedule, rules)), site: days.site }))
             }
             Self::Irradiance { site, radiation, params } => {
                 let seasons = radiation.seasons(&site.validate()?, params, control)?;
                 let directions = seasons.iter().flat_map(|season| season.radiation.directions()).collect();
-                Ok(Asked::Irradiance { seasons, directions })
+                Ok(Asked::Light(Light::Irradiance { seasons, directions }))
             }
             Self::Viewshed { eyes, .. } if eyes.is_empty() || !eyes.iter().flatten().all(|v| v.is_finite()) => {
                 invalid("observers", format!("{eyes:?}"), "one or more places with a height")

@@ -89,6 +89,9 @@ pub struct Record {
     pub points: usize,
     /// Balls that were made, or that could matter for the answer.
     pub balls: usize,
+    /// Most balls that were held at a time for an answer about light.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub most_balls: usize,
     /// Cells that are asked about.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub cells: usize,

@@ -45,6 +45,9 @@ pub struct RunParams<'a> {
     pub shard: Shard,
     /// Which steps.
     pub steps: Steps,
+    /// Most balls that are held at a time for an answer about light; no answer depends on it. `None` for as many as take no more memory than
+    /// making the balls of the largest tile.
+    pub most_balls: Option<usize>,
     /// Seconds on a clock of the program, for records; the library has none.
     pub seconds: &'a dyn Fn() -> f64,
 }
@@ -60,6 +63,8 @@ pub struct RunReport {
     pub already_done: usize,
     /// Cells whose answer is unproven because balls are missing.
     pub unproven_cells: usize,
+    /// Most balls that were held at a time for an answer about light.
+    pub most_balls: usize,
     /// Observers of viewsheds that stand inside an obstacle, and see nothing.
     pub skipped_observers: usize,
     /// Results that were damaged or gone, and were made again.
@@ -84,10 +89,11 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
         work.balls(tile)?;
     }
     let questions = if params.steps == Steps::All { &plan.questions[..] } else { &[] };
+    let most_balls = params.most_balls.unwrap_or_else(|| plan.balls_at_a_time());
     let added = if questions.is_empty() { None } else { plan.added()? };
     for question in questions {
         let asked = question.prepare(control)?;
-        let task = Task { question, asked: &asked, added: added.as_ref() };
+        let task = Task { question, asked: &asked, added: added.as_ref(), most_balls };
         for tile in own() {
             // what was unproven for lack of balls may have them now
             let record = work.settled(Stage::Answer(question), tile);
@@ -156,6 +162,7 @@ impl Work<'_> {
         self.report.answers_made += 1;
         self.report.unproven_cells += record.unproven_cells;
         self.report.damaged.extend(record.damaged);
+        self.report.most_balls = self.report.most_balls.max(record.most_balls);
         self.report.skipped_observers = self.report.skipped_observers.max(record.skipped_observers);
         Ok(())
     }

@@ -155,7 +155,7 @@ fn of_planes(
     let quiet = Quiet(control);
     for season in seasons {
         let directions = season.radiation.directions();
-        fold_blocks(obstacles, &places, &directions, places.len().max(1), &Control::new(&quiet), |block| {
+        fold_blocks(obstacles.into(), &places, &directions, places.len().max(1), &Control::new(&quiet), |block| {
             let own = of_season(&block, planes, &strings, season)?;
             if sums.is_empty() {
                 sums = own;

@@ -4,7 +4,7 @@ use super::ClearSky;
 use super::instants::{clear_instants, weather_instants};
 use super::irradiation::{Irradiation, irradiation};
 use super::period::{Instant, IrradianceParams, PeriodRadiation, PeriodReport};
-use crate::rows::{Obstacles, check_normals, fold_rows, normals_of};
+use crate::rows::{Obstacles, Surroundings, check_normals, fold_rows, normals_of};
 use crate::sun::{Date, Site, Zone};
 use crate::targets::Targets;
 use crate::tree_light::{Season, TreeLight};
@@ -129,7 +129,7 @@ fn split_year(year: i16, zone: &Zone, share: impl Fn(Date) -> f64) -> Result<Vec
 /// # Errors
 /// Those of [`fold_rows`] and [`irradiation`]; [`Error::NoPoints`] without any season.
 pub fn season_irradiation<'a>(
-    obstacles: impl Into<Obstacles<'a>>,
+    obstacles: impl Into<Surroundings<'a>>,
     targets: &Targets,
     seasons: &[SeasonRadiation],
     control: &Control<'_>,

@@ -4,7 +4,7 @@ mod directions;
 
 pub use directions::SkyDirections;
 
-use crate::rows::{Obstacles, check_normals, fold_rows, normals_of};
+use crate::rows::{Surroundings, check_normals, fold_rows, normals_of};
 use crate::targets::{Measure, Targets};
 use crate::tree_light::through_crowns;
 use belvedere_core::query::VisibilityMatrix;
@@ -57,7 +57,7 @@ impl SkyView {
 /// # Errors
 /// Those of [`fold_rows`] and [`sky_view`].
 pub fn scene_sky_view<'a>(
-    obstacles: impl Into<Obstacles<'a>>,
+    obstacles: impl Into<Surroundings<'a>>,
     targets: &Targets,
     sky: &SkyDirections,
     control: &Control<'_>,
@@ -69,9 +69,9 @@ pub fn scene_sky_view<'a>(
     fold_rows(obstacles, &targets.positions, &sky.directions, control, |block| {
         let normals = normals_of(normals, &block.rows);
         let mut own = sky_view(&block.matrix, sky, normals)?;
-        if let (Some(matrix), Some(trees)) = (&block.without_trees, obstacles.trees) {
+        if let (Some(matrix), Some(crowns)) = (&block.without_trees, obstacles.crowns()) {
             let without = sky_view(matrix, sky, normals)?;
-            let share = trees.share(None);
+            let share = crowns.share(None);
             own.factors = through_crowns(&own.factors, &without.factors, share)?;
             own.openness = through_crowns(&own.openness, &without.openness, share)?;
         }

@@ -1,10 +1,10 @@
 //! Suns of a period and of rules, asked about together, and the measures that follow.
 
 use super::{SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
-use crate::rows::{Obstacles, RowBlock, check_normals, fold_rows, normals_of};
+use crate::rows::{RowBlock, Surroundings, check_normals, fold_rows, normals_of};
 use crate::sun::{Site, SunSchedule};
 use crate::targets::{Measure, Targets};
-use crate::tree_light::{Season, TreeLight};
+use crate::tree_light::{Crowns, Season};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 
@@ -78,7 +78,7 @@ pub struct SunSums {
 
 impl SunSums {
     /// Adds the targets of `block`, whose columns are the directions of `plan` and which follow those added before. `normals`, (M, 3), are
-    /// those of all targets. Where `block` says what is seen without trees, `trees` with the site says what share of the light of each
+    /// those of all targets. Where `block` says what is seen without trees, `crowns` with the site say what share of the light of each
     /// day these let through.
     ///
     /// # Errors
@@ -88,13 +88,13 @@ impl SunSums {
         plan: &SunPlan,
         block: &RowBlock,
         normals: Option<&[[f32; 3]]>,
-        trees: Option<(&TreeLight, &Site)>,
+        crowns: Option<(Crowns, &Site)>,
     ) -> Result<()> {
         let normals = normals_of(normals, &block.rows);
-        let of = |schedule: &SunSchedule, params: &SunHoursParams| match (&block.without_trees, trees) {
-            (Some(opaque), Some((trees, site))) => {
+        let of = |schedule: &SunSchedule, params: &SunHoursParams| match (&block.without_trees, crowns) {
+            (Some(opaque), Some((crowns, site))) => {
                 let shares: Vec<f64> =
-                    schedule.days.iter().map(|day| trees.share(Some(Season::on(day.date, site)))).collect();
+                    schedule.days.iter().map(|day| crowns.share(Some(Season::on(day.date, site)))).collect();
                 sun_hours_through_crowns(&block.matrix, opaque, schedule, normals, params, &shares)
             }
             _ => sun_hours(&block.matrix, schedule, normals, params),
@@ -155,15 +155,15 @@ impl SunSums {
 /// # Errors
 /// Those of [`fold_rows`] and [`SunSums::add`], and [`Error::MissingAttribute`] for trees without a site.
 pub fn scene_sun_hours<'a>(
-    obstacles: impl Into<Obstacles<'a>>,
+    obstacles: impl Into<Surroundings<'a>>,
     targets: &Targets,
     plan: &SunPlan,
     site: Option<&Site>,
     control: &Control<'_>,
 ) -> Result<SunSums> {
     let obstacles = obstacles.into();
-    let trees = match (obstacles.trees, site) {
-        (Some(trees), Some(site)) => Some((trees, site)),
+    let crowns = match (obstacles.crowns(), site) {
+        (Some(crowns), Some(site)) => Some((crowns, site)),
         (None, _) => None,
         (Some(_), None) => {
             return Err(Error::MissingAttribute {
@@ -177,7 +177,7 @@ pub fn scene_sun_hours<'a>(
     check_normals(normals, targets.len())?;
     let mut sums = SunSums::default();
     fold_rows(obstacles, &targets.positions, plan.directions(), control, |block| {
-        sums.add(plan, &block, normals, trees)
+        sums.add(plan, &block, normals, crowns)
     })?;
     Ok(sums)
 }

@@ -93,7 +93,7 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
     let start = Instant::now();
     let shard = arguments.shard.map_or_else(Shard::default, |share| Shard { number: share.number, of: share.of });
     let steps = if arguments.balls_only { Steps::Balls } else { Steps::All };
-    let params = RunParams { shard, steps, seconds: &|| start.elapsed().as_secs_f64() };
+    let params = RunParams { shard, steps, most_balls: None, seconds: &|| start.elapsed().as_secs_f64() };
     let report = flagged("--shard", run_tiles(&plan, &arguments.run, &params, &stages.control()))?;
     if let Some((first, _)) = report.failed.split_first() {
         let listed = report.failed.iter().take(MOST_LISTED).map(|why| format!("\n  {why}")).collect::<String>();

@@ -120,7 +120,7 @@ fn look(
     let mut sums = SunSums::default();
     stages.run("testing sun", looks, |control| {
         write_matrix_rows(keep, &head, |sink| {
-            fold_rows(obstacles, &targets.positions, plan.directions(), control, |block| {
+            fold_rows(obstacles.into(), &targets.positions, plan.directions(), control, |block| {
                 (0..block.matrix.target_count()).try_for_each(|row| sink(block.matrix.row(row)))?;
                 sums.add(plan, &block, targets.normals.as_deref(), None)
             })

@@ -58,4 +58,4 @@ pub use segments::{Block, Blocker, Crossing, Enclosure, LineOfSight, merged_cros
 pub use skyline::SkylinePoint;
 pub use surface::{Piece, Sides, SurfacePieces};
 pub use visibility::{Sight, Viewer, Visibility};
-pub use visibility_matrix::VisibilityMatrix;
+pub use visibility_matrix::{FreeLines, VisibilityMatrix};

@@ -65,8 +65,13 @@ pub(crate) fn plan(clouds: &[PathBuf], folder: &Path, tile_size: f64, questions:
 }
 
 pub(crate) fn run_all(plan: &Plan, folder: &Path) -> RunReport {
-    run(plan, folder, &RunParams { shard: Shard::default(), steps: Steps::All, seconds: &|| 0.0 }, &Control::none())
-        .unwrap()
+    run_with(plan, folder, None)
+}
+
+/// With at most so many balls at a time.
+pub(crate) fn run_with(plan: &Plan, folder: &Path, most_balls: Option<usize>) -> RunReport {
+    let params = RunParams { shard: Shard::default(), steps: Steps::All, most_balls, seconds: &|| 0.0 };
+    run(plan, folder, &params, &Control::none()).unwrap()
 }
 
 /// Values of all cells by their place in local cells, without those of no data.

@@ -1,6 +1,6 @@
 //! Planned buildings and light through trees, tile by tile: the same as over all, and right.
 
-use crate::common::{cells, plan, run_all, suns, write_town};
+use crate::common::{cells, plan, run_with, suns, write_town};
 use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, Zone};
 use belvedere::apps::tree_light::{Leaves, Transmissivity};
@@ -13,6 +13,9 @@ use std::path::{Path, PathBuf};
 /// A planned block across a corner of four tiles, higher than everything else, file coordinates.
 const LOW: [f64; 3] = [155_000.0, 462_970.0, -50.0];
 const HIGH: [f64; 3] = [155_016.0, 462_984.0, 60.0];
+
+/// Balls at a time in small tiles.
+const MOST_BALLS: usize = 700;
 
 type Cells<T> = BTreeMap<[i64; 2], T>;
 
@@ -57,7 +60,7 @@ fn numbers(plan: &Plan, folder: &Path, question: &Question) -> Cells<f32> {
     cells(plan, raster.values(), raster.width(), -9999.0)
 }
 
-/// A plan with what is changed of it, run to its end.
+/// A plan with what is changed of it, run to its end; in small tiles with so few balls at a time that each needs many parts.
 fn done(
     clouds: &[PathBuf],
     folder: &Path,
@@ -67,8 +70,10 @@ fn done(
 ) -> Plan {
     change(plan(clouds, folder, size, questions.to_vec())).write(folder).unwrap();
     let plan = Plan::read(folder).unwrap();
-    let report = run_all(&plan, folder);
+    let most_balls = (size < 100.0).then_some(MOST_BALLS);
+    let report = run_with(&plan, folder, most_balls);
     assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
+    assert_eq!(report.most_balls == MOST_BALLS, most_balls.is_some(), "{report:?}");
     plan
 }
 
@@ -132,7 +137,12 @@ fn a_planned_building_blocks_exactly_whatever_the_tiles() {
     let run = belvedere_tiles::run(
         &tiles,
         &folders[2],
-        &belvedere_tiles::RunParams { shard: Default::default(), steps: Default::default(), seconds: &|| 0.0 },
+        &belvedere_tiles::RunParams {
+            shard: Default::default(),
+            steps: Default::default(),
+            most_balls: None,
+            seconds: &|| 0.0,
+        },
         &Control::none(),
     );
     let error = run.unwrap_err().to_string();

@@ -1,6 +1,6 @@
 //! Tiles of any size give the balls and the answers of one tile over all.
 
-use crate::common::{cells, plan, run_all, suns, write_town};
+use crate::common::{cells, plan, run_all, run_with, suns, write_town};
 use belvedere::apps::irradiance::{ClearSky, IrradianceParams, clear_instants};
 use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, SunStep, Zone, sun_days};
 use belvedere::control::Control;
@@ -8,6 +8,9 @@ use belvedere::io::{read_balls, read_tif_f32, read_tif_u8, read_tif_u16};
 use belvedere_tiles::{Plan, Question, Radiation, SunQuestion, merge, status};
 use std::collections::BTreeMap;
 use std::path::Path;
+
+/// Most balls that tiles of two sizes ask at a time.
+const MOST_BALLS: [usize; 2] = [900, 6000];
 
 /// Centres and radii of all balls of a run, as bits, sorted.
 fn balls(plan: &Plan, folder: &Path) -> Vec<[u32; 4]> {
@@ -105,7 +108,8 @@ fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
     let of_whole = questions.iter().cloned().chain(steps.iter().map(|(question, _)| question.clone())).collect();
     let whole = plan(&clouds, &whole_folder, 512.0, of_whole);
     assert_eq!(whole.tiles.len(), 1);
-    assert!(run_all(&whole, &whole_folder).failed.is_empty());
+    let at_once = run_all(&whole, &whole_folder);
+    assert!(at_once.failed.is_empty() && at_once.most_balls > 3 * MOST_BALLS[1], "{at_once:?}");
     let expected_balls = balls(&whole, &whole_folder);
     assert!(expected_balls.len() > 10_000, "{}", expected_balls.len());
     let expected: Vec<_> = questions.iter().map(|question| values(&whole, &whole_folder, question)).collect();
@@ -118,13 +122,15 @@ fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
     sun_hours_are_the_sum_of_shadows(&expected[4], &whole, &whole_folder, &steps);
     energies_are_those_of_an_open_plane_less_what_obstacles_take(&expected[5]);
     each_observer_sees_its_share(&expected[6]);
-    for size in [64.0, 100.0] {
+    // so few balls at a time that a part of a tile, and that some tiles, are asked together
+    for (size, most_balls) in [64.0, 100.0].into_iter().zip(MOST_BALLS) {
         let folder = place.path().join(format!("tiles_{size}"));
         let plan = plan(&clouds, &folder, size, questions.clone());
         // some tiles of 64 m have no point, but cells beside points
         assert!(plan.tiles.len() >= 4);
-        let report = run_all(&plan, &folder);
+        let report = run_with(&plan, &folder, Some(most_balls));
         assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
+        assert!((most_balls / 2..=most_balls).contains(&report.most_balls), "{report:?}");
         assert!(status(&plan, &folder).is_complete());
         let found = balls(&plan, &folder);
         let different = expected_balls.iter().filter(|ball| found.binary_search(ball).is_err()).count();

@@ -7,7 +7,7 @@ use belvedere::apps::sky_view::{SkyDirections, scene_sky_view, sky_view};
 use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, SunSchedule, Zone, sun_days};
 use belvedere::apps::sun_hours::{SunHoursParams, SunPlan, SunRule, SunSums, scene_sun_hours, sun_hours};
 use belvedere::apps::targets::Targets;
-use belvedere::apps::tree_light::{Leaves, Transmissivity, TreeLight};
+use belvedere::apps::tree_light::{Crowns, Leaves, Transmissivity, TreeLight};
 use belvedere::control::{Control, Watcher};
 use belvedere::medial::{MedialBalls, without_vegetation};
 use belvedere::query::{BlockRule, MedialScene};
@@ -52,7 +52,8 @@ fn blocks_of_any_size_give_the_rows_of_the_whole_matrix() {
     let (balls, vegetation) = balls();
     let scene = MedialScene::new(&balls, &params()).unwrap();
     let opaque = MedialScene::new(&without_vegetation(&balls, &vegetation).unwrap(), &params()).unwrap();
-    let trees = TreeLight { opaque, transmissivity: Transmissivity::default(), leaves: Leaves::ByDate };
+    let trees =
+        TreeLight { opaque, crowns: Crowns { transmissivity: Transmissivity::default(), leaves: Leaves::ByDate } };
     let targets = targets(300);
     let sky = SkyDirections::even(150).unwrap();
     let [whole, opaque] = [&scene, &trees.opaque]
@@ -61,7 +62,7 @@ fn blocks_of_any_size_give_the_rows_of_the_whole_matrix() {
     for block in [1, 63, 64, 257, 299, 300, 10_000] {
         let obstacles = Obstacles { scene: &scene, trees: Some(&trees) };
         let mut next = 0;
-        fold_blocks(obstacles, &targets.positions, &sky.directions, block, &Control::none(), |rows| {
+        fold_blocks(obstacles.into(), &targets.positions, &sky.directions, block, &Control::none(), |rows| {
             assert_eq!((rows.rows.start, rows.matrix.target_count()), (next, rows.rows.len()));
             for row in rows.rows.clone() {
                 assert_eq!(rows.matrix.row(row - next), whole.row(row), "{block}: row {row}");

@@ -3,7 +3,7 @@
 use belvedere::apps::sky_view::SkyDirections;
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, BlockRule, MedialScene, VisibilityMatrix};
+use belvedere::query::{Answer, BlockRule, FreeLines, MedialScene, VisibilityMatrix};
 use belvedere::random::uniform;
 
 /// Blocks of balls on a bumpy ground, crowns of small ones between.
@@ -84,4 +84,55 @@ fn nothing_blocks_without_balls_and_bad_directions_are_refused() {
     assert!(scene.visibility_matrix(&[[0.0; 3]], &[[f64::NAN, 0.0, 1.0]], &Control::none()).is_err());
     let none = scene.visibility_matrix(&[], &sky.directions, &Control::none()).unwrap();
     assert_eq!(none.target_count(), 0);
+}
+
+#[test]
+fn balls_asked_part_by_part_give_the_bits_of_all_at_once() {
+    let balls = place(1500, 3);
+    let directions = SkyDirections::even(150).unwrap().directions;
+    let target = |i: u64| -> [f32; 3] {
+        let u = |k: u64| uniform(9, 8 * i + k);
+        [80.0 * u(0) - 40.0, 80.0 * u(1) - 40.0, 9.0 * u(2)].map(|v| v as f32)
+    };
+    let mut targets: Vec<[f32; 3]> = (0..1200).map(target).collect();
+    targets.insert(600, [f32::NAN, 0.0, 0.0]);
+    let none = Control::none();
+    let scene = |balls: &MedialBalls| MedialScene::new(balls, &BlockRule::carved()).unwrap();
+    let expected = scene(&balls).visibility_matrix(&targets, &directions, &none).unwrap();
+    let all: Vec<usize> = (0..150).collect();
+    // so few parts that each is swept, and so many that most are not
+    for count in [2, 3, 40] {
+        let mut free = FreeLines::new(&targets, &directions).unwrap();
+        for part in 0..count {
+            let rows: Vec<usize> = (0..balls.len()).filter(|row| row * 7919 % count == part).collect();
+            let part = scene(&balls.select(&rows));
+            // the order of columns, and asking some later, change nothing
+            let (some, others): (Vec<usize>, Vec<usize>) = all.iter().rev().partition(|&column| column % 3 == 1);
+            free.hide_behind_balls(&part, &some, &none).unwrap();
+            free.hide_behind_balls(&part, &others, &none).unwrap();
+        }
+        assert!(free.into_matrix() == expected, "{count} parts");
+    }
+    // what is not asked about stays free
+    let mut free = FreeLines::new(&targets, &directions).unwrap();
+    free.hide_behind_balls(&scene(&balls), &[70, 3], &none).unwrap();
+    let matrix = free.clone().into_matrix();
+    for (row, column) in (0..1201).flat_map(|row| (0..150).map(move |column| (row, column))) {
+        let is_asked = [70, 3].contains(&column);
+        let is_free = row != 600 && (!is_asked || expected.is_free(row, column));
+        assert_eq!(matrix.is_free(row, column), is_free, "{row} {column}");
+    }
+    assert!(free.hide_behind_balls(&scene(&balls), &[150], &none).is_err());
+    // what lies under a dome sees nothing
+    let mut dome = MedialBalls::default();
+    dome.push(0, [0.0, 0.0, 0.0], 400.0, 0);
+    let mut above = FreeLines::new(&[[0.0, 0.0, 2.0]], &directions).unwrap();
+    assert_eq!(above.free_columns(), all);
+    above.hide_behind_balls(&scene(&dome), &all[20..], &none).unwrap();
+    assert_eq!(above.free_columns(), all[..20]);
+    // lines that another kept from the same obstacles
+    let mut kept = FreeLines::new(&targets, &directions).unwrap();
+    kept.hide_what_is_hidden_in(&free).unwrap();
+    assert!(kept.into_matrix() == matrix);
+    assert!(free.hide_what_is_hidden_in(&above).is_err());
 }

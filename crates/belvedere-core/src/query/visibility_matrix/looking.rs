@@ -1,6 +1,6 @@
 //! Neighbouring targets looked at together: what the backend left open is asked of balls.
 
-use super::super::backend::{BLOCK, Bits, Settled, WORD};
+use super::super::backend::{BLOCK, Bits, Settled, WORD, WORDS};
 use super::super::ball_tree::BallTree;
 use crate::ray_index::Ray;
 
@@ -10,8 +10,8 @@ pub(super) struct Heading {
     column: usize,
 }
 
-/// Directions in bands of elevation, to and fro, so that each is close to the one before.
-pub(super) fn headings(directions: &[[f64; 3]]) -> Vec<Heading> {
+/// The directions of some columns in bands of elevation, to and fro, so that each is close to the one before.
+pub(super) fn headings(directions: &[[f64; 3]], columns: &[usize]) -> Vec<Heading> {
     /// Bands from the horizon to the zenith: about as high as 600 directions are apart.
     const BANDS: f64 = 16.0;
     let key = |direction: [f64; 3]| {
@@ -19,7 +19,7 @@ pub(super) fn headings(directions: &[[f64; 3]]) -> Vec<Heading> {
         let azimuth = direction[0].atan2(direction[1]);
         (band, if band % 2.0 == 0.0 { azimuth } else { -azimuth })
     };
-    let mut order: Vec<usize> = (0..directions.len()).collect();
+    let mut order = columns.to_vec();
     order.sort_by(|&a, &b| {
         let (a, b) = (key(directions[a]), key(directions[b]));
         a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
@@ -47,30 +47,44 @@ impl<'a> Sky<'a> {
         Self { tree, headings, settled, numbers }
     }
 
-    /// Sets the bits of directions that are free in the rows, of `width` words each, of the targets of a block.
+    /// Unsets the bits of directions that are blocked in the rows, of `width` words each, of the targets of a block. Only those that are set are
+    /// asked about.
     pub(super) fn look(&self, targets: &[[f32; 3]], block: usize, rows: &mut [u64], width: usize) {
-        let all: Bits = std::array::from_fn(|word| match targets.len().saturating_sub(word * WORD) {
-            0 => 0,
-            count => u64::MAX >> WORD.saturating_sub(count),
-        });
+        let mut known = vec![[0; WORDS]; self.headings.len()];
+        for (group, columns) in self.numbers.chunks(WORD).enumerate() {
+            if columns.iter().all(Option::is_none) {
+                continue;
+            }
+            for (word, rows) in rows.chunks(width * WORD).enumerate() {
+                let of_target = |target: usize| rows.get(target * width + group).copied().unwrap_or(0);
+                let of_columns = transposed(std::array::from_fn(of_target));
+                for (number, seen) in
+                    columns.iter().zip(of_columns).filter_map(|(number, seen)| Some(((*number)?, seen)))
+                {
+                    known[number][word] = seen;
+                }
+            }
+        }
         let range = block * self.headings.len()..(block + 1) * self.headings.len();
         let [free, blocked] = [&self.settled.free, &self.settled.blocked].map(|bits| &bits[range.clone()]);
-        let mut free: Vec<Bits> = free.iter().map(|free| std::array::from_fn(|word| free[word] & all[word])).collect();
-        let mut open: Vec<Bits> = free
-            .iter()
-            .zip(blocked)
-            .map(|(free, blocked)| std::array::from_fn(|word| all[word] & !free[word] & !blocked[word]))
+        let mut open: Vec<Bits> = (known.iter().zip(free).zip(blocked))
+            .map(|((known, free), blocked)| std::array::from_fn(|word| known[word] & !free[word] & !blocked[word]))
             .collect();
         self.ask(targets, &mut open);
-        for (seen, open) in free.iter_mut().zip(&open) {
-            *seen = std::array::from_fn(|word| seen[word] | open[word]);
+        for ((known, free), open) in known.iter_mut().zip(free).zip(&open) {
+            *known = std::array::from_fn(|word| known[word] & free[word] | open[word]);
         }
         for (group, columns) in self.numbers.chunks(WORD).enumerate() {
+            let asked =
+                columns.iter().zip(0..).fold(0_u64, |bits, (number, bit)| bits | u64::from(number.is_some()) << bit);
+            if asked == 0 {
+                continue;
+            }
             for (word, rows) in rows.chunks_mut(width * WORD).enumerate() {
-                let of_column = |column: usize| columns.get(column).copied().flatten().map_or(0, |n| free[n][word]);
+                let of_column = |column: usize| columns.get(column).copied().flatten().map_or(0, |n| known[n][word]);
                 let of_targets = transposed(std::array::from_fn(of_column));
                 for (row, seen) in rows.chunks_mut(width).zip(of_targets) {
-                    row[group] |= seen;
+                    row[group] &= seen | !asked;
                 }
             }
         }

@@ -1,19 +1,15 @@
 //! Which of many directions each of many targets sees free: what sun hours, sky views and irradiance are sums over.
 
 mod behind_added;
+mod free_lines;
 mod looking;
 
+pub use free_lines::FreeLines;
+
 use super::MedialScene;
-use super::backend::{BLOCK, WORD};
-use super::far_terrain::hide_behind_terrain;
-use super::target_tree::TargetTree;
-use behind_added::hide_behind_added;
+use super::backend::WORD;
 use belvedere_data::control::Control;
-use belvedere_data::vector::length;
 use belvedere_data::{Error, Result};
-use looking::{Sky, headings};
-use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// One bit for each target and direction: set where no ball blocks the line of sight that leaves the target in the direction.
 #[derive(Clone, Debug)]
@@ -88,11 +84,6 @@ impl VisibilityMatrix {
     }
 }
 
-/// Directions that are settled before targets are looked at: two bits of each are kept for every target meanwhile.
-const BATCH: usize = 512;
-/// Targets that are looked at before the next: as many as keep what is settled of them below 100 MB.
-const MOST_TARGETS: usize = BLOCK << 10;
-
 impl MedialScene {
     /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls and of what was added: for every pair the same as
     /// [`MedialScene::answer`] at infinite range, pulses not being asked. A target that is not finite sees nothing. Progress counts
@@ -110,57 +101,13 @@ impl MedialScene {
         directions: &[[f64; 3]],
         control: &Control<'_>,
     ) -> Result<VisibilityMatrix> {
-        if let Some(bad) = directions.iter().find(|direction| !((length(**direction) - 1.0).abs() < 1e-6)) {
-            return Err(Error::InvalidParameter {
-                name: "direction",
-                value: format!("{bad:?}"),
-                expected: "a vector of length 1",
-            });
+        let mut free = FreeLines::new(targets, directions)?;
+        let columns: Vec<usize> = (0..directions.len()).collect();
+        free.hide_behind_balls(self, &columns, control)?;
+        if let Some(added) = self.added() {
+            free.hide_behind_meshes(added, control)?;
         }
-        let width = directions.len().div_ceil(WORD);
-        let tree = TargetTree::new(targets);
-        let known_count = tree.positions().len();
-        let mut words = vec![0; width * (known_count + 1)];
-        #[expect(clippy::cast_possible_truncation, reason = "targets are numbered with 32 bits")]
-        let mut places = vec![known_count as u32; targets.len()];
-        for (place, &row) in (0..).zip(tree.rows()) {
-            places[row as usize] = place;
-        }
-        if self.ball_count() == 0 {
-            let whole = directions.chunks(WORD).map(|part| u64::MAX >> (WORD - part.len()));
-            let row: Vec<u64> = whole.collect();
-            words[..width * known_count].chunks_mut(width.max(1)).for_each(|words| words.copy_from_slice(&row));
-        } else if width > 0 {
-            let headings = headings(directions);
-            // batches of the same size, so that none is too small to be worth a sweep
-            let batch = directions.len().div_ceil(directions.len().div_ceil(BATCH));
-            // a target counts as done when as many lines of sight are
-            let asked = AtomicUsize::new(0);
-            let advance = |lines: usize| {
-                let before = asked.fetch_add(lines, Ordering::Relaxed);
-                control.advance((before + lines) / directions.len() - before / directions.len());
-            };
-            for (words, targets) in words.chunks_mut(width * MOST_TARGETS).zip(tree.positions().chunks(MOST_TARGETS)) {
-                for headings in headings.chunks(batch) {
-                    let of_batch: Vec<[f64; 3]> = headings.iter().map(|heading| heading.direction).collect();
-                    let settled = self.prepared()?.settle(targets, &of_batch, control)?;
-                    let sky = Sky::new(self.tree(), headings, &settled, directions.len());
-                    let blocks = words.par_chunks_mut(width * BLOCK).zip(targets.par_chunks(BLOCK));
-                    blocks.enumerate().try_for_each(|(block, (rows, targets))| {
-                        control.check()?;
-                        sky.look(targets, block, rows, width);
-                        advance(targets.len() * headings.len());
-                        Ok(())
-                    })?;
-                }
-            }
-        }
-        if let Some(added) = self.added().filter(|_| width > 0) {
-            hide_behind_added(added, tree.positions(), directions, &mut words, control)?;
-        }
-        if !self.far_terrain.is_empty() {
-            hide_behind_terrain(&self.far_terrain, tree.positions(), directions, &mut words, control)?;
-        }
-        Ok(VisibilityMatrix { places, direction_count: directions.len(), width, words })
+        free.hide_behind_terrain(&self.far_terrain, control)?;
+        Ok(free.into_matrix())
     }
 }

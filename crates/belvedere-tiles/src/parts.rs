@@ -1,0 +1,206 @@
+//! Obstacles of a tile part by part: memory does not grow with the area that its lines of sight cross.
+//!
+//! The lowest of many directions of the sky meets balls all over a city. But a line of sight is free where no ball blocks it, so that balls may be
+//! asked one part after the other, and the answer does not depend on how they are cut into parts. Parts are squares of tiles, nearest first: most lines end
+//! at the nearest, and a distant part is only asked about low directions towards it in which some cell still sees the sky.
+
+use crate::grid::{Area, TileId};
+use crate::lines::Lines;
+use crate::obstacles::{BallTile, Found, ball_tiles, may_block, push, rule};
+use crate::plan::Plan;
+use belvedere::Result;
+use belvedere::apps::rows::ObstacleParts;
+use belvedere::apps::tree_light::Crowns;
+use belvedere::control::Control;
+use belvedere::medial::{MedialBalls, vegetation_of_transmission};
+use belvedere::model::ModelParts;
+use belvedere::query::{AddedMeshes, FreeLines, MedialScene, VisibilityMatrix};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+/// The balls that may matter for the cells of a tile, of which a part is in memory at a time.
+pub(crate) struct Parts<'a> {
+    plan: &'a Plan,
+    run: &'a Path,
+    /// Where the cells lie, and the height of the lowest, local metres.
+    cells: Area,
+    lowest: f64,
+    /// What is planned.
+    added: Option<&'a AddedMeshes>,
+    /// Most balls of a part.
+    most_balls: usize,
+    /// Squares of tiles, nearest first.
+    squares: Vec<Vec<BallTile>>,
+    found: Mutex<Found>,
+}
+
+impl<'a> Parts<'a> {
+    /// Parts of at most `most_balls` of the balls that may matter for `lines` from the cells of `tile`, and what is `added`.
+    ///
+    /// # Errors
+    /// [`belvedere::Error::Cancelled`].
+    pub(crate) fn around(
+        (plan, run, tile): (&'a Plan, &'a Path, TileId),
+        lines: &Lines<'_>,
+        added: Option<&'a AddedMeshes>,
+        most_balls: usize,
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        let mut found = Found::default();
+        let squares = squares(tile, ball_tiles(plan, run, lines, &mut found, control)?, most_balls);
+        let (cells, lowest) = (lines.targets, lines.lowest);
+        Ok(Self { plan, run, cells, lowest, added, most_balls, squares, found: Mutex::new(found) })
+    }
+
+    /// What became of the balls.
+    pub(crate) fn into_found(self) -> Found {
+        self.found.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Takes from `free` what a square of tiles hides, part by part.
+    fn hide(
+        &self,
+        free: &mut Free<'_>,
+        square: &[BallTile],
+        directions: &[[f64; 3]],
+        found: &mut Found,
+        control: &Control<'_>,
+    ) -> Result<()> {
+        let left = free.without_trees.free_columns();
+        let lines = Lines::towards(self.cells, self.lowest, directions);
+        let mut columns = BTreeSet::new();
+        let mut met = Vec::new();
+        for of_tile in square {
+            let own = lines.columns_meeting(directions, &left, &of_tile.tops);
+            if !own.is_empty() {
+                met.push(of_tile.tile);
+                columns.extend(own);
+            }
+        }
+        let columns: Vec<usize> = columns.into_iter().collect();
+        let towards: Vec<[f64; 3]> = columns.iter().filter_map(|&column| directions.get(column).copied()).collect();
+        let lines = Lines::towards(self.cells, self.lowest, &towards);
+        let mut part = Part::default();
+        for tile in met {
+            control.check()?;
+            let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, tile, control))?;
+            let Some(ModelParts { balls, transmission, .. }) = read else { continue };
+            let vegetation = self.plan.trees.map(|_| vegetation_of_transmission(&transmission)).unwrap_or_default();
+            for row in may_block(&balls, &lines) {
+                if part.ball_count() == self.most_balls {
+                    std::mem::take(&mut part).hide(free, &columns, self.plan, found, control)?;
+                }
+                let is_vegetation = vegetation.get(row) == Some(&true);
+                push(if is_vegetation { &mut part.vegetation } else { &mut part.opaque }, &balls, row);
+            }
+        }
+        part.hide(free, &columns, self.plan, found, control)
+    }
+}
+
+impl ObstacleParts for Parts<'_> {
+    fn crowns(&self) -> Option<Crowns> {
+        self.plan.trees.map(|trees| Crowns { transmissivity: trees.transmissivity, leaves: trees.leaves })
+    }
+
+    fn look(
+        &self,
+        targets: &[[f32; 3]],
+        directions: &[[f64; 3]],
+        control: &Control<'_>,
+    ) -> Result<(VisibilityMatrix, Option<VisibilityMatrix>)> {
+        let without_trees = FreeLines::new(targets, directions)?;
+        let all = self.crowns().map(|_| without_trees.clone());
+        let mut free = Free { without_trees, all, target_count: targets.len() };
+        let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        found.ball_count = 0;
+        for square in &self.squares {
+            control.check()?;
+            self.hide(&mut free, square, directions, &mut found, control)?;
+        }
+        let Free { mut without_trees, mut all, .. } = free;
+        if let Some(added) = self.added {
+            without_trees.hide_behind_meshes(added, control)?;
+            if let Some(all) = &mut all {
+                all.hide_what_is_hidden_in(&without_trees)?;
+            }
+        }
+        Ok(match all {
+            Some(all) => (all.into_matrix(), Some(without_trees.into_matrix())),
+            None => (without_trees.into_matrix(), None),
+        })
+    }
+}
+
+/// Lines of sight that nothing has blocked so far.
+struct Free<'a> {
+    /// By all but vegetation, or by all where trees are opaque.
+    without_trees: FreeLines<'a>,
+    /// By all, where trees let light through.
+    all: Option<FreeLines<'a>>,
+    target_count: usize,
+}
+
+/// Balls that are asked together.
+#[derive(Default)]
+struct Part {
+    opaque: MedialBalls,
+    /// Where trees let light through.
+    vegetation: MedialBalls,
+}
+
+impl Part {
+    fn ball_count(&self) -> usize {
+        self.opaque.len() + self.vegetation.len()
+    }
+
+    /// Takes what the balls hide from `free`.
+    fn hide(
+        self,
+        free: &mut Free<'_>,
+        columns: &[usize],
+        plan: &Plan,
+        found: &mut Found,
+        control: &Control<'_>,
+    ) -> Result<()> {
+        found.ball_count += self.ball_count();
+        found.most_held = found.most_held.max(self.ball_count());
+        let Self { opaque, vegetation } = self;
+        let hide = |lines: &mut FreeLines<'_>, balls: MedialBalls| {
+            if balls.is_empty() {
+                return Ok(());
+            }
+            let scene = control.stage("indexing balls", balls.len(), || MedialScene::new(&balls, &rule(plan)))?;
+            drop(balls);
+            control.stage("testing lines of sight", free.target_count, || {
+                lines.hide_behind_balls(&scene, columns, control)
+            })
+        };
+        hide(&mut free.without_trees, opaque)?;
+        if let Some(all) = &mut free.all {
+            all.hide_what_is_hidden_in(&free.without_trees)?;
+            hide(all, vegetation)?;
+        }
+        Ok(())
+    }
+}
+
+/// Tiles in squares, the nearest first, all as large as the largest around `tile` with no more than `most_balls`.
+fn squares(tile: TileId, ball_tiles: Vec<BallTile>, most_balls: usize) -> Vec<Vec<BallTile>> {
+    let away = |other: &BallTile| [other.tile.east - tile.east, other.tile.north - tile.north];
+    // the number of a square, where one of `side` tiles has the tile in its middle
+    let number = |other: &BallTile, side: i64| away(other).map(|away| (away + (side - 1) / 2).div_euclid(side));
+    let is_in_first = |other: &&BallTile, side: i64| number(other, side) == [0, 0];
+    let balls_around =
+        |side: i64| ball_tiles.iter().filter(|other| is_in_first(other, side)).map(|other| other.ball_count).sum();
+    let farthest = ball_tiles.iter().flat_map(away).map(i64::abs).max().unwrap_or(0);
+    let fits = |side: &i64| -> bool { most_balls >= balls_around(*side) };
+    let side = (2..=2 * farthest + 1).take_while(fits).last().unwrap_or(1);
+    let mut squares: BTreeMap<[i64; 3], Vec<BallTile>> = BTreeMap::new();
+    for other in ball_tiles {
+        let [east, north] = number(&other, side);
+        squares.entry([east * east + north * north, east, north]).or_default().push(other);
+    }
+    squares.into_values().collect()
+}
