@@ -6,7 +6,12 @@ from . import _core
 
 
 class Device(NamedTuple):
-    """A graphics processor of this computer."""
+    """A graphics processor of this computer.
+
+    Examples
+    --------
+    >>> names = [device.name for device in belvedere.devices()]
+    """
 
     number: int
     """The number to give to :meth:`belvedere.Scene.with_device`."""

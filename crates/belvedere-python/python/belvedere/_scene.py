@@ -300,12 +300,24 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
 
     @property
     def device(self) -> str | None:
-        """The graphics processor that is ready to decide lines of sight; None for the CPU."""
+        """The graphics processor that is ready to decide lines of sight; None for the CPU.
+
+        Examples
+        --------
+        >>> scene.device is None
+        True
+        """
         return self._core.device
 
     @property
     def device_notes(self) -> list[str]:
-        """What the CPU had to do instead of the device, and why, a line each."""
+        """What the CPU had to do instead of the device, and why, a line each.
+
+        Examples
+        --------
+        >>> scene.device_notes
+        []
+        """
         return self._core.device_notes
 
     def save(self, path: str | os.PathLike[str]) -> None:
