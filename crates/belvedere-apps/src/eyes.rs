@@ -18,8 +18,10 @@ const TOLERANCE: f64 = 0.2;
 pub enum EyeFault {
     /// It has no height, and no ground is known below it.
     NoGround,
-    /// It lies beside or below the cloud.
+    /// It lies beside the cloud.
     OutsideCloud,
+    /// It lies on the map of the cloud, but below its lowest point or far above its highest.
+    OutsideHeights,
     /// It lies so far below the ground, metres.
     BelowGround(f64),
     /// It lies so deep in an obstacle, metres.
@@ -31,6 +33,9 @@ impl std::fmt::Display for EyeFault {
         match self {
             Self::NoGround => f.write_str("there is no ground known below it; give its height as a third coordinate"),
             Self::OutsideCloud => f.write_str("it is outside the cloud; is it in the coordinates of the cloud?"),
+            Self::OutsideHeights => f.write_str(
+                "its height is below the cloud, or more than 10 km above it; leave it out for the height of the ground",
+            ),
             Self::BelowGround(depth) => write!(f, "it is {depth:.2} m below the ground"),
             Self::InsideObstacle(depth) => write!(f, "it is inside an obstacle, {depth:.2} m deep"),
         }
@@ -101,7 +106,7 @@ pub fn skip_unfit_eyes(
         count: eyes.len(),
         skipped: faults.len(),
         skipped_without_ground: number(|fault| matches!(fault, EyeFault::NoGround)),
-        skipped_outside_cloud: number(|fault| matches!(fault, EyeFault::OutsideCloud)),
+        skipped_outside_cloud: number(|fault| matches!(fault, EyeFault::OutsideCloud | EyeFault::OutsideHeights)),
         skipped_below_ground: number(|fault| matches!(fault, EyeFault::BelowGround(_))),
         skipped_inside_obstacle: number(|fault| matches!(fault, EyeFault::InsideObstacle(_))),
         faults,
@@ -113,8 +118,9 @@ pub fn skip_unfit_eyes(
 pub fn fault_of(scene: &MedialScene, ground: Option<&Ground>, place: [f64; 3]) -> Option<EyeFault> {
     let [x, y, z] = place;
     let is_over = |coverage: &Coverage| if z.is_nan() { coverage.holds_on_map(place) } else { coverage.holds(place) };
-    if !scene.coverage().is_none_or(is_over) {
-        return Some(EyeFault::OutsideCloud);
+    if let Some(coverage) = scene.coverage().filter(|coverage| !is_over(coverage)) {
+        let is_on_map = coverage.holds_on_map(place);
+        return Some(if is_on_map { EyeFault::OutsideHeights } else { EyeFault::OutsideCloud });
     }
     if z.is_nan() {
         return Some(EyeFault::NoGround);
@@ -168,6 +174,7 @@ mod tests {
         let rows: Vec<usize> = report.faults.iter().map(|skipped| skipped.row).collect();
         assert_eq!(rows, [1, 3, 4, 5, 6]);
         assert_eq!(report.faults[0].fault, EyeFault::InsideObstacle(1.0));
+        assert_eq!([1, 2].map(|i| report.faults[i].fault), [EyeFault::OutsideCloud, EyeFault::OutsideHeights]);
         assert_eq!((report.count, report.skipped, report.skipped_outside_cloud), (8, 5, 3));
         assert_eq!((report.skipped_without_ground, report.skipped_inside_obstacle), (1, 1));
         assert!(eyes[0] == fit && eyes[7][2] == 106.0 && eyes[1][0].is_nan());

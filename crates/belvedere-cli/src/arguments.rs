@@ -33,7 +33,7 @@ pub(crate) use difference::Difference;
 pub(crate) use envelope::{Comfort, Corners, Envelope};
 pub(crate) use irradiance::{ClearSkyChoice, Irradiance, RadiationModel};
 pub(crate) use numbers::Numbers;
-use numbers::{above_zero, at_least_one, at_most, finite, known_crs, length, location};
+use numbers::{above_zero, at_least_one, at_most, finite, known_crs, length, location, sun_direction};
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Shell, Viewshed};
 pub(crate) use query::{DepthMap, Query, UnprovenChoice};
 pub(crate) use scene::{AreaChoice, CloudInput, Plan, ProfileChoice, SceneConfig, SceneInput, UpChoice};
@@ -87,7 +87,7 @@ pub(crate) struct Global {
     #[arg(long, global = true, value_name = "N", value_parser = at_most::<1024>)]
     pub(crate) threads: Option<usize>,
     /// What tests many lines of sight; it does not change results: auto, cpu, gpu, or the number of a device
-    #[arg(long, global = true, value_name = "DEVICE", default_value = "auto")]
+    #[arg(long, global = true, value_name = "DEVICE", default_value = "auto", allow_negative_numbers = true)]
     pub(crate) device: DeviceChoice,
     /// Seed of the random numbers
     #[arg(long, global = true, value_name = "N", default_value_t = 1)]
@@ -130,7 +130,10 @@ impl std::str::FromStr for DeviceChoice {
             "cpu" => Ok(Self::Cpu),
             "gpu" => Ok(Self::Gpu),
             number => number.parse().map(Self::Number).map_err(|_| {
-                "give auto, cpu, gpu, or the number of a device as `belvedere info` lists them".to_owned()
+                let numbers = ", or the number of a device as `belvedere info` lists them";
+                let is_of_gpu = cfg!(feature = "gpu");
+                let known = if is_of_gpu { ["auto, cpu, gpu", numbers].concat() } else { "auto or cpu".to_owned() };
+                format!("give {known}")
             }),
         }
     }

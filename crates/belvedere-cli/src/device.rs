@@ -35,12 +35,17 @@ pub(crate) fn choose(global: &Global) -> Result<()> {
     use crate::arguments::{DeviceChoice, Usage};
     match global.device {
         DeviceChoice::Automatic | DeviceChoice::Cpu => Ok(()),
-        DeviceChoice::Gpu | DeviceChoice::Number(_) => Err(Usage(
-            "--device: this program was built without the cargo feature `gpu`; leave --device out (the CPU gives the same results), or install the \
-             program with `cargo install belvedere-cli --features gpu`"
-                .to_owned(),
-        )
-        .into()),
+        DeviceChoice::Gpu | DeviceChoice::Number(_) => {
+            let device = match global.device {
+                DeviceChoice::Number(number) => number.to_string(),
+                _ => "gpu".to_owned(),
+            };
+            Err(Usage(format!(
+                "--device {device}: this program was built without the cargo feature `gpu`; leave --device out (the CPU gives the same \
+                 results), or install the program with `cargo install belvedere-cli --features gpu`"
+            ))
+            .into())
+        }
     }
 }
 

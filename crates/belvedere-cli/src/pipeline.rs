@@ -61,7 +61,16 @@ fn read_counted(input: &CloudInput, stages: &mut Stages, summary: &mut Summary) 
     let (cloud, report) = stages.run("reading", 0, |control| read_cloud(&input.clouds, &options, control))?;
     summary.add("points", cloud.len());
     summary.add("reading", Summary::of(&report));
+    warn_of_missing(&report, summary);
     Ok((cloud, report))
+}
+
+/// Warns of files that hold fewer points than their headers announce.
+pub(crate) fn warn_of_missing(report: &ReadReport, summary: &mut Summary) {
+    for file in report.files.iter().filter(|file| file.missing_points > 0) {
+        let (path, count) = (file.path.display(), file.missing_points);
+        summary.warn(format!("{path}: the file is cut off: {count} points of its header are missing; copy it again"));
+    }
 }
 
 /// The error of building a model, with the flags that help.

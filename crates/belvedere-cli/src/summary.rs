@@ -81,6 +81,13 @@ impl Summary {
         self
     }
 
+    /// Prints the warnings on standard error.
+    pub(crate) fn note_warnings(&self, global: &Global) {
+        if let (Some(Value::Array(warnings)), false) = (self.0.get(WARNINGS), global.quiet) {
+            warnings.iter().for_each(|warning| note(&format!("warning: {}", plain(warning))));
+        }
+    }
+
     /// Prints the summary, as JSON where asked for.
     pub(crate) fn print(&self, global: &Global) -> ExitCode {
         // a command without a summary, such as one that prints a script
@@ -88,10 +95,9 @@ impl Summary {
             return ExitCode::SUCCESS;
         }
         let mut entries = self.0.clone();
-        if !global.json
-            && let Some(Value::Array(warnings)) = entries.remove(WARNINGS)
-        {
-            warnings.iter().filter(|_| !global.quiet).for_each(|warning| note(&format!("warning: {}", plain(warning))));
+        if !global.json {
+            self.note_warnings(global);
+            entries.remove(WARNINGS);
         }
         let mut text = String::new();
         if global.json {

@@ -68,7 +68,7 @@ pub enum Error {
         what: String,
     },
     /// There are points, but too few, or none beside one line, for a surface.
-    #[error("{count} points are left, {what}: a surface cannot be made of them; is this the right file?")]
+    #[error("{count} {} left, {what}: a surface cannot be made of {}; is this the right file?", if *count == 1 { "point is" } else { "points are" }, if *count == 1 { "it" } else { "them" })]
     NoSurface {
         /// Number of points.
         count: usize,

@@ -78,6 +78,21 @@ pub(crate) fn fitted(text: &str, width: usize, scale: usize) -> String {
     String::new()
 }
 
+/// `text` in lines that fit into `width` pixels, broken between words; a single word that does not fit is cut.
+pub(crate) fn wrapped(text: &str, width: usize, scale: usize) -> Vec<String> {
+    let mut lines: Vec<String> = vec![String::new()];
+    for word in text.split_whitespace() {
+        let Some(line) = lines.last_mut() else { break };
+        let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
+        if line.is_empty() || text_width(&longer, scale) <= width {
+            *line = longer;
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines.iter().map(|line| fitted(line, width, scale)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,5 +131,10 @@ mod tests {
         assert!(cut.ends_with('…') && text_width(&cut, 2) <= 60, "{cut}");
         assert_eq!(fitted("short", 600, 2), "short");
         assert_eq!(fitted("anything", 0, 1), "");
+        let title = "Sun hours, mean of days (Europe/Amsterdam)";
+        let lines = wrapped(title, 200, 2);
+        assert!(lines.len() > 1 && lines.iter().all(|line| text_width(line, 2) <= 200), "{lines:?}");
+        assert_eq!(lines.join(" "), title);
+        assert_eq!(wrapped("", 200, 2), [""]);
     }
 }

@@ -15,12 +15,12 @@ mod profile_picture;
 mod round_step;
 
 pub use animation::write_apng;
-pub use belvedere_io::{class_color, in_shadow, ramp_colors};
+pub use belvedere_io::{class_color, in_shadow, ramp, ramp_colors};
 pub use canvas::{Canvas, Colors};
 pub use curves_picture::{Curves, curves_picture};
 pub use depth_picture::{camera_picture, depth_picture, panorama_picture};
 pub use horizon_picture::horizon_picture;
-pub use map_picture::{MapLegend, MapPicture, map_picture};
+pub use map_picture::{MapLegend, MapMark, MapPicture, map_picture};
 pub use picture::{Picture, side_by_side};
 pub use png::write_png;
 pub use profile_picture::{Profile, profile_picture};

@@ -1,8 +1,9 @@
 //! Maps over a shaded relief, with coordinates, a legend, a scale bar and an arrow to the north.
 
 use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::font::{HEIGHT, draw_text, fitted, text_width};
+use crate::font::{HEIGHT, draw_text, fitted, text_width, wrapped};
 use crate::picture::{INK, PAPER, Picture, text_scale};
 use crate::round_step::round_step;
 use belvedere_data::raster::Raster;
@@ -18,8 +19,14 @@ const UNKNOWN: [f64; 3] = [236.0, 237.0, 240.0];
 const TINT: f64 = 0.5;
 /// Towards the light, from the north-west, 45° high (east, north, up).
 const TO_LIGHT: [f64; 3] = [-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2];
+/// Bare relief where it is level, for the legend.
+const BARE: [u8; 3] = [197; 3];
 /// Colours of a mark: its disc and the ring around it.
 const MARK: [[u8; 3]; 2] = [[225, 30, 45], [255, 255, 255]];
+/// How far the view of a mark is drawn, how wide its edge is, and where its label stands, in radii of the mark.
+const WEDGE: f64 = 7.0;
+const EDGE: f64 = 0.2;
+const LABEL: f64 = 4.5;
 
 /// About so many coordinates along the longer side of a map.
 const COORDINATES: f64 = 5.0;
@@ -34,23 +41,36 @@ pub struct MapPicture<'a> {
     pub cell: f64,
     /// Where the map lies, for coordinates along its sides, in the reference system and unit of the file; `None` draws none.
     pub place: Option<&'a Georeference>,
-    /// Colour of each pixel, as many as heights; `None` shows the bare relief.
+    /// Colour of each pixel, as many as heights; `None`, where there is no answer, shows the bare relief, and the legend says so.
     pub colors: &'a [Option<[u8; 3]>],
-    /// Places to mark, in columns from the west and rows from the north.
-    pub marks: &'a [[f64; 2]],
+    /// Places to mark.
+    pub marks: &'a [MapMark],
+    /// What the marks are, for the legend.
+    pub mark_name: &'a str,
     /// What stands above the map.
     pub title: &'a str,
     /// What stands beside it.
     pub legend: MapLegend<'a>,
 }
 
+/// A place that is marked on a map.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MapMark {
+    /// Columns from the west and rows from the north.
+    pub place: [f64; 2],
+    /// Azimuth that it looks to, clockwise from the north of the grid, and width of its view, radians: drawn as a wedge.
+    pub view: Option<[f64; 2]>,
+    /// What stands beside it; empty for nothing.
+    pub label: String,
+}
+
 /// What colours mean.
 pub enum MapLegend<'a> {
     /// Each colour and its meaning.
     Colors(&'a [([u8; 3], &'a str)]),
-    /// Colours from dark violet to yellow, as [`belvedere_io::ramp_colors`] has them, between two values, with the name of what is
-    /// measured.
-    Ramp(&'a str, [f64; 2]),
+    /// Colours from dark violet to yellow, as [`belvedere_io::ramp`] has them, between two values, with the name of what is
+    /// measured, and further colours with their meanings.
+    Ramp(&'a str, [f64; 2], &'a [([u8; 3], &'a str)]),
 }
 
 /// The map as a picture, small ones enlarged by repeating pixels.
@@ -91,8 +111,15 @@ pub fn map_picture(map: &MapPicture<'_>) -> Result<Picture> {
     let radius = picture.width.max(picture.height) as f64 / 130.0 + 2.0;
     // many observers are dots, not a cover over the map
     let radius = if map.marks.len() > 30 { radius * 0.5 } else { radius };
+    let at = |mark: &MapMark| mark.place.map(|v| v * factor as f64);
     for mark in map.marks {
-        draw_mark(&mut picture, mark.map(|v| v * factor as f64), radius);
+        draw_view(&mut picture, at(mark), mark.view, radius);
+    }
+    for mark in map.marks {
+        draw_mark(&mut picture, at(mark), radius);
+    }
+    for mark in map.marks {
+        draw_label(&mut picture, at(mark), mark, radius);
     }
     Ok(framed(&picture, map, map.cell / factor as f64))
 }
@@ -115,19 +142,70 @@ fn shade(heights: &Raster<f32>, column: usize, row: usize, cell: f64) -> Option<
     Some(facing.clamp(0.0, 1.0))
 }
 
-fn draw_mark(picture: &mut Picture, [x, y]: [f64; 2], radius: f64) {
+fn draw_mark(picture: &mut Picture, place: [f64; 2], radius: f64) {
     for (radius, color) in [(radius * 1.45, MARK[1]), (radius, MARK[0])] {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "`as` saturates, pixels are clamped at the edge"
-        )]
-        let pixels = |v: f64| (v - radius).max(0.0) as usize..(v + radius + 1.0).max(0.0) as usize;
-        for row in pixels(y) {
-            for column in pixels(x) {
-                if (column as f64 + 0.5 - x).hypot(row as f64 + 0.5 - y) <= radius {
-                    picture.fill_rectangle([column, row], [1, 1], color);
-                }
+        for_pixels_around(picture, place, radius, |picture, pixel, _| picture.fill_rectangle(pixel, [1, 1], color));
+    }
+}
+
+/// What a mark looks to, as a wedge through which the map shines.
+fn draw_view(picture: &mut Picture, place: [f64; 2], view: Option<[f64; 2]>, radius: f64) {
+    let Some([heading, width]) = view.filter(|view| view[0].is_finite() && view[1] < TAU) else { return };
+    for_pixels_around(picture, place, radius * WEDGE, |picture, pixel, [east, south]| {
+        let from_middle = (east.atan2(-south) - heading + PI).rem_euclid(TAU) - PI;
+        let inwards = width / 2.0 - from_middle.abs();
+        let Some(below) = picture.get(pixel[0], pixel[1]).filter(|_| inwards >= 0.0) else { return };
+        let range = east.hypot(south);
+        // edges part the wedges of cameras that stand in one place
+        let is_edge = inwards * range < EDGE * radius || radius * (WEDGE - EDGE) < range;
+        let color = if is_edge { MARK[1] } else { [0, 1, 2].map(|i| below[i] / 2 + MARK[0][i] / 2) };
+        picture.fill_rectangle(pixel, [1, 1], color);
+    });
+}
+
+/// The label of a mark: in its wedge, or else beside it.
+fn draw_label(picture: &mut Picture, [x, y]: [f64; 2], mark: &MapMark, radius: f64) {
+    if mark.label.is_empty() {
+        return;
+    }
+    let heading = mark.view.map_or(FRAC_PI_2, |[heading, _]| if heading.is_finite() { heading } else { FRAC_PI_2 });
+    let scale = text_scale(picture.width.max(picture.height));
+    let (width, height) = (text_width(&mark.label, scale), HEIGHT * scale);
+    let [middle, line] = [x + LABEL * radius * heading.sin(), y - LABEL * radius * heading.cos()];
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "`as` saturates, text is cut at the edge"
+    )]
+    let corner = [(middle - width as f64 / 2.0) as usize, (line - height as f64 / 2.0) as usize];
+    let rim = scale.div_ceil(2);
+    for right in 0..3 {
+        for down in 0..3 {
+            let [left, top] = [corner[0] + right * rim, corner[1] + down * rim].map(|v| v.saturating_sub(rim));
+            draw_text(picture, left, top, &mark.label, scale, MARK[1]);
+        }
+    }
+    draw_text(picture, corner[0], corner[1], &mark.label, scale, MARK[0].map(|v| v / 2));
+}
+
+/// Calls `draw` with each pixel of a disc and how far it lies east and south of its middle.
+fn for_pixels_around(
+    picture: &mut Picture,
+    [x, y]: [f64; 2],
+    radius: f64,
+    mut draw: impl FnMut(&mut Picture, [usize; 2], [f64; 2]),
+) {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "`as` saturates, pixels are clamped at the edge"
+    )]
+    let pixels = |v: f64, most: usize| (v - radius).max(0.0) as usize..most.min((v + radius + 1.0).max(0.0) as usize);
+    for row in pixels(y, picture.height) {
+        for column in pixels(x, picture.width) {
+            let offset = [column as f64 + 0.5 - x, row as f64 + 0.5 - y];
+            if offset[0].hypot(offset[1]) <= radius {
+                draw(picture, [column, row], offset);
             }
         }
     }
@@ -137,25 +215,28 @@ fn framed(map: &Picture, what: &MapPicture<'_>, pixel: f64) -> Picture {
     let scale = text_scale(map.width.max(map.height));
     let (margin, line) = (8 * scale, (HEIGHT + 4) * scale);
     let swatch = 12 * scale;
-    let lines: Vec<([u8; 3], String)> = match &what.legend {
-        MapLegend::Colors(colors) => colors.iter().map(|(color, text)| (*color, (*text).to_owned())).collect(),
-        MapLegend::Ramp(_, range) => ticks(*range).into_iter().rev().map(|(share, text)| (ramp(share), text)).collect(),
-    };
-    let heading = if let MapLegend::Ramp(name, _) = &what.legend { *name } else { "" };
+    let lines = legend_lines(what);
+    let heading = if let MapLegend::Ramp(name, ..) = &what.legend { *name } else { "" };
     let (bar, bar_text) = scale_bar(map.width as f64 * pixel / 4.0);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a quarter of the map")]
     let bar_px = (bar / pixel).round() as usize;
-    let texts = lines.iter().map(|(_, text)| text.as_str()).chain([heading]);
+    let marks = if what.marks.is_empty() { "" } else { what.mark_name };
+    let texts = lines.iter().map(|(_, text)| text.as_str()).chain([heading, marks]);
     let legend = texts.map(|text| text_width(text, scale)).max().unwrap_or(0) + swatch + 5 * scale;
     let axes =
         what.place.map(|place| Axes::new(place, what.relief, [map.width, map.height], scale)).unwrap_or_default();
     let (indent, shelf) = axes.room(scale);
-    let top = margin + line + 4 * scale;
-    let rows = lines.len() + usize::from(!heading.is_empty());
-    let height = top + (map.height + shelf).max(rows * (line + 3 * scale)) + margin + line + 2 * scale;
-    let mut sheet = Picture::filled(margin * 3 + indent + map.width + legend, height + margin, PAPER);
-    let title = fitted(what.title, sheet.width - 2 * margin, scale);
-    draw_text(&mut sheet, margin, margin, &title, scale, INK);
+    let sheet_width = margin * 3 + indent + map.width + legend;
+    let title = wrapped(what.title, sheet_width - 2 * margin, scale);
+    let top = margin + title.len() * line + 4 * scale;
+    let rows = lines.len() + usize::from(!heading.is_empty()) + usize::from(!marks.is_empty());
+    let system = what.place.map_or(String::new(), |place| place.crs.describe());
+    let below_bar = if system.is_empty() { 0 } else { line };
+    let height = top + (map.height + shelf).max(rows * (line + 3 * scale)) + margin + line + below_bar + 2 * scale;
+    let mut sheet = Picture::filled(sheet_width, height + margin, PAPER);
+    for (number, text) in title.iter().enumerate() {
+        draw_text(&mut sheet, margin, margin + number * line, text, scale, INK);
+    }
     sheet.paste(map, [margin + indent, top]);
     axes.draw(&mut sheet, [margin + indent, top], [map.width, map.height], scale);
     let left = margin * 2 + indent + map.width;
@@ -171,12 +252,29 @@ fn framed(map: &Picture, what: &MapPicture<'_>, pixel: f64) -> Picture {
         draw_text(&mut sheet, left + swatch + 5 * scale, at + scale, text, scale, INK);
         at += line + 3 * scale;
     }
+    if !marks.is_empty() {
+        draw_mark(&mut sheet, [left + swatch / 2, at + 9 * scale / 2].map(|v| v as f64), 3.0 * scale as f64);
+        draw_text(&mut sheet, left + swatch + 5 * scale, at + scale, marks, scale, INK);
+    }
     let (below, from) = (top + map.height + shelf + margin, margin + indent);
     sheet.fill_rectangle([from, below + 2 * scale], [bar_px, 3 * scale], INK);
     draw_text(&mut sheet, from + bar_px + 4 * scale, below, &bar_text, scale, INK);
-    let right = from + map.width;
-    draw_north(&mut sheet, [right.saturating_sub(text_width("N", scale) + 10 * scale), below], scale);
+    let arrow = (from + map.width).saturating_sub(text_width("N", scale) + 10 * scale);
+    draw_north(&mut sheet, [arrow, below], scale);
+    let system = fitted(&system, sheet.width - from - margin, scale);
+    draw_text(&mut sheet, from, below + line + 2 * scale, &system, scale, INK);
     sheet
+}
+
+/// The colours of a legend and what stands beside them.
+fn legend_lines(map: &MapPicture<'_>) -> Vec<([u8; 3], String)> {
+    let (ticks, classes) = match &map.legend {
+        MapLegend::Colors(colors) => (Vec::new(), *colors),
+        MapLegend::Ramp(_, range, others) => (ticks(*range), *others),
+    };
+    let without = map.colors.contains(&None).then_some((BARE, "no answer"));
+    let classes = classes.iter().copied().chain(without).map(|(color, text)| (color, text.to_owned()));
+    ticks.into_iter().rev().map(|(share, text)| (ramp(share), text)).chain(classes).collect()
 }
 
 /// An arrow up, where maps have the north of their grid, and its letter.
@@ -325,6 +423,69 @@ mod tests {
         assert_eq!(told(&axes.eastings), ["100 84990", "300 85000", "500 85010"]);
         assert_eq!(told(&axes.northings), ["300 446000", "100 446010"]);
         assert_eq!([0.3, 1.0, 6.1, 140.0].map(round_step), [0.5, 1.0, 10.0, 200.0]);
+    }
+
+    #[test]
+    fn each_count_has_the_colour_of_the_legend_and_cells_without_an_answer_are_named() {
+        let (relief, most) = (Raster::filled(2, 2, 0.0), 3.0);
+        let unproven = ([90, 150, 240], "unproven");
+        let colors = [Some(ramp(0.0)), Some(ramp(2.0 / most)), Some(ramp(1.0)), None];
+        let map = MapPicture {
+            relief: &relief,
+            cell: 1.0,
+            place: None,
+            colors: &colors,
+            marks: &[],
+            mark_name: "",
+            title: "",
+            legend: MapLegend::Ramp("observers", [0.0, most], &[unproven]),
+        };
+        let lines = legend_lines(&map);
+        let texts: Vec<&str> = lines.iter().map(|(_, text)| text.as_str()).collect();
+        assert_eq!(texts, ["3", "2", "1", "0", "unproven", "no answer"]);
+        assert_eq!([lines[3].0, lines[1].0, lines[0].0].map(Some), colors[..3]);
+        assert!((0..4).all(|i| (0..i).all(|j| lines[i].0 != lines[j].0)));
+        // a map with an answer everywhere has no such line
+        let lines = legend_lines(&MapPicture { colors: &[Some(unproven.0); 4], ..map });
+        assert!(lines.iter().all(|(_, text)| text != "no answer"));
+        assert_eq!(ticks([0.0, 2.0]).into_iter().map(|(_, text)| text).collect::<Vec<_>>(), ["0", "1", "2"]);
+    }
+
+    #[test]
+    fn the_wedge_of_a_camera_lies_in_its_heading() {
+        let relief = Raster::filled(60, 60, 0.0);
+        let colors = vec![Some([0, 255, 0]); 3600];
+        let drawn = |view| {
+            let mark = MapMark { place: [30.0, 30.0], view, label: String::new() };
+            let (marks, legend) = ([mark], MapLegend::Colors(&[]));
+            let (mark_name, title, place) = ("camera", "", None);
+            let map = MapPicture {
+                relief: &relief,
+                cell: 1.0,
+                place,
+                colors: &colors,
+                marks: &marks,
+                mark_name,
+                title,
+                legend,
+            };
+            map_picture(&map).unwrap()
+        };
+        let bare = drawn(None);
+        // columns and rows of what a heading changes
+        let changed = |heading| {
+            let picture = drawn(Some([heading, FRAC_PI_2]));
+            let pixels = (0..bare.width).flat_map(|column| (0..bare.height).map(move |row| [column, row]));
+            let changed: Vec<[usize; 2]> = pixels.filter(|&[c, r]| bare.get(c, r) != picture.get(c, r)).collect();
+            [0, 1].map(|axis| {
+                let along = || changed.iter().map(|place| place[axis]);
+                [along().min().unwrap(), along().max().unwrap()]
+            })
+        };
+        let [north, east, south, west] = [0.0, FRAC_PI_2, PI, 3.0 * FRAC_PI_2].map(changed);
+        assert!(west[0][1] < east[0][0] && north[1][1] < south[1][0], "{north:?} {east:?} {south:?} {west:?}");
+        // all around is no wedge
+        assert_eq!(drawn(Some([0.0, TAU])), bare);
     }
 
     #[test]

@@ -107,10 +107,14 @@ fn sync_folder(_file: &Path) {}
 /// The folder at `path`, made if it is missing but its parent is there.
 ///
 /// # Errors
-/// [`Error::Io`] when the parent folder does not exist or something else is in the way.
+/// [`Error::Io`] when the parent folder does not exist or a file is in the way.
 pub fn make_folder(path: &Path) -> Result<()> {
     if path.is_dir() {
         return Ok(());
+    }
+    if path.exists() {
+        let reason = "is a file, but a folder is needed; give another name";
+        return Err(Error::io(path)(std::io::Error::new(ErrorKind::NotADirectory, reason)));
     }
     check_parent(path)?;
     fs::create_dir(path).map_err(Error::io(path))

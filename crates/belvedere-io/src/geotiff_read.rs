@@ -4,7 +4,7 @@ use std::io::{Read, Seek};
 use std::path::Path;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
-use tiff::{TiffError, TiffResult};
+use tiff::{TiffError, TiffFormatError, TiffResult};
 
 use crate::geotiff::Georeference;
 use crate::source::{Input, Reader, Source};
@@ -143,6 +143,16 @@ fn damaged(name: &Path, error: TiffError) -> Error {
             let what = "has more than 256 MB of values, or claims more than its bytes can hold; make its cells larger or cut out a part, for example: gdalwarp -tr 20 20 -r average IN.tif OUT.tif";
             Error::malformed(name, what)
         }
+        TiffError::FormatError(TiffFormatError::TiffSignatureNotFound | TiffFormatError::TiffSignatureInvalid) => {
+            let what = "is no TIFF file; convert other rasters first: gdal_translate -co COMPRESS=DEFLATE IN OUT.tif";
+            Error::malformed(name, what)
+        }
+        TiffError::UnsupportedError(what) => Error::malformed(
+            name,
+            format!(
+                "is a TIFF file of a kind that cannot be read ({what}); write it again: gdal_translate -co COMPRESS=DEFLATE IN.tif OUT.tif"
+            ),
+        ),
         other => Error::malformed(name, format!("is no raster that can be read: {other}")),
     }
 }

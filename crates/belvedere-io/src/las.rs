@@ -238,8 +238,7 @@ pub(super) fn open<'a>(input: Input<'a>, reading: &Reading<'_>) -> Result<(Part,
     let (announced, present) = (header.points, source.points_in_file());
     if announced > present {
         part.note(format!("the header announces {announced} points, but the file holds only {present}"));
-        let missing = usize::try_from(announced - present).unwrap_or(usize::MAX);
-        part.leave_out(missing, "announced by the header but not in the file");
+        part.leave_out_missing(announced - present);
     }
     let selection = reading.selection(&part.crs);
     // rows are counted in whole files
@@ -417,6 +416,8 @@ impl LasHeader {
 pub struct LasHead {
     /// Number of points.
     pub points: u64,
+    /// Points that the header announces but the file lacks: it is cut off. Of a LAZ file this is known when its points are read.
+    pub missing_points: u64,
     /// Size of the file, bytes.
     pub bytes: u64,
     /// Lowest and highest corner of the points, in the coordinates of the file.
@@ -445,6 +446,7 @@ pub fn read_las_head<'a>(source: impl Into<Source<'a>>) -> Result<LasHead> {
     let kind = if header.adjusted_gps_time { GpsTimeKind::AdjustedStandard } else { GpsTimeKind::SecondsOfWeek };
     Ok(LasHead {
         points: file.points_in_file(),
+        missing_points: header.points - file.points_in_file(),
         bytes: file.size,
         bounds: [0, 1].map(|end| std::array::from_fn(|axis| bounds[axis][end])),
         crs: part.crs,

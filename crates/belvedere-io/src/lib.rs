@@ -99,7 +99,7 @@ mod xyz;
 pub use balls::{is_ball_file, read_balls, write_balls};
 pub use cityjson::{LevelOfDetail, read_cityjson};
 pub use cloud_batches::{CloudBatch, CloudBatches, read_batches};
-pub use colors::{class_color, in_shadow, ramp_colors};
+pub use colors::{class_color, in_shadow, ramp, ramp_colors};
 pub use geojson::{Area, GeojsonCoordinates, Spot, write_geojson, write_geojson_areas};
 pub use geojson_read::{GeojsonFeature, Shape, read_geojson};
 #[cfg(feature = "tiff")]

@@ -81,7 +81,7 @@ pub fn read_observers<'a>(source: impl Into<Source<'a>>, crs: &Crs, rows_are: Ro
         }
     };
     if rows.is_empty() {
-        return Err(Error::malformed(path, "the file has no observer"));
+        return Err(Error::malformed(path, "has no places; give a row with x and y for each"));
     }
     Ok(rows)
 }

@@ -112,6 +112,12 @@ impl Part {
         }
     }
 
+    /// Counts points that the header announces but a file that is cut off lacks.
+    pub(super) fn leave_out_missing(&mut self, count: u64) {
+        self.report.missing_points = usize::try_from(count).unwrap_or(usize::MAX);
+        self.leave_out(self.report.missing_points, "announced by the header but not in the file");
+    }
+
     /// Takes `crs` as the system of the file, found in `source`.
     pub(super) fn set_crs(&mut self, crs: Crs, source: impl Into<String>) {
         self.report.crs = crs.describe();

@@ -214,8 +214,7 @@ fn read_ascii(
         return Err(Error::malformed(path, format!("{bad} of {} lines are not points", bad + good)));
     }
     part.leave_out(bad, "unreadable lines");
-    let missing = header.points - (good + bad) as u64;
-    part.leave_out(usize::try_from(missing).unwrap_or(usize::MAX), "announced by the header but not in the file");
+    part.leave_out_missing(header.points - (good + bad) as u64);
     Ok(())
 }
 

@@ -49,7 +49,8 @@ impl<'a> MeshBuilder<'a> {
     /// indices run out.
     pub(super) fn push_vertex(&mut self, vertex: [f64; 3]) -> Result<u32> {
         if !vertex.iter().all(|v| v.abs() < MAX_COORDINATE) {
-            let what = format!("a vertex lies at {vertex:?}; coordinates must be finite metres");
+            let what =
+                format!("a vertex lies at {vertex:?}; coordinates must be numbers of metres below {MAX_COORDINATE:e}");
             return Err(Error::malformed(self.path, what));
         }
         let index = u32::try_from(self.mesh.vertices.len())
@@ -149,7 +150,10 @@ impl<'a> MeshBuilder<'a> {
     /// [`Error::Malformed`] where no triangle is left.
     pub(super) fn finish(self) -> Result<(Mesh, MeshReport)> {
         if self.mesh.triangles.is_empty() {
-            let what = format!("no triangle with an area among {} polygons", self.report.polygon_count);
+            let what = match self.report.polygon_count {
+                0 => "has no faces; export it as a mesh with faces".to_owned(),
+                count => format!("has no triangle with an area among its {count} polygons"),
+            };
             return Err(Error::malformed(self.path, what));
         }
         Ok((self.mesh, self.report))

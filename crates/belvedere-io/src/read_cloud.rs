@@ -56,6 +56,8 @@ pub struct FileReport {
     pub points: usize,
     /// Points left out, by reason.
     pub left_out: Vec<LeftOut>,
+    /// Of these, points that the header announces but the file lacks: it is cut off.
+    pub missing_points: usize,
     /// Names of the attributes found, as in [`belvedere_data::cloud::Attributes::columns`].
     pub attributes: Vec<&'static str>,
     /// Its reference system in words; empty where it gives none.

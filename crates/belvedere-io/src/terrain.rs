@@ -6,14 +6,18 @@ use crate::terrain_in_degrees::{is_like_wgs_84, projected};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::raster::Raster;
 use belvedere_data::{ElevationGrid, Error, Frame, Result};
+use std::ops::RangeInclusive;
 use std::path::Path;
+
+/// Heights of the ground, metres: the shore of the Dead Sea is at -430 m, Mount Everest at 8849 m.
+const HEIGHTS: RangeInclusive<f64> = -500.0..=9000.0;
 
 /// The terrain of a GeoTIFF raster in the local coordinates of `frame`: heights of the ground (DTM) in the middles of its cells. The raster must be in the
 /// reference system of the frame, or name none, which is then taken as that of the frame, or be in degrees (WGS 84, ETRS89, NAD83; heights in metres): it is then projected, with
 /// bilinear heights. Its rows must run from north to south.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what is no raster of one band, has no place on the map, is turned, or has no heights;
+/// [`Error::Io`]; [`Error::Malformed`] for what is no raster of one band, has no place on the map, is turned, has no heights, or heights that no ground has;
 /// [`Error::UnusableCrs`] for another system, with a conversion to run first.
 pub fn read_terrain<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Result<ElevationGrid> {
     let source = source.into();
@@ -30,6 +34,7 @@ pub fn read_terrain<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Result<
         let what = "is turned or upside down; make its rows run from north to south first: gdalwarp IN.tif OUT.tif";
         return Err(Error::malformed(&name, what));
     }
+    check_heights(&raster.values, &place.crs, &frame.crs, &name)?;
     let is_in_degrees = place.crs.kind == CrsKind::Geographic && is_like_wgs_84(place.crs.epsg);
     if is_in_degrees && frame.crs.kind == CrsKind::Projected {
         return projected(&raster.values, &place, frame, &name);
@@ -45,6 +50,25 @@ pub fn read_terrain<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Result<
     let [x, y] = place.upper_left;
     let north_west = [x * unit - frame.origin[0] + cell[0] / 2.0, y * unit - frame.origin[1] - cell[1] / 2.0];
     ElevationGrid::new(heights, north_west, cell).map_err(|error| Error::malformed(&name, error.to_string()))
+}
+
+/// Refuses heights that no ground has: mostly numbers of cells without a height that are not declared.
+fn check_heights(values: &Raster<f32>, terrain: &Crs, scene: &Crs, name: &Path) -> Result<()> {
+    let unit = match terrain.kind {
+        CrsKind::Geographic => 1.0,
+        CrsKind::Unknown => scene.metres_per_unit_xyz()[2],
+        _ => terrain.metres_per_unit_xyz()[2],
+    };
+    let is_wrong = |height: &f32| !height.is_nan() && !HEIGHTS.contains(&(f64::from(*height) * unit));
+    let Some(at) = values.values().iter().position(is_wrong) else { return Ok(()) };
+    let (column, row) = (at % values.width() + 1, at / values.width() + 1);
+    let height = values.values().get(at).copied().unwrap_or_default();
+    let (low, high) = (HEIGHTS.start(), HEIGHTS.end());
+    let what = format!(
+        "has the height {height:?} in column {column}, row {row} (counted from 1 at the upper left); heights of the ground are {low} to {high} m. \
+         If the number means that there is no height, declare it: gdal_translate -a_nodata {height:?} IN.tif OUT.tif"
+    );
+    Err(Error::malformed(name, what))
 }
 
 /// Refuses degrees, and a system that contradicts that of the scene.

@@ -40,6 +40,11 @@ impl InputFile {
             });
         }
         let head = read_las_head(path)?;
+        if head.missing_points > 0 {
+            let (points, announced) = (head.points, head.points + head.missing_points);
+            let what = format!("is cut off: it holds {points} of the {announced} points of its header; copy it again");
+            return Err(Error::malformed(path, what));
+        }
         let path = std::path::absolute(path).map_err(Error::io(path))?;
         let fingerprint = fingerprint(&path, head.bytes)?;
         Ok((Self { path, bytes: head.bytes, points: head.points, bounds: head.bounds, fingerprint }, head))

@@ -17,7 +17,7 @@ use belvedere::query::{AddedMeshes, Coverage};
 use belvedere::{Bounds, Error, Frame, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -54,6 +54,8 @@ pub struct PlanParams {
     pub tile_size: f64,
     /// Side of the cells of results, metres. Default 1.
     pub cell: f64,
+    /// Places that the survey must hold, in its coordinates: one outside is refused before points are read. Default none.
+    pub places: Vec<[f64; 2]>,
     /// Most memory that a tile may take, bytes: tiles are quartered until the largest fits. `None` for any.
     pub memory: Option<u64>,
     /// Name and version of the program.
@@ -62,7 +64,15 @@ pub struct PlanParams {
 
 impl Default for PlanParams {
     fn default() -> Self {
-        Self { clouds: Vec::new(), crs: None, tile_size: 512.0, cell: 1.0, memory: None, program: String::new() }
+        Self {
+            clouds: Vec::new(),
+            crs: None,
+            tile_size: 512.0,
+            cell: 1.0,
+            places: Vec::new(),
+            memory: None,
+            program: String::new(),
+        }
     }
 }
 
@@ -114,6 +124,13 @@ pub struct PlanFrame {
     pub system: String,
 }
 
+/// What plans of all versions say.
+#[derive(Deserialize)]
+struct Version {
+    layout: u32,
+    program: String,
+}
+
 /// What a plan will take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Estimate {
@@ -133,7 +150,7 @@ impl Plan {
     /// Looks at all points once, and plans the tiles, without a question.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for sizes out of range, a survey that is too wide for one frame, and memory into which no tile fits;
+    /// [`Error::InvalidParameter`] for sizes out of range, places outside, a survey that is too wide for one frame, and memory into which no tile fits;
     /// those of reading the files, and of [`SurveyFacts::estimate`].
     pub fn make(params: &PlanParams, control: &Control<'_>) -> Result<Self> {
         check_sizes(params)?;
@@ -158,6 +175,10 @@ impl Plan {
         }
         if let Some(what) = crs.refusal(low.map(|v| v / metres_per_unit[0])) {
             return Err(Error::UnusableCrs { path: inputs[0].path.clone(), what });
+        }
+        let holds = |place: &[f64; 2]| (0..2).all(|i| (low[i]..=high[i]).contains(&(place[i] * metres_per_unit[i])));
+        if let Some([x, y]) = params.places.iter().find(|place| !holds(place)) {
+            return Err(without_ground(format!("{x}, {y}")));
         }
         let origin: [f64; 3] =
             std::array::from_fn(|i| (f64::midpoint(low[i], high[i]) / ORIGIN_STEP).round() * ORIGIN_STEP);
@@ -214,14 +235,30 @@ impl Plan {
     /// Reads the plan of a run.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Malformed`] for what is no plan, or one of another version.
+    /// [`Error::Io`], and [`Error::Malformed`] for a folder without a plan, for what is no plan, and for one of another version.
     pub fn read(folder: &Path) -> Result<Self> {
         let path = Self::path(folder);
-        let bytes = std::fs::read(&path).map_err(Error::io(&path))?;
-        let mut plan: Self = serde_json::from_slice(&bytes)
-            .map_err(|e| Error::malformed(&path, format!("is no plan of this version: {e}; make it again")))?;
-        if plan.layout != LAYOUT || check_numbers(&plan).is_none() {
-            return Err(Error::malformed(&path, "is no plan of this version; make it again"));
+        let refused = |what: String| Err(Error::malformed(&path, format!("{what} again with `belvedere city plan`")));
+        let bytes = match std::fs::read(&path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                let what = "is not there: make a plan first with `belvedere city plan`";
+                return Err(Error::malformed(&path, what));
+            }
+            read => read.map_err(Error::io(&path))?,
+        };
+        if let Ok(Version { layout, program }) = serde_json::from_slice(&bytes)
+            && layout != LAYOUT
+        {
+            return refused(format!(
+                "is a plan of {program} in layout {layout}, but this program reads layout {LAYOUT}; make it, in another folder,"
+            ));
+        }
+        let mut plan: Self = match serde_json::from_slice(&bytes) {
+            Ok(plan) => plan,
+            Err(error) => return refused(format!("is no plan, or a damaged one ({error}); make it")),
+        };
+        if check_numbers(&plan).is_none() {
+            return refused("is a damaged plan: its numbers cannot be; make it".to_owned());
         }
         plan.name = hash(&bytes);
         Ok(plan)
@@ -230,12 +267,21 @@ impl Plan {
     /// Writes the plan into the folder of a run, which is made.
     ///
     /// # Errors
-    /// [`Error::Io`].
+    /// [`Error::Io`], and [`Error::Malformed`] for a folder with results of another plan.
     pub fn write(&self, folder: &Path) -> Result<()> {
         atomic::make_folder(folder)?;
         let path = Self::path(folder);
         let text =
             serde_json::to_string(self).map_err(|e| Error::malformed(&path, format!("cannot be written: {e}")))?;
+        let has_results =
+            || folder.read_dir().is_ok_and(|mut entries| entries.any(|entry| entry.is_ok_and(|e| e.path().is_dir())));
+        // a damaged plan may be that of the results
+        let is_other =
+            |before: Vec<u8>| before != text.as_bytes() && serde_json::from_slice::<Version>(&before).is_ok();
+        if std::fs::read(&path).is_ok_and(is_other) && has_results() {
+            let what = "is another plan, and its results are in the folder; give another folder, or remove this one";
+            return Err(Error::malformed(&path, what));
+        }
         atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(Error::io(&path)))
     }
 
@@ -426,11 +472,7 @@ impl Plan {
             };
             let unknown = ground.map(|(ground, _)| set_on_ground([(&mut *place, height)], &ground));
             if unknown.is_none_or(|unknown| !unknown.is_empty()) {
-                return Err(Error::InvalidParameter {
-                    name: "observer",
-                    value: format!("{}, {}", place[0] + origin[0], place[1] + origin[1]),
-                    expected: "a place of the survey with ground, or with its height as a third coordinate",
-                });
+                return Err(without_ground(format!("{}, {}", place[0] + origin[0], place[1] + origin[1])));
             }
         }
         Ok(())
@@ -475,6 +517,11 @@ impl PlanFrame {
         };
         Ok(Frame { origin: self.origin, crs })
     }
+}
+
+fn without_ground(value: String) -> Error {
+    let expected = "a place of the survey with ground, or with its height as a third coordinate";
+    Error::InvalidParameter { name: "observer", value, expected }
 }
 
 fn memory_of(points: f64) -> f64 {

@@ -21,8 +21,11 @@ impl SideFile {
     /// A file as it is now.
     ///
     /// # Errors
-    /// [`Error::Io`].
+    /// [`Error::Io`], and [`Error::Malformed`] for a folder.
     pub fn new(path: &Path) -> Result<Self> {
+        if path.is_dir() {
+            return Err(Error::malformed(path, "is a folder; give a file"));
+        }
         let path = std::path::absolute(path).map_err(Error::io(path))?;
         let fingerprint = hash(&std::fs::read(&path).map_err(Error::io(&path))?);
         Ok(Self { path, fingerprint })

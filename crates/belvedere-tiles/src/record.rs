@@ -153,7 +153,10 @@ impl Record {
     pub(crate) fn read_result(&self, path: &Path) -> Result<Vec<u8>> {
         let bytes = std::fs::read(path).map_err(Error::io(path))?;
         if self.result.as_ref().is_some_and(|stamp| stamp.fingerprint != hash(&bytes)) {
-            return Err(Error::malformed(path, "is damaged: remove it, and run again"));
+            return Err(Error::malformed(
+                path,
+                "is damaged: remove it, and compute it again with `belvedere city run`",
+            ));
         }
         Ok(bytes)
     }

@@ -203,7 +203,10 @@ pub fn parse_instant(text: &str, zone: Option<&Zone>) -> Result<f64> {
     let invalid = |expected| Error::InvalidParameter { name: "time", value: shortened(text), expected };
     const WRITING: &str =
         "written as 2026-06-21T12:00+02:00, with a zone as 2026-06-21T12:00[Europe/Amsterdam], or with --zone";
-    let pieces = Pieces::parse(text).map_err(|_| invalid(WRITING))?;
+    let pieces = Pieces::parse(text).map_err(|_| match Date::parse(text.get(..10).unwrap_or_default()) {
+        Err(_) if is_like_date(text) => invalid("on a day of the calendar, in the years 1000 to 2999"),
+        _ => invalid(WRITING),
+    })?;
     let shown = DateTime::from_parts(pieces.date(), pieces.time().ok_or_else(|| invalid(WRITING))?);
     if !(1000..3000).contains(&shown.year()) {
         return Err(invalid("in the years 1000 to 2999"));
@@ -240,6 +243,12 @@ pub fn parse_instant(text: &str, zone: Option<&Zone>) -> Result<f64> {
         (None, None, None) => return Err(invalid(WRITING)),
     };
     offset.to_timestamp(shown).map(seconds).map_err(|_| invalid(WRITING))
+}
+
+/// Whether a text begins with digits that are grouped as in 2026-06-21.
+fn is_like_date(text: &str) -> bool {
+    let is_so = |(at, byte): (usize, u8)| if matches!(at, 4 | 7) { byte == b'-' } else { byte.is_ascii_digit() };
+    text.len() >= 10 && text.bytes().take(10).enumerate().all(is_so)
 }
 
 /// The zone, or else the offset, that an instant is written with; `None` where it has neither or is no instant.

@@ -1,6 +1,6 @@
 //! Flags of lines of sight and viewsheds.
 
-use super::{North, Numbers, SceneInput, UnprovenChoice, above_zero, at_most, finite, length};
+use super::{North, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, finite, length};
 use belvedere::ground::GroundPoints;
 use belvedere::query::{Curvature, MOST_RANDOM_PAIRS};
 use clap::{Args, ValueEnum};
@@ -234,19 +234,35 @@ pub(crate) struct Looking {
 }
 
 /// A place on the map, with a height or without.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Place(pub(crate) [f64; 2], pub(crate) Option<f64>);
+
+impl Place {
+    /// Refuses a place that `flag` gives twice: it would count twice.
+    pub(crate) fn refuse_twice(flag: &str, places: &[Self]) -> Result<(), Usage> {
+        let again = places.iter().enumerate().find(|(number, place)| places[..*number].contains(place));
+        match again {
+            Some((_, Self([x, y], z))) => {
+                let z = z.map_or(String::new(), |z| format!(",{z}"));
+                Err(Usage(format!("{flag} {x},{y}{z}: given twice")))
+            }
+            None => Ok(()),
+        }
+    }
+}
 
 impl FromStr for Place {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if text.matches(',').count() == 2 {
-            let [x, y, z] = text.parse::<Numbers<3>>()?.0;
-            return Ok(Self([x, y], Some(z)));
+        match text.matches(',').count() {
+            1 => Ok(Self(text.parse::<Numbers<2>>()?.0, None)),
+            2 => {
+                let [x, y, z] = text.parse::<Numbers<3>>()?.0;
+                Ok(Self([x, y], Some(z)))
+            }
+            _ => Err("expected 2 or 3 numbers separated by commas".to_owned()),
         }
-        let place = text.parse::<Numbers<2>>().map_err(|why| format!("{why}, or three"))?;
-        Ok(Self(place.0, None))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Flags of the targets of sun and sky commands, and of the sky view.
 
-use super::{GroundChoice, SceneInput, Shell, ThroughTrees, above_zero, at_least_one, finite};
+use super::{GroundChoice, SceneInput, Shell, ThroughTrees, above_zero, at_least_one, length};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ pub(crate) struct SkyPlaces {
     /// Height of cells above the ground or above --surface, in metres [default: 0.1]
     ///
     /// Use 1.5 for the head of a person.
-    #[arg(long = "target-height", value_name = "M", allow_negative_numbers = true, value_parser = finite::<f32>, help_heading = "Targets")]
+    #[arg(long = "target-height", value_name = "M", allow_negative_numbers = true, value_parser = length, help_heading = "Targets")]
     pub(crate) height: Option<f32>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///

@@ -2,7 +2,7 @@
 
 mod questions;
 
-use super::check_output;
+use super::{check_folder, check_output};
 use crate::arguments::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, Usage};
 use crate::pipeline::flagged;
 use crate::progress::Stages;
@@ -30,6 +30,7 @@ pub(crate) fn run(arguments: &City, global: &Global) -> Result<Summary> {
 
 fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
     questions::check(arguments)?;
+    check_folder(&arguments.output)?;
     let stages = Stages::new(global);
     let mut summary = Summary::default();
     let params = PlanParams {
@@ -37,11 +38,13 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         crs: arguments.crs.clone(),
         tile_size: arguments.tile_size,
         cell: arguments.cell,
+        places: arguments.observers.iter().filter(|place| place.1.is_none()).map(|place| place.0).collect(),
         memory: arguments.memory.map(|memory| memory.0),
         program: concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned(),
     };
     let plan = Plan::make(&params, &stages.control()).map_err(|error| match error {
         Error::InvalidParameter { name: "cell", .. } => Usage(format!("--cell: {error}")).into(),
+        Error::InvalidParameter { name: "observer", .. } => Usage(format!("--observer: {error}")).into(),
         Error::InvalidParameter { name: "tile size", .. } => Usage(format!("--tile-size: {error}")).into(),
         Error::InvalidParameter { name: "memory for a tile", .. } => Usage(format!("--memory: {error}")).into(),
         other => anyhow::Error::from(other),

@@ -1,6 +1,7 @@
 //! `belvedere info`.
 
 use crate::arguments::{Global, Info};
+use crate::pipeline;
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded, sections, whole};
 use anyhow::Result;
@@ -23,6 +24,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     options.crs = arguments.input.crs.clone();
     options.up = arguments.input.up.into();
     let (cloud, report) = stages.run("reading", 0, |control| read_cloud(&arguments.input.clouds, &options, control))?;
+    pipeline::warn_of_missing(&report, &mut summary);
     let files = report.files.iter().map(|file| {
         let mut section = Summary::default();
         section

@@ -42,7 +42,7 @@ use crate::help;
 use crate::summary::Summary;
 use anyhow::{Context, Result, bail};
 use belvedere::crs::Crs;
-use belvedere::io::{ExtraColumn, ExtraValues};
+use belvedere::io::{ExtraColumn, ExtraValues, atomic};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -169,6 +169,16 @@ fn check_parent(path: &Path) -> Result<()> {
         }
         _ => Ok(()),
     }
+}
+
+/// Refuses an output folder that cannot be made, before hours of work go into it.
+fn check_folder(path: &Path) -> Result<()> {
+    let is_new = !path.exists();
+    atomic::make_folder(path)?;
+    if is_new {
+        std::fs::remove_dir(path).with_context(|| path.display().to_string())?;
+    }
+    Ok(())
 }
 
 /// Whether a folder in the layout of masbcpp is written where it was read. Its coordinates then stay as they are: they may be finer than

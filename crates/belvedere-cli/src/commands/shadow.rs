@@ -1,8 +1,8 @@
 //! `belvedere shadow`.
 
-use super::check_output;
 use super::sights::{Proving, blockers};
 use super::targets::{Asked, Relief};
+use super::{check_output, extension};
 use crate::arguments::{Global, Shadow, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
 use crate::progress::Stages;
@@ -18,9 +18,9 @@ use belvedere::io::atomic;
 use belvedere::query::UnprovenAs;
 
 const SHADE_COLOR: [u8; 3] = [38, 52, 96];
-const HALF_COLOR: [u8; 3] = [140, 140, 160];
+const HALF_COLOR: [u8; 3] = [147, 136, 93];
 const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
-const LIT_COLOR: [u8; 3] = [235, 235, 235];
+const LIT_COLOR: [u8; 3] = [255, 220, 90];
 /// Most suns told one by one.
 const MOST_TOLD: usize = 5;
 
@@ -76,6 +76,11 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     };
     let pictured = |relief: &Relief| picture(0, relief);
     asked.write_with(&arguments.outputs, &measures, &pictured, &mut stages, &mut summary)?;
+    let map = arguments.outputs.output.iter().find(|output| extension(output) == "png" && asked.relief().is_some());
+    if let (Some(map), 2.., None, None) = (map, suns.len(), &arguments.film, &arguments.frames) {
+        let (map, count) = (map.display(), suns.len());
+        summary.warn(format!("{map}: the map shows only the first of {count} suns; --film OUT shows them all"));
+    }
     films(arguments, &asked, &suns, &picture, &mut stages)?;
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
@@ -178,7 +183,15 @@ fn instants(arguments: &Shadow, site: &Site, zone: &Zone) -> Result<Vec<f64>> {
     let steps: Vec<f64> =
         days.iter().flat_map(|day| &day.steps).map(|step| f64::midpoint(step.start, step.end)).collect();
     if steps.is_empty() {
-        return Err(Usage("the sun does not rise there in this period".to_owned()).into());
+        let from_horizon = sun_days(site, zone, &period, &params.with_least_elevation(0.0))?;
+        let rises = from_horizon.iter().any(|day| !day.steps.is_empty());
+        let least = params.least_elevation.to_degrees();
+        return Err(Usage(if rises {
+            format!("--min-sun-elevation: the sun stays below {least} degrees there in this period")
+        } else {
+            "the sun does not rise there in this period".to_owned()
+        })
+        .into());
     }
     Ok(steps)
 }
@@ -215,8 +228,7 @@ fn frame(
 ) -> belvedere::Result<Picture> {
     let color = |(row, &share): (usize, &f32)| match share {
         _ if doubts.and_then(|doubts| doubts.get(row)).is_some_and(|&doubt| doubt > 0.0) => Some(UNPROVEN_COLOR),
-        0.0 => Some(SHADE_COLOR),
-        share if share > 0.0 && share < 1.0 => {
+        share if share.is_finite() => {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two colours")]
             let mixed =
                 |i: usize| (f32::from(SHADE_COLOR[i]) * (1.0 - share) + f32::from(LIT_COLOR[i]) * share).round() as u8;
@@ -234,7 +246,16 @@ fn frame(
     }
     let (title, legend) = (sun.title.as_str(), MapLegend::Colors(&meanings));
     let Relief { heights: relief, cell, place } = relief;
-    map_picture(&MapPicture { relief, cell: *cell, place: Some(place), colors: &colors, marks: &[], title, legend })
+    map_picture(&MapPicture {
+        relief,
+        cell: *cell,
+        place: Some(place),
+        colors: &colors,
+        marks: &[],
+        mark_name: "",
+        title,
+        legend,
+    })
 }
 
 /// Draws the shadow of the sun of that number over a relief.

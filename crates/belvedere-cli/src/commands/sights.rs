@@ -5,7 +5,7 @@ use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
-use belvedere::apps::eyes::{EyesReport, SkippedEye, skip_unfit_eyes};
+use belvedere::apps::eyes::{EyeFault, EyesReport, SkippedEye, skip_unfit_eyes};
 use belvedere::depth::Profile;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
 use belvedere::io::{ReadOptions, read_cloud};
@@ -168,8 +168,20 @@ pub(crate) fn skip_unfit(
         let [x, y, _] = frame.file_from_local(skipped.place);
         (format!("{who} {} at {x:.3},{y:.3}", skipped.row + 1), skipped.fault)
     };
-    if let Some((name, fault)) = report.faults.first().map(named).filter(|_| report.skipped == report.count) {
-        bail!("no {who} is left: {name}: {fault}");
+    if report.skipped == report.count && report.skipped > 0 {
+        let told = |skipped| {
+            let (name, fault) = named(skipped);
+            format!("{name}: {fault}")
+        };
+        let listed: Vec<String> = report.faults.iter().take(MOST_NAMED).map(told).collect();
+        let more = report.skipped.saturating_sub(MOST_NAMED);
+        let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+        let is_inside = |skipped: &SkippedEye| matches!(skipped.fault, EyeFault::InsideObstacle(_));
+        let advice = match report.faults.iter().any(is_inside) {
+            true => "; give places outside of obstacles, or heights above them",
+            false => "",
+        };
+        bail!("no {who} is left: {}{more}{advice}", listed.join("; "));
     }
     for (name, fault) in report.faults.iter().take(MOST_NAMED).map(named) {
         summary.warn(format!("{name} is skipped: {fault}"));

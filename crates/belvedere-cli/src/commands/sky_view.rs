@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &SkyView, global: &Global) -> Result<Summary> {
     let seen = stages.run("testing sky", looks, |control| scene_sky_view(obstacles, &asked.targets, &sky, control))?;
     let measures = seen.into_measures();
     summary.add("sky", asked.statistics(&measures));
-    asked.write(&arguments.outputs, &measures, "Sky view factor (cosine-weighted)", &mut stages, &mut summary)?;
+    asked.write(&arguments.outputs, &measures, "Sky view", &mut stages, &mut summary)?;
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
 }

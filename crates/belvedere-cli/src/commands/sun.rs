@@ -3,12 +3,12 @@
 use crate::arguments::{ElevationChoice, SunPeriod, SunPlace, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::summary::{Summary, rounded};
-use anyhow::{Context, Result};
+use anyhow::{Result, anyhow};
 use belvedere::apps::sun::{
     Date, DayParams, Period, Refraction, Site, Zone, parse_instant, sun_position_with, zone_of_instant,
 };
 use belvedere::apps::sun_hours::RuleDays;
-use belvedere::{Bounds, Frame};
+use belvedere::{Bounds, Error, Frame};
 
 impl SunPlace {
     /// Where the middle of the scene lies on earth.
@@ -22,9 +22,12 @@ impl SunPlace {
         let found = Site::of_scene(frame, bounds, given, None);
         let (site, _) = match given {
             Some(_) => flagged("--location", found)?,
-            None => found.context(
-                "the position of the sun needs the location of the scene: give --location LAT,LON, or its reference system with --crs EPSG:CODE",
-            )?,
+            None => found.map_err(|error| match error {
+                Error::MissingAttribute { .. } => anyhow!(
+                    "the position of the sun needs the location of the scene: give --location LAT,LON, or its reference system with --crs EPSG:CODE"
+                ),
+                other => other.into(),
+            })?,
         };
         let mut section = Summary::default();
         section
@@ -68,7 +71,13 @@ impl SunPlace {
 impl SunPeriod {
     /// Refuses what cannot be anywhere on earth, before hours of work go into a scene.
     pub(crate) fn check(&self, place: &SunPlace) -> Result<()> {
-        flagged("--time-step-min or --min-sun-elevation", self.params(place)?.validate())?;
+        self.params(place)?.validate().map_err(|error| match (error, self.step) {
+            (Error::InvalidParameter { name: "step of time", .. }, Some(step)) => {
+                Usage(format!("--time-step-min: the step is {step} minutes, but must be 1/6 to 60 minutes")).into()
+            }
+            (error @ Error::InvalidParameter { .. }, _) => Usage(format!("--min-sun-elevation: {error}")).into(),
+            (error, _) => anyhow::Error::from(error),
+        })?;
         let [latitude, longitude] = place.location.map_or([0.0; 2], |given| given.0.map(f64::to_radians));
         let anywhere = Site { latitude, longitude, height: 0.0, convergence: 0.0 };
         let anywhere = flagged("--location", anywhere.validate())?;
@@ -118,7 +127,7 @@ impl SunPeriod {
 
 fn days(first: Date, last: Date) -> belvedere::Result<Vec<Date>> {
     if last < first {
-        return Err(belvedere::Error::InvalidParameter {
+        return Err(Error::InvalidParameter {
             name: "last day",
             value: last.to_string(),
             expected: "the first day or a later one",

@@ -83,7 +83,11 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
     };
     let measures = sums.into_measures(&plan, targets);
     summary.add("sun", asked.statistics(&measures));
-    let title = format!("Sun hours, {}", days_in_words(plan.period(), &zone));
+    let days = days_in_words(plan.period(), &zone);
+    let title = match plan.rules().first().filter(|_| !arguments.when.is_given()) {
+        Some(first) => format!("Sun hours on the days of the rule {}, {days}", first.rule.name),
+        None => format!("Sun hours, {days}"),
+    };
     asked.write(&arguments.outputs, &measures, &title, &mut stages, &mut summary)?;
     summary.add_seconds(stages.into_seconds());
     Ok(summary)

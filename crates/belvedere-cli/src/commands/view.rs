@@ -7,11 +7,12 @@ use crate::interrupt;
 use crate::pipeline::{self, Points, flagged, params};
 use crate::progress::Stages;
 use crate::summary::{Summary, note};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use belvedere::apps::sun::{Date, Site, Zone};
 use belvedere::io::{atomic, has_point_results, is_ball_file, read_geojson, read_point_results, read_tif};
 use belvedere::model::SceneModel;
-use belvedere::{Bounds, Frame, PointCloud};
+use belvedere::query::{AddedMeshes, Coverage};
+use belvedere::{Bounds, Error, Frame, PointCloud};
 use belvedere_tiles::{Plan, merged_within};
 use belvedere_viewer::{ExportParams, Loading, PointsOf, SceneText, Viewer, ViewerParams, export, quoted};
 use std::io::Write;
@@ -25,9 +26,11 @@ const POLL: Duration = Duration::from_millis(20);
 pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
     let files = &arguments.scene.input.clouds;
     for path in files {
-        path.metadata().map_err(belvedere::Error::io(path))?;
+        path.metadata().map_err(Error::io(path))?;
     }
     let files = Files::of(files)?;
+    refuse_flags_of_files(arguments)?;
+    Place::refuse_twice("--observer", &arguments.observer)?;
     if let Some(output) = &arguments.export {
         return write_page(output, arguments, &files, global);
     }
@@ -44,8 +47,11 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
     let loading = viewer.loading();
     let mut summary = Summary::default();
     let mut stages = Stages::new(global).told_also(loading.clone());
-    match load(&arguments.scene, &files, &loading, &mut stages, &mut summary) {
-        Ok((_, model)) => loading.finish(model),
+    match load(&arguments.scene, &files, &loading, &|_, _| Ok(()), &mut stages, &mut summary) {
+        Ok((_, model)) => {
+            summary.note_warnings(global);
+            loading.finish(model);
+        }
         Err(error) => {
             // the page says it too, and looks for it four times a second
             loading.fail(format!("{error:#}"));
@@ -61,6 +67,19 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
     Ok(Summary::default())
 }
 
+/// The parser lets these pass beside a flag that --export does not go with.
+fn refuse_flags_of_files(arguments: &ViewPage) -> Result<()> {
+    let given = [
+        ("--date", arguments.date.is_some()),
+        ("--zone", arguments.zone.is_some()),
+        ("--observer", !arguments.observer.is_empty()),
+    ];
+    match given.into_iter().find(|(_, given)| *given && arguments.export.is_none()) {
+        Some((flag, _)) => Err(Usage(format!("{flag} needs --export")).into()),
+        None => Ok(()),
+    }
+}
+
 /// What the page is called: the name of its first file.
 fn title(files: &[PathBuf]) -> String {
     files.first().and_then(|path| path.file_name()).unwrap_or_default().to_string_lossy().into_owned()
@@ -73,19 +92,28 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
     let zone = arguments.zone.as_deref().map(|zone| flagged("--zone", Zone::parse(zone))).transpose()?;
     let loading = Loading::default();
     let (mut stages, mut summary) = (Stages::new(global), Summary::default());
-    let (cloud, model) = load(&arguments.scene, files, &loading, &mut stages, &mut summary)?;
+    let day = |frame: &Frame, bounds: &Bounds| -> Result<Option<(Date, Zone)>> {
+        Ok(match (date, &zone) {
+            (None, _) => None,
+            (Some(date), zone) => {
+                let site = Site::of_scene(frame, bounds, None, None).map_err(|error| match error {
+                    Error::MissingAttribute { .. } => {
+                        anyhow!(
+                            "--date needs the location of the scene: give its reference system with --crs EPSG:CODE"
+                        )
+                    }
+                    other => other.into(),
+                })?;
+                Some((date, zone.clone().unwrap_or_else(|| Zone::mean_solar(&site.0))))
+            }
+        })
+    };
+    let check = |frame: &Frame, bounds: &Bounds| day(frame, bounds).map(|_| ());
+    let (cloud, model) = load(&arguments.scene, files, &loading, &check, &mut stages, &mut summary)?;
     let Some(cloud) = cloud else {
         return Err(Usage("--export needs a cloud; a ball file has no points".to_owned()).into());
     };
-    let day = match (date, zone) {
-        (None, _) => None,
-        (Some(date), Some(zone)) => Some((date, zone)),
-        (Some(date), None) => {
-            let site = Site::of_scene(model.frame(), &model.bounds(), None, None)
-                .context("--date needs the location of the scene: give its reference system with --crs EPSG:CODE")?;
-            Some((date, Zone::mean_solar(&site.0)))
-        }
-    };
+    let day = day(model.frame(), &model.bounds())?;
     let params = ExportParams {
         title: title(&arguments.scene.input.clouds),
         scene: SceneText { input: files.typed(), cloud_beside: files.cloud_beside() },
@@ -93,9 +121,12 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
         viewpoints: arguments.observer.iter().map(|&Place([x, y], z)| [x, y, z.unwrap_or(f64::NAN)]).collect(),
     };
     let exported = stages.run("making the page", 0, |control| export(&cloud, model, &params, control));
-    let (page, report) = exported?;
+    let (page, report) = exported.map_err(|error| match error {
+        Error::InvalidParameter { name: "the viewpoint", .. } => Usage(format!("--observer: {error}")).into(),
+        other => anyhow::Error::from(other),
+    })?;
     stages.run("writing", 0, |_| {
-        atomic::write(output, |file| file.write_all(page.as_bytes()).map_err(belvedere::Error::io(output)))
+        atomic::write(output, |file| file.write_all(page.as_bytes()).map_err(Error::io(output)))
     })?;
     summary.add_report(&report).add("written", output.display().to_string());
     summary.add_seconds(stages.into_seconds());
@@ -162,11 +193,15 @@ impl Files {
     }
 }
 
+/// Refuses a cloud, by its frame and bounds, before balls are built.
+type Check<'a> = dyn Fn(&Frame, &Bounds) -> Result<()> + 'a;
+
 /// Reads what was typed and builds its balls; shows the cloud as soon as it is there.
 fn load(
     arguments: &SceneInput,
     files: &Files,
     loading: &Loading,
+    check: &Check<'_>,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<(Option<Arc<PointCloud>>, SceneModel)> {
@@ -179,8 +214,10 @@ fn load(
         let params = arguments.shrinking.params(MethodChoice::Carved)?;
         let cloud = Arc::new(pipeline::read(&input.input, stages, summary)?);
         loading.show(&cloud);
-        show_meshes(files, &arguments.plan.add, &cloud.frame, loading, stages, summary)?;
-        show_results(files, &cloud.frame, &cloud.bounds().unwrap_or_default(), loading, stages)?;
+        let bounds = cloud.bounds().unwrap_or_default();
+        check(&cloud.frame, &bounds)?;
+        show_meshes(files, &arguments.plan.add, (&cloud.frame, &bounds), loading, stages, summary)?;
+        show_results(files, &cloud.frame, &bounds, loading, stages)?;
         let crs = &cloud.frame.crs;
         let params = params::model(&arguments.cleaning, &arguments.orienting, params, crs, stages)?;
         let built = SceneModel::build(&cloud, &params, &stages.control());
@@ -189,8 +226,9 @@ fn load(
     };
     input.input.clouds = vec![balls.clone()];
     let scene = pipeline::scene(&input, Points::Keep, stages, summary)?;
-    show_meshes(files, &arguments.plan.add, scene.model.frame(), loading, stages, summary)?;
-    show_results(files, scene.model.frame(), &scene.model.bounds(), loading, stages)?;
+    let bounds = scene.model.bounds();
+    show_meshes(files, &arguments.plan.add, (scene.model.frame(), &bounds), loading, stages, summary)?;
+    show_results(files, scene.model.frame(), &bounds, loading, stages)?;
     let mut shown = None;
     if !files.clouds.is_empty() {
         input.input.clouds.clone_from(&files.clouds);
@@ -207,13 +245,18 @@ fn load(
 fn show_meshes(
     files: &Files,
     planned: &[PathBuf],
-    frame: &Frame,
+    (frame, bounds): (&Frame, &Bounds),
     loading: &Loading,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<()> {
     for path in files.meshes.iter().chain(planned) {
         let mesh = pipeline::mesh_in(path, &frame.crs, stages, summary)?;
+        let coverage = Coverage::of(*bounds);
+        if let Err(error) = AddedMeshes::new(&mesh, &path.display().to_string(), frame.origin, coverage.as_ref(), None)
+        {
+            summary.warn(error.to_string());
+        }
         loading.show_mesh(&mesh, frame);
     }
     Ok(())

@@ -152,12 +152,39 @@ fn wrong_plans_are_refused_with_advice() {
     place.refusal(2, &format!("{plan} --time 2026-03-20T10:00"), &["--time", "zone"]);
     place.refusal(2, &format!("{plan} --sun 150,20 --sun 150,20"), &["shadow_150_20 twice"]);
     place.refusal(2, &format!("{plan} --observer 10,10"), &["--observer", "10, 10", "height"]);
-    place.refusal(1, "city run nowhere", &["plan.json"]);
+    place.refusal(1, "city run nowhere", &["plan.json", "belvedere city plan"]);
+    // before the survey is read: no stage is reported
+    place.write("no.obj", "o nothing\n");
+    for (flags, words) in [
+        ("-o other --sky-view --add no.obj", ["no.obj", "faces"]),
+        ("-o other --sky-view --add .", ["error: .: ", "mesh"]),
+        ("-o other --irradiance --weather no.obj", ["no.obj", "weather"]),
+        ("-o no.obj --sky-view", ["no.obj", "a folder is needed"]),
+    ] {
+        let run = place.run(&format!("--progress json city plan town/cloud.laz {flags}"));
+        assert!(run.status == 1 && words.iter().all(|word| run.stderr.contains(word)), "{flags}: {run:?}");
+        assert!(!run.stderr.contains("surveying") && !place.path("other").exists(), "{flags}: {run:?}");
+    }
     place.summary(&format!("{plan} --sky-view --directions 49 --sun 150,20"));
     place.refusal(2, "city run run --shard 3/2", &["--shard", "1/N"]);
     place.refusal(2, "city merge run -o all.tif", &["--result", "sky_view_factor"]);
-    std::fs::write(place.path("run/plan.json"), "{}").unwrap();
-    place.refusal(1, "city run run", &["plan.json", "make it again"]);
+    let again = "again with `belvedere city plan`";
+    let text = place.text("run/plan.json");
+    let layout = text.replacen("\"layout\":", "\"layout\":9", 1);
+    for (plan, word) in [("{}", "no plan"), (&text[..text.len() / 2], "damaged"), (&layout, "layout 9")] {
+        std::fs::write(place.path("run/plan.json"), plan).unwrap();
+        place.refusal(1, "city run run", &["plan.json", word, again]);
+    }
+    std::fs::write(place.path("run/plan.json"), text).unwrap();
+    // a plan takes the place of another that has no results yet, and leaves one that has them as it is
+    place.summary(&format!("{plan} --sun 150,30 --cell 2"));
+    place.summary(&format!("{plan} --sun 150,20 --cell 2"));
+    place.summary("city run run");
+    place.refusal(1, &format!("{plan} --sun 150,30 --cell 2"), &["run/plan.json", "another plan", "another folder"]);
+    // a damaged plan is made again, and its results are those that are there
+    std::fs::write(place.path("run/plan.json"), "{").unwrap();
+    place.summary(&format!("{plan} --sun 150,20 --cell 2"));
+    assert_eq!(place.summary("city status run")["is_complete"], true);
 }
 
 #[test]

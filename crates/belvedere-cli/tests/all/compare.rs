@@ -188,6 +188,9 @@ fn what_cannot_be_compared_is_refused() {
     place.refusal(2, "compare --presets metropolis -o out", &["metropolis", "old-town"]);
     place.refusal(2, "compare --clouds a.laz --mesh b.obj --model City=c.obj -o out", &["lower-case"]);
     place.refusal(1, "compare --clouds a.laz --mesh b.obj -o out", &["b.obj"]);
+    assert!(!place.path("out").exists(), "a run without a result leaves no folder");
+    place.write("file", "");
+    place.refusal(1, "compare --extent 60 -o file", &["file", "a folder is needed"]);
     place.write("t.csv", "");
     place.refusal(2, "compare --trajectory t.csv -o out", &["--trajectory", "--held-out"]);
     place.refusal(1, "compare -o missing/out", &["missing"]);

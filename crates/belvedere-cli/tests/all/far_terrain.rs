@@ -90,10 +90,20 @@ fn terrain_that_does_not_fit_is_refused_by_name() {
     write_terrain(&place, "far.tif", 28992, 9000.0, range);
     place.refusal(2, &format!("{shadow} far.tif"), &["--terrain", "far.tif", "coordinates of the cloud"]);
     write_terrain(&place, "high.tif", 28992, 0.0, |_, _| 140.0);
-    place.refusal(2, &format!("{shadow} high.tif"), &["--terrain", "high.tif", "140.0", "zero and unit"]);
+    place.refusal(2, &format!("{shadow} high.tif"), &["--terrain", "high.tif", "140.0", "same zero"]);
+    write_terrain(&place, "feet.tif", 28992, 0.0, |_, _| 100.0);
+    place.refusal(2, &format!("{shadow} feet.tif"), &["feet.tif", "100.0 to 100.0 m", "look like feet", "A*0.3048"]);
+    write_terrain(&place, "ellipsoid.tif", 28992, 0.0, |_, _| -43.0);
+    place.refusal(2, &format!("{shadow} ellipsoid.tif"), &["ellipsoid.tif", "above the ellipsoid", "gdalwarp"]);
+    for wrong in [32_767.0, f32::MAX, -32_768.0] {
+        let height = move |x: f64, y: f64| if x < -900.0 && y > 900.0 { wrong } else { range(x, y) };
+        write_terrain(&place, "wrong.tif", 28992, 0.0, height);
+        let advice = format!("gdal_translate -a_nodata {wrong:?}");
+        place.refusal(1, &format!("{shadow} wrong.tif"), &["wrong.tif", "column 1, row 1 ", &advice]);
+    }
     write_terrain(&place, "empty.tif", 28992, 0.0, |_, _| f32::NAN);
     place.refusal(1, &format!("{shadow} empty.tif"), &["empty.tif", "values"]);
     place.write("text.tif", "no raster");
-    place.refusal(1, &format!("{shadow} text.tif"), &["text.tif"]);
+    place.refusal(1, &format!("{shadow} text.tif"), &["text.tif", "no TIFF file", "gdal_translate"]);
     place.refusal(1, &format!("{shadow} missing.tif"), &["missing.tif"]);
 }

@@ -154,6 +154,11 @@ fn a_film_has_a_frame_for_each_sun() {
     assert_eq!(frames as u64, suns);
     let header = place.text("day.csv").lines().next().unwrap().to_owned();
     assert_eq!(header.split(',').filter(|name| name.starts_with("lit_202612")).count() as u64, suns, "{header}");
+    // one map cannot show them all
+    let two = format!("shadow {HOUSE} --sun 180,30 --sun 200,30 --cell 1 -o map.png");
+    let warnings = &place.summary(&two)["warnings"];
+    assert!(warnings.to_string().contains("only the first of 2 suns; --film"), "{warnings}");
+    assert_eq!(place.summary(&format!("{two} --film film.png"))["warnings"], serde_json::Value::Null);
 }
 
 #[test]
@@ -171,6 +176,12 @@ fn what_cannot_be_is_refused_with_advice() {
         ("--sun nan,30 -o no.csv", "finite"),
         ("--sun 180,30 --time 2026-06-21T15:00Z -o no.csv", "--time"),
         ("--date shortest-day --location 80,15 -o no.csv", "does not rise"),
+        ("--date 2026-06-21 --min-sun-elevation 80 -o no.csv", "--min-sun-elevation: the sun stays below 80 degrees"),
+        ("--date 2026-06-21 --min-sun-elevation 95 -o no.csv", "--min-sun-elevation: minimum elevation"),
+        ("--date 2026-06-21 --time-step-min 120 -o no.csv", "--time-step-min: the step is 120 minutes"),
+        ("--time 2026-02-30T10:00+01:00 -o no.csv", "a day of the calendar"),
+        ("--sun 500,30 -o no.csv", "azimuth"),
+        ("--sun 180,30 --target-height -500 -o no.csv", "--target-height"),
         ("--date 2026-06-21 --time-step-min 0 -o no.csv", "--time-step-min"),
         ("--sun 180,30 --unproven report -o no.csv", "pulses"),
         ("--sun 180,30 --soft --unproven report -o no.csv", "hard edges"),

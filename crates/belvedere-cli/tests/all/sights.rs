@@ -198,6 +198,16 @@ fn what_cannot_be_is_refused_with_advice() {
         &["observer 1", "coordinates of the cloud"],
     );
     place.refusal(2, &format!("viewshed {HOUSE} {observer} -o seen.doc"), &["extension"]);
+    let far = format!("--observer {EAST},{}", NORTH + 9.0);
+    place.refusal(2, &format!("viewshed {HOUSE} {far} {observer} {far} -o seen.tif"), &[&far, "given twice"]);
+    for (given, words) in [
+        ("abc,447527", "\"abc\" is not a number\n"),
+        ("NaN,447527", "NaN is not finite\n"),
+        ("1", "2 or 3 numbers"),
+        ("1,2,3,4", "2 or 3 numbers"),
+    ] {
+        place.refusal(2, &format!("viewshed {HOUSE} --observer {given} -o seen.tif"), &["--observer", words]);
+    }
     place.refusal(2, &format!("viewshed {HOUSE} {observer} -o seen.tif -o seen.tif"), &["two results"]);
     place.refusal(2, &format!("viewshed {HOUSE} {observer} --cell 1e-9 -o seen.tif"), &["--cell", "100 million"]);
     place.refusal(2, &format!("viewshed {HOUSE} {observer} --refraction 2 -o seen.tif"), &["refraction"]);
@@ -222,4 +232,18 @@ fn what_cannot_be_is_refused_with_advice() {
     place.write("walk.geojson", "{\"type\":\"Feature\",\"geometry\":{\"type\":\"Blob\"}}");
     place.refusal(1, &format!("viewshed {HOUSE} --observers walk.geojson -o seen.tif"), &["Blob"]);
     place.refusal(1, &format!("viewshed {HOUSE} {observer},-0.7 --cell 2 -o seen.tif"), &["below the ground"]);
+    place.refusal(
+        1,
+        &format!("viewshed {HOUSE} {observer},-50 --cell 2 -o seen.tif"),
+        &["its height is below the cloud"],
+    );
+    place.write("inside.csv", format!("x,y,z\n{EAST},{NORTH},3\n{EAST},{},3\n", NORTH + 1.0));
+    let advice = ["observer 1", "observer 2", "inside an obstacle", "heights above them"];
+    place.refusal(1, &format!("viewshed {HOUSE} --observers inside.csv --cell 2 -o seen.tif"), &advice);
+    place.write("none.csv", "x,y\n");
+    place.refusal(
+        1,
+        &format!("viewshed {HOUSE} --observers none.csv --cell 2 -o seen.tif"),
+        &["none.csv", "give a row"],
+    );
 }

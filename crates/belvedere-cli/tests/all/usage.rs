@@ -109,6 +109,15 @@ fn files_that_cannot_be_used_are_named() {
         place.refusal(1, &format!("query --sun 180,30 --self -o out.laz {name}"), &["error: ", name]);
         place.refusal(1, &format!("query --sun 180,30 --targets {name} -o out.csv house.laz"), &["error: ", name]);
     }
+    // what is left of a file that is not compressed is a cloud, which must not look whole
+    place.write_cloud("whole.las", &house());
+    let las = place.bytes("whole.las");
+    place.write("half.las", &las[..las.len() / 2]);
+    for command in ["info", "balls -o half.npz", "query --sun 180,30 --random 9 -o half.csv"] {
+        let run = place.run(&format!("{command} half.las"));
+        assert!(run.status == 0 && run.stderr.contains("half.las: the file is cut off"), "{run:?}");
+    }
+    place.refusal(1, "city plan half.las --sky-view -o out", &["half.las", "cut off"]);
     place.write("damaged.npz", "PK but no archive");
     place.refusal(1, "query --sun 180,30 --random 9 -o out.csv damaged.npz", &["damaged.npz: damaged, or not a ball"]);
     assert!(place.names().iter().all(|name| !name.contains("out")), "{:?}", place.names());

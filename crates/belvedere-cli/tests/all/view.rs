@@ -272,7 +272,19 @@ fn a_page_is_written_as_one_file_with_the_shadows_of_a_day_and_views() {
     place.refusal(2, "view town/cloud.laz --export page.txt", &["--export", "html"]);
     place.refusal(2, "view town/cloud.laz --export page.html --date yesterday", &["--date"]);
     place.refusal(2, "view town/cloud.laz --observer 155000,463000", &["--export"]);
-    place.refusal(1, "view town/cloud.laz --export page.html --observer 155000,463000,-90", &["viewpoint", "above"]);
+    for flag in ["--date 2026-06-21", "--observer 155000,463000"] {
+        place.refusal(2, &format!("view town/cloud.laz --no-browser {flag}"), &["needs --export"]);
+    }
+    place.refusal(
+        2,
+        "view town/cloud.laz --export page.html --observer 1,2 --observer 1,2",
+        &["--observer 1,2", "twice"],
+    );
+    place.refusal(
+        2,
+        "view town/cloud.laz --export page.html --observer 155000,463000,-90",
+        &["--observer", "viewpoint", "its height is below the cloud"],
+    );
 }
 
 #[cfg(unix)]

@@ -8,6 +8,10 @@ use serde::Serialize;
 /// heights above an ellipsoid and above the sea differ in most countries, and than a height in feet taken for metres in all but the lowest.
 const MOST_OFFSET: f32 = 25.0;
 
+/// Farthest that the sea lies from the ellipsoid, metres.
+const MOST_GEOID: f64 = 107.0;
+const METRES_PER_FOOT: f64 = 0.3048;
+
 /// What an elevation raster holds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TerrainReport {
@@ -68,14 +72,25 @@ pub(super) fn check(terrain: &ElevationGrid, name: &str, cloud: Bounds, frame: &
     let Some([lowest, highest]) = terrain.height_range((low, high)) else { return Ok(()) };
     if lowest > cloud.high[2] + MOST_OFFSET || highest < cloud.low[2] - MOST_OFFSET {
         let z = |local: f32| frame.origin[2] + f64::from(local);
-        let value = format!(
-            "{name}, which is {:.1} to {:.1} m high at the cloud, whose heights are {:.1} to {:.1} m",
-            z(lowest),
-            z(highest),
-            z(cloud.low[2]),
-            z(cloud.high[2])
-        );
-        return invalid(value, "of the same heights as the cloud: the same zero and unit");
+        let [terrain, cloud] = [[lowest, highest], [cloud.low[2], cloud.high[2]]].map(|heights| heights.map(z));
+        let text = |[low, high]: [f64; 2]| format!("{low:.1} to {high:.1} m");
+        let value = format!("{name}, with heights of {} where the cloud has {}", text(terrain), text(cloud));
+        return invalid(value, expected_heights(terrain, cloud));
     }
     Ok(())
+}
+
+/// What heights of `terrain` must be to fit those of a `cloud`, metres: what makes them differ can be seen from the numbers.
+fn expected_heights(terrain: [f64; 2], cloud: [f64; 2]) -> &'static str {
+    let room = f64::from(MOST_OFFSET);
+    let [low, high] = terrain.map(|height| height * METRES_PER_FOOT);
+    let gap = (terrain[0] - cloud[1]).max(cloud[0] - terrain[1]);
+    if low <= cloud[1] + room && high >= cloud[0] - room {
+        "in metres; these numbers look like feet: gdal_calc.py -A IN.tif --calc=A*0.3048 --outfile=OUT.tif"
+    } else if gap <= MOST_GEOID {
+        "above the same zero as those of the cloud; heights above the ellipsoid and above the sea differ that much: convert one of them with \
+         gdalwarp -s_srs and -t_srs"
+    } else {
+        "above the same zero as those of the cloud, and in metres"
+    }
 }

@@ -5,7 +5,7 @@ use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::cameras::{CoverageTable, Placement, Pose};
 use belvedere::apps::targets::Targets;
-use belvedere::figures::{MapLegend, MapPicture, map_picture, write_png};
+use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, write_png};
 use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{Area, Cells, Spot, outlines, write_geojson, write_geojson_areas, write_table, write_tif_u16};
 use belvedere::raster::Raster;
@@ -170,8 +170,12 @@ impl<'a> Found<'a> {
 
     fn write_map(&self, output: &Path, ground: &Ground, cloud: &PointCloud) -> Result<()> {
         let relief = highest_points(&cloud.positions, ground);
-        let eyes = self.chosen.iter().map(|camera| self.pose_of(camera).camera.eye);
-        let marks: Vec<[f64; 2]> = eyes.filter_map(|eye| ground.grid.cell_position([eye[0], eye[1]])).collect();
+        let mark = |(number, camera): (usize, &Chosen)| {
+            let pose = self.pose_of(camera);
+            let place = ground.grid.cell_position([pose.camera.eye[0], pose.camera.eye[1]])?;
+            Some(MapMark { place, view: Some([pose.heading, pose.width]), label: number.to_string() })
+        };
+        let marks: Vec<MapMark> = (1..).zip(&self.chosen).filter_map(mark).collect();
         let most = self.counts().flatten().max().map_or(1, |most| usize::from(most).clamp(1, COLORS.len() - 1));
         let color = |count: u16| COLORS.get(usize::from(count).min(most)).copied();
         let colors: Vec<Option<[u8; 3]>> = self.counts().map(|count| count.and_then(color)).collect();
@@ -183,6 +187,7 @@ impl<'a> Found<'a> {
             place: Some(&georeference(&ground.grid, &self.targets.frame)),
             colors: &colors,
             marks: &marks,
+            mark_name: "camera",
             title: "Cameras, and how many of them cover each cell",
             legend: MapLegend::Colors(&meanings),
         };

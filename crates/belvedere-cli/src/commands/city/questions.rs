@@ -1,6 +1,6 @@
 //! From flags to the questions of a plan.
 
-use crate::arguments::{CityPlan, Numbers, Usage};
+use crate::arguments::{CityPlan, Numbers, Place, Usage};
 use crate::commands::irradiance::radiation;
 use crate::commands::shadow::moment;
 use crate::commands::sun_hours::rules;
@@ -13,6 +13,7 @@ use belvedere::apps::sun::{Binning, Period, sun_position_with};
 use belvedere::apps::tree_light::Season;
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::control::Control;
+use belvedere::io::{read_mesh, read_weather};
 use belvedere_tiles::{Plan, Question, Radiation, SideFile, SunQuestion};
 
 /// Refuses what cannot be asked, before the survey is read.
@@ -38,6 +39,13 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
     let has_radiation = arguments.weather.is_some() || arguments.clear_sky.is_some();
     if arguments.irradiance && !has_radiation {
         return usage("--irradiance needs --weather FILE or --clear-sky MODEL");
+    }
+    Place::refuse_twice("--observer", &arguments.observers)?;
+    for mesh in &arguments.add {
+        read_mesh(mesh)?;
+    }
+    if let Some(weather) = &arguments.weather {
+        read_weather(weather.as_path())?;
     }
     radiation::params(&arguments.model)?;
     radiation::check_linke(arguments.clear_sky, &arguments.model)
@@ -103,10 +111,7 @@ pub(super) fn questions(
         questions.push(Question::SkyView { directions: arguments.direction_count });
     }
     if !arguments.observers.is_empty() {
-        let place = |place: &crate::arguments::Place| {
-            let &crate::arguments::Place([x, y], z) = place;
-            frame.local_from_file([x, y, z.unwrap_or(f64::NAN)])
-        };
+        let place = |&Place([x, y], z): &Place| frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]);
         let mut eyes: Vec<[f64; 3]> = arguments.observers.iter().map(place).collect();
         let height = arguments.observer_height.unwrap_or(OBSERVER_HEIGHT);
         flagged("--observer", plan.set_on_ground(&mut eyes, height, control))?;

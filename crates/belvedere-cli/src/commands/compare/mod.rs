@@ -32,9 +32,19 @@ pub(crate) fn run(arguments: &Compare, global: &Global) -> Result<Summary> {
     let models: Vec<&str> = arguments.model.iter().map(|model| model.name.as_str()).chain(place::MODELS).collect();
     arguments.check_methods(&method_keys(&models))?;
     let folder = &arguments.output;
-    atomic::make_folder(folder)?;
-    atomic::make_folder(&folder.join("results"))?;
-    atomic::make_folder(&folder.join("pictures"))?;
+    let folders = [folder.clone(), folder.join("results"), folder.join("pictures")];
+    let missing: Vec<_> = folders.iter().filter(|folder| !folder.exists()).collect();
+    folders.iter().try_for_each(|folder| atomic::make_folder(folder))?;
+    let compared = compare_all(arguments, global);
+    if compared.is_err() {
+        // those that hold a result already stay
+        missing.into_iter().rev().for_each(|folder| drop(std::fs::remove_dir(folder)));
+    }
+    compared
+}
+
+fn compare_all(arguments: &Compare, global: &Global) -> Result<Summary> {
+    let folder = &arguments.output;
     let mut stages = Stages::new(global);
     let mut found = report::Found::default();
     for place in Place::all(arguments) {

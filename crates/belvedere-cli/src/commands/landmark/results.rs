@@ -3,7 +3,7 @@
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::landmark::{LandmarkMeasure, LandmarkView, MEASURES};
-use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp_colors, write_png};
+use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{Cells, TextRows, atomic, with_columns_read, write_table, write_tif_f32};
 use belvedere::raster::Raster;
@@ -12,8 +12,8 @@ use std::path::Path;
 
 /// No measure: there is no ground, or the observer would be inside something solid.
 const NO_VALUE: f32 = -9999.0;
-/// Colours of shares on a map.
-const COLORS: usize = 101;
+/// Cells from which nothing of the landmark is seen: apart from the dark violet of a little.
+const UNSEEN_COLOR: [u8; 3] = [176, 120, 120];
 
 /// A row for each observer that stands somewhere, with what a table said of it; one that was skipped has its coordinates alone.
 pub(super) fn write_rows(
@@ -74,7 +74,7 @@ fn write_measure(
     Ok(write_tif_f32(output, &raster, Some(&place), Some(NO_VALUE), Some(measure.description))?)
 }
 
-/// The share seen as a map; where nothing is seen the bare relief shows.
+/// The share seen as a map.
 pub(super) fn write_map(
     output: &Path,
     views: &[LandmarkView],
@@ -85,22 +85,23 @@ pub(super) fn write_map(
     let relief = highest_points(&cloud.positions, ground);
     let shares: Vec<f64> = views.iter().map(LandmarkView::visible_share).collect();
     let most = shares.iter().copied().filter(|share| share.is_finite()).fold(0.0, f64::max).max(0.01);
-    let ramp = ramp_colors(&(0..COLORS).map(|i| i as f32).collect::<Vec<f32>>());
-    let color = |&share: &f64| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place in the ramp")]
-        let place = (share / most * (COLORS - 1) as f64).round() as usize;
-        if share > 0.0 { ramp.get(place.min(COLORS - 1)).copied() } else { None }
+    let color = |&share: &f64| match share {
+        0.0 => Some(UNSEEN_COLOR),
+        share => share.is_finite().then(|| ramp(share / most)),
     };
+    let unseen = shares.contains(&0.0).then_some((UNSEEN_COLOR, "not visible"));
     let colors: Vec<Option<[u8; 3]>> = shares.iter().map(color).collect();
-    let marks: Vec<[f64; 2]> = ground.grid.cell_position(middle).into_iter().collect();
+    let place = ground.grid.cell_position(middle);
+    let mark = place.map(|place| MapMark { place, ..MapMark::default() });
     let map = MapPicture {
         relief: &relief,
         cell: ground.grid.cell,
         place: Some(&georeference(&ground.grid, &cloud.frame)),
         colors: &colors,
-        marks: &marks,
+        marks: mark.as_slice(),
+        mark_name: "landmark",
         title: "Visible share of the landmark",
-        legend: MapLegend::Ramp("percent", [0.0, 100.0 * most]),
+        legend: MapLegend::Ramp("percent", [0.0, 100.0 * most], unseen.as_slice()),
     };
     Ok(write_png(output, &map_picture(&map)?)?)
 }

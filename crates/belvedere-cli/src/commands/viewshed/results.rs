@@ -5,7 +5,7 @@ use crate::commands::extension;
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::viewshed::Viewshed;
-use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp_colors, write_png};
+use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, MapGrid, highest_points};
 use belvedere::io::{
     Area, ExtraColumn, ExtraValues, WriteReport, outlines, write_cloud, write_geojson_areas, write_npy_f32_2d,
@@ -25,7 +25,7 @@ const NO_HEIGHT: f32 = -9999.0;
 
 const SEEN_COLOR: [u8; 3] = [255, 176, 0];
 const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
-const HIDDEN_COLOR: [u8; 3] = [176, 176, 180];
+const HIDDEN_COLOR: [u8; 3] = [38, 52, 96];
 
 /// Writes what is seen of cells as a raster, a map or areas.
 pub(super) fn on_cells(
@@ -46,7 +46,8 @@ pub(super) fn on_cells(
                 (false, true) => "Visible from the observer",
                 (false, false) => "Number of observers that see the cell",
             };
-            write_map(output, seen, eyes, ground, cloud, title)
+            let mark_name = if is_reverse { "target" } else { "observer" };
+            write_map(output, seen, eyes, ground, cloud, (title, mark_name))
         }
         _ if one => {
             let code = |answer: &Answer| match answer {
@@ -142,28 +143,29 @@ fn write_map(
     eyes: &[[f64; 3]],
     ground: &Ground,
     cloud: &PointCloud,
-    title: &str,
+    (title, mark_name): (&str, &str),
 ) -> Result<()> {
     let relief = highest_points(&cloud.positions, ground);
-    let marks: Vec<[f64; 2]> = eyes.iter().filter_map(|eye| ground.grid.cell_position([eye[0], eye[1]])).collect();
-    let most = seen.counts.iter().copied().max().unwrap_or(0).max(1);
+    let places = eyes.iter().filter_map(|eye| ground.grid.cell_position([eye[0], eye[1]]));
+    let marks: Vec<MapMark> = places.map(|place| MapMark { place, ..MapMark::default() }).collect();
+    // two at least: the legend of a range of two or more has whole numbers
+    let most = f64::from(seen.counts.iter().copied().max().unwrap_or(0).max(2));
     let one = seen.seen_counts.len() == 1;
-    // from one observer on: what nobody sees is bare relief
-    let ramp = ramp_colors(&(1..=most).map(|i| i as f32).collect::<Vec<f32>>());
     let color = |(answer, &count): (&Answer, &u32)| match answer {
         Answer::Visible if one => Some(SEEN_COLOR),
-        Answer::Visible => ramp.get((count as usize).saturating_sub(1)).copied(),
-        Answer::Unproven if one => Some(UNPROVEN_COLOR),
+        Answer::Blocked if one => Some(HIDDEN_COLOR),
+        Answer::Visible | Answer::Blocked => Some(ramp(f64::from(count) / most)),
+        Answer::Unproven => Some(UNPROVEN_COLOR),
         _ => None,
     };
     let colors: Vec<Option<[u8; 3]>> = seen.answers.iter().zip(&seen.counts).map(color).collect();
-    let mut meanings = vec![(SEEN_COLOR, "visible"), (HIDDEN_COLOR, "blocked")];
-    if seen.answers.contains(&Answer::Unproven) {
-        meanings.insert(1, (UNPROVEN_COLOR, "unproven"));
-    }
-    let legend = if one { MapLegend::Colors(&meanings) } else { MapLegend::Ramp("observers", [1.0, f64::from(most)]) };
+    let unproven = seen.answers.contains(&Answer::Unproven).then_some((UNPROVEN_COLOR, "unproven"));
+    let unproven = unproven.as_slice();
+    let classes = [&[(SEEN_COLOR, "visible")], unproven, &[(HIDDEN_COLOR, "blocked")]].concat();
+    let legend = if one { MapLegend::Colors(&classes) } else { MapLegend::Ramp("observers", [0.0, most], unproven) };
     let cell = ground.grid.cell;
     let place = georeference(&ground.grid, &cloud.frame);
-    let map = MapPicture { relief: &relief, cell, place: Some(&place), colors: &colors, marks: &marks, title, legend };
+    let (relief, place, colors, marks) = (&relief, Some(&place), &colors[..], &marks[..]);
+    let map = MapPicture { relief, cell, place, colors, marks, mark_name, title, legend };
     Ok(write_png(output, &map_picture(&map)?)?)
 }

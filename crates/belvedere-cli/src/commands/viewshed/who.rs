@@ -1,6 +1,6 @@
 //! Who looks: from flags and files to eyes.
 
-use crate::arguments::{Usage, Viewshed};
+use crate::arguments::{Place, Usage, Viewshed};
 use crate::commands::extension;
 use crate::commands::surroundings::least_count;
 use crate::pipeline::flagged;
@@ -31,6 +31,7 @@ const MOST_COUNTED: usize = 65_534;
 /// Refuses limits that no observer can have, and outputs that cannot hold the observers that are known of, before a scene is read.
 pub(super) fn check(arguments: &Viewshed) -> Result<()> {
     limits(arguments, 0.0)?;
+    Place::refuse_twice("--observer", &arguments.who.observer)?;
     let (who, looking) = (&arguments.who, &arguments.looking);
     let count = if looking.step.is_some() { 1 } else { least_count(who.observer.len(), who.observers.as_deref())? };
     check_count(arguments, count)
@@ -77,8 +78,8 @@ pub(super) fn rows(arguments: &Viewshed, cloud: &PointCloud, grid_north: f64) ->
     let (who, looking) = (&arguments.who, &arguments.looking);
     let limits = limits(arguments, grid_north)?;
     let height = looking.observer_height.unwrap_or(OBSERVER_HEIGHT);
-    let typed = |place: &crate::arguments::Place, height: f64| {
-        let &crate::arguments::Place([x, y], z) = place;
+    let typed = |place: &Place, height: f64| {
+        let &Place([x, y], z) = place;
         Row { place: cloud.frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]), height, limits }
     };
     if let Some(target) = &who.target {
