@@ -158,7 +158,8 @@ fn a_film_has_a_frame_for_each_sun() {
     let two = format!("shadow {HOUSE} --sun 180,30 --sun 200,30 --cell 1 -o map.png");
     let warnings = &place.summary(&two)["warnings"];
     assert!(warnings.to_string().contains("only the first of 2 suns; --film"), "{warnings}");
-    assert_eq!(place.summary(&format!("{two} --film film.png"))["warnings"], serde_json::Value::Null);
+    let with_film = &place.summary(&format!("{two} --film film.png"))["warnings"];
+    assert!(!with_film.to_string().contains("only the first"), "{with_film}");
 }
 
 #[test]

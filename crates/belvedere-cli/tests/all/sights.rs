@@ -237,9 +237,6 @@ fn what_cannot_be_is_refused_with_advice() {
         &format!("viewshed {HOUSE} {observer},-50 --cell 2 -o seen.tif"),
         &["its height is below the cloud"],
     );
-    place.write("inside.csv", format!("x,y,z\n{EAST},{NORTH},3\n{EAST},{},3\n", NORTH + 1.0));
-    let advice = ["observer 1", "observer 2", "inside an obstacle", "heights above them"];
-    place.refusal(1, &format!("viewshed {HOUSE} --observers inside.csv --cell 2 -o seen.tif"), &advice);
     place.write("none.csv", "x,y\n");
     place.refusal(
         1,

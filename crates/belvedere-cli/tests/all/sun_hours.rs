@@ -124,7 +124,7 @@ fn what_cannot_be_is_refused_with_advice() {
         ("--date 2026-02-30", "--date"),
         ("--date soon", "2026-06-21"),
         ("--date 2026-06-21 --time-step-min 0", "--time-step-min"),
-        ("--date 2026-06-21 --time-step-min 61", "3600"),
+        ("--date 2026-06-21 --time-step-min 61", "1/6 to 60 minutes"),
         ("--date 2026-06-21 --time-step-min nan", "--time-step-min"),
         ("--date 2026-06-21 --sun-tolerance-deg 6", "--sun-tolerance-deg"),
         ("--date 2026-06-21 --sun-tolerance-deg -1", "--sun-tolerance-deg"),

@@ -172,9 +172,12 @@ fn wrong_usage_names_the_flag_and_ends_with_status_2() {
         ("info house.laz --threads 0", &["--threads", "1 to 1024"]),
         ("info house.laz --threads many", &["--threads", "1 to 1024"]),
         ("info house.laz --seed -1", &["-1"]),
-        ("info house.laz --device quick", &["--device", "auto, cpu, gpu"]),
+        ("info house.laz --device quick", &["--device", "give auto"]),
         #[cfg(not(feature = "gpu"))]
-        ("info house.laz --device gpu", &["--device", "--features gpu"]),
+        ("info house.laz --device gpu", &["--device gpu", "--features gpu"]),
+        #[cfg(not(feature = "gpu"))]
+        ("info house.laz --device 7", &["--device 7", "--features gpu"]),
+        ("info house.laz --device -1", &["'-1'", "give auto"]),
         ("info house.laz --json --quiet", &["--json", "--quiet"]),
         ("balls house.laz -o out.docx", &["-o out.docx", ".npz .ply .laz .las"]),
         ("balls house.laz -o out.npz --nan", &["--nan", "without extension"]),

@@ -84,13 +84,19 @@ pub(super) fn check(terrain: &ElevationGrid, name: &str, cloud: Bounds, frame: &
 fn expected_heights(terrain: [f64; 2], cloud: [f64; 2]) -> &'static str {
     let room = f64::from(MOST_OFFSET);
     let [low, high] = terrain.map(|height| height * METRES_PER_FOOT);
+    // heights in feet are larger numbers
+    let are_like_feet = terrain[0] > cloud[1] && low <= cloud[1] + room && high >= cloud[0] - room;
     let gap = (terrain[0] - cloud[1]).max(cloud[0] - terrain[1]);
-    if low <= cloud[1] + room && high >= cloud[0] - room {
-        "in metres; these numbers look like feet: gdal_calc.py -A IN.tif --calc=A*0.3048 --outfile=OUT.tif"
-    } else if gap <= MOST_GEOID {
-        "above the same zero as those of the cloud; heights above the ellipsoid and above the sea differ that much: convert one of them with \
-         gdalwarp -s_srs and -t_srs"
-    } else {
-        "above the same zero as those of the cloud, and in metres"
+    match (are_like_feet, gap <= MOST_GEOID) {
+        (true, true) => {
+            "in metres above the same zero as those of the cloud; they look like feet (gdal_calc.py -A IN.tif --calc=A*0.3048 --outfile=OUT.tif) \
+             or like heights above the ellipsoid (gdalwarp -s_srs and -t_srs)"
+        }
+        (true, false) => "in metres; they look like feet: gdal_calc.py -A IN.tif --calc=A*0.3048 --outfile=OUT.tif",
+        (false, true) => {
+            "above the same zero as those of the cloud; heights above the ellipsoid and above the sea differ that much: convert one of \
+             them with gdalwarp -s_srs and -t_srs"
+        }
+        (false, false) => "above the same zero as those of the cloud, and in metres",
     }
 }
