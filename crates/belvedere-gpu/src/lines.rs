@@ -1,6 +1,6 @@
 //! Lines of sight decided on a device: balls and their tree as words, and the words that come back. The arithmetic is in `lines.wgsl`.
 
-use crate::device::Device;
+use crate::device::{Device, DeviceKind};
 use belvedere_core::query::{BallTree, Viewers};
 use belvedere_core::ray_index::NODE_WORDS;
 use belvedere_data::control::Control;
@@ -9,18 +9,14 @@ use belvedere_data::vector::dot;
 use belvedere_data::{Error, Result};
 use bytemuck::cast_slice;
 use std::borrow::Cow;
-use std::time::{Duration, Instant};
 
 /// Targets of a group of threads.
 const GROUP: usize = 64;
-/// Lines of sight of the first piece of work: below a tenth of a second on a small device, so that its picture does not freeze and no driver gives it up.
-const FIRST_LINES: usize = 1 << 20;
-/// Lines of sight of a piece, at most.
-const MOST_LINES: usize = 1 << 28;
-/// A piece that took no longer than this is followed by one of twice its size.
-const SHORT: Duration = Duration::from_millis(10);
-/// A piece that took longer than this is followed by one of half its size.
-const LONG: Duration = Duration::from_millis(80);
+/// Lines of sight in a piece of work of a graphics card: a tenth of a second on a slow one, so that its picture does not freeze and no driver gives
+/// it up; a fast one does as many in twenty milliseconds.
+const CARD_LINES: usize = 1 << 23;
+/// The same of any other device.
+const OTHER_LINES: usize = 1 << 20;
 /// Groups along an axis that every device allows.
 const MOST_GROUPS: usize = 65_535;
 /// Bytes of results that are made at a time, free and blocked lines each.
@@ -129,9 +125,8 @@ impl Liner {
             Viewers::Directions(directions) => directions.iter().map(|direction| direction_bytes(*direction)).collect(),
             Viewers::Eyes(eyes) => eyes.iter().map(|eye| eye_bytes(*eye)).collect(),
         };
-        let mut piece = FIRST_LINES;
         for viewers in viewers.chunks(most) {
-            let [free, blocked] = self.run(loaded, &on_device, targets.len(), viewers, &mut piece, control)?;
+            let [free, blocked] = self.run(loaded, &on_device, targets.len(), viewers, control)?;
             for (free, blocked) in free.chunks(word_count).zip(blocked.chunks(word_count)) {
                 done(free, blocked);
             }
@@ -139,15 +134,13 @@ impl Liner {
         Ok(())
     }
 
-    /// The words of free and of blocked lines, viewer after viewer; `piece` is how many lines a piece of work has, and follows from the time that it
-    /// takes.
+    /// The words of free and of blocked lines, viewer after viewer.
     fn run(
         &self,
         loaded: &Loaded,
         targets: &wgpu::Buffer,
         target_count: usize,
         viewers: &[[u8; VIEWER_BYTES]],
-        piece: &mut usize,
         control: &Control<'_>,
     ) -> Result<[Vec<u32>; 2]> {
         let device = &self.device.device;
@@ -187,14 +180,15 @@ impl Liner {
             layout: &self.pipeline.get_bind_group_layout(0),
             entries: &entries,
         });
-        let groups = group_count.min(MOST_GROUPS);
-        let mut before: Option<(wgpu::SubmissionIndex, Instant)> = None;
+        let piece = if self.device.info.kind == DeviceKind::Separate { CARD_LINES } else { OTHER_LINES };
+        let groups = group_count.min(MOST_GROUPS).min(piece / GROUP);
+        let mut before = None;
         for first_group in (0..group_count).step_by(groups) {
             let groups = groups.min(group_count - first_group);
             let mut first_viewer = 0;
             while first_viewer < viewers.len() {
                 control.check()?;
-                let count = (*piece / (GROUP * groups)).clamp(1, viewers.len() - first_viewer);
+                let count = (piece / (GROUP * groups)).clamp(1, viewers.len() - first_viewer);
                 let of_piece = [target_count, first_viewer, word_count, 2 * first_group];
                 let scene: Vec<u8> = (loaded.scene.iter().copied())
                     .chain(of_piece.into_iter().flat_map(|count| whole(count).to_le_bytes()))
@@ -208,15 +202,10 @@ impl Liner {
                     pass.set_bind_group(0, &bindings, &[]);
                     pass.dispatch_workgroups(whole(groups), whole(count), 1);
                 }
-                let this = (self.device.queue.submit([encoder.finish()]), Instant::now());
+                let this = self.device.queue.submit([encoder.finish()]);
                 // two pieces are under way at a time, so that the device does not wait
-                if let Some((before, start)) = before.replace(this) {
+                if let Some(before) = before.replace(this) {
                     self.device.wait_for(Some(before))?;
-                    *piece = match start.elapsed() {
-                        time if time < SHORT => MOST_LINES.min(2 * *piece),
-                        time if time > LONG => (*piece / 2).max(1),
-                        _ => *piece,
-                    };
                 }
                 self.device.trouble.check()?;
                 first_viewer += count;
