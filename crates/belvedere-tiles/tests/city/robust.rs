@@ -156,7 +156,7 @@ fn balls_and_answers_that_were_damaged_are_named_and_made_again() {
     damage(&answers[0], &flip);
     let merged = merge(&plan, &folder, &plan.questions[0], &place.path().join("all.tif"), &Control::none());
     let error = merged.unwrap_err().to_string();
-    assert!(error.contains(&answers[0]) && error.contains("run again"), "{error}");
+    assert!(error.contains(&answers[0]) && error.contains("compute it again"), "{error}");
     assert!(!place.path().join("all.tif").exists());
     std::fs::remove_file(folder.join(&answers[0])).unwrap();
     assert_eq!(run_all(&plan, &folder).answers_made, 1);
