@@ -2,7 +2,7 @@
 
 use super::{
     ClearSkyChoice, North, Numbers, Place, RadiationModel, SunPeriod, SunPlace, ThroughTrees, above_zero, at_least_one,
-    finite, known_crs, sun_direction,
+    finite, known_crs,
 };
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -38,7 +38,7 @@ pub(crate) struct CityPlan {
     /// A sun direction for a shadow map: azimuth clockwise from true north and elevation, in degrees; repeatable
     ///
     /// See --grid-north.
-    #[arg(long = "sun", value_name = "AZ,EL", value_parser = sun_direction, allow_hyphen_values = true, help_heading = "Questions")]
+    #[arg(long = "sun", value_name = "AZ,EL", allow_hyphen_values = true, help_heading = "Questions")]
     pub(crate) suns: Vec<Numbers<2>>,
     /// An instant for a shadow map: 2026-06-21T15:00+02:00, or without the offset with --zone; repeatable
     #[arg(long = "time", value_name = "TIME", help_heading = "Questions")]

@@ -2,7 +2,7 @@
 
 use super::{
     GroundChoice, North, Numbers, PatchesChoice, SceneInput, Shell, SunPeriod, SunPlace, above_zero, at_least_one,
-    finite, sun_direction,
+    finite,
 };
 use clap::Args;
 use std::path::PathBuf;
@@ -98,7 +98,7 @@ pub(crate) struct Envelope {
     /// A sun direction: azimuth clockwise from true north and elevation, in degrees; repeatable
     ///
     /// See --grid-north.
-    #[arg(long, value_name = "AZ,EL", value_parser = sun_direction, allow_hyphen_values = true, conflicts_with_all = ["date", "between"], help_heading = "Period")]
+    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, conflicts_with_all = ["date", "between"], help_heading = "Period")]
     pub(crate) sun: Vec<Numbers<2>>,
     #[command(flatten, next_help_heading = "Period")]
     pub(crate) north: North,

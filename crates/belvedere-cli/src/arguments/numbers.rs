@@ -28,13 +28,6 @@ pub(super) fn location(text: &str) -> Result<Numbers<2>, String> {
     is_on_earth.then_some(place).ok_or_else(|| "must be a latitude (-90 to 90) and a longitude in degrees".to_owned())
 }
 
-/// Azimuth and elevation of the sun in degrees. What elevations are asked about depends on the command.
-pub(super) fn sun_direction(text: &str) -> Result<Numbers<2>, String> {
-    let direction: Numbers<2> = text.parse()?;
-    let is_known = direction.0[0].abs() <= 360.0;
-    is_known.then_some(direction).ok_or_else(|| "the azimuth must be -360 to 360 degrees".to_owned())
-}
-
 pub(super) fn finite<T: FromStr + Copy + Into<f64>>(text: &str) -> Result<T, String> {
     text.parse().ok().filter(|&v: &T| v.into().is_finite()).ok_or_else(|| "must be a finite number".to_owned())
 }

@@ -2,7 +2,6 @@
 
 use super::{
     GivingWay, North, Numbers, SceneInput, SkyOutputs, SkyPlaces, SunPeriod, SunPlace, ThroughTrees, above_zero,
-    sun_direction,
 };
 use clap::Args;
 use std::path::PathBuf;
@@ -50,7 +49,7 @@ pub(crate) struct Suns {
     /// A sun direction: azimuth clockwise from true north and elevation, in degrees; repeatable
     ///
     /// See --grid-north.
-    #[arg(long = "sun", value_name = "AZ,EL", value_parser = sun_direction, allow_hyphen_values = true, conflicts_with_all = ["time", "date", "from", "to"])]
+    #[arg(long = "sun", value_name = "AZ,EL", allow_hyphen_values = true, conflicts_with_all = ["time", "date", "from", "to"])]
     pub(crate) direction: Vec<Numbers<2>>,
     /// Take the sun as a disc of half a degree, which gives soft shadow edges
     ///

@@ -1,6 +1,6 @@
 //! Flags of views: the sun, directions, cameras and panoramas.
 
-use super::{Numbers, above_zero, at_least_one, length, sun_direction};
+use super::{Numbers, above_zero, at_least_one, length};
 use clap::Args;
 use std::str::FromStr;
 
@@ -17,7 +17,7 @@ pub(crate) struct ViewKind {
     /// Parallel view from the sun: azimuth clockwise from true north and elevation, in degrees
     ///
     /// 90 is east. The elevation is above the horizon, 0 to 90. The view covers the whole scene. See --grid-north.
-    #[arg(long, value_name = "AZ,EL", value_parser = sun_direction, allow_hyphen_values = true)]
+    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true)]
     pub(crate) sun: Option<Numbers<2>>,
     /// Parallel view along a direction in file coordinates; 0,0,-1 looks straight down
     ///

@@ -9,10 +9,9 @@ use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::Error;
-use belvedere::apps::tree_light::Transmissivity;
+use belvedere::apps::tree_light::{Crowns, Transmissivity};
 use belvedere_tiles::{
-    LightTrees, Plan, PlanParams, Question, RunParams, Shard, SideFile, Steps, merge, run as run_tiles,
-    status as status_of,
+    Plan, PlanParams, Question, RunParams, Shard, SideFile, Steps, merge, run as run_tiles, status as status_of,
 };
 use std::time::Instant;
 
@@ -83,7 +82,7 @@ fn planned(plan: Plan, arguments: &CityPlan) -> Result<Plan> {
     let measured = || Transmissivity::constant(plan.share_of_pulses_through_crowns()).ok();
     match arguments.trees.chosen(measured)? {
         Some((transmissivity, leaves)) => {
-            Ok(flagged("--through-trees", plan.with_light_through_trees(LightTrees { transmissivity, leaves }))?)
+            Ok(flagged("--through-trees", plan.with_light_through_trees(Crowns { transmissivity, leaves }))?)
         }
         None => Ok(plan),
     }

@@ -36,8 +36,8 @@ pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
     let profile = arguments.scene.profile.into();
     let blocking = scene_params(&scene, profile, &arguments.shell.giving_way());
     let trees = arguments.trees.of(&scene, &blocking, &mut summary)?;
-    let seasons =
-        radiation::gather(arguments, &params, &site, weather.as_ref(), trees.as_ref(), &mut stages, &mut summary)?;
+    let crowns = trees.as_ref().map(|trees| trees.crowns);
+    let seasons = radiation::gather(arguments, &params, &site, weather.as_ref(), crowns, &mut stages, &mut summary)?;
     let roofs = planes::find(arguments, &mut scene, &mut stages, &mut summary)?;
     let asked = match wants_places {
         true => Some(arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?),

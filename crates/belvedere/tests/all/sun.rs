@@ -268,7 +268,7 @@ fn zones_name_instants_and_summer_time_leaves_none_in_doubt() {
         ("2026-06-21T12:00[Mars/Olympus]", "zone"),
         ("2026-06-21T12:00", "--zone"),
         ("2026-06-21", "written as"),
-        ("2026-02-30T12:00Z", "written as"),
+        ("2026-02-30T12:00Z", "on a day of the calendar"),
         ("2026-06-21T24:30Z", "written as"),
         ("0999-06-21T12:00Z", "1000"),
         ("noon", "written as"),

@@ -10,7 +10,7 @@ use belvedere::apps::irradiance::{
     period_seasons,
 };
 use belvedere::apps::sun::{Site, SiteFrom};
-use belvedere::apps::tree_light::TreeLight;
+use belvedere::apps::tree_light::Crowns;
 use belvedere::io::read_weather;
 use belvedere::weather::Weather;
 
@@ -96,7 +96,7 @@ pub(super) fn gather(
     params: &IrradianceParams,
     site: &Site,
     weather: Option<&Weather>,
-    trees: Option<&TreeLight>,
+    crowns: Option<Crowns>,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<Vec<SeasonRadiation>> {
@@ -120,7 +120,7 @@ pub(super) fn gather(
             RadiationSource::ClearSky { clear_sky, year }
         }
     };
-    let found = stages.run("computing radiation", 0, |control| period_seasons(&source, site, trees, params, control));
+    let found = stages.run("computing radiation", 0, |control| period_seasons(&source, site, crowns, params, control));
     let (seasons, report) = flagged("--parts-per-row, --linke, --year, --patch-division", found)?;
     section
         .add("global_kwh_m2", rounded(report.ghi, 1))
