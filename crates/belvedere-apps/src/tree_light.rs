@@ -137,7 +137,7 @@ impl Season {
 }
 
 /// What crowns let through, and when.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Crowns {
     /// What share of the light gets through a crown.
     pub transmissivity: Transmissivity,

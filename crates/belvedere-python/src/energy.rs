@@ -175,7 +175,7 @@ impl Scene {
             let planes = control.stage("detecting roof planes", 0, || roof_planes(&places, &of_planes, control))?;
             let trees = trees.of(&inner, control)?;
             let (seasons, _) = control.stage("computing radiation", 0, || {
-                period_seasons(&source.radiation(), &site, trees.as_ref(), &params, control)
+                period_seasons(&source.radiation(), &site, trees.as_ref().map(|trees| trees.crowns), &params, control)
             })?;
             let scene = inner.blockers(UnprovenAs::Visible, control)?;
             let obstacles = Obstacles { scene: &scene, trees: trees.as_ref() };
@@ -204,7 +204,7 @@ impl Scene {
         let (measures, found, report) = run(py, progress, move |control| {
             let trees = trees.of(&inner, control)?;
             let (seasons, report) = control.stage("computing radiation", 0, || {
-                period_seasons(&source.radiation(), &site, trees.as_ref(), &params, control)
+                period_seasons(&source.radiation(), &site, trees.as_ref().map(|trees| trees.crowns), &params, control)
             })?;
             let found = asked.targets(&inner, control)?;
             let targets = &found.targets;

@@ -37,7 +37,7 @@ pub use inputs::InputFile;
 pub use make_balls::make_balls;
 pub use merge::{Merged, merge, merged_within, write_catalogue};
 pub use plan::{Estimate, Plan, PlanFrame, PlanParams};
-pub use planned::{LightTrees, SideFile};
+pub use planned::SideFile;
 pub use question::{Question, Radiation, SunQuestion};
 pub use record::{Outcome, Record, Stage};
 pub use run::{RunParams, RunReport, Shard, Steps, run};

@@ -101,7 +101,7 @@ impl<'a> Parts<'a> {
 
 impl ObstacleParts for Parts<'_> {
     fn crowns(&self) -> Option<Crowns> {
-        self.plan.trees.map(|trees| Crowns { transmissivity: trees.transmissivity, leaves: trees.leaves })
+        self.plan.trees
     }
 
     fn look(

@@ -2,12 +2,13 @@
 
 use crate::grid::{Area, TileGrid, TileId, block_area};
 use crate::inputs::{Columns, InputFile, hash};
-use crate::planned::{LightTrees, SideFile, added_meshes};
+use crate::planned::{SideFile, added_meshes};
 use crate::question::{Question, ValueKind};
 use crate::record::Stage;
 use crate::survey::{Block, survey};
 use crate::window;
 use belvedere::apps::targets::{grid_around, set_on_ground};
+use belvedere::apps::tree_light::Crowns;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::ground::{Ground, GroundParams, SurfaceParams};
@@ -101,7 +102,7 @@ pub struct Plan {
     meshes: Vec<SideFile>,
     /// Trees, where they let light through.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) trees: Option<LightTrees>,
+    pub(crate) trees: Option<Crowns>,
     /// Tiles that may hold points, from the south-west.
     pub tiles: Vec<TileId>,
     low: [f32; 3],
@@ -407,7 +408,7 @@ impl Plan {
             let (value, expected) = (format!("{name} twice"), "each question once");
             return Err(Error::InvalidParameter { name: "questions", value, expected });
         }
-        questions.iter().try_for_each(|question| question.prepare(control).map(|_| ()))?;
+        questions.iter().try_for_each(|question| question.prepare(self.trees, control).map(|_| ()))?;
         Ok(Self { questions, ..self })
     }
 
@@ -425,7 +426,7 @@ impl Plan {
     ///
     /// # Errors
     /// [`Error::MissingAttribute`] for a survey whose pulses do not say what vegetation is.
-    pub fn with_light_through_trees(self, trees: LightTrees) -> Result<Self> {
+    pub fn with_light_through_trees(self, trees: Crowns) -> Result<Self> {
         if !(self.facts.carves && self.facts.measures_crowns) {
             return Err(Error::MissingAttribute {
                 attribute: "return numbers and GPS times",

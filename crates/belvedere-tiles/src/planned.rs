@@ -1,7 +1,6 @@
 //! What a plan changes of the survey: buildings that are planned, and trees that let light through.
 
 use crate::inputs::hash;
-use belvedere::apps::tree_light::{Leaves, Transmissivity};
 use belvedere::crs::Crs;
 use belvedere::io::{Source, read_mesh_in};
 use belvedere::query::{AddedMeshes, Coverage};
@@ -52,15 +51,6 @@ impl SideFile {
     fn mesh(&self, crs: &Crs) -> Result<Mesh> {
         Ok(read_mesh_in(Source::bytes(&self.path, &self.read()?), crs)?.0)
     }
-}
-
-/// Trees that let a share of the light through, rather than none.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LightTrees {
-    /// What share of the light gets through a crown.
-    pub transmissivity: Transmissivity,
-    /// Whether trees have leaves.
-    pub leaves: Leaves,
 }
 
 /// The triangles of `meshes` in local metres of `frame`; `None` without a mesh. They must meet the space of `coverage`.

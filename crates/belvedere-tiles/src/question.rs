@@ -6,7 +6,7 @@ use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sky_view::SkyDirections;
 use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, SunSchedule, Zone, sun_days};
 use belvedere::apps::sun_hours::{SunPlan, SunRule};
-use belvedere::apps::tree_light::Season;
+use belvedere::apps::tree_light::{Crowns, Season};
 use belvedere::apps::viewshed::{Observer, SightLimits};
 use belvedere::control::Control;
 use belvedere::io::{Source, read_weather};
@@ -170,9 +170,15 @@ impl SunQuestion {
 }
 
 impl Radiation {
-    fn seasons(&self, site: &Site, params: &IrradianceParams, control: &Control<'_>) -> Result<Vec<SeasonRadiation>> {
+    fn seasons(
+        &self,
+        site: &Site,
+        crowns: Option<Crowns>,
+        params: &IrradianceParams,
+        control: &Control<'_>,
+    ) -> Result<Vec<SeasonRadiation>> {
         params.validate()?;
-        let gather = |source: &RadiationSource<'_>| Ok(period_seasons(source, site, None, params, control)?.0);
+        let gather = |source: &RadiationSource<'_>| Ok(period_seasons(source, site, crowns, params, control)?.0);
         match self {
             Self::Weather { file, parts } => {
                 let weather = read_weather(Source::bytes(file.path(), &file.read()?))?;
@@ -209,12 +215,12 @@ impl Question {
         }
     }
 
-    /// What follows from its parameters.
+    /// What follows from its parameters, where crowns of trees let light through or not.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for parameters outside their range, a sun that is not above the horizon and eyes that are nowhere; those of
     /// reading weather.
-    pub(crate) fn prepare(&self, control: &Control<'_>) -> Result<Asked> {
+    pub(crate) fn prepare(&self, crowns: Option<Crowns>, control: &Control<'_>) -> Result<Asked> {
         let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
         match self {
             Self::Shadow { to_sun, season, .. } if to_sun[2] > 0.0 => {
@@ -235,7 +241,7 @@ impl Question {
                 Ok(Asked::Light(Light::SunRule { plan: Box::new(SunPlan::new(schedule, rules)), site: days.site }))
             }
             Self::Irradiance { site, radiation, params } => {
-                let seasons = radiation.seasons(&site.validate()?, params, control)?;
+                let seasons = radiation.seasons(&site.validate()?, crowns, params, control)?;
                 let directions = seasons.iter().flat_map(|season| season.radiation.directions()).collect();
                 Ok(Asked::Light(Light::Irradiance { seasons, directions }))
             }

@@ -92,7 +92,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
     let most_balls = params.most_balls.unwrap_or_else(|| plan.balls_at_a_time());
     let added = if questions.is_empty() { None } else { plan.added()? };
     for question in questions {
-        let asked = question.prepare(control)?;
+        let asked = question.prepare(plan.trees, control)?;
         let task = Task { question, asked: &asked, added: added.as_ref(), most_balls };
         for tile in own() {
             // what was unproven for lack of balls may have them now

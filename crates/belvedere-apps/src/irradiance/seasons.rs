@@ -7,7 +7,7 @@ use super::period::{Instant, IrradianceParams, PeriodRadiation, PeriodReport};
 use crate::rows::{Obstacles, Surroundings, check_normals, fold_rows, normals_of};
 use crate::sun::{Date, Site, Zone};
 use crate::targets::Targets;
-use crate::tree_light::{Season, TreeLight};
+use crate::tree_light::{Crowns, Season};
 use belvedere_data::control::Control;
 use belvedere_data::weather::Weather;
 use belvedere_data::{Error, Result};
@@ -52,12 +52,12 @@ pub struct SeasonRadiation {
 pub fn period_seasons(
     source: &RadiationSource<'_>,
     site: &Site,
-    trees: Option<&TreeLight>,
+    crowns: Option<Crowns>,
     params: &IrradianceParams,
     control: &Control<'_>,
 ) -> Result<(Vec<SeasonRadiation>, PeriodReport)> {
     let zone = Zone::mean_solar(site);
-    let share = |date: Date| trees.map_or(0.0, |trees| trees.share(Some(Season::on(date, site))));
+    let share = |date: Date| crowns.map_or(0.0, |crowns| crowns.share(Some(Season::on(date, site))));
     let mut parts: Vec<(f64, Vec<Instant>)> = Vec::new();
     let mut put = |share: f64, instants: Vec<Instant>| match parts.iter_mut().find(|(own, _)| *own == share) {
         Some((_, part)) => part.extend(instants),
@@ -65,7 +65,7 @@ pub fn period_seasons(
     };
     match *source {
         RadiationSource::Weather { weather, parts } => {
-            let by_share = match trees {
+            let by_share = match crowns {
                 None => vec![(0.0, weather.clone())],
                 Some(_) => split_weather(weather, |instant| Ok(share(zone.date_at(instant)?)))?,
             };
