@@ -123,7 +123,7 @@ fn assert_equal_on(
 
 /// Compares the lines of sight to eyes: at targets, beside them, in balls, far away, and no place at all.
 fn assert_eyes_are_equal_on(device: &DeviceInfo, tree: &Arc<BallTree>, targets: &[[f32; 3]], what: &str) {
-    let mut eyes: Vec<[f64; 3]> = targets.iter().step_by(targets.len() / 12).map(|eye| eye.map(f64::from)).collect();
+    let mut eyes: Vec<[f64; 3]> = targets.iter().step_by(targets.len() / 24).map(|eye| eye.map(f64::from)).collect();
     let beside = eyes.iter().map(|eye| [eye[0] + 0.123_456_789, eye[1] - 1e-7, eye[2] + 1.7]).collect::<Vec<_>>();
     eyes.extend(beside);
     eyes.extend(tree.balls().iter().step_by(tree.balls().len() / 4 + 1).map(|ball| ball.center.map(f64::from)));
@@ -196,9 +196,9 @@ fn lines_past_random_and_hostile_balls_are_those_of_the_cpu() {
     ];
     for device in devices_or_skip("lines_past_random_and_hostile_balls_are_those_of_the_cpu") {
         for (what, balls, rule) in &hostile {
-            let open = assert_equal_on(&device, balls, rule, &targets(600, size), what);
-            // the targets very far away are one in 60; their lines stay open
-            assert!(!PLAIN.contains(what) || open < 0.03, "{what}: {open} of the lines stay open");
+            let open = assert_equal_on(&device, balls, rule, &targets(300, size), what);
+            // the targets very far away are one in 30; their lines stay open
+            assert!(!PLAIN.contains(what) || open < 0.05, "{what}: {open} of the lines stay open");
         }
     }
 }
@@ -208,7 +208,7 @@ fn assert_scene_is_equal(name: &str, model: &SceneModel) {
     let scene = |model: &SceneModel| model.scene(&model.rule(), UnprovenAs::Visible, &Control::none()).unwrap();
     let (low, high) = model.bounds().corners();
     // on the points' own box, with the ground at its lowest quarter
-    let targets: Vec<[f32; 3]> = (0..1_000_u64)
+    let targets: Vec<[f32; 3]> = (0..500_u64)
         .map(|i| {
             let random = |k: u64| uniform(23, 4 * i + k);
             let up = if i % 4 == 0 { random(2) } else { 0.2 * random(2) };
@@ -221,7 +221,7 @@ fn assert_scene_is_equal(name: &str, model: &SceneModel) {
     let directions = SkyDirections::even(577).unwrap().directions;
     let on_cpu = scene(model).visibility_matrix(&targets, &directions, &Control::none()).unwrap();
     let free: u32 = (0..targets.len()).flat_map(|row| on_cpu.row(row)).map(|word| word.count_ones()).sum();
-    assert!(free > 100_000, "{name}: {free} lines are free");
+    assert!(free > 50_000, "{name}: {free} lines are free");
     for device in devices() {
         let gpu = Arc::new(Gpu::new(Choice::Number(device.number)).unwrap());
         let with_gpu = model.clone().with_backend(gpu.clone());
