@@ -53,7 +53,7 @@ fn random_balls(count: u64, size: [f64; 3], largest: f64) -> impl Iterator<Item 
 
 /// The directions of a sky view, and some along axes, flat and downward.
 fn directions() -> Vec<[f64; 3]> {
-    let mut directions = SkyDirections::even(577).unwrap().directions;
+    let mut directions = SkyDirections::even(193).unwrap().directions;
     directions.extend([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.6, 0.0, 0.8]]);
     for rise in [0.02_f64, 0.05, -0.1] {
         directions.push([(1.0 - rise * rise).sqrt(), 0.0, rise]);
