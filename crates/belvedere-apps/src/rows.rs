@@ -32,7 +32,7 @@ impl Obstacles<'_> {
     /// How many matrices are asked for: one, or two where trees let light through.
     #[must_use]
     pub fn matrix_count(&self) -> usize {
-        1 + usize::from(self.trees.is_some())
+        Surroundings::from(*self).matrix_count()
     }
 }
 
@@ -85,6 +85,12 @@ impl Surroundings<'_> {
         }
     }
 
+    /// How many matrices are asked for: one, or two where trees let light through.
+    #[must_use]
+    pub fn matrix_count(&self) -> usize {
+        1 + usize::from(self.crowns().is_some())
+    }
+
     fn look(
         &self,
         targets: &[[f32; 3]],
@@ -126,7 +132,7 @@ pub fn fold_rows(
     control: &Control<'_>,
     fold: impl FnMut(RowBlock) -> Result<()>,
 ) -> Result<()> {
-    let of_target = directions.len().max(1) * (1 + usize::from(surroundings.crowns().is_some()));
+    let of_target = directions.len().max(1) * surroundings.matrix_count();
     fold_blocks(surroundings, targets, directions, (BLOCK_BITS / of_target).max(1), control, fold)
 }
 

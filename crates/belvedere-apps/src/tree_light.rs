@@ -181,12 +181,6 @@ impl TreeLight {
         let opaque = model.scene_without_vegetation(rule, control)?;
         Ok(Self { opaque, crowns: Crowns { transmissivity, leaves } })
     }
-
-    /// As [`Crowns::share`].
-    #[must_use]
-    pub fn share(&self, season: Option<Season>) -> f64 {
-        self.crowns.share(season)
-    }
 }
 
 /// Measures that are sums over directions, (M), with trees that let a share of the light through: `all` are their values where

@@ -8,7 +8,7 @@ use anyhow::Result;
 use belvedere::model::SceneModel;
 
 #[cfg(feature = "gpu")]
-use belvedere::gpu::{Choice, DeviceKind, Gpu, devices};
+use belvedere::gpu::{Choice, Gpu, devices};
 #[cfg(feature = "gpu")]
 use std::sync::{Arc, OnceLock};
 
@@ -79,16 +79,10 @@ pub(crate) fn list(summary: &mut Summary) {
     {
         let section = |info: belvedere::gpu::DeviceInfo| {
             let mut section = Summary::default();
-            let kind = match info.kind {
-                DeviceKind::Separate => "graphics card",
-                DeviceKind::Integrated => "integrated graphics",
-                DeviceKind::Software => "software, never chosen by itself",
-                _ => "unknown",
-            };
             section
                 .add("number", info.number)
                 .add("name", info.name)
-                .add("kind", kind)
+                .add("kind", info.kind.to_string())
                 .add("driver", info.driver)
                 .add("interface", info.interface)
                 .add("largest_buffer_mib", info.most_bytes >> 20);

@@ -53,6 +53,21 @@ pub struct MapPicture<'a> {
     pub legend: MapLegend<'a>,
 }
 
+impl<'a> MapPicture<'a> {
+    /// A map without marks.
+    #[must_use]
+    pub fn of_colors(
+        relief: &'a Raster<f32>,
+        cell: f64,
+        place: Option<&'a Georeference>,
+        colors: &'a [Option<[u8; 3]>],
+        title: &'a str,
+        legend: MapLegend<'a>,
+    ) -> Self {
+        Self { relief, cell, place, colors, marks: &[], mark_name: "", title, legend }
+    }
+}
+
 /// A place that is marked on a map.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MapMark {

@@ -18,6 +18,16 @@ pub enum DeviceKind {
     Software,
 }
 
+impl std::fmt::Display for DeviceKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Separate => "graphics card",
+            Self::Integrated => "integrated graphics",
+            Self::Software => "software",
+        })
+    }
+}
+
 /// A device of this computer.
 #[derive(Clone, Debug)]
 #[non_exhaustive]

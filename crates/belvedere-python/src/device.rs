@@ -45,16 +45,7 @@ fn unknown(device: &str) -> Error {
 pub(crate) fn devices() -> Vec<[String; 4]> {
     #[cfg(feature = "gpu")]
     {
-        use belvedere::gpu::DeviceKind;
-        let of = |info: belvedere::gpu::DeviceInfo| {
-            let kind = match info.kind {
-                DeviceKind::Separate => "graphics card",
-                DeviceKind::Integrated => "integrated graphics",
-                DeviceKind::Software => "software",
-                _ => "unknown",
-            };
-            [info.name, kind.to_owned(), info.driver, info.interface]
-        };
+        let of = |info: belvedere::gpu::DeviceInfo| [info.name, info.kind.to_string(), info.driver, info.interface];
         belvedere::gpu::devices().into_iter().map(of).collect()
     }
     #[cfg(not(feature = "gpu"))]

@@ -244,18 +244,8 @@ fn frame(
     if doubts.is_some() {
         meanings.push((UNPROVEN_COLOR, "lit, unproven"));
     }
-    let (title, legend) = (sun.title.as_str(), MapLegend::Colors(&meanings));
-    let Relief { heights: relief, cell, place } = relief;
-    map_picture(&MapPicture {
-        relief,
-        cell: *cell,
-        place: Some(place),
-        colors: &colors,
-        marks: &[],
-        mark_name: "",
-        title,
-        legend,
-    })
+    let Relief { heights, cell, place } = relief;
+    map_picture(&MapPicture::of_colors(heights, *cell, Some(place), &colors, &sun.title, MapLegend::Colors(&meanings)))
 }
 
 /// Draws the shadow of the sun of that number over a relief.

@@ -252,9 +252,11 @@ fn show_meshes(
 ) -> Result<()> {
     for path in files.meshes.iter().chain(planned) {
         let mesh = pipeline::mesh_in(path, &frame.crs, stages, summary)?;
-        let coverage = Coverage::of(*bounds);
-        if let Err(error) = AddedMeshes::new(&mesh, &path.display().to_string(), frame.origin, coverage.as_ref(), None)
-        {
+        // one that is planned is refused with the scene
+        let beside = (!planned.contains(path)).then(|| {
+            AddedMeshes::new(&mesh, &path.display().to_string(), frame.origin, Coverage::of(*bounds).as_ref(), None)
+        });
+        if let Some(Err(error)) = beside {
             summary.warn(error.to_string());
         }
         loading.show_mesh(&mesh, frame);

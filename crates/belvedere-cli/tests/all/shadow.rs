@@ -181,7 +181,6 @@ fn what_cannot_be_is_refused_with_advice() {
         ("--date 2026-06-21 --min-sun-elevation 95 -o no.csv", "--min-sun-elevation: minimum elevation"),
         ("--date 2026-06-21 --time-step-min 120 -o no.csv", "--time-step-min: the step is 120 minutes"),
         ("--time 2026-02-30T10:00+01:00 -o no.csv", "a day of the calendar"),
-        ("--sun 500,30 -o no.csv", "azimuth"),
         ("--sun 180,30 --target-height -500 -o no.csv", "--target-height"),
         ("--date 2026-06-21 --time-step-min 0 -o no.csv", "--time-step-min"),
         ("--sun 180,30 --unproven report -o no.csv", "pulses"),

@@ -9,7 +9,6 @@ use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::vector::unit;
 use belvedere_data::view::View;
-use rayon::prelude::*;
 
 /// Targets of an eye from which on ordering them into a tree costs less than the lines of sight that it saves.
 const TREE_FROM: usize = 10_000;
@@ -18,8 +17,6 @@ const TREE_FROM: usize = 10_000;
 const MAP_FROM: usize = 16_000_000;
 /// Pixel of these bounds, metres, where targets are many enough; smaller ones settle a little more but are more to draw.
 const PIXEL: f64 = 0.5;
-/// Targets handed to a thread at once.
-const CHUNK: usize = 1024;
 /// Targets for each pixel, at least.
 const TARGETS_PER_PIXEL: f64 = 16.0;
 
@@ -67,19 +64,12 @@ impl MedialScene {
         let Some(towards) = unit(to_viewer).filter(|_| self.ball_count() > 0) else { return Ok(None) };
         let settled = self.prepared()?.settle_few(targets, Viewers::Directions(&[towards]), control)?;
         let Some(settled) = settled else { return Ok(None) };
-        let mut answers = vec![Answer::OutsideView; targets.len()];
-        let chunks = answers.par_chunks_mut(CHUNK).zip(targets.par_chunks(CHUNK)).enumerate();
-        chunks.try_for_each(|(chunk, (answers, targets))| {
-            control.check()?;
-            for (i, (answer, &target)) in answers.iter_mut().zip(targets).enumerate() {
-                let Some((towards, range)) = viewer.line_of_sight(0, target) else { continue };
-                *answer = match self.sees(viewer, target, settled.line(CHUNK * chunk + i, 0)) {
-                    true => self.answer_unblocked(target.map(f64::from), towards, range),
-                    false => Answer::Blocked,
-                };
-            }
-            control.advance(targets.len());
-            Ok(())
+        let answers = self.answer_by(targets, control, |number, target| {
+            let (towards, range) = viewer.line_of_sight(0, target)?;
+            Some(match self.sees(viewer, target, settled.line(number, 0)) {
+                true => self.answer_unblocked(target.map(f64::from), towards, range),
+                false => Answer::Blocked,
+            })
         })?;
         Ok(Some(self.marked(viewer, targets, answers)))
     }

@@ -224,14 +224,25 @@ impl MedialScene {
         control: &Control<'_>,
         line: impl Fn(usize, [f32; 3]) -> Option<([f64; 3], f64)> + Sync,
     ) -> Result<Vec<Answer>> {
+        self.answer_by(targets, control, |number, target| {
+            let (towards, range) = line(number, target)?;
+            Some(self.answer(target.map(f64::from), towards, range))
+        })
+    }
+
+    /// What `answer` gives for each of `targets`, (M, 3) local metres, and its number; outside the view where that is `None`.
+    pub(super) fn answer_by(
+        &self,
+        targets: &[[f32; 3]],
+        control: &Control<'_>,
+        answer_of: impl Fn(usize, [f32; 3]) -> Option<Answer> + Sync,
+    ) -> Result<Vec<Answer>> {
         let mut answers = vec![Answer::OutsideView; targets.len()];
         let chunks = answers.par_chunks_mut(CHUNK).zip(targets.par_chunks(CHUNK)).enumerate();
         chunks.try_for_each(|(chunk, (answers, targets))| {
             control.check()?;
             for (i, (answer, &target)) in answers.iter_mut().zip(targets).enumerate() {
-                if let Some((towards, range)) = line(chunk * CHUNK + i, target) {
-                    *answer = self.answer(target.map(f64::from), towards, range);
-                }
+                *answer = answer_of(chunk * CHUNK + i, target).unwrap_or(Answer::OutsideView);
             }
             control.advance(targets.len());
             Ok(())

@@ -52,7 +52,7 @@ pub fn difference_map(change: &Raster<f32>, cell: f64, place: Option<&Georeferen
     meanings.retain(|(color, _)| used(*color));
     let relief = Raster::filled(change.width(), change.height(), 0.0);
     let legend = MapLegend::Colors(&meanings);
-    map_picture(&MapPicture { relief: &relief, cell, place, colors: &colors, marks: &[], mark_name: "", title, legend })
+    map_picture(&MapPicture::of_colors(&relief, cell, place, &colors, title, legend))
 }
 
 /// The largest of 1, 2 and 5 times a power of ten that is at most `value`.

@@ -22,14 +22,5 @@ pub fn measure_map(
     let color = |&value: &f64| value.is_finite().then(|| ramp((value - low) / (high - low)));
     let colors: Vec<Option<[u8; 3]>> = values.iter().map(color).collect();
     let legend = MapLegend::Ramp(measure.description, [low, high], &[]);
-    map_picture(&MapPicture {
-        relief,
-        cell,
-        place: Some(place),
-        colors: &colors,
-        marks: &[],
-        mark_name: "",
-        title,
-        legend,
-    })
+    map_picture(&MapPicture::of_colors(relief, cell, Some(place), &colors, title, legend))
 }
