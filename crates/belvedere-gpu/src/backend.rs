@@ -1,7 +1,7 @@
 //! The device as a backend: what it decides, and what happens when it cannot.
 
 use crate::device::{Device, DeviceInfo, DeviceKind, devices};
-use crate::lines::{Liner, Loaded};
+use crate::lines::{Liner, Loaded, Words};
 use belvedere_core::depth::DepthBounds;
 use belvedere_core::query::cpu::PreparedBalls;
 use belvedere_core::query::{Backend, BallTree, Prepared, Profile, Settled, Viewers};
@@ -72,14 +72,17 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// As [`Gpu::new`] with a device that fails after so many directions: what tests of the way back to the CPU need.
+    /// As [`Gpu::new`] with a device whose buffers have at most `most_bytes`, and that fails after so many directions of a part of a scene: what tests of
+    /// scenes in parts, and of the way back to the CPU, need.
     ///
     /// # Errors
     /// Those of [`Gpu::new`].
     #[doc(hidden)]
-    pub fn failing_after(number: usize, directions: usize) -> Result<Self> {
-        let gpu = Self::with_failure(Choice::Number(number), Some(directions));
-        *gpu.shared.lock() = State::Ready(Arc::new(Liner::new(Device::open(number)?)?));
+    pub fn limited(number: usize, most_bytes: u64, fails_after: Option<usize>) -> Result<Self> {
+        let gpu = Self::with_failure(Choice::Number(number), fails_after);
+        let mut device = Device::open(number)?;
+        device.info.most_bytes = device.info.most_bytes.min(most_bytes);
+        *gpu.shared.lock() = State::Ready(Arc::new(Liner::new(device)?));
         Ok(gpu)
     }
 
@@ -160,7 +163,7 @@ impl Shared {
 impl Backend for Gpu {
     fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn Prepared>> {
         let (tree, cpu) = (Arc::clone(balls), PreparedBalls::new(balls));
-        Ok(Box::new(OnDevice { tree, cpu, shared: Arc::clone(&self.shared), loaded: Mutex::default() }))
+        Ok(Box::new(OnDevice { tree, cpu, shared: Arc::clone(&self.shared), memory: Mutex::default() }))
     }
 
     fn device(&self) -> Option<String> {
@@ -178,7 +181,16 @@ struct OnDevice {
     cpu: PreparedBalls,
     shared: Arc<Shared>,
     /// One question at a time: together they could need more memory than there is.
-    loaded: Mutex<Option<Loaded>>,
+    memory: Mutex<Memory>,
+}
+
+/// What is in the memory of the device: one part of the scene at a time.
+#[derive(Default)]
+struct Memory {
+    /// The scene in parts, none before it is needed.
+    parts: Vec<Words>,
+    /// The number of a part, and that part.
+    loaded: Option<(usize, Loaded)>,
 }
 
 impl Prepared for OnDevice {
@@ -217,11 +229,7 @@ impl OnDevice {
         let Some(liner) = is_worth_it.then(|| self.shared.liner(lines)).flatten() else { return Ok(None) };
         let mut settled = Settled::new(targets.len(), viewers.len());
         let mut finished = 0;
-        let mut done = |free: &[u32], blocked: &[u32]| {
-            settled.set_direction(finished, free, blocked);
-            finished += 1;
-        };
-        match self.decide_on(&liner, targets, viewers, control, &mut done) {
+        match self.decide_on(&liner, targets, viewers, control, &mut settled, &mut finished) {
             Ok(()) => {
                 self.shared.used.get_or_init(|| liner.device.info.clone());
             }
@@ -235,27 +243,54 @@ impl OnDevice {
         Ok(Some((settled, finished)))
     }
 
+    /// Settles lines past one part of the scene after the other; `finished` is the number of viewers that are settled past all of them.
     fn decide_on(
         &self,
         liner: &Liner,
         targets: &[[f32; 3]],
         viewers: Viewers<'_>,
         control: &Control<'_>,
-        done: &mut dyn FnMut(&[u32], &[u32]),
+        settled: &mut Settled,
+        finished: &mut usize,
     ) -> Result<()> {
-        let mut loaded = self.loaded.lock().unwrap_or_else(PoisonError::into_inner);
-        let loaded = match &mut *loaded {
-            Some(loaded) => loaded,
-            empty => empty.insert(liner.load(&self.tree)?),
-        };
-        let Some(most) = self.shared.fails_after.filter(|most| *most < viewers.len()) else {
-            return liner.decide(loaded, targets, viewers, control, done);
-        };
-        let asked = match viewers {
-            Viewers::Directions(directions) => Viewers::Directions(directions.get(..most).unwrap_or_default()),
-            Viewers::Eyes(eyes) => Viewers::Eyes(eyes.get(..most).unwrap_or_default()),
-        };
-        liner.decide(loaded, targets, asked, control, done)?;
-        Err(Error::Device { what: "the device was lost: a test".to_owned() })
+        let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
+        let Memory { parts, loaded } = &mut *memory;
+        if parts.is_empty() {
+            *parts = liner.words(&self.tree, control)?;
+        }
+        // the one that is there already is the first
+        let start = loaded.as_ref().map_or(0, |(number, _)| *number);
+        let fails_after = self.shared.fails_after.filter(|most| *most < viewers.len());
+        let asked = fails_after.map_or(viewers, |most| viewers.first(most));
+        for turn in 0..parts.len() {
+            let number = (start + turn) % parts.len();
+            // the memory of the part before is free then
+            let there = loaded.take_if(|(there, _)| *there == number);
+            *loaded = None;
+            let (_, part) = loaded.insert(match there {
+                Some(there) => there,
+                None => (number, liner.load(&parts[number])?),
+            });
+            if let [only] = &mut parts[..] {
+                // it stays on the device
+                *only = Words::default();
+            }
+            let (mut viewer, is_last) = (0, turn + 1 == parts.len());
+            liner.decide(part, targets, asked, control, &mut |free, blocked| {
+                if turn == 0 {
+                    settled.set_direction(viewer, free, blocked);
+                } else {
+                    settled.join_direction(viewer, free, blocked);
+                }
+                viewer += 1;
+                if is_last {
+                    *finished = viewer;
+                }
+            })?;
+            if fails_after.is_some() {
+                return Err(Error::Device { what: "the device was lost: a test".to_owned() });
+            }
+        }
+        Ok(())
     }
 }

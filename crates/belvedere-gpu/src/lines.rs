@@ -1,8 +1,8 @@
 //! Lines of sight decided on a device: balls and their tree as words, and the words that come back. The arithmetic is in `lines.wgsl`.
 
 use crate::device::{Device, DeviceKind};
-use belvedere_core::query::{BallTree, Viewers};
-use belvedere_core::ray_index::NODE_WORDS;
+use belvedere_core::query::{Ball, BallTree, Viewers};
+use belvedere_core::ray_index::{NODE_WORDS, RayIndex};
 use belvedere_data::control::Control;
 use belvedere_data::model::FARTHEST;
 use belvedere_data::vector::dot;
@@ -50,6 +50,38 @@ pub(crate) struct Loaded {
     scene: Vec<u8>,
 }
 
+/// Balls and their tree as the shader reads them.
+#[derive(Debug, Default)]
+pub(crate) struct Words {
+    nodes: Vec<[u32; NODE_WORDS]>,
+    balls: Vec<[f32; 4]>,
+    /// The first words of `Scene`.
+    scene: Vec<u8>,
+}
+
+impl Words {
+    /// Those of a tree which is a part of the one with the index `whole`: targets as far away as from that are decided.
+    fn new(tree: &BallTree, whole: &RayIndex) -> Self {
+        let (index, rule) = (tree.index(), tree.rule());
+        let as_words = |ball: &Ball| {
+            let [x, y, z] = ball.center;
+            [x, y, z, ball.radius]
+        };
+        let reach = |axis: usize| (index.center()[axis] - whole.center()[axis]).abs() + whole.half_size()[axis];
+        let size = (0..3).map(reach).fold(0.0, f64::max);
+        Self {
+            nodes: index.node_words().collect(),
+            balls: tree.balls().iter().map(as_words).collect(),
+            scene: scene_bytes(index.center(), size, rule.shell, rule.bias),
+        }
+    }
+
+    /// Bytes of the larger one of two buffers.
+    fn most_bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice()).max(size_of_val(self.balls.as_slice()))
+    }
+}
+
 impl Liner {
     /// # Errors
     /// [`Error::Device`] where the device cannot run the shader.
@@ -67,29 +99,45 @@ impl Liner {
         Ok(Self { device, pipeline })
     }
 
+    /// The balls of a tree as words, in as many parts as buffers of the device need.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`], and [`Error::Device`] where a part does not fit.
+    pub(crate) fn words(&self, tree: &BallTree, control: &Control<'_>) -> Result<Vec<Words>> {
+        let whole = Words::new(tree, tree.index());
+        let (bytes, most) = (whole.most_bytes(), self.device.limit());
+        if bytes <= most {
+            return Ok(vec![whole]);
+        }
+        drop(whole);
+        // trees of parts have a few more nodes
+        let count = (bytes + bytes / 8).div_ceil(most.max(1));
+        let of_part = tree.balls().len().div_ceil(count).max(1);
+        let mut parts = Vec::new();
+        for first in (0..tree.balls().len()).step_by(of_part) {
+            control.check()?;
+            let part = tree.part(first..tree.balls().len().min(first + of_part))?;
+            parts.push(Words::new(&part, tree.index()));
+        }
+        match parts.iter().map(Words::most_bytes).max() {
+            Some(bytes) if bytes > most => {
+                let what = format!("a part of the scene takes {bytes} bytes of a device that allows {most}");
+                Err(Error::Device { what })
+            }
+            _ => Ok(parts),
+        }
+    }
+
     /// Brings balls and their tree into the memory of the device.
     ///
     /// # Errors
     /// [`Error::Device`] where they do not fit.
-    pub(crate) fn load(&self, tree: &BallTree) -> Result<Loaded> {
-        let (index, rule) = (tree.index(), tree.rule());
-        let nodes: Vec<[u32; NODE_WORDS]> = index.node_words().collect();
-        let balls: Vec<[f32; 4]> = (tree.balls().iter())
-            .map(|ball| {
-                let [x, y, z] = ball.center;
-                [x, y, z, ball.radius]
-            })
-            .collect();
-        let (nodes, balls): (&[u8], &[u8]) = (cast_slice(&nodes), cast_slice(&balls));
-        let (bytes, most) = (nodes.len().max(balls.len()), self.device.limit());
-        if bytes > most {
-            let what = format!("the scene takes {bytes} bytes of a device that allows {most}");
-            return Err(Error::Device { what });
-        }
+    pub(crate) fn load(&self, words: &Words) -> Result<Loaded> {
+        let Words { nodes, balls, scene } = words;
         let loaded = Loaded {
-            nodes: self.device.filled_buffer(nodes),
-            balls: self.device.filled_buffer(balls),
-            scene: scene_bytes(index.center(), index.half_size(), rule.shell, rule.bias),
+            nodes: self.device.filled_buffer(cast_slice(nodes)),
+            balls: self.device.filled_buffer(cast_slice(balls)),
+            scene: scene.clone(),
         };
         self.device.trouble.check()?;
         Ok(loaded)
@@ -229,10 +277,9 @@ impl Liner {
     }
 }
 
-/// The words of `Scene` that are the same for all targets.
-fn scene_bytes(center: [f64; 3], half_size: [f64; 3], shell: f64, bias: f64) -> Vec<u8> {
+/// The words of `Scene` that are the same for all targets: `size` is how far from `center` the scene reaches, metres.
+fn scene_bytes(center: [f64; 3], size: f64, shell: f64, bias: f64) -> Vec<u8> {
     let (rounded, rest) = split(center);
-    let size = half_size.into_iter().fold(0.0, f64::max);
     let farthest = 4.0 * size;
     let numbers = [
         rounded[0],

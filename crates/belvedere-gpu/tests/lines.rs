@@ -286,7 +286,7 @@ fn a_device_lost_in_the_middle_loses_nothing() {
     let whole = scene().visibility_matrix(&targets, &directions, &Control::none()).unwrap();
     for device in devices_or_skip("a_device_lost_in_the_middle_loses_nothing") {
         for headings in [0, 1, 150] {
-            let gpu = Arc::new(Gpu::failing_after(device.number, headings).unwrap());
+            let gpu = Arc::new(Gpu::limited(device.number, u64::MAX, Some(headings)).unwrap());
             let backed = scene().with_backend(gpu.clone());
             assert!(gpu.device().is_some());
             let matrix = backed.visibility_matrix(&targets, &directions, &Control::none()).unwrap();
@@ -298,6 +298,46 @@ fn a_device_lost_in_the_middle_loses_nothing() {
             assert!(backed.visibility_matrix(&targets, &directions, &Control::none()).unwrap() == whole);
             assert_eq!(gpu.notes().len(), 1);
         }
+    }
+}
+
+#[test]
+fn a_scene_larger_than_the_buffers_of_a_device_is_asked_in_parts() {
+    let size = [60.0, 60.0, 15.0];
+    let balls = balls_of(random_balls(20_000, size, 1.0));
+    // beside the scene, too: a part of it must not leave open what all of it would decide
+    let (targets, directions) = (targets(1500, [150.0, 150.0, 15.0]), directions());
+    let eyes = [[0.0, 0.0, 9.0], [-25.0, 31.0, 4.0], [90.0, 0.0, 30.0]];
+    let scene = || MedialScene::new(&balls, &BlockRule::carved()).unwrap();
+    let tree = Arc::new(BallTree::clone(scene().tree()));
+    let share_open = |gpu: &Gpu| {
+        let settled = gpu.prepare(&tree).unwrap().settle(&targets, &directions, &Control::none()).unwrap();
+        let lines = (0..targets.len()).flat_map(|target| (0..directions.len()).map(move |number| (target, number)));
+        lines.filter(|&(target, number)| settled.line(target, number) == Line::Open).count()
+    };
+    for device in devices_or_skip("a_scene_larger_than_the_buffers_of_a_device_is_asked_in_parts") {
+        let whole = Arc::new(Gpu::new(Choice::Number(device.number)).unwrap());
+        // 20 000 balls take 320 kB; 20 kB are enough for the targets
+        let in_parts = Arc::new(Gpu::limited(device.number, 60_000, None).unwrap());
+        let [open_whole, open_in_parts] = [&whole, &in_parts].map(|gpu| share_open(gpu));
+        assert_eq!(open_in_parts, open_whole, "{}: a line that all balls decide is decided by parts", device.name);
+        let answers = |scene: MedialScene| {
+            let seen = eyes.map(|eye| scene.visible_from(Viewer::Eye(eye), &targets, &Control::none()).unwrap());
+            // twice: the second question finds another part in the memory of the device
+            let matrix = [(); 2].map(|()| scene.visibility_matrix(&targets, &directions, &Control::none()).unwrap());
+            (seen, matrix)
+        };
+        let on_cpu = answers(scene());
+        assert!(answers(scene().with_backend(in_parts.clone())) == on_cpu, "answers on {}", device.name);
+        assert!(in_parts.notes().is_empty() && in_parts.used().is_some(), "{:?}", in_parts.notes());
+        // what was finished past some parts only is not taken for finished
+        let lost = Arc::new(Gpu::limited(device.number, 60_000, Some(20)).unwrap());
+        assert!(answers(scene().with_backend(lost.clone())) == on_cpu, "lost on {}", device.name);
+        assert_eq!(lost.notes().len(), 1, "{:?}", lost.notes());
+        // not even a part fits
+        let tiny = Arc::new(Gpu::limited(device.number, 4096, None).unwrap());
+        assert!(answers(scene().with_backend(tiny.clone())) == on_cpu, "too large for {}", device.name);
+        assert!(tiny.notes().iter().any(|note| note.contains("the CPU does the rest")), "{:?}", tiny.notes());
     }
 }
 

@@ -79,6 +79,16 @@ impl Viewers<'_> {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+
+    /// The first `count` of them, or all.
+    #[must_use]
+    pub fn first(self, count: usize) -> Self {
+        let count = count.min(self.len());
+        match self {
+            Self::Directions(vectors) => Self::Directions(&vectors[..count]),
+            Self::Eyes(places) => Self::Eyes(&places[..count]),
+        }
+    }
 }
 
 /// What is known of a line of sight.
@@ -135,14 +145,17 @@ impl Settled {
     /// Sets what is known of all lines of a direction: a bit for each target, 32 a word, of those that are free and of those that are blocked. Bits beyond the
     /// last target must not be set.
     pub fn set_direction(&mut self, direction: usize, free: &[u32], blocked: &[u32]) {
-        for (bits, words) in [(&mut self.free, free), (&mut self.blocked, blocked)] {
-            let of_direction = bits.iter_mut().skip(direction).step_by(self.direction_count.max(1));
-            for (bits, words) in of_direction.zip(words.chunks(2 * WORDS)) {
-                for (word, halves) in bits.iter_mut().zip(words.chunks(2)) {
-                    *word = halves.iter().rev().fold(0, |word, half| word << 32 | u64::from(*half));
-                }
-            }
-        }
+        let count = self.direction_count;
+        each_word(&mut self.free, [direction, count], free, |word, known| *word = known);
+        each_word(&mut self.blocked, [direction, count], blocked, |word, known| *word = known);
+    }
+
+    /// Joins to what is known of all lines of a direction what is known of them past other balls, given as in [`Settled::set_direction`]: free are
+    /// those that are free past both, blocked those that any blocks.
+    pub fn join_direction(&mut self, direction: usize, free: &[u32], blocked: &[u32]) {
+        let count = self.direction_count;
+        each_word(&mut self.free, [direction, count], free, |word, known| *word &= known);
+        each_word(&mut self.blocked, [direction, count], blocked, |word, known| *word |= known);
     }
 
     /// Sets what is known of all lines of the directions from `first` on: what `known` holds of the same targets.
@@ -182,5 +195,15 @@ impl Settled {
 
     fn place(&self, target: usize, direction: usize) -> (usize, usize, u64) {
         (target / BLOCK * self.direction_count + direction, target % BLOCK / WORD, 1 << (target % WORD))
+    }
+}
+
+/// Calls `put` with each word of a direction, given by its number and how many there are, and the same 64 bits of `words`.
+fn each_word(bits: &mut [Bits], [direction, count]: [usize; 2], words: &[u32], put: impl Fn(&mut u64, u64)) {
+    let of_direction = bits.iter_mut().skip(direction).step_by(count.max(1));
+    for (bits, words) in of_direction.zip(words.chunks(2 * WORDS)) {
+        for (word, halves) in bits.iter_mut().zip(words.chunks(2)) {
+            put(word, halves.iter().rev().fold(0, |word, half| word << 32 | u64::from(*half)));
+        }
     }
 }

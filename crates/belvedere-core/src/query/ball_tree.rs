@@ -2,9 +2,10 @@
 
 use crate::blocking::{Ball, BlockRule};
 use crate::ray_index::{Ray, RayIndex};
-use belvedere_data::Result;
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
+use belvedere_data::{Error, Result};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Balls, the rule by which they block, and a tree of boxes around them. A backend takes its balls from here.
@@ -28,7 +29,7 @@ impl BallTree {
     /// [`FARTHEST`](belvedere_data::model::FARTHEST), are left out.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) for columns of unequal length, those of
+    /// [`Error::LengthMismatch`] for columns of unequal length, those of
     /// [`BlockRule::validate`] and of [`RayIndex::new`].
     pub fn new(balls: &MedialBalls, rule: &BlockRule) -> Result<Self> {
         rule.validate()?;
@@ -36,13 +37,35 @@ impl BallTree {
         let ball_of = |row: usize| Ball { center: balls.centers[row], radius: balls.radii[row] };
         let usable: Vec<usize> =
             (0..balls.len()).filter(|&row| balls.touch[row] != NO_TOUCH && ball_of(row).is_usable()).collect();
-        let boxes: Vec<[[f32; 3]; 2]> = usable.par_iter().map(|&row| ball_of(row).bounds()).collect();
-        let index = RayIndex::new(&boxes)?;
-        let row_of = |&place: &u32| usable[place as usize];
-        let balls = index.order().par_iter().map(|place| ball_of(row_of(place))).collect();
+        let balls: Vec<Ball> = usable.iter().map(|&row| ball_of(row)).collect();
         #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
-        let rows = index.order().iter().map(|place| row_of(place) as u32).collect();
+        let rows: Vec<u32> = usable.into_iter().map(|row| row as u32).collect();
+        Self::ordered(&balls, &rows, rule)
+    }
+
+    /// Orders balls with their rows into a tree.
+    fn ordered(balls: &[Ball], rows: &[u32], rule: &BlockRule) -> Result<Self> {
+        let boxes: Vec<[[f32; 3]; 2]> = balls.par_iter().map(|ball| ball.bounds()).collect();
+        let index = RayIndex::new(&boxes)?;
+        let order = index.order();
+        let balls = order.par_iter().map(|&place| balls[place as usize]).collect();
+        let rows = order.iter().map(|&place| rows[place as usize]).collect();
         Ok(Self { index: Arc::new(index), balls, rows, rule: *rule })
+    }
+
+    /// The balls of a part of [`BallTree::balls`] as a tree of their own.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a part that the tree does not have.
+    pub fn part(&self, part: Range<usize>) -> Result<Self> {
+        match (self.balls.get(part.clone()), self.rows.get(part.clone())) {
+            (Some(balls), Some(rows)) => Self::ordered(balls, rows, &self.rule),
+            _ => Err(Error::InvalidParameter {
+                name: "part of a tree of balls",
+                value: format!("{part:?}"),
+                expected: "within the balls of the tree",
+            }),
+        }
     }
 
     /// The same balls, which block by another rule.
