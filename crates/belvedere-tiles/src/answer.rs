@@ -2,7 +2,7 @@
 
 use crate::grid::TileId;
 use crate::lines::Lines;
-use crate::obstacles::{Found, whole_scene};
+use crate::obstacles::{Found, rule};
 use crate::parts::Parts;
 use crate::plan::Plan;
 use crate::question::{Asked, Light, Question};
@@ -16,11 +16,12 @@ use belvedere::apps::shadow::{Edges, scene_shadow};
 use belvedere::apps::sky_view::{SKY_TARGET_HEIGHT, scene_sky_view};
 use belvedere::apps::sun_hours::scene_sun_hours;
 use belvedere::apps::targets::{Layout, Measure, Targets};
-use belvedere::apps::viewshed::{Masks, Observer, ViewshedParams, viewshed};
+use belvedere::apps::viewshed::{Masks, Observer, Viewshed, ViewshedParams, viewshed};
 use belvedere::clean::clean;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid, SurfaceParams, top_surface};
 use belvedere::io::atomic;
+use belvedere::medial::MedialBalls;
 use belvedere::query::{AddedMeshes, Answer, MedialScene};
 use belvedere::raster::Raster;
 use belvedere::results::georeference;
@@ -81,16 +82,18 @@ fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Con
     let known = targets.positions.iter().filter(|p| p[2].is_finite());
     let lowest = known.map(|p| f64::from(p[2])).fold(f64::INFINITY, f64::min);
     let lines = Lines::of(asked, core, lowest);
+    let size = [ground.grid.width, ground.grid.height];
+    let parts = Parts::around((plan, run, tile), &lines, added, most_balls, control)?;
     let (found, balls) = match asked {
         Asked::Viewshed(observers) => {
-            let (scene, balls) = whole_scene(plan, run, &lines, added, control)?;
-            let look = || see(observers, (&scene, &balls), &targets, [ground.grid.width, ground.grid.height], control);
-            (control.stage("testing lines of sight", cells, look)?, balls)
+            let mut sight = Sight::new(observers, &targets.positions);
+            parts.each_scene(&lines, control, |scene| sight.look(scene, control))?;
+            let planned = MedialScene::new(&MedialBalls::default(), &rule(plan))?.with_added(added.cloned());
+            sight.look(&planned, control)?;
+            let balls = parts.into_found();
+            (sight.answered(&balls, size)?, balls)
         }
-        Asked::Light(light) => {
-            let parts = Parts::around((plan, run, tile), &lines, added, most_balls, control)?;
-            lit(light, parts, &targets, [ground.grid.width, ground.grid.height], control)?
-        }
+        Asked::Light(light) => lit(light, parts, &targets, size, control)?,
     };
     if found.values.are_nothing() && found.unproven_cells == 0 {
         return Ok(Record { points, damaged: balls.damaged, ..Record::default() });
@@ -190,50 +193,73 @@ fn unknown_towards(balls: &Found, targets: &Targets, directions: &[[f64; 3]]) ->
     targets.positions.par_iter().with_min_len(CHUNK).map(is_unknown).collect()
 }
 
-/// What observers see of targets.
-fn see(
-    observers: &[Observer],
-    (scene, balls): (&MedialScene, &Found),
-    targets: &Targets,
-    [width, height]: [usize; 2],
-    control: &Control<'_>,
-) -> Result<Answered> {
-    let mut observers = observers.to_vec();
-    let mut eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
-    let skipped = skip_unfit_eyes(scene, None, &mut eyes, control)?.skipped;
-    observers.iter_mut().zip(eyes).for_each(|(observer, eye)| observer.eye = eye);
-    let params = ViewshedParams::default().with_masks(Masks::Kept);
-    let seen = viewshed(scene, &observers, &targets.positions, &params, control)?;
-    let is_unknown = |target: [f32; 3], eye: [f64; 3]| {
-        let target = target.map(f64::from);
-        !balls.missing.is_empty() && balls.is_unknown(target, sub(eye, target), 1.0)
-    };
-    let bit =
-        |row: usize, number: usize| seen.masks.get(number / 32).is_some_and(|band| band[row] >> (number % 32) & 1 == 1);
-    let unproven = |row: usize| {
-        let target = targets.positions[row];
-        let seen_by = observers.iter().enumerate().filter(|(number, _)| bit(row, *number));
-        seen_by.filter(|(_, observer)| is_unknown(target, observer.eye)).count()
-    };
-    let unproven: Vec<usize> = (0..targets.len()).into_par_iter().with_min_len(CHUNK).map(unproven).collect();
-    let is_asked = |answer: Answer| !matches!(answer, Answer::OutsideView | Answer::OutsideCloud);
-    let cells = || seen.answers.iter().zip(&seen.counts).zip(&unproven);
-    let values = match observers.len() {
-        1 => {
-            let code = |count: u32, unproven: usize| if unproven > 0 { UNPROVEN } else { u8::from(count > 0) };
-            let of_cell = |((&answer, &count), &unproven)| is_asked(answer).then(|| code(count, unproven));
-            Values::of_codes(width, height, cells().map(of_cell))?
+/// What observers see of targets past one part of the obstacles after the other.
+struct Sight<'a> {
+    /// Those inside an obstacle have an eye that is not finite.
+    observers: Vec<Observer>,
+    targets: &'a [[f32; 3]],
+    /// Past all parts so far; `None` before the first.
+    seen: Option<Viewshed>,
+}
+
+impl<'a> Sight<'a> {
+    fn new(observers: &[Observer], targets: &'a [[f32; 3]]) -> Self {
+        Self { observers: observers.to_vec(), targets, seen: None }
+    }
+
+    /// Takes away what `scene` hides.
+    fn look(&mut self, scene: &MedialScene, control: &Control<'_>) -> Result<()> {
+        let mut eyes: Vec<[f64; 3]> = self.observers.iter().map(|observer| observer.eye).collect();
+        skip_unfit_eyes(scene, None, &mut eyes, control)?;
+        self.observers.iter_mut().zip(eyes).for_each(|(observer, eye)| observer.eye = eye);
+        let params = ViewshedParams::default().with_masks(Masks::Kept);
+        let look = || viewshed(scene, &self.observers, self.targets, &params, control);
+        let mut seen = control.stage("testing lines of sight", self.observers.len(), look)?;
+        if let Some(before) = &self.seen {
+            for (bits, before) in seen.masks.iter_mut().flatten().zip(before.masks.iter().flatten()) {
+                *bits &= before;
+            }
         }
-        _ => {
-            #[expect(clippy::cast_possible_truncation, reason = "no more than there are observers")]
-            let of_cell = |((&answer, &count), &unproven): ((&Answer, &u32), &usize)| {
-                is_asked(answer).then(|| count - unproven as u32)
-            };
-            Values::of_counts(width, height, cells().map(of_cell))?
-        }
-    };
-    let unproven_cells = unproven.iter().filter(|&&count| count > 0).count();
-    Ok(Answered { values, unproven_cells, skipped_observers: skipped })
+        self.seen = Some(seen);
+        Ok(())
+    }
+
+    /// What is seen past all parts; unproven where missing `balls` may block it.
+    fn answered(self, balls: &Found, [width, height]: [usize; 2]) -> Result<Answered> {
+        let Self { observers, targets, seen } = self;
+        let (answers, masks) = seen.map(|seen| (seen.answers, seen.masks)).unwrap_or_default();
+        let is_unknown = |target: [f32; 3], eye: [f64; 3]| {
+            let target = target.map(f64::from);
+            !balls.missing.is_empty() && balls.is_unknown(target, sub(eye, target), 1.0)
+        };
+        let sees =
+            |row: usize, number: usize| masks.get(number / 32).is_some_and(|band| band[row] >> (number % 32) & 1 == 1);
+        // how many see a target, and how many of these without proof
+        let counts = |row: usize| {
+            let seen_by = || observers.iter().enumerate().filter(|(number, _)| sees(row, *number));
+            let unproven = seen_by().filter(|(_, observer)| is_unknown(targets[row], observer.eye)).count();
+            [seen_by().count(), unproven]
+        };
+        let counts: Vec<[usize; 2]> = (0..targets.len()).into_par_iter().with_min_len(CHUNK).map(counts).collect();
+        let is_asked = |answer: Answer| !matches!(answer, Answer::OutsideView | Answer::OutsideCloud);
+        let cells = || answers.iter().zip(&counts).map(|(&answer, &counts)| is_asked(answer).then_some(counts));
+        let values = match observers.len() {
+            1 => {
+                let code = |[seen, unproven]: [usize; 2]| if unproven > 0 { UNPROVEN } else { u8::from(seen > 0) };
+                Values::of_codes(width, height, cells().map(|counts| counts.map(code)))?
+            }
+            _ => {
+                #[expect(clippy::cast_possible_truncation, reason = "no more than there are observers")]
+                let proven = |[seen, unproven]: [usize; 2]| (seen - unproven) as u32;
+                Values::of_counts(width, height, cells().map(|counts| counts.map(proven)))?
+            }
+        };
+        Ok(Answered {
+            values,
+            unproven_cells: counts.iter().filter(|[_, unproven]| *unproven > 0).count(),
+            skipped_observers: observers.iter().filter(|observer| !observer.eye.iter().all(|v| v.is_finite())).count(),
+        })
+    }
 }
 
 /// The cells of a tile as targets on top of what stands there, or will.
@@ -286,7 +312,6 @@ mod tests {
     use crate::grid::Area;
     use belvedere::apps::viewshed::SightLimits;
     use belvedere::blocking::BlockRule;
-    use belvedere::medial::MedialBalls;
 
     #[test]
     fn views_that_missing_tiles_may_block_are_unproven_and_never_seen() {
@@ -294,6 +319,7 @@ mod tests {
         let mut east = MedialBalls::default();
         east.push(0, [10.0, 0.0, 2.0], 2.0, 0);
         let scene = MedialScene::new(&east, &BlockRule::carved()).unwrap();
+        let nothing = MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap();
         let missing = vec![(Area { low: [-5.0, 10.0], high: [5.0, 20.0] }, 30.0)];
         let balls = Found { missing, ..Found::default() };
         let positions = vec![
@@ -305,25 +331,25 @@ mod tests {
             [-90.0, 0.0, 2.0],  // too far away
             [f32::NAN; 3],
         ];
-        let targets = Targets {
-            frame: belvedere::Frame::default(),
-            positions,
-            normals: None,
-            weights: Vec::new(),
-            groups: Vec::new(),
-            layout: Layout::Points,
+        // the parts of the obstacles in any order
+        let see = |observers: &[Observer], parts: [&MedialScene; 2]| {
+            let mut sight = Sight::new(observers, &positions);
+            parts.into_iter().for_each(|scene| sight.look(scene, &Control::none()).unwrap());
+            sight.answered(&balls, [7, 1]).unwrap()
         };
         let limits = SightLimits { distance: [0.0, 50.0], ..SightLimits::default() };
         let low = Observer { eye: [0.0, 0.0, 2.0], limits };
-        let found = see(&[low], (&scene, &balls), &targets, [7, 1], &Control::none()).unwrap();
-        let Values::Codes(codes) = &found.values else { panic!("codes of one observer") };
-        assert_eq!(codes.values(), [1, 0, 2, 1, 1, 255, 255]);
-        assert_eq!((found.unproven_cells, found.skipped_observers), (1, 0));
-        // another high above, and one inside the ball, which sees nothing
-        let observers = [low, Observer { eye: [0.0, 0.0, 80.0], limits }, Observer { eye: [10.0, 0.0, 2.0], limits }];
-        let found = see(&observers, (&scene, &balls), &targets, [7, 1], &Control::none()).unwrap();
-        let Values::Counts(counts) = &found.values else { panic!("counts of several observers") };
-        assert_eq!(counts.values(), [2, 1, 1, 2, 2, 65_535, 65_535]);
-        assert_eq!((found.unproven_cells, found.skipped_observers), (1, 1));
+        let several = [low, Observer { eye: [0.0, 0.0, 80.0], limits }, Observer { eye: [10.0, 0.0, 2.0], limits }];
+        for parts in [[&scene, &nothing], [&nothing, &scene]] {
+            let found = see(&[low], parts);
+            let Values::Codes(codes) = &found.values else { panic!("codes of one observer") };
+            assert_eq!(codes.values(), [1, 0, 2, 1, 1, 255, 255]);
+            assert_eq!((found.unproven_cells, found.skipped_observers), (1, 0));
+            // another high above, and one inside the ball, which sees nothing
+            let found = see(&several, parts);
+            let Values::Counts(counts) = &found.values else { panic!("counts of several observers") };
+            assert_eq!(counts.values(), [2, 1, 1, 2, 2, 65_535, 65_535]);
+            assert_eq!((found.unproven_cells, found.skipped_observers), (1, 1));
+        }
     }
 }

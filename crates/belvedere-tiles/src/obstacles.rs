@@ -10,7 +10,6 @@ use belvedere::control::Control;
 use belvedere::io::{Source, read_balls};
 use belvedere::medial::{MedialBalls, PULSE_TOUCH};
 use belvedere::model::ModelParts;
-use belvedere::query::{AddedMeshes, MedialScene};
 use belvedere::{Error, Result};
 use std::path::Path;
 
@@ -90,35 +89,6 @@ pub(crate) fn ball_tiles(
         }
     }
     Ok(ball_tiles)
-}
-
-/// The scene of all balls that may matter for `lines` and of what is `added`, and what became of these balls.
-///
-/// # Errors
-/// Those of [`MedialScene::new`] and of writing records, and [`Error::Cancelled`].
-pub(crate) fn whole_scene(
-    plan: &Plan,
-    run: &Path,
-    lines: &Lines<'_>,
-    added: Option<&AddedMeshes>,
-    control: &Control<'_>,
-) -> Result<(MedialScene, Found)> {
-    let mut found = Found::default();
-    let mut balls = MedialBalls::default();
-    control.stage("reading balls", 0, || {
-        for BallTile { tile, .. } in ball_tiles(plan, run, lines, &mut found, control)? {
-            control.check()?;
-            if let Some(more) = found.read(plan, run, tile, control)? {
-                for row in may_block(&more.balls, lines) {
-                    push(&mut balls, &more.balls, row);
-                }
-            }
-        }
-        Ok(())
-    })?;
-    found.ball_count = balls.len();
-    let scene = control.stage("indexing balls", balls.len(), || MedialScene::new(&balls, &rule(plan)))?;
-    Ok((scene.with_added(added.cloned()), found))
 }
 
 /// How balls of tiles block.

@@ -2,7 +2,8 @@
 //!
 //! The lowest of many directions of the sky meets balls all over a city. But a line of sight is free where no ball blocks it, so that balls may be
 //! asked one part after the other, and the answer does not depend on how they are cut into parts. Parts are squares of tiles, nearest first: most lines end
-//! at the nearest, and a distant part is only asked about low directions towards it in which some cell still sees the sky.
+//! at the nearest, and a distant part is only asked about low directions towards it in which some cell still sees the sky. Lines of sight to observers are
+//! asked in parts as well.
 
 use crate::grid::{Area, TileId};
 use crate::lines::Lines;
@@ -51,6 +52,39 @@ impl<'a> Parts<'a> {
         let squares = squares(tile, ball_tiles(plan, run, lines, &mut found, control)?, most_balls);
         let (cells, lowest) = (lines.targets, lines.lowest);
         Ok(Self { plan, run, cells, lowest, added, most_balls, squares, found: Mutex::new(found) })
+    }
+
+    /// Gives `look` scenes of at most so many balls that may block one of `lines`, until all were given. A line of sight is free where it is free in all.
+    ///
+    /// # Errors
+    /// Those of `look`, of writing records, and [`belvedere::Error::Cancelled`].
+    pub(crate) fn each_scene(
+        &self,
+        lines: &Lines<'_>,
+        control: &Control<'_>,
+        mut look: impl FnMut(&MedialScene) -> Result<()>,
+    ) -> Result<()> {
+        let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut part = MedialBalls::default();
+        for of_tile in self.squares.iter().flatten() {
+            control.check()?;
+            let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, of_tile.tile, control))?;
+            let Some(ModelParts { balls, .. }) = read else { continue };
+            for row in may_block(&balls, lines) {
+                if part.len() == self.most_balls {
+                    look(&self.scene(std::mem::take(&mut part), &mut found, control)?)?;
+                }
+                push(&mut part, &balls, row);
+            }
+        }
+        look(&self.scene(part, &mut found, control)?)
+    }
+
+    /// The scene of balls that are asked together.
+    fn scene(&self, balls: MedialBalls, found: &mut Found, control: &Control<'_>) -> Result<MedialScene> {
+        found.ball_count += balls.len();
+        found.most_held = found.most_held.max(balls.len());
+        control.stage("indexing balls", balls.len(), || MedialScene::new(&balls, &rule(self.plan)))
     }
 
     /// What became of the balls.

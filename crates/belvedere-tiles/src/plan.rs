@@ -35,7 +35,7 @@ const CELL_STEP: f64 = 1.0 / 64.0;
 /// Memory for each point of a window while balls are made, and without any, bytes. As measured in docs/scale.md.
 const BYTES_PER_POINT: f64 = 450.0;
 const BYTES_AT_LEAST: f64 = 100e6;
-/// Memory for each ball of those that are asked about light together, bytes: measured 435 to 490, and room for cells and their points.
+/// Memory for each ball of those that are asked together, bytes: measured 435 to 490, and room for cells and their points.
 const BYTES_PER_BALL: f64 = 700.0;
 /// Balls that are always asked together: fewer would save no memory that counts.
 const LEAST_BALLS: usize = 100_000;
@@ -390,7 +390,7 @@ impl Plan {
         }
     }
 
-    /// Most balls that are asked about light together: as many as take no more memory than making those of the largest tile.
+    /// Most balls that are asked together: as many as take no more memory than making those of the largest tile.
     pub(crate) fn balls_at_a_time(&self) -> usize {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an estimate; `as` saturates")]
         let balls = ((self.estimate().memory_bytes as f64 - BYTES_AT_LEAST) / BYTES_PER_BALL) as usize;

@@ -89,7 +89,7 @@ pub struct Record {
     pub points: usize,
     /// Balls that were made, or that could matter for the answer.
     pub balls: usize,
-    /// Most balls that were held at a time for an answer about light.
+    /// Most balls that were held at a time for an answer.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub most_balls: usize,
     /// Cells that are asked about.

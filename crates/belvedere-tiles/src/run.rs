@@ -45,7 +45,7 @@ pub struct RunParams<'a> {
     pub shard: Shard,
     /// Which steps.
     pub steps: Steps,
-    /// Most balls that are held at a time for an answer about light; no answer depends on it. `None` for as many as take no more memory than
+    /// Most balls that are held at a time for an answer; no answer depends on it. `None` for as many as take no more memory than
     /// making the balls of the largest tile.
     pub most_balls: Option<usize>,
     /// Seconds on a clock of the program, for records; the library has none.
@@ -63,7 +63,7 @@ pub struct RunReport {
     pub already_done: usize,
     /// Cells whose answer is unproven because balls are missing.
     pub unproven_cells: usize,
-    /// Most balls that were held at a time for an answer about light.
+    /// Most balls that were held at a time for an answer.
     pub most_balls: usize,
     /// Observers of viewsheds that stand inside an obstacle, and see nothing.
     pub skipped_observers: usize,
