@@ -128,7 +128,7 @@ fn read_records(
             break;
         }
         file.seek(SeekFrom::Start(position)).map_err(Error::io(path))?;
-        match read_record(file, length, range.end - position) {
+        match read_record(file, length, range.end - position).map_err(Error::io(path))? {
             Some((record, length)) => {
                 position += length;
                 header.records.extend(record);
@@ -149,28 +149,31 @@ enum Length {
 }
 
 /// The next record, unless it is too large to be of interest, and its length; `None` where `room` bytes do not hold it.
-fn read_record(file: &mut impl Read, length: Length, room: u64) -> Option<(Option<Record>, u64)> {
+fn read_record(file: &mut impl Read, length: Length, room: u64) -> std::io::Result<Option<(Option<Record>, u64)>> {
     let head_length: u64 = if length == Length::Short { 54 } else { 60 };
     let mut head = Vec::new();
-    file.take(head_length.min(room)).read_to_end(&mut head).ok()?;
-    let user = head.get(2..18)?;
+    file.take(head_length.min(room)).read_to_end(&mut head)?;
+    let Some((user, id, data_length)) = record_head(&head, length) else { return Ok(None) };
+    let Some(total) = head_length.checked_add(data_length).filter(|&total| total <= room) else { return Ok(None) };
+    // the hierarchy of a COPC file is read page by page where it is needed
+    if data_length > MAX_EXTENDED || length == Length::Long && user == "copc" {
+        return Ok(Some((None, total)));
+    }
+    let mut data = Vec::new();
+    file.take(data_length).read_to_end(&mut data)?;
+    let is_whole = data.len() as u64 == data_length;
+    Ok(is_whole.then(|| (Some(Record { user, id, data }), total)))
+}
+
+/// User, number and length of a record; `None` for a head that is cut off.
+fn record_head(head: &[u8], length: Length) -> Option<(String, u16, u64)> {
+    let user = String::from_utf8_lossy(head.get(2..18)?).trim_end_matches(['\0', ' ']).to_owned();
     let id = u16::from_le_bytes(*head.get(18..)?.first_chunk()?);
     let data_length = match length {
         Length::Short => u64::from(u16::from_le_bytes(*head.get(20..)?.first_chunk()?)),
         Length::Long => u64::from_le_bytes(*head.get(20..)?.first_chunk()?),
     };
-    let total = head_length.checked_add(data_length).filter(|&total| total <= room)?;
-    let user = String::from_utf8_lossy(user).trim_end_matches(['\0', ' ']).to_owned();
-    // the hierarchy of a COPC file is read page by page where it is needed
-    if data_length > MAX_EXTENDED || length == Length::Long && user == "copc" {
-        return Some((None, total));
-    }
-    let mut data = Vec::new();
-    file.take(data_length).read_to_end(&mut data).ok()?;
-    if data.len() as u64 != data_length {
-        return None;
-    }
-    Some((Some(Record { user, id, data }), total))
+    Some((user, id, data_length))
 }
 
 /// Little-endian fields of the fixed part.

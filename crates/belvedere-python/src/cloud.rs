@@ -4,12 +4,14 @@ use crate::arrays::{Places, column, fixed_rows, to_1d, to_2d};
 use crate::errors::{belvedere_error, exception, wrong};
 use crate::system::System;
 use crate::work::run;
-use belvedere::io::{ReadOptions, Source, UpAxis, read_cloud, write_cloud};
+use belvedere::io::{ReadOptions, Source, UpAxis, Within, read_cloud, write_cloud};
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use rayon::prelude::*;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -17,10 +19,11 @@ use std::sync::Arc;
 #[pyclass(frozen, module = "belvedere._core")]
 pub(crate) struct Cloud(pub(crate) Arc<PointCloud>);
 
-/// A path, or a name and the bytes of what would be there.
+/// A path, or a name and the bytes of what would be there, or a file of Python that has them.
 #[derive(FromPyObject)]
 pub(crate) enum Input {
     Bytes(PathBuf, Vec<u8>),
+    File(PathBuf, Py<PyAny>),
     Path(PathBuf),
 }
 
@@ -29,18 +32,60 @@ impl Input {
         match self {
             Self::Path(path) => Source::path(path),
             Self::Bytes(name, bytes) => Source::bytes(name, bytes),
+            Self::File(name, file) => Source::reader(name, PythonFile(file)),
         }
+    }
+}
+
+/// A file of Python, open for reading in binary mode. What it raises becomes an error of reading.
+struct PythonFile<'a>(&'a Py<PyAny>);
+
+impl PythonFile<'_> {
+    /// Calls `work`, unless the interpreter is about to end.
+    fn call<T>(&self, work: impl FnOnce(&Bound<'_, PyAny>) -> PyResult<T>) -> std::io::Result<T> {
+        let called =
+            Python::try_attach(|py| work(self.0.bind(py)).map_err(|error| std::io::Error::other(error.to_string())));
+        called.unwrap_or_else(|| Err(std::io::Error::other("Python has ended")))
+    }
+}
+
+impl Read for PythonFile<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        self.call(|file| {
+            let bytes = file.call_method1("read", (buffer.len(),))?.cast_into::<PyBytes>()?;
+            let bytes = bytes.as_bytes();
+            let Some(room) = buffer.get_mut(..bytes.len()) else {
+                return Err(PyOSError::new_err(format!("read({}) returned {} bytes", buffer.len(), bytes.len())));
+            };
+            room.copy_from_slice(bytes);
+            Ok(bytes.len())
+        })
+    }
+}
+
+impl Seek for PythonFile<'_> {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        self.call(|file| {
+            let place = match to {
+                SeekFrom::Start(offset) => file.call_method1("seek", (offset, 0)),
+                SeekFrom::Current(offset) => file.call_method1("seek", (offset, 1)),
+                SeekFrom::End(offset) => file.call_method1("seek", (offset, 2)),
+            };
+            place?.extract()
+        })
     }
 }
 
 /// The cloud of some inputs, and the report on reading it as JSON.
 #[pyfunction]
-#[pyo3(signature = (inputs, crs, up, progress))]
+#[pyo3(signature = (inputs, crs, up, bounds, classes, progress))]
 pub(crate) fn read(
     py: Python<'_>,
     inputs: Vec<Input>,
     crs: Option<String>,
     up: &str,
+    bounds: Option<[[f64; 3]; 2]>,
+    classes: Option<Vec<u8>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Cloud, String)> {
     let up = match up {
@@ -50,6 +95,8 @@ pub(crate) fn read(
     };
     let mut options = ReadOptions::new().with_up(up);
     options.crs = crs;
+    options.within = bounds.map(|[low, high]| Within::File { low, high });
+    options.classes = classes;
     let (cloud, report) = run(py, progress, move |control| {
         let sources = inputs.iter().map(Input::source);
         control.stage("reading", 0, || read_cloud(sources, &options, control))

@@ -75,6 +75,50 @@ def test_bytes_files_paths_and_laspy_give_the_same_cloud(tile, cloud):
             assert np.array_equal(other.attributes[name], values), name
 
 
+def test_only_points_in_a_box_and_of_classes_are_read(tile, cloud):
+    low, high = cloud.bounds
+    box = [low[:2] + 20.0, (low[:2] + high[:2]) / 2]
+    inside = ((cloud.xyz[:, :2] >= box[0]) & (cloud.xyz[:, :2] <= box[1])).all(axis=1)
+    assert 0.02 < inside.mean() < 0.3
+    with open(tile, "rb") as file:
+        parts = [belvedere.read(tile, bounds=box), belvedere.read(file, bounds=box)]
+    for part in parts:
+        # local coordinates are rounded to 32 bits from another origin
+        assert part.xyz.shape == (inside.sum(), 3) and np.abs(part.xyz - cloud.xyz[inside]).max() < 1e-4
+    classes = cloud.attributes["classification"]
+    ground = belvedere.read(tile, bounds=np.c_[box, [low[2], high[2]]], classes=[2])
+    assert np.abs(ground.xyz - cloud.xyz[inside & (classes == 2)]).max() < 1e-4
+
+
+class Counting(io.BytesIO):
+    """A file that counts what is read of it, as if it lay on a server."""
+
+    count = 0
+
+    def read(self, size=-1):
+        content = super().read(size)
+        self.count += len(content)
+        return content
+
+
+def test_of_a_file_beside_the_box_only_the_header_is_read(tile, cloud):
+    far = Counting(tile.read_bytes())
+    with pytest.raises(belvedere.BelvedereError, match="no points"):
+        belvedere.read(far, name="far.laz", bounds=[cloud.bounds[1][:2] + 10, cloud.bounds[1][:2] + 20])
+    assert 0 < far.count < len(far.getvalue()) / 3, (far.count, len(far.getvalue()))
+
+
+def test_what_a_file_raises_names_the_file(tile, cloud):
+    class Lost(io.BytesIO):
+        def read(self, size=-1):
+            if self.tell() > 200:
+                raise OSError("the server does not answer")
+            return super().read(size)
+
+    with pytest.raises(OSError, match=r"far\.laz.*the server does not answer"):
+        belvedere.read(Lost(tile.read_bytes()), name="far.laz", bounds=cloud.bounds)
+
+
 def test_a_cloud_from_arrays_answers_as_its_file_does(cloud, scene, eye, targets):
     copied = belvedere.Cloud(cloud.xyz, crs=cloud.crs, adjusted_gps_time=True, **cloud.attributes)
     assert np.abs(copied.xyz - cloud.xyz).max() == 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import BelvedereWarning, wrong
-from ._inputs import Places, Progress, Source, native_source, places, reporter
+from ._inputs import Places, Progress, Source, class_numbers, map_box, native_source, places, reporter
 
 #: Attributes of points: their types, and their columns where there are several.
 ATTRIBUTES: Mapping[str, tuple[Any, int]] = {
@@ -213,9 +213,11 @@ def read(
     crs: str | None = None,
     up: str = "z",
     name: str | None = None,
+    bounds: npt.ArrayLike | None = None,
+    classes: Iterable[int] | None = None,
     progress: Progress = None,
 ) -> Cloud:
-    """Reads a point cloud.
+    """Reads a point cloud, or the points of it in a box.
 
     Parameters
     ----------
@@ -227,6 +229,12 @@ def read(
         Which axis of the file is up.
     name : str, optional
         Name of bytes or of a file without a name, such as ``"tile.laz"``; its extension selects the format.
+    bounds : array_like, (2, 2) or (2, 3), optional
+        Lowest and highest corner of a box in the coordinates and unit of the file. Only points in it are read, and only
+        the files that meet it; of a COPC file only the parts that do, also where it is an open file on a server
+        (``fsspec``).
+    classes : iterable of int, optional
+        Only points of these ASPRS classes are read.
     progress : bool or callable, optional
         True shows a bar; a function is called with stage, items done and items in all, and stops the work by raising.
 
@@ -257,8 +265,10 @@ def read(
     sources = source if isinstance(source, (list, tuple)) else [source]
     if not sources:
         raise wrong("source", "an empty list", "give at least one file")
-    inputs = [native_source(one, name) for one in sources]
-    core, text = _core.read(inputs, crs, up, reporter(progress))
+    box = None if bounds is None else map_box(bounds, "bounds")
+    wanted = None if classes is None else class_numbers(classes)
+    inputs = [native_source(one, name, in_parts=box is not None) for one in sources]
+    core, text = _core.read(inputs, crs, up, box, wanted, reporter(progress))
     report = json.loads(text)
     for note in _notes(report):
         _warn(note)
@@ -267,7 +277,9 @@ def read(
 
 def _notes(report: dict[str, Any]) -> list[str]:
     """What a report on reading says is lost or odd."""
-    found = [f"points left out: {reason}" for reason in report.get("left_out", [])]
+    # what `bounds` and `classes` leave out was asked for
+    asked = ("outside the box to read", "of a class that is not read")
+    found = [f"points left out: {reason}" for reason in report.get("left_out", []) if not reason.endswith(asked)]
     lost = report.get("attributes_not_in_every_file", [])
     if lost:
         found.append(f"attributes that only some of the files have are left out: {', '.join(lost)}")

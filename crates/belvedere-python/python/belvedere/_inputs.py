@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import operator
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
@@ -25,8 +26,8 @@ Progress = Union[bool, Callable[[str, int, int], object], None]
 Places = npt.ArrayLike
 
 
-def native_source(source: Source, name: str | None) -> object:
-    """A path, or a pair of a name and bytes."""
+def native_source(source: Source, name: str | None, *, in_parts: bool = False) -> object:
+    """A path, or a pair of a name and bytes; with `in_parts`, of a name and a file that can be read from any place."""
     if isinstance(source, (bytes, bytearray, memoryview)):
         if name is None:
             raise wrong("name", "missing", "bytes have no name: give name='tile.laz', whose extension says the format")
@@ -41,16 +42,44 @@ def native_source(source: Source, name: str | None) -> object:
         writer.write(buffer, do_compress=False)
         return "laspy.las", buffer.getvalue()
     if hasattr(source, "read"):
-        content = source.read()
+        reads_parts = in_parts and hasattr(source, "seekable") and source.seekable()
+        content = source.read(0 if reads_parts else -1)
         if not isinstance(content, bytes):
             raise wrong("source", "a file in text mode", "open it in binary mode: open(path, 'rb')")
-        given = name if name is not None else getattr(source, "name", None)
-        if not isinstance(given, str):
+        # files of fsspec have a path in place of a name
+        names = (name, getattr(source, "name", None), getattr(source, "path", None))
+        given = next((text for text in names if isinstance(text, str)), None)
+        if given is None:
             raise wrong(
                 "name", "missing", "this file has no name: give name='tile.laz', whose extension says the format"
             )
-        return given, content
+        return given, source if reads_parts else content
     raise wrong("source", f"a {type(source).__name__}", "give a path, bytes, a binary file, or an object of laspy")
+
+
+def map_box(value: npt.ArrayLike, what: str) -> list[list[float]]:
+    """Lowest and highest corner of a box, whose heights may be left out."""
+    advice = "give the lowest and the highest corner: [(x, y), (x, y)], or with heights [(x, y, z), (x, y, z)]"
+    try:
+        corners = np.asarray(value, np.float64)
+    except (TypeError, ValueError):
+        raise wrong(what, repr(value), advice) from None
+    if corners.shape not in ((2, 2), (2, 3)) or not np.isfinite(corners).all() or (corners[0] > corners[1]).any():
+        raise wrong(what, repr(value), advice)
+    everywhere = [-np.finfo(np.float64).max, np.finfo(np.float64).max]
+    return [[*corner, height][:3] for corner, height in zip(corners.tolist(), everywhere, strict=True)]
+
+
+def class_numbers(value: Iterable[int]) -> list[int]:
+    """ASPRS classes."""
+    advice = "give numbers from 0 to 255, such as [2, 6] for ground and buildings"
+    try:
+        numbers = [operator.index(number) for number in value]
+    except TypeError:
+        raise wrong("classes", repr(value), advice) from None
+    if not numbers or not all(0 <= number <= 255 for number in numbers):
+        raise wrong("classes", repr(value), advice)
+    return numbers
 
 
 def place(value: object, what: str) -> tuple[float, float, float]:
