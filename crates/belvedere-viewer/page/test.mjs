@@ -307,6 +307,16 @@ async function main() {
     assert.ok(await pixels(shown, [255, 176, 0]) < 200, "the raster is gone");
     await shown.close();
   });
+  await step("own colours of points", async () => {
+    const rows = Array.from({ length: 2500 }, (_, i) => `${(i % 50) / 5} ${Math.floor(i / 50) / 5} ${i % 50 < 25 ? 0 : 3} 220 30 200`);
+    const head = `ply\nformat ascii 1.0\nelement vertex ${rows.length}\n${["x", "y", "z"].map((name) => `property float ${name}\n`).join("")}${["red", "green", "blue"].map((name) => `property uchar ${name}\n`).join("")}end_header\n`;
+    writeFileSync(join(folder, "colored.ply"), `${head}${rows.join("\n")}\n`);
+    const { url: other } = await serve("colored.ply");
+    const shown = await open(browser, other);
+    await shown.waitForFunction(() => window.belvedere?.isLoaded && belvedere.loaded[0].chunk.geometry.getAttribute("rgb565"), null, { timeout: 10_000 });
+    assert.ok(await pixels(shown, [220, 30, 200]) > 500, "points have their colours");
+    await shown.close();
+  });
   await step("a bad file is in words", async () => {
     writeFileSync(join(folder, "bad.laz"), "LASF, but no more");
     const bad = await serve("bad.laz");

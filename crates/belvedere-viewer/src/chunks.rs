@@ -82,7 +82,8 @@ impl Chunks {
             bytes[7] = attributes.intensity.as_ref().map_or(0, |values| self.brightness(values[row]));
             bytes
         };
-        Some(rows.par_iter().with_min_len(4096).flat_map_iter(of_point).collect())
+        // not on the threads that build balls meanwhile: they would let the page wait for seconds
+        Some(rows.iter().flat_map(of_point).collect())
     }
 
     /// Two bytes for each point of a chunk: its colour with 5, 6 and 5 bits.

@@ -83,8 +83,8 @@ struct TooManyPoints {
 
 impl TooManyPoints {
     /// Refuses a cloud where the system says that it has too little memory for its balls.
-    fn check(points: usize) -> std::result::Result<(), Self> {
-        match available_bytes() {
+    fn check(points: usize, available: Option<u64>) -> std::result::Result<(), Self> {
+        match available {
             Some(free) if points as u64 * BYTES_PER_POINT > free => Err(Self { points, free }),
             _ => Ok(()),
         }
@@ -258,7 +258,7 @@ fn load(
         check(&cloud.frame, &bounds)?;
         show_meshes(files, &arguments.plan.add, (&cloud.frame, &bounds), loading, stages, summary)?;
         show_results(files, &cloud.frame, &bounds, loading, stages)?;
-        TooManyPoints::check(cloud.len())?;
+        TooManyPoints::check(cloud.len(), available_bytes())?;
         let crs = &cloud.frame.crs;
         let params = params::model(&arguments.cleaning, &arguments.orienting, params, crs, stages)?;
         let built = SceneModel::build(&cloud, &params, &stages.control());
@@ -376,4 +376,21 @@ fn print_url(url: &str, global: &Global) -> Result<()> {
     let line = if global.json { serde_json::json!({ "url": url }).to_string() } else { url.to_owned() };
     let mut output = std::io::stdout().lock();
     writeln!(output, "{line}").and_then(|()| output.flush()).context("standard output")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cloud_without_memory_for_its_balls_is_refused_with_advice() {
+        let refusal = TooManyPoints::check(50_000_000, Some(21_900_000_000)).unwrap_err().to_string();
+        assert!(
+            refusal.contains("33 GB of memory, and 21 GB are free. To ask questions, open a smaller part"),
+            "{refusal}"
+        );
+        assert!(TooManyPoints::check(30_000_000, Some(21_900_000_000)).is_ok());
+        // where the system does not tell, nothing is refused
+        assert!(TooManyPoints::check(usize::MAX, None).is_ok());
+    }
 }
