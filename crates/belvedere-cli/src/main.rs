@@ -5,6 +5,7 @@ mod commands;
 mod device;
 mod help;
 mod interrupt;
+mod memory;
 mod pipeline;
 mod progress;
 mod scene_config;

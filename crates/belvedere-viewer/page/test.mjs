@@ -22,16 +22,17 @@ async function serve(...files) {
   return { child, url };
 }
 const problems = [];
-async function open(browser, url) {
-  const page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
+async function open(browser, url, device = { viewport: { width: 1280, height: 720 } }) {
+  const page = await browser.newPage(device);
   page.on("pageerror", (error) => problems.push(error.message));
   page.on("request", (request) => { if (!request.url().startsWith(url) && !/^(blob|data):/.test(request.url())) problems.push(`fetches ${request.url()}`); });
   await page.goto(url);
   return page;
 }
-const ready = (page) => page.waitForFunction(() => window.belvedere?.isLoaded && window.belvedere.ready && window.belvedere.frames > 1, null, { timeout: 30_000 });
+const ready = (page) => page.waitForFunction(() => window.belvedere?.isLoaded && window.belvedere.ready && window.belvedere.frames > 0 && !window.belvedere.cloud.left, null, { timeout: 30_000 });
 // Number of pixels of the picture whose colour is near to one.
-const pixels = (page, color) => page.evaluate(([r, g, b]) => {
+const pixels = (page, color) => page.evaluate(async ([r, g, b]) => {
+  await belvedere.complete();
   const from = document.getElementById("view");
   const canvas = Object.assign(document.createElement("canvas"), { width: 320, height: 180 });
   const context = canvas.getContext("2d");
@@ -48,7 +49,8 @@ async function step(name, work) {
   done.push(name);
 }
 // A pixel where the page shows a point of a class, away from the panels, with points at some distances from it too.
-const pixelOf = (page, code, number = 0, around = []) => page.evaluate(([wanted, skip, around]) => {
+const pixelOf = (page, code, number = 0, around = []) => page.evaluate(async ([wanted, skip, around]) => {
+  await belvedere.complete();
   for (let y = 250; y < 560; y += 7) for (let x = 300; x < 860; x += 7) {
     const place = belvedere.placeAt(x, y);
     const found = place && belvedere.cloud.nearest(place);
@@ -132,7 +134,7 @@ async function main() {
   await step("is B seen from A", async () => {
     await ask("line", [ground, roof], /B is (visible|blocked|unproven)[\s\S]*Length of the line/);
     assert.equal(await page.evaluate(() => document.querySelectorAll("#card figure svg").length), 1);
-    assert.ok(await page.evaluate(() => document.querySelectorAll("#marks path").length) >= 1);
+    await page.waitForFunction(() => document.querySelectorAll("#marks path").length >= 1, null, { timeout: 5000 });
   });
   await step("sun here", () => ask("sun", [roof], /\d+\.\d hours of sun[\s\S]*First light/));
   await step("shadow at a time", async () => {
@@ -208,6 +210,43 @@ async function main() {
     const nameless = await page.evaluate(() => [...document.querySelectorAll("button, select, input")].filter((one) => !(one.innerText?.trim() || one.ariaLabel || one.title || one.labels?.length)).length);
     assert.equal(nameless, 0, "controls without a name for screen readers");
   });
+  await step("a tablet: fingers turn, zoom and ask, and controls are large", async () => {
+    const tablet = await open(browser, url, { viewport: { width: 1024, height: 768 }, hasTouch: true, isMobile: true });
+    await ready(tablet);
+    const cdp = await tablet.context().newCDPSession(tablet);
+    const drag = async (from, by) => {
+      const at = (share) => from.map(([x, y], id) => ({ x: x + share * by[id][0], y: y + share * by[id][1], id }));
+      await cdp.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: at(0) });
+      for (const share of [0.25, 0.5, 0.75, 1]) await cdp.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: at(share) });
+      await cdp.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+    };
+    const view = () => tablet.evaluate(() => { const { camera, orbit } = belvedere.mover; return [orbit.getAzimuthalAngle(), camera.position.distanceTo(orbit.target)]; });
+    const [before, far] = await view();
+    await drag([[500, 400]], [[120, 0]]);
+    assert.ok(Math.abs((await view())[0] - before) > 0.1, "one finger turns");
+    await drag([[450, 400], [550, 400]], [[-80, 0], [80, 0]]);
+    assert.ok((await view())[1] < 0.8 * far, "two fingers zoom");
+    assert.ok(await tablet.evaluate(() => document.getElementById("card").hidden), "no drag asks");
+    await tablet.tap("#home");
+    await tablet.tap("#tools [data-tool=seen]");
+    await tablet.touchscreen.tap(...await pixelOf(tablet, 2, 20));
+    await answered(tablet);
+    assert.match(await text(tablet), /% is visible/);
+    await tablet.selectOption("#motion", "walk");
+    const [x, y] = await tablet.evaluate(() => belvedere.mover.camera.position.toArray());
+    await tablet.tap("#steps [data-go='1,0,0']");
+    assert.notDeepEqual(await tablet.evaluate(() => belvedere.mover.camera.position.toArray().slice(0, 2)), [x, y], "the arrows go");
+    const small = () => tablet.evaluate(() => [...document.querySelectorAll("button, select, input")].filter((one) => one.checkVisibility({ visibilityProperty: true }))
+      .filter((one) => one.getBoundingClientRect().height < 40 || one.getBoundingClientRect().right > innerWidth).map((one) => one.outerHTML));
+    for (const tool of ["seen", "shadow", "plan"]) {
+      await tablet.evaluate((name) => belvedere.choose(name), tool);
+      assert.deepEqual(await small(), []);
+      await tablet.setViewportSize({ width: 768, height: 1024 });
+      assert.deepEqual(await small(), []);
+      await tablet.setViewportSize({ width: 1024, height: 768 });
+    }
+    await tablet.close();
+  });
   await step("two tabs", async () => {
     const other = await open(browser, url);
     await ready(other);
@@ -266,6 +305,16 @@ async function main() {
     await shown.selectOption("#color", "class");
     await shown.waitForTimeout(300);
     assert.ok(await pixels(shown, [255, 176, 0]) < 200, "the raster is gone");
+    await shown.close();
+  });
+  await step("own colours of points", async () => {
+    const rows = Array.from({ length: 2500 }, (_, i) => `${(i % 50) / 5} ${Math.floor(i / 50) / 5} ${i % 50 < 25 ? 0 : 3} 220 30 200`);
+    const head = `ply\nformat ascii 1.0\nelement vertex ${rows.length}\n${["x", "y", "z"].map((name) => `property float ${name}\n`).join("")}${["red", "green", "blue"].map((name) => `property uchar ${name}\n`).join("")}end_header\n`;
+    writeFileSync(join(folder, "colored.ply"), `${head}${rows.join("\n")}\n`);
+    const { url: other } = await serve("colored.ply");
+    const shown = await open(browser, other);
+    await shown.waitForFunction(() => window.belvedere?.isLoaded && belvedere.loaded[0].chunk.geometry.getAttribute("rgb565"), null, { timeout: 10_000 });
+    assert.ok(await pixels(shown, [220, 30, 200]) > 500, "points have their colours");
     await shown.close();
   });
   await step("a bad file is in words", async () => {

@@ -10,6 +10,10 @@ use std::ops::Range;
 const SIDE: f32 = 128.0;
 /// Most points of a chunk, so that pictures appear while others are on their way.
 const MOST: usize = 250_000;
+/// Points of the first chunk of a square with many: these come before all others, so that the whole cloud is seen at once.
+const FIRST: usize = 20_000;
+/// A square has many points from so many times [`FIRST`] on.
+const MANY: usize = 5;
 /// Steps of a chunk along each axis.
 const STEPS: f32 = 65_535.0;
 /// Share of the points whose intensity is shown as the brightest.
@@ -36,7 +40,7 @@ pub(crate) struct Chunks {
 }
 
 impl Chunks {
-    /// Parts the points of a cloud. The first points of a chunk are a fair sample of all of it.
+    /// Parts the points of a cloud. The first points of a chunk are a fair sample of all of it, and the first chunks lie all over the cloud.
     pub(crate) fn new(cloud: &PointCloud) -> Self {
         let mut squares: BTreeMap<[i64; 2], Vec<u32>> = BTreeMap::new();
         for (row, position) in (0..).zip(&cloud.positions) {
@@ -46,14 +50,20 @@ impl Chunks {
         squares.par_iter_mut().for_each(|rows| {
             rows.sort_by_cached_key(|&row| (uniform(1, u64::from(row)).to_bits(), row));
         });
-        let mut chunks = Vec::new();
-        let mut first = 0;
-        for rows in squares.iter().flat_map(|rows| rows.chunks(MOST)) {
-            chunks.push(chunk(cloud, rows, first));
-            first += rows.len();
+        let mut parts = Vec::new();
+        for (number, rows) in (0..).zip(&squares) {
+            let place = (uniform(2, number).to_bits(), number);
+            parts.extend(parts_of(rows).enumerate().map(|(part, rows)| ((part, place), rows)));
+        }
+        parts.sort_unstable_by_key(|(order, _)| *order);
+        let mut chunks = Vec::with_capacity(parts.len());
+        let mut all = Vec::with_capacity(cloud.len());
+        for (_, rows) in parts {
+            chunks.push(chunk(cloud, rows, all.len()));
+            all.extend_from_slice(rows);
         }
         let brightest = cloud.attributes.intensity.as_deref().map_or(1, brightest);
-        Self { chunks, rows: squares.concat(), brightest }
+        Self { chunks, rows: all, brightest }
     }
 
     /// Eight bytes for each point of a chunk, little endian: its steps along x, y and z with 16 bits each, its class and its intensity.
@@ -72,7 +82,8 @@ impl Chunks {
             bytes[7] = attributes.intensity.as_ref().map_or(0, |values| self.brightness(values[row]));
             bytes
         };
-        Some(rows.par_iter().with_min_len(4096).flat_map_iter(of_point).collect())
+        // not on the threads that build balls meanwhile: they would let the page wait for seconds
+        Some(rows.iter().flat_map(of_point).collect())
     }
 
     /// Two bytes for each point of a chunk: its colour with 5, 6 and 5 bits.
@@ -132,6 +143,12 @@ impl Chunks {
         let brightness = (share.min(1.0) * 255.0).round() as u8;
         brightness
     }
+}
+
+/// The points of a square, chunk by chunk.
+fn parts_of(rows: &[u32]) -> impl Iterator<Item = &[u32]> {
+    let (first, rest) = rows.split_at(if rows.len() > MANY * FIRST { FIRST } else { 0 });
+    Some(first).into_iter().filter(|first| !first.is_empty()).chain(rest.chunks(MOST))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "numbers of squares")]
@@ -202,6 +219,23 @@ mod tests {
         assert_eq!(chunks.points(chunks.chunks.len(), &cloud), None);
         let some = chunks.sample(1000);
         assert!((900..=1000).contains(&some.len()) && some.positions(&cloud).len() == some.len());
+    }
+
+    #[test]
+    fn the_first_chunks_lie_all_over_the_cloud() {
+        // two squares with many points, and three with few
+        let places = [(-400.0, 120_000), (10.0, 130_000), (140.0, 50), (270.0, 40), (500.0, 30)];
+        let coordinates: Vec<[f64; 3]> = places
+            .iter()
+            .flat_map(|&(x, count)| (0..count).map(move |i| [x + f64::from(i) * 1e-4, 0.0, 0.0]))
+            .collect();
+        let chunks = Chunks::new(&PointCloud::from_coordinates(&coordinates).0).chunks;
+        let mut first: Vec<usize> = chunks[..5].iter().map(|chunk| chunk.points.len()).collect();
+        let wests: Vec<f32> = chunks[..5].iter().map(|chunk| chunk.low[0]).collect();
+        assert!(!wests.is_sorted(), "in random order");
+        first.sort_unstable();
+        assert_eq!(first, [30, 40, 50, FIRST, FIRST]);
+        assert_eq!(chunks.iter().map(|chunk| chunk.points.len()).sum::<usize>(), coordinates.len());
     }
 
     #[test]

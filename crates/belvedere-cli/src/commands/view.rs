@@ -4,6 +4,7 @@ use super::check_output;
 use super::mesh_targets::is_mesh;
 use crate::arguments::{Global, MethodChoice, Place, SceneInput, Usage, ViewPage};
 use crate::interrupt;
+use crate::memory::available_bytes;
 use crate::pipeline::{self, Points, flagged, params};
 use crate::progress::Stages;
 use crate::summary::{Summary, note};
@@ -20,6 +21,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+/// Memory that making balls takes beside the cloud, bytes for each of its points: 600 were measured with 10 million points of AHN3.
+const BYTES_PER_POINT: u64 = 650;
 /// How often Ctrl-C is looked for.
 const POLL: Duration = Duration::from_millis(20);
 
@@ -52,6 +55,10 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
             summary.note_warnings(global);
             loading.finish(model);
         }
+        Err(error) if error.is::<TooManyPoints>() => {
+            summary.warn(format!("only the points are shown: {error}")).note_warnings(global);
+            loading.fail(format!("Only the points are shown: {error}."));
+        }
         Err(error) => {
             // the page says it too, and looks for it four times a second
             loading.fail(format!("{error:#}"));
@@ -66,6 +73,39 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
     drop(viewer);
     Ok(Summary::default())
 }
+
+/// A cloud that is shown, but whose balls do not fit into memory.
+#[derive(Debug)]
+struct TooManyPoints {
+    points: usize,
+    free: u64,
+}
+
+impl TooManyPoints {
+    /// Refuses a cloud where the system says that it has too little memory for its balls.
+    fn check(points: usize, available: Option<u64>) -> std::result::Result<(), Self> {
+        match available {
+            Some(free) if points as u64 * BYTES_PER_POINT > free => Err(Self { points, free }),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl std::fmt::Display for TooManyPoints {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let gigabytes = |bytes: u64| bytes.div_ceil(1_000_000_000);
+        let needed = gigabytes(self.points as u64 * BYTES_PER_POINT);
+        let free = self.free / 1_000_000_000;
+        write!(
+            f,
+            "making the balls of {} points needs about {needed} GB of memory, and {free} GB are free. To ask questions, open a smaller part, such as one tile; for \
+             maps of the whole cloud, use `belvedere city`",
+            self.points
+        )
+    }
+}
+
+impl std::error::Error for TooManyPoints {}
 
 /// The parser lets these pass beside a flag that --export does not go with.
 fn refuse_flags_of_files(arguments: &ViewPage) -> Result<()> {
@@ -218,6 +258,7 @@ fn load(
         check(&cloud.frame, &bounds)?;
         show_meshes(files, &arguments.plan.add, (&cloud.frame, &bounds), loading, stages, summary)?;
         show_results(files, &cloud.frame, &bounds, loading, stages)?;
+        TooManyPoints::check(cloud.len(), available_bytes())?;
         let crs = &cloud.frame.crs;
         let params = params::model(&arguments.cleaning, &arguments.orienting, params, crs, stages)?;
         let built = SceneModel::build(&cloud, &params, &stages.control());
@@ -335,4 +376,21 @@ fn print_url(url: &str, global: &Global) -> Result<()> {
     let line = if global.json { serde_json::json!({ "url": url }).to_string() } else { url.to_owned() };
     let mut output = std::io::stdout().lock();
     writeln!(output, "{line}").and_then(|()| output.flush()).context("standard output")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cloud_without_memory_for_its_balls_is_refused_with_advice() {
+        let refusal = TooManyPoints::check(50_000_000, Some(21_900_000_000)).unwrap_err().to_string();
+        assert!(
+            refusal.contains("33 GB of memory, and 21 GB are free. To ask questions, open a smaller part"),
+            "{refusal}"
+        );
+        assert!(TooManyPoints::check(30_000_000, Some(21_900_000_000)).is_ok());
+        // where the system does not tell, nothing is refused
+        assert!(TooManyPoints::check(usize::MAX, None).is_ok());
+    }
 }

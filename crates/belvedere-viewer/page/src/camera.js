@@ -16,10 +16,13 @@ export class Mover {
     this.kind = "orbit";
     this.keys = new Set();
     this.groundAt = () => undefined;
+    let last = null;
     canvas.addEventListener("pointermove", (event) => {
-      if (this.kind === "orbit" || !(event.buttons & 1)) return;
-      this.turn(-event.movementX * 0.004, -event.movementY * 0.004);
+      if (this.kind === "orbit" || !event.isPrimary || !(event.buttons & 1)) { last = null; return; }
+      if (last) this.turn((last[0] - event.clientX) * 0.004, (last[1] - event.clientY) * 0.004);
+      last = [event.clientX, event.clientY];
     });
+    canvas.addEventListener("pointerup", () => { last = null; });
   }
 
   // Shows a box as a whole in the part of the picture, across and upright, that no bar covers.

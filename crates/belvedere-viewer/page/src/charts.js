@@ -31,13 +31,13 @@ export function sunPaths(answer, date) {
     });
     return parts.map(path).join("");
   };
-  let content = `<rect x="${left}" y="${top}" width="${W - left - 6}" height="${bottom - top}" fill="#cfe6fb" opacity=".5"/>`;
+  let content = `<rect x="${left}" y="${top}" width="${W - left - 6}" height="${bottom - top}" fill="#dcebf9"/>`;
   for (let e = 0; e <= most; e += 15) content += `<path d="M${left} ${y(e)}H${W - 6}" stroke="#8aa" stroke-opacity=".35"/><text x="${left - 4}" y="${y(e) + 4}" text-anchor="end">${e}°</text>`;
   for (const month of [6, 3, 12]) {
     const found = answer.months[month - 1];
     content += `<path d="${broken(found.path)}" fill="none" stroke="#7d8794" stroke-dasharray="3 3"/>`;
   }
-  content += `<path d="${path(outline)}L${W - 6} ${bottom}L${left} ${bottom}Z" fill="#5f6b78" opacity=".85"/>`;
+  content += `<path d="${path(outline)}L${W - 6} ${bottom}L${left} ${bottom}Z" fill="#5f6b78"/>`;
   answer.path.forEach(([, azimuth, elevation], i) => {
     const color = answer.lit[i] ? "#f5a300" : "#2f3d73";
     content += `<circle cx="${x(azimuth).toFixed(1)}" cy="${y(elevation).toFixed(1)}" r="3.1" fill="${color}"/>`;
@@ -47,7 +47,7 @@ export function sunPaths(answer, date) {
     const whole = Math.round(hour);
     if (Math.abs(hour - whole) > 0.09 || whole % 3 || whole === last) continue;
     last = whole;
-    content += `<text x="${x(azimuth).toFixed(1)}" y="${(y(elevation) - 8).toFixed(1)}" text-anchor="middle" style="paint-order:stroke;stroke:var(--panel);stroke-width:3px">${whole} h</text>`;
+    content += `<text x="${x(azimuth).toFixed(1)}" y="${(y(elevation) - 8).toFixed(1)}" text-anchor="middle" style="paint-order:stroke;stroke:#fff;stroke-width:3px;fill:#1c2530">${whole} h</text>`;
   }
   ["N", "E", "S", "W"].forEach((name, i) => { content += `<text x="${x(i * 90 + 0.01)}" y="${bottom + 15}" text-anchor="middle">${name}</text>`; });
   return svg(H, `The sun on ${date} over the horizon of the place`, content);

@@ -1,7 +1,7 @@
 // Points on the screen: chunks in random order drawn up to a budget, and shading by depth (eye-dome lighting).
 import {
-  BufferAttribute, BufferGeometry, Color, DataTexture, DoubleSide, GLSL3, Mesh, NearestFilter, OrthographicCamera, Points, RawShaderMaterial, RGBAFormat, Scene,
-  Sphere, UnsignedByteType, Vector2, Vector3, WebGLRenderTarget,
+  BufferAttribute, BufferGeometry, Color, DataTexture, DoubleSide, Frustum, GLSL3, Matrix4, Mesh, NearestFilter, OrthographicCamera, Points, RawShaderMaterial, RGBAFormat,
+  Scene, Sphere, UnsignedByteType, Vector2, Vector3, WebGLRenderTarget,
 } from "three";
 
 const PACK = `
@@ -9,7 +9,12 @@ vec4 packed(float d) { float v = clamp(d, 0.0, 0.9999999) * 16777215.0; float h 
   return vec4(h, m, v - h * 65536.0 - m * 256.0, 255.0) / 255.0; }`;
 
 const VERTEX = `precision highp float; precision highp int;
-in uvec4 place; in uint value; in uint rgb565;
+in uvec4 place; in uint value;
+#ifdef COLORED
+in uint rgb565;
+#else
+const uint rgb565 = 0u;
+#endif
 uniform mat4 modelViewMatrix, projectionMatrix; uniform vec3 low, step3; uniform vec2 heights; uniform int mode, cleared; uniform float size, pixels, far, most;
 uniform sampler2D table; out vec3 color; out float depth;
 void main() {
@@ -51,7 +56,11 @@ void main() { float d = at(uv); vec3 c = texture(shown, uv).rgb; if (d < -0.99 &
 
 // Value of a point that a plan clears: it is not drawn.
 const CLEARED = 254;
+const integers = (array, size) => Object.assign(new BufferAttribute(array, size), { gpuType: 1013 });
 const uniforms = (values) => Object.fromEntries(Object.entries(values).map(([name, value]) => [name, { value }]));
+
+// Frames that add points to a picture at rest may take so many times as long as one that moves.
+export const AT_REST = 3;
 
 export class Cloud {
   constructor(renderer) {
@@ -59,7 +68,8 @@ export class Cloud {
     this.scene = new Scene();
     this.extra = new Scene();
     this.chunks = [];
-    this.budget = 3e6;
+    // most points that one frame draws
+    this.budget = 1e6;
     this.table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
     this.own = uniforms({ table: this.table, mode: 2, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40, cleared: CLEARED });
     this.target = new WebGLRenderTarget(1, 1, { count: 2, magFilter: NearestFilter, minFilter: NearestFilter });
@@ -72,16 +82,16 @@ export class Cloud {
     this.screen = new Mesh(screen, this.shade);
     this.screen.frustumCulled = false;
     this.flat = new OrthographicCamera();
-    this.drawn = 0;
+    this.frustum = new Frustum();
+    // points in view that the picture holds, and that are still to be added to it
+    this.drawn = this.left = 0;
   }
 
-  // Adds points: four numbers of 16 bits each, steps along the axes from `low`, class and intensity.
-  add(low, step, places, values, shared = this.own, scene = this.scene) {
+  // Adds points: four numbers of 16 bits each, steps along the axes from `low`, class and intensity. `first` is their place in the order of all points.
+  add(low, step, places, values, first = 0, shared = this.own, scene = this.scene) {
     const geometry = new BufferGeometry();
-    const integers = (array, size) => Object.assign(new BufferAttribute(array, size), { gpuType: 1013 });
     geometry.setAttribute("place", integers(places, 4));
     geometry.setAttribute("value", integers(values ?? new Uint8Array(places.length / 4), 1));
-    geometry.setAttribute("rgb565", integers(new Uint16Array(1), 1));
     // without an attribute called position, three.js does not know how many points there are
     geometry.setDrawRange(0, places.length / 4);
     const high = low.map((v, i) => v + step[i] * 65535);
@@ -92,27 +102,32 @@ export class Cloud {
     });
     const object = new Points(geometry, material);
     scene.add(object);
-    const chunk = { object, geometry, low, step, places, count: places.length / 4 };
-    geometry.setAttribute("rgb565", integers(new Uint16Array(chunk.count), 1));
-    if (scene === this.scene) this.chunks.push(chunk);
+    const chunk = { object, geometry, low, step, places, first, count: places.length / 4, drawn: 0 };
+    if (scene === this.scene) {
+      this.chunks.push(chunk);
+      this.left += chunk.count;
+      this.setChunkValues(chunk);
+    }
     return chunk;
   }
 
-  // Answers of the points; without any, only which of them a plan clears (`cleared`).
+  // Answers of the points in their order; without any, only which of them a plan clears (`cleared`).
   setValues(bytes) {
-    const values = bytes ?? this.cleared?.map((is) => is * CLEARED);
-    let first = 0;
-    for (const chunk of this.chunks) {
-      const value = chunk.geometry.getAttribute("value");
-      if (values) value.copyArray(values.subarray(first, first + chunk.count));
-      else value.array.fill(0);
-      value.needsUpdate = true;
-      first += chunk.count;
-    }
+    this.values = bytes ?? this.cleared?.map((is) => is * CLEARED) ?? null;
+    this.chunks.forEach((chunk) => this.setChunkValues(chunk));
   }
 
-  setColors(chunk, values) {
-    chunk.geometry.getAttribute("rgb565").copyArray(values).needsUpdate = true;
+  setChunkValues({ geometry, first, count }) {
+    const value = geometry.getAttribute("value");
+    if (this.values) value.copyArray(this.values.subarray(first, first + count));
+    else value.array.fill(0);
+    value.needsUpdate = true;
+  }
+
+  setColors({ geometry, object }, values) {
+    geometry.setAttribute("rgb565", integers(values, 1));
+    object.material.defines = { COLORED: 1 };
+    object.material.needsUpdate = true;
   }
 
   paint({ mode, table }, own = this.own) {
@@ -126,7 +141,7 @@ export class Cloud {
     this.clearLayer();
     const table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
     const shared = { ...this.own, ...uniforms({ table, mode: 4, size, cleared: none }) };
-    this.add(low, step, places, values, shared, this.extra);
+    this.add(low, step, places, values, 0, shared, this.extra);
     this.paint(paint, shared);
     this.layerOwn = shared;
   }
@@ -190,38 +205,48 @@ export class Cloud {
     this.shade.uniforms.texel.value.set(1 / width, 1 / height);
   }
 
-  render(camera, ground) {
+  // Draws the scene with as many points in view as the budget allows. A picture that is not new keeps what it holds, and the next points are added to it.
+  render(camera, ground, isNew) {
     const { own, shade, target, renderer } = this;
     own.far.value = shade.uniforms.far.value = camera.far;
     own.pixels.value = target.height / (2 * Math.tan((camera.fov * Math.PI) / 360));
     shade.uniforms.ground.value.setStyle(ground, "");
     shade.uniforms.radius.value = 1.3 * renderer.getPixelRatio();
-    this.share(camera);
+    if (isNew) this.chunks.forEach((chunk) => { chunk.drawn = 0; });
+    this.share(camera, isNew ? this.budget : AT_REST * this.budget);
     renderer.setRenderTarget(target);
-    renderer.setClearColor(0, 0);
-    renderer.clear();
     renderer.autoClear = false;
+    if (isNew) {
+      renderer.setClearColor(0, 0);
+      renderer.clear();
+    }
     renderer.render(this.scene, camera);
-    renderer.render(this.extra, camera);
+    if (isNew) renderer.render(this.extra, camera);
     renderer.setRenderTarget(null);
     renderer.render(this.screen, this.flat);
     renderer.autoClear = true;
   }
 
-  // Shares the budget of points among the chunks: those that look larger get more.
-  share(camera) {
-    const weights = this.chunks.map(({ geometry: { boundingSphere: { center, radius } } }) => {
+  // Shares a budget of points among the chunks in view: those that look larger get more.
+  share(camera, budget) {
+    camera.updateMatrixWorld();
+    this.frustum.setFromProjectionMatrix(new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse));
+    const seen = this.chunks.filter(({ object, geometry }) => { object.visible = false; return this.frustum.intersectsSphere(geometry.boundingSphere); });
+    const want = seen.map(({ count, drawn, geometry: { boundingSphere: { center, radius } } }) => {
       const range = Math.max(camera.position.distanceTo(center) - radius, 1);
-      return Math.min(1, (radius / range) ** 2 + 0.02);
+      return (count - drawn) * Math.min(1, (radius / range) ** 2 + 0.02);
     });
-    const want = this.chunks.map((chunk, i) => chunk.count * weights[i]);
     const whole = want.reduce((a, b) => a + b, 0);
-    const total = this.chunks.reduce((sum, chunk) => sum + chunk.count, 0);
-    this.drawn = 0;
-    this.chunks.forEach((chunk, i) => {
-      const count = total <= this.budget ? chunk.count : Math.min(chunk.count, Math.ceil((want[i] * this.budget) / whole));
-      chunk.geometry.setDrawRange(0, count);
-      this.drawn += count;
+    const left = seen.reduce((sum, { count, drawn }) => sum + count - drawn, 0);
+    this.drawn = this.left = 0;
+    seen.forEach((chunk, i) => {
+      const rest = chunk.count - chunk.drawn;
+      const count = left <= budget ? rest : Math.min(rest, Math.ceil((want[i] * budget) / whole));
+      chunk.object.visible = count > 0;
+      chunk.geometry.setDrawRange(chunk.drawn, count);
+      chunk.drawn += count;
+      this.drawn += chunk.drawn;
+      this.left += chunk.count - chunk.drawn;
     });
   }
 
@@ -258,18 +283,20 @@ export class Cloud {
 
   // The lowest point around a place on the map: what a person who walks stands on.
   groundAt(x, y) {
+    const REACH = 1;
     // the first points of a chunk are a fair sample of it
     const MOST = 40_000;
-    if (!this.lowest) {
-      this.lowest = new Map();
-      for (const { low, step, places, count } of this.chunks) {
-        for (let i = 0; i < Math.min(count, MOST); i++) {
-          const key = `${Math.floor((low[0] + places[4 * i] * step[0]) / 2)},${Math.floor((low[1] + places[4 * i + 1] * step[1]) / 2)}`;
-          const z = low[2] + places[4 * i + 2] * step[2];
-          if (!(this.lowest.get(key) <= z)) this.lowest.set(key, z);
-        }
+    let lowest;
+    for (const { low, step, places, count } of this.chunks) {
+      const [left, right] = [x - REACH - low[0], x + REACH - low[0]].map((v) => v / step[0]);
+      const [south, north] = [y - REACH - low[1], y + REACH - low[1]].map((v) => v / step[1]);
+      if (right < 0 || left > 65535 || north < 0 || south > 65535) continue;
+      for (let i = 0; i < 4 * Math.min(count, MOST); i += 4) {
+        if (places[i] < left || places[i] > right || places[i + 1] < south || places[i + 1] > north) continue;
+        const z = low[2] + places[i + 2] * step[2];
+        if (!(lowest <= z)) lowest = z;
       }
     }
-    return this.lowest.get(`${Math.floor(x / 2)},${Math.floor(y / 2)}`);
+    return lowest;
   }
 }

@@ -1,12 +1,12 @@
 // From the server to the scene: points, meshes and balls, and how far it is prepared.
 import * as api from "./api.js";
 import { report } from "./messages.js";
-import { setColor } from "./paint.js";
+import { loadColors, setColor } from "./paint.js";
 import { restore } from "./plan.js";
 import { offer } from "./results.js";
 import { $, page } from "./state.js";
 import { startTime } from "./time.js";
-import { changed, cloud, draw, renderer, showAll } from "./view.js";
+import { cloud, draw, drawNext, renderer, showAll } from "./view.js";
 
 async function load(shown) {
   const { scene } = page;
@@ -14,22 +14,20 @@ async function load(shown) {
   cloud.own.size.value = Math.min(Math.max(scene.spacing * 1.8, 0.02), 5);
   cloud.own.most.value = 26 * renderer.getPixelRatio();
   cloud.own.heights.value.set(scene.low[2], scene.high[2]);
-  page.loaded = [];
-  const order = scene.chunks.map((_, i) => i);
+  let next = 0;
   const one = async () => {
-    for (let number = order.shift(); number !== undefined; number = order.shift()) {
-      const { low, step } = scene.chunks[number];
-      const chunk = cloud.add(low, step, await api.points(number));
-      page.loaded.push({ chunk, number });
-      draw();
+    while (next < scene.chunks.length) {
+      const number = next++;
+      const { low, step, first } = scene.chunks[number];
+      const part = { chunk: cloud.add(low, step, await api.points(number), null, first), number };
+      page.loaded.push(part);
+      drawNext();
+      if (page.hasColors) await loadColors(part);
     }
   };
   await Promise.all([one(), one(), one()]);
-  // values come in the order of the chunks
-  page.loaded.sort((a, b) => a.number - b.number);
-  cloud.chunks = page.loaded.map(({ chunk }) => chunk);
   page.isLoaded = true;
-  changed();
+  drawNext();
 }
 function begin(state) {
   const shown = state.shown;
@@ -43,6 +41,7 @@ function begin(state) {
   document.title = `${state.title} – Belvedere`;
   $("facts").textContent = shown.point_count ? `${shown.point_count.toLocaleString("en")} points` : "ball file";
   $("crs").textContent = shown.crs;
+  page.loaded = [];
   const ways = [["height", "Height"], ...(shown.classes.length > 1 ? [["class", "Class"]] : []), ...(shown.has_intensity ? [["intensity", "Intensity"]] : []), ...(shown.has_color ? [["color", "Own colours"]] : []), ["none", "Plain"]];
   $("color").replaceChildren(...ways.map(([value, text]) => new Option(text, value)));
   setColor(shown.has_color ? "color" : ways.length > 3 && shown.classes.length > 1 ? "class" : "height");
@@ -52,11 +51,12 @@ export async function watch() {
   try {
     const state = await api.state();
     $("message").hidden = true;
+    if (state.shown && !page.scene && (state.shown.point_count || state.scene)) begin(state).catch(report);
     if (state.failure) {
       $("progress").hidden = true;
+      page.failure = state.failure;
       throw new api.Refused(state.failure);
     }
-    if (state.shown && !page.scene && (state.shown.point_count || state.scene)) begin(state).catch(report);
     for (page.meshes ??= 0; page.scene && page.meshes < (state.mesh_count ?? 0); page.meshes++) {
       api.mesh(page.meshes).then((values) => { cloud.addMesh(values); $("meshes").hidden = false; draw(); }).catch(report);
     }

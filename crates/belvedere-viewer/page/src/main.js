@@ -10,7 +10,7 @@ import { save } from "./save.js";
 import { $, canvas, page, root, TOOLS } from "./state.js";
 import { ofViewpoints } from "./viewpoints.js";
 import { again, isPlaying, setPlaying, showClock, step } from "./time.js";
-import { cloud, draw, mover, open, placeAt, resize, showAll, shownPlace, toFile } from "./view.js";
+import { cloud, draw, mover, open, placeAt, resize, showAll, shownPlace, toFile, whenDrawn } from "./view.js";
 
 function theme(name) {
   root.dataset.theme = name;
@@ -18,19 +18,30 @@ function theme(name) {
   if (page.last && page.tool.name === "seen") page.answer = colors.ofAnswers(page.last, page.last.viewpoint);
   paint();
 }
+// Buttons to go with, for those without keys.
+function showSteps() {
+  $("steps").hidden = mover.kind === "orbit";
+  $("steps").querySelectorAll("[data-fly]").forEach((button) => { button.hidden = mover.kind !== "fly"; });
+}
 function listen() {
   let down = null;
-  canvas.addEventListener("pointerdown", (event) => { down = [event.clientX, event.clientY]; $("crosshair").hidden = true; });
+  canvas.addEventListener("pointerdown", (event) => {
+    // a second finger makes it no click
+    down = event.isPrimary ? [event.clientX, event.clientY] : null;
+    $("crosshair").hidden = true;
+  });
   canvas.addEventListener("pointerup", (event) => {
-    if (down && event.button === 0 && Math.hypot(event.clientX - down[0], event.clientY - down[1]) < 5 && page.scene) click(event.clientX, event.clientY);
+    const reach = event.pointerType === "touch" ? 12 : 5;
+    if (down && event.button === 0 && Math.hypot(event.clientX - down[0], event.clientY - down[1]) < reach && page.scene) click(event.clientX, event.clientY);
     down = null;
   });
+  canvas.addEventListener("pointercancel", () => { down = null; });
   canvas.addEventListener("dblclick", () => { if (page.tool.places === Infinity && page.places.length >= 3) ask(); });
   let hovering = false;
   canvas.addEventListener("pointermove", (event) => {
     if (hovering || event.buttons || !page.scene) return;
     hovering = true;
-    requestAnimationFrame(() => {
+    whenDrawn(() => {
       hovering = false;
       const place = placeAt(event.clientX, event.clientY);
       $("where").textContent = place ? shownPlace(toFile(place)) : "";
@@ -38,9 +49,18 @@ function listen() {
   });
   $("color").onchange = () => setColor($("color").value);
   $("when").onchange = () => setWhen($("when").value);
-  $("motion").onchange = () => mover.setKind($("motion").value);
-  $("home").onclick = () => { $("motion").value = "orbit"; showAll(); };
-  $("top").onclick = () => { $("motion").value = "orbit"; showAll(true); };
+  $("motion").onchange = () => { mover.setKind($("motion").value); showSteps(); };
+  for (const button of $("steps").querySelectorAll("button")) {
+    let timer;
+    const go = () => mover.go(...button.dataset.go.split(",").map(Number));
+    // a held button keeps going
+    button.onpointerdown = () => { go(); timer = setInterval(go, 60); };
+    button.onpointerup = button.onpointerleave = button.onpointercancel = () => clearInterval(timer);
+    button.oncontextmenu = (event) => event.preventDefault();
+    button.onclick = (event) => { if (event.detail === 0) go(); };
+  }
+  $("home").onclick = () => { $("motion").value = "orbit"; showAll(); showSteps(); };
+  $("top").onclick = () => { $("motion").value = "orbit"; showAll(true); showSteps(); };
   $("theme").onclick = () => theme(root.dataset.theme === "dark" ? "light" : "dark");
   $("picture").onclick = async () => save(`${page.scene.title.replace(/\..*$/, "")}.png`, await snapshot());
   $("balls").onclick = toggleBalls;
@@ -103,7 +123,7 @@ function key(event) {
 }
 
 function start() {
-  $("tools").innerHTML = `<h2>Questions</h2>${TOOLS.map((tool, i) => `<button data-tool="${tool.name}" aria-pressed="false" title="${tool.title} (${(i + 1) % 10})">${tool.icon}<span>${tool.title}</span><kbd>${(i + 1) % 10}</kbd></button>`).join("")}<p></p>`;
+  $("tools").innerHTML = `<h2>Questions</h2>${TOOLS.map((tool, i) => `<button data-tool="${tool.name}" aria-pressed="false" title="${tool.title} (${(i + 1) % 10})">${tool.icon}<span>${tool.title}</span><small aria-hidden="true">${tool.short}</small><kbd aria-hidden="true">${(i + 1) % 10}</kbd></button>`).join("")}<p></p>`;
   for (const button of $("tools").querySelectorAll("button")) button.onclick = () => page.choose(button.dataset.tool);
   if (api.exported) {
     $("balls").hidden = true;

@@ -2,6 +2,7 @@
 import * as api from "./api.js";
 import { escape } from "./charts.js";
 import { $, page, TOOLS } from "./state.js";
+import { IS_TOUCH } from "./tools.js";
 
 export function lost(error) {
   $("message").hidden = false;
@@ -24,9 +25,7 @@ const KEYS = () => [
 const HOW = () => (api.exported
   ? "Choose a question on the left. This file holds the answers that were computed when it was made, each with the command that gives the same."
   : "Choose a question on the left, then click a place. Every answer is computed by the program on this computer, and shows the command that gives the same.");
-const MOVING = () => (matchMedia("(hover: none)").matches
-  ? "Orbit: one finger turns, two fingers move and zoom. Walk: eyes 1.7 m above the ground; drag to look around."
-  : "Orbit: drag to turn, right drag to move, wheel to zoom. Walk: eyes 1.7 m above the ground. Fly: W goes where you look.");
+const MOVING = () => `${IS_TOUCH ? "Orbit: one finger turns, two fingers move and zoom." : "Orbit: drag to turn, right drag to move, wheel to zoom."} Walk: eyes 1.7 m above the ground. Fly: you go where you look. The arrows at the right go ahead, aside and back; drag to look around.`;
 export function help() {
   const box = $("keys");
   box.innerHTML = `<h2>Belvedere</h2><p>${HOW()}</p>`

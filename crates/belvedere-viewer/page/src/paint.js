@@ -33,9 +33,14 @@ export function setColor(name) {
   }
   if (name === "color" && !page.hasColors) {
     page.hasColors = true;
-    page.loaded.forEach(({ chunk, number }) => api.colors(number).then((values) => { cloud.setColors(chunk, values); draw(); }).catch(report));
+    page.loaded.forEach((part) => loadColors(part).catch(report));
   }
   paint();
+}
+// The own colours of the points of a part of the cloud.
+export async function loadColors({ chunk, number }) {
+  cloud.setColors(chunk, await api.colors(number));
+  draw();
 }
 function offerAnswer() {
   const select = $("color");
@@ -98,7 +103,7 @@ page.line = (answer) => {
   const at = answer.first_block ? toLocal(answer.first_block.place) : null;
   page.marks = [
     { line: [a, at ?? b], style: `stroke="${answer.answer === "unproven" ? "#4a86e8" : "#f5a300"}" stroke-width="4"` },
-    ...(at ? [{ line: [at, b], style: 'stroke="#2f3d73" stroke-width="3" stroke-dasharray="7 5"' }, { at, label: "blocked here", color: "#d1495b" }] : []),
+    ...(at ? [{ line: [at, b], style: 'stroke="#2f3d73" stroke-width="3" stroke-dasharray="7 5"' }, { at, label: "blocked here", color: "#d1495b", down: 20 }] : []),
     { at: a, label: "A" }, { at: b, label: "B" },
   ];
 };

@@ -3,15 +3,15 @@ import * as api from "./api.js";
 import { escape } from "./charts.js";
 import { report } from "./messages.js";
 import { paint } from "./paint.js";
-import { card } from "./questions.js";
+import { card, corners } from "./questions.js";
 import { save } from "./save.js";
 import { $, page } from "./state.js";
 import { cloud, draw, toFile } from "./view.js";
 
 const LINE = 'stroke="#1d4e89" stroke-width="2.5"';
 const HINTS = {
-  building: "Click the corners of the building, then press Enter or double-click.",
-  area: "Click around what shall go, such as a tree or a house, then press Enter or double-click.",
+  building: "Click the corners of the building.",
+  area: "Click around what shall go, such as a tree or a house.",
 };
 // the address has the token of the program that the plan was made for
 const KEPT = `plan ${location.pathname}`;
@@ -117,11 +117,13 @@ export function panel(note = "") {
   card(`<div class="row"><button data-draw="building" aria-pressed="${drawing === "building"}">Draw a building</button><button data-draw="area" aria-pressed="${drawing === "area"}">Clear an area</button>`
     + `<button id="mesh">Load a mesh</button><input id="meshfile" type="file" accept=".obj,.ply,.json,.cityjson" hidden aria-label="Mesh file"></div>`
     + (drawing === "building" ? `<div class="field"><label for="high">Height of the building</label><span><input id="high" type="number" min="0.1" step="0.5" value="${height}"> m</span></div>` : "")
-    + (note || `<p class="note">${page.places.length ? `${page.places.length} corners. ${page.places.length < 3 ? "Click more." : "Press Enter or double-click to finish."}` : HINTS[drawing]}</p>`)
+    + (note || `<p class="note">${page.places.length ? corners(page.places) : HINTS[drawing]}</p>`)
+    + (!note && page.places.length >= 3 ? '<div class="row"><button id="done">Finish (Enter)</button></div>' : "")
     + (list ? `<ul class="plan">${list}</ul><p class="note">Questions are now answered with the plan. <b>Before</b>, <b>after</b> and <b>change</b> are at the top (V).</p>` : "")
     + (page.planned ? `<h3>The scene on the command line</h3><pre id="command">${escape(page.planned.command)}</pre>` : "")
     + (files.length ? `<div class="row">${files.map(({ name }, i) => `<button data-file="${i}">Save ${escape(name)}</button>`).join("")}</div>` : ""), (box) => {
     const all = (selector, work) => box.querySelectorAll(selector).forEach(work);
+    all("#done", (button) => { button.onclick = finish; });
     all("[data-draw]", (button) => { button.onclick = () => { drawing = button.dataset.draw; page.places = []; page.marks = []; panel(); draw(); }; });
     all("[data-remove]", (button) => { button.onclick = () => change((plan) => plan[button.dataset.remove].splice(Number(button.dataset.i), 1)); });
     all("[data-height]", (input) => { input.onchange = () => { const value = Number.parseFloat(input.value); if (value > 0) change((plan) => { plan.buildings[input.dataset.height].height_m = value; }); }; });

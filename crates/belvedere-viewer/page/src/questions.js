@@ -9,7 +9,7 @@ import { csv, diagram, geojson, picture, save } from "./save.js";
 import { $, canvas, page, TOOLS } from "./state.js";
 import { changed } from "./change.js";
 import { setPlaying } from "./time.js";
-import { cloud, draw, placeAt, render, shownPlace, toFile } from "./view.js";
+import { cloud, complete, draw, placeAt, shownPlace, toFile } from "./view.js";
 
 export function choose(tool) {
   page.tool = tool;
@@ -35,7 +35,8 @@ export function choose(tool) {
   $("card").hidden = true;
   if (tool.name === "plan") panel();
   else if (tool.places === 0) ask();
-  else if (tool.height) card(`<p class="note">${escape(tool.hint)}</p>`);
+  // where the names of the questions are short, nothing else says what to do
+  else if (tool.height || (tool.name !== "look" && !$("tools").querySelector("p").offsetHeight)) card(`<p class="note">${escape(tool.hint)}</p>`);
   draw();
 }
 page.choose = (name) => choose(TOOLS.find((tool) => tool.name === name));
@@ -62,6 +63,8 @@ export function card(html, after) {
 }
 const lifted = ([x, y, z], above) => [x, y, z + above];
 
+export const corners = ({ length }) => `${length} ${length === 1 ? "corner" : "corners"}. ${length < 3 ? "Click more." : "Click more, or go on with these."}`;
+
 export function click(x, y) {
   const near = placeAt(x, y);
   if (!near) return;
@@ -77,7 +80,7 @@ function pick(clicked, code) {
     const file = toFile(clicked);
     page.marks = [{ at: clicked }];
     card(`<p class="verdict" style="font-size:17px">${shownPlace(file)}</p><dl><dt>x, y, z</dt><dd>${escape(page.scene.crs)}</dd>`
-      + `${page.scene.classes.length ? `<dt>Class</dt><dd>${code} ${escape(colors.CLASSES[code]?.[0] ?? "")}</dd>` : ""}</dl><pre>${file.join(",")}</pre>`);
+      + `${page.scene.classes.length && code !== undefined ? `<dt>Class</dt><dd>${code} ${escape(colors.CLASSES[code]?.[0] ?? "")}</dd>` : ""}</dl><pre>${file.join(",")}</pre>`);
     draw();
     return;
   }
@@ -95,7 +98,10 @@ function pick(clicked, code) {
   page.marks = page.places.map(({ local }, i) => ({ at: local, label: labels[i] }));
   if (tool.places === Infinity) {
     page.places.forEach(({ local }, i) => { if (i) page.marks.push({ line: [page.places[i - 1].local, local], style: 'stroke="#1d4e89" stroke-width="2.5"' }); });
-    card(`<p class="note">${page.places.length} corners. ${page.places.length < 3 ? "Click more." : "Press Enter or double-click to ask."}</p>`);
+    card(`<p class="note">${corners(page.places)}</p>${page.places.length < 3 ? "" : '<div class="row"><button id="done">Ask (Enter)</button></div>'}`, (box) => {
+      const done = box.querySelector("#done");
+      if (done) done.onclick = () => ask();
+    });
   } else if (page.places.length === tool.places) ask();
   else card(`<p class="note">Now click B.</p>`);
   draw();
@@ -108,6 +114,10 @@ export async function ask(quick = false) {
   if (tool.name === "plan") return finish();
   asking?.abort();
   const mine = (asking = new AbortController());
+  if (page.failure) {
+    card(`<p class="verdict">No answer</p><p class="note">${escape(page.failure)}</p>`);
+    return;
+  }
   if (!page.ready) {
     card(`<p class="busy">The answer comes as soon as the scene is ready.</p>`);
     page.pending = true;
@@ -194,7 +204,7 @@ async function saveAs(button, tool, answer, places) {
   }
 }
 export async function snapshot() {
-  render();
+  await complete();
   const keys = page.legend?.keys ?? [];
   const text = [page.scene.title, page.legend?.title].filter(Boolean).join(": ");
   return picture(canvas, $("marks"), keys, text, `${page.scene.crs}; scale bar ${$("scale").textContent}`);

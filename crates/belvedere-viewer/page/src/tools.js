@@ -26,13 +26,16 @@ function shares(answer, of, page) {
 
 const UNPROVEN = "Nothing blocks what is unproven, but part of the line runs through space that no laser pulse has seen.";
 
+// Whether fingers are the way to point.
+export const IS_TOUCH = matchMedia("(pointer: coarse)").matches;
+
 export const TOOLS = [
   {
-    name: "look", title: "Look around", icon: icon('<path d="M12 3v18M3 12h18M12 3l-2.500 2.500M12 3l2.500 2.500M12 21l-2.500-2.500M12 21l2.500-2.500M3 12l2.500-2.500M3 12l2.500 2.500M21 12l-2.500-2.500M21 12l-2.500 2.500"/>'),
-    hint: "Drag to turn, right drag to move, wheel to zoom. Click a point for its coordinates.", places: 1,
+    name: "look", short: "Look", title: "Look around", icon: icon('<path d="M12 3v18M3 12h18M12 3l-2.500 2.500M12 3l2.500 2.500M12 21l-2.500-2.500M12 21l2.500-2.500M3 12l2.500-2.500M3 12l2.500 2.500M21 12l-2.500-2.500M21 12l-2.500 2.500"/>'),
+    hint: IS_TOUCH ? "One finger turns, two fingers move and zoom. Tap a point for its coordinates." : "Drag to turn, right drag to move, wheel to zoom. Click a point for its coordinates.", places: 1,
   },
   {
-    name: "seen", title: "What is seen from here", icon: icon(EYE), height: ["Eye above the clicked point", 1.7], places: 1,
+    name: "seen", short: "Seen", title: "What is seen from here", icon: icon(EYE), height: ["Eye above the clicked point", 1.7], places: 1,
     hint: "Click where somebody stands: ground, balcony or roof.",
     samples: true,
     ask: ([place]) => ["seen", { place }],
@@ -47,7 +50,7 @@ export const TOOLS = [
     properties: ({ visible, unproven, blocked }) => ({ visible, unproven, blocked }),
   },
   {
-    name: "line", title: "Is B seen from A", icon: icon('<circle cx="5" cy="18" r="2.500"/><circle cx="19" cy="6" r="2.500"/><path d="M7 16 17 8"/>'),
+    name: "line", short: "A to B", title: "Is B seen from A", icon: icon('<circle cx="5" cy="18" r="2.500"/><circle cx="19" cy="6" r="2.500"/><path d="M7 16 17 8"/>'),
     height: ["Eye above A", 1.7], places: 2, hint: "Click A, where the eye is, then B.",
     ask: ([observer, target]) => ["line", { observer, target }],
     show(answer, page) {
@@ -65,7 +68,7 @@ export const TOOLS = [
     geometry: (places) => ["LineString", places],
   },
   {
-    name: "sun", title: "Sun here", icon: icon(SUN), height: ["Height above the clicked point", 0.1], places: 1, time: "date",
+    name: "sun", short: "Sun", title: "Sun here", icon: icon(SUN), height: ["Height above the clicked point", 0.1], places: 1, time: "date",
     hint: "Click a place to see when the sun reaches it.",
     ask: ([place], { date, zone }) => ["sun", { place, date, zone }],
     show: (answer, page) => `<p class="verdict">${answer.sun_hours.toFixed(1)} hours of sun</p><p class="note">on ${escape(page.time.date)}, of ${answer.possible_hours.toFixed(1)} hours between sunrise and sunset.</p>`
@@ -76,7 +79,7 @@ export const TOOLS = [
     properties: (answer) => ({ sun_hours: answer.sun_hours, first_light: answer.first_light, last_light: answer.last_light, possible_hours: answer.possible_hours }),
   },
   {
-    name: "shadow", title: "Shadow at a time", icon: icon('<circle cx="17" cy="6" r="3"/><path d="M4 20h16M9 20V10h5v10M9 20l-5-3"/>'), places: 0, time: "hour",
+    name: "shadow", short: "Shadow", title: "Shadow at a time", icon: icon('<circle cx="17" cy="6" r="3"/><path d="M4 20h16M9 20V10h5v10M9 20l-5-3"/>'), places: 0, time: "hour",
     hint: "Move the time, or play the day.",
     samples: true,
     ask: (_, { date, clock, zone }) => ["shadow", { time: `${date}T${clock}`, zone }],
@@ -92,7 +95,7 @@ export const TOOLS = [
     rows: (answer) => [["time", "azimuth_deg", "elevation_deg", "lit_share"], [answer.time, answer.azimuth_deg, answer.elevation_deg, answer.lit_share]],
   },
   {
-    name: "around", title: "Sky and space here", icon: icon('<path d="M3 18a9 9 0 0 1 18 0"/><path d="M3 18h4v-5h4v5h3v-8h4v8h3"/>'), height: ["Height above the clicked point", 1.7], places: 1,
+    name: "around", short: "Sky", title: "Sky and space here", icon: icon('<path d="M3 18a9 9 0 0 1 18 0"/><path d="M3 18h4v-5h4v5h3v-8h4v8h3"/>'), height: ["Height above the clicked point", 1.7], places: 1,
     hint: "Click a place to measure its sky view and the space that is visible from it.",
     ask: ([place]) => ["around", { place }],
     show(answer) {
@@ -106,7 +109,7 @@ export const TOOLS = [
     properties: (answer) => ({ sky_view_factor: answer.sky_view_factor, sky_openness: answer.sky_openness, ...answer.isovist }),
   },
   {
-    name: "who", title: "Who sees this", icon: icon('<circle cx="12" cy="12" r="2.500"/><path d="M4 7V4h3M20 7V4h-3M4 17v3h3M20 17v3h-3M12 5v3M12 16v3M5 12h3M16 12h3"/>'), height: ["Height above the clicked point", 0], places: 1,
+    name: "who", short: "Seen from", title: "Who sees this", icon: icon('<circle cx="12" cy="12" r="2.500"/><path d="M4 7V4h3M20 7V4h-3M4 17v3h3M20 17v3h-3M12 5v3M12 16v3M5 12h3M16 12h3"/>'), height: ["Height above the clicked point", 0], places: 1,
     hint: "Click a target to see from where people can see it.",
     ask: ([place]) => ["who", { place }],
     show(answer, page) {
@@ -117,7 +120,7 @@ export const TOOLS = [
     properties: ({ visible_m2, visible, unproven, blocked }) => ({ visible_m2, visible, unproven, blocked }),
   },
   {
-    name: "roof", title: "Energy of a roof", icon: icon('<path d="M3 19 8 7h13l-5 12z"/><path d="M5.500 13h13M10 19l5-12"/>'), places: 1,
+    name: "roof", short: "Roof", title: "Energy of a roof", icon: icon('<path d="M3 19 8 7h13l-5 12z"/><path d="M5.500 13h13M10 19l5-12"/>'), places: 1,
     hint: "Click a roof to see what sun and sky send to its plane in a year of clear sky.",
     ask: ([place]) => ["roof", { place }],
     show(answer, page) {
@@ -131,8 +134,8 @@ export const TOOLS = [
     properties: ({ plane, kwh, kwh_m2, free_kwh_m2, min_loss, max_loss, tilt_deg, azimuth_deg, area_m2 }) => ({ plane, kwh, kwh_m2, free_kwh_m2, min_loss, max_loss, tilt_deg, azimuth_deg, area_m2 }),
   },
   {
-    name: "sun_area", title: "Sun hours of an area", change: true, icon: icon('<path d="M4 8 13 4l7 8-5 8-9-3z"/><circle cx="12.500" cy="11.500" r="2"/>'), places: Infinity, time: "date",
-    hint: "Click the corners, then press Enter or double-click.",
+    name: "sun_area", short: "Sun hours", title: "Sun hours of an area", change: true, icon: icon('<path d="M4 8 13 4l7 8-5 8-9-3z"/><circle cx="12.500" cy="11.500" r="2"/>'), places: Infinity, time: "date",
+    hint: "Click the corners of the area.",
     ask: (places, { date, zone }) => ["sun_area", { corners: places.map(([x, y]) => [x, y]), date, zone }],
     show(answer, page) {
       page.hourCells(answer);
@@ -147,7 +150,7 @@ export const TOOLS = [
     geometry: (places) => ["Polygon", [[...places, places[0]]]],
   },
   {
-    name: "plan", title: "Plan buildings", icon: icon('<path d="M4 20V9l6-4 6 4v11zM8 20v-5h4v5M19 4v6M16 7h6"/>'), places: Infinity,
+    name: "plan", short: "Plan", title: "Plan buildings", icon: icon('<path d="M4 20V9l6-4 6 4v11zM8 20v-5h4v5M19 4v6M16 7h6"/>'), places: Infinity,
     hint: "Draw or load what is planned, clear what goes; then ask again.",
   },
 ];

@@ -2,34 +2,78 @@
 import { Vector3, WebGLRenderer } from "three";
 import { Mover } from "./camera.js";
 import { escape } from "./charts.js";
-import { Cloud } from "./cloud.js";
+import { AT_REST, Cloud } from "./cloud.js";
 import { $, canvas, page, root } from "./state.js";
 
 export let renderer, cloud, mover;
-let waiting = false;
-let moved = 0;
+
+// Time of a frame within which moving looks smooth, and the time after the last movement when a view counts as at rest, ms.
+const SMOOTH = 33;
+const REST = 350;
+let isAsked = false;
+let isDrawing = false;
+let afterFrame = null;
+let moved = -Infinity;
+let rest;
+// Draws the scene anew as soon as the frame before is done.
 export function draw() {
-  if (waiting || !cloud) return;
-  waiting = true;
+  isAsked = true;
+  drawNext();
+}
+// A new picture if one is asked for; else, at rest, more points for the one that is there.
+export function drawNext() {
+  if (isDrawing || !cloud || !(isAsked || (cloud.left && performance.now() - moved >= REST))) return;
+  isDrawing = true;
   requestAnimationFrame(() => {
-    waiting = false;
+    const isNew = isAsked;
+    isAsked = false;
     const start = performance.now();
-    render();
-    renderer.getContext().finish();
-    const spent = performance.now() - start;
-    // fewer points while things move slowly, more where there is room
-    if (performance.now() - moved < 400) cloud.budget = Math.max(1e5, Math.min(2e7, cloud.budget * (spent > 60 ? 0.7 : spent < 20 ? 1.25 : 1)));
+    cloud.render(mover.camera, getComputedStyle(root).getPropertyValue("--ground").trim(), isNew);
     overlay();
     page.frames = (page.frames ?? 0) + 1;
+    drawn(() => {
+      const spent = performance.now() - start;
+      const wanted = isNew ? SMOOTH : AT_REST * SMOOTH;
+      if (spent > 1.5 * wanted) cloud.budget = Math.max(1e5, cloud.budget * Math.max(0.5, wanted / spent));
+      else if (spent < 0.7 * wanted && cloud.left) cloud.budget = Math.min(2e7, cloud.budget * 1.3);
+      isDrawing = false;
+      afterFrame?.();
+      afterFrame = null;
+      drawNext();
+    });
   });
 }
-let rest;
+// Waits for the graphics processor without blocking the page: a frame takes as long as it takes there.
+function drawn(then) {
+  const gl = renderer.getContext();
+  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl.flush();
+  const look = () => {
+    if (fence && !gl.isContextLost() && gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED) return setTimeout(look, 2);
+    gl.deleteSync(fence);
+    then();
+  };
+  setTimeout(look, 0);
+}
+// Looks at the picture when no frame is under way, for which reading a pixel would wait.
+export function whenDrawn(look) {
+  if (isDrawing) afterFrame = look;
+  else look();
+}
+// The picture with all points; where things keep moving, that after some seconds.
+export function complete() {
+  const start = performance.now();
+  return new Promise((done) => {
+    const look = () => ((isDrawing || isAsked || cloud.left) && performance.now() - start < 5000 ? setTimeout(look, 20) : done());
+    look();
+  });
+}
+page.complete = complete;
 export function changed() {
   moved = performance.now();
   draw();
   clearTimeout(rest);
-  // a full picture once nothing moves any more
-  rest = setTimeout(() => { const budget = cloud.budget; cloud.budget = Math.max(budget, 4e6); moved = 0; draw(); setTimeout(() => { cloud.budget = budget; }, 60); }, 350);
+  rest = setTimeout(drawNext, REST + 10);
 }
 export function resize() {
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
@@ -74,9 +118,9 @@ page.onScreen = onScreen;
 // ---- marks, scale, north ----
 function overlay() {
   const parts = [];
-  const dot = (local, label, color = "#1d4e89") => {
+  const dot = ({ at: local, label, color = "#1d4e89", down = -8 }) => {
     const at = onScreen(local);
-    if (at) parts.push(`<circle cx="${at[0]}" cy="${at[1]}" r="6" fill="${color}" stroke="#fff" stroke-width="2"/>${label ? `<text x="${at[0] + 10}" y="${at[1] - 8}">${escape(label)}</text>` : ""}`);
+    if (at) parts.push(`<circle cx="${at[0]}" cy="${at[1]}" r="6" fill="${color}" stroke="#fff" stroke-width="2"/>${label ? `<text x="${at[0] + 10}" y="${at[1] + down}">${escape(label)}</text>` : ""}`);
   };
   const line = (a, b, style) => {
     const [p, q] = [onScreen(a), onScreen(b)];
@@ -84,7 +128,7 @@ function overlay() {
   };
   for (const mark of page.marks) {
     if (mark.line) line(...mark.line, mark.style);
-    else dot(mark.at, mark.label, mark.color);
+    else dot(mark);
   }
   $("marks").innerHTML = parts.join("");
   const forward = mover.camera.getWorldDirection(new Vector3());
@@ -106,9 +150,5 @@ export function open() {
   cloud = page.cloud = new Cloud(renderer);
   mover = page.mover = new Mover(canvas, changed);
   mover.groundAt = (x, y) => cloud.groundAt(x, y);
-}
-
-// The scene as an image, without what is drawn over it.
-export function render() {
-  cloud.render(mover.camera, getComputedStyle(root).getPropertyValue("--ground").trim());
+  canvas.addEventListener("webglcontextrestored", draw);
 }

@@ -1,9 +1,9 @@
 //! One method on one place: built, asked, scored, timed.
 
 use super::case::{Case, STREET, STREET_GROUP, Set};
-use super::memory::{reset_peak, resident_and_peak_mib};
 use super::results::{AblationRow, AnswerRow, AuditRow, Cost, MethodResult, Rated, Score};
 use super::scanners::Scanner;
+use crate::memory::{reset_peak, resident_and_peak_mib};
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, NO_TOUCH};
 use belvedere::query::{Answer, UnprovenAs, Visibility};

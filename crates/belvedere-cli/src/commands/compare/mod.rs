@@ -3,7 +3,6 @@
 mod case;
 mod held_out;
 mod judge;
-mod memory;
 mod pictures;
 mod place;
 mod report;
