@@ -20,3 +20,4 @@ pub mod sun_hours;
 pub mod targets;
 pub mod tree_light;
 pub mod viewshed;
+pub mod window_views;

@@ -21,6 +21,7 @@ mod vegetation;
 mod view;
 #[cfg(feature = "view")]
 mod view_page;
+mod window_views;
 
 pub(crate) use balls::{
     Balls, Cleaning, MethodChoice, NeighborChoice, Normals, OrientChoice, Orienting, Shrinking, SideChoice,
@@ -46,6 +47,7 @@ pub(crate) use vegetation::{LeavesChoice, ThroughTrees, ThroughTreesChoice};
 pub(crate) use view::{North, SizeChoice, ViewChoice};
 #[cfg(feature = "view")]
 pub(crate) use view_page::ViewPage;
+pub(crate) use window_views::WindowViews;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -195,6 +197,9 @@ pub(crate) enum Command {
     Envelope(Envelope),
     /// Measure sun, shade and sky along walking routes and at windows
     Comfort(Comfort),
+    /// Measure what is seen from windows: sky, vegetation, water, buildings, ground
+    #[command(name = "window-views")]
+    WindowViews(WindowViews),
     /// Compute what changes between two rasters: gains and losses before and after a plan
     Difference(Difference),
     /// Show clouds in the browser, and ask there what is seen, lit and shaded

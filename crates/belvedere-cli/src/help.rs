@@ -43,6 +43,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("sun-hours", include_str!("help/sun-hours.txt")),
     ("envelope", include_str!("help/envelope.txt")),
     ("comfort", include_str!("help/comfort.txt")),
+    ("window-views", include_str!("help/window-views.txt")),
     #[cfg(feature = "view")]
     ("view", include_str!("help/view.txt")),
     ("city", include_str!("help/city.txt")),

@@ -36,6 +36,8 @@ mod tree_light;
 #[cfg(feature = "view")]
 mod view;
 mod viewshed;
+mod window_views;
+mod windows;
 
 use crate::arguments::{Cli, Command, Usage};
 use crate::help;
@@ -81,6 +83,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::SunHours(arguments) => sun_hours::run(arguments, global),
         Command::Envelope(arguments) => envelope::run(arguments, global),
         Command::Comfort(arguments) => comfort::run(arguments, global),
+        Command::WindowViews(arguments) => window_views::run(arguments, global),
         #[cfg(feature = "view")]
         Command::View(arguments) => view::run(arguments, global),
         Command::City(arguments) => city::run(arguments, global),

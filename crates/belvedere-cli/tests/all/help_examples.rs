@@ -4,7 +4,7 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 27] = [
+const COMMANDS: [&str; 28] = [
     "demo",
     "simulate",
     "info",
@@ -21,6 +21,7 @@ const COMMANDS: [&str; 27] = [
     "horizon",
     "envelope",
     "comfort",
+    "window-views",
     "irradiance",
     "shadow",
     "sky-view",

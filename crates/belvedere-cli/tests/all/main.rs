@@ -38,4 +38,5 @@ mod tree_light;
 mod usage;
 #[cfg(feature = "view")]
 mod view;
+mod window_views;
 mod written_files;

@@ -66,5 +66,6 @@ mod tree_light;
 mod viewshed;
 mod visibility_matrix;
 mod weather_files;
+mod window_views;
 mod writing;
 mod writing_trajectories;
