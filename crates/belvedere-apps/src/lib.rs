@@ -10,6 +10,7 @@ pub mod irradiance;
 pub mod isovist;
 pub mod landmark;
 pub mod profile;
+pub mod protected_view;
 pub mod roof_planes;
 pub mod rows;
 pub mod shadow;

@@ -41,7 +41,9 @@ pub(crate) use scene::{AreaChoice, CloudInput, Plan, ProfileChoice, SceneConfig,
 pub(crate) use shadow::Shadow;
 pub(crate) use sky::{FacingChoice, FarTerrain, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
 pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};
-pub(crate) use surroundings::{BelowChoice, Eyes, Horizon, Isovist, Landmark, MeshTargets};
+pub(crate) use surroundings::{
+    BelowChoice, Eyes, Horizon, Isovist, Landmark, LandmarkShape, MeshTargets, ProtectedView,
+};
 pub(crate) use towns::{PatternChoice, ScannerChoice, Simulate};
 pub(crate) use vegetation::{LeavesChoice, ThroughTrees, ThroughTreesChoice};
 pub(crate) use view::{North, SizeChoice, ViewChoice};
@@ -177,6 +179,9 @@ pub(crate) enum Command {
     Viewshed(Viewshed),
     /// Measure how much of a landmark observers see
     Landmark(Landmark),
+    /// Map how high one may build without entering the view of a landmark
+    #[command(name = "protected-view")]
+    ProtectedView(ProtectedView),
     /// Choose where to put cameras, so that few of them cover much
     Cameras(Cameras),
     /// Measure the space that is visible from a point: volume, area, openness

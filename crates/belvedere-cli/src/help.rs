@@ -34,6 +34,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("line-of-sight", include_str!("help/line-of-sight.txt")),
     ("viewshed", include_str!("help/viewshed.txt")),
     ("landmark", include_str!("help/landmark.txt")),
+    ("protected-view", include_str!("help/protected-view.txt")),
     ("cameras", include_str!("help/cameras.txt")),
     ("isovist", include_str!("help/isovist.txt")),
     ("horizon", include_str!("help/horizon.txt")),

@@ -21,6 +21,7 @@ mod line_of_sight;
 mod mesh_targets;
 mod normals;
 mod north;
+mod protected_view;
 mod query;
 mod shadow;
 mod shapes;
@@ -74,6 +75,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::LineOfSight(arguments) => line_of_sight::run(arguments, global),
         Command::Viewshed(arguments) => viewshed::run(arguments, global),
         Command::Landmark(arguments) => landmark::run(arguments, global),
+        Command::ProtectedView(arguments) => protected_view::run(arguments, global),
         Command::Cameras(arguments) => cameras::run(arguments, global),
         Command::Isovist(arguments) => isovist::run(arguments, global),
         Command::Horizon(arguments) => horizon::run(arguments, global),

@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     if classes.is_none() {
         let advice =
             if arguments.scene.input.clouds.len() == 1 && cloud.is_empty() { "; give --classes-of" } else { "" };
-        summary.warn(format!("the classes of points are unknown: only vegetation is told, by pulses{advice}"));
+        summary.warn(format!("the classes of points are unknown: only vegetation is known, from pulses{advice}"));
     }
     let kinds = balls_seen(scene.model.balls(), classes, scene.model.vegetation(), &meanings)?;
     let profile = arguments.scene.profile.into();

@@ -4,7 +4,7 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 28] = [
+const COMMANDS: [&str; 29] = [
     "demo",
     "simulate",
     "info",
@@ -16,6 +16,7 @@ const COMMANDS: [&str; 28] = [
     "line-of-sight",
     "viewshed",
     "landmark",
+    "protected-view",
     "cameras",
     "isovist",
     "horizon",

@@ -25,6 +25,7 @@ mod limits;
 mod masbcpp_folder;
 mod odd_clouds;
 mod plans;
+mod protected_views;
 mod queries;
 mod readme;
 mod shadow;

@@ -42,6 +42,7 @@ mod outlines;
 mod pictures;
 mod pipeline;
 mod proof;
+mod protected_views;
 mod pruning;
 mod pulses;
 mod reading;
