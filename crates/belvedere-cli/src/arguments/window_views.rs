@@ -14,6 +14,9 @@ pub(crate) struct WindowViews {
     /// the building that the window belongs to. Of a mesh each face is a window; roofs and floors (nearer to horizontal than to vertical) are left out.
     #[arg(long, value_name = "FILE", help_heading = "Windows")]
     pub(crate) windows: PathBuf,
+    /// Name of an object of the mesh whose faces are windows; repeatable [default: all]
+    #[arg(long, value_name = "NAME", help_heading = "Windows")]
+    pub(crate) object: Vec<String>,
     /// Maximum side of the triangles that the faces of a mesh are cut into, in metres [default: 2]
     ///
     /// Each triangle has one sample point.

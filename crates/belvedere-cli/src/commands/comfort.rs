@@ -5,7 +5,7 @@ mod places;
 use super::check_output;
 use super::sights::{Proving, blockers};
 use super::targets::{leave_out_outside, report_edge};
-use super::windows::windows;
+use super::windows::{FaceChoice, windows};
 use crate::arguments::{Comfort, Global, PatchesChoice, Usage};
 use crate::pipeline::{self, Points, flagged};
 use crate::progress::Stages;
@@ -66,7 +66,8 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     let mut places = match (&arguments.places.route, &arguments.places.windows) {
         (Some(route), _) => routes(arguments, route, &mut scene, &mut stages, &mut summary)?,
         (None, Some(path)) => {
-            windows(path, arguments.spacing, (&scene, north.of_grid), global.seed, &mut stages, &mut summary)?.into()
+            let choice = FaceChoice { spacing: arguments.spacing, objects: &[] };
+            windows(path, &choice, (&scene, north.of_grid), global.seed, &mut stages, &mut summary)?.into()
         }
         (None, None) => return Err(Usage("targets are missing: give --route or --windows".to_owned()).into()),
     };

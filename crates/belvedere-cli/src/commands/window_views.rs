@@ -4,7 +4,7 @@ mod results;
 
 use super::sights::proving_blockers;
 use super::targets::{leave_out_outside, report_edge};
-use super::windows::{Windows, windows};
+use super::windows::{FaceChoice, Windows, windows};
 use super::{check_output, extension, mesh_targets, warn_of_geojson};
 use crate::arguments::{Global, UnprovenChoice, Usage, WindowViews};
 use crate::pipeline::{self, Points, Scene, flagged};
@@ -38,8 +38,9 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     north.report(&mut summary);
     let is_mesh = mesh_targets::is_mesh(&arguments.windows);
     let spacing = arguments.spacing.or(is_mesh.then_some(SPACING));
+    let choice = FaceChoice { spacing, objects: &arguments.object };
     let mut asked =
-        windows(&arguments.windows, spacing, (&scene, north.of_grid), global.seed, &mut stages, &mut summary)?;
+        windows(&arguments.windows, &choice, (&scene, north.of_grid), global.seed, &mut stages, &mut summary)?;
     let names = names(arguments, &asked)?;
     let mut section = Summary::default();
     section.add("windows", asked.windows.len()).add("targets", asked.targets.len());
@@ -62,7 +63,13 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     let kinds = balls_seen(scene.model.balls(), classes, scene.model.vegetation(), &meanings)?;
     let profile = arguments.scene.profile.into();
     let (blockers, _) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
-    leave_out_enclosed(&blockers, &mut asked.targets, &mut stages, &mut summary)?;
+    let count = asked.targets.asked_count();
+    let inside = leave_out_enclosed(&blockers, &mut asked.targets, &mut stages)?;
+    summary.add("targets_inside_obstacle", inside);
+    // walls between houses are faces of a mesh, and nothing to warn of
+    if !is_mesh {
+        summary.warn_of_share(inside, count, "targets", "are inside an obstacle and have no view");
+    }
     let views = stages.run("testing views", asked.targets.len(), |control| {
         let kinds = Kinds { balls: &kinds, meshes: &[] };
         window_views(&blockers, &asked.targets, kinds, &directions, control)
@@ -143,30 +150,17 @@ fn cloud_of_classes(arguments: &WindowViews, scene: &mut Scene, stages: &mut Sta
     Ok(cloud)
 }
 
-/// Leaves out places in an obstacle, and warns of them.
-fn leave_out_enclosed(
-    blockers: &MedialScene,
-    targets: &mut Targets,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<()> {
-    let count = targets.asked_count();
+/// Leaves out places in an obstacle; returns how many.
+fn leave_out_enclosed(blockers: &MedialScene, targets: &mut Targets, stages: &mut Stages) -> Result<usize> {
     let mut places: Vec<[f64; 3]> = targets.positions.iter().map(|place| place.map(f64::from)).collect();
     let report = stages.run("testing targets", 0, |control| skip_unfit_eyes(blockers, None, &mut places, control))?;
     for skipped in &report.faults {
         targets.positions[skipped.row] = [f32::NAN; 3];
     }
-    let inside = report.skipped_inside_obstacle;
-    summary.add("targets_inside_obstacle", inside).warn_of_share(
-        inside,
-        count,
-        "targets",
-        "are inside an obstacle and have no view",
-    );
     if targets.asked_count() == 0 {
         bail!("no window is left: all lie outside the cloud or inside obstacles");
     }
-    Ok(())
+    Ok(report.skipped_inside_obstacle)
 }
 
 /// Warns where most things seen are of no known kind.

@@ -1,5 +1,6 @@
 //! Windows: from files to places that are asked.
 
+use super::landmark::what::objects_of;
 use super::mesh_targets::{is_mesh, mesh_of};
 use crate::arguments::Usage;
 use crate::pipeline::{Scene, flagged};
@@ -28,20 +29,30 @@ pub(crate) struct Windows {
     pub(crate) given: TextRows,
 }
 
+/// Which faces of a mesh are windows, and how they are cut.
+pub(crate) struct FaceChoice<'a> {
+    /// Longest side of a piece, metres.
+    pub(crate) spacing: Option<f64>,
+    /// Names of objects; all where none is named.
+    pub(crate) objects: &'a [String],
+}
+
 /// Windows of a table, or the faces of a mesh. `grid_north` is the azimuth of grid north, radians.
 pub(crate) fn windows(
     path: &Path,
-    spacing: Option<f64>,
+    choice: &FaceChoice<'_>,
     (scene, grid_north): (&Scene, f64),
     seed: u64,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<Windows> {
     if is_mesh(path) {
-        return faces(path, spacing, (scene, grid_north), seed, stages, summary);
+        return faces(path, choice, (scene, grid_north), seed, stages, summary);
     }
-    if spacing.is_some() {
-        return Err(Usage("--spacing applies only to windows from a mesh".to_owned()).into());
+    for (flag, is_given) in [("--spacing", choice.spacing.is_some()), ("--object", !choice.objects.is_empty())] {
+        if is_given {
+            return Err(Usage(format!("{flag} applies only to windows from a mesh")).into());
+        }
     }
     if !["csv", "txt"].contains(&super::extension(path).as_str()) {
         bail!("{}: windows are a table (.csv .txt) or a mesh (.obj .json .ply with faces)", path.display());
@@ -83,14 +94,14 @@ pub(crate) fn windows(
 
 fn faces(
     path: &Path,
-    spacing: Option<f64>,
+    choice: &FaceChoice<'_>,
     (scene, grid_north): (&Scene, f64),
     seed: u64,
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<Windows> {
-    let mesh = mesh_of(path, scene, stages, summary)?;
-    let spacing = spacing.unwrap_or(CELL);
+    let mesh = objects_of(mesh_of(path, scene, stages, summary)?, choice.objects, path)?;
+    let spacing = choice.spacing.unwrap_or(CELL);
     let (targets, windows) = flagged("--spacing", Targets::of_window_faces(&mesh, &scene.cloud.frame, spacing, seed))?;
     let centers: Vec<[f64; 3]> = windows.iter().map(|window| window.center).collect();
     let column = |of: &dyn Fn(&Window) -> f64| -> Vec<f64> { windows.iter().map(of).collect() };

@@ -81,6 +81,8 @@ fn views_of_a_house_are_rows_points_maps_and_means_of_buildings() {
     assert!(run["windows"]["targets_on_roofs_and_floors"].as_u64().unwrap() > 0, "{run}");
     let sky = column(&place, "faces.csv", "sky");
     assert!(sky[0].is_finite() && sky[1].is_nan(), "{sky:?}");
+    let roof = format!("window-views house.laz {BALLS} --windows wall.obj --object roof -o no.csv");
+    place.refusal(1, &roof, &["no window is left"]);
     assert!(place.text("of_mesh.csv").lines().any(|line| line.starts_with("wall,1,")));
 }
 
@@ -127,6 +129,7 @@ fn window_views_refuse_what_they_cannot_do() {
         ("-o a.csv --directions 0", &["--directions"]),
         ("-o a.csv --directions 1000000", &["--directions", "100000"]),
         ("-o a.csv --spacing 1", &["--spacing", "mesh"]),
+        ("-o a.csv --object mill", &["--object", "mesh"]),
         ("-o a.csv --unproven as-blocked", &["--unproven"]),
         ("-o a.csv --buildings b.tif", &["--buildings", ".csv"]),
     ] {

@@ -57,7 +57,7 @@ fn the_limit_below_a_level_edge_is_the_plane_through_eye_and_edge() {
             // lowest at the southern side of the cell; corners of pieces are f32, of 8 µm there
             let plane = 2.0 + 28.0 * (y - 0.5) / 100.0;
             assert!((f64::from(limit) - plane).abs() < 1e-4, "{x} {y}: {limit} {plane}");
-        } else if y < -1.0 || y > 101.0 || !reach(-0.6) {
+        } else if !(-1.0..=101.0).contains(&y) || !reach(-0.6) {
             // a cell that only touches the fan at a corner has the limit there
             outside += 1;
             assert!(limit.is_nan(), "{x} {y}: {limit}");
@@ -190,7 +190,7 @@ fn limits_above_the_ground_are_never_below_it_and_wrong_input_is_refused() {
     for (room, limit) in above.values().iter().zip(found.limits.values()) {
         assert!(room.is_nan() && limit.is_nan() || *room == (limit - 10.0).max(0.0));
     }
-    assert!(above.values().iter().any(|room| *room == 0.0) && above.values().iter().any(|room| *room > 5.0));
+    assert!(above.values().contains(&0.0) && above.values().iter().any(|room| *room > 5.0));
     let unknown = found.above_ground(&ground(f32::NAN, grid)).unwrap();
     assert!(unknown.values().iter().all(|room| room.is_nan()));
     let other = found.above_ground(&ground(1.0, MapGrid { width: 3, ..grid }));

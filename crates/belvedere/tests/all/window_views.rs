@@ -125,7 +125,7 @@ fn what_is_seen_from_a_surface_is_what_the_matrix_has_as_blocked_and_what_is_ent
         let place = |i: u64| -> [f64; 3] {
             let (center, radius) = list[i as usize];
             let outward = unit([at(1000 + 3 * i), at(1001 + 3 * i), at(1002 + 3 * i)]).unwrap();
-            let lift = if i % 2 == 0 { 0.05 } else { 3.0 };
+            let lift = if i.is_multiple_of(2) { 0.05 } else { 3.0 };
             std::array::from_fn(|axis| f64::from((center[axis] + (radius + lift) * outward[axis]) as f32))
         };
         let places: Vec<[f64; 3]> = (0..40).map(place).collect();

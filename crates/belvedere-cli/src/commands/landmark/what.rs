@@ -59,7 +59,7 @@ pub(in crate::commands) fn surface(
 }
 
 /// The triangles of the objects named, all where none is.
-fn objects_of(mesh: Mesh, names: &[String], path: &Path) -> Result<Mesh> {
+pub(in crate::commands) fn objects_of(mesh: Mesh, names: &[String], path: &Path) -> Result<Mesh> {
     if names.is_empty() {
         return Ok(mesh);
     }
