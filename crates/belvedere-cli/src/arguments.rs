@@ -21,6 +21,7 @@ mod vegetation;
 mod view;
 #[cfg(feature = "view")]
 mod view_page;
+mod window_views;
 
 pub(crate) use balls::{
     Balls, Cleaning, MethodChoice, NeighborChoice, Normals, OrientChoice, Orienting, Shrinking, SideChoice,
@@ -40,12 +41,15 @@ pub(crate) use scene::{AreaChoice, CloudInput, Plan, ProfileChoice, SceneConfig,
 pub(crate) use shadow::Shadow;
 pub(crate) use sky::{FacingChoice, FarTerrain, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
 pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};
-pub(crate) use surroundings::{BelowChoice, Eyes, Horizon, Isovist, Landmark, MeshTargets};
+pub(crate) use surroundings::{
+    BelowChoice, Eyes, Horizon, Isovist, Landmark, LandmarkShape, MeshTargets, ProtectedView,
+};
 pub(crate) use towns::{PatternChoice, ScannerChoice, Simulate};
 pub(crate) use vegetation::{LeavesChoice, ThroughTrees, ThroughTreesChoice};
 pub(crate) use view::{North, SizeChoice, ViewChoice};
 #[cfg(feature = "view")]
 pub(crate) use view_page::ViewPage;
+pub(crate) use window_views::WindowViews;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -175,6 +179,9 @@ pub(crate) enum Command {
     Viewshed(Viewshed),
     /// Measure how much of a landmark observers see
     Landmark(Landmark),
+    /// Map how high one may build without entering the view of a landmark
+    #[command(name = "protected-view")]
+    ProtectedView(ProtectedView),
     /// Choose where to put cameras, so that few of them cover much
     Cameras(Cameras),
     /// Measure the space that is visible from a point: volume, area, openness
@@ -195,6 +202,9 @@ pub(crate) enum Command {
     Envelope(Envelope),
     /// Measure sun, shade and sky along walking routes and at windows
     Comfort(Comfort),
+    /// Measure what is seen from windows: sky, vegetation, water, buildings, ground
+    #[command(name = "window-views")]
+    WindowViews(WindowViews),
     /// Compute what changes between two rasters: gains and losses before and after a plan
     Difference(Difference),
     /// Show clouds in the browser, and ask there what is seen, lit and shaded

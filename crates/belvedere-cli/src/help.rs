@@ -34,6 +34,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("line-of-sight", include_str!("help/line-of-sight.txt")),
     ("viewshed", include_str!("help/viewshed.txt")),
     ("landmark", include_str!("help/landmark.txt")),
+    ("protected-view", include_str!("help/protected-view.txt")),
     ("cameras", include_str!("help/cameras.txt")),
     ("isovist", include_str!("help/isovist.txt")),
     ("horizon", include_str!("help/horizon.txt")),
@@ -43,6 +44,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("sun-hours", include_str!("help/sun-hours.txt")),
     ("envelope", include_str!("help/envelope.txt")),
     ("comfort", include_str!("help/comfort.txt")),
+    ("window-views", include_str!("help/window-views.txt")),
     #[cfg(feature = "view")]
     ("view", include_str!("help/view.txt")),
     ("city", include_str!("help/city.txt")),

@@ -1,4 +1,4 @@
-//! Flags of mesh targets, landmarks, isovists and horizons.
+//! Flags of mesh targets, landmarks, protected views, isovists and horizons.
 
 use super::{Earth, FarTerrain, GivingWay, GroundChoice, North, Place, SceneInput, above_zero};
 use belvedere::query::BackFaces;
@@ -42,14 +42,7 @@ impl From<BackFacesChoice> for BackFaces {
 #[derive(Args)]
 pub(crate) struct Landmark {
     #[command(flatten)]
-    pub(crate) what: What,
-    /// Name of an object of the mesh that is the landmark; repeatable [default: all]
-    #[arg(long, value_name = "NAME", requires = "target", help_heading = "Landmark (one of)")]
-    pub(crate) object: Vec<String>,
-    /// Maximum side of the triangles that the mesh is cut into, in metres [default: for about 1000 triangles, at least 0.25]
-    #[arg(long, value_name = "M", requires = "target", value_parser = above_zero::<f64>, allow_negative_numbers = true,
-        help_heading = "Landmark (one of)")]
-    pub(crate) spacing: Option<f64>,
+    pub(crate) shape: LandmarkShape,
     /// How faces that are turned away from the observer are counted [default: not-visible]
     ///
     /// With the default, shares refer to the whole surface of the landmark.
@@ -92,6 +85,20 @@ pub(crate) struct Landmark {
     pub(crate) scene: SceneInput,
 }
 
+/// The landmark, and how a mesh of it is cut into pieces.
+#[derive(Args)]
+pub(crate) struct LandmarkShape {
+    #[command(flatten)]
+    pub(crate) what: What,
+    /// Name of an object of the mesh that is the landmark; repeatable [default: all]
+    #[arg(long, value_name = "NAME", requires = "target", help_heading = "Landmark (one of)")]
+    pub(crate) object: Vec<String>,
+    /// Maximum side of the triangles that the mesh is cut into, in metres [default: for about 1000 triangles, at least 0.25]
+    #[arg(long, value_name = "M", requires = "target", value_parser = above_zero::<f64>, allow_negative_numbers = true,
+        help_heading = "Landmark (one of)")]
+    pub(crate) spacing: Option<f64>,
+}
+
 #[derive(Args)]
 #[command(next_help_heading = "Landmark (one of)")]
 #[group(required = true, multiple = false)]
@@ -127,6 +134,32 @@ pub(crate) struct Eyes {
     /// cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub(crate) ground: GroundChoice,
+}
+
+#[derive(Args)]
+pub(crate) struct ProtectedView {
+    #[command(flatten)]
+    pub(crate) shape: LandmarkShape,
+    #[command(flatten)]
+    pub(crate) eyes: Eyes,
+    /// Maximum distance from an observer to the landmark in metres [default: no limit]
+    #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Observers")]
+    pub(crate) max_distance: Option<f64>,
+    #[command(flatten)]
+    pub(crate) giving_way: GivingWay,
+    /// Side of a cell in metres [default: 0.5, doubled until there are at most 4 million cells]
+    #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Result")]
+    pub(crate) cell: Option<f64>,
+    /// Maximum height of a building above the ground in metres (.tif .npy), or a map of it (.png); repeatable
+    ///
+    /// Cells that no protected view crosses, and cells without ground: nodata -9999 in .tif, NaN in .npy.
+    #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
+    pub(crate) output: Vec<PathBuf>,
+    /// Also write the maximum height in the vertical system of the cloud (.tif .npy)
+    #[arg(long, value_name = "OUT", help_heading = "Result")]
+    pub(crate) tops: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) scene: SceneInput,
 }
 
 #[derive(Args)]

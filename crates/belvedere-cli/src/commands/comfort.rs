@@ -5,6 +5,7 @@ mod places;
 use super::check_output;
 use super::sights::{Proving, blockers};
 use super::targets::{leave_out_outside, report_edge};
+use super::windows::{FaceChoice, windows};
 use crate::arguments::{Comfort, Global, PatchesChoice, Usage};
 use crate::pipeline::{self, Points, flagged};
 use crate::progress::Stages;
@@ -15,7 +16,7 @@ use belvedere::apps::sky_view::{SKY_DIRECTIONS, SkyDirections};
 use belvedere::apps::sun::{Binning, SunSchedule, sun_days};
 use belvedere::apps::targets::Measure;
 use belvedere::io::{Cells, with_columns_read, write_table};
-use places::{Places, routes, windows};
+use places::{Places, routes};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
@@ -65,7 +66,8 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     let mut places = match (&arguments.places.route, &arguments.places.windows) {
         (Some(route), _) => routes(arguments, route, &mut scene, &mut stages, &mut summary)?,
         (None, Some(path)) => {
-            windows(arguments, path, (&scene, north.of_grid), global.seed, &mut stages, &mut summary)?
+            let choice = FaceChoice { spacing: arguments.spacing, objects: &[] };
+            windows(path, &choice, (&scene, north.of_grid), global.seed, &mut stages, &mut summary)?.into()
         }
         (None, None) => return Err(Usage("targets are missing: give --route or --windows".to_owned()).into()),
     };

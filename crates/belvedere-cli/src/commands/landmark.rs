@@ -1,7 +1,7 @@
 //! `belvedere landmark`.
 
 mod results;
-mod what;
+pub(super) mod what;
 
 use super::sights::{self, ground_cloud, proving_blockers, skip_unfit};
 use super::surroundings::rows_as_given;
@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
-    let (surface, middle) = what::surface(arguments, &scene, global.seed, &mut stages, &mut summary)?;
+    let (surface, middle) = what::surface(&arguments.shape, &scene, global.seed, &mut stages, &mut summary)?;
 
     let grid = grid(arguments, &scene)?;
     let rows = rows(arguments, &scene.cloud)?;

@@ -21,6 +21,7 @@ mod line_of_sight;
 mod mesh_targets;
 mod normals;
 mod north;
+mod protected_view;
 mod query;
 mod shadow;
 mod shapes;
@@ -36,6 +37,8 @@ mod tree_light;
 #[cfg(feature = "view")]
 mod view;
 mod viewshed;
+mod window_views;
+mod windows;
 
 use crate::arguments::{Cli, Command, Usage};
 use crate::help;
@@ -72,6 +75,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::LineOfSight(arguments) => line_of_sight::run(arguments, global),
         Command::Viewshed(arguments) => viewshed::run(arguments, global),
         Command::Landmark(arguments) => landmark::run(arguments, global),
+        Command::ProtectedView(arguments) => protected_view::run(arguments, global),
         Command::Cameras(arguments) => cameras::run(arguments, global),
         Command::Isovist(arguments) => isovist::run(arguments, global),
         Command::Horizon(arguments) => horizon::run(arguments, global),
@@ -81,6 +85,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::SunHours(arguments) => sun_hours::run(arguments, global),
         Command::Envelope(arguments) => envelope::run(arguments, global),
         Command::Comfort(arguments) => comfort::run(arguments, global),
+        Command::WindowViews(arguments) => window_views::run(arguments, global),
         #[cfg(feature = "view")]
         Command::View(arguments) => view::run(arguments, global),
         Command::City(arguments) => city::run(arguments, global),

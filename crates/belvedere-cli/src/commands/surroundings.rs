@@ -1,7 +1,7 @@
 //! Eyes of isovists and horizons: from flags and files to places.
 
 use super::{extension, sights};
-use crate::arguments::Eyes;
+use crate::arguments::{Eyes, GroundChoice};
 use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::Summary;
@@ -44,6 +44,10 @@ pub(super) fn eyes(
         let (cloud, points) = sights::ground_cloud(&arguments.ground, scene, stages)?;
         let ground = sights::ground(&cloud, points, grid, stages, summary)?;
         set_on_ground(rows.iter_mut().map(|(place, height)| (place, *height)), &ground);
+        if matches!(arguments.ground, GroundChoice::OfScene(_)) {
+            // a map needs it again
+            scene.cloud = cloud;
+        }
     }
     Ok(rows.into_iter().map(|row| row.0).collect())
 }

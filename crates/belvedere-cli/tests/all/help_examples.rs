@@ -4,7 +4,7 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 27] = [
+const COMMANDS: [&str; 29] = [
     "demo",
     "simulate",
     "info",
@@ -16,11 +16,13 @@ const COMMANDS: [&str; 27] = [
     "line-of-sight",
     "viewshed",
     "landmark",
+    "protected-view",
     "cameras",
     "isovist",
     "horizon",
     "envelope",
     "comfort",
+    "window-views",
     "irradiance",
     "shadow",
     "sky-view",

@@ -25,6 +25,7 @@ mod limits;
 mod masbcpp_folder;
 mod odd_clouds;
 mod plans;
+mod protected_views;
 mod queries;
 mod readme;
 mod shadow;
@@ -38,4 +39,5 @@ mod tree_light;
 mod usage;
 #[cfg(feature = "view")]
 mod view;
+mod window_views;
 mod written_files;

@@ -185,16 +185,17 @@ impl MedialScene {
         if self.is_behind_others(target, towards, range) {
             return Answer::Blocked;
         }
-        match &self.proof {
-            Some(proof)
-                if proof.is_unproven(target, towards, range)
-                    && (self.freed.is_empty()
-                        || self.unproven_length(proof, target, towards, range) > proof.tolerance()) =>
-            {
-                Answer::Unproven
-            }
-            _ => Answer::Visible,
-        }
+        if self.is_unproven(target, towards, range) { Answer::Unproven } else { Answer::Visible }
+    }
+
+    /// Whether too much of the line from `target`, local metres, to `range` metres (may be infinite) along the unit vector `towards` runs through space that no pulse came near
+    /// to; false where pulses are not known. What blocks is not asked.
+    #[must_use]
+    pub fn is_unproven(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
+        self.proof.as_ref().is_some_and(|proof| {
+            proof.is_unproven(target, towards, range)
+                && (self.freed.is_empty() || self.unproven_length(proof, target, towards, range) > proof.tolerance())
+        })
     }
 
     /// Visible, unproven, or blocked by what was added or by far terrain, for a line of sight from `target` along the unit vector `towards` without end of which it is known that no ball

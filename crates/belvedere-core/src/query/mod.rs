@@ -3,7 +3,7 @@
 //! There are three ways of asking a [`MedialScene`]:
 //!
 //! - a pair of points: [`MedialScene::line_of_sight`] (what blocks it first, how much of it is not proven), with
-//!   [`MedialScene::crossings`], [`MedialScene::least_visible_height`] and [`MedialScene::seen_along`] beside it;
+//!   [`MedialScene::crossings`], [`MedialScene::least_visible_height`], [`MedialScene::seen_along`] and [`MedialScene::seen_from_surface`] beside it;
 //! - many targets of one viewer: [`MedialScene::visible_from`], or [`MedialScene::visible_in_views`] for pictures;
 //! - many directions at many targets: [`MedialScene::visibility_matrix`].
 //!

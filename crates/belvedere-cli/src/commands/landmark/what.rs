@@ -1,6 +1,6 @@
 //! The landmark: a mesh, or points of the cloud.
 
-use crate::arguments::{Landmark, Usage};
+use crate::arguments::{LandmarkShape, Usage};
 use crate::commands::extension;
 use crate::commands::mesh_targets::mesh_of;
 use crate::pipeline::{Scene, flagged};
@@ -14,8 +14,8 @@ use belvedere::query::SurfacePieces;
 use std::path::Path;
 
 /// The surface of the landmark, and its middle on the map, local metres.
-pub(super) fn surface(
-    arguments: &Landmark,
+pub(in crate::commands) fn surface(
+    arguments: &LandmarkShape,
     scene: &Scene,
     seed: u64,
     stages: &mut Stages,
@@ -59,7 +59,7 @@ pub(super) fn surface(
 }
 
 /// The triangles of the objects named, all where none is.
-fn objects_of(mesh: Mesh, names: &[String], path: &Path) -> Result<Mesh> {
+pub(in crate::commands) fn objects_of(mesh: Mesh, names: &[String], path: &Path) -> Result<Mesh> {
     if names.is_empty() {
         return Ok(mesh);
     }

@@ -1,0 +1,216 @@
+//! The view from windows: how much of it is sky, vegetation, water, buildings and ground, and how far it reaches.
+
+mod names;
+mod seen;
+
+pub use names::{NamedView, views_by_name};
+pub use seen::{ClassMeanings, Seen, are_made_from, balls_seen};
+
+use crate::rows::check_normals;
+use crate::sky_view::SkyDirections;
+use crate::targets::{Measure, Targets};
+use belvedere_core::query::{Answer, Blocker, MedialScene};
+use belvedere_data::control::Control;
+use belvedere_data::vector::dot;
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+
+/// Number of directions before a window unless said otherwise: shares err by less than half a percent.
+pub const VIEW_DIRECTIONS: usize = 1000;
+/// A face whose normal rises or falls by more than this, as a sine, is a roof or a floor and no facade: 45°.
+const STEEPEST_NORMAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
+/// Kinds of what is seen.
+const KINDS: usize = Seen::ALL.len();
+
+/// What one window has before it. All is NaN for a window that is not asked about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WindowView {
+    /// Share of the half space before the window that is each of [`Seen::ALL`], by solid angle, 0 to 1; 1 together.
+    pub shares: [f64; KINDS],
+    /// The same, weighted by the cosine to the normal of the window, as light arrives through it; 1 together.
+    pub cosine_shares: [f64; KINDS],
+    /// Mean range of the things seen, metres, by solid angle; sky and what is beyond the cloud do not count. NaN where no thing is seen.
+    pub mean_range: f64,
+    /// Half of the solid angle of the things seen is nearer than this, metres; NaN where no thing is seen.
+    pub median_range: f64,
+    /// Share of the half space that is seen through space that no pulse came near to, 0 to 1, whatever is seen there; 0 where pulses are not known.
+    pub unproven: f64,
+}
+
+/// What a ball or a mesh is.
+#[derive(Clone, Copy, Debug)]
+pub struct Kinds<'a> {
+    /// Kind of each ball of the model, (B), as [`balls_seen`] has it.
+    pub balls: &'a [Seen],
+    /// Kind of each mesh that was added, by its number; a building where nothing is said.
+    pub meshes: &'a [Seen],
+}
+
+/// `count` directions of the upper half of the sphere as [`SkyDirections::even`] has them, and their opposites: before every window lie `count` of them, each with the same solid angle.
+///
+/// # Errors
+/// Those of [`SkyDirections::even`].
+pub fn view_directions(count: usize) -> Result<Vec<[f64; 3]>> {
+    let mut directions = SkyDirections::even(count)?.directions;
+    directions.extend_from_within(..);
+    directions[count..].iter_mut().for_each(|direction| *direction = direction.map(|v| -v));
+    Ok(directions)
+}
+
+/// What each of the groups of `targets`, windows with normals, sees of `scene` in `directions`, unit vectors that each have the same solid angle ([`view_directions`]): those behind the plane
+/// of a window do not count. Places of a window count by their weight. Progress counts targets.
+///
+/// # Errors
+/// [`Error::UnsupportedTargets`] for targets without normals, [`Error::LengthMismatch`] unless each target has one and each ball has a kind, and [`Error::Cancelled`].
+///
+/// # Source
+/// What is counted after Helbich, Jochem, Mücke & Höfle 2013, "Boosting the predictive accuracy of urban hedonic house price models through airborne laser scanning", Computers, Environment and
+/// Urban Systems 39; the lines of sight are this project's.
+pub fn window_views(
+    scene: &MedialScene,
+    targets: &Targets,
+    kinds: Kinds<'_>,
+    directions: &[[f64; 3]],
+    control: &Control<'_>,
+) -> Result<Vec<WindowView>> {
+    let Some(normals) = &targets.normals else {
+        let what = "the view from a window needs the direction that it looks to";
+        return Err(Error::UnsupportedTargets { method: "window views", what });
+    };
+    check_normals(Some(normals), targets.len())?;
+    let expected = scene.tree().rows().iter().map(|&row| row as usize + 1).max().unwrap_or(0);
+    if kinds.balls.len() < expected {
+        return Err(Error::LengthMismatch { what: "kinds of balls", expected, found: kinds.balls.len() });
+    }
+    let of_group = |group: &std::ops::Range<usize>| {
+        let mut sums = Sums::default();
+        for row in group.clone() {
+            control.check()?;
+            if let (true, Some(&place), Some(&normal)) =
+                (targets.is_asked(row), targets.positions.get(row), normals.get(row))
+            {
+                let window = (place.map(f64::from), normal.map(f64::from));
+                sums.add(scene, window, targets.weight(row), kinds, directions);
+            }
+            control.advance(1);
+        }
+        Ok(sums.into_view())
+    };
+    targets.groups.par_iter().map(of_group).collect()
+}
+
+/// Leaves out the targets of a mesh that are no facade: roofs, floors, and all else nearer to level than to upright. Returns how many.
+pub fn leave_out_level(targets: &mut Targets) -> usize {
+    let Targets { positions, normals, .. } = targets;
+    let is_level = |normal: &[f32; 3]| !(normal[2].abs() <= STEEPEST_NORMAL);
+    let level = positions.iter_mut().zip(normals.iter().flatten()).filter(|(_, normal)| is_level(normal));
+    level.map(|(position, _)| *position = [f32::NAN; 3]).count()
+}
+
+/// The figures of windows as measures: shares in percent, ranges in metres. Cosine-weighted shares have names that end in `_cos`; what is unproven is left out where `proof` says that pulses are not asked.
+#[must_use]
+pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
+    let mut measures = Vec::new();
+    let mut push = |name: String, description, decimals, range, value: &dyn Fn(&WindowView) -> f64| {
+        #[expect(clippy::cast_possible_truncation, reason = "percentages and metres")]
+        let values = views.iter().map(|view| value(view) as f32).collect();
+        measures.push(Measure { name, description, decimals, range, values });
+    };
+    let percent = Some([0.0, 100.0]);
+    for (i, seen) in Seen::ALL.into_iter().enumerate() {
+        push(seen.name().to_owned(), "percent of the view", 3, percent, &|view| 100.0 * view.shares[i]);
+    }
+    for (i, seen) in Seen::ALL.into_iter().enumerate() {
+        let name = format!("{}_cos", seen.name());
+        push(name, "percent, cosine-weighted", 3, percent, &|view| 100.0 * view.cosine_shares[i]);
+    }
+    push("mean_range_m".to_owned(), "mean range of things seen", 2, None, &|view| view.mean_range);
+    push("median_range_m".to_owned(), "median range of things seen", 2, None, &|view| view.median_range);
+    if proof == Proving::Asked {
+        push("unproven".to_owned(), "percent of the view not proven", 3, percent, &|view| 100.0 * view.unproven);
+    }
+    measures
+}
+
+/// Whether pulses were asked about lines of sight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Proving {
+    /// They were.
+    Asked,
+    /// They were not, or are not known.
+    NotAsked,
+}
+
+/// What the places of a window add up to.
+#[derive(Default)]
+struct Sums {
+    weights: [f64; KINDS],
+    cosines: [f64; KINDS],
+    unproven: f64,
+    /// Range and weight of each thing seen.
+    ranges: Vec<(f64, f64)>,
+}
+
+impl Sums {
+    /// Adds one place of a window with its normal.
+    fn add(
+        &mut self,
+        scene: &MedialScene,
+        (place, normal): ([f64; 3], [f64; 3]),
+        weight: f64,
+        kinds: Kinds<'_>,
+        directions: &[[f64; 3]],
+    ) {
+        for &direction in directions {
+            let cosine = dot(normal, direction);
+            if !(cosine > 0.0) {
+                continue;
+            }
+            let (seen, range, is_unproven) = match scene.seen_from_surface(place, direction) {
+                Some((blocker, range)) => {
+                    let kind = match blocker {
+                        Blocker::Ball(row) => kinds.balls.get(row).copied().unwrap_or_default(),
+                        Blocker::Mesh(number) => kinds.meshes.get(number).copied().unwrap_or(Seen::Building),
+                    };
+                    (kind, range, scene.is_unproven(place, direction, range))
+                }
+                None => {
+                    let answer = scene.answer_unblocked_towards(place, direction);
+                    let is_sky = direction[2] >= 0.0 && answer != Answer::Blocked;
+                    (if is_sky { Seen::Sky } else { Seen::Beyond }, f64::INFINITY, answer == Answer::Unproven)
+                }
+            };
+            self.weights[seen as usize] += weight;
+            self.cosines[seen as usize] += weight * cosine;
+            if range < f64::INFINITY {
+                self.ranges.push((range, weight));
+            }
+            if is_unproven {
+                self.unproven += weight;
+            }
+        }
+    }
+
+    fn into_view(mut self) -> WindowView {
+        let share_of = |parts: [f64; KINDS]| {
+            let whole: f64 = parts.iter().sum();
+            parts.map(|part| part / whole)
+        };
+        let whole: f64 = self.weights.iter().sum();
+        let things: f64 = self.ranges.iter().map(|(_, weight)| weight).sum();
+        let mean = self.ranges.iter().map(|(range, weight)| range * weight).sum::<f64>() / things;
+        self.ranges.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut nearer = 0.0;
+        let median = self.ranges.iter().find(|(_, weight)| {
+            nearer += weight;
+            2.0 * nearer >= things
+        });
+        WindowView {
+            shares: share_of(self.weights),
+            cosine_shares: share_of(self.cosines),
+            mean_range: mean,
+            median_range: median.map_or(f64::NAN, |(range, _)| *range),
+            unproven: self.unproven / whole,
+        }
+    }
+}

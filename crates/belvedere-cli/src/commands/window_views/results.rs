@@ -1,0 +1,165 @@
+//! Views from windows as files.
+
+use crate::commands::extension;
+use crate::commands::sights::ground;
+use crate::commands::windows::Windows;
+use crate::pipeline::Scene;
+use crate::progress::Stages;
+use crate::summary::Summary;
+use anyhow::{Result, bail};
+use belvedere::PointCloud;
+use belvedere::apps::targets::{Measure, Targets};
+use belvedere::apps::viewshed::cell_for;
+use belvedere::apps::window_views::{Seen, WindowView, views_by_name};
+use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp, write_png};
+use belvedere::ground::{GroundPoints, MapGrid, highest_points};
+use belvedere::io::{Cells, Spot, WriteReport, with_columns_read, write_geojson, write_table};
+use belvedere::report::rounded;
+use belvedere::results::{TakenFrom, georeference, write_measures};
+use serde_json::{Map, Value};
+use std::path::Path;
+
+/// Radius of a window on a map, as a share of its longer side.
+const DOT: f64 = 1.0 / 250.0;
+
+/// What is written.
+pub(super) struct Found<'a> {
+    pub(super) windows: &'a Windows,
+    pub(super) views: &'a [WindowView],
+    pub(super) measures: &'a [Measure],
+    /// Building of each window; empty where that is not known.
+    pub(super) names: &'a [String],
+}
+
+impl Found<'_> {
+    /// A row or a point for each window.
+    pub(super) fn write(&self, output: &Path, cloud: &PointCloud) -> belvedere::Result<WriteReport> {
+        match extension(output).as_str() {
+            "csv" => self.write_table(output).map(|()| WriteReport::default()),
+            "geojson" => self.write_geojson(output, cloud).map(|()| WriteReport::default()),
+            _ => {
+                let centers: Vec<[f64; 3]> = self.windows.windows.iter().map(|window| window.center).collect();
+                let targets = Targets::of_places(&centers, cloud.frame.clone());
+                write_measures(output, &targets, TakenFrom::Nothing, self.measures)
+            }
+        }
+    }
+
+    fn write_table(&self, output: &Path) -> belvedere::Result<()> {
+        let of_measure = |measure: &Measure| measure.values.iter().map(|&v| f64::from(v)).collect();
+        let values: Vec<Vec<f64>> = self.measures.iter().map(of_measure).collect();
+        let numbers: Vec<Option<u64>> = (1..).take(self.views.len()).map(Some).collect();
+        let names: Vec<&str> = self.windows.names.iter().map(String::as_str).collect();
+        let mut cells = vec![("window", Cells::Whole(&numbers))];
+        if !names.is_empty() {
+            cells.push(("name", Cells::Words(&names)));
+        }
+        cells.extend(self.windows.columns.iter().map(|(name, values, d)| (*name, Cells::Real(values, *d))));
+        let measured = self.measures.iter().zip(&values);
+        cells.extend(measured.map(|(m, values)| (m.name.as_str(), Cells::Real(values, m.decimals))));
+        let given = &self.windows.given;
+        let read = given.columns(0..given.row_count());
+        write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], &cells))
+    }
+
+    fn write_geojson(&self, output: &Path, cloud: &PointCloud) -> belvedere::Result<()> {
+        let spot = |(row, window): (usize, &belvedere::apps::targets::Window)| {
+            let mut properties: Map<String, Value> = Map::new();
+            properties.insert("window".to_owned(), (row + 1).into());
+            if let Some(name) = self.names.get(row) {
+                properties.insert("name".to_owned(), name.as_str().into());
+            }
+            let columns = self.windows.columns.iter().filter(|(name, ..)| ["azimuth", "tilt"].contains(name));
+            let columns = columns.map(|(name, values, decimals)| (*name, values[row], *decimals));
+            let measures = self.measures.iter().map(|m| (m.name.as_str(), f64::from(m.values[row]), m.decimals));
+            for (name, value, decimals) in columns.chain(measures) {
+                // a window without a view has none of them
+                let value = if value.is_finite() {
+                    rounded(value, i32::try_from(decimals).unwrap_or(3)).into()
+                } else {
+                    Value::Null
+                };
+                properties.insert(name.to_owned(), value);
+            }
+            let place: [f64; 3] = std::array::from_fn(|axis| window.center[axis] + cloud.frame.origin[axis]);
+            Spot { place, properties }
+        };
+        let spots: Vec<Spot> = self.windows.windows.iter().enumerate().map(spot).collect();
+        write_geojson(output, &spots, &[], &cloud.frame.crs).map(|_| ())
+    }
+
+    /// A row for each building.
+    pub(super) fn write_buildings(&self, output: &Path) -> Result<()> {
+        let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
+        let weights: Vec<f64> = self.windows.windows.iter().map(|window| window.area.unwrap_or(1.0)).collect();
+        let found = views_by_name(self.views, &names, &weights);
+        let names: Vec<&str> = found.iter().map(|named| named.name.as_str()).collect();
+        let counts: Vec<Option<u64>> = found.iter().map(|named| Some(named.windows as u64)).collect();
+        let mut columns: Vec<(&str, Vec<f64>)> = Vec::new();
+        for (i, seen) in Seen::ALL.into_iter().enumerate() {
+            columns.push((seen.name(), found.iter().map(|named| 100.0 * named.shares[i]).collect()));
+        }
+        for (i, name) in ["least_green_and_blue", "most_green_and_blue"].into_iter().enumerate() {
+            columns.push((name, found.iter().map(|named| 100.0 * named.green_and_blue[i]).collect()));
+        }
+        let mut cells = vec![("name", Cells::Words(&names)), ("windows", Cells::Whole(&counts))];
+        cells.extend(columns.iter().map(|(name, values)| (*name, Cells::Real(values, 3))));
+        Ok(write_table(output, &cells)?)
+    }
+
+    /// The share of one kind as dots on a map.
+    pub(super) fn write_map<'s>(
+        &self,
+        output: &Path,
+        shown: Option<Seen>,
+        scene: &Scene,
+        cloud: &PointCloud,
+        stages: &mut Stages,
+        summary: &'s mut Summary,
+    ) -> Result<&'s mut Summary> {
+        if cloud.is_empty() {
+            bail!("{}: a map needs points, and a ball file has none; give --classes-of", output.display());
+        }
+        let shown = shown.unwrap_or(Seen::Vegetation);
+        let (low, high) = scene.model.bounds().on_map();
+        let origin = [cloud.frame.origin[0], cloud.frame.origin[1]];
+        let grid = MapGrid::covering(low, high, cell_for(low, high), origin)?;
+        let ground = ground(cloud, GroundPoints::Auto, grid, stages, summary)?;
+        let relief = highest_points(&cloud.positions, &ground);
+        let mut sums = vec![(0.0, 0.0); grid.len()];
+        let radius = (DOT * grid.width.max(grid.height) as f64).max(1.0);
+        for (window, view) in self.windows.windows.iter().zip(self.views) {
+            let share = view.shares[shown as usize];
+            let place = grid.cell_position([window.center[0], window.center[1]]);
+            let Some(place) = place.filter(|_| share.is_finite()) else { continue };
+            for cell in dot(place, radius, [grid.width, grid.height]) {
+                sums[cell].0 += share;
+                sums[cell].1 += 1.0;
+            }
+        }
+        let shares: Vec<f64> = sums.into_iter().map(|(sum, count)| sum / count).collect();
+        let most = shares.iter().copied().filter(|share| share.is_finite()).fold(0.0, f64::max).max(0.01);
+        let colors: Vec<Option<[u8; 3]>> =
+            shares.iter().map(|share| share.is_finite().then(|| ramp(share / most))).collect();
+        let place = georeference(&grid, &cloud.frame);
+        let title = format!("View from windows: {}", shown.name());
+        let legend = MapLegend::Ramp("percent of the view", [0.0, 100.0 * most], &[]);
+        let map = MapPicture::of_colors(&relief, grid.cell, Some(&place), &colors, &title, legend);
+        stages.run("writing", 0, |_| write_png(output, &map_picture(&map)?))?;
+        Ok(summary)
+    }
+}
+
+/// The cells of a disc around a place on a grid of `[width, height]` cells.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
+fn dot([x, y]: [f64; 2], radius: f64, size: [usize; 2]) -> impl Iterator<Item = usize> {
+    let cells = |middle: f64, count: usize| {
+        let from = (middle - radius).floor().max(0.0) as usize;
+        from..((middle + radius).ceil().max(0.0) as usize).min(count)
+    };
+    let is_near =
+        move |&(column, row): &(usize, usize)| (column as f64 + 0.5 - x).hypot(row as f64 + 0.5 - y) <= radius;
+    let columns = cells(x, size[0]);
+    let all = cells(y, size[1]).flat_map(move |row| columns.clone().map(move |column| (column, row)));
+    all.filter(is_near).map(move |(column, row)| row * size[0] + column)
+}
