@@ -26,6 +26,8 @@ pub(crate) struct State {
     /// Results of other commands.
     pub(crate) results: Vec<Arc<ResultFile>>,
     pub(crate) failure: Option<String>,
+    /// Whether a page has read it.
+    is_failure_read: bool,
 }
 
 impl Loading {
@@ -98,6 +100,19 @@ impl Loading {
     /// Says why nothing can be shown or asked.
     pub fn fail(&self, message: String) {
         self.state().failure = Some(message);
+    }
+
+    /// Whether a page has read why nothing can be shown.
+    #[must_use]
+    pub fn is_failure_read(&self) -> bool {
+        self.state().is_failure_read
+    }
+
+    /// The state for a page, which reads it four times a second.
+    pub(crate) fn read(&self) -> State {
+        let mut state = self.state();
+        state.is_failure_read = state.failure.is_some();
+        state.clone()
     }
 
     pub(crate) fn now(&self) -> State {

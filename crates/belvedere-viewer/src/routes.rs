@@ -100,7 +100,7 @@ fn file(path: &str) -> Response {
 }
 
 async fn state(State(shared): State<Arc<Shared>>) -> Json<Value> {
-    let now = shared.loading.now();
+    let now = shared.loading.read();
     let (stage, total, done) = now.stage;
     Json(json!({
         "title": shared.title,

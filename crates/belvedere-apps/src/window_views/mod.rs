@@ -64,8 +64,7 @@ pub fn view_directions(count: usize) -> Result<Vec<[f64; 3]>> {
 /// [`Error::UnsupportedTargets`] for targets without normals, [`Error::LengthMismatch`] unless each target has one and each ball has a kind, and [`Error::Cancelled`].
 ///
 /// # Source
-/// What is counted after Helbich, Jochem, Mücke & Höfle 2013, "Boosting the predictive accuracy of urban hedonic house price models through airborne laser scanning", Computers, Environment and
-/// Urban Systems 39; the lines of sight are this project's.
+/// This project's own. Laser scans for the value of homes: Helbich, Jochem, Mücke & Höfle 2013, Computers, Environment and Urban Systems 39.
 pub fn window_views(
     scene: &MedialScene,
     targets: &Targets,

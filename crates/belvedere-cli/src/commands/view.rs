@@ -19,10 +19,12 @@ use belvedere_viewer::{ExportParams, Loading, PointsOf, SceneText, Viewer, Viewe
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Memory that making balls takes beside the cloud, bytes for each of its points: 600 were measured with 10 million points of AHN3.
 const BYTES_PER_POINT: u64 = 650;
+/// How long a page may take to open and to read why nothing is shown.
+const PATIENCE: Duration = Duration::from_secs(3);
 /// How often Ctrl-C is looked for.
 const POLL: Duration = Duration::from_millis(20);
 
@@ -60,9 +62,14 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
             loading.fail(format!("Only the points are shown: {error}."));
         }
         Err(error) => {
-            // the page says it too, and looks for it four times a second
+            // the page says it too, if there is one
             loading.fail(format!("{error:#}"));
-            std::thread::sleep(Duration::from_secs(1));
+            let failed = Instant::now();
+            while !loading.is_failure_read() && failed.elapsed() < PATIENCE && !interrupt::is_requested() {
+                std::thread::sleep(POLL);
+            }
+            // what was read is on its way
+            std::thread::sleep(Duration::from_millis(250));
             return Err(error);
         }
     }
