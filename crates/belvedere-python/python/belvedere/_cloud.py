@@ -277,9 +277,9 @@ def read(
 
 def _notes(report: dict[str, Any]) -> list[str]:
     """What a report on reading says is lost or odd."""
-    # what `bounds` and `classes` leave out was asked for
-    asked = ("outside the box to read", "of a class that is not read")
-    found = [f"points left out: {reason}" for reason in report.get("left_out", []) if not reason.endswith(asked)]
+    # what `bounds` and `classes` leave out is what the caller wants
+    wanted = ("outside the box to read", "of a class that is not read")
+    found = [f"points left out: {reason}" for reason in report.get("left_out", []) if not reason.endswith(wanted)]
     lost = report.get("attributes_not_in_every_file", [])
     if lost:
         found.append(f"attributes that only some of the files have are left out: {', '.join(lost)}")
