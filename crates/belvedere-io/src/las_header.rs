@@ -162,7 +162,7 @@ fn read_record(file: &mut impl Read, length: Length, room: u64) -> std::io::Resu
     let mut data = Vec::new();
     file.take(data_length).read_to_end(&mut data)?;
     let is_whole = data.len() as u64 == data_length;
-    Ok(is_whole.then(|| (Some(Record { user, id, data }), total)))
+    Ok(is_whole.then_some((Some(Record { user, id, data }), total)))
 }
 
 /// User, number and length of a record; `None` for a head that is cut off.
