@@ -157,7 +157,7 @@ fn a_planned_building_blocks_exactly_whatever_the_tiles() {
 #[test]
 fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 100.0, 1.0);
+    let clouds = write_town(place.path(), 84.0, 1.0);
     let radiation = Radiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
     let params = IrradianceParams::default().with_patch_division(1).with_sun_cell(0.6);
     let site = site();
