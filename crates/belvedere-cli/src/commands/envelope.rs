@@ -1,6 +1,7 @@
 //! `belvedere envelope`.
 
 use super::check_output;
+use super::heights::write_heights;
 use super::mesh_targets::{is_mesh, mesh_of};
 use super::shapes::{TypedAre, shapes, wrong_shape};
 use super::sights::{Proving, blockers, ground, ground_cloud};
@@ -19,7 +20,7 @@ use belvedere::apps::targets::Measure;
 use belvedere::apps::viewshed::CELL;
 use belvedere::figures::write_png;
 use belvedere::ground::{Ground, MapGrid, highest_points};
-use belvedere::io::{ReadReport, Shape, is_ball_file, write_mesh, write_npy_f32_2d, write_tif_f32};
+use belvedere::io::{ReadReport, Shape, is_ball_file, write_mesh};
 use belvedere::model::{ModelParts, SceneModel};
 use belvedere::query::{MeshTargetParams, SurfacePieces};
 use belvedere::results::georeference;
@@ -27,8 +28,6 @@ use belvedere::results::measure_map;
 use belvedere::view::to_sun;
 use std::path::Path;
 
-/// No height: beside the parcel, or nothing bounds.
-const NO_HEIGHT: f32 = -9999.0;
 /// Ground made around the parcel and what is protected, metres.
 const MARGIN: f64 = 5.0;
 /// Most lines of what binds.
@@ -76,7 +75,7 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
             let scale = cloud.frame.crs.metres_per_unit_xyz()[2];
             let mut tops = found.tops(cloud.frame.origin[2]);
             tops.values_mut().iter_mut().for_each(|top| *top = in_unit(*top, scale));
-            write_heights(output, &tops, &found, &cloud, what)
+            write_heights(output, &tops, (&found.grid, &cloud.frame), what)
         })?;
     }
     let written = arguments.output.iter().chain(&arguments.tops).map(|path| path.display().to_string());
@@ -398,23 +397,8 @@ fn write_one(output: &Path, found: &SolarEnvelope, ground: &Ground, cloud: &Poin
         _ => write_heights(
             output,
             &found.heights(),
-            found,
-            cloud,
+            (&found.grid, &cloud.frame),
             "height of the solar envelope above the ground, metres",
         ),
     }
-}
-
-fn write_heights(
-    output: &Path,
-    heights: &belvedere::raster::Raster<f32>,
-    found: &SolarEnvelope,
-    cloud: &PointCloud,
-    what: &str,
-) -> Result<()> {
-    if super::extension(output) == "npy" {
-        return Ok(write_npy_f32_2d(output, heights)?);
-    }
-    let place = georeference(&found.grid, &cloud.frame);
-    Ok(write_tif_f32(output, heights, Some(&place), Some(NO_HEIGHT), Some(what))?)
 }

@@ -12,6 +12,7 @@ mod describe;
 mod difference;
 mod envelope;
 mod far_terrain;
+mod heights;
 mod horizon;
 mod info;
 mod irradiance;

@@ -1,5 +1,6 @@
 //! `belvedere protected-view`.
 
+use super::heights::write_heights;
 use super::landmark::what;
 use super::sights::{self, ground_cloud, proving_blockers};
 use super::surroundings::{check_eyes, eyes};
@@ -15,13 +16,10 @@ use belvedere::apps::protected_view::{self, ViewpointReport};
 use belvedere::apps::viewshed::cell_for;
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, MapGrid, highest_points};
-use belvedere::io::{write_npy_f32_2d, write_tif_f32};
 use belvedere::raster::Raster;
 use belvedere::results::georeference;
 use std::path::Path;
 
-/// No height: no view passes, or no ground is known.
-const NO_HEIGHT: f32 = -9999.0;
 /// Most viewpoints that the summary lists one by one.
 const MOST_LISTED: usize = 10;
 
@@ -81,7 +79,7 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
     for output in &arguments.output {
         stages.run("writing", 0, |_| match extension(output).as_str() {
             "png" => write_map(output, &above, &ground, &cloud, &places),
-            _ => write_heights(output, &above, &ground, &cloud, "maximum height above the ground"),
+            _ => write_heights(output, &above, (&ground.grid, &cloud.frame), "maximum height above the ground"),
         })?;
     }
     if let Some(output) = &arguments.tops {
@@ -92,20 +90,12 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
             let in_unit = ((f64::from(*top) + cloud.frame.origin[2]) / scale) as f32;
             *top = in_unit;
         }
-        stages.run("writing", 0, |_| write_heights(output, &tops, &ground, &cloud, "maximum height"))?;
+        stages.run("writing", 0, |_| write_heights(output, &tops, (&ground.grid, &cloud.frame), "maximum height"))?;
     }
     let written = arguments.output.iter().chain(&arguments.tops).map(|path| path.display().to_string());
     summary.add("written", written.collect::<Vec<_>>());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
-}
-
-fn write_heights(output: &Path, heights: &Raster<f32>, ground: &Ground, cloud: &PointCloud, what: &str) -> Result<()> {
-    if extension(output) == "npy" {
-        return Ok(write_npy_f32_2d(output, heights)?);
-    }
-    let place = georeference(&ground.grid, &cloud.frame);
-    Ok(write_tif_f32(output, heights, Some(&place), Some(NO_HEIGHT), Some(what))?)
 }
 
 fn write_map(

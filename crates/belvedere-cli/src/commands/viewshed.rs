@@ -3,6 +3,7 @@
 mod results;
 mod who;
 
+use super::heights::write_heights;
 use super::sights::{OUTSIDE_CLOUD, enclosure_note, ground, ground_cloud, proving_blockers, skip_unfit};
 use super::{check_output, warn_of_geojson};
 use crate::arguments::{Global, Viewshed};
@@ -19,11 +20,13 @@ use belvedere::apps::viewshed::{
 };
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::query::{Answer, AnswerCounts, MedialScene, UnprovenAs};
-use results::{on_cells, on_points, write_heights, write_masks};
+use results::{on_cells, on_points, write_masks};
 use std::path::Path;
 
 /// Outputs that hold points rather than cells.
 const OF_POINTS: [&str; 4] = ["laz", "las", "ply", "csv"];
+/// What --heights writes.
+const LEAST_HEIGHTS: &str = "minimum visible height above the ground in metres; -9999: none, or nodata";
 /// Most notes on observers that stand wrong.
 const MOST_NOTES: usize = 5;
 
@@ -93,7 +96,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
         let heights = stages.run("computing visible heights", observers.len(), |progress| {
             least_visible_heights(&blockers, &observers, &ground, arguments.ceiling, &earth, progress)
         })?;
-        stages.run("writing", 0, |_| write_heights(output, &heights, &ground, &cloud))?;
+        stages.run("writing", 0, |_| write_heights(output, &heights, (&ground.grid, &cloud.frame), LEAST_HEIGHTS))?;
     }
     let written = arguments.output.iter().chain(&arguments.heights).chain(&arguments.masks);
     summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());

@@ -8,8 +8,8 @@ use belvedere::apps::viewshed::Viewshed;
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, MapGrid, highest_points};
 use belvedere::io::{
-    Area, ExtraColumn, ExtraValues, WriteReport, outlines, write_cloud, write_geojson_areas, write_npy_f32_2d,
-    write_npy_u32_bands, write_tif_f32, write_tif_u8, write_tif_u16, write_tif_u32,
+    Area, ExtraColumn, ExtraValues, WriteReport, outlines, write_cloud, write_geojson_areas, write_npy_u32_bands,
+    write_tif_u8, write_tif_u16, write_tif_u32,
 };
 use belvedere::query::Answer;
 use belvedere::raster::Raster;
@@ -20,8 +20,6 @@ use std::path::Path;
 const NODATA: u8 = 255;
 /// No count.
 const NO_COUNT: u16 = u16::MAX;
-/// No height.
-const NO_HEIGHT: f32 = -9999.0;
 
 const SEEN_COLOR: [u8; 3] = [255, 176, 0];
 const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
@@ -84,16 +82,6 @@ pub(super) fn write_masks(output: &Path, seen: &Viewshed, ground: &Ground, cloud
     let raster = Raster::from_values(grid.width, grid.height, band.clone())?;
     let what = "bit i: observer i sees the cell";
     Ok(write_tif_u32(output, &raster, Some(&georeference(&grid, &cloud.frame)), None, Some(what))?)
-}
-
-/// Writes how high a thing must reach to be seen.
-pub(super) fn write_heights(output: &Path, heights: &Raster<f32>, ground: &Ground, cloud: &PointCloud) -> Result<()> {
-    if extension(output) == "npy" {
-        return Ok(write_npy_f32_2d(output, heights)?);
-    }
-    let what = "minimum visible height above the ground in metres; -9999: none, or nodata";
-    let place = georeference(&ground.grid, &cloud.frame);
-    Ok(write_tif_f32(output, heights, Some(&place), Some(NO_HEIGHT), Some(what))?)
 }
 
 /// Writes the points of the cloud with what is seen of them.
