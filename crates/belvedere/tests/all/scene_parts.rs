@@ -35,9 +35,12 @@ fn facts(cloud: &PointCloud) -> SurveyFacts {
     SurveyFacts::estimate(cloud, cloud, &extremes, &ModelParams::default(), &Control::none()).unwrap()
 }
 
+fn model_of(cloud: &PointCloud, params: &ModelParams) -> SceneModel {
+    SceneModel::build(cloud, params, &Control::none()).unwrap().0
+}
+
 /// Centres and radii of the balls of points in the rectangle, as bits, sorted.
-fn balls_of(cloud: &PointCloud, params: &ModelParams, low: [f32; 2], high: [f32; 2]) -> Vec<[u32; 4]> {
-    let (model, _) = SceneModel::build(cloud, params, &Control::none()).unwrap();
+fn balls_in(model: &SceneModel, cloud: &PointCloud, low: [f32; 2], high: [f32; 2]) -> Vec<[u32; 4]> {
     let balls = model.balls();
     let is_in = |row: &usize| {
         let p = cloud.positions[balls.source[*row] as usize];
@@ -62,6 +65,7 @@ fn check(cloud: &PointCloud) {
     let halo = facts.halo(&params) as f32;
     assert!((40.0..120.0).contains(&halo), "{halo}");
     let params = params.with_facts(Some(Arc::new(facts)));
+    let whole = model_of(cloud, &params);
     let bounds = cloud.bounds().unwrap();
     let corner = |share: f32| [0, 1].map(|axis| bounds.low[axis] + share * (bounds.high[axis] - bounds.low[axis]));
     for (low, size) in [(corner(0.0), 50.0), (corner(0.37), 64.0), (corner(0.55), 33.0)] {
@@ -71,7 +75,9 @@ fn check(cloud: &PointCloud) {
         let is_near = |p: &[f32; 3]| (0..2).all(|axis| from[axis] <= p[axis] && p[axis] <= to[axis]);
         let rows: Vec<u32> = (0..).zip(&cloud.positions).filter(|(_, p)| is_near(p)).map(|(row, _)| row).collect();
         assert!(rows.len() < cloud.len());
-        let (whole, part) = (balls_of(cloud, &params, low, high), balls_of(&cloud.select(&rows), &params, low, high));
+        let own = cloud.select(&rows);
+        let part = balls_in(&model_of(&own, &params), &own, low, high);
+        let whole = balls_in(&whole, cloud, low, high);
         assert!(whole.len() > 500, "{}", whole.len());
         let different = whole.iter().filter(|ball| part.binary_search(ball).is_err()).count();
         assert!(whole == part, "{different} of {} balls differ, {} in the part", whole.len(), part.len());
@@ -99,7 +105,7 @@ fn a_whole_that_is_built_as_its_own_part_is_nearly_what_it_is_without_facts() {
     let far = [[-1e6; 2], [1e6; 2]];
     // positions on a path of the facts are rounded in another way than those that are estimated with it
     let in_millimetres = |params: &ModelParams| {
-        let balls = balls_of(&cloud, params, far[0], far[1]).into_iter();
+        let balls = balls_in(&model_of(&cloud, params), &cloud, far[0], far[1]).into_iter();
         let mut balls: Vec<_> =
             balls.map(|ball| ball.map(|bits| (1e3 * f32::from_bits(bits)).round() as i32)).collect();
         balls.sort_unstable();
