@@ -334,7 +334,7 @@ fn a_scene_larger_than_the_buffers_of_a_device_is_asked_in_parts() {
         let lost = Arc::new(Gpu::limited(device.number, 60_000, Some(20)).unwrap());
         assert!(answers(scene().with_backend(lost.clone())) == on_cpu, "lost on {}", device.name);
         assert_eq!(lost.notes().len(), 1, "{:?}", lost.notes());
-        // not even a part fits
+        // buffers that not even the targets fit into
         let tiny = Arc::new(Gpu::limited(device.number, 4096, None).unwrap());
         assert!(answers(scene().with_backend(tiny.clone())) == on_cpu, "too large for {}", device.name);
         assert!(tiny.notes().iter().any(|note| note.contains("the CPU does the rest")), "{:?}", tiny.notes());

@@ -20,6 +20,8 @@ use belvedere::raster::Raster;
 use belvedere::results::georeference;
 use std::path::Path;
 
+/// Colour of cells that no protected view crosses.
+const NO_LIMIT_COLOR: [u8; 3] = [226; 3];
 /// Most viewpoints that the summary lists one by one.
 const MOST_LISTED: usize = 10;
 
@@ -108,8 +110,12 @@ fn write_map(
     let relief = highest_points(&cloud.positions, ground);
     let known = || above.values().iter().copied().filter(|v| v.is_finite());
     let most = known().fold(0.0, f32::max).max(1.0);
-    let color = |&height: &f32| height.is_finite().then(|| ramp(f64::from(height / most)));
-    let colors: Vec<Option<[u8; 3]>> = above.values().iter().map(color).collect();
+    // where no ground is known there is no answer; elsewhere a cell without a limit is one that no view crosses
+    let color = |(&height, &ground): (&f32, &f32)| match height.is_finite() {
+        true => Some(ramp(f64::from(height / most))),
+        false => ground.is_finite().then_some(NO_LIMIT_COLOR),
+    };
+    let colors: Vec<Option<[u8; 3]>> = above.values().iter().zip(ground.heights.values()).map(color).collect();
     let mark = |place: &[f64; 3]| {
         let place = ground.grid.cell_position([place[0], place[1]])?;
         Some(MapMark { place, ..MapMark::default() })
@@ -123,7 +129,7 @@ fn write_map(
         marks: &marks,
         mark_name: "observer",
         title: "Maximum height below the protected views",
-        legend: MapLegend::Ramp("metres above the ground", [0.0, f64::from(most)], &[]),
+        legend: MapLegend::Ramp("metres above the ground", [0.0, f64::from(most)], &[(NO_LIMIT_COLOR, "no limit")]),
     };
     Ok(write_png(output, &map_picture(&map)?)?)
 }

@@ -22,6 +22,9 @@ use std::path::Path;
 /// Radius of a window on a map, as a share of its longer side.
 const DOT: f64 = 1.0 / 250.0;
 
+/// Colour of cells without a window.
+const NO_WINDOW_COLOR: [u8; 3] = [226; 3];
+
 /// What is written.
 pub(super) struct Found<'a> {
     pub(super) windows: &'a Windows,
@@ -139,11 +142,14 @@ impl Found<'_> {
         }
         let shares: Vec<f64> = sums.into_iter().map(|(sum, count)| sum / count).collect();
         let most = shares.iter().copied().filter(|share| share.is_finite()).fold(0.0, f64::max).max(0.01);
-        let colors: Vec<Option<[u8; 3]>> =
-            shares.iter().map(|share| share.is_finite().then(|| ramp(share / most))).collect();
+        let colors: Vec<Option<[u8; 3]>> = shares
+            .iter()
+            .map(|share| Some(if share.is_finite() { ramp(share / most) } else { NO_WINDOW_COLOR }))
+            .collect();
         let place = georeference(&grid, &cloud.frame);
         let title = format!("View from windows: {}", shown.name());
-        let legend = MapLegend::Ramp("percent of the view", [0.0, 100.0 * most], &[]);
+        let legend =
+            MapLegend::Ramp("percent of the view", [0.0, 100.0 * most], &[(NO_WINDOW_COLOR, "no window with a view")]);
         let map = MapPicture::of_colors(&relief, grid.cell, Some(&place), &colors, &title, legend);
         stages.run("writing", 0, |_| write_png(output, &map_picture(&map)?))?;
         Ok(summary)
