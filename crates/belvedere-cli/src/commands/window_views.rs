@@ -65,6 +65,12 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     let (blockers, _) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
     let count = asked.targets.asked_count();
     let inside = leave_out_enclosed(&blockers, &mut asked.targets, &mut stages)?;
+    if asked.targets.asked_count() == 0 {
+        bail!(
+            "{}: no window is left: all are outside the cloud, inside obstacles, or faces of roofs and floors. Are they in the coordinates of the cloud?",
+            arguments.windows.display()
+        );
+    }
     summary.add("targets_inside_obstacle", inside);
     // walls between houses are faces of a mesh, and nothing to warn of
     if !is_mesh {
@@ -156,9 +162,6 @@ fn leave_out_enclosed(blockers: &MedialScene, targets: &mut Targets, stages: &mu
     let report = stages.run("testing targets", 0, |control| skip_unfit_eyes(blockers, None, &mut places, control))?;
     for skipped in &report.faults {
         targets.positions[skipped.row] = [f32::NAN; 3];
-    }
-    if targets.asked_count() == 0 {
-        bail!("no window is left: all lie outside the cloud or inside obstacles");
     }
     Ok(report.skipped_inside_obstacle)
 }
