@@ -1,4 +1,4 @@
-//! From where a landmark is seen, and how much of it.
+//! From where a landmark is seen, how much of it, and how high one may build before it.
 
 use crate::arrays::to_1d;
 use crate::mesh::Mesh;
@@ -7,12 +7,12 @@ use crate::outlook::Looking;
 use crate::scene::{Inner, Scene, unproven_as};
 use crate::targets::{Cells, Column, Grid, ground_cloud, ground_points};
 use crate::work::run;
-use belvedere::Error;
 use belvedere::apps::eyes::EyesReport;
 use belvedere::apps::landmark::{
     LandmarkParams, LandmarkPoints, LandmarkView, MEASURES, landmark_points, landmark_views, observer_cell_for,
     spacing_for,
 };
+use belvedere::apps::protected_view::protected_view;
 use belvedere::apps::targets::{CellLevel, CellParams, CoveredCells, Targets};
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::query::SurfacePieces;
@@ -45,17 +45,7 @@ pub(crate) fn local_ring(inner: &Inner, ring: &[[f64; 2]]) -> Vec<[f64; 2]> {
 impl Landmark {
     fn surface(&self, inner: &Inner) -> belvedere::Result<SurfacePieces> {
         if let Some(mesh) = &self.mesh {
-            let mut mesh = mesh.get().in_metres(inner)?;
-            if let Some(missing) = self.objects.iter().find(|name| !mesh.object_names.contains(name)) {
-                return Err(Error::InvalidParameter {
-                    name: "object",
-                    value: format!("'{missing}'"),
-                    expected: "the name of an object of the mesh",
-                });
-            }
-            if !self.objects.is_empty() {
-                mesh = mesh.of_objects(&self.objects);
-            }
+            let mesh = mesh.get().objects_in_metres(&self.objects, inner)?;
             let spacing = self.spacing.unwrap_or_else(|| spacing_for(mesh.area()));
             return SurfacePieces::of_mesh(&mesh, inner.frame().origin, spacing, self.seed);
         }
@@ -134,5 +124,52 @@ impl Scene {
             (measure.name.to_owned(), measure.description, values)
         });
         Ok((columns.collect(), grid, skipped))
+    }
+
+    /// Greatest heights above the ground and of the file, their grid, whether anything is protected, and what was skipped.
+    fn protected_view<'py>(
+        &self,
+        py: Python<'py>,
+        landmark: Landmark,
+        observers: PyReadonlyArray2<'py, f64>,
+        looking: Looking,
+        unproven: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(Vec<Column<'py>>, Grid, bool, Vec<String>)> {
+        let unproven = unproven_as(unproven)?;
+        let points = ground_points(looking.ground.as_deref())?;
+        let usual = LandmarkParams::default();
+        let params = usual.with_unproven(unproven).with_max_range(looking.max_distance.unwrap_or(usual.max_range));
+        let places = places(&observers)?;
+        let inner = Arc::clone(&self.0);
+        let of_work = Arc::clone(&inner);
+        let (found, above, report) = run(py, progress, move |control| {
+            let inner = of_work;
+            let surface = control.stage("sampling landmark", 0, || landmark.surface(&inner))?;
+            let mut stand = eyes(&inner, &places, looking.observer_height, points, control)?;
+            let cells = Cells { side: looking.cell, height: None, level: CellLevel::Ground, ground: points };
+            let ground = cells.ground_within(&inner, inner.model.bounds().on_map(), control)?;
+            let scene = inner.blockers(unproven, control)?;
+            let report = skip(&scene, None, &mut stand, control)?;
+            let found = control.stage("computing limits", stand.len(), || {
+                protected_view(&scene, &surface, &stand, &ground.grid, &params, control)
+            })?;
+            let above = found.above_ground(&ground)?;
+            Ok(((found, ground.grid), above, report))
+        })?;
+        let (found, grid) = found;
+        let skipped = skipped(&inner, "observer", &report)?;
+        let frame = inner.frame();
+        #[expect(clippy::cast_possible_truncation, reason = "a height")]
+        let top = |&limit: &f32| frame.file_from_local([0.0, 0.0, f64::from(limit)])[2] as f32;
+        let tops = found.limits.values().iter().map(top).collect();
+        let is_protected = found.viewpoints.iter().any(|one| one.lines_protected > 0);
+        let column =
+            |name: &str, description, values: Vec<f32>| (name.to_owned(), description, to_1d(py, values).into_any());
+        let columns = vec![
+            column("height", "maximum height above the ground", above.values().to_vec()),
+            column("top", "maximum height", tops),
+        ];
+        Ok((columns, crate::targets::grid_of(&grid, frame), is_protected, skipped))
     }
 }

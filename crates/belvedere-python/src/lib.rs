@@ -25,6 +25,7 @@ mod sun;
 mod system;
 mod targets;
 mod trees;
+mod windows;
 mod work;
 
 use pyo3::prelude::*;

@@ -112,6 +112,22 @@ impl Mesh {
         self.mesh.crs.check_for(crs, "mesh", &self.name)?;
         Ok((*self.mesh).clone().scaled_to_metres(crs))
     }
+
+    /// The same of these objects alone, of all where none is named.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::in_metres`], and [`belvedere::Error::InvalidParameter`] for an object that the mesh does not have.
+    pub(crate) fn objects_in_metres(&self, objects: &[String], inner: &Inner) -> belvedere::Result<belvedere::Mesh> {
+        let mesh = self.in_metres(inner)?;
+        if let Some(missing) = objects.iter().find(|name| !mesh.object_names.contains(name)) {
+            return Err(belvedere::Error::InvalidParameter {
+                name: "object",
+                value: format!("'{missing}'"),
+                expected: "the name of an object of the mesh",
+            });
+        }
+        Ok(if objects.is_empty() { mesh } else { mesh.of_objects(objects) })
+    }
 }
 
 /// The faces of a mesh as targets.

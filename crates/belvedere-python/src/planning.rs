@@ -7,6 +7,7 @@ use crate::scene::{Inner, Scene};
 use crate::sky::Days;
 use crate::sun::Place;
 use crate::targets::{Column, Grid, ground_cloud, ground_points};
+use crate::windows::{WindowRow, windows_of};
 use crate::work::run;
 use belvedere::Error;
 use belvedere::apps::exposure::{ROUTE_STEP, ShadeAtEachSun, WALKER_HEIGHT, scene_exposure};
@@ -15,7 +16,7 @@ use belvedere::apps::solar_envelope::{
     EnvelopeParams, Parcel, ProtectedPiece, envelope_suns, existing_shade, protected_line, solar_envelope,
 };
 use belvedere::apps::sun::{Binning, Period, SunSchedule, sun_days};
-use belvedere::apps::targets::{Route, Targets, Window, grid_around, set_on_ground};
+use belvedere::apps::targets::{Route, Targets, grid_around, set_on_ground};
 use belvedere::apps::viewshed::{CELL, cell_for, places_along};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
@@ -34,8 +35,7 @@ const MARGIN: f64 = 5.0;
 pub(crate) struct Walks {
     /// Corners in the coordinates of the file; z is NaN where it follows from the ground.
     routes: Vec<Vec<[f64; 3]>>,
-    /// x, y, z, azimuth and tilt in degrees, width and height in metres (NaN where windows have none).
-    windows: Vec<[f64; 7]>,
+    windows: Vec<WindowRow>,
     step: Option<f64>,
     height: Option<f64>,
     directions: Option<usize>,
@@ -76,12 +76,7 @@ impl Walks {
     ) -> belvedere::Result<(Targets, Vec<f64>, Vec<[f64; 3]>)> {
         let frame = inner.frame();
         if !self.windows.is_empty() {
-            let window = |&[x, y, z, azimuth, tilt, width, height]: &[f64; 7]| {
-                let size = (width.is_finite() && height.is_finite()).then_some([width, height]);
-                let center = frame.local_from_file([x, y, z]);
-                Window::new(center, azimuth.to_radians() - north, tilt.to_radians(), size)
-            };
-            let windows: Vec<Window> = self.windows.iter().map(window).collect();
+            let windows = windows_of(&self.windows, frame, north);
             let targets = Targets::of_windows(&windows, frame.clone()).map_err(|(_, error)| error)?;
             let places = self.windows.iter().map(|&[x, y, z, ..]| [x, y, z]).collect();
             return Ok((targets, Vec::new(), places));

@@ -299,6 +299,57 @@ def test_landmarks(scene, run_program, folder, standing):
         assert_same_raster(raster, folder / "landmark" / f"{measure}.tif", folder)
 
 
+def test_protected_views(scene, run_program, folder, standing):
+    x, y = standing
+    typed = ["--observer", f"{x},{y}", "--target-class", 6, "--cell", 2, "--max-distance", 60]
+    run_program("protected-view", "tile.laz", *typed, "-o", "limits.tif", "--tops", "limit_tops.tif")
+    limits = scene.protected_view((x, y), target_class=6, cell=2, max_distance=60)
+    assert_same_raster(limits["height"], folder / "limits.tif", folder)
+    assert_same_raster(limits["top"], folder / "limit_tops.tif", folder)
+    assert np.isfinite(limits["height"].values).any()
+    with pytest.warns(belvedere.BelvedereWarning, match="nothing is protected"):
+        scene.protected_view((x, y), target_class=6, cell=4, max_distance=0.01)
+
+
+def test_views_from_windows(scene, run_program, folder, standing):
+    pandas = pytest.importorskip("pandas")
+    x, y = standing
+    z = float(scene.bounds[0][2])
+    rows = {
+        "x": [x, x + 1],
+        "y": [y, y + 1],
+        "z": [z + 6, z + 9],
+        "azimuth": [10, 200],
+        "width": [2, 1],
+        "height": [1, 1],
+    }
+    pandas.DataFrame(rows).to_csv(folder / "windows.csv", index=False)
+    run_program("window-views", "tile.laz", "--windows", "windows.csv", "--class", "2=water", "-o", "views.csv")
+    assert_same_views(scene.window_views(rows, classes={2: "water"}), pandas.read_csv(folder / "views.csv"))
+
+    # two upright faces of a wall, and a roof
+    corners = [(x, y, z + 5), (x + 4, y, z + 5), (x + 4, y, z + 8), (x, y, z + 8), (x + 4, y + 3, z + 8)]
+    lines = [f"v {a!r} {b!r} {c!r}" for a, b, c in corners] + ["o wall", "f 1 2 3", "f 1 3 4", "o roof", "f 4 3 5"]
+    (folder / "facades.obj").write_text("\n".join(lines))
+    flags = ["--windows", "facades.obj", "--object", "wall", "--directions", 300, "-o", "faces.csv"]
+    run_program("window-views", "tile.laz", *flags, "--buildings", "buildings.csv")
+    ours = scene.window_views(folder / "facades.obj", objects="wall", directions=300)
+    assert_same_views(ours, pandas.read_csv(folder / "faces.csv"))
+    assert ours["object"].tolist() == ["wall"] * 2 and ours.objects is not None
+    theirs = pandas.read_csv(folder / "buildings.csv")
+    assert theirs["name"].tolist() == ours.objects["object"].tolist()
+    for name in set(theirs) - {"name"}:
+        assert np.allclose(ours.objects[name], theirs[name], rtol=0, atol=6e-4), name
+
+
+def assert_same_views(ours, theirs):
+    """The columns of a table that the program wrote with two to four decimals."""
+    assert set(ours) - {"object"} <= set(theirs.columns)
+    for name in set(ours) - {"object"}:
+        assert np.allclose(ours[name], theirs[name], rtol=0, atol=6e-3, equal_nan=True), name
+    assert (ours["sky"] > 0).all() and np.allclose(ours.places, theirs[["x", "y", "z"]], rtol=0, atol=6e-4)
+
+
 def test_cameras(scene, run_program, folder, standing):
     """Grids and given places, fixed and turning, with private places and a camera that stays."""
     run_program(

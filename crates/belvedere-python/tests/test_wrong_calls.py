@@ -108,6 +108,13 @@ WRONG = {
     "observers": (lambda s, c, f: s.viewshed([[1.0]]), "observers", "(N, 2)"),
     "observer far away": (lambda s, c, f: s.viewshed((0, 0, 0)), "observers", "coordinates"),
     "two landmarks": (lambda s, c, f: s.landmark("a.obj", target_class=6), "landmark", "one of"),
+    "protected view of nothing": (lambda s, c, f: s.protected_view((1, 2)), "landmark", "one of"),
+    "class of windows": (
+        lambda s, c, f: s.window_views({"x": [1], "y": [1], "z": [1], "azimuth": [0]}, classes={1: "sky"}),
+        "classes", "'vegetation'"),
+    "spacing of a table of windows": (
+        lambda s, c, f: s.window_views({"x": [1], "y": [1], "z": [1], "azimuth": [0]}, spacing=1),
+        "spacing and objects", "mesh"),
     "radiation": (lambda s, c, f: s.irradiance(), "radiation", "weather="),
     "albedo": (lambda s, c, f: s.irradiance(clear_sky="ineichen", albedo=2), "albedo", "0 to 1"),
     "view": (lambda s, c, f: s.depth_map(), "view", "one of"),

@@ -6,6 +6,7 @@ mod seen;
 pub use names::{NamedView, views_by_name};
 pub use seen::{ClassMeanings, Seen, are_made_from, balls_seen};
 
+use crate::eyes::skip_unfit_eyes;
 use crate::rows::check_normals;
 use crate::sky_view::SkyDirections;
 use crate::targets::{Measure, Targets};
@@ -104,6 +105,19 @@ pub fn leave_out_level(targets: &mut Targets) -> usize {
     let is_level = |normal: &[f32; 3]| !(normal[2].abs() <= STEEPEST_NORMAL);
     let level = positions.iter_mut().zip(normals.iter().flatten()).filter(|(_, normal)| is_level(normal));
     level.map(|(position, _)| *position = [f32::NAN; 3]).count()
+}
+
+/// Leaves out the targets that lie deep in an obstacle and have no view: a window lies on a wall, whose balls reach a little beyond it. Returns how many.
+///
+/// # Errors
+/// [`Error::Cancelled`].
+pub fn leave_out_walled_up(targets: &mut Targets, scene: &MedialScene, control: &Control<'_>) -> Result<usize> {
+    let mut places: Vec<[f64; 3]> = targets.positions.iter().map(|place| place.map(f64::from)).collect();
+    let report = skip_unfit_eyes(scene, None, &mut places, control)?;
+    for skipped in &report.faults {
+        targets.positions[skipped.row] = [f32::NAN; 3];
+    }
+    Ok(report.skipped_inside_obstacle)
 }
 
 /// The figures of windows as measures: shares in percent, ranges in metres. Cosine-weighted shares have names that end in `_cos`; what is unproven is left out where `proof` says that pulses are not asked.

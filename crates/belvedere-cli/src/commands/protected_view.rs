@@ -85,12 +85,11 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
         })?;
     }
     if let Some(output) = &arguments.tops {
-        let scale = cloud.frame.crs.metres_per_unit_xyz()[2];
         let mut tops = found.limits.clone();
         for top in tops.values_mut() {
             #[expect(clippy::cast_possible_truncation, reason = "a height")]
-            let in_unit = ((f64::from(*top) + cloud.frame.origin[2]) / scale) as f32;
-            *top = in_unit;
+            let of_file = cloud.frame.file_from_local([0.0, 0.0, f64::from(*top)])[2] as f32;
+            *top = of_file;
         }
         stages.run("writing", 0, |_| write_heights(output, &tops, (&ground.grid, &cloud.frame), "maximum height"))?;
     }

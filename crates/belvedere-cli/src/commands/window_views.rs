@@ -12,13 +12,10 @@ use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::PointCloud;
-use belvedere::apps::eyes::skip_unfit_eyes;
-use belvedere::apps::targets::Targets;
 use belvedere::apps::window_views::{
-    ClassMeanings, Kinds, Proving, Seen, VIEW_DIRECTIONS, are_made_from, balls_seen, leave_out_level, view_directions,
-    view_measures, window_views,
+    ClassMeanings, Kinds, Proving, Seen, VIEW_DIRECTIONS, are_made_from, balls_seen, leave_out_level,
+    leave_out_walled_up, view_directions, view_measures, window_views,
 };
-use belvedere::query::MedialScene;
 use results::Found;
 
 /// Longest side of a piece of a face, metres: views change little over a window.
@@ -64,7 +61,8 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     let profile = arguments.scene.profile.into();
     let (blockers, _) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
     let count = asked.targets.asked_count();
-    let inside = leave_out_enclosed(&blockers, &mut asked.targets, &mut stages)?;
+    let inside =
+        stages.run("testing targets", 0, |control| leave_out_walled_up(&mut asked.targets, &blockers, control))?;
     if asked.targets.asked_count() == 0 {
         bail!(
             "{}: no window is left: all are outside the cloud, inside obstacles, or faces of roofs and floors. Are they in the coordinates of the cloud?",
@@ -154,16 +152,6 @@ fn cloud_of_classes(arguments: &WindowViews, scene: &mut Scene, stages: &mut Sta
         bail!("--classes-of {}: the balls were not built from this cloud", path.display());
     }
     Ok(cloud)
-}
-
-/// Leaves out places in an obstacle; returns how many.
-fn leave_out_enclosed(blockers: &MedialScene, targets: &mut Targets, stages: &mut Stages) -> Result<usize> {
-    let mut places: Vec<[f64; 3]> = targets.positions.iter().map(|place| place.map(f64::from)).collect();
-    let report = stages.run("testing targets", 0, |control| skip_unfit_eyes(blockers, None, &mut places, control))?;
-    for skipped in &report.faults {
-        targets.positions[skipped.row] = [f32::NAN; 3];
-    }
-    Ok(report.skipped_inside_obstacle)
 }
 
 /// Warns where most things seen are of no known kind.

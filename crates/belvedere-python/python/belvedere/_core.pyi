@@ -202,6 +202,23 @@ class Scene:
         unproven: str,
         progress: _Progress,
     ) -> tuple[_Columns, _Grid | None, list[str]]: ...
+    def protected_view(
+        self,
+        landmark: dict[str, Any],
+        observers: npt.NDArray[np.float64],
+        looking: dict[str, Any],
+        unproven: str,
+        progress: _Progress,
+    ) -> tuple[_Columns, _Grid, bool, list[str]]: ...
+    def window_views(
+        self, facades: dict[str, Any], place: dict[str, Any], unproven: str, progress: _Progress
+    ) -> tuple[
+        _Columns,
+        npt.NDArray[np.float64],
+        list[str],
+        tuple[list[str], list[tuple[str, npt.NDArray[Any]]]],
+        tuple[int, int, int, bool],
+    ]: ...
     def cameras(
         self,
         choice: dict[str, Any],

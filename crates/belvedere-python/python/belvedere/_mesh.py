@@ -59,10 +59,10 @@ class Mesh:
             raise wrong("objects", f"an array of shape {of.shape}", "give a number for each triangle, shape (T,)")
         system = None if crs is None else _core.Crs(crs)
         self._core = _core.Mesh(corners, faces, of, list(object_names), system)
-        self._sampling: tuple[float | None, int, bool] = (None, 0, False)
+        self._sampling: tuple[float | None, int, bool] = (None, 1, False)
 
     @classmethod
-    def _of(cls, core: _core.Mesh, sampling: tuple[float | None, int, bool] = (None, 0, False)) -> Mesh:
+    def _of(cls, core: _core.Mesh, sampling: tuple[float | None, int, bool] = (None, 1, False)) -> Mesh:
         mesh = cls.__new__(cls)
         mesh._core = core
         mesh._sampling = sampling
@@ -86,7 +86,7 @@ class Mesh:
         """
         return cls._of(_core.Mesh.read(native_source(source, name)))
 
-    def sampled(self, *, spacing: float | None = None, seed: int = 0, facing: str = "normals") -> Mesh:
+    def sampled(self, *, spacing: float | None = None, seed: int = 1, facing: str = "normals") -> Mesh:
         """The same mesh, sampled in another way where its faces are targets.
 
         Parameters

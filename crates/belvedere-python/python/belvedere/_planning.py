@@ -1,4 +1,4 @@
-"""Questions of planners: landmarks, comfort, and how high one may build."""
+"""Questions of planners: landmarks, comfort, views from windows, and how high one may build."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from ._inputs import (
 )
 from ._mesh import Mesh, native_mesh
 from ._outlook import _OBSERVERS, _looking, _warn
-from ._raster import Raster
+from ._raster import Raster, Rasters
 from ._sunlight import _DIRECTION, _days, _place
 from ._table import Table
 from ._targets import RastersOrTable, measures, raster
@@ -33,7 +33,7 @@ _LINE = "give corners of shape (N, 2) or (N, 3)"
 
 
 class Planning:
-    """Landmarks, comfort, and how high one may build."""
+    """Landmarks, comfort, views from windows, and how high one may build."""
 
     _core: _core.Scene
 
@@ -49,7 +49,7 @@ class Planning:
         cell: float | None = None,
         ground: str | None = None,
         spacing: float | None = None,
-        seed: int = 0,
+        seed: int = 1,
         max_distance: float | None = None,
         unproven: str = "report",
         curvature: str | None = None,
@@ -101,21 +101,7 @@ class Planning:
         >>> bool(0 <= views["visible_share"][0] <= 1)
         True
         """
-        check_finite(spacing=spacing)
-        given = sum(what is not None for what in (mesh, target_class, target_polygon))
-        if given != 1:
-            raise wrong("landmark", f"{given} given", "give one of mesh, target_class and target_polygon")
-        ring = None
-        if target_polygon is not None:
-            ring = [[(x, y) for x, y, _ in _line(target_polygon, "target_polygon")]]
-        what: dict[str, Any] = {
-            "mesh": None if mesh is None else native_mesh(mesh),
-            "objects": as_list(objects),
-            "spacing": spacing,
-            "seed": seed,
-            "class": target_class,
-            "polygon": ring,
-        }
+        what = _landmark(mesh, target_class, target_polygon, objects, spacing, seed)
         looking = _looking(
             observer_height=observer_height,
             cell=cell,
@@ -132,6 +118,180 @@ class Planning:
         if places is not None:
             return Table({name: values for name, _, values in columns}, places=places, crs=self._core.crs.text)
         return measures((columns, grid, None), self._core.crs, None)
+
+    def protected_view(
+        self,
+        observers: npt.ArrayLike,
+        mesh: str | os.PathLike[str] | Mesh | None = None,
+        *,
+        target_class: int | None = None,
+        target_polygon: npt.ArrayLike | None = None,
+        objects: str | list[str] = [],
+        observer_height: float | None = None,
+        cell: float | None = None,
+        ground: str | None = None,
+        spacing: float | None = None,
+        seed: int = 1,
+        max_distance: float | None = None,
+        unproven: str = "report",
+        progress: Progress = None,
+    ) -> Rasters:
+        """How high one may build without entering the view of a landmark.
+
+        Parameters
+        ----------
+        observers : array_like, shape (2,), (3,), (N, 2) or (N, 3)
+            From where the landmark is seen today. Without z, eyes are `observer_height` above the ground.
+        mesh, target_class, target_polygon, objects, spacing, seed : optional
+            The landmark, as for `landmark`.
+        observer_height : float, optional
+            Metres; 1.7 if not given.
+        cell : float, optional
+            Side of a cell, metres; 0.5 if not given, more for large scenes.
+        max_distance : float, optional
+            How far observers look, metres.
+        unproven : {'report', 'as-visible', 'as-blocked'}
+            Lines that nothing blocks but that cross space that no pulse came near are protected, unless they count as
+            blocked.
+        ground, progress : optional
+            As for `viewshed`.
+
+        Returns
+        -------
+        Rasters
+            ``height``, the greatest height above the ground, metres; ``top``, the same in the vertical system of the
+            cloud. NaN where no protected view passes.
+
+        Raises
+        ------
+        BelvedereError
+            Unless one landmark is given, where no observer is left, and for parameters out of range.
+
+        Warns
+        -----
+        BelvedereWarning
+            Of observers that are skipped, and if none sees the landmark.
+
+        References
+        ----------
+        docs/methods/protected-views.md
+
+        Examples
+        --------
+        >>> limits = scene.protected_view(standing, target_class=6, cell=4)
+        >>> bool(np.nanmin(limits["height"].values) >= 0)
+        True
+        """
+        what = _landmark(mesh, target_class, target_polygon, objects, spacing, seed)
+        looking = _looking(observer_height=observer_height, cell=cell, ground=ground, max_distance=max_distance)
+        places = map_places(observers, "observers", _OBSERVERS)
+        columns, grid, is_protected, skipped = self._core.protected_view(
+            what, places, looking, unproven, reporter(progress)
+        )
+        _warn(skipped)
+        if not is_protected:
+            _warn(["no observer sees any part of the landmark today: nothing is protected"])
+        nan = float("nan")
+        crs = self._core.crs
+        return Rasters(
+            {name: raster(values, grid, crs, name=name, description=text, nodata=nan) for name, text, values in columns}
+        )
+
+    def window_views(
+        self,
+        windows: Mapping[str, npt.ArrayLike] | str | os.PathLike[str] | Mesh,
+        *,
+        objects: str | list[str] = [],
+        spacing: float | None = None,
+        seed: int = 1,
+        directions: int | None = None,
+        classes: Mapping[int, str] | None = None,
+        unproven: str = "report",
+        grid_north: bool = False,
+        progress: Progress = None,
+    ) -> Table:
+        """What is seen from windows: sky, vegetation, water, buildings and ground, and how far.
+
+        Parameters
+        ----------
+        windows : mapping of str to array_like, path or Mesh
+            Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt`` (degrees, 90 upright), ``width`` and
+            ``height`` (metres). Or a mesh, whose faces are windows; roofs and floors have no view.
+        objects : str or list of str, optional
+            Objects of the mesh; all if not given.
+        spacing, seed : optional
+            Longest side of the pieces of a face, metres (2 if not given), and the seed of the places in them.
+        directions : int, optional
+            Number of directions before each place; 1000 if not given.
+        classes : mapping of int to str, optional
+            What a class of points is: 'vegetation', 'water', 'building', 'ground' or 'other'. Classes that are not
+            given mean what ASPRS says.
+        unproven : {'report', 'as-visible'}
+            Whether the column ``unproven`` is computed.
+        grid_north, progress : optional
+            As for `shadow`.
+
+        Returns
+        -------
+        Table
+            A row for each window: its azimuth and tilt, percentages of the view (``sky``, ``vegetation``, ``water``,
+            ``building``, ``ground``, ``other``, ``beyond``; with ``_cos`` weighted by the cosine to the window),
+            ``mean_range_m``, ``median_range_m`` and ``unproven``. NaN for windows without a view. Of a mesh with
+            objects also ``object``, and the attribute `objects` has the mean of each object.
+
+        Raises
+        ------
+        BelvedereError
+            For windows without a place or an azimuth, and for parameters out of range.
+
+        Warns
+        -----
+        BelvedereWarning
+            Of windows outside the cloud or in an obstacle, and of a scene whose points have no classes.
+
+        References
+        ----------
+        docs/methods/window-views.md
+
+        Examples
+        --------
+        >>> x, y, z = eye
+        >>> view = scene.window_views({"x": [x], "y": [y], "z": [z], "azimuth": [180]}, directions=200)
+        >>> kinds = ("sky", "vegetation", "water", "building", "ground", "other", "beyond")
+        >>> round(float(sum(view[kind][0] for kind in kinds)), 3)
+        100.0
+        """
+        check_finite(spacing=spacing)
+        if unproven not in ("report", "as-visible"):
+            raise wrong("unproven", f"'{unproven}'", "use 'report' or 'as-visible': a view has no targets to block")
+        is_table = isinstance(windows, Mapping)
+        if is_table and (spacing is not None or as_list(objects)):
+            raise wrong("spacing and objects", "given", "they apply only to a mesh; leave them out")
+        facades: dict[str, Any] = {
+            "windows": _windows(windows) if isinstance(windows, Mapping) else [],
+            "mesh": None if isinstance(windows, Mapping) else native_mesh(windows),
+            "objects": as_list(objects),
+            "spacing": spacing,
+            "seed": seed,
+            "directions": directions,
+            "classes": [] if classes is None else _classes(classes),
+        }
+        columns, places, names, buildings, (outside, inside, count, has_classes) = self._core.window_views(
+            facades, _place(None, grid_north=grid_north), unproven, reporter(progress)
+        )
+        if outside:
+            _warn([f"{outside} of {count} places of windows are outside the cloud, where nothing is known"])
+        if inside and is_table:
+            _warn([f"{inside} of {count} places of windows are inside an obstacle and have no view"])
+        if not has_classes:
+            _warn(["the classes of points are unknown: only vegetation is known, from pulses"])
+        found = {"object": np.array(names, object)} if names else {}
+        found |= {name: values for name, _, values in columns}
+        objects_table = None
+        if names:
+            of_names, of_columns = buildings
+            objects_table = Table({"object": np.array(of_names, object), **dict(of_columns)})
+        return Table(found, places=places, crs=self._core.crs.text, objects=objects_table)
 
     def comfort(
         self,
@@ -318,6 +478,39 @@ def _line(value: Any, what: str, least: int = 1) -> list[tuple[float, float, flo
     """Corners; z is NaN where it follows from the ground."""
     rows = map_places(value, what, f"{_LINE}, {least} at least", least)
     return [(float(x), float(y), float(z)) for x, y, z in rows]
+
+
+def _landmark(
+    mesh: str | os.PathLike[str] | Mesh | None,
+    target_class: int | None,
+    target_polygon: npt.ArrayLike | None,
+    objects: str | list[str],
+    spacing: float | None,
+    seed: int,
+) -> dict[str, Any]:
+    """The landmark as the native part takes it."""
+    check_finite(spacing=spacing)
+    given = sum(what is not None for what in (mesh, target_class, target_polygon))
+    if given != 1:
+        raise wrong("landmark", f"{given} given", "give one of mesh, target_class and target_polygon")
+    ring = None
+    if target_polygon is not None:
+        ring = [[(x, y) for x, y, _ in _line(target_polygon, "target_polygon")]]
+    return {
+        "mesh": None if mesh is None else native_mesh(mesh),
+        "objects": as_list(objects),
+        "spacing": spacing,
+        "seed": seed,
+        "class": target_class,
+        "polygon": ring,
+    }
+
+
+def _classes(meanings: Mapping[int, str]) -> list[tuple[int, str]]:
+    for class_ in meanings:
+        if int(class_) != class_ or not 0 <= class_ <= 255:
+            raise wrong("classes", repr(class_), "each is the class of points, 0 to 255")
+    return [(int(class_), name) for class_, name in meanings.items()]
 
 
 def _windows(columns: Mapping[str, npt.ArrayLike]) -> list[list[float]]:
