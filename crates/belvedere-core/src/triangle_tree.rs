@@ -72,6 +72,11 @@ impl TriangleTree {
         });
     }
 
+    /// Calls `visit` with the row of every triangle whose box may meet the box between two corners, local metres, in no particular order.
+    pub fn each_near(&self, low: [f64; 3], high: [f64; 3], visit: impl FnMut(usize)) {
+        self.index.near(low, high, visit);
+    }
+
     fn range(&self, crossing: &Crossing, row: usize, ray: &Ray) -> Option<f64> {
         let range = crossing.range(self.triangles.get(row)?)?;
         (ray.ranges[0] <= range && range <= ray.ranges[1]).then_some(range)

@@ -9,16 +9,16 @@ use crate::sun::Place;
 use crate::targets::{Asked, Cells, Grid, Wanted, grid_of, ground_cloud, ground_points};
 use crate::work::run;
 use belvedere::apps::cameras::{
-    CAMERA_HEIGHT, CAMERA_TARGET_HEIGHT, CoverageParams, CoverageTable, Goal, Lens, Level, Motion, Mount,
-    MountingParams, Placement, PlacementParams, Pose, ROOF_CAMERA_HEIGHT, counted_weights, coverage, ground_places,
-    leave_out_private, place_cameras, roof_places,
+    CAMERA_HEIGHT, CAMERA_TARGET_HEIGHT, CoverageParams, CoverageTable, FREE_FRESNEL_SHARE, FresnelZone, Goal, Lens,
+    Level, Motion, Mount, MountingParams, Placement, PlacementParams, Pose, ROOF_CAMERA_HEIGHT, counted_weights,
+    coverage, ground_places, leave_out_private, place_cameras, roof_places,
 };
 use belvedere::apps::eyes::{EyesReport, skip_unfit_eyes};
 use belvedere::apps::landmark::observer_cell_for;
 use belvedere::apps::targets::{CellLevel, Targets, set_on_ground};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundPoints};
-use belvedere::query::{EarthParams, MedialScene};
+use belvedere::query::{EarthParams, MedialScene, RadioWave};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -59,12 +59,14 @@ pub(crate) struct Choice {
     search_limit: Option<usize>,
     curvature: Option<String>,
     refraction: Option<f64>,
+    frequency: Option<f64>,
+    fresnel_percent: Option<f64>,
 }
 
 /// What is checked before the work begins.
 struct Params {
     mounting: MountingParams,
-    density: f64,
+    coverage: CoverageParams,
     earth: EarthParams,
     goal: Goal,
 }
@@ -105,12 +107,17 @@ impl Choice {
             (None, Some(percent)) => Goal::Coverage(percent / 100.0),
             _ => return Err(wrong("count and coverage_percent", "not one of them", "give one of them")),
         };
-        Ok(Params {
-            mounting,
-            density: lens.required_density(density).map_err(exception)?,
-            earth: earth(self.curvature.as_deref(), self.refraction)?,
-            goal,
-        })
+        let earth = earth(self.curvature.as_deref(), self.refraction)?;
+        let share = self.fresnel_percent.map_or(FREE_FRESNEL_SHARE, |percent| percent / 100.0);
+        let zone = match self.frequency {
+            Some(ghz) => Some(RadioWave::of_frequency(ghz).and_then(|wave| FresnelZone::new(wave, share))),
+            None => None,
+        };
+        let coverage = CoverageParams::default()
+            .with_density(lens.required_density(density).map_err(exception)?)
+            .with_earth(earth)
+            .with_zone(zone.transpose().map_err(exception)?);
+        Ok(Params { mounting, coverage, earth, goal })
     }
 
     /// Candidates and cameras that stay, with those that cannot look left out or NaN, and what is said of these.
@@ -200,7 +207,8 @@ impl Scene {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Answer<'py>> {
         let unproven = unproven_as(unproven)?;
-        let Params { mounting, density, earth, goal } = choice.params()?;
+        let Params { mounting, coverage: seen_as, earth, goal } = choice.params()?;
+        let seen_as = seen_as.with_unproven(unproven);
         let inner = Arc::clone(&self.0);
         let north = place.grid_north_of(&inner);
         let points = ground_points(targets.ground())?;
@@ -242,9 +250,8 @@ impl Scene {
             }
             let poses: Vec<Pose> = standing.existing.iter().chain(&candidates).copied().collect();
             let cameras: Vec<_> = poses.iter().map(|pose| pose.camera).collect();
-            let params = CoverageParams::default().with_density(density).with_earth(earth).with_unproven(unproven);
             let (table, _) = control.stage("testing lines of sight", cameras.len(), || {
-                coverage(&scene, &cameras, &targets, &params, control)
+                coverage(&scene, &cameras, &targets, &seen_as, control)
             })?;
             let params = PlacementParams::new(goal)
                 .with_existing((0..standing.existing.len()).collect())

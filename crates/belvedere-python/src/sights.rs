@@ -1,13 +1,13 @@
 //! Who sees what: pairs, and many targets of one eye.
 
 use crate::arrays::{Places, to_1d, to_2d};
-use crate::errors::wrong;
+use crate::errors::{exception, wrong};
 use crate::mesh::{Faces, rows_of};
 use crate::scene::{Scene, unproven_as};
 use crate::targets::{Asked, Wanted};
 use crate::work::run;
 use belvedere::query::{
-    Answer, Curvature, EarthParams, MeshTargetParams, SurfacePieces, UnprovenAs, Viewer, seen_faces,
+    Answer, Curvature, EarthParams, MeshTargetParams, RadioWave, SurfacePieces, UnprovenAs, Viewer, seen_faces,
 };
 use belvedere::results::FaceRows;
 use pyo3::prelude::*;
@@ -25,7 +25,7 @@ pub(crate) fn earth(curvature: Option<&str>, refraction: Option<f64>) -> PyResul
         Some(other) => return Err(wrong("curvature", &format!("'{other}'"), "use 'auto', 'on' or 'off'")),
     };
     let params = EarthParams { curvature, refraction: refraction.unwrap_or(usual.refraction), ..usual };
-    params.validate().map_err(crate::errors::exception)?;
+    params.validate().map_err(exception)?;
     Ok(params)
 }
 
@@ -94,9 +94,11 @@ impl Scene {
         unproven: &str,
         curvature: Option<&str>,
         refraction: Option<f64>,
+        frequency: Option<f64>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let unproven = unproven_as(unproven)?;
+        let wave = frequency.map(RadioWave::of_frequency).transpose().map_err(exception)?;
         let earth = earth(curvature, refraction)?;
         let [observers, targets] = [observers.rows("observers")?, targets.rows("targets")?];
         if observers.len() != targets.len() {
@@ -105,13 +107,20 @@ impl Scene {
         }
         let inner = Arc::clone(&self.0);
         let of_work = Arc::clone(&inner);
-        let sights = run(py, progress, move |control| {
+        let (sights, fresnel) = run(py, progress, move |control| {
             let frame = of_work.frame();
             let local = |place: [f64; 3]| frame.local_from_file(place);
             let pairs: Vec<[[f64; 3]; 2]> =
                 observers.into_iter().zip(targets).map(|(a, b)| [local(a), local(b)]).collect();
             let scene = of_work.blockers(unproven, control)?;
-            control.stage("testing lines of sight", pairs.len(), || scene.lines_of_sight(&pairs, &earth, control))
+            let sights = control
+                .stage("testing lines of sight", pairs.len(), || scene.lines_of_sight(&pairs, &earth, control))?;
+            let of_wave = |wave| {
+                control.stage("testing Fresnel zones", pairs.len(), || {
+                    scene.fresnel_clearances(&pairs, wave, &earth, control)
+                })
+            };
+            Ok((sights, wave.map(of_wave).transpose()?))
         })?;
         let dict = PyDict::new(py);
         let answer = |sight: &Option<belvedere::query::LineOfSight>| {
@@ -130,6 +139,10 @@ impl Scene {
                 "unproven_m",
                 to_1d(py, each().map(|i| free(i).map_or(f64::NAN, |sight| sight.unproven_length)).collect()),
             )?;
+        }
+        if let Some(free) = fresnel {
+            let percent = free.into_iter().map(|free| 100.0 * free).collect();
+            dict.set_item("fresnel_free_percent", to_1d::<f64>(py, percent))?;
         }
         let place = |i: usize| block(i).map_or([f64::NAN; 3], |block| inner.frame().file_from_local(block.place));
         dict.set_item("block", to_2d(py, &each().map(place).collect::<Vec<_>>())?)?;

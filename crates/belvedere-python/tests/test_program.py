@@ -380,6 +380,12 @@ def test_cameras(scene, run_program, folder, standing):
             posts, private=(x + 3, y + 9), coverage_percent=30, cell=4, density="none", headings=6, tilts_deg=(10, 40)
         )
     assert_same_raster(some.counts, folder / "some.tif", folder)
+    radio = ["--on-roofs", 12, "--fov", 360, "--count", 2, "--frequency-ghz", 2.4, "--fresnel-percent", 80]
+    run_program("cameras", "tile.laz", *radio, "--max-distance", 40, "-o", "masts.tif")
+    masts = {"spacing": 12, "count": 2, "fov_deg": 360, "max_distance": 40}
+    ours = scene.cameras("roofs", **masts, frequency_ghz=2.4, fresnel_percent=80)
+    assert_same_raster(ours.counts, folder / "masts.tif", folder)
+    assert ours.coverage_percent < scene.cameras("roofs", **masts).coverage_percent
     assert some.coverage_percent >= 30 and some.least_possible_cameras <= len(some.covered)
     more = scene.cameras(posts[2:], count=1, cell=4, density="none", existing=some.cameras, headings=6)
     assert more.existing_only_percent == pytest.approx(some.coverage_percent, abs=0.2)

@@ -115,6 +115,10 @@ WRONG = {
     "spacing of a table of windows": (
         lambda s, c, f: s.window_views({"x": [1], "y": [1], "z": [1], "azimuth": [0]}, spacing=1),
         "spacing and objects", "mesh"),
+    "frequency": (
+        lambda s, c, f: s.line_of_sight((1, 2, 3), (4, 5, 6), frequency_ghz=0), "frequency of a radio link", "1000"),
+    "Fresnel zone without a frequency": (
+        lambda s, c, f: s.cameras("roofs", count=1, fresnel_percent=60), "fresnel_percent", "frequency_ghz"),
     "radiation": (lambda s, c, f: s.irradiance(), "radiation", "weather="),
     "albedo": (lambda s, c, f: s.irradiance(clear_sky="ineichen", albedo=2), "albedo", "0 to 1"),
     "view": (lambda s, c, f: s.depth_map(), "view", "one of"),

@@ -26,5 +26,7 @@ pub use candidates::{
     counted_weights, ground_places, keep_within, roof_places,
 };
 pub use placement::{Goal, Placement, PlacementParams, place_cameras};
-pub use sights::{CoverageParams, CoverageReport, coverage, leave_out_private, sees_private};
+pub use sights::{
+    CoverageParams, CoverageReport, FREE_FRESNEL_SHARE, FresnelZone, coverage, leave_out_private, sees_private,
+};
 pub use table::CoverageTable;

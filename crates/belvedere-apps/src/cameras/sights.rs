@@ -5,9 +5,9 @@ use super::candidates::Pose;
 use super::table::{CoverageTable, check_size};
 use crate::targets::Targets;
 use crate::viewshed::{Observer, SightLimits, ViewshedParams, viewshed};
-use belvedere_core::query::{Answer, EarthParams, MedialScene, UnprovenAs};
-use belvedere_data::Result;
+use belvedere_core::query::{Answer, EarthParams, MedialScene, RadioWave, UnprovenAs};
 use belvedere_data::control::Control;
+use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -21,17 +21,52 @@ pub struct CoverageParams {
     pub earth: EarthParams,
     /// What to make of lines of sight that nothing blocks but that are not proven: they cover if they count as visible. Default: reported, which covers nothing.
     pub unproven: UnprovenAs,
+    /// The Fresnel zone that must be free too. Default: none.
+    pub zone: Option<FresnelZone>,
 }
+
+/// How much of the first Fresnel zone of a radio link must be free.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FresnelZone {
+    /// The wave of the link.
+    wave: RadioWave,
+    /// Share of the radius of the zone, above 0 to 1.
+    share: f64,
+}
+
+impl FresnelZone {
+    /// The zone of a link with this wave, of which `share` of the radius must be free: above 0 to 1, usually [`FREE_FRESNEL_SHARE`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for another share.
+    pub fn new(wave: RadioWave, share: f64) -> Result<Self> {
+        if !(share > 0.0 && share <= 1.0) {
+            return Err(Error::InvalidParameter {
+                name: "share of the Fresnel zone that must be free",
+                value: format!("{} %", 100.0 * share),
+                expected: "above 0 to 100 %",
+            });
+        }
+        Ok(Self { wave, share })
+    }
+}
+
+/// Share of the radius of the first Fresnel zone that usually must be free.
+///
+/// # Source
+/// ITU-R P.530-18, section 2.2.
+pub const FREE_FRESNEL_SHARE: f64 = 0.6;
 
 belvedere_data::setters!(CoverageParams {
     with_density(density: f64),
     with_earth(earth: EarthParams),
     with_unproven(unproven: UnprovenAs),
+    with_zone(zone: Option<FresnelZone>),
 });
 
 impl Default for CoverageParams {
     fn default() -> Self {
-        Self { density: 0.0, earth: EarthParams::default(), unproven: UnprovenAs::Reported }
+        Self { density: 0.0, earth: EarthParams::default(), unproven: UnprovenAs::Reported, zone: None }
     }
 }
 
@@ -44,6 +79,9 @@ pub struct CoverageReport {
     pub visible: usize,
     /// Those that nothing blocks, but that are not proven.
     pub unproven: usize,
+    /// Of the visible, those whose Fresnel zone is not free; `None` where none is asked about.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fresnel_zone_blocked: Option<usize>,
 }
 
 /// Which of `cameras` cover which of `targets`; control counts cameras. Cameras at one place should follow each other: their lines of sight are asked once.
@@ -62,8 +100,11 @@ pub fn coverage(
     let groups: Vec<&[Camera]> = cameras.chunk_by(|a, b| a.eye == b.eye).collect();
     let rows: Vec<(Vec<u64>, CoverageReport)> =
         groups.par_iter().map(|group| asked.rows(group, control)).collect::<Result<_>>()?;
-    let mut report = CoverageReport::default();
+    let mut report = CoverageReport { fresnel_zone_blocked: params.zone.map(|_| 0), ..CoverageReport::default() };
     for (_, of_group) in &rows {
+        if let (Some(all), Some(blocked)) = (&mut report.fresnel_zone_blocked, of_group.fresnel_zone_blocked) {
+            *all += blocked;
+        }
         report.lines_of_sight += of_group.lines_of_sight;
         report.visible += of_group.visible;
         report.unproven += of_group.unproven;
@@ -166,17 +207,28 @@ impl Asked<'_> {
         let observer = Observer { eye, ..Observer::default() };
         let seen = viewshed(self.scene, &[observer], &positions, &params, &Control::none())?;
         report.lines_of_sight = positions.len();
-        for (&row, answer) in in_picture.iter().zip(&seen.answers) {
+        let mut blocked_zones = 0;
+        for ((&row, position), answer) in in_picture.iter().zip(&positions).zip(&seen.answers) {
             report.visible += usize::from(*answer == Answer::Visible);
             report.unproven += usize::from(*answer == Answer::Unproven);
-            if *answer != Answer::Visible {
+            let is_zone_blocked = *answer == Answer::Visible && self.is_zone_blocked(eye, position.map(f64::from));
+            blocked_zones += usize::from(is_zone_blocked);
+            if *answer != Answer::Visible || is_zone_blocked {
                 for row_bits in bits.chunks_exact_mut(words) {
                     row_bits[row as usize / 64] &= !(1 << (row % 64));
                 }
             }
         }
+        report.fresnel_zone_blocked = self.params.zone.map(|_| blocked_zones);
         control.advance(cameras.len());
         Ok((bits, report))
+    }
+
+    /// Whether something reaches into the Fresnel zone that must be free.
+    fn is_zone_blocked(&self, eye: [f64; 3], target: [f64; 3]) -> bool {
+        self.params.zone.is_some_and(|FresnelZone { wave, share }| {
+            !(self.scene.fresnel_clearance([eye, target], wave, &self.params.earth, share) >= share)
+        })
     }
 
     /// The targets of the strip from north to south in which the cameras reach anything.

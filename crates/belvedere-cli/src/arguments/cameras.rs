@@ -1,6 +1,8 @@
 //! Flags of camera placement.
 
-use super::{Earth, GivingWay, GroundChoice, North, SceneInput, above_zero, at_least_one, at_most, finite, length};
+use super::{
+    Earth, GivingWay, GroundChoice, North, Radio, SceneInput, above_zero, at_least_one, at_most, finite, length,
+};
 use belvedere::apps::cameras::Level;
 use clap::Args;
 use std::path::PathBuf;
@@ -38,6 +40,11 @@ pub(crate) struct Cameras {
     pub(crate) targets: CameraTargets,
     #[command(flatten)]
     pub(crate) earth: Earth,
+    #[command(flatten)]
+    pub(crate) radio: Radio,
+    /// Percentage of the radius of the first Fresnel zone that must be free, above 0 to 100 [default: 60, as ITU-R P.530]
+    #[arg(long, value_name = "PERCENT", requires = "frequency", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Lines of sight")]
+    pub(crate) fresnel_percent: Option<f64>,
     #[command(flatten)]
     pub(crate) giving_way: GivingWay,
     #[command(flatten)]

@@ -2,7 +2,7 @@
 
 use super::{North, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, finite, length};
 use belvedere::ground::GroundPoints;
-use belvedere::query::{Curvature, MOST_RANDOM_PAIRS};
+use belvedere::query::{Curvature, MOST_RANDOM_PAIRS, RadioWave};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -15,6 +15,8 @@ pub(crate) struct LineOfSight {
     pub(crate) heights: EndHeights,
     #[command(flatten)]
     pub(crate) earth: Earth,
+    #[command(flatten)]
+    pub(crate) radio: Radio,
     #[command(flatten)]
     pub(crate) giving_way: GivingWay,
     /// With --observer and --target: terrain and obstacles along the line (.csv .png)
@@ -33,7 +35,7 @@ pub(crate) struct LineOfSight {
     /// Table with a row for each pair, in their order (.csv)
     ///
     /// Columns: ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line, 4 outside the cloud), first_block_range_m from A, unproven_m (not with
-    /// --unproven as-visible, which is faster), block_x, block_y, block_z, and block_ball and block_source: the rows of the first
+    /// --unproven as-visible, which is faster), fresnel_free_percent (with --frequency-ghz), block_x, block_y, block_z, and block_ball and block_source: the rows of the first
     /// blocking ball and of the point that it touches.
     #[arg(short, long, value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
     pub(crate) output: Option<PathBuf>,
@@ -72,6 +74,26 @@ pub(crate) struct EndHeights {
     /// Height of targets without Z above the ground in metres [default: 0]
     #[arg(long, value_name = "M", value_parser = finite::<f64>, conflicts_with = "random", allow_negative_numbers = true)]
     pub(crate) target_height: Option<f64>,
+}
+
+/// Radio links.
+#[derive(Args)]
+#[command(next_help_heading = "Lines of sight")]
+pub(crate) struct Radio {
+    /// Frequency of a radio link in GHz, 0.001 to 1000, to test its first Fresnel zone
+    ///
+    /// The zone is the space around the line of sight that must be free too.
+    #[arg(long = "frequency-ghz", value_name = "GHZ", value_parser = above_zero::<f64>, allow_negative_numbers = true)]
+    pub(crate) frequency: Option<f64>,
+}
+
+impl Radio {
+    pub(crate) fn wave(&self) -> anyhow::Result<Option<RadioWave>> {
+        self.frequency
+            .map(RadioWave::of_frequency)
+            .transpose()
+            .map_err(|error| Usage(format!("--frequency-ghz: {error}")).into())
+    }
 }
 
 #[derive(Args)]

@@ -12,7 +12,8 @@ use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::cameras::{
-    CoverageParams, Goal, Placement, PlacementParams, Pose, counted_weights, coverage, leave_out_private, place_cameras,
+    CoverageParams, FREE_FRESNEL_SHARE, FresnelZone, Goal, Placement, PlacementParams, Pose, counted_weights, coverage,
+    leave_out_private, place_cameras,
 };
 use belvedere::apps::landmark::observer_cell_for;
 use belvedere::ground::MapGrid;
@@ -22,6 +23,9 @@ use std::path::PathBuf;
 pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     check(arguments)?;
     let earth = arguments.earth.params()?;
+    let share = arguments.fresnel_percent.map_or(FREE_FRESNEL_SHARE, |percent| percent / 100.0);
+    let zone = arguments.radio.wave()?.map(|wave| FresnelZone::new(wave, share)).transpose();
+    let zone = flagged("--fresnel-percent", zone)?;
     let lens = places::lens(&arguments.lens)?;
     let mounting = places::mounting(&arguments.lens, lens);
     let mut stages = Stages::new(global);
@@ -69,7 +73,8 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     let cameras: Vec<_> = poses.iter().map(|pose| pose.camera).collect();
     let density =
         flagged("--density, --max-distance", lens.required_density(arguments.lens.density.map(|density| density.0)))?;
-    let params = CoverageParams::default().with_density(density).with_earth(earth).with_unproven(unproven);
+    let params =
+        CoverageParams::default().with_density(density).with_earth(earth).with_unproven(unproven).with_zone(zone);
     let (table, report) = stages.run("testing lines of sight", cameras.len(), |control| {
         coverage(&blockers, &cameras, &targets, &params, control)
     })?;

@@ -29,6 +29,7 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
         check_output("--profile-out", profile, &["csv", "png"])?;
     }
     let earth = arguments.earth.params()?;
+    let wave = arguments.radio.wave()?;
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     // ends may need the ground
@@ -50,6 +51,12 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
         scene.model = scene.model.without_pulses();
     }
     let sights = stages.run("answering queries", 0, |control| blockers.lines_of_sight(&pairs, &earth, control))?;
+    let fresnel = match wave {
+        Some(wave) => Some(stages.run("testing Fresnel zones", pairs.len(), |control| {
+            blockers.fresnel_clearances(&pairs, wave, &earth, control)
+        })?),
+        None => None,
+    };
     let settled = |sight: &Option<belvedere::query::LineOfSight>| {
         sight.map_or(Answer::OutsideView, |sight| unproven_as.settle(sight.answer))
     };
@@ -82,11 +89,17 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
                 one.add("unproven_m", rounded(sight.unproven_length, 3));
             }
         }
+        if let Some(free) = fresnel.as_ref().and_then(|all| all.first()).filter(|free| free.is_finite()) {
+            one.add("fresnel_free_percent", rounded(100.0 * free, 1));
+        }
         one.add("note", enclosure_note(&blockers, *observer, "the observer").into_iter().collect::<Vec<_>>());
         summary.add("line", one);
     }
     if let Some(output) = &arguments.output {
-        stages.run("writing", 0, |_| write(output, (&scene, &blockers), &pairs, &rows, &sights, &answers))?;
+        stages.run("writing", 0, |_| {
+            let found = Found { sights: &sights, answers: &answers, fresnel: fresnel.as_deref() };
+            write(output, (&scene, &blockers), &pairs, &rows, &found)
+        })?;
         summary.add("written", output.display().to_string());
     }
     if let (Some(output), [pair]) = (&arguments.profile_out, &pairs[..]) {
@@ -180,13 +193,20 @@ fn set_ends_on_ground(
     Ok(())
 }
 
+/// What is known of each pair.
+struct Found<'a> {
+    sights: &'a [Option<belvedere::query::LineOfSight>],
+    answers: &'a [Answer],
+    /// Free share of the first Fresnel zone.
+    fresnel: Option<&'a [f64]>,
+}
+
 fn write(
     output: &Path,
     (scene, blockers): (&Scene, &MedialScene),
     pairs: &[[[f64; 3]; 2]],
     rows: &TextRows,
-    sights: &[Option<belvedere::query::LineOfSight>],
-    answers: &[Answer],
+    &Found { sights, answers, fresnel }: &Found<'_>,
 ) -> Result<()> {
     let ends: [Vec<f64>; 6] = std::array::from_fn(|column| {
         pairs.iter().map(|pair| scene.cloud.frame.file_from_local(pair[column / 3])[column % 3]).collect()
@@ -214,6 +234,10 @@ fn write(
     columns.push(("first_block_range_m", Cells::Real(&range, 3)));
     if scene.model.pulses().is_some() {
         columns.push(("unproven_m", Cells::Real(&unproven, 3)));
+    }
+    let free: Option<Vec<f64>> = fresnel.map(|all| all.iter().map(|free| 100.0 * free).collect());
+    if let Some(free) = &free {
+        columns.push(("fresnel_free_percent", Cells::Real(free, 1)));
     }
     columns.extend(["block_x", "block_y", "block_z"].into_iter().zip(&place).map(|(n, v)| (n, Cells::Real(v, 3))));
     columns.push(("block_ball", Cells::Whole(&balls)));

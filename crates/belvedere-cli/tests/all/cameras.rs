@@ -109,6 +109,27 @@ fn existing_cameras_private_places_and_weights_change_what_is_chosen() {
 }
 
 #[test]
+fn a_mast_covers_less_where_its_fresnel_zone_must_be_free_too() {
+    let place = place();
+    let mast = format!("{HOUSE} --candidates posts.csv --fov 360 --max-distance 30 --count 2 -o out.csv");
+    let covered = |flags: &str| number(&place.summary(&format!("{mast} {flags}"))["coverage"]["coverage_percent"]);
+    // a longer wave has a wider zone, and a wider part of it reaches more
+    let all = [
+        covered(""),
+        covered("--frequency-ghz 60"),
+        covered("--frequency-ghz 2.4"),
+        covered("--frequency-ghz 2.4 --fresnel-percent 100"),
+        covered("--frequency-ghz 0.4 --fresnel-percent 100"),
+    ];
+    assert!(all.is_sorted_by(|wide, narrow| wide >= narrow) && all[0] > all[2] && all[2] > all[4], "{all:?}");
+    let pictures = &place.summary(&format!("{mast} --frequency-ghz 2.4"))["pictures"];
+    assert!(pictures["fresnel_zone_blocked"].as_u64().unwrap() > 0, "{pictures}");
+    place.refusal(2, &format!("{mast} --fresnel-percent 60"), &["--frequency-ghz"]);
+    place.refusal(2, &format!("{mast} --frequency-ghz 2.4 --fresnel-percent 101"), &["--fresnel-percent", "100 %"]);
+    place.refusal(2, &format!("{mast} --frequency-ghz 2400"), &["--frequency-ghz", "1000 GHz"]);
+}
+
+#[test]
 fn camera_plans_that_cannot_be_are_refused_with_the_reason() {
     let place = place();
     place.write("doors.csv", "x,y\n85006,446000\n");

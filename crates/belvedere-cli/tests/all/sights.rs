@@ -35,10 +35,13 @@ fn pairs_around_a_house_are_blocked_where_its_walls_stand() {
     let rows: Vec<String> =
         pairs.iter().map(|(a, b)| a.iter().chain(b).map(f64::to_string).collect::<Vec<_>>().join(",")).collect();
     place.write("pairs.csv", format!("ax,ay,az,bx,by,bz\n{}\n", rows.join("\n")));
-    let summary = place.summary("line-of-sight house.laz --method tau --orient given --pairs pairs.csv -o out.csv");
+    let line = "line-of-sight house.laz --method tau --orient given --pairs pairs.csv -o out.csv";
+    let summary = place.summary(&format!("{line} --frequency-ghz 5.8"));
     assert_eq!(summary["lines_of_sight"]["blocked"], 2);
     let text = place.text("out.csv");
     assert_eq!(column(&text, "answer"), ["0", "0", "1", "1", "3"]);
+    // a blocked link has no free zone; past the house 1.9 m are free, of a zone that is 0.6 m wide
+    assert_eq!(column(&text, "fresnel_free_percent")[..4], ["0.0", "0.0", "100.0", "100.0"]);
     // the wall is 7 m off, seen from either side; balls may bulge by what points half a metre apart allow
     let ranges = numbers(&text, "first_block_range_m");
     assert!((ranges[0] - 7.0).abs() < 0.3 && (ranges[1] - 7.0).abs() < 0.3, "{ranges:?}");

@@ -215,6 +215,17 @@ impl AddedMeshes {
         });
     }
 
+    /// The triangles between `ends` whose boxes may meet the box between two corners, local metres.
+    pub(super) fn each_near(&self, [low, high]: [[f64; 3]; 2], ends: &Ends, mut visit: impl FnMut(&Corners)) {
+        self.tree.each_near(low, high, |row| {
+            if self.is_between(row, ends)
+                && let Some(corners) = self.tree.triangles().get(row)
+            {
+                visit(corners);
+            }
+        });
+    }
+
     /// Where a line passes through surfaces, by the number of the mesh and the range, in this order.
     pub(super) fn passages(&self, ray: &Ray) -> Vec<(usize, f64)> {
         let mut passages = Vec::new();

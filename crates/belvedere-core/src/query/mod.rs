@@ -23,6 +23,7 @@ mod far_terrain;
 mod fingerprint;
 mod free_range;
 mod freed_space;
+mod fresnel;
 mod lazy;
 mod many_targets;
 pub mod medial_scene;
@@ -48,6 +49,7 @@ pub use earth::{Curvature, EarthParams};
 pub use far_terrain::FarTerrain;
 pub use fingerprint::scene_fingerprint;
 pub use freed_space::FreedSpace;
+pub use fresnel::RadioWave;
 pub use medial_scene::MedialScene;
 pub use mesh::{BackFaces, MeshTargetParams, SeenArea, facing, seen_faces, seen_in_all, seen_objects};
 pub use points::{

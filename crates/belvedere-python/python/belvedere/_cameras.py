@@ -103,6 +103,8 @@ class Cameras:
         unproven: str = "report",
         curvature: str | None = None,
         refraction: float | None = None,
+        frequency_ghz: float | None = None,
+        fresnel_percent: float | None = None,
         grid_north: bool = False,
         progress: Progress = None,
     ) -> Placement:
@@ -158,6 +160,10 @@ class Cameras:
             Most branches of the search for the proven optimum; 0 for no search.
         unproven : {'report', 'as-visible', 'as-blocked'}
             What is not proven visible covers a target only 'as-visible'.
+        frequency_ghz : float, optional
+            Frequency of radio links, 0.001 to 1000: a target is only covered if the first Fresnel zone is free too.
+        fresnel_percent : float, optional
+            How much of the radius of this zone must be free; 60 if not given.
         curvature, refraction, grid_north, progress : optional
             As for `viewshed`.
 
@@ -197,7 +203,9 @@ class Cameras:
             raise wrong("weights", "given", "cells count alike; give targets, or leave this out")
         wanted_targets = wanted(targets, None, {"cell": cell, "target_height": None, "ground": None})
         wanted_targets.update(height=target_height, ground=ground)
-        check_finite(target_height=target_height)
+        check_finite(target_height=target_height, frequency_ghz=frequency_ghz, fresnel_percent=fresnel_percent)
+        if fresnel_percent is not None and frequency_ghz is None:
+            raise wrong("fresnel_percent", fresnel_percent, "give frequency_ghz too, or leave this out")
         choice: dict[str, Any] = {
             "candidates": None if given is None else given.tolist(),
             "on_roofs": isinstance(candidates, str) and candidates == "roofs",
@@ -221,6 +229,8 @@ class Cameras:
             "search_limit": search_limit,
             "curvature": curvature,
             "refraction": refraction,
+            "frequency": frequency_ghz,
+            "fresnel_percent": fresnel_percent,
         }
         columns, whole, counts, grid, skipped = self._core.cameras(
             choice, wanted_targets, _place(None, grid_north=grid_north), unproven, reporter(progress)

@@ -141,6 +141,7 @@ class Scene:
         unproven: str,
         curvature: str | None,
         refraction: float | None,
+        frequency: float | None,
         progress: _Progress,
     ) -> dict[str, npt.NDArray[Any]]: ...
     def shadow(

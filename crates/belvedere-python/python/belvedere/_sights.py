@@ -28,6 +28,8 @@ class Sight(NamedTuple):
         How much of the line no laser pulse came near to, metres; NaN where it is blocked or pulses are not known.
     block : tuple of 3 floats
         Where the line is blocked first, in the coordinates of the file.
+    fresnel_free_percent : float
+        How much of the radius of the first Fresnel zone is free; NaN without a frequency.
 
     Examples
     --------
@@ -40,6 +42,7 @@ class Sight(NamedTuple):
     first_block_range_m: float
     unproven_m: float
     block: tuple[float, float, float]
+    fresnel_free_percent: float = float("nan")
 
 
 class Sights:
@@ -106,6 +109,7 @@ class Sights:
         unproven: str = "report",
         curvature: str | None = None,
         refraction: float | None = None,
+        frequency_ghz: float | None = None,
         progress: Progress = None,
     ) -> Any:
         """What is known of lines of sight between pairs of places.
@@ -127,13 +131,16 @@ class Sights:
             Whether lines follow the curvature of the earth; those of more than 2 km if not given.
         refraction : float, optional
             Share of the curvature that light follows, 0 to below 1; 1/7 if not given.
+        frequency_ghz : float, optional
+            Frequency of a radio link, 0.001 to 1000: also tests its first Fresnel zone.
         progress : bool or callable, optional
 
         Returns
         -------
         Sight or Table
             A `Sight` for one pair. For several a `Table` with ``answer``, ``first_block_range_m``, ``unproven_m``
-            (where pulses are known), ``block`` (N, 3), ``block_ball`` and ``block_source`` (-1 where nothing blocks).
+            (where pulses are known), ``fresnel_free_percent`` (with a frequency), ``block`` (N, 3), ``block_ball`` and
+            ``block_source`` (-1 where nothing blocks).
 
         Raises
         ------
@@ -145,7 +152,8 @@ class Sights:
         >>> scene.line_of_sight(eye, targets)
         <belvedere.Table: ... rows of answer, first_block_range_m, unproven_m, block, block_ball, block_source>
         """
-        check_finite(refraction=refraction, observer_height=observer_height, target_height=target_height)
+        check_finite(refraction=refraction, frequency_ghz=frequency_ghz)
+        check_finite(observer_height=observer_height, target_height=target_height)
         is_one = np.ndim(observer) == 1 and np.ndim(target) == 1
         observers = self._ends(observer, "observer", observer_height, ground, progress)
         targets = self._ends(target, "target", target_height, ground, progress)
@@ -153,7 +161,9 @@ class Sights:
             observers = np.repeat(observers, len(targets), axis=0)
         elif len(targets) == 1 and len(observers) > 1:
             targets = np.repeat(targets, len(observers), axis=0)
-        columns = self._core.lines_of_sight(observers, targets, unproven, curvature, refraction, reporter(progress))
+        columns = self._core.lines_of_sight(
+            observers, targets, unproven, curvature, refraction, frequency_ghz, reporter(progress)
+        )
         if not is_one:
             return Table(columns, places=np.asarray(targets, np.float64), crs=self._core.crs.text)
         nan = float("nan")
@@ -163,6 +173,7 @@ class Sights:
             float(columns["first_block_range_m"][0]),
             float(columns["unproven_m"][0]) if "unproven_m" in columns else nan,
             (float(block[0]), float(block[1]), float(block[2])),
+            float(columns["fresnel_free_percent"][0]) if "fresnel_free_percent" in columns else nan,
         )
 
     def _ends(

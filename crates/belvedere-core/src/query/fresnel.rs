@@ -1,0 +1,355 @@
+//! Fresnel zones of radio links: the space around a line of sight that must be free too.
+
+use super::added::Ends;
+use super::{Answer, EarthParams, MedialScene};
+use crate::blocking::Ball;
+use crate::triangle_tree::Corners;
+use belvedere_data::control::Control;
+use belvedere_data::vector::{dot, length, sub, unit};
+use belvedere_data::{Error, Result};
+use rayon::prelude::*;
+
+/// Speed of light, metres a second.
+const LIGHT_SPEED: f64 = 299_792_458.0;
+/// Frequencies of radio links, GHz: below, the zone is wider than the links are long; above is infrared.
+const FREQUENCIES_GHZ: [f64; 2] = [0.001, 1000.0];
+/// Length of the pieces of a link whose boxes are searched for obstacles, metres: shorter ones search less air and more often.
+const PIECE: f64 = 16.0;
+/// Steps in which the narrowest place of a zone is found: each keeps two thirds of the range.
+const STEPS: usize = 60;
+
+/// The wave of a radio link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RadioWave {
+    /// Metres, above zero.
+    wavelength: f64,
+}
+
+impl RadioWave {
+    /// The wave of a frequency in GHz, 0.001 to 1000.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for another frequency.
+    pub fn of_frequency(ghz: f64) -> Result<Self> {
+        let [least, most] = FREQUENCIES_GHZ;
+        if !(least..=most).contains(&ghz) {
+            return Err(Error::InvalidParameter {
+                name: "frequency of a radio link",
+                value: format!("{ghz} GHz"),
+                expected: "from 0.001 to 1000 GHz",
+            });
+        }
+        Ok(Self { wavelength: LIGHT_SPEED / (1e9 * ghz) })
+    }
+
+    /// Radius of the first Fresnel zone at a place of the line that lies `from` and `to` metres from its ends, metres.
+    ///
+    /// # Source
+    /// ITU-R P.526-15, equation 2: the square root of λ d₁ d₂ / (d₁ + d₂).
+    #[must_use]
+    pub fn zone_radius(&self, [from, to]: [f64; 2]) -> f64 {
+        (self.wavelength * from * to / (from + to)).max(0.0).sqrt()
+    }
+}
+
+/// A radio link, with the heights of what stands beside it raised by the sag of the link, so that it is straight.
+struct Link {
+    start: [f64; 3],
+    /// Unit vector to the other end.
+    axis: [f64; 3],
+    length: f64,
+    /// Its length on the map.
+    span: f64,
+    earth: EarthParams,
+    is_bent: bool,
+    wave: RadioWave,
+}
+
+impl Link {
+    fn new(ends: [[f64; 3]; 2], wave: RadioWave, earth: &EarthParams) -> Option<Self> {
+        let [start, end] = ends;
+        let along = sub(end, start);
+        let axis = unit(along).filter(|_| ends.as_flattened().iter().all(|v| v.is_finite()))?;
+        let span = along[0].hypot(along[1]);
+        let is_bent = earth.bends(start, end);
+        Some(Self { start, axis, length: length(along), span, earth: *earth, is_bent, wave })
+    }
+
+    fn sag(&self, along: f64) -> f64 {
+        if self.is_bent { self.earth.sag(self.span, (along / self.length).clamp(0.0, 1.0)) } else { 0.0 }
+    }
+
+    /// How far along the straightened link a place lies, and how far beside it, metres.
+    fn beside(&self, place: [f64; 3]) -> [f64; 2] {
+        let [x, y, z] = sub(place, self.start);
+        let raised = [x, y, z + self.sag(dot([x, y, z], self.axis))];
+        let along = dot(raised, self.axis);
+        let across = std::array::from_fn(|i| raised[i] - along * self.axis[i]);
+        [along, length(across)]
+    }
+
+    /// Radius of the first zone, metres; 0 beyond the ends.
+    fn radius(&self, along: f64) -> f64 {
+        self.wave.zone_radius([along, self.length - along])
+    }
+
+    /// The part of the radius of the zone that is free if something lies `beside` metres from the line at `along`: infinite at the ends, where the zone is a point.
+    fn share(&self, along: f64, beside: f64) -> f64 {
+        let radius = self.radius(along);
+        if radius > 0.0 { beside.max(0.0) / radius } else { f64::INFINITY }
+    }
+
+    /// The share of the zone that a ball of `radius` metres leaves free, if it is less than `most`.
+    fn share_beside(&self, center: [f64; 3], radius: f64, most: f64) -> f64 {
+        let [along, beside] = self.beside(center);
+        let [from, to] = [(along - radius).max(0.0), (along + radius).min(self.length)];
+        if from >= to || beside - radius >= most * self.radius((self.length / 2.0).clamp(from, to)) {
+            return f64::INFINITY;
+        }
+        // the gap is convex along the line and the radius of the zone concave, so that their quotient has one minimum
+        let gap = |t: f64| beside - (radius * radius - (t - along) * (t - along)).max(0.0).sqrt();
+        least(from, to, |t| self.share(t, gap(t)))
+    }
+
+    /// The share of the zone that a triangle leaves free.
+    fn share_before(&self, corners: &Corners) -> f64 {
+        let beside_ends = self.between_ends(corners);
+        let Some((&a, others)) = beside_ends.split_first() else { return f64::INFINITY };
+        let between =
+            |p: [f64; 3], q: [f64; 3], t: f64| -> [f64; 3] { std::array::from_fn(|i| p[i] + t * (q[i] - p[i])) };
+        let of_triangle = |pair: &[[f64; 3]]| {
+            // the distance to a line is convex over a triangle: one minimum along every line in it, and one across these
+            least(0.0, 1.0, |across| {
+                let [from, to] = [pair[0], pair[1]].map(|corner| between(a, corner, across));
+                least(0.0, 1.0, |t| {
+                    let [along, beside] = self.beside(between(from, to, t));
+                    self.share(along, beside)
+                })
+            })
+        };
+        others.windows(2).map(of_triangle).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Corners of the part of a triangle that lies between the planes across the two ends.
+    fn between_ends(&self, corners: &Corners) -> Vec<[f64; 3]> {
+        let mut part = corners.to_vec();
+        for beyond in [|_: &Self, along: f64| -along, |link: &Self, along: f64| along - link.length] {
+            let whole = std::mem::take(&mut part);
+            let depths: Vec<f64> = whole.iter().map(|&corner| beyond(self, self.beside(corner)[0])).collect();
+            for i in 0..whole.len() {
+                let next = (i + 1) % whole.len();
+                if depths[i] <= 0.0 {
+                    part.push(whole[i]);
+                }
+                if depths[i] * depths[next] < 0.0 {
+                    let t = depths[i] / (depths[i] - depths[next]);
+                    part.push(std::array::from_fn(|k| whole[i][k] + t * (whole[next][k] - whole[i][k])));
+                }
+            }
+        }
+        part
+    }
+
+    /// Boxes around pieces of the zone, by `share` of its radius: lowest and highest corner.
+    fn boxes(&self, share: f64) -> impl Iterator<Item = [[f64; 3]; 2]> + '_ {
+        let count = (self.length / PIECE).ceil().max(1.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of pieces")]
+        let pieces = 0..count as u64;
+        pieces.map(move |piece| {
+            let [from, to] = [piece as f64, (piece + 1) as f64].map(|i| self.length * i / count);
+            let widest = self.radius((self.length / 2.0).clamp(from, to)) * share;
+            let place = |t: f64| -> [f64; 3] {
+                let [x, y, z] = std::array::from_fn(|i| self.start[i] + t * self.axis[i]);
+                [x, y, z - self.sag(t)]
+            };
+            // a piece of a curve lies less below its chord than the whole below the highest of its ends
+            let (a, b, room) = (place(from), place(to), widest + self.sag_within(to - from));
+            [std::array::from_fn(|i| a[i].min(b[i]) - room), std::array::from_fn(|i| a[i].max(b[i]) + room)]
+        })
+    }
+
+    /// How far a piece of this length lies from its chord at most, metres.
+    fn sag_within(&self, piece: f64) -> f64 {
+        if self.is_bent { self.earth.sag(self.span * piece / self.length, 0.5) } else { 0.0 }
+    }
+}
+
+/// The least value of a function with one minimum between two numbers.
+fn least(mut from: f64, mut to: f64, value: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..STEPS {
+        let third = (to - from) / 3.0;
+        let [a, b] = [from + third, to - third];
+        let [of_a, of_b] = [value(a), value(b)];
+        if of_a <= 0.0 || of_b <= 0.0 {
+            return 0.0;
+        }
+        if of_a <= of_b { to = b } else { from = a }
+    }
+    value(f64::midpoint(from, to)).max(0.0)
+}
+
+impl MedialScene {
+    /// How much of the first Fresnel zone of a radio link between two points, local metres, is free: the share of its radius that nothing reaches into, 0 where something
+    /// touches the line itself, and at most `most`. A zone counts as free from 0.6 on (ITU-R P.530). NaN for points that are not finite, or are the same.
+    ///
+    /// Balls that hold an end are left out and balls near an end give way to it, as to a target; so do triangles in whose plane an end lies. Whether the line of sight is proven is another question, and
+    /// far terrain is not asked. On a curved line the sag is that at the middle of each ball.
+    #[must_use]
+    pub fn fresnel_clearance(&self, ends: [[f64; 3]; 2], wave: RadioWave, earth: &EarthParams, most: f64) -> f64 {
+        let Some(link) = Link::new(ends, wave, earth) else { return f64::NAN };
+        let mut clearance = most;
+        for [low, high] in link.boxes(most) {
+            self.tree().index().near(low, high, |number| {
+                let Ball { center, radius } = self.ball(number);
+                let center = center.map(f64::from);
+                let distances = ends.map(|end| length(sub(center, end)));
+                let whole = f64::from(radius);
+                let counted = distances.map(|distance| self.params().radius_for(whole, distance));
+                let holds = distances.into_iter().any(|distance| distance <= whole);
+                if clearance > 0.0 && !holds {
+                    clearance = clearance.min(link.share_beside(center, counted[0].min(counted[1]), clearance));
+                }
+            });
+        }
+        if let Some(added) = self.added() {
+            let ends = Ends { target: ends[0], viewer: Some(ends[1]) };
+            for [low, high] in link.boxes(most) {
+                added.each_near([low, high], &ends, |corners| {
+                    if clearance > 0.0 {
+                        clearance = clearance.min(link.share_before(corners));
+                    }
+                });
+            }
+        }
+        clearance
+    }
+}
+
+impl MedialScene {
+    /// [`MedialScene::fresnel_clearance`] up to the whole zone of each of `pairs`, (N, two ends), local metres, in their order. A link that is blocked has none free, and one with an end outside the cloud is
+    /// NaN. Progress counts pairs.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn fresnel_clearances(
+        &self,
+        pairs: &[[[f64; 3]; 2]],
+        wave: RadioWave,
+        earth: &EarthParams,
+        control: &Control<'_>,
+    ) -> Result<Vec<f64>> {
+        let of_pair = |&ends: &[[f64; 3]; 2]| {
+            control.check()?;
+            let clearance = match self.sight_answer(ends[0], ends[1], earth) {
+                Answer::OutsideCloud | Answer::OutsideView => f64::NAN,
+                Answer::Blocked => 0.0,
+                Answer::Visible | Answer::Unproven => self.fresnel_clearance(ends, wave, earth, 1.0),
+            };
+            control.advance(1);
+            Ok(clearance)
+        };
+        pairs.par_iter().map(of_pair).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::blocking::BlockRule;
+    use crate::query::AddedMeshes;
+    use belvedere_data::Mesh;
+    use belvedere_data::balls::MedialBalls;
+    use belvedere_data::random::uniform;
+
+    fn scene(balls: &[([f32; 3], f32)]) -> MedialScene {
+        let balls = MedialBalls {
+            centers: balls.iter().map(|ball| ball.0).collect(),
+            radii: balls.iter().map(|ball| ball.1).collect(),
+            source: vec![0; balls.len()],
+            touch: vec![0; balls.len()],
+            separation_angles: vec![1.0; balls.len()],
+        };
+        MedialScene::new(&balls, &BlockRule { shell: 0.0, ..BlockRule::carved() }).unwrap()
+    }
+
+    #[test]
+    fn the_zone_has_the_radius_of_the_handbooks() {
+        // 17.32 m times the root of d1 d2 / (f D), kilometres and GHz
+        let wave = RadioWave::of_frequency(2.4).unwrap();
+        let expected = 17.32 * (4.0 * 6.0 / (2.4 * 10.0_f64)).sqrt();
+        assert!((wave.zone_radius([4000.0, 6000.0]) - expected).abs() < 0.01);
+        for frequency in [0.0, -1.0, f64::NAN, 1e4] {
+            assert!(RadioWave::of_frequency(frequency).is_err());
+        }
+    }
+
+    #[test]
+    fn what_a_ball_leaves_free_is_what_the_points_on_it_leave() {
+        let wave = RadioWave::of_frequency(0.9).unwrap();
+        let ends = [[3.0, -2.0, 4.0], [90.0, 40.0, 12.0]];
+        let axis = unit(sub(ends[1], ends[0])).unwrap();
+        let whole = length(sub(ends[1], ends[0]));
+        for i in 0..40 {
+            let random = |k: u64| uniform(7, 16 * i + k);
+            let along = 5.0 + 85.0 * random(0);
+            #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
+            let center: [f32; 3] =
+                std::array::from_fn(|k| (ends[0][k] + along * axis[k] + 8.0 * (random(1 + k as u64) - 0.5)) as f32);
+            #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
+            let radius = (0.2 + 3.0 * random(5)) as f32;
+            let found = scene(&[(center, radius)]).fresnel_clearance(ends, wave, &EarthParams::flat(), 9.0);
+            // points of the ball on a fine grid: none leaves less, and one leaves hardly more
+            let mut least = 9.0_f64;
+            for n in 0..200_000 {
+                let offset: [f64; 3] = std::array::from_fn(|k| 2.0 * uniform(3, 4 * n + k as u64) - 1.0);
+                if length(offset) > 1.0 {
+                    continue;
+                }
+                let offset = unit(offset).unwrap();
+                let place: [f64; 3] = std::array::from_fn(|k| f64::from(center[k]) + f64::from(radius) * offset[k]);
+                let from = dot(sub(place, ends[0]), axis);
+                let beside = length(std::array::from_fn(|k| place[k] - ends[0][k] - from * axis[k]));
+                if from > 0.0 && from < whole {
+                    least = least.min(beside / wave.zone_radius([from, whole - from]));
+                }
+            }
+            let crosses = found == 0.0 && least < 0.2;
+            assert!(crosses || found <= least + 1e-9 && least - found < 0.02 * (1.0 + least), "{found} {least}");
+        }
+    }
+
+    #[test]
+    fn a_wall_below_a_link_leaves_the_share_of_its_gap() {
+        // a wall across the link, its edge 2 m below the line, 30 m from one end and 70 m from the other
+        let mesh = Mesh {
+            vertices: vec![[30.0, -50.0, -9.0], [30.0, 50.0, -9.0], [30.0, 50.0, 8.0], [30.0, -50.0, 8.0]],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        };
+        let added = AddedMeshes::new(&mesh, "wall", [0.0; 3], None, None).unwrap();
+        let wave = RadioWave::of_frequency(2.4).unwrap();
+        let ends = [[0.0, 0.0, 10.0], [100.0, 0.0, 10.0]];
+        let scene = scene(&[]).with_added(Some(added));
+        let found = scene.fresnel_clearance(ends, wave, &EarthParams::flat(), 9.0);
+        let expected = 2.0 / wave.zone_radius([30.0, 70.0]);
+        assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+        // beyond its end, in its own direction, a wall does not matter
+        let before = [[0.0, 0.0, 7.0], [29.0, 0.0, 7.0]];
+        assert!(scene.fresnel_clearance(before, wave, &EarthParams::flat(), 9.0) >= 9.0);
+        let through = [[0.0, 0.0, 7.0], [100.0, 0.0, 7.0]];
+        assert!(scene.fresnel_clearance(through, wave, &EarthParams::flat(), 9.0) < 1e-6);
+    }
+
+    #[test]
+    fn the_curved_earth_lifts_what_stands_in_the_middle() {
+        let wave = RadioWave::of_frequency(5.8).unwrap();
+        let ends = [[0.0, 0.0, 50.0], [10_000.0, 0.0, 50.0]];
+        let scene = scene(&[([5000.0, 0.0, 20.0], 5.0)]);
+        let [flat, curved] =
+            [EarthParams::flat(), EarthParams::default()].map(|earth| scene.fresnel_clearance(ends, wave, &earth, 9.0));
+        let sag = EarthParams::default().sag(10_000.0, 0.5);
+        let radius = wave.zone_radius([5000.0, 5000.0]);
+        assert!((flat - 25.0 / radius).abs() < 1e-3 && (curved - (25.0 - sag) / radius).abs() < 1e-3);
+        assert!(scene.fresnel_clearance([ends[0]; 2], wave, &EarthParams::flat(), 1.0).is_nan());
+    }
+}
