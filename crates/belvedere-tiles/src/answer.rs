@@ -5,6 +5,7 @@ use crate::lines::Lines;
 use crate::obstacles::{Found, rule};
 use crate::parts::Parts;
 use crate::plan::Plan;
+use crate::planned::Others;
 use crate::question::{Asked, Light, Question};
 use crate::record::{Outcome, Record, Stage, Stamp};
 use crate::values::{UNPROVEN, Values};
@@ -40,8 +41,8 @@ const CHUNK: usize = 1024;
 pub(crate) struct Task<'a> {
     pub(crate) question: &'a Question,
     pub(crate) asked: &'a Asked,
-    /// What is planned.
-    pub(crate) added: Option<&'a AddedMeshes>,
+    /// What blocks beside balls.
+    pub(crate) others: &'a Others,
     /// Most balls that are asked together.
     pub(crate) most_balls: usize,
 }
@@ -66,7 +67,7 @@ fn area_of_cells(plan: &Plan, tile: TileId) -> crate::grid::Area {
 }
 
 fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Control<'_>) -> Result<Record> {
-    let Task { question, asked, added, most_balls } = task;
+    let Task { question, asked, others, most_balls } = task;
     let core = plan.grid().core(tile);
     let nothing = |points: usize| Ok(Record { points, ..Record::default() });
     if Lines::of(asked, core, 0.0).is_empty() {
@@ -74,7 +75,8 @@ fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Con
     }
     let cloud = control.stage("reading", 0, || window::read(plan, &area_of_cells(plan, tile), control))?;
     let points = cloud.len();
-    let targets = control.stage("computing top surface", 0, || cells(plan, tile, &cloud, added, control))?;
+    let targets =
+        control.stage("computing top surface", 0, || cells(plan, tile, &cloud, others.added.as_ref(), control))?;
     let (cells, Layout::Cells(ground)) = (targets.asked_count(), &targets.layout) else { return nothing(points) };
     if cells == 0 {
         return nothing(points);
@@ -83,12 +85,12 @@ fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Con
     let lowest = known.map(|p| f64::from(p[2])).fold(f64::INFINITY, f64::min);
     let lines = Lines::of(asked, core, lowest);
     let size = [ground.grid.width, ground.grid.height];
-    let parts = Parts::around((plan, run, tile), &lines, added, most_balls, control)?;
+    let parts = Parts::around((plan, run, tile), &lines, others, most_balls, control)?;
     let (found, balls) = match asked {
         Asked::Viewshed(observers) => {
             let mut sight = Sight::new(observers, &targets.positions);
             parts.each_scene(&lines, control, |scene| sight.look(scene, control))?;
-            let planned = MedialScene::new(&MedialBalls::default(), &rule(plan))?.with_added(added.cloned());
+            let planned = MedialScene::new(&MedialBalls::default(), &rule(plan))?.with_added(others.added.clone());
             sight.look(&planned, control)?;
             let balls = parts.into_found();
             (sight.answered(&balls, size)?, balls)

@@ -9,13 +9,14 @@ use crate::grid::{Area, TileId};
 use crate::lines::Lines;
 use crate::obstacles::{BallTile, Found, ball_tiles, may_block, push, rule};
 use crate::plan::Plan;
+use crate::planned::Others;
 use belvedere::Result;
 use belvedere::apps::rows::ObstacleParts;
 use belvedere::apps::tree_light::Crowns;
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, vegetation_of_transmission};
 use belvedere::model::ModelParts;
-use belvedere::query::{AddedMeshes, FreeLines, MedialScene, VisibilityMatrix};
+use belvedere::query::{FreeLines, MedialScene, VisibilityMatrix};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -27,8 +28,8 @@ pub(crate) struct Parts<'a> {
     /// Where the cells lie, and the height of the lowest, local metres.
     cells: Area,
     lowest: f64,
-    /// What is planned.
-    added: Option<&'a AddedMeshes>,
+    /// What blocks beside balls.
+    others: &'a Others,
     /// Most balls of a part.
     most_balls: usize,
     /// Squares of tiles, nearest first.
@@ -37,21 +38,21 @@ pub(crate) struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    /// Parts of at most `most_balls` of the balls that may matter for `lines` from the cells of `tile`, and what is `added`.
+    /// Parts of at most `most_balls` of the balls that may matter for `lines` from the cells of `tile`, and the `others` that block.
     ///
     /// # Errors
     /// [`belvedere::Error::Cancelled`].
     pub(crate) fn around(
         (plan, run, tile): (&'a Plan, &'a Path, TileId),
         lines: &Lines<'_>,
-        added: Option<&'a AddedMeshes>,
+        others: &'a Others,
         most_balls: usize,
         control: &Control<'_>,
     ) -> Result<Self> {
         let mut found = Found::default();
         let squares = squares(tile, ball_tiles(plan, run, lines, &mut found, control)?, most_balls);
         let (cells, lowest) = (lines.targets, lines.lowest);
-        Ok(Self { plan, run, cells, lowest, added, most_balls, squares, found: Mutex::new(found) })
+        Ok(Self { plan, run, cells, lowest, others, most_balls, squares, found: Mutex::new(found) })
     }
 
     /// Gives `look` scenes of at most so many balls that may block one of `lines`, until all were given. A line of sight is free where it is free in all.
@@ -154,11 +155,12 @@ impl ObstacleParts for Parts<'_> {
             self.hide(&mut free, square, directions, &mut found, control)?;
         }
         let Free { mut without_trees, mut all, .. } = free;
-        if let Some(added) = self.added {
+        if let Some(added) = &self.others.added {
             without_trees.hide_behind_meshes(added, control)?;
-            if let Some(all) = &mut all {
-                all.hide_what_is_hidden_in(&without_trees)?;
-            }
+        }
+        without_trees.hide_behind_terrain(&self.others.far_terrain, control)?;
+        if let Some(all) = &mut all {
+            all.hide_what_is_hidden_in(&without_trees)?;
         }
         Ok(match all {
             Some(all) => (all.into_matrix(), Some(without_trees.into_matrix())),

@@ -2,7 +2,7 @@
 
 use crate::grid::{Area, TileGrid, TileId, block_area};
 use crate::inputs::{Columns, InputFile, hash};
-use crate::planned::{SideFile, added_meshes};
+use crate::planned::{Others, SideFile, added_meshes, far_terrain};
 use crate::question::{Question, ValueKind};
 use crate::record::Stage;
 use crate::survey::{Block, survey};
@@ -14,7 +14,7 @@ use belvedere::crs::Crs;
 use belvedere::ground::{Ground, GroundParams, SurfaceParams};
 use belvedere::io::{LasHead, atomic, cloud_files};
 use belvedere::model::{ModelParams, SurveyFacts};
-use belvedere::query::{AddedMeshes, Coverage};
+use belvedere::query::Coverage;
 use belvedere::{Bounds, Error, Frame, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Version of the layout of plans and records.
-const LAYOUT: u32 = 4;
+const LAYOUT: u32 = 5;
 /// Corners that the origin of local coordinates is one of, metres: of blocks of 64 m, and few, so that neighbouring surveys share it.
 const ORIGIN_STEP: f64 = 1024.0;
 /// Farthest that a point may lie from the origin, metres: up to here f32 keeps a millimetre.
@@ -100,6 +100,12 @@ pub struct Plan {
     /// Meshes of what is planned, which block beside what was surveyed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     meshes: Vec<SideFile>,
+    /// Heights of the ground beyond the survey.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    terrain: Option<SideFile>,
+    /// Horizon beyond the survey, for all places alike.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    horizon: Option<SideFile>,
     /// Trees, where they let light through.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) trees: Option<Crowns>,
@@ -217,6 +223,8 @@ impl Plan {
             halo: facts.halo(&model).ceil(),
             questions: Vec::new(),
             meshes: Vec::new(),
+            terrain: None,
+            horizon: None,
             trees: None,
             tiles: Vec::new(),
             low: bounds.low,
@@ -422,6 +430,16 @@ impl Plan {
         Ok(Self { meshes, ..self })
     }
 
+    /// This before far terrain, an elevation raster and a horizon as [`read_terrain`](belvedere::io::read_terrain) and [`read_horizon`](belvedere::io::read_horizon) take them: directions to the
+    /// sun and the sky below it are blocked. Within the box of the survey, and a cell of the raster around it, terrain blocks nothing.
+    ///
+    /// # Errors
+    /// Those of reading the files, and [`Error::InvalidParameter`] for terrain that does not reach the survey or lies far above or below it.
+    pub fn with_far_terrain(self, terrain: Option<SideFile>, horizon: Option<SideFile>) -> Result<Self> {
+        far_terrain(terrain.as_ref(), horizon.as_ref(), &self.frame()?, self.bounds())?;
+        Ok(Self { terrain, horizon, ..self })
+    }
+
     /// This with trees that let light through, where questions ask for light.
     ///
     /// # Errors
@@ -443,12 +461,16 @@ impl Plan {
         self.facts.whole.transmission
     }
 
-    /// The meshes of what is planned; `None` without any.
+    /// The meshes of what is planned, and far terrain.
     ///
     /// # Errors
-    /// Those of reading meshes, and [`Error::Malformed`] for one that changed since the plan was made.
-    pub(crate) fn added(&self) -> Result<Option<AddedMeshes>> {
-        added_meshes(&self.meshes, &self.frame()?, None)
+    /// Those of reading them, and [`Error::Malformed`] for a file that changed since the plan was made.
+    pub(crate) fn others(&self) -> Result<Others> {
+        let frame = self.frame()?;
+        Ok(Others {
+            added: added_meshes(&self.meshes, &frame, None)?,
+            far_terrain: far_terrain(self.terrain.as_ref(), self.horizon.as_ref(), &frame, self.bounds())?,
+        })
     }
 
     /// What the values of a result are.

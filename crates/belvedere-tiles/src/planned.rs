@@ -1,10 +1,12 @@
-//! What a plan changes of the survey: buildings that are planned, and trees that let light through.
+//! What blocks beside what was surveyed: buildings that are planned, and mountains beyond the survey.
 
 use crate::inputs::hash;
+use belvedere::apps::horizon::convergence;
 use belvedere::crs::Crs;
-use belvedere::io::{Source, read_mesh_in};
-use belvedere::query::{AddedMeshes, Coverage};
-use belvedere::{Error, Frame, Mesh, Result};
+use belvedere::io::{Source, read_horizon, read_mesh_in, read_terrain};
+use belvedere::model::check_terrain;
+use belvedere::query::{AddedMeshes, Coverage, FarTerrain};
+use belvedere::{Bounds, Error, Frame, Mesh, Result};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -51,6 +53,44 @@ impl SideFile {
     fn mesh(&self, crs: &Crs) -> Result<Mesh> {
         Ok(read_mesh_in(Source::bytes(&self.path, &self.read()?), crs)?.0)
     }
+}
+
+/// What blocks beside what was surveyed.
+pub(crate) struct Others {
+    pub(crate) added: Option<AddedMeshes>,
+    pub(crate) far_terrain: FarTerrain,
+}
+
+impl Others {
+    /// Nothing else blocks.
+    pub(crate) fn none() -> Self {
+        Self { added: None, far_terrain: FarTerrain::default() }
+    }
+}
+
+/// What lies beyond a survey between `survey`, local metres of `frame`: an elevation raster and a horizon, where they are given.
+///
+/// # Errors
+/// Those of [`SideFile::read`], of [`read_terrain`], [`read_horizon`] and [`check_terrain`].
+pub(crate) fn far_terrain(
+    terrain: Option<&SideFile>,
+    horizon: Option<&SideFile>,
+    frame: &Frame,
+    survey: Bounds,
+) -> Result<FarTerrain> {
+    let mut far = FarTerrain::default();
+    if let Some(file) = terrain {
+        let grid = read_terrain(Source::bytes(&file.path, &file.read()?), frame)?;
+        check_terrain(&grid, &file.path.display().to_string(), survey, frame)?;
+        far = far.with_grid(grid, Some(survey.on_map()));
+    }
+    if let Some(file) = horizon {
+        let horizon = read_horizon(Source::bytes(&file.path, &file.read()?))?;
+        let (low, high) = survey.on_map();
+        let middle = [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]) + frame.origin[axis]);
+        far = far.with_profile(horizon.turned(-convergence(&frame.crs, middle).unwrap_or(0.0)));
+    }
+    Ok(far)
 }
 
 /// The triangles of `meshes` in local metres of `frame`; `None` without a mesh. They must meet the space of `coverage`.

@@ -6,6 +6,7 @@ use crate::lines::{Lines, tiles};
 use crate::make_balls::make_balls;
 use crate::merge::write_catalogue;
 use crate::plan::Plan;
+use crate::planned::Others;
 use crate::record::{Outcome, Record, Stage};
 use crate::report::write_report;
 use belvedere::control::Control;
@@ -90,10 +91,10 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
     }
     let questions = if params.steps == Steps::All { &plan.questions[..] } else { &[] };
     let most_balls = params.most_balls.unwrap_or_else(|| plan.balls_at_a_time());
-    let added = if questions.is_empty() { None } else { plan.added()? };
+    let others = if questions.is_empty() { Others::none() } else { plan.others()? };
     for question in questions {
         let asked = question.prepare(plan.trees, control)?;
-        let task = Task { question, asked: &asked, added: added.as_ref(), most_balls };
+        let task = Task { question, asked: &asked, others: &others, most_balls };
         for tile in own() {
             // what was unproven for lack of balls may have them now
             let record = work.settled(Stage::Answer(question), tile);

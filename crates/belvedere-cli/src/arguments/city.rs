@@ -1,8 +1,8 @@
 //! Flags of runs over whole cities.
 
 use super::{
-    ClearSkyChoice, North, Numbers, Place, RadiationModel, SunPeriod, SunPlace, ThroughTrees, above_zero, at_least_one,
-    finite, known_crs,
+    ClearSkyChoice, FarTerrain, North, Numbers, Place, RadiationModel, SunPeriod, SunPlace, ThroughTrees, above_zero,
+    at_least_one, finite, known_crs,
 };
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -108,6 +108,8 @@ pub(crate) struct CityPlan {
     /// Its triangles block exactly as they are, and cells lie on top of it. Coordinates are those of the survey.
     #[arg(long, value_name = "MESH", help_heading = "Plan")]
     pub(crate) add: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) far_terrain: FarTerrain,
     /// Side of the cells of results in metres: a whole number of sixty-fourths, such as 0.25, 0.5, 1 or 2
     #[arg(long, value_name = "M", default_value_t = 1.0, value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Tiles")]

@@ -13,6 +13,7 @@ use belvedere::apps::tree_light::{Crowns, Transmissivity};
 use belvedere_tiles::{
     Plan, PlanParams, Question, RunParams, Shard, SideFile, Steps, merge, run as run_tiles, status as status_of,
 };
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Most failures that are listed one by one.
@@ -79,6 +80,9 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
 fn planned(plan: Plan, arguments: &CityPlan) -> Result<Plan> {
     let meshes = arguments.add.iter().map(|path| SideFile::new(path)).collect::<belvedere::Result<Vec<_>>>()?;
     let plan = flagged("--add", plan.with_meshes(meshes))?;
+    let side = |path: &Option<PathBuf>| path.as_deref().map(SideFile::new).transpose();
+    let (terrain, horizon) = (side(&arguments.far_terrain.terrain)?, side(&arguments.far_terrain.horizon)?);
+    let plan = flagged("--terrain", plan.with_far_terrain(terrain, horizon))?;
     let measured = || Transmissivity::constant(plan.share_of_pulses_through_crowns()).ok();
     match arguments.trees.chosen(measured)? {
         Some((transmissivity, leaves)) => {

@@ -23,7 +23,7 @@ pub use facts::{SurveyExtremes, SurveyFacts};
 pub use params::{BallParams, ModelParams, OrientBy};
 pub use prepare::OrientedSurvey;
 pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesReport};
-pub use terrain::TerrainReport;
+pub use terrain::{TerrainReport, check_terrain};
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
 use crate::pulses::NeedleColumns;
@@ -120,7 +120,7 @@ impl SceneModel {
     pub fn with_terrain(mut self, terrain: ElevationGrid, name: &str) -> Result<Self> {
         let coverage = self.coverage();
         if let Some(coverage) = &coverage {
-            terrain::check(&terrain, name, coverage.bounds(), self.frame())?;
+            check_terrain(&terrain, name, coverage.bounds(), self.frame())?;
         }
         self.far_terrain = self.far_terrain.with_grid(terrain, coverage.map(|coverage| coverage.bounds().on_map()));
         Ok(self)

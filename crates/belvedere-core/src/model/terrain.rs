@@ -51,7 +51,10 @@ impl TerrainReport {
 }
 
 /// Refuses terrain, which `name` names, that does not reach the cloud between `cloud`, local metres, or whose heights are not those of the cloud.
-pub(super) fn check(terrain: &ElevationGrid, name: &str, cloud: Bounds, frame: &Frame) -> Result<()> {
+///
+/// # Errors
+/// [`Error::InvalidParameter`] with what to do.
+pub fn check_terrain(terrain: &ElevationGrid, name: &str, cloud: Bounds, frame: &Frame) -> Result<()> {
     let ([west, south], [east, north]) = terrain.on_map();
     let (low, high) = cloud.on_map();
     let invalid = |value: String, expected| Err(Error::InvalidParameter { name: "terrain", value, expected });

@@ -6,7 +6,9 @@ use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, Zone};
 use belvedere::apps::tree_light::{Crowns, Leaves, Transmissivity};
 use belvedere::control::Control;
-use belvedere::io::{read_tif_f32, read_tif_u8};
+use belvedere::crs::Crs;
+use belvedere::io::{Georeference, read_tif_f32, read_tif_u8, write_tif_f32};
+use belvedere::raster::Raster;
 use belvedere_tiles::{Plan, Question, Radiation, SideFile, SunQuestion, merge};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -201,4 +203,69 @@ fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
         let more = none.iter().filter(|(cell, v)| **v > opaque[*cell]).count();
         assert!(more > 100, "{}: {more} cells see more without trees", question.name());
     }
+}
+
+/// Height of a ridge north of the town, and where its side stands, file coordinates.
+const RIDGE: [f32; 2] = [900.0, 464_000.0];
+
+/// Level ground as low as the town, with the ridge, in cells of 20 m.
+fn ridge(folder: &Path, ground: f32, crs: Crs) -> PathBuf {
+    let (size, cell, west, north) = (200, 20.0, 153_000.0, 466_000.0);
+    let height = |row: usize| if north - cell * (row as f64 + 0.5) > f64::from(RIDGE[1]) { RIDGE[0] } else { ground };
+    let heights = (0..size * size).map(|i| height(i / size)).collect();
+    let place = Georeference { upper_left: [west, north], column_step: [cell, 0.0], row_step: [0.0, -cell], crs };
+    let path = folder.join("dtm.tif");
+    write_tif_f32(path.as_path(), &Raster::from_values(size, size, heights).unwrap(), Some(&place), None, None)
+        .unwrap();
+    path
+}
+
+#[test]
+fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 100.0, 1.0);
+    let plain = plan(&clouds, &place.path().join("plain"), 512.0, Vec::new());
+    let frame = plain.frame().unwrap();
+    #[expect(clippy::cast_possible_truncation, reason = "a height")]
+    let lowest = (f64::from(plain.bounds().low[2]) + frame.origin[2]) as f32;
+    let terrain = ridge(place.path(), lowest, frame.crs.clone());
+    let horizon = place.path().join("horizon.csv");
+    std::fs::write(&horizon, "azimuth,elevation\n90,0\n180,30\n270,0\n").unwrap();
+    // the sun stands over the ridge and below its top, over it and above, and beside it; 31 degrees in the south are above the horizon that is given
+    let sun = |azimuth: f64, elevation: f64| Question::Shadow {
+        name: format!("shadow_{azimuth}_{elevation}"),
+        to_sun: ShadowSun::at(azimuth.to_radians(), elevation.to_radians()).to_sun,
+        season: None,
+    };
+    let suns = [sun(0.0, 39.0), sun(0.0, 60.0), sun(180.0, 29.0), sun(180.0, 31.0)];
+    let questions: Vec<Question> = suns.iter().cloned().chain([Question::SkyView { directions: 25 }]).collect();
+    let folders = ["without", "whole", "tiles"].map(|name| place.path().join(name));
+    let far = |plan: Plan| {
+        let [terrain, horizon] = [&terrain, &horizon].map(|path| Some(SideFile::new(path).unwrap()));
+        plan.with_far_terrain(terrain, horizon).unwrap()
+    };
+    let without = done(&clouds, &folders[0], 512.0, &questions, |plan| plan);
+    let whole = done(&clouds, &folders[1], 512.0, &questions, far);
+    let tiles = done(&clouds, &folders[2], 64.0, &questions, far);
+    // the ridge is 950 m from the north edge of the town and 1070 m from the south edge, and 870 to 900 m higher: above 39 and below 44 degrees
+    for (number, is_hidden) in [true, false, true, false].into_iter().enumerate() {
+        let [before, of_whole, of_tiles] =
+            [(&without, 0), (&whole, 1), (&tiles, 2)].map(|(plan, i)| codes(plan, &folders[i], &questions[number]));
+        assert!(of_whole == of_tiles, "{:?}", questions[number]);
+        assert!(before.values().filter(|&&code| code == 1).count() > 2000);
+        let expected = |code: u8| if is_hidden { 0 } else { code };
+        let wrong = before.iter().filter(|(cell, code)| of_whole[*cell] != expected(**code)).count();
+        assert_eq!(wrong, 0, "{:?}", questions[number]);
+    }
+    let [before, of_whole, of_tiles] =
+        [(&without, 0), (&whole, 1), (&tiles, 2)].map(|(plan, i)| numbers(plan, &folders[i], &questions[4]));
+    assert!(of_whole == of_tiles, "sky views of tiles differ");
+    // the ridge hides an eighth of an open sky, and the horizon 4 %; with few directions less is certain
+    let loses = |(cell, sky): (&[i64; 2], &f32)| of_whole[cell] <= sky - if *sky > 0.95 { 0.08 } else { 0.0 };
+    assert!(before.iter().all(loses) && before.values().filter(|&&sky| sky > 0.95).count() > 500);
+    // files that hold no horizon are refused by name
+    let moved = place.path().join("moved.csv");
+    std::fs::write(&moved, "no table\n").unwrap();
+    let refused = plain.with_far_terrain(None, Some(SideFile::new(&moved).unwrap())).unwrap_err().to_string();
+    assert!(refused.contains("moved.csv"), "{refused}");
 }
