@@ -1,10 +1,12 @@
 //! Every method by name, ready to be built from a survey.
 
 use crate::dsm::{Dsm, DsmParams};
+use crate::graph_cut::{GraphCut, GraphCutParams};
 use crate::hidden_points::{ForeignTargets, HiddenPoints, HiddenPointsParams};
 use crate::implicit_surface::{ImplicitSurface, ImplicitSurfaceParams};
 use crate::medial::{MedialBaseline, MedialParams, Outward};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
+use crate::poisson::{Poisson, PoissonParams};
 use crate::shadow_map::{ShadowMap, ShadowMapParams};
 use crate::splatting::{SplatParams, Splats};
 use crate::tin::{Tin, TinParams};
@@ -138,6 +140,12 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
         splats("elliptical-splats", "splats: ellipses", SplatParams::object_space()),
         Method::new("implicit-surface", "implicit surface", "implicit-surface", move || {
             ImplicitSurface::new(survey, &ImplicitSurfaceParams::default())
+        }),
+        Method::new("graph-cut", "Delaunay graph cut", "graph-cut", move || {
+            GraphCut::new(survey, &GraphCutParams::default())
+        }),
+        Method::new("poisson", "screened Poisson surface", "poisson", move || {
+            Poisson::new(survey, &PoissonParams::default())
         }),
         voxels("voxels-05", "voxels 0.5 m", 0.5),
         voxels("voxels-10", "voxels 1 m", 1.0),
