@@ -123,6 +123,11 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
     let splats = |key: &str, title: &str, params: SplatParams| {
         Method::new(key, title, "splats", move || Splats::new(cloud, &params))
     };
+    let graph_cut = |key: &str, title: &str, params: GraphCutParams| {
+        Method::new(key, title, "graph-cut", move || GraphCut::new(survey, &params))
+    };
+    // targets behind surfaces, as for the balls below whose shell is 0
+    let bare_graph_cut = GraphCutParams { clearance: 0.0, ..GraphCutParams::default() };
     let voxels = |key: &str, title: &str, size: f64| {
         let params = VoxelParams { size, ..VoxelParams::default() };
         Method::new(key, title, "voxels", move || Voxels::new(positions, &params))
@@ -141,9 +146,8 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
         Method::new("implicit-surface", "implicit surface", "implicit-surface", move || {
             ImplicitSurface::new(survey, &ImplicitSurfaceParams::default())
         }),
-        Method::new("graph-cut", "Delaunay graph cut", "graph-cut", move || {
-            GraphCut::new(survey, &GraphCutParams::default())
-        }),
+        graph_cut("graph-cut", "Delaunay graph cut", GraphCutParams::default()),
+        graph_cut("graph-cut-clearance-0", "the same, clearance 0", bare_graph_cut).on_held_out_pulses(),
         Method::new("poisson", "screened Poisson surface", "poisson", move || {
             Poisson::new(survey, &PoissonParams::default())
         }),
