@@ -153,7 +153,7 @@ impl ImplicitSurface {
 }
 
 /// Normals with signs as [`NormalSigns::Outward`] has them.
-fn outward(survey: &Survey<'_>, normals: Normals) -> Result<Vec<[f32; 3]>> {
+pub(crate) fn outward(survey: &Survey<'_>, normals: Normals) -> Result<Vec<[f32; 3]>> {
     let (oriented, _report) = orient(survey.cloud, normals, &Orientation::Up, &Control::none())?;
     let positions = &survey.cloud.positions;
     let mut vectors = oriented.normals().to_vec();

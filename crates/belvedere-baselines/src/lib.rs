@@ -5,7 +5,10 @@
 
 pub mod agreement;
 pub mod audit;
+mod curve;
+mod delaunay;
 pub mod dsm;
+pub mod graph_cut;
 pub mod held_out;
 pub mod hidden_points;
 pub mod implicit_surface;
@@ -13,6 +16,7 @@ mod lines_of_sight;
 pub mod medial;
 pub mod mesh_rays;
 pub mod methods;
+pub mod poisson;
 mod sampling;
 pub mod shadow_map;
 pub mod splatting;

@@ -1,10 +1,12 @@
 //! Every method by name, ready to be built from a survey.
 
 use crate::dsm::{Dsm, DsmParams};
+use crate::graph_cut::{GraphCut, GraphCutParams};
 use crate::hidden_points::{ForeignTargets, HiddenPoints, HiddenPointsParams};
 use crate::implicit_surface::{ImplicitSurface, ImplicitSurfaceParams};
 use crate::medial::{MedialBaseline, MedialParams, Outward};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
+use crate::poisson::{Poisson, PoissonParams};
 use crate::shadow_map::{ShadowMap, ShadowMapParams};
 use crate::splatting::{SplatParams, Splats};
 use crate::tin::{Tin, TinParams};
@@ -121,6 +123,11 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
     let splats = |key: &str, title: &str, params: SplatParams| {
         Method::new(key, title, "splats", move || Splats::new(cloud, &params))
     };
+    let graph_cut = |key: &str, title: &str, params: GraphCutParams| {
+        Method::new(key, title, "graph-cut", move || GraphCut::new(survey, &params))
+    };
+    // targets behind surfaces, as for the balls below whose shell is 0
+    let bare_graph_cut = GraphCutParams { clearance: 0.0, ..GraphCutParams::default() };
     let voxels = |key: &str, title: &str, size: f64| {
         let params = VoxelParams { size, ..VoxelParams::default() };
         Method::new(key, title, "voxels", move || Voxels::new(positions, &params))
@@ -138,6 +145,11 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
         splats("elliptical-splats", "splats: ellipses", SplatParams::object_space()),
         Method::new("implicit-surface", "implicit surface", "implicit-surface", move || {
             ImplicitSurface::new(survey, &ImplicitSurfaceParams::default())
+        }),
+        graph_cut("graph-cut", "Delaunay graph cut", GraphCutParams::default()),
+        graph_cut("graph-cut-clearance-0", "the same, clearance 0", bare_graph_cut).on_held_out_pulses(),
+        Method::new("poisson", "screened Poisson surface", "poisson", move || {
+            Poisson::new(survey, &PoissonParams::default())
         }),
         voxels("voxels-05", "voxels 0.5 m", 0.5),
         voxels("voxels-10", "voxels 1 m", 1.0),

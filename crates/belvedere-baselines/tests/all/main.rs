@@ -10,6 +10,7 @@ mod held_out;
 mod hidden_points;
 mod mesh_rays;
 mod mesh_target_truth;
+mod reconstructed;
 mod sun_and_sky_truth;
 mod surfaces;
 mod viewshed_truth;

@@ -5,16 +5,15 @@
 //! along a space-filling curve, in rounds that double, and each is found by a walk of a few facets from the last one.
 
 mod cavity;
-mod curve;
 mod start;
 #[cfg(test)]
 mod tests;
 
+use crate::curve::{Curve, insertion_order, number};
 use belvedere::vector::{cross, dot, sub};
 use robust::{Coord3D, orient3d};
 
 use cavity::Cavity;
-use curve::{Curve, insertion_order};
 use start::{first_tetrahedron, middle, tetrahedron};
 
 /// How near to the eye walks aim from, as a share of the way from the eye to the middle of the first tetrahedron: a power of
@@ -258,12 +257,6 @@ impl Hull {
         }
         bent_edges.into_iter().map(|count| count >= 3).collect()
     }
-}
-
-/// A number of a point or facet.
-#[expect(clippy::cast_possible_truncation, reason = "clouds of more than `MOST_POINTS` are refused")]
-fn number(index: usize) -> u32 {
-    index as u32
 }
 
 /// Positive where `d` lies below the plane of `a`, `b` and `c`, which turn counter-clockwise as seen from above; exact sign.

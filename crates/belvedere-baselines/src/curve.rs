@@ -1,6 +1,4 @@
-//! The order in which points are inserted and looked for.
-
-use super::number;
+//! The order in which points are inserted into a hull or a tetrahedralisation, and looked for.
 
 /// Points in the first round of insertions; each later round holds as many as all before it.
 const FIRST_ROUND: usize = 1000;
@@ -8,7 +6,7 @@ const FIRST_ROUND: usize = 1000;
 const CURVE_CELLS: f64 = 262_143.0;
 
 /// All points but `first`: rounds that double in size, chosen at random, each along a space-filling curve.
-pub(super) fn insertion_order(points: &[[f64; 3]], first: &[u32; 4], curve: &Curve) -> Vec<u32> {
+pub(crate) fn insertion_order(points: &[[f64; 3]], first: &[u32], curve: &Curve) -> Vec<u32> {
     let round_count = (points.len() / FIRST_ROUND).max(1).ilog2();
     let mut keys: Vec<(u64, u32)> = (0..number(points.len()))
         .filter(|index| !first.contains(index))
@@ -25,13 +23,13 @@ pub(super) fn insertion_order(points: &[[f64; 3]], first: &[u32; 4], curve: &Cur
 }
 
 /// Places in space in an order that keeps neighbours together (Morton 1966).
-pub(super) struct Curve {
+pub(crate) struct Curve {
     low: [f64; 3],
     cells_per_metre: f64,
 }
 
 impl Curve {
-    pub(super) fn new(points: &[[f64; 3]]) -> Self {
+    pub(crate) fn new(points: &[[f64; 3]]) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for p in points {
             for axis in 0..3 {
@@ -44,7 +42,7 @@ impl Curve {
     }
 
     /// Below 2^54.
-    pub(super) fn key(&self, point: [f64; 3]) -> u64 {
+    pub(crate) fn key(&self, point: [f64; 3]) -> u64 {
         let cell = |axis: usize| {
             let cells = (point[axis] - self.low[axis]) * self.cells_per_metre;
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to CURVE_CELLS")]
@@ -63,4 +61,10 @@ fn spread(v: u64) -> u64 {
     x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
     x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
     (x | x << 2) & 0x1249_2492_4924_9249
+}
+
+/// A number of a point, a facet or a tetrahedron.
+#[expect(clippy::cast_possible_truncation, reason = "callers refuse more points than fit")]
+pub(crate) fn number(index: usize) -> u32 {
+    index as u32
 }
