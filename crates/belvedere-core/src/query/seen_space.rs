@@ -4,6 +4,7 @@ use crate::pulses::Needles;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::OnceLock;
 
 /// Side of a box as a share of the nearness. A needle that passes the middle of a box within nearness − side/√2 is near to all of
@@ -56,6 +57,17 @@ struct Tile {
     blocks: [u64; BLOCKS * BLOCKS],
     /// The same for all of the tile.
     all: u64,
+}
+
+/// Columns or rows of a tile, from `first` on, whose middles may lie within reach of two places, metres, and perhaps one more: rounding up would take longer than
+/// to test one in vain.
+#[inline]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the tile")]
+fn boxes_within(places: [f64; 2], reach: [f64; 2], per_metre: f64, first: usize) -> Range<usize> {
+    let from = f64::max(places[0] - reach[0], places[1] - reach[1]);
+    let to = f64::min(places[0] + reach[0], places[1] + reach[1]);
+    let index = |place: f64| place * per_metre - 0.5 - first as f64;
+    index(from).clamp(0.0, TILE as f64) as usize..(index(to) + 1.0).clamp(0.0, TILE as f64) as usize
 }
 
 impl Tile {
@@ -155,38 +167,39 @@ impl SeenSpace {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
         let layers =
             [layer_of(heights[0]).floor().max(0.0) as usize, (layer_of(heights[1]).ceil() + 1.0).max(0.0) as usize];
-        let middles = [0, 1].map(|axis| -> [f64; TILE] {
-            std::array::from_fn(|index| ((first[axis] + index) as f64 + 0.5) * self.side)
-        });
+        let per_metre = 1.0 / self.side;
+        let middle = |axis: usize, index: usize| ((first[axis] + index) as f64 + 0.5) * self.side;
         for layer in layers[0]..layers[1].min(self.layers) {
-            let bounds = [layer, layer + 1].map(|step| self.low[2] + step as f64 * self.height);
-            if bounds[1] > end[2] + ROUNDING {
+            let bottom = self.low[2] + layer as f64 * self.height;
+            let top = self.low[2] + (layer + 1) as f64 * self.height;
+            if top > end[2] + ROUNDING {
                 break;
             }
-            let at = bounds
-                .map(|z| [0, 1].map(|axis| start[axis] + (z.max(start[2]) - start[2]) * lean[axis] - self.low[axis]));
             // how near it must be to the middle line at the bottom and at the top
-            let below_end = (start[2] - bounds[0]).max(0.0);
-            let reach_below = (self.nearness.powi(2) - below_end.powi(2)).max(0.0).sqrt() - half_diagonal(self.side);
+            let below_end = start[2] - bottom;
+            let reach_below = if below_end > 0.0 {
+                (self.nearness.powi(2) - below_end.powi(2)).max(0.0).sqrt() - half_diagonal(self.side)
+            } else {
+                self.reach
+            };
             if reach_below <= 0.0 {
                 continue;
             }
             let reach = [reach_below, self.reach];
-            let range = [0, 1].map(|axis| {
-                let from = f64::max(at[0][axis] - reach[0], at[1][axis] - reach[1]);
-                let to = f64::min(at[0][axis] + reach[0], at[1][axis] + reach[1]);
-                let index = |place: f64| place / self.side - 0.5 - first[axis] as f64;
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the tile")]
-                let range = index(from).ceil().clamp(0.0, TILE as f64) as usize
-                    ..(index(to).floor() + 1.0).clamp(0.0, TILE as f64) as usize;
-                range
-            });
-            let square = reach.map(|reach| reach * reach);
-            for row in range[1].clone() {
-                let aside = [0, 1].map(|end| (at[end][1] - middles[1][row]).powi(2));
-                for column in range[0].clone() {
-                    let near = |end: usize| (at[end][0] - middles[0][column]).powi(2) + aside[end] < square[end];
-                    boxes[row * TILE + column] |= u64::from(near(0) & near(1)) << layer;
+            // where it is at the bottom and at the top
+            let (risen, risen_more) = (bottom.max(start[2]) - start[2], top.max(start[2]) - start[2]);
+            let x = [start[0] + risen * lean[0] - self.low[0], start[0] + risen_more * lean[0] - self.low[0]];
+            let y = [start[1] + risen * lean[1] - self.low[1], start[1] + risen_more * lean[1] - self.low[1]];
+            let columns = boxes_within(x, reach, per_metre, first[0]);
+            let square = [reach[0] * reach[0], reach[1] * reach[1]];
+            for row in boxes_within(y, reach, per_metre, first[1]) {
+                let middle_y = middle(1, row);
+                let (below, above) = ((y[0] - middle_y).powi(2), (y[1] - middle_y).powi(2));
+                for column in columns.clone() {
+                    let middle_x = middle(0, column);
+                    let is_near = ((x[0] - middle_x).powi(2) + below < square[0])
+                        & ((x[1] - middle_x).powi(2) + above < square[1]);
+                    boxes[row * TILE + column] |= u64::from(is_near) << layer;
                 }
             }
         }

@@ -20,7 +20,7 @@ use serde_json::{Map, Value};
 use std::path::Path;
 
 /// Radius of a window on a map, as a share of its longer side.
-const DOT: f64 = 1.0 / 250.0;
+const DOT: f64 = 1.0 / 100.0;
 
 /// Colour of cells without a window.
 const NO_WINDOW_COLOR: [u8; 3] = [226; 3];
