@@ -102,7 +102,8 @@ impl RoofEdges {
                 let solid = matches!(kinds.get(other), Some(Kind::Other | Kind::Later));
                 solid && up > -SAME_ROOF && x.hypot(y) > LEAST_DISTANCE
             };
-            let Gap { width, middle, .. } = widest_gap(positions, index, p, params.around_spacings * spacing[row], is_beside);
+            let Gap { width, middle, .. } =
+                widest_gap(positions, index, p, params.around_spacings * spacing[row], is_beside);
             if !(params.least_gap..=WIDEST_GAP).contains(&width) {
                 return Vec::new();
             }

@@ -154,6 +154,6 @@ mod tests {
         let mut found = balls(&oriented);
         let before = found.clone();
         assert_eq!(cut(&oriented, &mut found), 0);
-        assert_eq!(found, before);
+        assert_eq!((found.centers, found.radii), (before.centers, before.radii));
     }
 }
