@@ -26,6 +26,7 @@ mod given_model;
 mod lod1;
 mod queries;
 mod random;
+mod room;
 mod scan;
 mod scene;
 mod solids;

@@ -178,7 +178,7 @@ impl QuerySite<'_> {
     }
 
     /// `count` people's eyes in the open anywhere in the place but for its outer twentieth, absolute, metres; fewer where little
-    /// ground is free. One street observer says little: an error near it spoils a whole sector of its view.
+    /// ground is free. Where no ground has the sky above it, they stand under a ceiling. One street observer says little: an error near it spoils a whole sector of its view.
     #[must_use]
     pub fn street_observers(&self, count: usize, seed: u64) -> Vec<[f64; 3]> {
         let [low, high] = self.bounds;
@@ -190,8 +190,21 @@ impl QuerySite<'_> {
         (0..count).into_par_iter().filter_map(eye).collect()
     }
 
-    /// Eyes under the open sky and with room to step, not in a hedge, a passage or a car, within `reach` of `middle`.
+    /// Eyes with room to step, not in a hedge, a passage or a car, within `reach` of `middle`: under the open sky, or where none of the
+    /// ground is, as within a building, under a ceiling.
     fn standing_in_the_open(&self, middle: [f64; 2], reach: [f64; 2], random: &mut Random) -> Option<[f64; 3]> {
+        let is_under_the_sky = |eye: [f64; 3]| !self.truth.occluded_towards(eye, [0.0, 0.0, 1.0]);
+        self.with_room_to_step(middle, reach, random, is_under_the_sky)
+            .or_else(|| self.with_room_to_step(middle, reach, random, |_| true))
+    }
+
+    fn with_room_to_step(
+        &self,
+        middle: [f64; 2],
+        reach: [f64; 2],
+        random: &mut Random,
+        is_wanted: impl Fn([f64; 3]) -> bool,
+    ) -> Option<[f64; 3]> {
         (0..1000).find_map(|_| {
             let at = [0, 1].map(|i| middle[i] + random.between(-reach[i], reach[i]));
             let eye = self.standing_at(at, EYE)?;
@@ -199,7 +212,7 @@ impl QuerySite<'_> {
                 let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 16.0).sin_cos();
                 self.truth.first_hit(eye, [cos, sin, 0.0], 1.5).is_none()
             });
-            (free && !self.truth.occluded_towards(eye, [0.0, 0.0, 1.0])).then_some(eye)
+            (free && is_wanted(eye)).then_some(eye)
         })
     }
 

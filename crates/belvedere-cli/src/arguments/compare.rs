@@ -25,7 +25,8 @@ pub(crate) struct Compare {
     pub(crate) density: Vec<f64>,
     /// Simulated scanners, separated by commas
     ///
-    /// Each but the first differs from it in one way. tripods and car have no density. A car needs a street: --extent 100 or more.
+    /// Each but the first differs from it in one way. room is two furnished rooms instead of a town, with a tripod in each. tripods, car and
+    /// room have no density. A car needs a street: --extent 100 or more.
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "air", value_parser = regimes(), help_heading = "Simulated towns")]
     pub(crate) regimes: Vec<Regime>,
     /// Point clouds of a real place, instead of simulated towns; needs --mesh

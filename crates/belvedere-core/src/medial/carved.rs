@@ -8,6 +8,7 @@ use super::crowns::{self, CrownParams, Crowns, Trees};
 use super::prune::{PruneParams, prune_in_blocks_of};
 use super::relief::{Relief, ReliefParams};
 use super::roof_edges::{RoofEdgeParams, RoofEdges};
+use super::roof_tops::RoofTops;
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 use super::slender::{Slender, SlenderParams};
 use super::spacing::pulse_spacing;
@@ -54,7 +55,7 @@ pub struct CarvedParams {
     pub thin_surfaces: Option<ThinSurfaceParams>,
     /// Fills edges, ridges, chimneys and low walls down to the next lower level.
     pub relief: Option<ReliefParams>,
-    /// Cuts balls below the edges of roofs, where walls stand that no pulse reached.
+    /// Cuts balls below the edges of roofs, where walls stand that no pulse reached, and where they reach above the roof.
     pub roof_edges: Option<RoofEdgeParams>,
     /// Sizes for scanners on the ground, which replace those above and leave none of these rules. `None` treats all scanners as
     /// if they flew.
@@ -221,7 +222,7 @@ pub struct CarvedReport {
     /// Balls that fill it.
     #[serde(rename = "balls_in_thin_relief")]
     pub relief_fills: usize,
-    /// Balls cut below the edges of roofs.
+    /// Balls cut below the edges of roofs, and where they reached above a roof.
     #[serde(rename = "balls_cut_at_roof_edges")]
     pub cut_at_edges: usize,
     /// Balls that close floors below tripods.
@@ -354,7 +355,8 @@ pub(crate) fn carve_survey(
     if let Some(params) = &params.roof_edges {
         report.cut_at_edges = control.stage("cutting at roof edges", 0, || {
             let edges = RoofEdges::find(oriented, &kinds, index, (&lowest, &spacing), params, control)?;
-            edges.cut(&mut balls, oriented, params, control)
+            let at_edges = edges.cut(&mut balls, oriented, params, control)?;
+            Ok(at_edges + RoofTops::find(oriented).cut(&mut balls, oriented, params, control)?)
         })?;
     }
     if let Some(pruning) = &params.pruning {

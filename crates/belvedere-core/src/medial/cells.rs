@@ -43,6 +43,15 @@ impl<V: Copy + Send + Sync> Cells<V> {
         self.cells.get(place).map(|entry| entry.1)
     }
 
+    /// The values of all cells from the one with the least row and column to the one with the greatest, merged; `None` where all are empty.
+    pub(super) fn in_rectangle(&self, low: Cell, high: Cell, merge: impl Fn(V, V) -> V) -> Option<V> {
+        let of_row = |row: i32| {
+            let start = self.cells.partition_point(|entry| entry.0 < (row, low.1));
+            self.cells.iter().skip(start).take_while(move |entry| entry.0 <= (row, high.1)).map(|entry| entry.1)
+        };
+        (low.0..=high.0).flat_map(of_row).reduce(merge)
+    }
+
     /// All values merged, `None` without any.
     pub(super) fn all(&self, merge: impl Fn(V, V) -> V) -> Option<V> {
         self.cells.iter().map(|entry| entry.1).reduce(merge)

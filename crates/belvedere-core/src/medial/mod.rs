@@ -14,6 +14,7 @@ pub mod orient_by_carving;
 pub mod prune;
 pub mod relief;
 pub mod roof_edges;
+mod roof_tops;
 pub mod shrinking_ball;
 pub mod slender;
 mod spacing;

@@ -5,7 +5,7 @@
 
 use super::bounds::Kind;
 use super::cells::{Cells, cell};
-use super::thin_surfaces::widest_gap;
+use super::thin_surfaces::{Gap, widest_gap};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use belvedere_data::Result;
@@ -15,7 +15,7 @@ use belvedere_data::vector::{dot, sub};
 use rayon::prelude::*;
 
 /// Least upward part of the normal of a roof: 60° of slope.
-const LEAST_UP: f32 = 0.5;
+pub(super) const LEAST_UP: f32 = 0.5;
 /// How far below a point its neighbours may lie and still be of the same roof, metres.
 const SAME_ROOF: f32 = 0.6;
 /// Least horizontal distance of neighbours that tell a direction, metres: above noise.
@@ -25,7 +25,7 @@ const WIDEST_GAP: f32 = 5.2;
 /// Distance of a wall from the roof and from the ground at which it is taken to begin, metres.
 const ENDS: f32 = 0.3;
 
-/// How balls are cut below the edges of roofs. Defaults were chosen on three simulated towns of seed 7 at 8 pulses per m².
+/// How balls are cut below the edges of roofs, and where they reach above the roof. Defaults were chosen on three simulated towns of seed 7 at 8 pulses per m².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoofEdgeParams {
     /// Distance within which a point on a roof has no neighbour on one side if it lies at the edge, in spacings of pulses, above 0. Default
@@ -102,8 +102,9 @@ impl RoofEdges {
                 let solid = matches!(kinds.get(other), Some(Kind::Other | Kind::Later));
                 solid && up > -SAME_ROOF && x.hypot(y) > LEAST_DISTANCE
             };
-            let (gap, middle) = widest_gap(positions, index, p, params.around_spacings * spacing[row], is_beside);
-            if !(params.least_gap..=WIDEST_GAP).contains(&gap) {
+            let Gap { width, middle, .. } =
+                widest_gap(positions, index, p, params.around_spacings * spacing[row], is_beside);
+            if !(params.least_gap..=WIDEST_GAP).contains(&width) {
                 return Vec::new();
             }
             let outward = [middle.cos(), middle.sin()];

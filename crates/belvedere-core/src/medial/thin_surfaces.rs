@@ -17,6 +17,9 @@ const LEAST_BESIDE: usize = 5;
 /// How far points may lie above or below a surface and still be part of it where a pulse runs below, metres: a voxel and half
 /// of another, so that slopes up to 40° count.
 const SAME_SURFACE: f32 = 0.6;
+/// Gap about a pulse that is never taken for one below a surface, radians: a pulse beside a straight wall has π, less what the noise
+/// of its points takes.
+const WIDEST_OF_ALL: f32 = 2.8;
 /// How far below a voxel a point no longer belongs to its surface, metres: more than a voxel is high.
 const OF_THE_SURFACE: f32 = 0.5;
 /// Needles handed to a thread at once.
@@ -37,12 +40,13 @@ pub struct ThinSurfaceParams {
     pub depths: [f32; 2],
     /// Distance within which points of the surface must lie around a pulse below it, metres, above 0. Default 0.75.
     pub around: f32,
-    /// Widest angle, radians, between neighbouring ones of those points. Default 2: a pulse beside a straight wall sees the
-    /// roof over less than π, so that the gap is wider than π. 2.4 takes 8 and
-    /// 17 % of the roofs of two towns for thin, because surfaces hang together.
+    /// Widest angle, radians, between neighbouring ones of those points where points are dense. Default 2: a pulse beside a straight wall
+    /// sees the roof over less than π, so that the gap is wider than π. 2.8 at 40 pulses per m² lets 0.8 points more through roofs. Sparse
+    /// points do not reach the edge of a surface: each end of the gap may lie one mean angle between them farther, as long as the whole
+    /// stays below 2.8.
     pub widest_gap: f32,
     /// Proven cells a surface must have, in square roots of its number of cells, above 0: pulses look below a rim, and the rim
-    /// grows with that root. Default 0.3.
+    /// grows with that root. Default 0.5: at 0.3 more of the roofs of a real tile (Delft) are taken for thin.
     pub least_proof: f32,
     /// Distance about a pulse below a surface within which hardly a solid point may lie below that surface, metres. Default 1.5.
     /// Eaves stand out over walls, whose points betray them; without this rule two thirds of the roofs of real tiles (Delft,
@@ -59,7 +63,7 @@ impl Default for ThinSurfaceParams {
             depths: [1.0, 5.0],
             around: 0.75,
             widest_gap: 2.0,
-            least_proof: 0.3,
+            least_proof: 0.5,
             open_radius: 1.5,
             most_below: 1,
         }
@@ -121,7 +125,9 @@ fn find(
     stop.check()?;
     let is_roof = |at: [f32; 3]| {
         let near = |row: usize| solid(row) && (positions[row][2] - at[2]).abs() < SAME_SURFACE;
-        widest_gap(positions, index, at, params.around, near).0 < params.widest_gap
+        let Gap { width, count, .. } = widest_gap(positions, index, at, params.around, near);
+        let between_points = (TAU - width) / f32::from(count.max(1));
+        width < WIDEST_OF_ALL && width - 2.0 * between_points < params.widest_gap
     };
     let is_open = |needle: [f32; 3], bottom: f32| {
         let mut walls = 0;
@@ -181,15 +187,24 @@ fn run_below(
     Ok(proven.into_iter().map(AtomicBool::into_inner).collect())
 }
 
-/// Widest angle seen from above, radians, between neighbours among those points within `radius` of `at` whose row is `wanted`,
-/// and the azimuth of its middle, counter-clockwise from east; a whole turn for fewer than two.
+/// The widest angle between neighbours about a place, seen from above.
+pub(super) struct Gap {
+    /// Radians; a whole turn for fewer than two points.
+    pub(super) width: f32,
+    /// Azimuth of its middle, radians, counter-clockwise from east.
+    pub(super) middle: f32,
+    /// Number of points about the place, at most 65 535.
+    pub(super) count: u16,
+}
+
+/// The widest gap between those points within `radius` of `at` whose row is `wanted`.
 pub(super) fn widest_gap(
     positions: &[[f32; 3]],
     index: &NeighborIndex,
     at: [f32; 3],
     radius: f32,
     wanted: impl Fn(usize) -> bool,
-) -> (f32, f32) {
+) -> Gap {
     let mut angles: Vec<f32> = Vec::new();
     index.within_radius(at, radius, |found| {
         let row = found.index as usize;
@@ -198,10 +213,14 @@ pub(super) fn widest_gap(
         }
     });
     angles.sort_unstable_by(f32::total_cmp);
-    let (Some(&first), Some(&last)) = (angles.first(), angles.last()) else { return (TAU, 0.0) };
+    let count = u16::try_from(angles.len()).unwrap_or(u16::MAX);
+    let (Some(&first), Some(&last)) = (angles.first(), angles.last()) else {
+        return Gap { width: TAU, middle: 0.0, count };
+    };
     let gap = |from: f32, to: f32| (to - from, (from + to) / 2.0);
     let wider = |a: (f32, f32), b: (f32, f32)| if b.0 > a.0 { b } else { a };
-    angles.windows(2).map(|pair| gap(pair[0], pair[1])).fold(gap(last, first + TAU), wider)
+    let (width, middle) = angles.windows(2).map(|pair| gap(pair[0], pair[1])).fold(gap(last, first + TAU), wider);
+    Gap { width, middle, count }
 }
 
 /// Which voxels belong to a surface of which enough is proven. A surface is what hangs together of voxels that go on to all

@@ -1,5 +1,6 @@
-//! Scanners by name, so that a comparison can go through all of them.
+//! Scanners and what they scan by name, so that a comparison can go through all of them.
 
+use crate::room::furnished_rooms;
 use crate::scan::Scan;
 use crate::scan::airborne::{AirborneParams, scan_airborne};
 use crate::scan::beam::BeamParams;
@@ -7,8 +8,8 @@ use crate::scan::mobile::{MobileParams, scan_mobile};
 use crate::scan::scan_pattern::{MirrorMotion, ScanPattern};
 use crate::scan::terrestrial::{Stations, TerrestrialParams, scan_terrestrial};
 use crate::scene::Scene;
-use crate::town::TownParams;
 use crate::town::trees::Crowns;
+use crate::town::{TownParams, town};
 
 /// Tripods in a town: a few metres see what none of the others does.
 const TRIPODS: u16 = 12;
@@ -20,7 +21,7 @@ const CAR_PULSES: u32 = 400;
 /// Height of the drone, metres, its speed, metres per second, and its greatest angle from nadir, radians.
 const DRONE: (f64, f64, f64) = (60.0, 10.0, 0.6);
 
-/// A scanner over or in a town. Each but the first differs from it in one way.
+/// A scanner and its scene. All but [`Regime::Room`] scan a town; each but the first differs from that in one way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Regime {
     /// [`AirborneParams::covering`]: 450 m up, a rotating mirror, 2 cm of noise, a beam of 0.4 mrad.
@@ -41,15 +42,19 @@ pub enum Regime {
     Drone,
     /// Over trees of single leaves with gaps, instead of closed crowns.
     Leaves,
+    /// Over trees without leaves: trunks and branches.
+    Bare,
     /// Twelve tripods, half a degree from pulse to pulse.
     Tripods,
     /// A car along each street, 20 cm from line to line. Towns below 100 m have no street.
     Car,
+    /// Two furnished rooms instead of a town, with a tripod in each, half a degree from pulse to pulse.
+    Room,
 }
 
 impl Regime {
     /// Every one.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Air,
         Self::NoNoise,
         Self::MuchNoise,
@@ -59,8 +64,10 @@ impl Regime {
         Self::Conical,
         Self::Drone,
         Self::Leaves,
+        Self::Bare,
         Self::Tripods,
         Self::Car,
+        Self::Room,
     ];
 
     /// Name on the command line.
@@ -76,43 +83,55 @@ impl Regime {
             Self::Conical => "conical",
             Self::Drone => "drone",
             Self::Leaves => "leaves",
+            Self::Bare => "bare",
             Self::Tripods => "tripods",
             Self::Car => "car",
+            Self::Room => "room",
         }
     }
 
     /// Whether the scanner flies: only then its pulses have a density to choose.
     #[must_use]
     pub fn flies(self) -> bool {
-        !matches!(self, Self::Tripods | Self::Car)
+        !matches!(self, Self::Tripods | Self::Car | Self::Room)
     }
 
     /// The town as this needs it.
     #[must_use]
     pub fn town(self, params: TownParams) -> TownParams {
-        if self == Self::Leaves { TownParams { crowns: Crowns::Porous, ..params } } else { params }
+        match self {
+            Self::Leaves => TownParams { crowns: Crowns::Porous, ..params },
+            Self::Bare => TownParams { crowns: Crowns::Bare, ..params },
+            _ => params,
+        }
     }
 
-    /// A survey of `scene`, made of `params`, with their seed, and with `pulses_per_m2` where the scanner flies.
+    /// What is scanned: the town of `params`, or the rooms of their seed.
+    #[must_use]
+    pub fn scene(self, params: &TownParams) -> Scene {
+        if self == Self::Room { furnished_rooms(params.seed).0 } else { town(params) }
+    }
+
+    /// A survey of `scene`, which [`Regime::scene`] made of `params`, with their seed, and with `pulses_per_m2` where the scanner flies.
     #[must_use]
     pub fn scan(self, scene: &Scene, params: &TownParams, pulses_per_m2: f64) -> Scan {
         let seed = params.seed;
         let usual = AirborneParams { seed, beam: BeamParams::in_leaf(), ..AirborneParams::default() };
         let beam = |divergence: f64| BeamParams { divergence, ..BeamParams::in_leaf() };
+        let from_tripods = |stations: Stations| {
+            let usual = TerrestrialParams::default();
+            scan_terrestrial(scene, &TerrestrialParams { seed, stations, angular_step: TRIPOD_STEP, ..usual })
+        };
         let flown = match self {
-            Self::Tripods => {
-                let stations = Stations::Chosen(TRIPODS);
-                let usual = TerrestrialParams::default();
-                let params = TerrestrialParams { seed, stations, angular_step: TRIPOD_STEP, ..usual };
-                return scan_terrestrial(scene, &params);
-            }
+            Self::Tripods => return from_tripods(Stations::Chosen(TRIPODS)),
+            Self::Room => return from_tripods(Stations::At(furnished_rooms(seed).1.to_vec())),
             Self::Car => {
                 let (line_rate, pulses_per_line) = (CAR_LINES, CAR_PULSES);
                 let usual = MobileParams::default();
                 let params = MobileParams { seed, runs: params.lanes(), line_rate, pulses_per_line, ..usual };
                 return scan_mobile(scene, &params);
             }
-            Self::Air | Self::Leaves => usual,
+            Self::Air | Self::Leaves | Self::Bare => usual,
             Self::NoNoise => AirborneParams { range_sd: 0.0, pointing_sd: 0.0, boresight_sd: 0.0, ..usual },
             Self::MuchNoise => AirborneParams { range_sd: 0.05, ..usual },
             Self::ThinBeam => AirborneParams { beam: beam(0.0), ..usual },

@@ -1,11 +1,11 @@
-//! Trees: a stem and a crown, either a closed bumpy hull or many small leaves.
+//! Trees: a stem and a crown, either a closed bumpy hull, many small leaves or bare branches.
 
 use std::f64::consts::{PI, TAU};
 
 use crate::random::Random;
 use crate::scene::{Material, Part};
 use crate::solids::{Placement, extruded};
-use crate::vector::{add, add_scaled, cross, length, scale, unit};
+use crate::vector::{add, add_scaled, cross, length, scale, sub, unit};
 
 /// Size of a tree, metres.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +43,8 @@ pub enum Crowns {
     /// Sprays of leaves, 0.2 to 0.4 m, in clumps with gaps between ([`Material::Leaf`]): about two in
     /// five straight lines through the crown get past them.
     Porous,
+    /// Trunk and branches only ([`Material::Trunk`]), as in winter.
+    Bare,
 }
 
 /// Trunk and crown of a tree that stands at `foot`, absolute, metres, its trunk reaching `buried` metres below.
@@ -60,6 +62,7 @@ pub(crate) fn tree(foot: [f64; 3], shape: &TreeShape, crowns: Crowns, buried: f6
     let crown = match crowns {
         Crowns::Opaque => crown(centre, shape.crown_radius, half_height, random),
         Crowns::Porous => leaves(centre, shape.crown_radius, half_height, random),
+        Crowns::Bare => branches(centre, shape, half_height, random),
     };
     [trunk, crown]
 }
@@ -100,6 +103,58 @@ fn leaves(centre: [f64; 3], radius: f64, half_height: f64, random: &mut Random) 
         }
     }
     part
+}
+
+/// Limbs of a tree without leaves, and twigs on each: so many that every metre of the crown holds one.
+const LIMBS: u32 = 14;
+const TWIGS: u32 = 4;
+/// Radius of the tip of a limb or a twig, metres.
+const TIP_RADIUS: f64 = 0.01;
+
+/// Branches of a tree without leaves, within an ellipsoid about `centre`: each a closed prism that tapers. The trunk goes on to the top.
+fn branches(centre: [f64; 3], shape: &TreeShape, half_height: f64, random: &mut Random) -> Part {
+    let TreeShape { crown_radius: radius, trunk_radius, .. } = *shape;
+    let mut part = Part::default();
+    let top = [centre[0], centre[1], centre[2] + half_height];
+    add_branch(&mut part, centre, top, trunk_radius * 0.7);
+    for limb in 0..LIMBS {
+        let share = (f64::from(limb) + random.uniform()) / f64::from(LIMBS);
+        let from = [centre[0], centre[1], centre[2] + half_height * (1.4 * share - 0.8)];
+        let (sin, cos) = random.between(0.0, TAU).sin_cos();
+        // longest in the middle of the crown, and rising
+        let reach = radius * (1.0 - (1.4 * share - 0.8).powi(2)).sqrt() * random.between(0.7, 0.95);
+        let end = add(from, [reach * cos, reach * sin, reach * random.between(0.3, 0.6)]);
+        let thickness = trunk_radius * random.between(0.25, 0.4);
+        add_branch(&mut part, from, end, thickness);
+        for _ in 0..TWIGS {
+            let start = add_scaled(from, sub(end, from), random.between(0.3, 0.9));
+            let tip = add_scaled(start, direction(random), reach * random.between(0.2, 0.45));
+            add_branch(&mut part, start, tip, thickness * 0.5);
+        }
+    }
+    part
+}
+
+/// Adds a closed prism of three sides that tapers from `radius` at `from` to [`TIP_RADIUS`] at `to`; nothing where they coincide.
+fn add_branch(part: &mut Part, from: [f64; 3], to: [f64; 3], radius: f64) {
+    let Some(along) = unit(sub(to, from)) else { return };
+    let aside = if along[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
+    let Some(across) = unit(cross(aside, along)) else { return };
+    let other = cross(along, across);
+    let first = part.vertices.len();
+    for (end, radius) in [(from, radius.max(TIP_RADIUS)), (to, TIP_RADIUS)] {
+        for side in 0_u8..3 {
+            let (sin, cos) = (f64::from(side) * TAU / 3.0).sin_cos();
+            part.vertices.push(add_scaled(add_scaled(end, across, radius * cos), other, radius * sin));
+        }
+    }
+    for side in 0..3 {
+        let [a, b] = [first + side, first + (side + 1) % 3];
+        part.add_polygon(&[a, b, b + 3], Material::Trunk);
+        part.add_polygon(&[a, b + 3, a + 3], Material::Trunk);
+    }
+    part.add_polygon(&[first + 2, first + 1, first], Material::Trunk);
+    part.add_polygon(&[first + 3, first + 4, first + 5], Material::Trunk);
 }
 
 /// Thickness of a spray, metres.

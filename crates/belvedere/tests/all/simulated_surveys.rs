@@ -353,7 +353,7 @@ fn cityjson_parts_are_those_given_and_surfaces_say_what_they_are() {
 fn scanners_that_fly_hit_the_ground_as_densely_as_wanted_and_others_from_where_they_stand() {
     for regime in Regime::ALL {
         let params = regime.town(Preset::Town.params(100.0, 3));
-        let scene = town(&params);
+        let scene = regime.scene(&params);
         let scan = regime.scan(&scene, &params, 2.0);
         let highest = scan.sensor_path.positions.iter().map(|p| p[2]).fold(f64::NEG_INFINITY, f64::max);
         let density = scan.return_number.iter().filter(|&&number| number == 1).count() as f64 / 1e4;

@@ -10,7 +10,7 @@ use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud, read_mesh, read_trajectory};
 use belvedere::trajectory::Trajectory;
 use belvedere_baselines::Model;
-use belvedere_scenes::{Material, Preset, Regime, Scene, blocks, town};
+use belvedere_scenes::{Material, Preset, Regime, Scene, blocks};
 use std::path::{Path, PathBuf};
 
 /// Names of the models of simulated towns.
@@ -102,7 +102,7 @@ impl Place {
         match self {
             Self::Simulated { preset, extent, seed, regime, pulses_per_m2, .. } => {
                 let params = regime.town(preset.params(*extent, *seed));
-                let scene = town(&params);
+                let scene = regime.scene(&params);
                 let scan = regime.scan(&scene, &params, *pulses_per_m2);
                 if scan.x.is_empty() {
                     bail!(

@@ -1,0 +1,159 @@
+//! Roofs that pulses left partly without points: a building does not reach above the top of its roof.
+//!
+//! Between two strips, and where a surface is too dark or too smooth, a roof has few points or none. Balls of the walls below it then
+//! bulge out of it, as far as the next pulse.
+
+use super::cells::{Cells, cell};
+use super::roof_edges::{LEAST_UP, RoofEdgeParams};
+use crate::normals::OrientedCloud;
+use belvedere_data::Result;
+use belvedere_data::balls::{MedialBalls, NO_TOUCH, PULSE_TOUCH};
+use belvedere_data::control::{Control, Stop};
+use rayon::prelude::*;
+
+/// Heights of the highest points in cells of the map.
+pub(super) struct RoofTops {
+    /// Of all points.
+    all: Cells<f32>,
+    /// Of all points in a cell and those about it.
+    near: Cells<f32>,
+    /// Of points on roofs and on level ground.
+    level: Cells<f32>,
+}
+
+impl RoofTops {
+    /// Those of `oriented`.
+    pub(super) fn find(oriented: &OrientedCloud) -> Self {
+        let (positions, normals) = (oriented.positions(), oriented.normals());
+        let highest = |is_wanted: &(dyn Fn(usize) -> bool + Sync)| {
+            let rows = (0..positions.len()).into_par_iter().filter(|&row| is_wanted(row));
+            Cells::new(rows.map(|row| (cell(positions[row]), positions[row][2])).collect(), f32::max)
+        };
+        let all = highest(&|_| true);
+        let near = all.with_neighbors(f32::max);
+        Self { all, near, level: highest(&|row| normals[row][2] >= LEAST_UP) }
+    }
+
+    /// Cuts `balls`, row i of which is the interior ball of point i of `oriented`, where they reach above every point over their whole
+    /// width; returns how many. Only where the highest of these points lies on a roof is the top of the building known; other balls
+    /// stay. The result depends on neither the order of points nor the number of threads.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub(super) fn cut(
+        &self,
+        balls: &mut MedialBalls,
+        oriented: &OrientedCloud,
+        params: &RoofEdgeParams,
+        control: &Control<'_>,
+    ) -> Result<usize> {
+        let stop = Stop::new(control);
+        let (positions, normals) = (oriented.positions(), oriented.normals());
+        let radius = |row: usize| {
+            let (center, radius, up) = (balls.centers[row], balls.radii[row], normals[row][2]);
+            let is_usable = balls.touch[row] != NO_TOUCH && radius > params.least_radius && up < 1.0;
+            if !is_usable || stop.is_set() {
+                return None;
+            }
+            let top = self.over(center, radius, params.penetration)? + params.penetration;
+            // the ball of radius r at this point ends r (1 - up) above it
+            let left = (top - positions[row][2]) / (1.0 - up);
+            (left < radius).then(|| left.max(params.least_radius))
+        };
+        let radii: Vec<Option<f32>> = (0..balls.len()).into_par_iter().map(radius).collect();
+        stop.check()?;
+        let mut count = 0;
+        for (row, radius) in radii.into_iter().enumerate() {
+            let Some(radius) = radius else { continue };
+            count += 1;
+            balls.radii[row] = radius;
+            balls.centers[row] = std::array::from_fn(|i| positions[row][i] - normals[row][i] * radius);
+            balls.touch[row] = PULSE_TOUCH;
+            balls.separation_angles[row] = f32::NAN;
+        }
+        Ok(count)
+    }
+
+    /// Height of the roof over a ball: of the highest point over its whole width; `None` where the ball does not reach above that, or where
+    /// that point is more than `tolerance` metres above every roof.
+    fn over(&self, center: [f32; 3], radius: f32, tolerance: f32) -> Option<f32> {
+        let is_below = |highest: f32| highest >= center[2] + radius - tolerance;
+        // most balls lie below the points about their middle
+        if self.near.get(cell(center)).is_some_and(is_below) {
+            return None;
+        }
+        let [low, high] = [-radius, radius].map(|off| cell([center[0] + off, center[1] + off, center[2]]));
+        let highest = self.all.in_rectangle(low, high, f32::max).filter(|&highest| !is_below(highest))?;
+        let level = self.level.in_rectangle(low, high, f32::max)?;
+        (level >= highest - tolerance).then_some(highest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A wall from the ground to a height of 9 m, and points 0.25 m apart on the roof behind it from `from` metres behind it on.
+    fn building(from: f32) -> OrientedCloud {
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        for i in 0_u8..36 {
+            for k in 0_u8..40 {
+                let (along, across) = (f32::from(k) * 0.25 - 5.0, f32::from(i) * 0.25);
+                positions.push([0.0, along, across]);
+                normals.push([-1.0, 0.0, 0.0]);
+                if across + 0.25 > from {
+                    positions.push([across + 0.25, along, 9.0]);
+                    normals.push([0.0, 0.0, 1.0]);
+                }
+            }
+        }
+        OrientedCloud::with_known_normals(positions, normals).unwrap()
+    }
+
+    /// The balls of radius 3 m of all points of the wall.
+    fn balls(oriented: &OrientedCloud) -> MedialBalls {
+        let mut balls = MedialBalls::default();
+        for (row, (p, n)) in oriented.positions().iter().zip(oriented.normals()).enumerate() {
+            let radius = if n[0] < 0.0 { 3.0 } else { 0.1 };
+            balls.push(row, std::array::from_fn(|i| p[i] - radius * n[i]), radius, 7);
+        }
+        balls
+    }
+
+    fn cut(oriented: &OrientedCloud, balls: &mut MedialBalls) -> usize {
+        RoofTops::find(oriented).cut(balls, oriented, &RoofEdgeParams::default(), &Control::none()).unwrap()
+    }
+
+    #[test]
+    fn balls_of_a_wall_end_at_the_roof_that_is_partly_without_points() {
+        let oriented = building(4.0);
+        let mut found = balls(&oriented);
+        assert!(cut(&oriented, &mut found) > 0);
+        let params = RoofEdgeParams::default();
+        for (center, radius) in found.centers.iter().zip(&found.radii) {
+            // what is no larger than the least radius is not cut
+            let most = if *radius > params.least_radius { 9.0 + params.penetration } else { 9.0 + 2.0 * radius };
+            assert!(center[2] + radius < most + 1e-4, "{center:?} {radius}");
+        }
+    }
+
+    #[test]
+    fn balls_below_the_roof_stay() {
+        let oriented = building(4.0);
+        let mut found = balls(&oriented);
+        let before = found.clone();
+        cut(&oriented, &mut found);
+        for (row, center) in before.centers.iter().enumerate().filter(|(_, center)| center[2] <= 6.0) {
+            assert_eq!((found.centers[row], found.radii[row]), (*center, before.radii[row]));
+        }
+    }
+
+    #[test]
+    fn without_a_point_of_the_roof_its_height_is_not_known_and_balls_stay() {
+        let oriented = building(f32::INFINITY);
+        let mut found = balls(&oriented);
+        let before = found.clone();
+        assert_eq!(cut(&oriented, &mut found), 0);
+        assert_eq!((found.centers, found.radii), (before.centers, before.radii));
+    }
+}
