@@ -109,10 +109,8 @@ impl Choice {
         };
         let earth = earth(self.curvature.as_deref(), self.refraction)?;
         let share = self.fresnel_percent.map_or(FREE_FRESNEL_SHARE, |percent| percent / 100.0);
-        let zone = match self.frequency {
-            Some(ghz) => Some(RadioWave::of_frequency(ghz).and_then(|wave| FresnelZone::new(wave, share))),
-            None => None,
-        };
+        let zone =
+            self.frequency.map(|ghz| RadioWave::of_frequency(ghz).and_then(|wave| FresnelZone::new(wave, share)));
         let coverage = CoverageParams::default()
             .with_density(lens.required_density(density).map_err(exception)?)
             .with_earth(earth)
