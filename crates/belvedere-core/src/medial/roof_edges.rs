@@ -143,18 +143,7 @@ impl RoofEdges {
             })
             .collect();
         stop.check()?;
-        let mut count = 0;
-        for (row, radius) in radii.into_iter().enumerate() {
-            if !(radius < balls.radii[row]) {
-                continue;
-            }
-            count += 1;
-            balls.radii[row] = radius;
-            balls.centers[row] = std::array::from_fn(|i| positions[row][i] - normals[row][i] * radius);
-            balls.touch[row] = PULSE_TOUCH;
-            balls.separation_angles[row] = f32::NAN;
-        }
-        Ok(count)
+        Ok(shrink(balls, oriented, &radii))
     }
 
     /// What is left of the radius of the ball at a point with this outward normal.
@@ -179,6 +168,23 @@ impl RoofEdges {
         });
         least.max(params.least_radius)
     }
+}
+
+/// Shrinks `balls`, row i of which is the interior ball of point i of `oriented`, to `radii` where these are less; returns how many.
+pub(super) fn shrink(balls: &mut MedialBalls, oriented: &OrientedCloud, radii: &[f32]) -> usize {
+    let mut count = 0;
+    for (row, &radius) in radii.iter().enumerate() {
+        if !(radius < balls.radii[row]) {
+            continue;
+        }
+        count += 1;
+        let (p, n) = (oriented.positions()[row], oriented.normals()[row]);
+        balls.radii[row] = radius;
+        balls.centers[row] = std::array::from_fn(|i| p[i] - n[i] * radius);
+        balls.touch[row] = PULSE_TOUCH;
+        balls.separation_angles[row] = f32::NAN;
+    }
+    count
 }
 
 #[cfg(test)]

@@ -4,10 +4,10 @@
 //! bulge out of it, as far as the next pulse.
 
 use super::cells::{Cells, cell};
-use super::roof_edges::{LEAST_UP, RoofEdgeParams};
+use super::roof_edges::{LEAST_UP, RoofEdgeParams, shrink};
 use crate::normals::OrientedCloud;
 use belvedere_data::Result;
-use belvedere_data::balls::{MedialBalls, NO_TOUCH, PULSE_TOUCH};
+use belvedere_data::balls::{MedialBalls, NO_TOUCH};
 use belvedere_data::control::{Control, Stop};
 use rayon::prelude::*;
 
@@ -53,25 +53,16 @@ impl RoofTops {
             let (center, radius, up) = (balls.centers[row], balls.radii[row], normals[row][2]);
             let is_usable = balls.touch[row] != NO_TOUCH && radius > params.least_radius && up < 1.0;
             if !is_usable || stop.is_set() {
-                return None;
+                return radius;
             }
-            let top = self.over(center, radius, params.penetration)? + params.penetration;
+            let Some(top) = self.over(center, radius, params.penetration) else { return radius };
             // the ball of radius r at this point ends r (1 - up) above it
-            let left = (top - positions[row][2]) / (1.0 - up);
-            (left < radius).then(|| left.max(params.least_radius))
+            let left = (top + params.penetration - positions[row][2]) / (1.0 - up);
+            radius.min(left.max(params.least_radius))
         };
-        let radii: Vec<Option<f32>> = (0..balls.len()).into_par_iter().map(radius).collect();
+        let radii: Vec<f32> = (0..balls.len()).into_par_iter().map(radius).collect();
         stop.check()?;
-        let mut count = 0;
-        for (row, radius) in radii.into_iter().enumerate() {
-            let Some(radius) = radius else { continue };
-            count += 1;
-            balls.radii[row] = radius;
-            balls.centers[row] = std::array::from_fn(|i| positions[row][i] - normals[row][i] * radius);
-            balls.touch[row] = PULSE_TOUCH;
-            balls.separation_angles[row] = f32::NAN;
-        }
-        Ok(count)
+        Ok(shrink(balls, oriented, &radii))
     }
 
     /// Height of the roof over a ball: of the highest point over its whole width; `None` where the ball does not reach above that, or where
