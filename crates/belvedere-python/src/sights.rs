@@ -117,7 +117,7 @@ impl Scene {
                 .stage("testing lines of sight", pairs.len(), || scene.lines_of_sight(&pairs, &earth, control))?;
             let of_wave = |wave| {
                 control.stage("testing Fresnel zones", pairs.len(), || {
-                    scene.fresnel_clearances(&pairs, wave, &earth, control)
+                    scene.fresnel_clearances(&pairs, &sights, wave, &earth, control)
                 })
             };
             Ok((sights, wave.map(of_wave).transpose()?))

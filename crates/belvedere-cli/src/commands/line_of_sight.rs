@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     let sights = stages.run("answering queries", 0, |control| blockers.lines_of_sight(&pairs, &earth, control))?;
     let fresnel = match wave {
         Some(wave) => Some(stages.run("testing Fresnel zones", pairs.len(), |control| {
-            blockers.fresnel_clearances(&pairs, wave, &earth, control)
+            blockers.fresnel_clearances(&pairs, &sights, wave, &earth, control)
         })?),
         None => None,
     };

@@ -215,15 +215,18 @@ impl AddedMeshes {
         });
     }
 
-    /// The triangles between `ends` whose boxes may meet the box between two corners, local metres.
-    pub(super) fn each_near(&self, [low, high]: [[f64; 3]; 2], ends: &Ends, mut visit: impl FnMut(&Corners)) {
-        self.tree.each_near(low, high, |row| {
-            if self.is_between(row, ends)
-                && let Some(corners) = self.tree.triangles().get(row)
-            {
-                visit(corners);
-            }
-        });
+    /// The triangles between `ends` whose boxes may meet one of `boxes`, given by their lowest and highest corner, local metres; each once.
+    pub(super) fn near(
+        &self,
+        boxes: impl Iterator<Item = [[f64; 3]; 2]>,
+        ends: &Ends,
+    ) -> impl Iterator<Item = &Corners> {
+        let mut rows = Vec::new();
+        boxes.for_each(|[low, high]| self.tree.each_near(low, high, |row| rows.push(row)));
+        rows.sort_unstable();
+        rows.dedup();
+        rows.retain(|&row| self.is_between(row, ends));
+        rows.into_iter().filter_map(|row| self.tree.triangles().get(row))
     }
 
     /// Where a line passes through surfaces, by the number of the mesh and the range, in this order.
