@@ -158,6 +158,8 @@ fn wrong_plans_are_refused_with_advice() {
     for (flags, words) in [
         ("-o other --sky-view --add no.obj", ["no.obj", "faces"]),
         ("-o other --sky-view --add .", ["error: .: ", "mesh"]),
+        ("-o other --sky-view --terrain no.obj", ["no.obj", "TIFF"]),
+        ("-o other --sky-view --terrain gone.tif", ["gone.tif", "check the path"]),
         ("-o other --sky-view --horizon no.obj", ["no.obj", "azimuth"]),
         ("-o other --irradiance --weather no.obj", ["no.obj", "weather"]),
         ("-o no.obj --sky-view", ["no.obj", "a folder is needed"]),

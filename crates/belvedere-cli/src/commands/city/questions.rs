@@ -13,7 +13,7 @@ use belvedere::apps::sun::{Binning, Period, sun_position_with};
 use belvedere::apps::tree_light::Season;
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::control::Control;
-use belvedere::io::{read_horizon, read_mesh, read_weather};
+use belvedere::io::{read_horizon, read_mesh, read_tif, read_weather};
 use belvedere_tiles::{Plan, Question, Radiation, SideFile, SunQuestion};
 
 /// Refuses what cannot be asked, before the survey is read.
@@ -46,6 +46,9 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
     }
     if let Some(weather) = &arguments.weather {
         read_weather(weather.as_path())?;
+    }
+    if let Some(terrain) = &arguments.far_terrain.terrain {
+        read_tif(terrain.as_path())?;
     }
     if let Some(horizon) = &arguments.far_terrain.horizon {
         read_horizon(horizon)?;
