@@ -8,10 +8,10 @@ use crate::sun::Place;
 use crate::targets::Column;
 use crate::work::run;
 use belvedere::Frame;
-use belvedere::apps::targets::{Targets, Window};
+use belvedere::apps::targets::{Targets, Window, objects_of_windows};
 use belvedere::apps::window_views::{
-    ClassMeanings, Kinds, NamedView, Proving, Seen, VIEW_DIRECTIONS, are_made_from, balls_seen, leave_out_level,
-    leave_out_walled_up, view_directions, view_measures, views_by_name, window_views,
+    ClassMeanings, Kinds, Proving, Seen, VIEW_DIRECTIONS, VIEW_SPACING, are_made_from, balls_seen, leave_out_level,
+    leave_out_walled_up, named_columns, view_directions, view_measures, views_by_name, window_views,
 };
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -19,9 +19,6 @@ use std::sync::Arc;
 
 /// x, y and z in the coordinates of the file, azimuth and tilt in degrees, width and height in metres (NaN where a window has none).
 pub(crate) type WindowRow = [f64; 7];
-
-/// Longest side of a piece of a face, metres: views change little over a window.
-const SPACING: f64 = 2.0;
 
 /// Windows in a frame, `north` being the azimuth of grid north, radians.
 pub(crate) fn windows_of(rows: &[WindowRow], frame: &Frame, north: f64) -> Vec<Window> {
@@ -71,14 +68,10 @@ impl Facades {
             return Ok(Asked { targets, windows, names: Vec::new() });
         };
         let mesh = mesh.get().objects_in_metres(&self.objects, inner)?;
-        let spacing = self.spacing.unwrap_or(SPACING);
+        let spacing = self.spacing.unwrap_or(VIEW_SPACING);
         let (mut targets, windows) = Targets::of_window_faces(&mesh, frame, spacing, self.seed)?;
         leave_out_level(&mut targets);
-        let name = |window: &Window| {
-            let object = window.face.and_then(|face| mesh.objects.get(face as usize));
-            object.and_then(|&object| mesh.object_names.get(object as usize)).cloned().unwrap_or_default()
-        };
-        let names = if mesh.object_names.is_empty() { Vec::new() } else { windows.iter().map(name).collect() };
+        let names = objects_of_windows(&windows, &mesh);
         Ok(Asked { targets, windows, names })
     }
 }
@@ -145,17 +138,10 @@ impl Scene {
         let weights: Vec<f64> = windows.iter().map(|window| window.area.unwrap_or(1.0)).collect();
         let of_windows: Vec<&str> = names.iter().map(String::as_str).collect();
         let buildings = views_by_name(&views, &of_windows, &weights);
-        let shares = |share: &dyn Fn(&NamedView) -> f64| {
-            to_1d(py, buildings.iter().map(|named| 100.0 * share(named)).collect()).into_any()
-        };
         let counts = buildings.iter().map(|named| named.windows as u64).collect();
         let mut of_buildings = vec![("windows", to_1d::<u64>(py, counts).into_any())];
-        for (i, seen) in Seen::ALL.into_iter().enumerate() {
-            of_buildings.push((seen.name(), shares(&|named| named.shares[i])));
-        }
-        for (i, name) in ["least_green_and_blue", "most_green_and_blue"].into_iter().enumerate() {
-            of_buildings.push((name, shares(&|named| named.green_and_blue[i])));
-        }
+        let columns_of_buildings = named_columns(&buildings).into_iter();
+        of_buildings.extend(columns_of_buildings.map(|(name, values)| (name, to_1d(py, values).into_any())));
         let of_names = buildings.into_iter().map(|named| named.name).collect();
         Ok((columns, to_2d(py, &places)?, names, (of_names, of_buildings), left_out))
     }

@@ -23,7 +23,7 @@ pub use measure::{Measure, MeasureStatistics};
 pub use on_ground::{grid_around, set_on_ground};
 pub use routes::Route;
 pub use surfaces::{FaceMeans, Facing, MeshParams, object_areas};
-pub use windows::Window;
+pub use windows::{Window, objects_of_windows};
 
 use belvedere_core::ground::Ground;
 use belvedere_core::query::{Coverage, MedialScene, SurfacePieces};

@@ -40,6 +40,19 @@ impl Window {
     }
 }
 
+/// The object of `mesh` that each of `windows` is a face of, by its name; empty where the mesh names none.
+#[must_use]
+pub fn objects_of_windows(windows: &[Window], mesh: &Mesh) -> Vec<String> {
+    if mesh.object_names.is_empty() {
+        return Vec::new();
+    }
+    let name = |window: &Window| {
+        let object = window.face.and_then(|face| mesh.objects.get(face as usize));
+        object.and_then(|&object| mesh.object_names.get(object as usize)).cloned().unwrap_or_default()
+    };
+    windows.iter().map(name).collect()
+}
+
 impl Targets {
     /// The places of `windows`, one group each, all of a window counting alike.
     ///

@@ -3,7 +3,7 @@
 mod names;
 mod seen;
 
-pub use names::{NamedView, views_by_name};
+pub use names::{NamedView, named_columns, views_by_name};
 pub use seen::{ClassMeanings, Seen, are_made_from, balls_seen};
 
 use crate::eyes::skip_unfit_eyes;
@@ -18,6 +18,8 @@ use rayon::prelude::*;
 
 /// Number of directions before a window unless said otherwise: shares err by less than half a percent.
 pub const VIEW_DIRECTIONS: usize = 1000;
+/// Longest side of a piece of a face that is a window unless said otherwise, metres: views change little over a window.
+pub const VIEW_SPACING: f64 = 2.0;
 /// A face whose normal rises or falls by more than this, as a sine, is a roof or a floor and no facade: 45°.
 const STEEPEST_NORMAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
 /// Kinds of what is seen.

@@ -46,6 +46,16 @@ pub fn views_by_name(views: &[WindowView], names: &[&str], weights: &[f64]) -> V
     found.into_iter().map(finished).collect()
 }
 
+/// The figures of buildings by name, percent: mean shares of each of [`Seen::ALL`], then the green and blue of the worst and of the best view.
+#[must_use]
+pub fn named_columns(views: &[NamedView]) -> Vec<(&'static str, Vec<f64>)> {
+    let percent = |share: &dyn Fn(&NamedView) -> f64| views.iter().map(|named| 100.0 * share(named)).collect();
+    let shares = Seen::ALL.iter().enumerate().map(|(i, seen)| (seen.name(), percent(&|named| named.shares[i])));
+    let pleasant = ["least_green_and_blue", "most_green_and_blue"].into_iter().enumerate();
+    let pleasant = pleasant.map(|(i, name)| (name, percent(&|named| named.green_and_blue[i])));
+    shares.chain(pleasant).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

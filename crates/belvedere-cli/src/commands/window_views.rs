@@ -13,13 +13,11 @@ use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::PointCloud;
 use belvedere::apps::window_views::{
-    ClassMeanings, Kinds, Proving, Seen, VIEW_DIRECTIONS, are_made_from, balls_seen, leave_out_level,
+    ClassMeanings, Kinds, Proving, Seen, VIEW_DIRECTIONS, VIEW_SPACING, are_made_from, balls_seen, leave_out_level,
     leave_out_walled_up, view_directions, view_measures, window_views,
 };
 use results::Found;
 
-/// Longest side of a piece of a face, metres: views change little over a window.
-const SPACING: f64 = 2.0;
 /// Share of the things in a view that are of no known kind that is warned of, percent.
 const OTHER_WARNING_PERCENT: f64 = 50.0;
 
@@ -34,7 +32,7 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     let north = arguments.north.of_scene(&scene);
     north.report(&mut summary);
     let is_mesh = mesh_targets::is_mesh(&arguments.windows);
-    let spacing = arguments.spacing.or(is_mesh.then_some(SPACING));
+    let spacing = arguments.spacing.or(is_mesh.then_some(VIEW_SPACING));
     let choice = FaceChoice { spacing, objects: &arguments.object };
     let mut asked =
         windows(&arguments.windows, &choice, (&scene, north.of_grid), global.seed, &mut stages, &mut summary)?;

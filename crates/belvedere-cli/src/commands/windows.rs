@@ -8,7 +8,7 @@ use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::Frame;
-use belvedere::apps::targets::{Targets, Window};
+use belvedere::apps::targets::{Targets, Window, objects_of_windows};
 use belvedere::apps::viewshed::CELL;
 use belvedere::io::{TextRows, read_table};
 use std::path::Path;
@@ -112,11 +112,7 @@ fn faces(
         ("tilt", column(&|window| window.tilt.to_degrees()), 2),
         ("area_m2", column(&|window| window.area.unwrap_or(f64::NAN)), 4),
     ]);
-    let name = |window: &Window| {
-        let object = window.face.and_then(|face| mesh.objects.get(face as usize));
-        object.and_then(|&object| mesh.object_names.get(object as usize)).cloned().unwrap_or_default()
-    };
-    let names = if mesh.object_names.is_empty() { Vec::new() } else { windows.iter().map(name).collect() };
+    let names = objects_of_windows(&windows, &mesh);
     Ok(Windows { targets, windows, columns, names, given: TextRows::default() })
 }
 

@@ -10,7 +10,7 @@ use anyhow::{Result, bail};
 use belvedere::PointCloud;
 use belvedere::apps::targets::{Measure, Targets};
 use belvedere::apps::viewshed::cell_for;
-use belvedere::apps::window_views::{Seen, WindowView, views_by_name};
+use belvedere::apps::window_views::{Seen, WindowView, named_columns, views_by_name};
 use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{GroundPoints, MapGrid, highest_points};
 use belvedere::io::{Cells, Spot, WriteReport, with_columns_read, write_geojson, write_table};
@@ -98,13 +98,7 @@ impl Found<'_> {
         let found = views_by_name(self.views, &names, &weights);
         let names: Vec<&str> = found.iter().map(|named| named.name.as_str()).collect();
         let counts: Vec<Option<u64>> = found.iter().map(|named| Some(named.windows as u64)).collect();
-        let mut columns: Vec<(&str, Vec<f64>)> = Vec::new();
-        for (i, seen) in Seen::ALL.into_iter().enumerate() {
-            columns.push((seen.name(), found.iter().map(|named| 100.0 * named.shares[i]).collect()));
-        }
-        for (i, name) in ["least_green_and_blue", "most_green_and_blue"].into_iter().enumerate() {
-            columns.push((name, found.iter().map(|named| 100.0 * named.green_and_blue[i]).collect()));
-        }
+        let columns = named_columns(&found);
         let mut cells = vec![("name", Cells::Words(&names)), ("windows", Cells::Whole(&counts))];
         cells.extend(columns.iter().map(|(name, values)| (*name, Cells::Real(values, 3))));
         Ok(write_table(output, &cells)?)
