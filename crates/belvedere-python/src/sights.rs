@@ -115,12 +115,13 @@ impl Scene {
             let scene = of_work.blockers(unproven, control)?;
             let sights = control
                 .stage("testing lines of sight", pairs.len(), || scene.lines_of_sight(&pairs, &earth, control))?;
-            let of_wave = |wave| {
-                control.stage("testing Fresnel zones", pairs.len(), || {
+            let fresnel = match wave {
+                Some(wave) => Some(control.stage("testing Fresnel zones", pairs.len(), || {
                     scene.fresnel_clearances(&pairs, &sights, wave, &earth, control)
-                })
+                })?),
+                None => None,
             };
-            Ok((sights, wave.map(of_wave).transpose()?))
+            Ok((sights, fresnel))
         })?;
         let dict = PyDict::new(py);
         let answer = |sight: &Option<belvedere::query::LineOfSight>| {
