@@ -33,6 +33,8 @@ pub(super) struct SeenSpace {
     /// Width and height of a box.
     side: f64,
     height: f64,
+    /// Boxes in a metre.
+    per_side: f64,
     /// Boxes above one another.
     layers: usize,
     /// How near a needle must pass, less what rounding may shift it by.
@@ -59,15 +61,10 @@ struct Tile {
     all: u64,
 }
 
-/// Columns or rows of a tile, from `first` on, whose middles may lie within reach of two places, metres, and perhaps one more: rounding up would take longer than
-/// to test one in vain.
+/// The bits from one up to another, which is left out; both at most 64.
 #[inline]
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the tile")]
-fn boxes_within(places: [f64; 2], reach: [f64; 2], per_metre: f64, first: usize) -> Range<usize> {
-    let from = f64::max(places[0] - reach[0], places[1] - reach[1]);
-    let to = f64::min(places[0] + reach[0], places[1] + reach[1]);
-    let index = |place: f64| place * per_metre - 0.5 - first as f64;
-    index(from).clamp(0.0, TILE as f64) as usize..(index(to) + 1.0).clamp(0.0, TILE as f64) as usize
+fn bits(from: usize, to: usize) -> u64 {
+    if from < to { u64::MAX >> (64 - (to - from)) << from } else { 0 }
 }
 
 impl Tile {
@@ -109,6 +106,7 @@ impl SeenSpace {
             low: [low[0], low[1], floor],
             side,
             height: rise / layers,
+            per_side: 1.0 / side,
             layers: whole(layers),
             nearness,
             reach,
@@ -154,55 +152,91 @@ impl SeenSpace {
         first: [usize; 2],
         boxes: &mut [u64; TILE * TILE],
     ) {
-        let lean = [0, 1].map(|axis| (end[axis] - start[axis]) / (end[2] - start[2]));
-        // heights at which the needle lies over the rectangle
-        let mut heights = [start[2], end[2]];
+        // heights in layers, places on the map in metres from the middle of the tile's first box
+        let [bottom, top] = [start[2], end[2]].map(|z| (z - self.low[2]) / self.height);
+        let lean = [0, 1].map(|axis| (end[axis] - start[axis]) / (top - bottom));
+        let place = [0, 1].map(|axis| start[axis] - self.low[axis] - (first[axis] as f64 + 0.5) * self.side);
+        // the layers that it passes through between two heights above its lower end; that it begins in is not one of them
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; saturates")]
+        let layers_between =
+            |from: f64, to: f64| bits((bottom + from) as usize + 1, ((bottom + to) as usize).min(self.layers));
+        // a needle that ends at the top of all counts for the highest layer
+        let rise = top - bottom + ROUNDING / self.height;
+        self.mark_lowest([bottom, bottom + rise], place, lean, boxes);
+        // where it comes over the rectangle, and where it leaves it
+        let mut inside = [0.0, rise];
         for axis in 0..2 {
             if lean[axis] != 0.0 {
-                let [a, b] = over.map(|over| start[2] + (over[axis] - start[axis]) / lean[axis]);
-                heights = [heights[0].max(a.min(b)), heights[1].min(a.max(b))];
+                let [a, b] = over.map(|over| (over[axis] - start[axis]) / lean[axis]);
+                inside = [inside[0].max(a.min(b)), inside[1].min(a.max(b))];
             }
         }
-        let layer_of = |z: f64| (z - self.low[2]) / self.height;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-        let layers =
-            [layer_of(heights[0]).floor().max(0.0) as usize, (layer_of(heights[1]).ceil() + 1.0).max(0.0) as usize];
-        let per_metre = 1.0 / self.side;
-        let middle = |axis: usize, index: usize| ((first[axis] + index) as f64 + 0.5) * self.side;
-        for layer in layers[0]..layers[1].min(self.layers) {
-            let bottom = self.low[2] + layer as f64 * self.height;
-            let top = self.low[2] + (layer + 1) as f64 * self.height;
-            if top > end[2] + ROUNDING {
-                break;
+        if !(inside[0] < inside[1]) {
+            return;
+        }
+        let square = lean[0] * lean[0] + lean[1] * lean[1];
+        let at = |axis: usize, risen: f64| place[axis] + risen * lean[axis];
+        for row in self.boxes_between(at(1, inside[0]), at(1, inside[1]), self.reach) {
+            let y = place[1] - row as f64 * self.side;
+            let mut beside = inside;
+            if lean[1] != 0.0 {
+                let [a, b] = [-self.reach, self.reach].map(|edge| (edge - y) / lean[1]);
+                beside = [beside[0].max(a.min(b)), beside[1].min(a.max(b))];
             }
-            // how near it must be to the middle line at the bottom and at the top
-            let below_end = start[2] - bottom;
-            let reach_below = if below_end > 0.0 {
-                (self.nearness.powi(2) - below_end.powi(2)).max(0.0).sqrt() - half_diagonal(self.side)
-            } else {
-                self.reach
-            };
-            if reach_below <= 0.0 {
+            if !(beside[0] < beside[1]) {
                 continue;
             }
-            let reach = [reach_below, self.reach];
-            // where it is at the bottom and at the top
-            let (risen, risen_more) = (bottom.max(start[2]) - start[2], top.max(start[2]) - start[2]);
-            let x = [start[0] + risen * lean[0] - self.low[0], start[0] + risen_more * lean[0] - self.low[0]];
-            let y = [start[1] + risen * lean[1] - self.low[1], start[1] + risen_more * lean[1] - self.low[1]];
-            let columns = boxes_within(x, reach, per_metre, first[0]);
-            let square = [reach[0] * reach[0], reach[1] * reach[1]];
-            for row in boxes_within(y, reach, per_metre, first[1]) {
-                let middle_y = middle(1, row);
-                let (below, above) = ((y[0] - middle_y).powi(2), (y[1] - middle_y).powi(2));
-                for column in columns.clone() {
-                    let middle_x = middle(0, column);
-                    let is_near = ((x[0] - middle_x).powi(2) + below < square[0])
-                        & ((x[1] - middle_x).powi(2) + above < square[1]);
-                    boxes[row * TILE + column] |= u64::from(is_near) << layer;
+            let wanted = layers_between(beside[0], beside[1]);
+            for column in self.boxes_between(at(0, beside[0]), at(0, beside[1]), self.reach) {
+                let word = &mut boxes[row * TILE + column];
+                if *word & wanted == wanted {
+                    continue;
+                }
+                // (x + r lean)² + (y + r lean)² < reach² between two heights r
+                let x = place[0] - column as f64 * self.side;
+                let half = x * lean[0] + y * lean[1];
+                let spare = self.reach * self.reach - x * x - y * y;
+                let discriminant = half * half + square * spare;
+                if square == 0.0 {
+                    *word |= if spare > 0.0 { wanted } else { 0 };
+                } else if discriminant > 0.0 {
+                    let root = discriminant.sqrt();
+                    let [from, to] = [-half - root, root - half].map(|r| r / square);
+                    *word |= layers_between(from.max(beside[0]), to.min(beside[1]).max(0.0));
                 }
             }
         }
+    }
+
+    /// Marks boxes of the layer in which a needle begins, if it ends above that. Its ends are in layers, and its lower end is at `place`, metres from the middle of the tile's first box.
+    fn mark_lowest(&self, [bottom, top]: [f64; 2], place: [f64; 2], lean: [f64; 2], boxes: &mut [u64; TILE * TILE]) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
+        let layer = bottom as usize;
+        let above = (layer + 1) as f64;
+        let below = (bottom - layer as f64) * self.height;
+        let reach = (self.nearness.powi(2) - below.powi(2)).max(0.0).sqrt() - half_diagonal(self.side);
+        if !(reach > 0.0 && above <= top) || layer >= self.layers {
+            return;
+        }
+        let leaves = [0, 1].map(|axis| place[axis] + (above - bottom) * lean[axis]);
+        for row in self.boxes_between(place[1], place[1], reach) {
+            let y = [place[1], leaves[1]].map(|y| y - row as f64 * self.side);
+            for column in self.boxes_between(place[0], place[0], reach) {
+                let x = [place[0], leaves[0]].map(|x| x - column as f64 * self.side);
+                let is_near =
+                    x[0].powi(2) + y[0].powi(2) < reach.powi(2) && x[1].powi(2) + y[1].powi(2) < self.reach.powi(2);
+                boxes[row * TILE + column] |= u64::from(is_near) << layer;
+            }
+        }
+    }
+
+    /// Columns or rows of a tile whose middles may be within reach of what lies between two places, metres from the middle of its first
+    /// box, and perhaps one more: rounding up would take longer than to test one in vain.
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the tile")]
+    fn boxes_between(&self, a: f64, b: f64, reach: f64) -> Range<usize> {
+        let [low, high] = [a.min(b) - reach, a.max(b) + reach].map(|place| place * self.per_side);
+        low.clamp(0.0, TILE as f64) as usize..(high + 1.0).clamp(0.0, TILE as f64) as usize
     }
 
     /// Marks those other boxes of a tile whose middle any needle passes so closely that all of the box is near to it.
