@@ -67,13 +67,39 @@ impl ElevationGrid {
         self.heights.values().iter().filter(|v| v.is_nan()).count()
     }
 
-    /// Lowest and highest height of the nodes within a box on the map, local metres; `None` where it holds no node with a height.
+    /// Where a node lies, local metres; `None` for one without a height.
     #[must_use]
-    pub fn height_range(&self, (low, high): ([f64; 2], [f64; 2])) -> Option<[f32; 2]> {
+    pub fn node(&self, column: usize, row: usize) -> Option<[f64; 3]> {
+        let height = self.heights.get(column, row).filter(|height| !height.is_nan())?;
+        let [west, north] = self.north_west;
+        Some([west + column as f64 * self.cell[0], north - row as f64 * self.cell[1], f64::from(height)])
+    }
+
+    /// The nodes within a box on the map, local metres; `None` where it holds fewer than 2 x 2, or none with a height.
+    #[must_use]
+    pub fn part(&self, within: ([f64; 2], [f64; 2])) -> Option<Self> {
+        let [columns, rows] = self.nodes_within(within)?;
+        let row = |row: usize| columns.clone().filter_map(move |column| self.heights.get(column, row));
+        let heights = Raster::from_values(columns.len(), rows.len(), rows.clone().flat_map(row).collect()).ok()?;
+        let [west, north] = self.north_west;
+        let first = [west + columns.start as f64 * self.cell[0], north - rows.start as f64 * self.cell[1]];
+        Self::new(heights, first, self.cell).ok()
+    }
+
+    /// Columns and rows of the nodes within a box on the map, local metres, if there are any.
+    fn nodes_within(&self, (low, high): ([f64; 2], [f64; 2])) -> Option<[std::ops::Range<usize>; 2]> {
         let [west, north] = self.north_west;
         let (width, height) = (self.heights.width(), self.heights.height());
-        let columns = nodes_between((low[0] - west) / self.cell[0], (high[0] - west) / self.cell[0], width)?;
-        let rows = nodes_between((north - high[1]) / self.cell[1], (north - low[1]) / self.cell[1], height)?;
+        Some([
+            nodes_between((low[0] - west) / self.cell[0], (high[0] - west) / self.cell[0], width)?,
+            nodes_between((north - high[1]) / self.cell[1], (north - low[1]) / self.cell[1], height)?,
+        ])
+    }
+
+    /// Lowest and highest height of the nodes within a box on the map, local metres; `None` where it holds no node with a height.
+    #[must_use]
+    pub fn height_range(&self, within: ([f64; 2], [f64; 2])) -> Option<[f32; 2]> {
+        let [columns, rows] = self.nodes_within(within)?;
         let known = rows.flat_map(|row| columns.clone().filter_map(move |column| self.heights.get(column, row)));
         let known = known.filter(|v| !v.is_nan());
         known.fold(None, |range: Option<[f32; 2]>, v| {
@@ -102,6 +128,10 @@ mod tests {
         assert_eq!(grid.height_range(([0.0, 0.0], [99.0, 99.0])), Some([1.0, 6.0]));
         assert_eq!(grid.height_range(([14.0, 29.0], [20.0, 31.0])), Some([6.0, 6.0]));
         assert_eq!(grid.height_range(([14.0, 29.0], [16.0, 31.0])), None);
+        assert_eq!((grid.node(1, 1), grid.node(2, 1)), (None, Some([20.0, 30.0, 6.0])));
+        let part = grid.part(([14.0, 0.0], [21.0, 60.0])).unwrap();
+        assert_eq!((part.north_west(), part.heights().width(), part.node(0, 0)), ([15.0, 50.0], 2, grid.node(1, 0)));
+        assert_eq!((grid.part(([14.0, 0.0], [16.0, 60.0])), grid.part(([50.0; 2], [60.0; 2]))), (None, None));
         for outside in [([-9.0, -9.0], [9.0, 99.0]), ([21.0, -9.0], [99.0, 99.0]), ([11.0, 31.0], [14.0, 49.0])] {
             assert_eq!(grid.height_range(outside), None, "{outside:?}");
         }

@@ -1,7 +1,9 @@
 //! Viewsheds: what one or many observers see of cells or points, from where a target is seen, and how high a thing must stand.
 
+mod far;
 mod observers;
 
+pub use far::{far_targets, far_viewshed, terrain_within_reach};
 pub use observers::{Observer, SightLimits, places_along};
 
 use belvedere_core::ground::Ground;

@@ -185,8 +185,19 @@ pub(crate) struct Viewshed {
     /// On a grid: .tif has 1 visible, 0 blocked, 2 unproven, 255 nodata; with several observers it has their number, 65535 nodata. .png is a
     /// map with a legend. .geojson has the visible areas in WGS 84. Points of the cloud: column answer has 0 blocked, 1 visible,
     /// 2 unproven, 3 outside the view; with several observers also column observers, their number.
-    #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
+    #[arg(short, long, value_name = "OUT", required_unless_present = "far_output", help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
+    /// Raster (.tif), map (.png) or visible areas (.geojson) of the terrain beyond the cloud; repeatable
+    ///
+    /// Values are those of -o. Cells are those of --terrain within --max-distance; nodata within the extent of the cloud and where the terrain has no height. Targets are
+    /// --target-height above the terrain.
+    #[arg(long, value_name = "OUT", requires = "terrain", help_heading = "Far terrain")]
+    pub(crate) far_output: Vec<PathBuf>,
+    /// Terrain beyond the cloud: elevation raster (DTM) in the coordinate system of the cloud or in degrees (.tif)
+    ///
+    /// Its heights are bilinear between the middles of its cells. Within the extent of the cloud, and one cell around it, the raster blocks nothing. Cells without a value block nothing.
+    #[arg(long, value_name = "DTM", requires = "far_output", help_heading = "Far terrain")]
+    pub(crate) terrain: Option<PathBuf>,
     /// Also write the minimum visible height above ground of each cell, in metres (.tif .npy)
     ///
     /// How high an object in the cell must be to be seen. Cells where nothing up to --max-height is visible: nodata -9999 in .tif, infinity in

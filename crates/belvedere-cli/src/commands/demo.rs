@@ -6,13 +6,17 @@ use crate::progress::Stages;
 use crate::simulated::{cloud_of, write_text};
 use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
+use belvedere::Frame;
 use belvedere::cloud::{PointCloud, to_local};
 use belvedere::depth::{DepthMap, ItemBuffer, Profile, depth_map};
 use belvedere::figures::{Canvas, Colors, class_color, depth_picture, in_shadow, ramp_colors, side_by_side, write_png};
-use belvedere::io::{ExtraColumn, ExtraValues, atomic, read_trajectory, write_balls, write_cloud, write_tif_f32};
+use belvedere::io::{
+    ExtraColumn, ExtraValues, Georeference, atomic, read_trajectory, write_balls, write_cloud, write_tif_f32,
+};
 use belvedere::medial::{CarvedParams, MedialBalls};
 use belvedere::model::{BallParams, ModelParams, OrientBy, SceneModel};
 use belvedere::query::{Answer, MedialScene, UnprovenAs, Viewer, Visibility};
+use belvedere::raster::Raster;
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere_scenes::{AirborneParams, Placement, Scan, Scene, TownParams, Truth, extruded, scan_airborne, town};
 use std::io::Write;
@@ -22,6 +26,11 @@ use std::path::Path;
 const SUN_DEG: [f64; 2] = [235.0, 30.0];
 /// Length, width and height of the planned building.
 const PLANNED_M: [f64; 3] = [14.0, 10.0, 25.0];
+/// Cells of the raster of the terrain around the town, metres, and their number a side.
+const TERRAIN_CELL_M: f64 = 25.0;
+const TERRAIN_CELLS: usize = 480;
+/// Where hills begin, how far from there their crests are, and how high these are, metres.
+const HILLS_M: [f64; 3] = [900.0, 2500.0, 260.0];
 /// Height of a pedestrian's chest above the ground, metres.
 const PEDESTRIAN: f64 = 1.5;
 
@@ -110,13 +119,41 @@ fn town_section(scene: &Scene, scan: &Scan) -> Summary {
 }
 
 fn write_town(folder: &Path, scene: &Scene, scan: &Scan) -> Result<()> {
-    write_cloud(&folder.join("town.laz"), &cloud_of(scan)?, &[])?;
+    let cloud = cloud_of(scan)?;
+    write_cloud(&folder.join("town.laz"), &cloud, &[])?;
+    write_terrain(&folder.join("terrain.tif"), scene, &cloud.frame)?;
     let planned = planned_building(scene).to_obj();
     let texts = [("trajectory.csv", scan.sensor_path.to_csv()), ("town.obj", scene.to_obj()), ("planned.obj", planned)];
     for (name, text) in texts {
         write_text(&folder.join(name), &text)?;
     }
     Ok(())
+}
+
+/// Hills around the plain in which the town lies, as an elevation raster.
+fn write_terrain(path: &Path, town: &Scene, frame: &Frame) -> Result<()> {
+    let Some((low, high)) = town.bounds() else { return Ok(()) };
+    let half = TERRAIN_CELL_M * TERRAIN_CELLS as f64 / 2.0;
+    let place = Georeference {
+        upper_left: [f64::midpoint(low[0], high[0]) - half, f64::midpoint(low[1], high[1]) + half],
+        column_step: [TERRAIN_CELL_M, 0.0],
+        row_step: [0.0, -TERRAIN_CELL_M],
+        crs: frame.crs.clone(),
+    };
+    let plain = town.mean_ground_height();
+    let height = |i: usize| {
+        let [east, south] = [i % TERRAIN_CELLS, i / TERRAIN_CELLS].map(|at| (at as f64 + 0.5) * TERRAIN_CELL_M - half);
+        let [begin, width, top] = HILLS_M;
+        let outward = ((east.hypot(south) - begin) / width).clamp(0.0, 2.0);
+        // valleys part the ring of hills, and smaller ones its slopes
+        let ridge = 0.55 + 0.3 * (5.0 * south.atan2(east)).sin() + 0.15 * (east / 310.0).sin() * (south / 270.0).sin();
+        #[expect(clippy::cast_possible_truncation, reason = "heights of a raster are f32")]
+        let height = (plain + top * ridge * (outward * std::f64::consts::FRAC_PI_2).sin().powi(2)) as f32;
+        height
+    };
+    let heights = (0..TERRAIN_CELLS * TERRAIN_CELLS).map(height).collect();
+    let raster = Raster::from_values(TERRAIN_CELLS, TERRAIN_CELLS, heights)?;
+    Ok(write_tif_f32(path, &raster, Some(&place), None, Some("height in metres"))?)
 }
 
 /// A building that is not there, in the middle of the town.

@@ -7,19 +7,13 @@ use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::io::{read_horizon, read_terrain};
 use belvedere::model::TerrainReport;
+use std::path::Path;
 
 impl FarTerrain {
     /// Puts the scene before the far terrain that was given.
     pub(crate) fn set(&self, scene: &mut Scene, stages: &mut Stages, summary: &mut Summary) -> Result<()> {
         if let Some(path) = &self.terrain {
-            let model = std::mem::take(&mut scene.model);
-            let frame = model.frame().clone();
-            let terrain = stages.run("reading terrain", 0, |_| read_terrain(path, &frame))?;
-            let report = TerrainReport::of(&terrain, model.bounds(), &frame);
-            let name = path.display().to_string();
-            scene.model =
-                flagged("--terrain", stages.run("ordering terrain", 0, |_| model.with_terrain(terrain, &name)))?;
-            summary.add("terrain", Summary::of(&report));
+            set_terrain(path, scene, stages, summary)?;
         }
         if let Some(path) = &self.horizon {
             let horizon = stages.run("reading horizon", 0, |_| read_horizon(path))?;
@@ -32,4 +26,16 @@ impl FarTerrain {
         }
         Ok(())
     }
+}
+
+/// Puts the scene before the terrain of an elevation raster.
+pub(super) fn set_terrain(path: &Path, scene: &mut Scene, stages: &mut Stages, summary: &mut Summary) -> Result<()> {
+    let model = std::mem::take(&mut scene.model);
+    let frame = model.frame().clone();
+    let terrain = stages.run("reading terrain", 0, |_| read_terrain(path, &frame))?;
+    let report = TerrainReport::of(&terrain, model.bounds(), &frame);
+    let name = path.display().to_string();
+    scene.model = flagged("--terrain", stages.run("ordering terrain", 0, |_| model.with_terrain(terrain, &name)))?;
+    summary.add("terrain", Summary::of(&report));
+    Ok(())
 }

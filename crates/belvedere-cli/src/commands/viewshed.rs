@@ -3,6 +3,7 @@
 mod results;
 mod who;
 
+use super::far_terrain::set_terrain;
 use super::heights::write_heights;
 use super::sights::{OUTSIDE_CLOUD, enclosure_note, ground, ground_cloud, proving_blockers, skip_unfit};
 use super::{check_output, warn_of_geojson};
@@ -10,18 +11,18 @@ use crate::arguments::{Global, Viewshed};
 use crate::pipeline::{self, Points, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
-use anyhow::Result;
-use belvedere::PointCloud;
+use anyhow::{Result, bail};
 use belvedere::apps::eyes::{EyesReport, fault_of_target};
 use belvedere::apps::targets::{CellParams, CoveredCells, Targets};
 use belvedere::apps::viewshed::{
     Masks, OBSERVER_HEIGHT, Observer, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, box_within_reach, cell_for,
-    least_visible_heights, tested_height, viewshed,
+    far_targets, far_viewshed, least_visible_heights, terrain_within_reach, tested_height, viewshed,
 };
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::query::{Answer, AnswerCounts, MedialScene, UnprovenAs};
-use results::{on_cells, on_points, write_masks};
-use std::path::Path;
+use belvedere::{ElevationGrid, PointCloud};
+use results::{Field, SeenCells, on_points, write_masks};
+use std::path::{Path, PathBuf};
 
 /// Outputs that hold points rather than cells.
 const OF_POINTS: [&str; 4] = ["laz", "las", "ply", "csv"];
@@ -37,7 +38,11 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
-    warn_of_geojson(&arguments.output, &scene.cloud.frame.crs, &mut summary);
+    if let Some(path) = &arguments.terrain {
+        set_terrain(path, &mut scene, &mut stages, &mut summary)?;
+    }
+    let areas: Vec<PathBuf> = arguments.output.iter().chain(&arguments.far_output).cloned().collect();
+    warn_of_geojson(&areas, &scene.cloud.frame.crs, &mut summary);
     let north = arguments.looking.north.of_scene(&scene);
     let rows = who::rows(arguments, &scene.cloud, north.of_grid)?;
     if rows.iter().any(|row| row.limits.azimuth.is_some()) {
@@ -57,6 +62,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
     let who = if is_reverse { "target" } else { "observer" };
     let report = skip_observers(&mut observers, &blockers, &ground, (who, &cloud), &mut stages, &mut summary)?;
+    let terrain = far_cells(arguments, &blockers, &observers)?;
     let key = if is_reverse { "target" } else { "observers" };
     summary.add(key, told(&observers, report, &ground, &blockers, &cloud));
 
@@ -69,11 +75,18 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
             let (targets, _) = Targets::of_cells(&cloud, ground.clone(), &cells, control)?;
             viewshed(&blockers, &observers, &targets.positions, &params, control)
         })?;
-        summary.add("cells", counted(&seen.answers, unproven, Some(grid.cell)));
+        summary.add("cells", counted(&seen.answers, unproven, Some([grid.cell; 2])));
         warn_of_blind(&observers, &seen, who, &mut summary);
         let eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
+        let cells = SeenCells {
+            seen: &seen,
+            eyes: &eyes,
+            frame: &cloud.frame,
+            on: Field::Ground(&ground, &cloud),
+            is_reverse,
+        };
         for output in arguments.output.iter().filter(|path| !is_of_points(path)) {
-            stages.run("writing", 0, |_| on_cells(output, &seen, &eyes, &ground, &cloud, is_reverse))?;
+            stages.run("writing", 0, |_| cells.write(output))?;
         }
         if let Some(output) = &arguments.masks {
             stages.run("writing", 0, |_| write_masks(output, &seen, &ground, &cloud))?;
@@ -92,13 +105,27 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
             summary.add_writing(&report);
         }
     }
+    if let Some(terrain) = &terrain {
+        let params = params.with_masks(Masks::NotKept);
+        let seen = stages.run("testing terrain", terrain.heights().height(), |control| {
+            far_viewshed(&blockers, &observers, terrain, target_height, &params, control)
+        })?;
+        let asked: Vec<Answer> = seen.answers.iter().copied().filter(|&a| a != Answer::OutsideCloud).collect();
+        summary.add("far_cells", counted(&asked, unproven, Some(terrain.cell())));
+        let eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
+        let cells =
+            SeenCells { seen: &seen, eyes: &eyes, frame: &cloud.frame, on: Field::Terrain(terrain), is_reverse };
+        for output in &arguments.far_output {
+            stages.run("writing", 0, |_| cells.write(output))?;
+        }
+    }
     if let Some(output) = &arguments.heights {
         let heights = stages.run("computing visible heights", observers.len(), |progress| {
             least_visible_heights(&blockers, &observers, &ground, arguments.ceiling, &earth, progress)
         })?;
         stages.run("writing", 0, |_| write_heights(output, &heights, (&ground.grid, &cloud.frame), LEAST_HEIGHTS))?;
     }
-    let written = arguments.output.iter().chain(&arguments.heights).chain(&arguments.masks);
+    let written = arguments.output.iter().chain(&arguments.far_output).chain(&arguments.heights).chain(&arguments.masks);
     summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
@@ -107,6 +134,9 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
 fn check_outputs(arguments: &Viewshed) -> Result<()> {
     for output in &arguments.output {
         check_output("-o", output, &["tif", "tiff", "png", "geojson", "laz", "las", "ply", "csv"])?;
+    }
+    for output in &arguments.far_output {
+        check_output("--far-output", output, &["tif", "tiff", "png", "geojson"])?;
     }
     if let Some(output) = &arguments.heights {
         check_output("--heights", output, &["tif", "tiff", "npy"])?;
@@ -124,6 +154,20 @@ fn grid(arguments: &Viewshed, scene: &pipeline::Scene, rows: &[who::Row]) -> Res
     let cell = arguments.cell.unwrap_or_else(|| cell_for(low, high));
     let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     flagged("--cell", MapGrid::covering(low, high, cell, origin))
+}
+
+/// The cells of the terrain beyond the cloud that observers may see, if these are asked about.
+fn far_cells(
+    arguments: &Viewshed,
+    blockers: &MedialScene,
+    observers: &[Observer],
+) -> Result<Option<ElevationGrid>> {
+    let (Some(path), Some(terrain)) = (&arguments.terrain, blockers.far_terrain().grid()) else { return Ok(None) };
+    let cells = flagged("--max-distance", terrain_within_reach(terrain, observers))?;
+    if far_targets(blockers, &cells).next().is_none() {
+        bail!("--terrain {}: has no heights beyond the cloud within --max-distance", path.display());
+    }
+    Ok(Some(cells))
 }
 
 fn finite(height: f64) -> belvedere::Result<()> {
@@ -201,7 +245,7 @@ fn told(
     section
 }
 
-fn counted(answers: &[Answer], unproven: UnprovenAs, cell: Option<f64>) -> Summary {
+fn counted(answers: &[Answer], unproven: UnprovenAs, cell: Option<[f64; 2]>) -> Summary {
     let counts = AnswerCounts::of(answers);
     let asked = answers.len() - counts.outside_view - counts.outside_cloud;
     let mut section = Summary::default();
@@ -215,7 +259,7 @@ fn counted(answers: &[Answer], unproven: UnprovenAs, cell: Option<f64>) -> Summa
         .add("outside_cloud", counts.outside_cloud)
         .add("visible_percent", percent(counts.visible, asked));
     if let Some(cell) = cell {
-        section.add("visible_m2", rounded(counts.visible as f64 * cell * cell, 1));
+        section.add("visible_m2", rounded(counts.visible as f64 * cell[0] * cell[1], 1));
     }
     section
 }

@@ -2,7 +2,7 @@
 
 use crate::common::{EAST, NORTH, Workplace, at, column, house};
 use belvedere::crs::Crs;
-use belvedere::io::{Georeference, write_tif_f32};
+use belvedere::io::{Georeference, read_tif_u8, read_tif_u16, write_tif_f32};
 use belvedere::raster::Raster;
 
 const HOUSE: &str = "house.laz --orient given --method tau";
@@ -76,6 +76,59 @@ fn each_place_has_the_horizon_of_the_terrain() {
     assert!((by_terrain - by_profile).abs() < 5e-4 && by_terrain < free - 0.02, "{by_terrain} {by_profile} {free}");
     let both = share("--terrain dtm.tif --horizon north.csv");
     assert!(both <= by_terrain.min(by_profile));
+}
+
+#[test]
+fn terrain_beyond_the_cloud_is_visible_where_nothing_hides_it() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    // the crest of the range stands 1510 m in the south, and all behind it is as high
+    write_terrain(&place, "dtm.tif", 28992, 0.0, range);
+    let [x, y, z] = at(0.0, 0.0, 12.0);
+    let codes = |flags: &str| {
+        let flags = format!("{flags} --terrain dtm.tif --far-output far.tif --far-output far.png");
+        let run = place.summary(&format!("viewshed {HOUSE} {flags} --far-output far.geojson"));
+        let raster = read_tif_u8(place.path("far.tif").as_path()).unwrap();
+        let count = |code: u8| raster.values().iter().filter(|v| **v == code).count();
+        assert_eq!(run["far_cells"]["visible"], count(1));
+        let area = run["far_cells"]["visible_m2"].as_f64().unwrap();
+        assert_eq!(area, 400.0 * count(1) as f64);
+        assert!(place.text("far.geojson").contains(&format!("\"area_m2\":{area}")));
+        let rows = (0..raster.height()).map(|row| (0..raster.width()).any(|c| raster.get(c, row) == Some(1)));
+        let visible_rows = rows.filter(|is_visible| *is_visible).count();
+        (raster.width(), visible_rows, [count(0), count(1), count(255)])
+    };
+    // 175 rows of plain and the crest
+    let (width, rows, [blocked, visible, without]) = codes(&format!("--observer {x},{y},{z}"));
+    assert_eq!((width, rows, blocked, blocked + visible + without), (200, 176, 24 * 200, 200 * 200));
+    assert!((1..20).contains(&without), "{without}");
+    // a line from 12 m to 408 m lies 402.8 m high over the crest on its way to the next row, and 397.8 m to the one after it
+    let (_, rows, [blocked, ..]) = codes(&format!("--observer {x},{y},{z} --target-height 8"));
+    assert_eq!((rows, blocked), (177, 23 * 200));
+    // to 420 m: 404.4 m on the way to the third row, 399.5 m to the fourth
+    let (_, rows, [blocked, ..]) = codes(&format!("--observer {x},{y},{z} --target-height 20"));
+    assert_eq!((rows, blocked), (179, 21 * 200));
+    // the same lines, seen from their other ends
+    let (_, rows, [blocked, ..]) = codes(&format!("--target {x},{y},{z} --observer-height 20"));
+    assert_eq!((rows, blocked), (179, 21 * 200));
+    // counts, and as far as observers look
+    let observers = format!("--observer {x},{y},{z} --observer {x},{y},{}", z + 300.0);
+    place.summary(&format!("viewshed {HOUSE} {observers} --max-distance 500 --terrain dtm.tif --far-output n.tif"));
+    let raster = read_tif_u16(place.path("n.tif").as_path()).unwrap();
+    assert_eq!((raster.width(), raster.get(25, 0), raster.get(0, 0)), (50, Some(2), Some(65_535)));
+    for (wrong, status, parts) in [
+        ("--far-output none.tif", 2, &["--terrain"][..]),
+        ("--terrain dtm.tif -o none.tif", 2, &["--far-output"]),
+        ("--terrain dtm.tif --far-output none.laz", 2, &["--far-output", "none.laz"]),
+        ("--terrain dtm.tif --far-output none.tif --max-distance 15", 2, &["--max-distance", "2 x 2"]),
+        ("--terrain missing.tif --far-output none.tif -o none.png", 1, &["missing.tif"]),
+    ] {
+        place.refusal(status, &format!("viewshed {HOUSE} --observer {x},{y},{z} {wrong}"), parts);
+    }
+    write_terrain(&place, "holes.tif", 28992, 0.0, |x, y| if x.hypot(y) < 60.0 { 0.0 } else { f32::NAN });
+    let flags = "--terrain holes.tif --max-distance 25 --far-output none.tif -o none.png";
+    place.refusal(1, &format!("viewshed {HOUSE} --observer {x},{y},{z} {flags}"), &["holes.tif", "beyond the cloud"]);
+    assert!(!place.path("none.tif").exists() && !place.path("none.png").exists());
 }
 
 #[test]

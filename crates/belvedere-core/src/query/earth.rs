@@ -99,6 +99,16 @@ impl EarthParams {
         if self.curvature == Curvature::Off { 0.0 } else { self.fall(1.0) }
     }
 
+    /// The tangent of the elevation at which a place appears that lies `rise` metres higher on the map and `span` metres away: that of the line of sight where it starts.
+    pub(super) fn apparent_tangent(&self, rise: f64, span: f64) -> f64 {
+        rise / span - self.fall_rate() * span
+    }
+
+    /// How much higher a line of sight that starts with this tangent lies `span` metres on, on the map, metres.
+    pub(super) fn height_along(&self, tangent: f64, span: f64) -> f64 {
+        (tangent + self.fall_rate() * span) * span
+    }
+
     /// How far the line lies below the straight one between its ends, metres, at the share `share` of the horizontal length
     /// `span`, metres.
     #[must_use]

@@ -134,6 +134,12 @@ impl MedialScene {
         self
     }
 
+    /// What stands beyond the cloud, as far as that was given.
+    #[must_use]
+    pub fn far_terrain(&self) -> &FarTerrain {
+        &self.far_terrain
+    }
+
     /// How much of a line of sight `proof` does not prove, metres: [`Proof::unproven_length`] outside the space that was freed.
     pub(super) fn unproven_length(&self, proof: &Proof, target: [f64; 3], towards: [f64; 3], range: f64) -> f64 {
         if self.freed.is_empty() {

@@ -3,7 +3,8 @@
 //! There are three ways of asking a [`MedialScene`]:
 //!
 //! - a pair of points: [`MedialScene::line_of_sight`] (what blocks it first, how much of it is not proven), with
-//!   [`MedialScene::crossings`], [`MedialScene::least_visible_height`], [`MedialScene::seen_along`] and [`MedialScene::seen_from_surface`] beside it;
+//!   [`MedialScene::crossings`], [`MedialScene::least_visible_height`], [`MedialScene::seen_along`], [`MedialScene::seen_from_surface`] and
+//!   [`MedialScene::far_sight_answer`] (one that leaves the cloud) beside it;
 //! - many targets of one viewer: [`MedialScene::visible_from`], or [`MedialScene::visible_in_views`] for pictures;
 //! - many directions at many targets: [`MedialScene::visibility_matrix`].
 //!
@@ -19,6 +20,7 @@ mod clear_height;
 pub mod coverage;
 pub mod cpu;
 pub mod earth;
+mod far_sights;
 mod far_terrain;
 mod fingerprint;
 mod free_range;

@@ -169,7 +169,13 @@ impl MedialScene {
         if !earth.bends(target, observer) {
             return self.answer(target, ray.direction, range);
         }
-        let pieces = self.pieces(observer, target, earth);
+        self.answer_on_chords((observer, target), &earth.corners(observer, target))
+    }
+
+    /// The answer for the part of a line of sight between two ends, the observer first, that runs along chords through `corners`, from the observer's side on. The rules for the ends
+    /// are asked of the whole line.
+    pub(super) fn answer_on_chords(&self, (observer, target): ([f64; 3], [f64; 3]), corners: &[[f64; 3]]) -> Answer {
+        let pieces = self.chords(observer, target, corners);
         let is_blocked = |piece: &Piece| {
             self.tree().index().any(&piece.ray, |number| self.front_on(number, piece).is_some())
                 || self.added().is_some_and(|added| added.blocks_piece(&piece.unbiased(), &piece.ends()))
@@ -285,7 +291,11 @@ impl MedialScene {
 
     /// The chords of a curved line from the observer on, each with what the line passed before it, metres.
     fn pieces(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<(Piece, f64)> {
-        let corners = earth.corners(observer, target);
+        self.chords(observer, target, &earth.corners(observer, target))
+    }
+
+    /// The same through given corners.
+    fn chords(&self, observer: [f64; 3], target: [f64; 3], corners: &[[f64; 3]]) -> Vec<(Piece, f64)> {
         let mut passed = 0.0;
         let mut pieces = Vec::with_capacity(corners.len());
         for pair in corners.windows(2) {

@@ -24,7 +24,7 @@ use crate::io::{
     ExtraColumn, ExtraValues, Georeference, TextRows, WriteReport, write_cloud, write_text_rows, write_tif_f32,
 };
 use crate::raster::Raster;
-use crate::{Error, Frame, Mesh, PointCloud, Result};
+use crate::{ElevationGrid, Error, Frame, Mesh, PointCloud, Result};
 use std::path::Path;
 
 /// Value of a raster of measures where there is none.
@@ -50,6 +50,17 @@ pub fn georeference(grid: &MapGrid, frame: &Frame) -> Georeference {
     let upper_left = [0, 1].map(|i| (grid.corner[i] + frame.origin[i]) / unit);
     let step = grid.cell / unit;
     Georeference { upper_left, column_step: [step, 0.0], row_step: [0.0, -step], crs: frame.crs.clone() }
+}
+
+/// Where the cells around the nodes of a raster of terrain lie in the reference system of a frame.
+#[must_use]
+pub fn terrain_georeference(terrain: &ElevationGrid, frame: &Frame) -> Georeference {
+    let unit = frame.crs.metres_per_unit;
+    let ([west, north], [east, south]) = (terrain.north_west(), terrain.cell());
+    let corner = [west - east / 2.0, north + south / 2.0];
+    let upper_left = [0, 1].map(|i| (corner[i] + frame.origin[i]) / unit);
+    let (column_step, row_step) = ([east / unit, 0.0], [0.0, -south / unit]);
+    Georeference { upper_left, column_step, row_step, crs: frame.crs.clone() }
 }
 
 /// Writes the measures of `targets` in the format that the extension of `path` names.

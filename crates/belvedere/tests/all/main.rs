@@ -23,6 +23,7 @@ mod crowns;
 mod depth_map;
 mod exposure;
 mod far_terrain;
+mod far_viewsheds;
 mod ground;
 mod horizons;
 mod irradiance_models;

@@ -3,17 +3,17 @@
 use crate::arguments::Usage;
 use crate::commands::extension;
 use anyhow::Result;
-use belvedere::PointCloud;
 use belvedere::apps::viewshed::Viewshed;
+use belvedere::{ElevationGrid, Frame, PointCloud};
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
-use belvedere::ground::{Ground, MapGrid, highest_points};
+use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{
-    Area, ExtraColumn, ExtraValues, WriteReport, outlines, write_cloud, write_geojson_areas, write_npy_u32_bands,
+    Area, ExtraColumn, ExtraValues, Georeference, WriteReport, outlines, write_cloud, write_geojson_areas, write_npy_u32_bands,
     write_tif_u8, write_tif_u16, write_tif_u32,
 };
 use belvedere::query::Answer;
 use belvedere::raster::Raster;
-use belvedere::results::georeference;
+use belvedere::results::{georeference, terrain_georeference};
 use std::path::Path;
 
 /// Cells without an answer in a raster of answers.
@@ -24,49 +24,199 @@ const NO_COUNT: u16 = u16::MAX;
 const SEEN_COLOR: [u8; 3] = [255, 176, 0];
 const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
 const HIDDEN_COLOR: [u8; 3] = [38, 52, 96];
+/// Terrain over which the cloud lies, which has cells of its own.
+const CLOUD_COLOR: [u8; 3] = [120, 120, 120];
+/// Most pixels of a map of terrain.
+const MOST_PIXELS: f64 = 4e6;
 
-/// Writes what is seen of cells as a raster, a map or areas.
-pub(super) fn on_cells(
-    output: &Path,
-    seen: &Viewshed,
-    eyes: &[[f64; 3]],
-    ground: &Ground,
-    cloud: &PointCloud,
-    is_reverse: bool,
-) -> Result<()> {
-    let grid = ground.grid;
-    let one = seen.seen_counts.len() == 1;
-    match extension(output).as_str() {
-        "geojson" => write_areas(output, seen, &grid, cloud),
-        "png" => {
-            let title = match (is_reverse, one) {
-                (true, _) => "Cells from which the target is visible",
-                (false, true) => "Visible from the observer",
-                (false, false) => "Number of observers that see the cell",
-            };
-            let mark_name = if is_reverse { "target" } else { "observer" };
-            write_map(output, seen, eyes, ground, cloud, (title, mark_name))
+/// What is seen of cells, and where they lie.
+pub(super) struct SeenCells<'a> {
+    pub(super) seen: &'a Viewshed,
+    pub(super) eyes: &'a [[f64; 3]],
+    pub(super) frame: &'a Frame,
+    pub(super) on: Field<'a>,
+    /// Whether it is the eye that is seen from the cells.
+    pub(super) is_reverse: bool,
+}
+
+/// What the cells lie on.
+#[derive(Clone, Copy)]
+pub(super) enum Field<'a> {
+    /// The ground below a cloud.
+    Ground(&'a Ground, &'a PointCloud),
+    /// Terrain beyond the cloud.
+    Terrain(&'a ElevationGrid),
+}
+
+impl Field<'_> {
+    fn size(self) -> [usize; 2] {
+        match self {
+            Self::Ground(ground, _) => [ground.grid.width, ground.grid.height],
+            Self::Terrain(terrain) => [terrain.heights().width(), terrain.heights().height()],
         }
-        _ if one => {
-            let code = |answer: &Answer| match answer {
-                Answer::OutsideView | Answer::OutsideCloud => NODATA,
-                known => *known as u8,
-            };
-            let values = seen.answers.iter().map(code).collect();
-            let raster = Raster::from_values(grid.width, grid.height, values)?;
-            let what = "1 visible, 0 blocked, 2 unproven, 255 nodata";
-            Ok(write_tif_u8(output, &raster, Some(&georeference(&grid, &cloud.frame)), Some(NODATA), Some(what))?)
+    }
+
+    fn georeference(self, frame: &Frame) -> Georeference {
+        match self {
+            Self::Ground(ground, _) => georeference(&ground.grid, frame),
+            Self::Terrain(terrain) => terrain_georeference(terrain, frame),
         }
-        _ => {
-            let count = |(answer, &count): (&Answer, &u32)| match answer {
-                Answer::OutsideView | Answer::OutsideCloud => NO_COUNT,
-                _ => u16::try_from(count).unwrap_or(NO_COUNT).min(NO_COUNT - 1),
-            };
-            let values = seen.answers.iter().zip(&seen.counts).map(count).collect();
-            let raster = Raster::from_values(grid.width, grid.height, values)?;
-            let what = "number of observers that see the cell, 65535 nodata";
-            Ok(write_tif_u16(output, &raster, Some(&georeference(&grid, &cloud.frame)), Some(NO_COUNT), Some(what))?)
+    }
+}
+
+impl SeenCells<'_> {
+    /// Writes a raster, a map or areas.
+    pub(super) fn write(&self, output: &Path) -> Result<()> {
+        let [width, height] = self.on.size();
+        let place = self.on.georeference(self.frame);
+        match extension(output).as_str() {
+            "geojson" => self.write_areas(output, &place),
+            "png" => self.write_map(output),
+            _ if self.is_of_one() => {
+                let code = |answer: &Answer| match answer {
+                    Answer::OutsideView | Answer::OutsideCloud => NODATA,
+                    known => *known as u8,
+                };
+                let values = self.seen.answers.iter().map(code).collect();
+                let raster = Raster::from_values(width, height, values)?;
+                let what = "1 visible, 0 blocked, 2 unproven, 255 nodata";
+                Ok(write_tif_u8(output, &raster, Some(&place), Some(NODATA), Some(what))?)
+            }
+            _ => {
+                let count = |(answer, &count): (&Answer, &u32)| match answer {
+                    Answer::OutsideView | Answer::OutsideCloud => NO_COUNT,
+                    _ => u16::try_from(count).unwrap_or(NO_COUNT).min(NO_COUNT - 1),
+                };
+                let values = self.seen.answers.iter().zip(&self.seen.counts).map(count).collect();
+                let raster = Raster::from_values(width, height, values)?;
+                let what = "number of observers that see the cell, 65535 nodata";
+                Ok(write_tif_u16(output, &raster, Some(&place), Some(NO_COUNT), Some(what))?)
+            }
         }
+    }
+
+    fn is_of_one(&self) -> bool {
+        self.seen.seen_counts.len() == 1
+    }
+
+    fn write_areas(&self, output: &Path, place: &Georeference) -> Result<()> {
+        let [width, height] = self.on.size();
+        let unit = self.frame.crs.metres_per_unit;
+        let steps = [place.column_step[0], place.row_step[1]].map(|step| step * unit);
+        let mut areas = Vec::new();
+        for (answer, name) in [(Answer::Visible, "visible"), (Answer::Unproven, "unproven")] {
+            let cells = self.seen.answers.iter().map(|&a| a == answer).collect();
+            let polygons = outlines(&Raster::from_values(width, height, cells)?);
+            if polygons.is_empty() {
+                continue;
+            }
+            let cell_count: usize = polygons.iter().map(|polygon| polygon.cell_count).sum();
+            let mut area = Area::default();
+            area.properties.insert("answer".to_owned(), name.into());
+            area.properties.insert("area_m2".to_owned(), (cell_count as f64 * steps[0] * -steps[1]).into());
+            let corner =
+                |corner: [usize; 2]| [0, 1].map(|i| place.upper_left[i] * unit + corner[i] as f64 * steps[i]);
+            area.polygons = polygons.iter().map(|polygon| polygon.rings(corner)).collect();
+            areas.push(area);
+        }
+        write_geojson_areas(output, &areas, &self.frame.crs)?;
+        Ok(())
+    }
+
+    fn write_map(&self, output: &Path) -> Result<()> {
+        let Self { seen, is_reverse, .. } = *self;
+        // two at least: the legend of a range of two or more has whole numbers
+        let most = f64::from(seen.counts.iter().copied().max().unwrap_or(0).max(2));
+        let one = self.is_of_one();
+        let color = |(answer, &count): (&Answer, &u32)| match answer {
+            Answer::Visible if one => Some(SEEN_COLOR),
+            Answer::Blocked if one => Some(HIDDEN_COLOR),
+            Answer::Visible | Answer::Blocked => Some(ramp(f64::from(count) / most)),
+            Answer::Unproven => Some(UNPROVEN_COLOR),
+            _ => None,
+        };
+        let colors: Vec<Option<[u8; 3]>> = seen.answers.iter().zip(&seen.counts).map(color).collect();
+        let mut others = Vec::new();
+        if seen.answers.contains(&Answer::Unproven) {
+            others.push((UNPROVEN_COLOR, "unproven"));
+        }
+        let (title, sheet) = match self.on {
+            Field::Ground(ground, cloud) => {
+                let title = match (is_reverse, one) {
+                    (true, _) => "Cells from which the target is visible",
+                    (false, true) => "Visible from the observer",
+                    (false, false) => "Number of observers that see the cell",
+                };
+                let place = georeference(&ground.grid, self.frame);
+                let relief = highest_points(&cloud.positions, ground);
+                (title, Sheet { relief, colors, cell: ground.grid.cell, corner: ground.grid.corner, place })
+            }
+            Field::Terrain(terrain) => {
+                let title = match (is_reverse, one) {
+                    (true, _) => "Terrain from which the target is visible",
+                    (false, true) => "Terrain visible from the observer",
+                    (false, false) => "Number of observers that see the terrain",
+                };
+                others.push((CLOUD_COLOR, "point cloud"));
+                (title, Sheet::of_terrain(terrain, &colors, self.frame)?)
+            }
+        };
+        let mark = |eye: &[f64; 3]| {
+            let place = [(eye[0] - sheet.corner[0]) / sheet.cell, (sheet.corner[1] - eye[1]) / sheet.cell];
+            let size = [sheet.relief.width() as f64, sheet.relief.height() as f64];
+            let is_inside = (0..2).all(|i| (0.0..=size[i]).contains(&place[i]));
+            is_inside.then(|| MapMark { place, ..MapMark::default() })
+        };
+        let marks: Vec<MapMark> = self.eyes.iter().filter_map(mark).collect();
+        let classes = [&[(SEEN_COLOR, "visible")], &others[..], &[(HIDDEN_COLOR, "blocked")]].concat();
+        let legend = if one { MapLegend::Colors(&classes) } else { MapLegend::Ramp("observers", [0.0, most], &others) };
+        let mark_name = if is_reverse { "target" } else { "observer" };
+        let (relief, place, colors, marks) = (&sheet.relief, Some(&sheet.place), &sheet.colors[..], &marks[..]);
+        let map = MapPicture { relief, cell: sheet.cell, place, colors, marks, mark_name, title, legend };
+        Ok(write_png(output, &map_picture(&map)?)?)
+    }
+}
+
+/// Square pixels of a map.
+struct Sheet {
+    relief: Raster<f32>,
+    colors: Vec<Option<[u8; 3]>>,
+    /// Side of a pixel, metres, and the upper left corner, local metres.
+    cell: f64,
+    corner: [f64; 2],
+    place: Georeference,
+}
+
+impl Sheet {
+    /// Terrain with a colour for each node, of which a large map shows some.
+    fn of_terrain(terrain: &ElevationGrid, colors: &[Option<[u8; 3]>], frame: &Frame) -> Result<Self> {
+        let ([west, north], sides) = (terrain.north_west(), terrain.cell());
+        let size = [terrain.heights().width(), terrain.heights().height()];
+        let extent = [0, 1].map(|i| size[i] as f64 * sides[i]);
+        let usual = sides[0].max(sides[1]);
+        let cell = usual.max((extent[0] * extent[1] / MOST_PIXELS).sqrt());
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most as many as nodes")]
+        let [width, height] = extent.map(|extent| (extent / cell).round().max(1.0) as usize);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the nodes")]
+        let node = |pixel: usize, axis: usize| {
+            (((pixel as f64 + 0.5) * cell / sides[axis]) as usize).min(size[axis].saturating_sub(1))
+        };
+        let nodes = (0..width * height).map(|i| [node(i % width, 0), node(i / width, 1)]);
+        let relief = nodes.clone().map(|[column, row]| terrain.heights().get(column, row).unwrap_or(f32::NAN));
+        let relief = Raster::from_values(width, height, relief.collect())?;
+        let color = |([column, row], height): ([usize; 2], &f32)| {
+            let color = colors.get(row * size[0] + column).copied().flatten();
+            color.or((!height.is_nan()).then_some(CLOUD_COLOR))
+        };
+        let colors = nodes.zip(relief.values()).map(color).collect();
+        let step = cell / frame.crs.metres_per_unit;
+        let place = Georeference {
+            column_step: [step, 0.0],
+            row_step: [0.0, -step],
+            ..terrain_georeference(terrain, frame)
+        };
+        let corner = [west - sides[0] / 2.0, north + sides[1] / 2.0];
+        Ok(Self { relief, colors, cell, corner, place })
     }
 }
 
@@ -100,60 +250,4 @@ pub(super) fn on_points(output: &Path, seen: &Viewshed, cloud: &PointCloud) -> R
         });
     }
     Ok(write_cloud(output, cloud, &columns)?)
-}
-
-fn write_areas(output: &Path, seen: &Viewshed, grid: &MapGrid, cloud: &PointCloud) -> Result<()> {
-    let mut areas = Vec::new();
-    for (answer, name) in [(Answer::Visible, "visible"), (Answer::Unproven, "unproven")] {
-        let cells = Raster::from_values(grid.width, grid.height, seen.answers.iter().map(|&a| a == answer).collect())?;
-        let polygons = outlines(&cells);
-        if polygons.is_empty() {
-            continue;
-        }
-        let cell_count: usize = polygons.iter().map(|polygon| polygon.cell_count).sum();
-        let mut area = Area::default();
-        area.properties.insert("answer".to_owned(), name.into());
-        area.properties.insert("area_m2".to_owned(), (cell_count as f64 * grid.cell * grid.cell).into());
-        let place = |corner: [usize; 2]| {
-            let [x, y] = grid.corner_at(corner);
-            [x + cloud.frame.origin[0], y + cloud.frame.origin[1]]
-        };
-        area.polygons = polygons.iter().map(|polygon| polygon.rings(place)).collect();
-        areas.push(area);
-    }
-    write_geojson_areas(output, &areas, &cloud.frame.crs)?;
-    Ok(())
-}
-
-fn write_map(
-    output: &Path,
-    seen: &Viewshed,
-    eyes: &[[f64; 3]],
-    ground: &Ground,
-    cloud: &PointCloud,
-    (title, mark_name): (&str, &str),
-) -> Result<()> {
-    let relief = highest_points(&cloud.positions, ground);
-    let places = eyes.iter().filter_map(|eye| ground.grid.cell_position([eye[0], eye[1]]));
-    let marks: Vec<MapMark> = places.map(|place| MapMark { place, ..MapMark::default() }).collect();
-    // two at least: the legend of a range of two or more has whole numbers
-    let most = f64::from(seen.counts.iter().copied().max().unwrap_or(0).max(2));
-    let one = seen.seen_counts.len() == 1;
-    let color = |(answer, &count): (&Answer, &u32)| match answer {
-        Answer::Visible if one => Some(SEEN_COLOR),
-        Answer::Blocked if one => Some(HIDDEN_COLOR),
-        Answer::Visible | Answer::Blocked => Some(ramp(f64::from(count) / most)),
-        Answer::Unproven => Some(UNPROVEN_COLOR),
-        _ => None,
-    };
-    let colors: Vec<Option<[u8; 3]>> = seen.answers.iter().zip(&seen.counts).map(color).collect();
-    let unproven = seen.answers.contains(&Answer::Unproven).then_some((UNPROVEN_COLOR, "unproven"));
-    let unproven = unproven.as_slice();
-    let classes = [&[(SEEN_COLOR, "visible")], unproven, &[(HIDDEN_COLOR, "blocked")]].concat();
-    let legend = if one { MapLegend::Colors(&classes) } else { MapLegend::Ramp("observers", [0.0, most], unproven) };
-    let cell = ground.grid.cell;
-    let place = georeference(&ground.grid, &cloud.frame);
-    let (relief, place, colors, marks) = (&relief, Some(&place), &colors[..], &marks[..]);
-    let map = MapPicture { relief, cell, place, colors, marks, mark_name, title, legend };
-    Ok(write_png(output, &map_picture(&map)?)?)
 }

@@ -71,6 +71,18 @@ impl FarTerrain {
             })
     }
 
+    /// Whether the raster rises above the line of sight between two ends, local metres, that leaves the first along the unit vector `along` on the map with the tangent `tangent` of its
+    /// elevation.
+    pub(super) fn blocks_sight(
+        &self,
+        ends: ([f64; 3], [f64; 3]),
+        along: [f64; 2],
+        tangent: f64,
+        earth: &EarthParams,
+    ) -> bool {
+        self.relief.as_ref().is_some_and(|relief| relief.blocks_sight(ends, along, tangent, earth))
+    }
+
     /// Elevations of the horizon of `place`, local metres, over the earth of `earth`: at `count` azimuths from grid north, the first `first` and `step`
     /// apart, radians; −π/2 where there is no terrain.
     #[must_use]
@@ -99,4 +111,24 @@ impl FarTerrain {
 fn on_map([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
     let across = x.hypot(y);
     if across > 0.0 { ([x / across, y / across], z / across) } else { ([0.0, 1.0], z * f64::INFINITY) }
+}
+
+/// The piece of a line over a box on the map, its low and high corner: from and to, metres from where the line starts, which is `span` metres long and runs along the unit vector `along`.
+/// `None` where the line passes beside it.
+pub(super) fn piece_over(
+    [low, high]: [[f64; 2]; 2],
+    start: [f64; 3],
+    along: [f64; 2],
+    span: f64,
+) -> Option<[f64; 2]> {
+    let mut piece = [0.0, span];
+    for axis in 0..2 {
+        if along[axis] == 0.0 {
+            (low[axis] <= start[axis] && start[axis] <= high[axis]).then_some(())?;
+            continue;
+        }
+        let sides = [low[axis], high[axis]].map(|side| (side - start[axis]) / along[axis]);
+        piece = [piece[0].max(sides[0].min(sides[1])), piece[1].min(sides[0].max(sides[1]))];
+    }
+    (low.iter().zip(high).all(|(low, high)| *low <= high) && piece[0] < piece[1]).then_some(piece)
 }

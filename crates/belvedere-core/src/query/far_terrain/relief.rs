@@ -1,11 +1,15 @@
 //! An elevation raster and the maxima of its blocks: exact horizons without a look at every cell.
 
 use super::super::EarthParams;
+use super::piece_over;
 use belvedere_data::ElevationGrid;
 use std::ops::ControlFlow;
 
 /// Smallest step of a line in cells for each metre: a line along an axis is turned by less than its rounding, so that no quotient is 0 / 0.
 const LEAST_SLOPE: f64 = 1e-14;
+
+/// Terrain nearer to the first end of a line of sight than this does not block it, metres: the ground at the feet of an eye that lies on it.
+const FOOT: f64 = 0.1;
 
 /// Heights between the nodes of a raster, bilinear in each patch of four nodes, with the highest node of all blocks of patches of 2, 4, 8, … a side.
 #[derive(Debug)]
@@ -126,6 +130,32 @@ impl Relief {
                 }
             });
         hit.is_break()
+    }
+
+    /// Whether terrain rises above the line of sight between two ends, which leaves the first in a direction on the map with the tangent of its elevation. At the ends themselves it does not.
+    pub(super) fn blocks_sight(
+        &self,
+        (from, to): ([f64; 3], [f64; 3]),
+        along: [f64; 2],
+        tangent: f64,
+        earth: &EarthParams,
+    ) -> bool {
+        let span = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let lines = self.lines(&Places { low: from, high: from }, along, earth);
+        // a target on the surface is not hidden by what is rounded
+        let mut limit = Top { tangent: tangent + rounding(tangent), span: 0.0 };
+        let [enter, leave] = piece_over(self.within, from, along, span).unwrap_or([span; 2]);
+        [[FOOT, enter], [leave.max(FOOT), span]].into_iter().any(|spans| {
+            spans[0] < spans[1]
+                && self
+                    .descend(&lines, spans, &mut limit, &mut |corners, place, spans, limit| {
+                        match lines.top_of_patch(corners, place, spans) {
+                            Some(found) if found.tangent > limit.tangent => ControlFlow::Break(()),
+                            _ => ControlFlow::Continue(()),
+                        }
+                    })
+                    .is_break()
+        })
     }
 
     /// Whether terrain may rise above a line from any of these places. Never false where [`Relief::hides`] is true for one of them.
