@@ -1,21 +1,23 @@
 //! What observers see around themselves: viewsheds, horizons, isovists.
 
 use crate::arrays::{to_1d, to_2d};
-use crate::errors::exception;
+use crate::errors::{exception, wrong};
 use crate::observers::{eyes, places, skip, skipped};
 use crate::scene::{Scene, unproven_as};
 use crate::sights::earth;
 use crate::sun::Place;
-use crate::targets::{Cells, Grid, grid_of, ground_points};
+use crate::targets::{Cells, Grid, grid_at, grid_of, ground_points};
 use crate::work::run;
 use belvedere::apps::eyes::{EyesReport, fault_of_target};
 use belvedere::apps::horizon::{HorizonParams, azimuth_count, horizons};
 use belvedere::apps::isovist::{Isovist, IsovistParams, isovist};
 use belvedere::apps::targets::{CellLevel, CellParams, CoveredCells, Targets, set_on_ground};
 use belvedere::apps::viewshed::{
-    OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, ViewshedParams, box_within_reach, tested_height, viewshed,
+    OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, ViewshedParams, box_within_reach, far_viewshed,
+    terrain_within_reach, tested_height, viewshed,
 };
 use belvedere::query::{EarthParams, UnprovenAs};
+use belvedere::results::terrain_georeference;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -38,6 +40,8 @@ pub(crate) struct Looking {
     refraction: Option<f64>,
     /// The one place is a target, and who looks stands in the cells.
     is_reverse: bool,
+    /// Cells are those of the terrain beyond the cloud.
+    is_far: bool,
 }
 
 impl Looking {
@@ -80,6 +84,9 @@ impl Scene {
         let limits = looking.limits(place.grid_north_of(&inner))?;
         let places = places(&observers)?;
         let points = ground_points(looking.ground.as_deref())?;
+        if looking.is_far && inner.model.far_terrain().grid().is_none() {
+            return Err(wrong("far", "True", "give the scene terrain first: scene.with_terrain('dtm.tif').viewshed(...)"));
+        }
         let of_work = Arc::clone(&inner);
         let (seen, grid, report) = run(py, progress, move |control| {
             let inner = of_work;
@@ -103,9 +110,17 @@ impl Scene {
                 _ => skip(&scene, Some(&ground), &mut eyes, control)?,
             };
             let observers: Vec<Observer> = eyes.into_iter().map(|eye| Observer { eye, limits }).collect();
+            let params = ViewshedParams::default().with_earth(earth).with_unproven(unproven);
+            if let Some(terrain) = inner.model.far_terrain().grid().filter(|_| looking.is_far) {
+                let terrain = terrain_within_reach(terrain, &observers)?;
+                let size = [terrain.heights().width(), terrain.heights().height()];
+                let seen = control.stage("testing terrain", size[1], || {
+                    far_viewshed(&scene, &observers, &terrain, of_cells, &params, control)
+                })?;
+                return Ok((seen, grid_at(size, &terrain_georeference(&terrain, inner.frame())), report));
+            }
             let cells = CellParams::default().with_height(tested_height(of_cells)).with_covered(CoveredCells::Kept);
             let grid = grid_of(&ground.grid, inner.frame());
-            let params = ViewshedParams::default().with_earth(earth).with_unproven(unproven);
             let seen = control.stage("testing cells", observers.len(), || {
                 let (targets, _) = Targets::of_cells(&inner.cloud, ground, &cells, control)?;
                 viewshed(&scene, &observers, &targets.positions, &params, control)

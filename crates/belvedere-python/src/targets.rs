@@ -192,9 +192,13 @@ impl Cells {
 pub(crate) type Grid = (usize, usize, [f64; 6]);
 
 pub(crate) fn grid_of(grid: &MapGrid, frame: &Frame) -> Grid {
-    let Georeference { upper_left, column_step, row_step, .. } = georeference(grid, frame);
-    let transform = [column_step[0], row_step[0], upper_left[0], column_step[1], row_step[1], upper_left[1]];
-    (grid.width, grid.height, transform)
+    grid_at([grid.width, grid.height], &georeference(grid, frame))
+}
+
+/// The same for cells of this width and height in cells that lie there.
+pub(crate) fn grid_at([width, height]: [usize; 2], place: &Georeference) -> Grid {
+    let Georeference { upper_left, column_step, row_step, .. } = place;
+    (width, height, [column_step[0], row_step[0], upper_left[0], column_step[1], row_step[1], upper_left[1]])
 }
 
 /// Name, description and values of a measure.

@@ -495,6 +495,17 @@ def test_plans(scene, run_program, folder):
         raster = planned.shadow(**sun)
         assert_same_raster(raster, folder / f"plan_{name}.tif", folder)
         assert not np.array_equal(raster.values, scene.shadow(**sun).values, equal_nan=True), name
+    # the mountains beyond the cloud, and from where in them a mast is seen
+    eye = [float(x), float(y), float(high[2]) + 30]
+    for name, flags, arguments in [
+        ("seen", ["--observer", ",".join(map(repr, eye)), "--max-distance", "1500"], {"max_distance": 1500}),
+        ("from", ["--target", ",".join(map(repr, eye)), "--observer-height", "3"], {"observer_height": 3}),
+    ]:
+        run_program("viewshed", "tile.laz", *flags, "--terrain", "dtm.tif", "--far-output", f"far_{name}.tif")
+        who = {"observers": eye} if name == "seen" else {"target": eye}
+        far = scene.with_terrain(folder / "dtm.tif").viewshed(**who, **arguments, far=True)
+        assert_same_raster(far, folder / f"far_{name}.tif", folder)
+        assert (far.values == belvedere.Answer.VISIBLE).any() and (far.values == belvedere.Answer.BLOCKED).any(), name
 
 
 def test_plans_are_not_lost_without_a_word(scene, folder):

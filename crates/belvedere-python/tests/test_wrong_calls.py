@@ -68,6 +68,7 @@ WRONG = {
         lambda s, c, f: belvedere.Scene(c, stations=[[1, 2, 3, 4], [1, 2, 3, 5]]), "stations", "once"),
     "nobody who looks": (lambda s, c, f: s.viewshed(), "observers", "target"),
     "observers and a target": (lambda s, c, f: s.viewshed((1, 2), target=(1, 2)), "observers and target", "one of"),
+    "far cells without terrain": (lambda s, c, f: s.viewshed((1, 2), far=True), "far", "with_terrain"),
     "two targets": (lambda s, c, f: s.viewshed(target=[(1, 2), (3, 4)]), "target", "one"),
     "method": (lambda s, c, f: belvedere.Scene(c, method="best"), "method", "carved"),
     "rule": (lambda s, c, f: belvedere.Scene(c, without="houses"), "without", "crowns"),

@@ -120,7 +120,7 @@ fn terrain_beyond_the_cloud_is_visible_where_nothing_hides_it() {
         ("--far-output none.tif", 2, &["--terrain"][..]),
         ("--terrain dtm.tif -o none.tif", 2, &["--far-output"]),
         ("--terrain dtm.tif --far-output none.laz", 2, &["--far-output", "none.laz"]),
-        ("--terrain dtm.tif --far-output none.tif --max-distance 15", 2, &["--max-distance", "2 x 2"]),
+        ("--terrain dtm.tif --far-output none.tif --max-distance 9", 2, &["--max-distance", "2 x 2"]),
         ("--terrain missing.tif --far-output none.tif -o none.png", 1, &["missing.tif"]),
     ] {
         place.refusal(status, &format!("viewshed {HOUSE} --observer {x},{y},{z} {wrong}"), parts);

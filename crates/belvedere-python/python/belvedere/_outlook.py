@@ -41,6 +41,7 @@ class Outlook:
         curvature: str | None = None,
         refraction: float | None = None,
         grid_north: bool = False,
+        far: bool = False,
         progress: Progress = None,
     ) -> Raster:
         """What one or many observers see of the ground, or from where a target is seen.
@@ -72,6 +73,9 @@ class Outlook:
             As for `line_of_sight`.
         grid_north : bool, optional
             Whether azimuths are counted from grid north.
+        far : bool, optional
+            Cells of the terrain beyond the cloud, which `with_terrain` gives the scene, in place of those in the cloud.
+            They are as large as those of the terrain, and there is no answer within the extent of the cloud.
         progress : bool or callable, optional
 
         Returns
@@ -92,7 +96,7 @@ class Outlook:
 
         References
         ----------
-        docs/methods/viewshed.md
+        docs/methods/viewshed.md, docs/methods/terrain.md
 
         Examples
         --------
@@ -100,6 +104,7 @@ class Outlook:
         >>> seen.values.dtype, bool((seen.values == belvedere.Answer.VISIBLE).any())
         (dtype('uint8'), True)
         >>> seen_from = scene.viewshed(target=standing, target_height=10, cell=2)
+        >>> mountains = scene.with_terrain("dtm.tif").viewshed(standing, far=True)  # doctest: +SKIP
         """
         looking = _looking(
             observer_height=observer_height,
@@ -113,6 +118,7 @@ class Outlook:
             curvature=curvature,
             refraction=refraction,
             is_reverse=target is not None,
+            is_far=far,
         )
         if target is None:
             if observers is None:
@@ -337,7 +343,8 @@ def _looking(**given: Any) -> dict[str, Any]:
     more = ("min_distance", "max_distance", "curvature", "refraction")
     numbers = ("observer_height", "target_height", "cell", "min_distance", "refraction")
     check_finite(**{name: given.get(name) for name in numbers})
-    return {name: given.get(name) for name in names + more} | {"is_reverse": bool(given.get("is_reverse"))}
+    switches = ("is_reverse", "is_far")
+    return {name: given.get(name) for name in names + more} | {name: bool(given.get(name)) for name in switches}
 
 
 def _range(value: npt.ArrayLike | None, what: str) -> tuple[float, float] | None:

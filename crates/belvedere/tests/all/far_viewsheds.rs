@@ -97,7 +97,7 @@ fn a_ridge_hides_what_lies_below_the_line_over_its_crest() {
             let share = 3000.0 / (node[0] - eye[0]);
             let rise = node[2] + height - eye[2];
             let over = eye[2] + rise * share - sag(&earth, share * span, span) - top;
-            assert!(over.abs() > 1e-6 || node[0] == 5000.0, "a node on the edge decides nothing");
+            assert!(over.abs() > 1e-6 || node[0] <= 5000.0, "a node on the edge decides nothing");
             let is_seen = node[0] <= 5000.0 || over > 0.0;
             assert_eq!(answer == Answer::Visible, is_seen, "{node:?} {over}");
             counts[usize::from(is_seen && node[0] > 5000.0)] += usize::from(node[0] > 5000.0);

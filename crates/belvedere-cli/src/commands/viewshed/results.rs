@@ -136,10 +136,9 @@ impl SeenCells<'_> {
             _ => None,
         };
         let colors: Vec<Option<[u8; 3]>> = seen.answers.iter().zip(&seen.counts).map(color).collect();
-        let mut others = Vec::new();
-        if seen.answers.contains(&Answer::Unproven) {
-            others.push((UNPROVEN_COLOR, "unproven"));
-        }
+        let unproven = seen.answers.contains(&Answer::Unproven).then_some((UNPROVEN_COLOR, "unproven"));
+        let mut others = unproven.as_slice().to_vec();
+        let mut classes = [&[(SEEN_COLOR, "visible")], &others[..], &[(HIDDEN_COLOR, "blocked")]].concat();
         let (title, sheet) = match self.on {
             Field::Ground(ground, cloud) => {
                 let title = match (is_reverse, one) {
@@ -158,6 +157,7 @@ impl SeenCells<'_> {
                     (false, false) => "Number of observers that see the terrain",
                 };
                 others.push((CLOUD_COLOR, "point cloud"));
+                classes.push((CLOUD_COLOR, "point cloud"));
                 (title, Sheet::of_terrain(terrain, &colors, self.frame)?)
             }
         };
@@ -168,7 +168,6 @@ impl SeenCells<'_> {
             is_inside.then(|| MapMark { place, ..MapMark::default() })
         };
         let marks: Vec<MapMark> = self.eyes.iter().filter_map(mark).collect();
-        let classes = [&[(SEEN_COLOR, "visible")], &others[..], &[(HIDDEN_COLOR, "blocked")]].concat();
         let legend = if one { MapLegend::Colors(&classes) } else { MapLegend::Ramp("observers", [0.0, most], &others) };
         let mark_name = if is_reverse { "target" } else { "observer" };
         let (relief, place, colors, marks) = (&sheet.relief, Some(&sheet.place), &sheet.colors[..], &marks[..]);
