@@ -12,6 +12,9 @@ use belvedere_data::{Error, Result};
 /// Raw size from which files use 64-bit offsets (BigTIFF); tags and incompressible strips need some room below 4 GiB.
 const BIG_FILE_BYTES: usize = 3_900_000_000;
 
+/// The program that a file names as its writer.
+pub(crate) const SOFTWARE: &str = "belvedere";
+
 /// Where a raster lies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Georeference {
@@ -145,7 +148,7 @@ where
     let mut encoder = encoder.with_compression(Compression::Deflate(DeflateLevel::Balanced));
     let mut image = encoder.new_image::<C>(width, height)?;
     let tags = image.encoder();
-    tags.write_tag(Tag::Software, "belvedere")?;
+    tags.write_tag(Tag::Software, SOFTWARE)?;
     if let Some(description) = marks.description {
         tags.write_tag(Tag::ImageDescription, ascii(description).as_str())?;
     }

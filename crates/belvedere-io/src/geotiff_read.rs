@@ -6,7 +6,7 @@ use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{TiffError, TiffFormatError, TiffResult};
 
-use crate::geotiff::Georeference;
+use crate::geotiff::{Georeference, SOFTWARE};
 use crate::source::{Input, Reader, Source};
 use belvedere_data::crs::Crs;
 use belvedere_data::raster::Raster;
@@ -55,6 +55,8 @@ pub struct PlacedRaster {
     pub values: Raster<f32>,
     /// Where it lies, if the file says so.
     pub place: Option<Georeference>,
+    /// What its values are, if Belvedere wrote the file and said so.
+    pub description: Option<String>,
 }
 
 /// A raster of numbers of any kind, with its place on the map.
@@ -88,6 +90,8 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
     let of_middles = keys.as_chunks::<4>().0.iter().any(|&[key, _, _, value]| key == 1025 && value == 2);
     let keys: Vec<u8> = keys.into_iter().flat_map(u16::to_le_bytes).collect();
     let crs = Crs::from_geotiff_keys(&keys).unwrap_or_default();
+    let of_belvedere = decoder.get_tag_ascii_string(Tag::Software).is_ok_and(|program| program == SOFTWARE);
+    let description = decoder.get_tag_ascii_string(Tag::ImageDescription).ok().filter(|_| of_belvedere);
     let numbers = |decoder: &mut Decoder<_>, tag| decoder.get_tag_f64_vec(tag).unwrap_or_default();
     let [scale, tie, matrix] = [Tag::ModelPixelScaleTag, Tag::ModelTiepointTag, Tag::ModelTransformationTag]
         .map(|tag| numbers(&mut decoder, tag));
@@ -109,7 +113,7 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
         Georeference { upper_left, ..place }
     };
     let place = if of_middles { place.map(to_corner) } else { place };
-    Ok(PlacedRaster { values, place })
+    Ok(PlacedRaster { values, place, description })
 }
 
 fn read<T: Copy>(source: Source<'_>, of_kind: impl Fn(DecodingResult) -> Option<Vec<T>>) -> Result<Raster<T>> {

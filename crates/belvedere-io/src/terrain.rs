@@ -17,7 +17,7 @@ const HEIGHTS: RangeInclusive<f64> = -500.0..=9000.0;
 /// bilinear heights. Its rows must run from north to south.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what is no raster of one band, has no place on the map, is turned, has no heights, or heights that no ground has;
+/// [`Error::Io`]; [`Error::Malformed`] for what is no raster of one band, has no place on the map, is turned, has no heights, or heights that no ground has, and for results of Belvedere that are no heights;
 /// [`Error::UnusableCrs`] for another system, with a conversion to run first.
 pub fn read_terrain<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Result<ElevationGrid> {
     let source = source.into();
@@ -34,6 +34,7 @@ pub fn read_terrain<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Result<
         let what = "is turned or upside down; make its rows run from north to south first: gdalwarp IN.tif OUT.tif";
         return Err(Error::malformed(&name, what));
     }
+    check_quantity(raster.description.as_deref(), &name)?;
     check_heights(&raster.values, &place.crs, &frame.crs, &name)?;
     let is_in_degrees = place.crs.kind == CrsKind::Geographic && is_like_wgs_84(place.crs.epsg);
     if is_in_degrees && frame.crs.kind == CrsKind::Projected {
@@ -50,6 +51,17 @@ pub fn read_terrain<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Result<
     let [x, y] = place.upper_left;
     let north_west = [x * unit - frame.origin[0] + cell[0] / 2.0, y * unit - frame.origin[1] - cell[1] / 2.0];
     ElevationGrid::new(heights, north_west, cell).map_err(|error| Error::malformed(&name, error.to_string()))
+}
+
+/// Refuses a raster of which Belvedere, which wrote it, says that it holds something else than heights.
+fn check_quantity(description: Option<&str>, name: &Path) -> Result<()> {
+    let is_height = |what: &str| ["height", "elevation"].iter().any(|word| what.to_lowercase().starts_with(word));
+    let Some(what) = description.filter(|what| !is_height(what)) else { return Ok(()) };
+    let what = format!(
+        "is no elevation raster: Belvedere wrote it, and its description says {what:?}; give heights of the ground (DTM). \
+         If it holds heights, their description must begin with \"height\" or \"elevation\""
+    );
+    Err(Error::malformed(name, what))
 }
 
 /// Refuses heights that no ground has: mostly numbers of cells without a height that are not declared.

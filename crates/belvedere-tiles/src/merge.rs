@@ -120,7 +120,7 @@ pub fn merged_within(
     };
     let tiles: Vec<TileId> = plan.tiles.iter().copied().filter(touches).collect();
     let (values, place, _) = gather(plan, folder, question, &tiles, control)?;
-    Ok(PlacedRaster { values: values.numbers()?, place: Some(place) })
+    Ok(PlacedRaster { values: values.numbers()?, place: Some(place), description: None })
 }
 
 /// The results of `tiles` that are there, in one raster around all of them.

@@ -32,7 +32,7 @@ pub struct WindowView {
     pub shares: [f64; KINDS],
     /// The same, weighted by the cosine to the normal of the window, as light arrives through it; 1 together.
     pub cosine_shares: [f64; KINDS],
-    /// Mean range of the things seen, metres, by solid angle; sky and what is beyond the cloud do not count. NaN where no thing is seen.
+    /// Mean range of the things seen, metres, by solid angle; sky and what is beyond the cloud do not count, far terrain neither. NaN where no thing is seen.
     pub mean_range: f64,
     /// Half of the solid angle of the things seen is nearer than this, metres; NaN where no thing is seen.
     pub median_range: f64,
@@ -190,9 +190,13 @@ impl Sums {
                     (kind, range, scene.is_unproven(place, direction, range))
                 }
                 None => {
-                    let answer = scene.answer_unblocked_towards(place, direction);
-                    let is_sky = direction[2] >= 0.0 && answer != Answer::Blocked;
-                    (if is_sky { Seen::Sky } else { Seen::Beyond }, f64::INFINITY, answer == Answer::Unproven)
+                    let is_terrain = scene.answer_unblocked_towards(place, direction) == Answer::Blocked;
+                    let seen = match is_terrain {
+                        true => Seen::Ground,
+                        false if direction[2] >= 0.0 => Seen::Sky,
+                        false => Seen::Beyond,
+                    };
+                    (seen, f64::INFINITY, scene.is_unproven(place, direction, f64::INFINITY))
                 }
             };
             self.weights[seen as usize] += weight;

@@ -18,12 +18,12 @@ pub enum Seen {
     Water,
     /// Buildings, and what was added to a scene.
     Building,
-    /// Bare ground, roads and rails.
+    /// Bare ground, roads and rails; and far terrain, above the horizon or below it.
     Ground,
     /// Whatever else blocks: cars, bridges, wires, and points without a class.
     #[default]
     Other,
-    /// Nothing in the cloud blocks, but this is no sky: below the horizon, where the cloud ends, or behind the horizon of far terrain.
+    /// Nothing in the cloud blocks, but this is no sky: below the horizon, where the cloud ends and no far terrain is known.
     Beyond,
 }
 

@@ -1,6 +1,6 @@
 //! Flags of the view from windows.
 
-use super::{GivingWay, North, SceneInput, above_zero, at_least_one};
+use super::{FarTerrain, GivingWay, North, SceneInput, above_zero, at_least_one};
 use belvedere::apps::window_views::Seen;
 use clap::Args;
 use std::path::PathBuf;
@@ -38,6 +38,8 @@ pub(crate) struct WindowViews {
     pub(crate) classes_of: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) giving_way: GivingWay,
+    #[command(flatten)]
+    pub(crate) far: FarTerrain,
     /// Table (.csv), points (.geojson .laz .las .ply) or a map (.png); repeatable
     ///
     /// A row or a point for each window. The map shows the share of --map-of.

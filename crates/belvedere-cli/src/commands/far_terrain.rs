@@ -10,6 +10,12 @@ use belvedere::model::TerrainReport;
 use std::path::Path;
 
 impl FarTerrain {
+    /// The title of a map, which says that far terrain counts where it does.
+    pub(crate) fn titled(&self, title: &str) -> String {
+        let counts = self.terrain.is_some() || self.horizon.is_some();
+        format!("{title}{}", if counts { ", with far terrain" } else { "" })
+    }
+
     /// Puts the scene before the far terrain that was given.
     pub(crate) fn set(&self, scene: &mut Scene, stages: &mut Stages, summary: &mut Summary) -> Result<()> {
         if let Some(path) = &self.terrain {

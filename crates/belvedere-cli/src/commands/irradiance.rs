@@ -60,7 +60,8 @@ pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
         let measures = irradiation_measures(&sums, group_count);
         drop(sums);
         summary.add("irradiation", asked.statistics(&measures));
-        asked.write(&outputs, &measures, "Energy of sun and sky, kWh/m²", &mut stages, &mut summary)?;
+        let title = arguments.places.far.titled("Energy of sun and sky, kWh/m²");
+        asked.write(&outputs, &measures, &title, &mut stages, &mut summary)?;
     }
     if let Some(roofs) = &roofs {
         planes::measure(arguments, roofs, obstacles, &seasons, &site, &mut stages, &mut summary)?;

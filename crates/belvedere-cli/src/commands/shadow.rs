@@ -31,7 +31,8 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     let points = if arguments.places.needs_points() { Points::Keep } else { Points::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
     arguments.places.far.set(&mut scene, &mut stages, &mut summary)?;
-    let suns = suns(arguments, &scene, &mut summary)?;
+    let mut suns = suns(arguments, &scene, &mut summary)?;
+    suns.iter_mut().for_each(|sun| sun.title = arguments.places.far.titled(&sun.title));
     let asked = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
     let edges = if arguments.suns.soft { Edges::Soft } else { Edges::Hard };
     // pulses are asked about one sun that is a point: of many it would take long

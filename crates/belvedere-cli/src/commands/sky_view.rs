@@ -35,7 +35,8 @@ pub(crate) fn run(arguments: &SkyView, global: &Global) -> Result<Summary> {
     let seen = stages.run("testing sky", looks, |control| scene_sky_view(obstacles, &asked.targets, &sky, control))?;
     let measures = seen.into_measures();
     summary.add("sky", asked.statistics(&measures));
-    asked.write(&arguments.outputs, &measures, "Sky view", &mut stages, &mut summary)?;
+    let title = arguments.places.far.titled("Sky view");
+    asked.write(&arguments.outputs, &measures, &title, &mut stages, &mut summary)?;
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
 }

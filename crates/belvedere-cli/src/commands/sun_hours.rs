@@ -88,6 +88,7 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
         Some(first) => format!("Sun hours on the days of the rule {}, {days}", first.rule.name),
         None => format!("Sun hours, {days}"),
     };
+    let title = arguments.places.far.titled(&title);
     asked.write(&arguments.outputs, &measures, &title, &mut stages, &mut summary)?;
     summary.add_seconds(stages.into_seconds());
     Ok(summary)

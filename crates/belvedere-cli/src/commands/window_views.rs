@@ -28,6 +28,7 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
+    arguments.far.set(&mut scene, &mut stages, &mut summary)?;
     warn_of_geojson(&arguments.output, &scene.cloud.frame.crs, &mut summary);
     let north = arguments.north.of_scene(&scene);
     north.report(&mut summary);
@@ -85,10 +86,12 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     }
     summary.add("views", section);
     warn_of_other(&views, &mut summary);
+    let shown = arguments.map_of.unwrap_or(Seen::Vegetation);
+    let title = arguments.far.titled(&format!("View from windows: {}", shown.name()));
     let found = Found { windows: &asked, views: &views, measures: &measures, names: &names };
     for output in &arguments.output {
         match extension(output).as_str() {
-            "png" => found.write_map(output, arguments.map_of, &scene, &cloud, &mut stages, &mut summary)?,
+            "png" => found.write_map(output, &title, shown, (&scene, &cloud), &mut stages, &mut summary)?,
             _ => summary.add_writing(&stages.run("writing", 0, |_| found.write(output, &cloud))?),
         };
     }

@@ -22,7 +22,7 @@ fn write_terrain(place: &Workplace, name: &str, code: u32, east: f64, height: im
         row_step: [0.0, -CELL],
         crs: Crs::from_epsg(code).unwrap(),
     };
-    write_tif_f32(place.path(name).as_path(), &raster, Some(&georeference), Some(-9999.0), None).unwrap();
+    write_tif_f32(place.path(name).as_path(), &raster, Some(&georeference), Some(-9999.0), Some("Height in metres")).unwrap();
 }
 
 /// A plain with a mountain range in the south: 400 m high from 1510 m on.
@@ -159,4 +159,10 @@ fn terrain_that_does_not_fit_is_refused_by_name() {
     place.write("text.tif", "no raster");
     place.refusal(1, &format!("{shadow} text.tif"), &["text.tif", "no TIFF file", "gdal_translate"]);
     place.refusal(1, &format!("{shadow} missing.tif"), &["missing.tif"]);
+    // a result of Belvedere that lies where the terrain should, and whose values heights could have
+    place.summary(&format!("sky-view {HOUSE} --cell 1 --directions 10 -o sky.tif"));
+    place.refusal(1, &format!("{shadow} sky.tif"), &["sky.tif", "sky view factor", "no elevation raster"]);
+    place.summary(&format!("viewshed {HOUSE} --observer {EAST},{NORTH},12 --cell 1 -o seen.tif"));
+    place.refusal(1, &format!("{shadow} seen.tif"), &["seen.tif", "1 visible, 0 blocked"]);
+    assert!(!place.path("lit.csv").exists());
 }

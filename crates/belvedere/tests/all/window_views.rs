@@ -1,6 +1,7 @@
 //! The view from windows against closed forms and the exact rays of simulated towns.
 
 use crate::common::simulated::cloud_of;
+use crate::mountains::grid;
 use belvedere::apps::exposure::WINDOW_LIFT;
 use belvedere::apps::targets::{Targets, Window};
 use belvedere::apps::window_views::{
@@ -12,7 +13,7 @@ use belvedere::control::Control;
 use belvedere::horizon::HorizonProfile;
 use belvedere::medial::MedialBalls;
 use belvedere::model::{ModelParams, SceneModel};
-use belvedere::query::{AddedMeshes, Answer, Ball, Blocker, FarTerrain, MedialScene, UnprovenAs};
+use belvedere::query::{AddedMeshes, Ball, Blocker, FarTerrain, MedialScene, UnprovenAs};
 use belvedere::random::uniform;
 use belvedere::vector::{cross, dot, unit};
 use belvedere::{Error, Frame, Mesh};
@@ -320,20 +321,31 @@ fn in_a_scanned_town_views_are_near_those_of_exact_rays() {
 }
 
 #[test]
-fn far_terrain_is_beyond_and_no_sky() {
-    // 10° high all around
-    let horizon = HorizonProfile::new([[0.0, 10f64.to_radians()]]).unwrap();
-    let far = FarTerrain::default().with_profile(horizon);
-    let scene = MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap().with_far_terrain(far);
-    assert_eq!(scene.answer_unblocked_towards([0.0; 3], [0.0, 1.0, 0.0]), Answer::Blocked);
+fn far_terrain_is_ground_and_no_sky() {
     let count = 20_000;
-    let [view] = views(&scene, &[window([0.0; 3], 1.0)], Kinds { balls: &[], meshes: &[] }, count)[..] else {
-        panic!()
+    let seen = |far: FarTerrain, place: [f64; 3]| {
+        let scene = MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap().with_far_terrain(far);
+        let kinds = Kinds { balls: &[], meshes: &[] };
+        let [view] = views(&scene, &[window(place, 1.0)], kinds, count)[..] else { panic!() };
+        assert!(view.mean_range.is_nan() && view.median_range.is_nan());
+        assert!((view.shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        [Seen::Sky, Seen::Ground, Seen::Beyond].map(|kind| view.shares[kind as usize])
     };
+    let close = |shares: [f64; 3], expected: [f64; 3]| {
+        let errors = shares.iter().zip(expected).map(|(share, expected)| (share - expected).abs() - sampling(expected, count));
+        assert!(errors.fold(f64::NEG_INFINITY, f64::max) < 1e-12, "{shares:?} {expected:?}");
+    };
+    // 10° high all around, for all places, and nothing is free below it
+    let horizon = HorizonProfile::new([[0.0, 10f64.to_radians()]]).unwrap();
     let sky = (1.0 - 10f64.to_radians().sin()) / 2.0;
-    assert!((view.shares[0] - sky).abs() < sampling(sky, count), "{view:?}");
-    assert!((view.shares[0] + view.shares[Seen::Beyond as usize] - 1.0).abs() < 1e-12);
-    assert!(view.mean_range.is_nan() && view.median_range.is_nan());
+    close(seen(FarTerrain::default().with_profile(horizon), [0.0; 3]), [sky, 1.0 - sky, 0.0]);
+    // a wall 1 km away all around a plain, which all lines that fall meet: the half space is as even in the sine of the elevation as the sphere
+    let plain = |x: f64, y: f64| if (x - 2000.0).hypot(y + 2000.0) < 1000.0 { 0.0 } else { 120.0 };
+    let wall = FarTerrain::default().with_grid(grid(401, 10.0, plain), None);
+    let sky = (1.0 - (118.3f64 / 1000.0).atan().sin()) / 2.0;
+    close(seen(wall, [2000.0, -2000.0, 1.7]), [sky, 1.0 - sky, 0.0]);
+    // with neither all below the horizon is beyond
+    close(seen(FarTerrain::default(), [2000.0, -2000.0, 1.7]), [0.5, 0.0, 0.5]);
 }
 
 #[test]

@@ -108,16 +108,15 @@ impl Found<'_> {
     pub(super) fn write_map<'s>(
         &self,
         output: &Path,
-        shown: Option<Seen>,
-        scene: &Scene,
-        cloud: &PointCloud,
+        title: &str,
+        shown: Seen,
+        (scene, cloud): (&Scene, &PointCloud),
         stages: &mut Stages,
         summary: &'s mut Summary,
     ) -> Result<&'s mut Summary> {
         if cloud.is_empty() {
             bail!("{}: a map needs points, and a ball file has none; give --classes-of", output.display());
         }
-        let shown = shown.unwrap_or(Seen::Vegetation);
         let (low, high) = scene.model.bounds().on_map();
         let origin = [cloud.frame.origin[0], cloud.frame.origin[1]];
         let grid = MapGrid::covering(low, high, cell_for(low, high), origin)?;
@@ -141,10 +140,9 @@ impl Found<'_> {
             .map(|share| Some(if share.is_finite() { ramp(share / most) } else { NO_WINDOW_COLOR }))
             .collect();
         let place = georeference(&grid, &cloud.frame);
-        let title = format!("View from windows: {}", shown.name());
         let legend =
             MapLegend::Ramp("percent of the view", [0.0, 100.0 * most], &[(NO_WINDOW_COLOR, "no window with a view")]);
-        let map = MapPicture::of_colors(&relief, grid.cell, Some(&place), &colors, &title, legend);
+        let map = MapPicture::of_colors(&relief, grid.cell, Some(&place), &colors, title, legend);
         stages.run("writing", 0, |_| write_png(output, &map_picture(&map)?))?;
         Ok(summary)
     }
