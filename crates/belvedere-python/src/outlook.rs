@@ -85,7 +85,11 @@ impl Scene {
         let places = places(&observers)?;
         let points = ground_points(looking.ground.as_deref())?;
         if looking.is_far && inner.model.far_terrain().grid().is_none() {
-            return Err(wrong("far", "True", "give the scene terrain first: scene.with_terrain('dtm.tif').viewshed(...)"));
+            return Err(wrong(
+                "far",
+                "True",
+                "give the scene terrain first: scene.with_terrain('dtm.tif').viewshed(...)",
+            ));
         }
         let of_work = Arc::clone(&inner);
         let (seen, grid, report) = run(py, progress, move |control| {

@@ -78,13 +78,8 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
         summary.add("cells", counted(&seen.answers, unproven, Some([grid.cell; 2])));
         warn_of_blind(&observers, &seen, who, &mut summary);
         let eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
-        let cells = SeenCells {
-            seen: &seen,
-            eyes: &eyes,
-            frame: &cloud.frame,
-            on: Field::Ground(&ground, &cloud),
-            is_reverse,
-        };
+        let cells =
+            SeenCells { seen: &seen, eyes: &eyes, frame: &cloud.frame, on: Field::Ground(&ground, &cloud), is_reverse };
         for output in arguments.output.iter().filter(|path| !is_of_points(path)) {
             stages.run("writing", 0, |_| cells.write(output))?;
         }
@@ -125,7 +120,8 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
         })?;
         stages.run("writing", 0, |_| write_heights(output, &heights, (&ground.grid, &cloud.frame), LEAST_HEIGHTS))?;
     }
-    let written = arguments.output.iter().chain(&arguments.far_output).chain(&arguments.heights).chain(&arguments.masks);
+    let written =
+        arguments.output.iter().chain(&arguments.far_output).chain(&arguments.heights).chain(&arguments.masks);
     summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
     summary.add_seconds(stages.into_seconds());
     Ok(summary)
@@ -157,11 +153,7 @@ fn grid(arguments: &Viewshed, scene: &pipeline::Scene, rows: &[who::Row]) -> Res
 }
 
 /// The cells of the terrain beyond the cloud that observers may see, if these are asked about.
-fn far_cells(
-    arguments: &Viewshed,
-    blockers: &MedialScene,
-    observers: &[Observer],
-) -> Result<Option<ElevationGrid>> {
+fn far_cells(arguments: &Viewshed, blockers: &MedialScene, observers: &[Observer]) -> Result<Option<ElevationGrid>> {
     let (Some(path), Some(terrain)) = (&arguments.terrain, blockers.far_terrain().grid()) else { return Ok(None) };
     let cells = flagged("--max-distance", terrain_within_reach(terrain, observers))?;
     if far_targets(blockers, &cells).next().is_none() {

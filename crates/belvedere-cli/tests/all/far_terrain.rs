@@ -22,7 +22,8 @@ fn write_terrain(place: &Workplace, name: &str, code: u32, east: f64, height: im
         row_step: [0.0, -CELL],
         crs: Crs::from_epsg(code).unwrap(),
     };
-    write_tif_f32(place.path(name).as_path(), &raster, Some(&georeference), Some(-9999.0), Some("Height in metres")).unwrap();
+    write_tif_f32(place.path(name).as_path(), &raster, Some(&georeference), Some(-9999.0), Some("Height in metres"))
+        .unwrap();
 }
 
 /// A plain with a mountain range in the south: 400 m high from 1510 m on.

@@ -55,7 +55,11 @@ fn nodes<'a>(scene: &'a MedialScene, seen: &'a Viewshed) -> impl Iterator<Item =
 
 /// How far a line of sight sags below the straight one between its ends: (1 - k) s (S - s) / 2R.
 fn sag(earth: &EarthParams, s: f64, span: f64) -> f64 {
-    if earth.curvature == Curvature::Off { 0.0 } else { (1.0 - earth.refraction) * s * (span - s) / (2.0 * earth.radius) }
+    if earth.curvature == Curvature::Off {
+        0.0
+    } else {
+        (1.0 - earth.refraction) * s * (span - s) / (2.0 * earth.radius)
+    }
 }
 
 #[test]
@@ -87,9 +91,7 @@ fn a_ridge_hides_what_lies_below_the_line_over_its_crest() {
     let (eye, cell, top) = ([2000.0, -4000.0, 250.0], 20.0, 90.0);
     let ridge = |x: f64, _: f64| if x == 5000.0 { top } else { 0.0 };
     let scene = open_scene(grid(501, cell, ridge), around(eye, 400.0));
-    for (earth, height) in
-        [(EarthParams::default(), 0.0), (EarthParams::flat(), 0.0), (EarthParams::default(), 35.0)]
-    {
+    for (earth, height) in [(EarthParams::default(), 0.0), (EarthParams::flat(), 0.0), (EarthParams::default(), 35.0)] {
         let found = seen(&scene, &[observer(eye)], height, earth);
         let mut counts = [0; 2];
         for (node, answer) in nodes(&scene, &found).filter(|(node, _)| (node[0] - 5000.0).abs() != cell) {

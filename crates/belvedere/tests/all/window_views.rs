@@ -332,7 +332,8 @@ fn far_terrain_is_ground_and_no_sky() {
         [Seen::Sky, Seen::Ground, Seen::Beyond].map(|kind| view.shares[kind as usize])
     };
     let close = |shares: [f64; 3], expected: [f64; 3]| {
-        let errors = shares.iter().zip(expected).map(|(share, expected)| (share - expected).abs() - sampling(expected, count));
+        let errors =
+            shares.iter().zip(expected).map(|(share, expected)| (share - expected).abs() - sampling(expected, count));
         assert!(errors.fold(f64::NEG_INFINITY, f64::max) < 1e-12, "{shares:?} {expected:?}");
     };
     // 10° high all around, for all places, and nothing is free below it

@@ -4,16 +4,16 @@ use crate::arguments::Usage;
 use crate::commands::extension;
 use anyhow::Result;
 use belvedere::apps::viewshed::Viewshed;
-use belvedere::{ElevationGrid, Frame, PointCloud};
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{
-    Area, ExtraColumn, ExtraValues, Georeference, WriteReport, outlines, write_cloud, write_geojson_areas, write_npy_u32_bands,
-    write_tif_u8, write_tif_u16, write_tif_u32,
+    Area, ExtraColumn, ExtraValues, Georeference, WriteReport, outlines, write_cloud, write_geojson_areas,
+    write_npy_u32_bands, write_tif_u8, write_tif_u16, write_tif_u32,
 };
 use belvedere::query::Answer;
 use belvedere::raster::Raster;
 use belvedere::results::{georeference, terrain_georeference};
+use belvedere::{ElevationGrid, Frame, PointCloud};
 use std::path::Path;
 
 /// Cells without an answer in a raster of answers.
@@ -114,8 +114,7 @@ impl SeenCells<'_> {
             let mut area = Area::default();
             area.properties.insert("answer".to_owned(), name.into());
             area.properties.insert("area_m2".to_owned(), (cell_count as f64 * steps[0] * -steps[1]).into());
-            let corner =
-                |corner: [usize; 2]| [0, 1].map(|i| place.upper_left[i] * unit + corner[i] as f64 * steps[i]);
+            let corner = |corner: [usize; 2]| [0, 1].map(|i| place.upper_left[i] * unit + corner[i] as f64 * steps[i]);
             area.polygons = polygons.iter().map(|polygon| polygon.rings(corner)).collect();
             areas.push(area);
         }
@@ -209,11 +208,8 @@ impl Sheet {
         };
         let colors = nodes.zip(relief.values()).map(color).collect();
         let step = cell / frame.crs.metres_per_unit;
-        let place = Georeference {
-            column_step: [step, 0.0],
-            row_step: [0.0, -step],
-            ..terrain_georeference(terrain, frame)
-        };
+        let place =
+            Georeference { column_step: [step, 0.0], row_step: [0.0, -step], ..terrain_georeference(terrain, frame) };
         let corner = [west - sides[0] / 2.0, north + sides[1] / 2.0];
         Ok(Self { relief, colors, cell, corner, place })
     }

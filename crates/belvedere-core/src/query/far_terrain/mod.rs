@@ -115,12 +115,7 @@ fn on_map([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
 
 /// The piece of a line over a box on the map, its low and high corner: from and to, metres from where the line starts, which is `span` metres long and runs along the unit vector `along`.
 /// `None` where the line passes beside it.
-pub(super) fn piece_over(
-    [low, high]: [[f64; 2]; 2],
-    start: [f64; 3],
-    along: [f64; 2],
-    span: f64,
-) -> Option<[f64; 2]> {
+pub(super) fn piece_over([low, high]: [[f64; 2]; 2], start: [f64; 3], along: [f64; 2], span: f64) -> Option<[f64; 2]> {
     let mut piece = [0.0, span];
     for axis in 0..2 {
         if along[axis] == 0.0 {

@@ -148,11 +148,11 @@ impl Relief {
         [[FOOT, enter], [leave.max(FOOT), span]].into_iter().any(|spans| {
             spans[0] < spans[1]
                 && self
-                    .descend(&lines, spans, &mut limit, &mut |corners, place, spans, limit| {
-                        match lines.top_of_patch(corners, place, spans) {
-                            Some(found) if found.tangent > limit.tangent => ControlFlow::Break(()),
-                            _ => ControlFlow::Continue(()),
-                        }
+                    .descend(&lines, spans, &mut limit, &mut |corners, place, spans, limit| match lines
+                        .top_of_patch(corners, place, spans)
+                    {
+                        Some(found) if found.tangent > limit.tangent => ControlFlow::Break(()),
+                        _ => ControlFlow::Continue(()),
                     })
                     .is_break()
         })
