@@ -132,6 +132,7 @@ impl SeenCells<'_> {
             Answer::Blocked if one => Some(HIDDEN_COLOR),
             Answer::Visible | Answer::Blocked => Some(ramp(f64::from(count) / most)),
             Answer::Unproven => Some(UNPROVEN_COLOR),
+            Answer::OutsideCloud if matches!(self.on, Field::Terrain(_)) => Some(CLOUD_COLOR),
             _ => None,
         };
         let colors: Vec<Option<[u8; 3]>> = seen.answers.iter().zip(&seen.counts).map(color).collect();
@@ -186,7 +187,7 @@ struct Sheet {
 }
 
 impl Sheet {
-    /// Terrain with a colour for each node, of which a large map shows some.
+    /// Terrain with a colour for each node that has a height, of which a large map shows some.
     fn of_terrain(terrain: &ElevationGrid, colors: &[Option<[u8; 3]>], frame: &Frame) -> Result<Self> {
         let ([west, north], sides) = (terrain.north_west(), terrain.cell());
         let size = [terrain.heights().width(), terrain.heights().height()];
@@ -203,8 +204,7 @@ impl Sheet {
         let relief = nodes.clone().map(|[column, row]| terrain.heights().get(column, row).unwrap_or(f32::NAN));
         let relief = Raster::from_values(width, height, relief.collect())?;
         let color = |([column, row], height): ([usize; 2], &f32)| {
-            let color = colors.get(row * size[0] + column).copied().flatten();
-            color.or((!height.is_nan()).then_some(CLOUD_COLOR))
+            colors.get(row * size[0] + column).copied().flatten().filter(|_| !height.is_nan())
         };
         let colors = nodes.zip(relief.values()).map(color).collect();
         let step = cell / frame.crs.metres_per_unit;
