@@ -236,9 +236,9 @@ class Planning:
         Table
             A row for each window: its azimuth and tilt, percentages of the view (``sky``, ``vegetation``, ``water``,
             ``building``, ``ground``, ``other``, ``beyond``; with ``_cos`` weighted by the cosine to the window),
-            ``mean_range_m``, ``median_range_m`` and ``unproven``. Far terrain (`with_terrain`, `with_horizon`) is ``ground``
-            and has no range. NaN for windows without a view. Of a mesh with
-            objects also ``object``, and the attribute `objects` has the mean of each object.
+            ``mean_range_m``, ``median_range_m`` and ``unproven``. Far terrain (`with_terrain`, `with_horizon`) is
+            ``ground`` and has no range. NaN for windows without a view. Of a mesh with objects also ``object``, and the
+            attribute `objects` has the mean of each object.
 
         Raises
         ------
