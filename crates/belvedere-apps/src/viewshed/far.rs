@@ -55,9 +55,9 @@ pub fn far_viewshed(
     let none_seen = || vec![0; observers.len()];
     let seen_counts = rows
         .map(|(row, (answers, counts))| {
-            control.check()?;
             let mut seen_counts = none_seen();
             for (column, (answer, count)) in answers.iter_mut().zip(counts).enumerate() {
+                control.check()?;
                 let Some(node) = terrain.node(column, row).filter(|node| is_beyond(scene, *node)) else { continue };
                 let target = [node[0], node[1], node[2] + height];
                 *answer = Answer::OutsideView;

@@ -133,6 +133,37 @@ fn terrain_beyond_the_cloud_is_visible_where_nothing_hides_it() {
 }
 
 #[test]
+fn mountains_are_ground_in_the_view_of_a_window_and_maps_name_them() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    // a wall all around, 1 km away, and a plain that changes nothing
+    write_terrain(&place, "wall.tif", 28992, 0.0, |x, y| if x.hypot(y) < 1000.0 { 0.0 } else { 400.0 });
+    write_terrain(&place, "plain.tif", 28992, 0.0, |_, _| -20.0);
+    let [x, y, z] = at(0.0, 0.0, 12.0);
+    place.write("window.csv", format!("x,y,z,azimuth\n{x},{y},{z},90\n"));
+    let shares = |flags: &str| {
+        let directions = "--windows window.csv --grid-north --directions 20000";
+        place.summary(&format!("window-views {HOUSE} {directions} {flags} -o view.csv"));
+        ["sky", "beyond"].map(|name| column(&place, "view.csv", name)[0])
+    };
+    // above the elevation of the wall, within a cell of where it begins, lies (1 - sin) / 2 of the half space
+    let [sky, beyond] = shares("--terrain wall.tif");
+    let expected = [990.0, 1030.0].map(|span: f64| 50.0 * (1.0 - (388.0 / span).atan().sin()));
+    assert!((expected[0] - 0.7..expected[1] + 0.7).contains(&sky) && beyond == 0.0, "{sky} {beyond} {expected:?}");
+    let [sky, beyond] = shares("");
+    assert!((sky - 50.0).abs() < 0.7 && beyond > 1.0, "{sky} {beyond}");
+    place.write("horizon.csv", "azimuth,elevation\n0,20\n");
+    let [sky, beyond] = shares("--horizon horizon.csv");
+    let expected = 50.0 * (1.0 - 20f64.to_radians().sin());
+    assert!((sky - expected).abs() < 0.7 && beyond == 0.0, "{sky} {beyond}");
+    for (name, flags) in [("without", ""), ("with", "--terrain plain.tif")] {
+        place.summary(&format!("sky-view {HOUSE} --cell 1 --directions 50 {flags} -o {name}.tif -o {name}.png"));
+    }
+    assert_eq!(place.bytes("with.tif"), place.bytes("without.tif"));
+    assert!(place.bytes("with.png") != place.bytes("without.png"), "the title of the map says nothing");
+}
+
+#[test]
 fn terrain_that_does_not_fit_is_refused_by_name() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
