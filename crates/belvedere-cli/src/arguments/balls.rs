@@ -84,7 +84,9 @@ pub(crate) struct Orienting {
     pub(crate) neighbors: NeighborChoice,
     /// Orientation: auto, given, up, scanner, scanner=X,Y,Z, stations=FILE, trajectory=FILE, pulses or mesh=FILE
     ///
-    /// auto: the normals of the file if it has them, else the scanner positions of the file, else up; `normals` always estimates new ones.
+    /// auto: the normals of the file if it has them, else the scanner positions of the file, else up; `normals` always estimates new ones. For
+    /// carving, auto also searches for the scanner in the data: in pulses with several returns, in scan angles, and by the grid of pulses around each
+    /// place where a tripod stood.
     /// given: the normals of the file. up: toward the sky. scanner: toward the scanner positions of the file. scanner=X,Y,Z: toward one
     /// position. stations=FILE: toward the station of each point, from a table with the columns station (the point source id), x, y and z
     /// (.csv .txt). trajectory=FILE: toward the scanner positions in a table or SBET file (.csv .txt .sbet). pulses: toward scanner positions

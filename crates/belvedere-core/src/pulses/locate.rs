@@ -8,7 +8,7 @@ use super::estimate::{self, height_offset, paths_from_angles, paths_from_returns
 use super::flight_parts::{AngleVerdict, HeightOffset, ScanAngleParams, ScanAnglePart, SensorEstimateParams, Verdict};
 use super::group::{Pulses, group};
 use super::line_path::position_on;
-use super::scanner_report::{FoundBy, ScannerReport};
+use super::scanner_report::{FoundBy, FoundStation, ScannerReport};
 use super::vertical::{VerticalParams, vertical_pulses};
 use belvedere_data::cloud::to_local;
 use belvedere_data::control::Control;
@@ -19,7 +19,7 @@ use belvedere_data::{Error, PointCloud, Result};
 #[derive(Clone, Copy, Debug, Default)]
 pub enum Means<'a> {
     /// Poses in the file; without them pulses with several returns, then scan angles where they can be trusted; where none of these
-    /// finds the scanner of a single point, the assumption that pulses fall straight down.
+    /// finds the scanner of a single point, stations of tripods that the points show; and at last the assumption that pulses fall straight down.
     #[default]
     Automatic,
     /// Pulses with several returns, then scan angles, and no assumption.
@@ -79,6 +79,13 @@ pub fn locate(
     }
     match means {
         Means::Automatic if cloud.scanner_positions.is_empty() => {
+            let (positions, stations) = estimate::stations_of_tripods(cloud, control)?;
+            if !stations.is_empty() {
+                report.count(FoundBy::StationSearch, positions.iter().filter(|p| is_known(p)).count());
+                report.stations = stations;
+                remark_stations(&mut report);
+                return Ok((positions, report));
+            }
             let positions = vertical_pulses(&cloud.positions, &params.vertical, control)?;
             report.count(FoundBy::Assumed, positions.iter().filter(|p| is_known(p)).count());
             report.remarks.push("pulses are assumed to be vertical, onto points with nothing above them".to_owned());
@@ -240,6 +247,27 @@ fn by_pulses(
     }
     remark_parts(report);
     Ok(found.into_iter().map(|found| found.map_or(unknown, |(_, place)| place)).collect())
+}
+
+/// Says what may be missing where stations of tripods were searched for.
+fn remark_stations(report: &mut ScannerReport) {
+    // why there are no pulses of an aircraft is beside the point
+    report.remarks.clear();
+    let unknown_count = report.point_count - report.known_count();
+    if unknown_count > 0 {
+        report.remarks.push(format!(
+            "{unknown_count} points are of no station that was found: give the positions of all with --orient stations=FILE, by the point source ids of \
+             their points"
+        ));
+    }
+    let is_shared = |(i, station): (usize, &FoundStation)| {
+        report.stations.iter().skip(i + 1).any(|other| other.source_id == station.source_id)
+    };
+    if report.stations.iter().enumerate().any(is_shared) {
+        let remark =
+            "points of several stations have no ids: each is taken for the nearest station that can have seen it";
+        report.remarks.push(remark.to_owned());
+    }
 }
 
 /// Says which parts of flight lines could not be used, and why.

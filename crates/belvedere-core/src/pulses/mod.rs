@@ -3,7 +3,7 @@
 //! The way from the scanner to the first return of a pulse is proven to be free. Everything that uses this needs the two
 //! things found here: [`group`] puts the returns of each pulse together, [`locate`] says where they came from, by the best means
 //! that a cloud has: poses or a trajectory ([`Means`]), pulses with several returns ([`SensorPositions`]), scan angles
-//! ([`ScanAngleParams`]), and at last the assumption that pulses fall straight down ([`vertical_pulses`]).
+//! ([`ScanAngleParams`]), the stations of tripods that the points show ([`FoundStation`]), and at last the assumption that pulses fall straight down ([`vertical_pulses`]).
 
 #[cfg(feature = "scanner-estimate")]
 mod estimate;
@@ -30,7 +30,7 @@ pub use locate::{LocateParams, Means, locate};
 pub(crate) use needles::{GAP_M, come_from_the_ground, lower_ends};
 pub use needles::{NeedleColumns, NeedleParams, NeedleReport, Needles};
 pub use path_samples::path_samples;
-pub use scanner_report::{FlightLine, FoundBy, ScannerReport, TypicalFlight};
+pub use scanner_report::{FlightLine, FoundBy, FoundStation, ScannerReport, TypicalFlight};
 pub use sensor_positions::{SensorPositions, SensorReport};
 pub(crate) use vertical::LEAST_ASSUMED_SHARE;
 pub use vertical::{VerticalParams, vertical_pulses};

@@ -3,6 +3,7 @@
 use super::Pulses;
 use super::flight_parts::{HeightOffset, ScanAngleParams, ScanAnglePart, SensorEstimateParams, SensorPart};
 use super::line_path::LinePath;
+use super::scanner_report::FoundStation;
 use belvedere_data::control::Control;
 use belvedere_data::{PointCloud, Result};
 
@@ -32,4 +33,12 @@ pub(super) fn paths_from_angles(
 
 pub(super) fn height_offset(_: &PointCloud, _: &Pulses, _: &[[f32; 3]]) -> Option<HeightOffset> {
     None
+}
+
+pub(super) fn stations_of_tripods(
+    cloud: &PointCloud,
+    control: &Control<'_>,
+) -> Result<(Vec<[f32; 3]>, Vec<FoundStation>)> {
+    control.check()?;
+    Ok((vec![[f32::NAN; 3]; cloud.len()], Vec::new()))
 }

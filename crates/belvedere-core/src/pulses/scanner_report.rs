@@ -24,6 +24,8 @@ pub enum FoundBy {
     Returns,
     /// Scan angles.
     ScanAngle,
+    /// A search for the stations of tripods in the points.
+    StationSearch,
     /// Nothing: pulses are assumed to fall straight down.
     Assumed,
 }
@@ -39,6 +41,7 @@ impl FoundBy {
             Self::Trajectory => "trajectory",
             Self::Returns => "pulses with several returns",
             Self::ScanAngle => "scan angles",
+            Self::StationSearch => "stations found in the data",
             Self::Assumed => "nothing: pulses are assumed to be vertical",
         }
     }
@@ -52,6 +55,7 @@ impl FoundBy {
             Self::Trajectory => "trajectory_percent",
             Self::Returns => "pulses_with_several_returns_percent",
             Self::ScanAngle => "scan_angles_percent",
+            Self::StationSearch => "stations_found_percent",
             Self::Assumed => "assumed_percent",
         }
     }
@@ -79,8 +83,38 @@ pub struct ScannerReport {
     pub clock: Option<ClockOffset>,
     /// What the heights of that trajectory are off by; `None` where pulses do not tell.
     pub height_offset: Option<HeightOffset>,
+    /// Stations of tripods that were found in the points, by point source id.
+    pub stations: Vec<FoundStation>,
     /// What could not be used, and why.
     pub remarks: Vec<String>,
+}
+
+/// A station of a tripod that was found in the points.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FoundStation {
+    /// Point source id of the points that it was found in; `None` where all have the same.
+    #[serde(rename = "point_source_id", skip_serializing_if = "Option::is_none")]
+    pub source_id: Option<u16>,
+    /// Where it stood, in the coordinates of the cloud's file.
+    #[serde(serialize_with = "to_three_digits")]
+    pub position: [f64; 3],
+    /// Steps from pulse to pulse, around and up, degrees: the evidence is that directions form this grid.
+    #[serde(rename = "grid_of_pulses_deg", serialize_with = "to_three_digits")]
+    pub step_deg: [f64; 2],
+    /// Standard deviation of the position, metres, as the pairs of neighbouring directions tell it.
+    #[serde(rename = "position_deviation_m", serialize_with = "to_four_digits")]
+    pub position_sd: f64,
+    /// Points that were measured from it.
+    #[serde(rename = "points")]
+    pub point_count: usize,
+}
+
+fn to_three_digits<S: Serializer, const N: usize>(values: &[f64; N], serializer: S) -> Result<S::Ok, S::Error> {
+    values.map(|v| rounded(v, 3)).as_slice().serialize(serializer)
+}
+
+fn to_four_digits<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    rounded(*value, 4).serialize(serializer)
 }
 
 /// Flight of a scanner: medians over parts of flight lines, `None` where nothing is known.
@@ -200,6 +234,10 @@ impl Serialize for ScannerReport {
             if let Some(value) = value {
                 map.serialize_entry(key, &value)?;
             }
+        }
+        if !self.stations.is_empty() {
+            map.serialize_entry("stations_found", &self.stations.len())?;
+            map.serialize_entry("stations", &self.stations)?;
         }
         if let Some(HeightOffset { offset, sd, is_applied, .. }) = self.height_offset {
             map.serialize_entry("trajectory_height_offset_m", &rounded(offset, 2))?;

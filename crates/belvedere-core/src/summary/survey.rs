@@ -51,7 +51,7 @@ impl SurveyKind {
         let known = 100.0 * report.known_count() as f64 / cloud.len() as f64;
         let is_ground = come_from_the_ground(pulses(cloud, scanner));
         let kind = if is_ground {
-            let count = cloud.scanner_positions.len();
+            let count = cloud.scanner_positions.len().max(report.stations.len());
             let positions = format!(", {count} scanner position{}", plural(count));
             format!("laser scan from the ground{}", if count > 0 { positions.as_str() } else { "" })
         } else {

@@ -15,7 +15,10 @@ use belvedere::pulses::{
 use belvedere::trajectory::Trajectory;
 use belvedere::vector::{cross, length, sub};
 use belvedere::{Error, PointCloud};
-use belvedere_scenes::{AirborneParams, MirrorMotion, Scan, ScanPattern, TownParams, scan_airborne, town};
+use belvedere_scenes::{
+    AirborneParams, MirrorMotion, Preset, Scan, ScanPattern, Stations, TerrestrialParams, TownParams, scan_airborne,
+    scan_terrestrial, town,
+};
 
 fn flown(params: &AirborneParams) -> Scan {
     scan_airborne(&town(&TownParams::default()), params)
@@ -332,4 +335,40 @@ fn real_clouds_are_served_by_what_they_have() {
     let Some(rounded) = read("data/tudelft_ahn4_small/small.laz") else { return };
     let (_, report) = found(&rounded);
     assert!(report.is_assumed());
+}
+
+#[test]
+fn tripods_in_a_town_are_found_in_their_points_alone_and_an_aircraft_is_no_tripod() {
+    let scene = town(&Preset::Town.params(60.0, 2));
+    let params = TerrestrialParams {
+        stations: Stations::Chosen(2),
+        angular_step: 0.6_f64.to_radians(),
+        max_range: 60.0,
+        ..TerrestrialParams::default()
+    };
+    let scan = scan_terrestrial(&scene, &params);
+    let mut cloud = cloud_of(&scan);
+    // as a program exports merged scans
+    cloud.attributes.gps_time = None;
+    cloud.attributes.scan_angle = None;
+    cloud.attributes.point_source_id = None;
+    let (positions, report) = found(&cloud);
+    assert_eq!(report.stations.len(), scan.stations.len(), "{report:?}");
+    for truth in &scan.stations {
+        let off = |place: [f64; 3]| (0..3).map(|i| (place[i] - truth[i]).powi(2)).sum::<f64>().sqrt();
+        let nearest = report.stations.iter().map(|station| off(station.position)).fold(f64::INFINITY, f64::min);
+        // much less than the half metre of a coarser guess, and as good as such positions are measured
+        assert!(nearest < 0.03, "{nearest} m: {:?}", report.stations);
+    }
+    assert_eq!(report.found.keys().collect::<Vec<_>>(), [&FoundBy::StationSearch]);
+    assert!(report.known_count() as f64 > 0.7 * cloud.len() as f64);
+    let known_count = positions.iter().filter(|place| place[0].is_finite()).count();
+    assert_eq!(known_count, report.known_count());
+    assert!(report.remarks.iter().any(|remark| remark.contains("stations=FILE")), "{:?}", report.remarks);
+
+    let mut flown = cloud_of(&scan_airborne(&scene, &AirborneParams::covering(&scene, 20.0)));
+    flown.attributes.gps_time = None;
+    flown.attributes.scan_angle = None;
+    let (_, report) = found(&flown);
+    assert!(report.is_assumed() && report.stations.is_empty(), "{report:?}");
 }

@@ -5,10 +5,12 @@ mod from_returns;
 mod height_offset;
 mod sensor_fit;
 mod smoother;
+mod stations;
 
 pub(super) use from_angles::paths_from_angles;
 pub(super) use from_returns::paths_from_returns;
 pub(super) use height_offset::height_offset;
+pub(super) use stations::stations_of_tripods;
 
 /// Whether this build can estimate.
 pub(super) const IS_BUILT: bool = true;
