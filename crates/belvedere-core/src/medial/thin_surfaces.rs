@@ -12,14 +12,14 @@ use std::f32::consts::TAU;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Cells beside a voxel, of eight, that must hold points of its height for pulses below it to be looked at. On a straight rim
-/// five do, along a straight wall at most four.
-const LEAST_BESIDE: usize = 5;
+/// five do; one of these may be empty where points are sparse.
+const LEAST_BESIDE: usize = 4;
 /// How far points may lie above or below a surface and still be part of it where a pulse runs below, metres: a voxel and half
 /// of another, so that slopes up to 40° count.
 const SAME_SURFACE: f32 = 0.6;
-/// Gap about a pulse that is never taken for one below a surface, radians: a pulse beside a straight wall has π, less what the noise
-/// of its points takes.
-const WIDEST_OF_ALL: f32 = 2.8;
+/// Gap about a pulse that is never taken for one below a surface, radians: hardly more than the π of a pulse below the outermost points. The rim lies
+/// farther out than these by half their spacing, and a wall below it would have stopped the pulse.
+const WIDEST_OF_ALL: f32 = 3.2;
 /// How far below a voxel a point no longer belongs to its surface, metres: more than a voxel is high.
 const OF_THE_SURFACE: f32 = 0.5;
 /// Needles handed to a thread at once.
@@ -40,10 +40,10 @@ pub struct ThinSurfaceParams {
     pub depths: [f32; 2],
     /// Distance within which points of the surface must lie around a pulse below it, metres, above 0. Default 0.75.
     pub around: f32,
-    /// Widest angle, radians, between neighbouring ones of those points where points are dense. Default 2: a pulse beside a straight wall
-    /// sees the roof over less than π, so that the gap is wider than π. 2.8 at 40 pulses per m² lets 0.8 points more through roofs. Sparse
+    /// Widest angle, radians, between neighbouring ones of those points where points are dense. Default 2.7: at 2 pulses that look a few
+    /// decimetres below a canopy of 3 m are too few to find it. Sparse
     /// points do not reach the edge of a surface: each end of the gap may lie one mean angle between them farther, as long as the whole
-    /// stays below 2.8.
+    /// stays below 3.2.
     pub widest_gap: f32,
     /// Proven cells a surface must have, in square roots of its number of cells, above 0: pulses look below a rim, and the rim
     /// grows with that root. Default 0.5: at 0.3 more of the roofs of a real tile (Delft) are taken for thin.
@@ -62,7 +62,7 @@ impl Default for ThinSurfaceParams {
             radius_spacings: 0.95,
             depths: [1.0, 5.0],
             around: 0.75,
-            widest_gap: 2.0,
+            widest_gap: 2.7,
             least_proof: 0.5,
             open_radius: 1.5,
             most_below: 1,
