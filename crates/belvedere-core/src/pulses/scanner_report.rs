@@ -101,9 +101,6 @@ pub struct FoundStation {
     /// Steps from pulse to pulse, around and up, degrees: the evidence is that directions form this grid.
     #[serde(rename = "grid_of_pulses_deg", serialize_with = "to_three_digits")]
     pub step_deg: [f64; 2],
-    /// Standard deviation of the position, metres, as the pairs of neighbouring directions tell it.
-    #[serde(rename = "position_deviation_m", serialize_with = "to_four_digits")]
-    pub position_sd: f64,
     /// Points that were measured from it.
     #[serde(rename = "points")]
     pub point_count: usize,
@@ -111,10 +108,6 @@ pub struct FoundStation {
 
 fn to_three_digits<S: Serializer, const N: usize>(values: &[f64; N], serializer: S) -> Result<S::Ok, S::Error> {
     values.map(|v| rounded(v, 3)).as_slice().serialize(serializer)
-}
-
-fn to_four_digits<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    rounded(*value, 4).serialize(serializer)
 }
 
 /// Flight of a scanner: medians over parts of flight lines, `None` where nothing is known.

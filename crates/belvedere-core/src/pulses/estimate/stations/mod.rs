@@ -97,7 +97,6 @@ pub(in crate::pulses) fn stations_of_tripods(
             source_id: id,
             position: cloud.frame.file_from_local(fit.position),
             step_deg: fit.steps.map(f64::to_degrees),
-            position_sd: fit.sd,
             point_count,
         }));
     }
