@@ -25,6 +25,15 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
     let before = read(&arguments.before, &mut stages)?;
     let after = read(&arguments.after, &mut stages)?;
     check_same_cells(&before, &after, arguments)?;
+    if let (Some(first), Some(second)) = (&before.description, &after.description)
+        && first != second
+    {
+        let files = [&arguments.before, &arguments.after].map(|path| path.display());
+        summary.warn(format!(
+            "{} holds \"{first}\" and {} \"{second}\"; a difference of different quantities means nothing",
+            files[0], files[1]
+        ));
+    }
     let place = before.place.as_ref();
     let unit = place.map_or(1.0, |place| place.crs.metres_per_unit);
     let [column, row] = place.map_or([[1.0, 0.0], [0.0, -1.0]], |place| [place.column_step, place.row_step]);

@@ -151,6 +151,10 @@ fn differences_are_those_of_the_two_results_cell_by_cell() {
     // the raster of the change, read back, lies where the others do
     let again = place.summary("difference before.tif before.tif -o same.tif");
     assert_eq!((&again["difference"]["cells_loss"], &again["difference"]["cells_gain"]), (&0.into(), &0.into()));
+    assert!(again["warnings"].is_null() && run["warnings"].is_null());
+    let mixed = place.summary("difference before.tif change.tif -o mixed.tif");
+    let warning = mixed["warnings"][0].as_str().unwrap();
+    assert!(["before.tif", "change.tif", "after less before"].iter().all(|part| warning.contains(part)), "{warning}");
     place.summary("difference change.tif change.tif -o same.tif");
     place.summary(&format!("{shadow} --cell 1 -o coarse.tif").replace("--cell 0.5 ", ""));
     place.refusal(1, "difference before.tif coarse.tif -o change.tif", &["coarse.tif", "--cell"]);
