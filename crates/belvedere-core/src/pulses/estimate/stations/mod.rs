@@ -21,10 +21,12 @@ const LEAST_POINTS: usize = 3000;
 const NEAR: [f64; 3] = [6.0, 3.5, 2.2];
 /// Distance below which the scanner's own parts and rounded coordinates disturb the grid, metres.
 const TOO_NEAR: f64 = 0.4;
-/// Points by which heights are tried, and those that a station is fitted to, about; and the wedges that are left out where there are more.
+/// Points by which heights are tried, and those that a station is fitted to, about; and the wedges that are left out where there are more. A few wedges on all
+/// sides are kept of however many points: one side alone does not tell where the station is.
 const TRIED: f64 = 10_000.0;
 const FITTED: f64 = 50_000.0;
 const WEDGES: f64 = 36.0;
+const LEAST_WEDGES: f64 = 6.0;
 /// Heights above the floor from which the search starts, metres.
 const HEIGHTS: [f64; 5] = [0.5, 0.9, 1.3, 1.7, 2.3];
 /// Pairs of directions that a station is fitted to, from each height and at last.
@@ -188,21 +190,21 @@ fn station_by_grid(near: &[[f64; 3]], hole: [f64; 3]) -> Option<Fit> {
     let fits: Vec<Fit> =
         HEIGHTS.par_iter().filter(is_open).filter_map(|&height| fit(&few, at(height), FEW_PAIRS)).collect();
     let start = fits.into_iter().min_by(|a, b| a.sd.total_cmp(&b.sd))?;
-    let near = in_wedges(near, hole, FITTED);
-    let fit = fit(&near, start.position, MOST_PAIRS)?;
+    let kept = in_wedges(near, hole, FITTED);
+    let fit = fit(&kept, start.position, MOST_PAIRS)?;
     let off = [0, 1, 2].map(|i| fit.position[i] - hole[i]);
     let is_above_hole = off[0].hypot(off[1]) <= MOST_BESIDE && ALLOWED_HEIGHTS.contains(&off[2]);
     let is_proven = is_above_hole
         && fit.sd <= MOST_SD
-        && crowding(&near, fit.position, fine) <= most_fine
-        && crowding(&near, fit.position, coarse) <= most_coarse
-        && filled_share(&near, fit.position) >= LEAST_FILLED;
+        && crowding(&kept, fit.position, fine) <= most_fine
+        && crowding(&kept, fit.position, coarse) <= most_coarse
+        && filled_share(&kept, fit.position) * near.len() as f64 >= LEAST_FILLED * kept.len() as f64;
     is_proven.then_some(fit)
 }
 
-/// About `most` of these points, those in some wedges about the middle of the hole: within a wedge the grid is whole.
+/// About `most` of these points, or a sixth of all where that is more: those in some wedges about the middle of the hole: within a wedge the grid is whole.
 fn in_wedges(near: &[[f64; 3]], hole: [f64; 3], most: f64) -> Vec<[f64; 3]> {
-    let share = (most / near.len() as f64).min(1.0);
+    let share = (most / near.len() as f64).clamp(LEAST_WEDGES / WEDGES, 1.0);
     let is_kept = |p: &&[f64; 3]| {
         let wedge = ((p[1] - hole[1]).atan2(p[0] - hole[0]).rem_euclid(TAU) / TAU * WEDGES).floor();
         ((wedge + 1.0) * share).floor() > (wedge * share).floor()
@@ -320,6 +322,13 @@ mod tests {
         // in an empty room both see everything, and the nearer one has most points of a place
         let known_count = scanner.iter().filter(|place| place[0].is_finite()).count();
         assert!(known_count as f64 > 0.98 * scanner.len() as f64, "{known_count}");
+    }
+
+    #[test]
+    fn a_tripod_with_a_fine_grid_is_found_by_some_wedges_of_it() {
+        let (_, found) = searched(scanned(STATIONS[0], 0.3, 0.1), None);
+        assert_eq!(found.len(), 1);
+        assert!(distance(found[0].position, STATIONS[0]) < 0.02, "{found:?}");
     }
 
     #[test]
