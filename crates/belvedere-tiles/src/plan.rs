@@ -210,7 +210,8 @@ impl Plan {
         })?;
         let bounds = found.bounds.ok_or_else(|| Error::NoPoints { what: "all points are noise".to_owned() })?;
         let model = ModelParams::default();
-        let facts = SurveyFacts::estimate(&found.along_lines, &found.places, &found.extremes, &model, control)?;
+        let facts =
+            SurveyFacts::estimate(&files[0], &found.along_lines, &found.places, &found.extremes, &model, control)?;
         let mut plan = Self {
             layout: LAYOUT,
             program: params.program.clone(),

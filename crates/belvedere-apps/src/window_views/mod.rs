@@ -10,7 +10,7 @@ use crate::eyes::skip_unfit_eyes;
 use crate::rows::check_normals;
 use crate::sky_view::SkyDirections;
 use crate::targets::{Measure, Targets};
-use belvedere_core::query::{Answer, Blocker, MedialScene};
+use belvedere_core::query::{Blocker, MedialScene};
 use belvedere_data::control::Control;
 use belvedere_data::vector::dot;
 use belvedere_data::{Error, Result};
@@ -190,11 +190,12 @@ impl Sums {
                     (kind, range, scene.is_unproven(place, direction, range))
                 }
                 None => {
-                    let is_terrain = scene.answer_unblocked_towards(place, direction) == Answer::Blocked;
-                    let seen = match is_terrain {
-                        true => Seen::Ground,
-                        false if direction[2] >= 0.0 => Seen::Sky,
-                        false => Seen::Beyond,
+                    let seen = if scene.far_terrain().hides(place, direction) {
+                        Seen::Ground
+                    } else if direction[2] >= 0.0 {
+                        Seen::Sky
+                    } else {
+                        Seen::Beyond
                     };
                     (seen, f64::INFINITY, scene.is_unproven(place, direction, f64::INFINITY))
                 }

@@ -153,6 +153,10 @@ fn wrong_plans_are_refused_with_advice() {
     place.refusal(2, &format!("{plan} --sun 150,20 --sun 150,20"), &["shadow_150_20 twice"]);
     place.refusal(2, &format!("{plan} --observer 10,10"), &["--observer", "10, 10", "height"]);
     place.refusal(1, "city run nowhere", &["plan.json", "belvedere city plan"]);
+    // scans from the ground are no survey of tiles, and it is said what else to do
+    assert_eq!(place.run("simulate village -o scans --extent 60 --scanner terrestrial").status, 0);
+    let words = ["scans/cloud.laz", "from the ground", "`shadow`"];
+    place.refusal(1, "city plan scans/cloud.laz -o other --sky-view", &words);
     // before the survey is read: no stage is reported
     place.write("no.obj", "o nothing\n");
     for (flags, words) in [

@@ -9,6 +9,7 @@ use belvedere_data::control::Control;
 use belvedere_data::{Error, PointCloud, Result};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
+use std::path::Path;
 
 /// How far away a point may lie and still be a neighbour, metres: more than the usual 16 neighbours take wherever there is a surface.
 const FARTHEST_NEIGHBOR: f32 = 16.0;
@@ -60,12 +61,13 @@ pub struct SurveyExtremes {
 
 impl SurveyFacts {
     /// The facts of a survey of which `along_lines` is a sample that is spread over all of it, whole pulses at random, and `places` are all points of
-    /// some places, both in the frame that its parts will have.
+    /// some places, both in the frame that its parts will have. Errors call it `name`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for ways of orienting that need more than the points, and for scanners on the ground; those of
+    /// [`Error::InvalidParameter`] for ways of orienting that need more than the points, [`Error::Malformed`] for scanners on the ground; those of
     /// [`super::SceneModel::build`].
     pub fn estimate(
+        name: &Path,
         along_lines: &PointCloud,
         places: &PointCloud,
         extremes: &SurveyExtremes,
@@ -109,9 +111,11 @@ impl SurveyFacts {
             return Ok(facts);
         };
         if input.needles.are_from_the_ground() {
-            let value = "a scanner on the ground".to_owned();
-            let expected = "one in the air where a survey is built in parts";
-            return Err(Error::InvalidParameter { name: "scanner", value, expected });
+            return Err(Error::malformed(
+                name,
+                "this survey was measured from the ground, and only surveys from the air can be worked on in tiles; \
+                 ask about one cloud at a time, with `balls`, `shadow` or `viewshed`",
+            ));
         }
         facts.measures_crowns = input.pulses.is_some();
         if let BallParams::Carved(carved) | BallParams::CarvedIfPossible(carved, _) = &params.balls {

@@ -6,6 +6,7 @@ use belvedere::control::Control;
 use belvedere::model::{ModelParams, SceneModel, SurveyExtremes, SurveyFacts};
 use belvedere::{Frame, PointCloud};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Blocks that pruning and thin surfaces work in, metres.
@@ -32,7 +33,8 @@ fn facts(cloud: &PointCloud) -> SurveyFacts {
         has_ground: has(2..=2),
         has_vegetation: has(3..=5),
     };
-    SurveyFacts::estimate(cloud, cloud, &extremes, &ModelParams::default(), &Control::none()).unwrap()
+    SurveyFacts::estimate(Path::new("scene"), cloud, cloud, &extremes, &ModelParams::default(), &Control::none())
+        .unwrap()
 }
 
 fn model_of(cloud: &PointCloud, params: &ModelParams) -> SceneModel {

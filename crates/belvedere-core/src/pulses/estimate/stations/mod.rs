@@ -82,8 +82,7 @@ pub(in crate::pulses) fn stations_of_tripods(
         let is_first = |row: &&usize| numbers.and_then(|numbers| numbers.get(**row)).is_none_or(|&number| number <= 1);
         let first: Vec<usize> = rows.iter().filter(is_first).copied().filter(|&row| is_finite(cloud, row)).collect();
         let points: Vec<[f32; 3]> = first.iter().filter_map(|&row| cloud.positions.get(row)).copied().collect();
-        let found = tripods(&points, control)?;
-        let seen = seen_from(&points, &found, control)?;
+        let (found, seen) = tripods(&points, control)?;
         // returns after the first belong to the first's station, which is known where there is only one
         let mut counts = vec![0; found.len()];
         let owned: Vec<(usize, usize)> = if found.len() == 1 && is_whole(&seen) {
@@ -124,8 +123,8 @@ fn groups(cloud: &PointCloud) -> Vec<(Option<u16>, Vec<usize>)> {
     groups
 }
 
-/// The stations among these points.
-fn tripods(points: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<Fit>> {
+/// The stations among these points, and the nearest one from which each point is seen.
+fn tripods(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<Fit>, Vec<Option<usize>>)> {
     let mut found: Vec<Fit> = Vec::new();
     let mut failures = 0;
     for hole in floor_holes(points) {
@@ -143,11 +142,15 @@ fn tripods(points: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<Fit>> {
         };
         found.push(station);
         // most groups have one station, and need no further search
-        if found.len() == 1 && is_only(points, &station) && is_whole(&seen_from(points, &found, control)?) {
-            break;
+        if found.len() == 1 && is_only(points, &station) {
+            let seen = seen_from(points, &found, control)?;
+            if is_whole(&seen) {
+                return Ok((found, seen));
+            }
         }
     }
-    Ok(found)
+    let seen = seen_from(points, &found, control)?;
+    Ok((found, seen))
 }
 
 /// Whether one station has seen a group of points, but for some behind the edges of others.
