@@ -14,7 +14,7 @@ use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::depth::Profile;
-use belvedere::io::{ReadOptions, ReadReport, UpAxis, is_ball_file, read_balls, read_cloud};
+use belvedere::io::{ReadOptions, ReadReport, UpAxis, is_ball_file, read_balls, read_cloud, web_address};
 use belvedere::model::SceneModel;
 use belvedere::query::UnprovenAs;
 use belvedere::view::{CAMERA_FOV, CAMERA_SIZE, PANORAMA_WIDTH, View, default_pixel_size, to_sun};
@@ -122,10 +122,15 @@ pub(crate) fn scene(
     Ok(scene)
 }
 
+/// Whether a path is a file, or the address of one.
+pub(crate) fn is_file(path: &Path) -> bool {
+    path.is_file() || web_address(path).is_some()
+}
+
 /// The scene of a ball file, or of a cloud, as it is.
 fn present_scene(arguments: &SceneInput, points: Points, stages: &mut Stages, summary: &mut Summary) -> Result<Scene> {
     if let [path] = &arguments.input.clouds[..]
-        && path.is_file()
+        && is_file(path)
         && is_ball_file(path)?
     {
         refuse_flags_of_clouds(arguments, path)?;

@@ -2,6 +2,7 @@
 
 use crate::arguments::{Corners, Usage};
 use anyhow::Result;
+use belvedere::io::{Source, web_address};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Command};
 use std::any::TypeId;
@@ -33,9 +34,7 @@ pub(crate) fn check(program: &Command, matches: &ArgMatches) -> Result<()> {
             } else {
                 let paths = files_named(argument, value);
                 if is_beside_the_scene(argument) {
-                    for path in &paths {
-                        path.metadata().map_err(belvedere::Error::io(path))?;
-                    }
+                    paths.iter().try_for_each(|path| check_input(path))?;
                 }
                 inputs.extend(paths.into_iter().flat_map(files_of).map(typed));
             }
@@ -58,6 +57,14 @@ pub(crate) fn check(program: &Command, matches: &ArgMatches) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Refuses an input that is not there, on the disk or on a server.
+pub(crate) fn check_input(path: &Path) -> belvedere::Result<()> {
+    match web_address(path) {
+        Some(_) => Source::path(path).into_reader().map(drop),
+        None => path.metadata().map(drop).map_err(belvedere::Error::io(path)),
+    }
 }
 
 /// Whether an argument names a file that is read after the scene is built, which may take hours. The files of the scene are read at once.

@@ -1,12 +1,12 @@
 //! Files in and out of Belvedere.
 //!
-//! Readers take a [`Source`]: a path, bytes in memory, or any `Read + Seek` with a name. Writers take an [`Output`]: a path or any
+//! Readers take a [`Source`]: a path, an address of the web, bytes in memory, or any `Read + Seek` with a name. Writers take an [`Output`]: a path or any
 //! `Write + Seek` with a name. The extension of the name selects the format. A file appears under its name only when it is
 //! complete ([`atomic`]).
 //!
 //! # Features
 //! Formats that need crates of their own are features, all on by default: `las` (LAS, LAZ, COPC), `e57`, `ply` (reading), `npy`
-//! (NPY, NPZ ball files, masbcpp's folders), `tiff` (GeoTIFF), `obj` (reading). `crs` (from `belvedere-data`) is the database of
+//! (NPY, NPZ ball files, masbcpp's folders), `tiff` (GeoTIFF), `obj` (reading). `http` reads files on web servers. `crs` (from `belvedere-data`) is the database of
 //! reference systems. Text, PCD, PTX, GeoJSON, CityJSON, tables, weather files and trajectories are always there. A format that
 //! was not built in gives [`belvedere_data::Error::MissingFeature`].
 
@@ -68,6 +68,8 @@ mod ptx;
 mod read_cloud;
 mod read_options;
 mod read_report;
+#[cfg(feature = "http")]
+mod remote;
 mod rows;
 #[cfg(feature = "npy")]
 mod saved_matrix;
@@ -129,7 +131,7 @@ pub use read_options::{ReadOptions, RowNumbers, UpAxis, Within};
 pub use saved_matrix::{
     MatrixHead, RowSink, SavedMatrix, read_matrix, read_matrix_head, read_matrix_rows, write_matrix, write_matrix_rows,
 };
-pub use source::{ReadSeek, Source};
+pub use source::{ReadSeek, Source, web_address};
 pub use stations::read_stations;
 pub use table::{Cells, Table, read_table, write_table};
 #[cfg(feature = "tiff")]

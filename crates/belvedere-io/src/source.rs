@@ -1,4 +1,4 @@
-//! Where input comes from: a file, bytes in memory, or any reader.
+//! Where input comes from: a file, an address of the web, bytes in memory, or any reader.
 
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
@@ -10,12 +10,13 @@ use belvedere_data::{Error, Result};
 pub trait ReadSeek: Read + Seek + Send {}
 impl<T: Read + Seek + Send> ReadSeek for T {}
 
-/// Bytes read ahead of the parser: more than a header, and little beside a window of a large file.
-const BUFFER_BYTES: usize = 1 << 14;
+/// Bytes read ahead of the parser: more than most headers, and little beside a window of a large file or a chunk of one.
+const BUFFER_BYTES: usize = 1 << 12;
 
 /// One input with a name. The extension of the name selects the format; messages about the input begin with the name.
 ///
-/// Paths become sources by themselves: wherever a source is expected, a path will do.
+/// Paths become sources by themselves: wherever a source is expected, a path will do. So will the address of a file on a web server (`https://…`, `http://…`),
+/// of which only those parts are transferred that are read, as far as the server gives parts of files (HTTP ranges).
 ///
 /// ```
 /// use belvedere_io::{ReadOptions, Source, read_cloud};
@@ -34,13 +35,13 @@ pub struct Source<'a> {
 }
 
 enum Content<'a> {
-    /// The file or folder that the source is named after.
+    /// The file, folder or address that the source is named after.
     Path,
     Reader(Box<dyn ReadSeek + 'a>),
 }
 
 impl<'a> Source<'a> {
-    /// The file or folder at `path`.
+    /// The file or folder at `path`, or the file at an address of the web.
     #[must_use]
     pub fn path(path: impl Into<PathBuf>) -> Self {
         Self { name: path.into(), content: Content::Path }
@@ -79,6 +80,7 @@ impl<'a> Source<'a> {
     pub(crate) fn open(self) -> Result<Input<'a>> {
         let Self { name, content } = self;
         let (reader, size): (Box<dyn ReadSeek + 'a>, u64) = match content {
+            Content::Path if web_address(&name).is_some() => remote(&name)?,
             Content::Path => {
                 let file = File::open(&name).map_err(Error::io(&name))?;
                 let metadata = file.metadata().map_err(Error::io(&name))?;
@@ -94,6 +96,15 @@ impl<'a> Source<'a> {
             }
         };
         Ok(Input { name, reader: BufReader::with_capacity(BUFFER_BYTES, reader), size })
+    }
+
+    /// A reader at the first byte of the source, and its size in bytes.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Malformed`] for what is no file.
+    pub fn into_reader(self) -> Result<(impl Read + Seek + Send + 'a, u64)> {
+        let input = self.open()?;
+        Ok((input.reader, input.size))
     }
 
     /// The name and all bytes of the source.
@@ -117,8 +128,29 @@ pub(crate) struct Input<'a> {
 /// Reader of an open source.
 pub(crate) type Reader<'a> = BufReader<Box<dyn ReadSeek + 'a>>;
 
-/// Extension in lower case, empty where there is none.
+/// The file at an address of the web, and its size.
+#[cfg(feature = "http")]
+fn remote<'a>(name: &Path) -> Result<(Box<dyn ReadSeek + 'a>, u64)> {
+    let (file, size) = super::remote::Remote::open(web_address(name).unwrap_or_default()).map_err(Error::io(name))?;
+    Ok((Box::new(file), size))
+}
+
+#[cfg(not(feature = "http"))]
+fn remote<'a>(name: &Path) -> Result<(Box<dyn ReadSeek + 'a>, u64)> {
+    Err(Error::missing_feature(name, "http"))
+}
+
+/// The address of the web that a path is.
+#[must_use]
+pub fn web_address(path: &Path) -> Option<&str> {
+    let text = path.to_str()?;
+    let is_address = |start: &str| text.get(..start.len()).is_some_and(|own| own.eq_ignore_ascii_case(start));
+    ["https://", "http://"].into_iter().any(is_address).then_some(text)
+}
+
+/// Extension in lower case, empty where there is none. An address ends before its query.
 pub(crate) fn extension(path: &Path) -> String {
+    let path = web_address(path).and_then(|text| text.split(['?', '#']).next()).map_or(path, Path::new);
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 

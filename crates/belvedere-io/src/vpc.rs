@@ -9,17 +9,17 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::read_options::FileBox;
-use super::source::Source;
+use super::source::{Source, web_address};
 use belvedere_data::{Error, Result};
 
 /// Largest catalogue that is read, bytes: a million tiles, and far below the memory of any machine.
 const MOST_BYTES: u64 = 1 << 30;
 
 /// The files of the catalogue `source` that may have points in `wanted`, in its order; all of them without a box. Paths are those of
-/// the catalogue, from the folder that it lies in.
+/// the catalogue, from the folder that it lies in; addresses of the web stay what they are.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what is no catalogue, and for tiles that are addresses of the web.
+/// [`Error::Io`]; [`Error::Malformed`] for what is no catalogue.
 pub(super) fn files_within(source: Source<'_>, wanted: Option<&FileBox>) -> Result<Vec<PathBuf>> {
     let input = source.open()?;
     let (name, size) = (input.name, input.size);
@@ -36,14 +36,28 @@ pub(super) fn files_within(source: Source<'_>, wanted: Option<&FileBox>) -> Resu
     for (number, tile) in tiles.iter().enumerate() {
         let path = tile.pointer("/assets/data/href").and_then(Value::as_str);
         let path = path.ok_or_else(|| damaged(format!("has no file for tile {} (assets, data, href)", number + 1)))?;
-        if path.contains("://") {
-            return Err(damaged(format!("names {path}, which is not a file; download it first")));
+        if path.contains("://") && web_address(Path::new(path)).is_none() {
+            return Err(damaged(format!(
+                "names {path}, which is neither a file nor an address of the web; download it first"
+            )));
         }
         if wanted.is_none_or(|wanted| bounds(tile).is_none_or(|(low, high)| wanted.meets(low, high))) {
-            files.push(folder.join(path));
+            files.push(place(folder, path));
         }
     }
     Ok(files)
+}
+
+/// Where a tile lies that a catalogue in `folder` names; either may be an address.
+fn place(folder: &Path, path: &str) -> PathBuf {
+    if web_address(Path::new(path)).is_some() {
+        return PathBuf::from(path);
+    }
+    match web_address(folder) {
+        // servers know no `.`
+        Some(folder) => format!("{}/{}", folder.trim_end_matches('/'), path.trim_start_matches("./")).into(),
+        None => folder.join(path),
+    }
 }
 
 /// Bounds of a tile in the coordinates of its file, unlimited in height where the catalogue gives none; `None` where it gives no bounds.

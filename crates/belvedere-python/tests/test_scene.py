@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import io
 import pickle
+import threading
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 
 import belvedere
 import numpy as np
@@ -73,6 +76,19 @@ def test_bytes_files_paths_and_laspy_give_the_same_cloud(tile, cloud):
         assert other.attributes.keys() == cloud.attributes.keys()
         for name, values in cloud.attributes.items():
             assert np.array_equal(other.attributes[name], values), name
+
+
+def test_an_address_gives_the_cloud_of_the_file(tile, cloud):
+    handler = functools.partial(SimpleHTTPRequestHandler, directory=tile.parent)
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        address = f"http://127.0.0.1:{server.server_port}"
+        try:
+            np.testing.assert_array_equal(belvedere.read(f"{address}/{tile.name}").xyz, cloud.xyz)
+            with pytest.raises(OSError, match=f"{address}/gone.laz.*status 404"):
+                belvedere.read(f"{address}/gone.laz")
+        finally:
+            server.shutdown()
 
 
 def test_only_points_in_a_box_and_of_classes_are_read(tile, cloud):

@@ -1,9 +1,8 @@
 //! The files of a survey, and whether they are still what they were when the plan was made.
 
-use belvedere::io::{LasHead, read_las_head};
+use belvedere::io::{LasHead, Source, read_las_head, web_address};
 use belvedere::{Error, GpsTimeKind, Result};
 use serde::{Deserialize, Serialize};
-use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
@@ -31,7 +30,7 @@ impl InputFile {
     /// # Errors
     /// Those of [`read_las_head`].
     pub(crate) fn new(path: &Path) -> Result<(Self, LasHead)> {
-        let is_las = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("las") || e.eq_ignore_ascii_case("laz"));
+        let is_las = ["las", "laz"].contains(&Source::path(path).extension().as_str());
         if !is_las {
             return Err(Error::UnknownFormat {
                 path: path.to_owned(),
@@ -45,8 +44,8 @@ impl InputFile {
             let what = format!("is cut off: it holds {points} of the {announced} points of its header; copy it again");
             return Err(Error::malformed(path, what));
         }
-        let path = std::path::absolute(path).map_err(Error::io(path))?;
-        let fingerprint = fingerprint(&path, head.bytes)?;
+        let path = absolute(path)?;
+        let (_, fingerprint) = fingerprint(&path)?;
         Ok((Self { path, bytes: head.bytes, points: head.points, bounds: head.bounds, fingerprint }, head))
     }
 
@@ -55,8 +54,7 @@ impl InputFile {
     /// # Errors
     /// [`Error::Io`] for a file that is gone, [`Error::Malformed`] for one that changed.
     pub(crate) fn check(&self) -> Result<()> {
-        let found = std::fs::metadata(&self.path).map_err(Error::io(&self.path))?.len();
-        if found != self.bytes || fingerprint(&self.path, found)? != self.fingerprint {
+        if fingerprint(&self.path)? != (self.bytes, self.fingerprint.clone()) {
             let what = "is no longer what it was when the plan was made; make the plan again";
             return Err(Error::malformed(&self.path, what));
         }
@@ -64,13 +62,22 @@ impl InputFile {
     }
 }
 
-fn fingerprint(path: &Path, size: u64) -> Result<String> {
-    let mut file = File::open(path).map_err(Error::io(path))?;
+/// The place of a file, whatever the folder that the program is started in.
+pub(crate) fn absolute(path: &Path) -> Result<PathBuf> {
+    match web_address(path) {
+        Some(_) => Ok(path.to_owned()),
+        None => std::path::absolute(path).map_err(Error::io(path)),
+    }
+}
+
+/// The size of a file in bytes, and the hash of the size and of its ends.
+fn fingerprint(path: &Path) -> Result<(u64, String)> {
+    let (mut file, size) = Source::path(path).into_reader()?;
     let mut bytes = size.to_le_bytes().to_vec();
-    (&mut file).take(ENDS).read_to_end(&mut bytes).map_err(Error::io(path))?;
+    file.by_ref().take(ENDS).read_to_end(&mut bytes).map_err(Error::io(path))?;
     file.seek(SeekFrom::Start(size.saturating_sub(ENDS))).map_err(Error::io(path))?;
     file.take(ENDS).read_to_end(&mut bytes).map_err(Error::io(path))?;
-    Ok(hash(&bytes))
+    Ok((size, hash(&bytes)))
 }
 
 /// FNV-1a of 64 bits, as hexadecimal digits.

@@ -1,6 +1,6 @@
 //! What blocks beside what was surveyed: buildings that are planned, and mountains beyond the survey.
 
-use crate::inputs::hash;
+use crate::inputs::{absolute, hash};
 use belvedere::apps::horizon::convergence;
 use belvedere::crs::Crs;
 use belvedere::io::{Source, read_horizon, read_mesh_in, read_terrain};
@@ -8,6 +8,7 @@ use belvedere::model::check_terrain;
 use belvedere::query::{AddedMeshes, Coverage, FarTerrain};
 use belvedere::{Bounds, Error, Frame, Mesh, Result};
 use serde::{Deserialize, Serialize};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// A file beside the survey, as it was when the plan was made.
@@ -27,8 +28,8 @@ impl SideFile {
         if path.is_dir() {
             return Err(Error::malformed(path, "is a folder; give a file"));
         }
-        let path = std::path::absolute(path).map_err(Error::io(path))?;
-        let fingerprint = hash(&std::fs::read(&path).map_err(Error::io(&path))?);
+        let path = absolute(path)?;
+        let fingerprint = hash(&bytes_of(&path)?);
         Ok(Self { path, fingerprint })
     }
 
@@ -42,7 +43,7 @@ impl SideFile {
     /// # Errors
     /// [`Error::Io`], and [`Error::Malformed`] for a file that changed since.
     pub(crate) fn read(&self) -> Result<Vec<u8>> {
-        let bytes = std::fs::read(&self.path).map_err(Error::io(&self.path))?;
+        let bytes = bytes_of(&self.path)?;
         if hash(&bytes) != self.fingerprint {
             let what = "is no longer what it was when the plan was made; make the plan again";
             return Err(Error::malformed(&self.path, what));
@@ -53,6 +54,12 @@ impl SideFile {
     fn mesh(&self, crs: &Crs) -> Result<Mesh> {
         Ok(read_mesh_in(Source::bytes(&self.path, &self.read()?), crs)?.0)
     }
+}
+
+fn bytes_of(path: &Path) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    Source::path(path).into_reader()?.0.read_to_end(&mut bytes).map_err(Error::io(path))?;
+    Ok(bytes)
 }
 
 /// What blocks beside what was surveyed.

@@ -2,11 +2,11 @@
 
 use super::check_output;
 use super::heights::write_heights;
-use super::mesh_targets::{is_mesh, mesh_of};
+use super::mesh_targets::{is_mesh, mesh_of, start_of};
 use super::shapes::{TypedAre, shapes, wrong_shape};
 use super::sights::{Proving, blockers, ground, ground_cloud};
 use crate::arguments::{Corners, Envelope, Global, Usage};
-use crate::pipeline::{self, Points, Scene, flagged};
+use crate::pipeline::{self, Points, Scene, flagged, is_file};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
@@ -110,7 +110,7 @@ fn check_outputs(arguments: &Envelope) -> Result<()> {
 
 /// The scene, with balls only where these are asked.
 fn scene(arguments: &Envelope, stages: &mut Stages, summary: &mut Summary) -> Result<Scene> {
-    let is_balls = matches!(&arguments.scene.input.clouds[..], [path] if path.is_file() && is_ball_file(path)?);
+    let is_balls = matches!(&arguments.scene.input.clouds[..], [path] if is_file(path) && is_ball_file(path)?);
     if arguments.credit_shade || is_balls {
         return pipeline::scene(&arguments.scene, Points::Keep, stages, summary);
     }
@@ -311,10 +311,7 @@ impl Land {
 
 /// Whether a .json is GeoJSON rather than CityJSON.
 fn is_geojson(path: &Path) -> bool {
-    let mut start = Vec::new();
-    let read = std::fs::File::open(path)
-        .and_then(|file| std::io::Read::read_to_end(&mut std::io::Read::take(file, 1 << 16), &mut start));
-    read.is_ok() && super::extension(path) == "json" && !String::from_utf8_lossy(&start).contains("CityJSON")
+    super::extension(path) == "json" && start_of(path).is_some_and(|start| !start.contains("CityJSON"))
 }
 
 /// A grid around everything that needs the ground, and one over the parcel.

@@ -1,7 +1,7 @@
 //! `belvedere info`.
 
 use crate::arguments::{Global, Info};
-use crate::pipeline;
+use crate::pipeline::{self, is_file};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded, sections, whole};
 use anyhow::Result;
@@ -14,7 +14,7 @@ use belvedere::{Error, PointCloud};
 pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
     if let [path] = &arguments.input.clouds[..]
-        && path.is_file()
+        && is_file(path)
         && is_ball_file(path)?
     {
         return Ok(of_balls(&stages.run("reading balls", 0, |_| read_balls(path))?));

@@ -7,7 +7,7 @@ use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::Mesh;
-use belvedere::io::write_mesh_values;
+use belvedere::io::{Source, write_mesh_values};
 use belvedere::query::{BackFaces, MeshTargetParams, Scope, SeenArea, SurfacePieces, Viewer, seen_faces, seen_in_all};
 use belvedere::results::FaceRows;
 use belvedere::view::View;
@@ -22,15 +22,20 @@ pub(crate) fn is_mesh(path: &Path) -> bool {
     match extension(path).as_str() {
         "obj" | "json" | "cityjson" => true,
         "ply" => {
-            let mut start = Vec::new();
-            let read = std::fs::File::open(path).and_then(|file| file.take(1 << 16).read_to_end(&mut start));
-            let text = String::from_utf8_lossy(&start);
+            let text = start_of(path).unwrap_or_default();
             let header = text.split("end_header").next().unwrap_or_default();
             let count = header.lines().find_map(|line| line.trim().strip_prefix("element face "));
-            read.is_ok() && count.is_some_and(|count| count.trim() != "0")
+            count.is_some_and(|count| count.trim() != "0")
         }
         _ => false,
     }
+}
+
+/// The first bytes of a file as text, where it can be read.
+pub(super) fn start_of(path: &Path) -> Option<String> {
+    let mut start = Vec::new();
+    Source::path(path).into_reader().ok()?.0.take(1 << 16).read_to_end(&mut start).ok()?;
+    Some(String::from_utf8_lossy(&start).into_owned())
 }
 
 /// Refuses flags of meshes for targets that are points.

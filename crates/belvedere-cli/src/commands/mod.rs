@@ -46,7 +46,7 @@ use crate::help;
 use crate::summary::Summary;
 use anyhow::{Context, Result, bail};
 use belvedere::crs::Crs;
-use belvedere::io::{ExtraColumn, ExtraValues, atomic};
+use belvedere::io::{ExtraColumn, ExtraValues, Source, atomic};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -115,7 +115,7 @@ fn print_raw(text: &[u8]) -> Result<Summary> {
 
 /// The extension of a path in lower case, empty where it has none.
 fn extension(path: &Path) -> String {
-    path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
+    Source::path(path).extension()
 }
 
 /// Normals as columns of their own, for formats that have no other place for them.

@@ -5,9 +5,10 @@ use super::mesh_targets::is_mesh;
 use crate::arguments::{Global, MethodChoice, Place, SceneInput, Usage, ViewPage};
 use crate::interrupt;
 use crate::memory::available_bytes;
-use crate::pipeline::{self, Points, flagged, params};
+use crate::pipeline::{self, Points, flagged, is_file, params};
 use crate::progress::Stages;
 use crate::summary::{Summary, note};
+use crate::written_files::check_input;
 use anyhow::{Context, Result, anyhow};
 use belvedere::apps::sun::{Date, Site, Zone};
 use belvedere::io::{atomic, has_point_results, is_ball_file, read_geojson, read_point_results, read_tif};
@@ -30,9 +31,7 @@ const POLL: Duration = Duration::from_millis(20);
 
 pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
     let files = &arguments.scene.input.clouds;
-    for path in files {
-        path.metadata().map_err(Error::io(path))?;
-    }
+    files.iter().try_for_each(|path| check_input(path))?;
     let files = Files::of(files)?;
     refuse_flags_of_files(arguments)?;
     Place::refuse_twice("--observer", &arguments.observer)?;
@@ -198,11 +197,11 @@ impl Files {
         for path in files {
             if Plan::path(path).is_file() {
                 &mut runs
-            } else if path.is_file() && is_mesh(path) {
+            } else if is_file(path) && is_mesh(path) {
                 &mut meshes
-            } else if path.is_file() && is_ball_file(path)? {
+            } else if is_file(path) && is_ball_file(path)? {
                 &mut balls
-            } else if path.is_file() && !(clouds.is_empty() && is_las(path)) && are_results(path) {
+            } else if is_file(path) && !(clouds.is_empty() && is_las(path)) && are_results(path) {
                 &mut results
             } else {
                 &mut clouds
@@ -335,7 +334,7 @@ fn show_results(files: &Files, frame: &Frame, bounds: &Bounds, loading: &Loading
     }
     // the columns of the cloud itself come last
     let own =
-        files.clouds.first().filter(|path| path.is_file() && is_las(path) && has_point_results(*path).unwrap_or(false));
+        files.clouds.first().filter(|path| is_file(path) && is_las(path) && has_point_results(*path).unwrap_or(false));
     if let Some(path) = own {
         stages.run("reading results", 0, |_| {
             loading.show_point_results(path, (read_point_results(path)?, PointsOf::Cloud), frame, bounds)

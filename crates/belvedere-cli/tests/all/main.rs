@@ -28,6 +28,7 @@ mod plans;
 mod protected_views;
 mod queries;
 mod readme;
+mod remote;
 mod shadow;
 mod sights;
 mod simulate;
@@ -39,5 +40,8 @@ mod tree_light;
 mod usage;
 #[cfg(feature = "view")]
 mod view;
+#[path = "../../../belvedere-io/tests/all/web_server.rs"]
+#[expect(dead_code, reason = "its bad manners are for the tests of reading")]
+mod web_server;
 mod window_views;
 mod written_files;

@@ -7,5 +7,7 @@ mod hostile_input;
 mod hostile_laz;
 mod hostile_side_files;
 mod outputs;
+mod remote;
 mod sources;
+mod web_server;
 mod windows;

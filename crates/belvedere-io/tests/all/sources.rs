@@ -10,7 +10,7 @@ use belvedere_data::{Bounds, Error, Frame, PointCloud};
 use belvedere_io::{Output, ReadOptions, ReadReport, Source, Within, read_batches, read_cloud, write_cloud};
 
 /// A cloud of `count` points over a square of 100 m, a millimetre apart in the file, with classes 1 to 9.
-fn cloud(count: u32) -> PointCloud {
+pub(crate) fn cloud(count: u32) -> PointCloud {
     let whole = |v: u32| f64::from(v % 100_000) / 1000.0 - 50.0;
     let local = |i: u32| [whole(i.wrapping_mul(7919)), whole(i.wrapping_mul(104_729)), f64::from(i % 30)];
     let frame = Frame { origin: [155_000.0, 463_000.0, 0.0], crs: Crs::parse("EPSG:28992").unwrap() };
@@ -22,7 +22,7 @@ fn cloud(count: u32) -> PointCloud {
     PointCloud { positions, attributes, ..PointCloud::in_frame(frame) }
 }
 
-fn file(name: &str, cloud: &PointCloud) -> Vec<u8> {
+pub(crate) fn file(name: &str, cloud: &PointCloud) -> Vec<u8> {
     let mut cursor = Cursor::new(Vec::new());
     write_cloud(Output::writer(name, &mut cursor), cloud, &[]).unwrap();
     cursor.into_inner()
@@ -32,7 +32,7 @@ fn read(source: Source<'_>, options: &ReadOptions) -> (PointCloud, ReadReport) {
     read_cloud([source], options, &Control::none()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-const FORMATS: [&str; 6] = ["cloud.las", "cloud.laz", "cloud.ply", "cloud.csv", "cloud.xyz", "cloud.npy"];
+pub(crate) const FORMATS: [&str; 6] = ["cloud.las", "cloud.laz", "cloud.ply", "cloud.csv", "cloud.xyz", "cloud.npy"];
 
 #[test]
 fn a_path_bytes_and_a_reader_give_the_same_cloud() {

@@ -20,10 +20,10 @@ const SCALE: f64 = 0.01;
 const RECORD: usize = 30;
 
 /// A chunk of the octree: level, x, y, z, and its points.
-type Node = ([i32; 4], Vec<[i32; 3]>);
+pub(crate) type Node = ([i32; 4], Vec<[i32; 3]>);
 
 /// Points over a kilometre, spread over the nodes of an octree: some at each level, the rest at the deepest.
-fn nodes(count: u32) -> Vec<Node> {
+pub(crate) fn nodes(count: u32) -> Vec<Node> {
     let mut nodes: std::collections::BTreeMap<[i32; 4], Vec<[i32; 3]>> = std::collections::BTreeMap::new();
     for i in 0..u64::from(count) {
         let [x, y] = [2 * i, 2 * i + 1].map(|number| SIDE * uniform(11, number));
@@ -51,7 +51,7 @@ fn record(point: [i32; 3], number: usize) -> [u8; RECORD] {
 }
 
 /// A COPC file of `nodes`, the hierarchy of levels from 2 on in pages of their own; `damage` may change the hierarchy.
-fn copc(nodes: &[Node], damage: impl Fn(&mut Vec<u8>)) -> Vec<u8> {
+pub(crate) fn copc(nodes: &[Node], damage: impl Fn(&mut Vec<u8>)) -> Vec<u8> {
     let vlr = LazVlrBuilder::default().with_point_format(6, 0).unwrap().with_variable_chunk_size().build();
     let mut laz_record = Vec::new();
     vlr.write_to(&mut laz_record).unwrap();
@@ -155,13 +155,13 @@ impl Seek for Counted<'_> {
     }
 }
 
-fn window(low: [f64; 2], side: f64) -> ReadOptions {
+pub(crate) fn window(low: [f64; 2], side: f64) -> ReadOptions {
     let within = Within::File { low: [low[0], low[1], -1.0], high: [low[0] + side, low[1] + side, 100.0] };
     ReadOptions::new().with_points_within(within)
 }
 
 /// Coordinates in the file, in the order of the cloud.
-fn places(source: Source<'_>, options: &ReadOptions) -> Vec<[i64; 3]> {
+pub(crate) fn places(source: Source<'_>, options: &ReadOptions) -> Vec<[i64; 3]> {
     let (cloud, _) = read_cloud([source], options, &Control::none()).unwrap_or_else(|e| panic!("{e}"));
     let steps = |p: &[f32; 3]| cloud.frame.to_file_coordinates(*p).map(|v| (v / SCALE).round() as i64);
     cloud.positions.iter().map(steps).collect()
@@ -307,7 +307,7 @@ fn what_is_no_catalogue_is_refused_by_name() {
         ("{", "is no catalogue"),
         ("{}", "no `features`"),
         (r#"{"features":[{}]}"#, "no file for tile 1"),
-        (r#"{"features":[{"assets":{"data":{"href":"https://a.org/b.laz"}}}]}"#, "download it first"),
+        (r#"{"features":[{"assets":{"data":{"href":"s3://a.org/b.laz"}}}]}"#, "download it first"),
     ] {
         let source = Source::bytes("c.vpc", text);
         let error = read_cloud([source], &ReadOptions::new(), &Control::none()).unwrap_err().to_string();

@@ -231,8 +231,8 @@ def read(
         Name of bytes or of a file without a name, such as ``"tile.laz"``; its extension selects the format.
     bounds : array_like, (2, 2) or (2, 3), optional
         Lowest and highest corner of a box in the coordinates and unit of the file. Only points in it are read, and only
-        the files that meet it; of a COPC file only the parts that do, also where it is an open file on a server
-        (``fsspec``).
+        the files that meet it; of a COPC file only the parts that do, also where it is an address (``https://…``) or an
+        open file on a server (``fsspec``).
     classes : iterable of int, optional
         Only points of these ASPRS classes are read.
     progress : bool or callable, optional

@@ -37,7 +37,7 @@ const LEVELS: [(&str, u8); 13] = [
 ];
 
 /// Crates of others that only one file or folder may name.
-const ONE_HOME: [(&str, &str); 29] = [
+const ONE_HOME: [(&str, &str); 32] = [
     ("ab_glyph::", "figures/src/font.rs"),
     ("colorous::", "io/src/colors.rs"),
     ("las::", "io/src/"),
@@ -67,6 +67,9 @@ const ONE_HOME: [(&str, &str); 29] = [
     ("hyper_util::", "viewer/src/server.rs"),
     ("open::", "viewer/src/server.rs"),
     ("getrandom::", "viewer/src/guard.rs"),
+    ("rustls::", "io/src/remote.rs"),
+    ("rustls_native_certs::", "io/src/remote.rs"),
+    ("ureq::", "io/src/remote.rs"),
 ];
 
 fn level(module: &str) -> Option<u8> {

@@ -1,0 +1,272 @@
+//! Files on web servers, read part by part.
+//!
+//! # Source
+//! RFC 9110 (Fielding, Nottingham & Reschke 2022), section 14: range requests.
+
+use std::io::{Error, ErrorKind, Read, Result, Seek, SeekFrom};
+use std::sync::{Arc, LazyLock};
+use std::thread::sleep;
+use std::time::Duration;
+
+use ureq::http::{HeaderMap, header};
+use ureq::tls::{Certificate, RootCerts, TlsConfig};
+use ureq::{Agent, Body};
+
+/// Bytes asked for at first: mostly a whole header. And those asked for behind a gap, where the reader wants no more:
+/// chunks and pages of COPC files may be small.
+const FIRST_BYTES: u64 = 1 << 14;
+const LEAST_BYTES: u64 = 1 << 12;
+/// Most bytes asked for ahead of the reader: half of those that it read since the last gap, up to this.
+const MOST_AHEAD: u64 = 1 << 20;
+/// Most bytes of one request, however many the reader wants at once.
+const MOST_BYTES: u64 = 1 << 24;
+/// Largest file of a server that gives no parts: it is kept in memory.
+const MOST_WHOLE: u64 = 1 << 28;
+/// Time to wait before asking again, where a server was busy or a connection broke.
+const PAUSES: [Duration; 3] = [Duration::from_millis(300), Duration::from_secs(1), Duration::from_secs(3)];
+/// Longest wait for a connection, and for anything to come on it.
+const CONNECT: Duration = Duration::from_secs(20);
+const ANSWER: Duration = Duration::from_secs(60);
+
+/// Connections are kept open from one part to the next. The authorities that are trusted are those of the system.
+static AGENT: LazyLock<Agent> = LazyLock::new(|| {
+    let provider = Arc::new(rustls::crypto::ring::default_provider());
+    let authorities = rustls_native_certs::load_native_certs().certs;
+    let authorities = authorities.iter().map(|authority| Certificate::from_der(authority).to_owned()).collect();
+    let tls = TlsConfig::builder()
+        .root_certs(RootCerts::Specific(Arc::new(authorities)))
+        .unversioned_rustls_crypto_provider(provider)
+        .build();
+    let config = Agent::config_builder()
+        .tls_config(tls)
+        .http_status_as_error(false)
+        .user_agent(concat!("belvedere/", env!("CARGO_PKG_VERSION")))
+        .timeout_connect(Some(CONNECT))
+        .timeout_recv_response(Some(ANSWER))
+        .timeout_recv_body(Some(ANSWER))
+        .build();
+    Agent::new_with_config(config)
+});
+
+/// A file on a server. Only those parts of it are transferred that are read.
+pub(crate) struct Remote {
+    address: String,
+    size: u64,
+    /// What the server calls this version of the file; `None` where it does not say.
+    version: Option<String>,
+    /// Where the next byte is read.
+    position: u64,
+    /// The last part that came, and where it starts in the file.
+    part: Vec<u8>,
+    part_start: u64,
+    /// Where the reader last jumped to.
+    run_start: u64,
+}
+
+/// What a server sent.
+struct Reply {
+    bytes: Vec<u8>,
+    /// Size of the whole file.
+    size: u64,
+    version: Option<String>,
+    /// Whether this is the whole file, because the server gives no parts.
+    is_whole: bool,
+}
+
+/// Why there is no reply.
+struct Failure {
+    error: Error,
+    /// Whether it may work when asked again.
+    may_pass: bool,
+}
+
+impl Remote {
+    /// The file at `address`, with its size.
+    ///
+    /// # Errors
+    /// Those of connecting and of the server, in words that say what to do.
+    pub(crate) fn open(address: &str) -> Result<(Self, u64)> {
+        let Reply { bytes, size, version, .. } = patiently(|| request(address, 0, FIRST_BYTES))?;
+        let address = address.to_owned();
+        let file = Self { address, size, version, position: 0, part: bytes, part_start: 0, run_start: 0 };
+        Ok((file, size))
+    }
+
+    /// The end of the last part that came.
+    fn part_end(&self) -> u64 {
+        self.part_start + self.part.len() as u64
+    }
+
+    /// Gets the part that starts at the position, of at least `wanted` bytes as far as the file and one request allow that.
+    fn fetch(&mut self, wanted: u64) -> Result<()> {
+        if self.position != self.part_end() {
+            self.run_start = self.position;
+        }
+        let ahead = ((self.position - self.run_start) / 2).clamp(LEAST_BYTES, MOST_AHEAD);
+        let length = wanted.max(ahead).min(MOST_BYTES).min(self.size - self.position);
+        let reply = patiently(|| request(&self.address, self.position, length))?;
+        if reply.is_whole || reply.size != self.size || reply.version != self.version {
+            return Err(Error::other("the file on the server changed while it was read; run again"));
+        }
+        self.part = reply.bytes;
+        self.part_start = self.position;
+        Ok(())
+    }
+}
+
+impl Read for Remote {
+    fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
+        if self.position >= self.size || buffer.is_empty() {
+            return Ok(0);
+        }
+        if !(self.part_start..self.part_end()).contains(&self.position) {
+            self.fetch(buffer.len() as u64)?;
+        }
+        let from = usize::try_from(self.position - self.part_start).map_err(Error::other)?;
+        let count = self.part.get(from..).unwrap_or_default().read(buffer)?;
+        self.position += count as u64;
+        Ok(count)
+    }
+}
+
+impl Seek for Remote {
+    fn seek(&mut self, to: SeekFrom) -> Result<u64> {
+        let position = match to {
+            SeekFrom::Start(position) => Some(position),
+            SeekFrom::End(offset) => self.size.checked_add_signed(offset),
+            SeekFrom::Current(offset) => self.position.checked_add_signed(offset),
+        };
+        self.position = position.ok_or(ErrorKind::InvalidInput)?;
+        Ok(self.position)
+    }
+}
+
+/// Asks again where that may help.
+fn patiently(ask: impl Fn() -> std::result::Result<Reply, Failure>) -> Result<Reply> {
+    for pause in PAUSES {
+        match ask() {
+            Err(Failure { may_pass: true, .. }) => sleep(pause),
+            Err(Failure { error, .. }) => return Err(error),
+            Ok(reply) => return Ok(reply),
+        }
+    }
+    ask().map_err(|failure| failure.error)
+}
+
+/// Asks once for `length` bytes from byte `start`, or fewer where the file ends before.
+fn request(address: &str, start: u64, length: u64) -> std::result::Result<Reply, Failure> {
+    let last = start.saturating_add(length).saturating_sub(1);
+    let mut response = AGENT
+        .get(address)
+        .header(header::RANGE, format!("bytes={start}-{last}"))
+        .header(header::ACCEPT_ENCODING, "identity")
+        .call()
+        .map_err(|error| Failure { may_pass: is_passing(&error), error: Error::other(told(&error)) })?;
+    let status = response.status().as_u16();
+    let headers = response.headers().clone();
+    let text = |name| text_of(&headers, name);
+    let version = text(header::ETAG).or_else(|| text(header::LAST_MODIFIED)).map(str::to_owned);
+    if text(header::CONTENT_ENCODING).is_some_and(|encoding| encoding != "identity") {
+        return Err(lasting("the server sends the file in compressed form only; download it first".to_owned()));
+    }
+    match (status, text(header::CONTENT_RANGE).and_then(ContentRange::parse)) {
+        (206, Some(range)) => {
+            let end = start.saturating_add(length).min(range.size);
+            if range.start != start || range.end != end {
+                return Err(lasting(
+                    "the server sends another part of the file than the one that is needed; download it first"
+                        .to_owned(),
+                ));
+            }
+            let bytes = body(response.body_mut(), end - start)?;
+            Ok(Reply { bytes, size: range.size, version, is_whole: false })
+        }
+        (200, _) => {
+            let size = text(header::CONTENT_LENGTH).and_then(|length| length.parse().ok());
+            let no_parts = "the server gives no parts of files (HTTP ranges)";
+            match size {
+                Some(size) if size <= MOST_WHOLE => {
+                    let bytes = body(response.body_mut(), size)?;
+                    Ok(Reply { bytes, size, version, is_whole: true })
+                }
+                Some(_) => Err(lasting(format!("{no_parts}, and this one has more than 256 MiB; download it first"))),
+                None => Err(lasting(format!("{no_parts} and does not say their size; download it first"))),
+            }
+        }
+        // the first byte of an empty file is none
+        (416, _) if start == 0 => Ok(Reply { bytes: Vec::new(), size: 0, version, is_whole: false }),
+        (401 | 403 | 407, _) => Err(lasting(format!("the server refuses access (status {status})"))),
+        (404 | 410, _) => Err(lasting(format!("the server has no such file (status {status}); check the address"))),
+        (408 | 429 | 500..=599, _) => {
+            let error = Error::other(format!("the server cannot answer now (status {status}); try again later"));
+            Err(Failure { error, may_pass: true })
+        }
+        _ => Err(lasting(format!("the server gives no answer that fits (status {status}); download the file first"))),
+    }
+}
+
+/// The first and the end of the bytes that were sent, and the size of the file: `bytes 0-99/5000`.
+struct ContentRange {
+    start: u64,
+    end: u64,
+    size: u64,
+}
+
+impl ContentRange {
+    fn parse(text: &str) -> Option<Self> {
+        let (range, size) = text.strip_prefix("bytes ")?.split_once('/')?;
+        let (first, last) = range.split_once('-')?;
+        let [start, last, size] = [first, last, size].map(|number| number.trim().parse::<u64>().ok());
+        Some(Self { start: start?, end: last?.checked_add(1)?, size: size? })
+    }
+}
+
+fn text_of(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
+    headers.get(name)?.to_str().ok()
+}
+
+/// All of a body of `length` bytes.
+fn body(body: &mut Body, length: u64) -> std::result::Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    let read = body.with_config().limit(length.saturating_add(1)).reader().take(length).read_to_end(&mut bytes);
+    match read {
+        Ok(_) if bytes.len() as u64 == length => Ok(bytes),
+        Ok(_) => Err(broken(ErrorKind::UnexpectedEof.into())),
+        Err(error) => Err(broken(error)),
+    }
+}
+
+fn broken(error: Error) -> Failure {
+    let what = format!("the connection to the server broke ({error}); try again");
+    Failure { error: Error::new(error.kind(), what), may_pass: true }
+}
+
+fn lasting(what: String) -> Failure {
+    Failure { error: Error::other(what), may_pass: false }
+}
+
+/// Whether a connection that failed may work when tried again.
+fn is_passing(error: &ureq::Error) -> bool {
+    let ureq::Error::Io(error) = error else { return false };
+    matches!(
+        error.kind(),
+        ErrorKind::ConnectionReset | ErrorKind::ConnectionAborted | ErrorKind::BrokenPipe | ErrorKind::UnexpectedEof
+    )
+}
+
+/// What is wrong, and what to do.
+fn told(error: &ureq::Error) -> String {
+    match error {
+        ureq::Error::HostNotFound => "there is no such server; check the address and the connection".to_owned(),
+        ureq::Error::Timeout(_) => "the server does not answer; try again later".to_owned(),
+        ureq::Error::TooManyRedirects | ureq::Error::RedirectFailed => {
+            "the server sends on to nowhere; check the address".to_owned()
+        }
+        ureq::Error::BadUri(_) | ureq::Error::Http(_) => format!("is not an address: {error}"),
+        ureq::Error::Io(io) if io.get_ref().is_some_and(|inner| inner.is::<rustls::Error>()) => format!(
+            "there is no secure connection: {io}; the authorities that are trusted are those of the system (on Debian: ca-certificates) or of the file that \
+             SSL_CERT_FILE names"
+        ),
+        _ => format!("cannot be reached: {error}; check the address and the connection"),
+    }
+}
