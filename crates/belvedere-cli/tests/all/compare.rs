@@ -104,6 +104,40 @@ fn tables_go_between_the_marks_of_a_page() {
 }
 
 #[test]
+fn several_towns_give_differences_from_carved_balls_town_by_town() {
+    let place = Workplace::new();
+    let run = place.summary(
+        "compare --presets village --seeds 1,2,3 --extent 100 --target-count 400 --methods tau,carved -o out",
+    );
+    let methods = run["results"]["methods"].as_array().unwrap().clone();
+    let balanced = |method: &str| -> Vec<f64> {
+        let of_method = methods.iter().filter(|result| result["method"] == method);
+        let score = |result: &Value| {
+            let scores = result["scores"].as_array().unwrap();
+            let score = scores.iter().find(|score| score["set"] == "PED" && score["views"] == "suns").unwrap();
+            score["balanced"][0].as_f64().unwrap()
+        };
+        of_method.map(score).collect()
+    };
+    let differences: Vec<f64> =
+        balanced("tau").iter().zip(balanced("carved")).map(|(tau, carved)| 100.0 * (tau - carved)).collect();
+    assert_eq!(differences.len(), 3);
+    let report = place.text("out/report.md");
+    let table = report.split("difference from carved balls").nth(1).unwrap();
+    let row = table.lines().find(|line| line.starts_with("| balls limited to half a metre")).unwrap();
+    // after the name and free air
+    let cell = row.split('|').nth(3).unwrap().replace('−', "-");
+    let numbers = cell.split([' ', '[', ']', ',']).filter_map(|number| number.parse::<f64>().ok());
+    let [mean, low, high] = numbers.collect::<Vec<f64>>()[..] else { panic!("{cell}") };
+    let ends = [f64::min, f64::max].map(|end| differences.iter().copied().reduce(end).unwrap());
+    // printed to a tenth
+    assert!((mean - differences.iter().sum::<f64>() / 3.0).abs() < 0.051, "{cell}: {differences:?}");
+    // of 27 equally likely draws of three towns, one has only the worst
+    assert!((low - ends[0]).abs() < 0.051 && (high - ends[1]).abs() < 0.051, "{cell}: {differences:?}");
+    assert!(!table.split("###").next().unwrap().contains("| Belvedere: carved balls |"), "{table}");
+}
+
+#[test]
 fn a_place_of_ones_own_takes_part() {
     let place = Workplace::new();
     assert_eq!(place.run("demo -o demo --extent 100").status, 0);

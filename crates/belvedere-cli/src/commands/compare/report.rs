@@ -47,6 +47,8 @@ const ESSENCE: [(&str, &str, &str); 13] = [
 ];
 /// Lines between which tables are put into a page.
 const PAGE_MARKS: [&str; 2] = ["<!-- tables -->", "<!-- end of tables -->"];
+/// Key of the method that the others are held against.
+const CARVED: &str = "carved";
 /// Seed of the resampling of places.
 const SEED: u64 = 1;
 
@@ -128,7 +130,9 @@ impl Found {
         let mut tables = Vec::new();
         if !self.methods.is_empty() {
             tables.extend(self.by_scanner());
-            tables.extend([self.balanced(), self.errors(), self.street(), self.worth_of_answers(), self.costs()]);
+            tables.extend([self.balanced(), self.errors()]);
+            tables.extend(self.differences());
+            tables.extend([self.street(), self.worth_of_answers(), self.costs()]);
             tables.extend([self.place_table(), self.base_rates()]);
             tables.extend([self.audit(), self.ablation()]);
         }
@@ -211,6 +215,37 @@ impl Found {
             table.add(title, cells);
         }
         table
+    }
+
+    /// How much better or worse the others are than carved balls at the same places; `None` for a single place.
+    fn differences(&self) -> Option<Table> {
+        let names = self.method_names();
+        if self.places.len() < 2 || !names.iter().any(|(key, _)| *key == CARVED) {
+            return None;
+        }
+        let headings = COLUMNS.map(|(_, _, heading)| heading);
+        let mut table = Table::new(
+            "Balanced accuracy, difference from carved balls, percentage points",
+            "Positive: better than carved balls. Means over the places at which both were measured, with the 95 % interval from resampled places: a difference whose interval holds 0 may be chance.",
+            [&["method"], headings.as_slice()].concat(),
+        );
+        let balanced = |result: &MethodResult, asked: (&str, &str)| {
+            let score = result.scores.iter().find(|s| (s.set.as_str(), s.views.as_str()) == asked)?;
+            score.balanced.map(|[value, ..]| value)
+        };
+        for (key, title) in names.into_iter().filter(|(key, _)| *key != CARVED) {
+            let cells = COLUMNS.map(|(set, views, _)| {
+                let of_place = |result: &MethodResult| {
+                    let carved = self.of(CARVED).find(|carved| carved.place == result.place)?;
+                    let value = balanced(result, (set, views))? - balanced(carved, (set, views))?;
+                    Some(Interval { value, low: value, high: value })
+                };
+                let of_places: Vec<Interval> = self.of(key).filter_map(of_place).collect();
+                signed_with_interval(over_places(&of_places, SEED))
+            });
+            table.add(title, cells);
+        }
+        Some(table)
     }
 
     /// Balanced accuracy that a tenth of the observers in streets stay below, mean over places.
@@ -488,6 +523,11 @@ pub(super) fn pair(first: Option<f64>, second: Option<f64>) -> String {
             format!("{} / {}", cell(first), cell(second))
         }
     }
+}
+
+fn signed_with_interval(difference: Option<Interval>) -> String {
+    let signed = |share: f64| format!("{:+.1}", 100.0 * share).replace('-', "−");
+    difference.map_or("–".to_owned(), |i| format!("{} [{}, {}]", signed(i.value), signed(i.low), signed(i.high)))
 }
 
 fn with_interval(rate: Option<Interval>) -> String {
