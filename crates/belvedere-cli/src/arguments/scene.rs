@@ -8,8 +8,8 @@ use std::path::PathBuf;
 pub(crate) struct CloudInput {
     /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy), a catalogue (.vpc), or a folder
     ///
-    /// Several files, a folder, or the files of a catalogue of tiles (.vpc) are read as one cloud. A file may lie on a web server (https://...): only
-    /// what is needed of it is transferred. A folder with coords.npy is read in the layout of masbcpp.
+    /// Several files, a folder, or the files of a catalogue of tiles (.vpc) are read as one cloud. A file may lie on a web server (https://...).
+    /// A folder with coords.npy is read in the layout of masbcpp.
     #[arg(value_name = "CLOUD", required = true, help_heading = None::<&'static str>)]
     pub(crate) clouds: Vec<PathBuf>,
     /// Coordinate reference system, as EPSG:CODE or WKT [default: that of the file]

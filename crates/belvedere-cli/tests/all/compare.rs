@@ -106,9 +106,8 @@ fn tables_go_between_the_marks_of_a_page() {
 #[test]
 fn several_towns_give_differences_from_carved_balls_town_by_town() {
     let place = Workplace::new();
-    let run = place.summary(
-        "compare --presets village --seeds 1,2,3 --extent 100 --target-count 400 --methods tau,carved -o out",
-    );
+    let run = place
+        .summary("compare --presets village --seeds 1,2,3 --extent 100 --target-count 400 --methods tau,carved -o out");
     let methods = run["results"]["methods"].as_array().unwrap().clone();
     let balanced = |method: &str| -> Vec<f64> {
         let of_method = methods.iter().filter(|result| result["method"] == method);
@@ -155,6 +154,12 @@ fn a_place_of_ones_own_takes_part() {
         place.summary("compare --clouds demo/town.laz --mesh demo/town.obj --target-count 800 --methods tau -o up");
     let sets = upward["results"]["methods"][0]["scores"].as_array().unwrap().clone();
     assert!(sets.iter().all(|score| score["set"] != "OWN"), "without a scanner own points have no truth");
+    // half a file is a place all the same, which must not look whole
+    place.summary("normals demo/town.laz -o whole.las");
+    let las = fs::read(place.path("whole.las")).unwrap();
+    fs::write(place.path("half.las"), &las[..las.len() / 2]).unwrap();
+    let run = place.run("compare --clouds half.las --mesh demo/town.obj --target-count 300 --methods tau -o cut");
+    assert!(run.status == 0 && run.stderr.contains("half.las: the file is cut off"), "{run:?}");
 }
 
 #[test]

@@ -3,7 +3,9 @@
 use super::place::{Place, file_name, state_of};
 use super::results::{HeldOutResult, keep, kept};
 use crate::arguments::{Compare, Global};
+use crate::pipeline::warn_of_missing;
 use crate::progress::Stages;
+use crate::summary::Summary;
 use anyhow::{Context, Result};
 use belvedere::io::{ReadOptions, read_cloud, read_trajectory};
 use belvedere::pulses::{SensorEstimateParams, SensorPositions, group};
@@ -17,10 +19,11 @@ pub(super) fn judge_all(
     path: &Path,
     arguments: &Compare,
     global: &Global,
-    stages: &mut Stages,
+    (stages, summary): (&mut Stages, &mut Summary),
 ) -> Result<Vec<HeldOutResult>> {
-    let (cloud, _) =
+    let (cloud, report) =
         stages.run("reading", 0, |control| read_cloud(&[path.to_owned()], &ReadOptions::default(), control))?;
+    warn_of_missing(&report, summary);
     let named = || path.display().to_string();
     let (pulses, _) = group(&cloud, &stages.control()).with_context(named)?;
     let (scanner, report) = stages.run("estimating scanner positions", 0, |control| match &arguments.trajectory {

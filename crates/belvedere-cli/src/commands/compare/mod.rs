@@ -46,14 +46,14 @@ fn compare_all(arguments: &Compare, global: &Global) -> Result<Summary> {
     let folder = &arguments.output;
     let mut stages = Stages::new(global);
     let mut found = report::Found::default();
+    let mut summary = Summary::default();
     for place in Place::all(arguments) {
-        compare_on(&place, arguments, global, &mut stages, &mut found)?;
+        compare_on(&place, arguments, global, (&mut stages, &mut summary), &mut found)?;
     }
     for cloud in &arguments.held_out {
-        found.held_out.extend(held_out::judge_all(cloud, arguments, global, &mut stages)?);
+        found.held_out.extend(held_out::judge_all(cloud, arguments, global, (&mut stages, &mut summary))?);
     }
     found.write(folder, arguments.page.as_deref())?;
-    let mut summary = Summary::default();
     if global.json {
         summary.add("results", found.to_json()?);
     } else if !global.quiet {
@@ -68,7 +68,7 @@ fn compare_on(
     place: &Place,
     arguments: &Compare,
     global: &Global,
-    stages: &mut Stages,
+    (stages, summary): (&mut Stages, &mut Summary),
     found: &mut report::Found,
 ) -> Result<()> {
     let name = place.name();
@@ -98,7 +98,7 @@ fn compare_on(
         }
     }
 
-    let ingredients = stages.run("building place", 0, |_| place.make())?;
+    let ingredients = stages.run("building place", 0, |_| place.make(summary))?;
     let case = stages.run("testing lines of sight", 0, |_| Case::new(ingredients, arguments.targets, global.seed))?;
     let survey = case.survey();
     let methods = methods(&survey);

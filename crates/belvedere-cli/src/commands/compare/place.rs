@@ -3,7 +3,9 @@
 use super::case::Ingredients;
 use super::scanners::Scanner;
 use crate::arguments::Compare;
+use crate::pipeline::warn_of_missing;
 use crate::simulated::cloud_of;
+use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::Mesh;
 use belvedere::control::Control;
@@ -97,8 +99,8 @@ impl Place {
         }
     }
 
-    /// Simulates or reads it.
-    pub(super) fn make(&self) -> Result<Ingredients> {
+    /// Simulates it, or reads it and warns of files that are cut off.
+    pub(super) fn make(&self, summary: &mut Summary) -> Result<Ingredients> {
         match self {
             Self::Simulated { preset, extent, seed, regime, pulses_per_m2, .. } => {
                 let params = regime.town(preset.params(*extent, *seed));
@@ -123,7 +125,8 @@ impl Place {
                 Ok(Ingredients { cloud, scanner, models, scene })
             }
             Self::Given { clouds, mesh, trajectory, models } => {
-                let (cloud, _) = read_cloud(clouds, &ReadOptions::default(), &Control::none())?;
+                let (cloud, report) = read_cloud(clouds, &ReadOptions::default(), &Control::none())?;
+                warn_of_missing(&report, summary);
                 let in_metres =
                     |path: &Path| -> Result<Mesh> { Ok(read_mesh(path)?.0.scaled_to_metres(&cloud.frame.crs)) };
                 let mesh = in_metres(mesh)?;
