@@ -1,7 +1,10 @@
 //! LAS 1.0 to 1.4 and LAZ (also COPC), all point formats. Points come in the order of the file. Of a box only those chunks of a COPC
 //! file are read that may hold points of it, and nothing of a file whose bounds do not meet it.
 
+use std::collections::VecDeque;
 use std::io::{Read, Seek, SeekFrom};
+use std::iter;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use ::las::point::Format;
@@ -11,7 +14,7 @@ use super::copc::{self, ChunkPlace};
 use super::las_columns::Columns;
 use super::las_extra::{ExtraField, ExtraNormals, described, find_columns, find_extra_normals};
 use super::las_header::{LasHeader, read_header};
-use super::laz::{ExtraBytes, LazReader, is_chunked};
+use super::laz::{ExtraBytes, LazReader, Wanted, is_chunked};
 use super::part::{Coordinates, Part};
 use super::read_options::{FileBox, PassedOver, Reading, RowNumbers, Selection};
 use super::source::{Input, Reader, Source};
@@ -66,41 +69,65 @@ impl<'a> LasFile<'a> {
 
     /// All points in file order, many at a time.
     pub(super) fn batches(self, extra: ExtraBytes) -> Result<Batches<'a>> {
-        let left = self.points_in_file();
-        self.batches_of(extra, left, None)
+        let rows = iter::once(0..self.points_in_file()).collect();
+        self.batches_of(extra, rows, None)
     }
 
-    /// The points that may lie in `wanted`, many at a time in file order, and how many are passed over because they cannot.
-    fn batches_within(mut self, extra: ExtraBytes, wanted: &FileBox) -> Result<(Batches<'a>, u64)> {
+    /// The points that may lie in `wanted`, many at a time in file order, and how many are passed over because they cannot: in COPC by its hierarchy, in
+    /// other files because they are in none of `rows`, where these are known.
+    fn batches_within(
+        mut self,
+        extra: ExtraBytes,
+        wanted: &FileBox,
+        rows: Option<Vec<Range<u64>>>,
+    ) -> Result<(Batches<'a>, u64)> {
         let all = self.points_in_file();
         let bounds = self.header.bounds;
         let room = room(self.header.scale);
         let low = std::array::from_fn(|i| bounds[i][0] - room[i]);
         let high = std::array::from_fn(|i| bounds[i][1] + room[i]);
         if are_given(&bounds) && !wanted.meets(low, high) {
-            return Ok((self.batches_of(extra, 0, None)?, all));
+            return Ok((self.batches_of(extra, Vec::new(), None)?, all));
         }
         let chunks = if self.header.compressed && all > 0 {
             copc::chunks_within(&self.name, &mut self.reader, &self.header, self.size, wanted)?
         } else {
             None
         };
-        let Some(chunks) = chunks else { return Ok((self.batches_of(extra, all, None)?, 0)) };
-        let within = chunks.iter().fold(0_u64, |sum, chunk| sum.saturating_add(chunk.points));
-        Ok((self.batches_of(extra, within, Some(chunks))?, all.saturating_sub(within)))
+        let batches = match chunks {
+            Some(chunks) => {
+                let within = chunks.iter().fold(0_u64, |sum, chunk| sum.saturating_add(chunk.points));
+                self.batches_of(extra, iter::once(0..within).collect(), Some(chunks))?
+            }
+            None => {
+                let cut = |rows: Range<u64>| rows.start..rows.end.min(all);
+                let rows = rows.unwrap_or_else(|| iter::once(0..all).collect()).into_iter().map(cut).collect();
+                self.batches_of(extra, rows, None)?
+            }
+        };
+        let left = batches.records.left();
+        Ok((batches, all.saturating_sub(left)))
     }
 
-    fn batches_of(self, extra: ExtraBytes, left: u64, places: Option<Vec<ChunkPlace>>) -> Result<Batches<'a>> {
-        let Self { name, mut reader, size, header, format } = self;
+    /// The points of `rows`, ranges in their order; of LAZ whole chunks that hold such rows, or those at `places`.
+    fn batches_of(
+        self,
+        extra: ExtraBytes,
+        rows: Vec<Range<u64>>,
+        places: Option<Vec<ChunkPlace>>,
+    ) -> Result<Batches<'a>> {
+        let Self { name, reader, size, header, format } = self;
+        let rows: VecDeque<Range<u64>> = rows.into_iter().filter(|rows| !rows.is_empty()).collect();
         let transform = |i: usize| Transform { scale: header.scale[i], offset: header.offset[i] };
         let transforms = Vector { x: transform(0), y: transform(1), z: transform(2) };
         let batch = PointDataBuilder::new().with_format(format).with_transforms(transforms).build();
         // Without points there need be no chunk table either.
-        let records = if header.compressed && left > 0 {
-            Records::Laz(Box::new(LazReader::new(&name, reader, &header, size, extra, places)?))
+        let records = if header.compressed && !rows.is_empty() {
+            let wanted = places.map_or_else(|| Wanted::Rows(rows.into()), Wanted::Places);
+            Records::Laz(Box::new(LazReader::new(&name, reader, &header, size, extra, wanted)?))
         } else {
-            reader.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(&name))?;
-            Records::Plain { reader, left }
+            let (start, length) = (header.points_start, u64::from(header.record_length));
+            Records::Plain { reader, start, length, rows, next: None }
         };
         Ok(Batches { name, batch, records })
     }
@@ -114,8 +141,26 @@ pub(super) struct Batches<'a> {
 }
 
 enum Records<'a> {
-    Plain { reader: Reader<'a>, left: u64 },
+    Plain {
+        reader: Reader<'a>,
+        /// Byte of the first point, and bytes of each.
+        start: u64,
+        length: u64,
+        rows: VecDeque<Range<u64>>,
+        /// Row that the reader stands at; `None` before the first.
+        next: Option<u64>,
+    },
     Laz(Box<LazReader<'a>>),
+}
+
+impl Records<'_> {
+    /// Points that are still to come.
+    fn left(&self) -> u64 {
+        match self {
+            Self::Plain { rows, .. } => rows.iter().fold(0, |sum, rows| sum.saturating_add(rows.end - rows.start)),
+            Self::Laz(reader) => reader.left(),
+        }
+    }
 }
 
 impl Batches<'_> {
@@ -128,12 +173,20 @@ impl Batches<'_> {
                     return Ok(None);
                 }
             }
-            Records::Plain { left: 0, .. } => return Ok(None),
-            Records::Plain { reader, left } => {
-                let points = BATCH.min(*left);
-                let room = batch.resize_for(usize::try_from(points).unwrap_or(0));
+            Records::Plain { reader, start, length, rows, next } => {
+                let Some(first) = rows.front_mut() else { return Ok(None) };
+                let piece = first.start..first.end.min(first.start.saturating_add(BATCH));
+                first.start = piece.end;
+                if first.is_empty() {
+                    rows.pop_front();
+                }
+                if *next != Some(piece.start) {
+                    let byte = start.saturating_add(piece.start.saturating_mul(*length));
+                    reader.seek(SeekFrom::Start(byte)).map_err(Error::io(name))?;
+                }
+                *next = Some(piece.end);
+                let room = batch.resize_for(usize::try_from(piece.end - piece.start).unwrap_or(0));
                 reader.read_exact(room).map_err(Error::io(name))?;
-                *left -= points;
             }
         }
         Ok(Some(batch))
@@ -141,8 +194,8 @@ impl Batches<'_> {
 }
 
 /// The points of the source that `reading` asks for.
-pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
-    let (mut part, mut points) = open(input, reading)?;
+pub(super) fn read(input: Input<'_>, rows: Option<Vec<Range<u64>>>, reading: &Reading<'_>) -> Result<Part> {
+    let (mut part, mut points) = open(input, rows, reading)?;
     // No more is reserved than the size of the file makes likely; columns grow where that is too little.
     let capacity = if points.selection.is_some() { 0 } else { usize::try_from(points.likely).unwrap_or(0) };
     let mut columns = points.columns(capacity);
@@ -213,8 +266,12 @@ fn check_bounds(mut part: Part, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> Resul
     Ok(part)
 }
 
-/// The points of a source, batch by batch, and what is known of all of them.
-pub(super) fn open<'a>(input: Input<'a>, reading: &Reading<'_>) -> Result<(Part, LasPoints<'a>)> {
+/// The points of a source, batch by batch, and what is known of all of them. Points of a window lie in `rows` only, where these are known.
+pub(super) fn open<'a>(
+    input: Input<'a>,
+    rows: Option<Vec<Range<u64>>>,
+    reading: &Reading<'_>,
+) -> Result<(Part, LasPoints<'a>)> {
     let mut source = LasFile::open(input)?;
     let path = source.name.clone();
     let header = &source.header;
@@ -249,7 +306,7 @@ pub(super) fn open<'a>(input: Input<'a>, reading: &Reading<'_>) -> Result<(Part,
     let mut passed_over = PassedOver::default();
     let batches = match wanted {
         Some(wanted) => {
-            let (batches, outside) = source.batches_within(extra, &wanted)?;
+            let (batches, outside) = source.batches_within(extra, &wanted, rows)?;
             passed_over.outside(outside);
             batches
         }

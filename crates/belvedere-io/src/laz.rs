@@ -3,6 +3,7 @@
 //! What is checked, and why, is listed in `docs/upstream.md`.
 
 use std::io::{Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::Path;
 
 use super::copc::ChunkPlace;
@@ -29,6 +30,14 @@ pub(super) enum ExtraBytes {
     Skip,
 }
 
+/// Which chunks are wanted.
+pub(super) enum Wanted {
+    /// Those that hold any of these rows, ranges in their order.
+    Rows(Vec<Range<u64>>),
+    /// Those that a COPC file has there.
+    Places(Vec<ChunkPlace>),
+}
+
 /// Decompresses the points of a file batch by batch.
 pub(super) struct LazReader<'a> {
     /// Without a buffer: chunks are read whole, and what is read ahead beyond one may never be needed.
@@ -51,14 +60,14 @@ struct Chunk {
 }
 
 impl<'a> LazReader<'a> {
-    /// A reader of the points that `header` announces in a file of `size` bytes; only of the chunks at `places` where these are given.
+    /// A reader of the `wanted` chunks of those that `header` announces in a file of `size` bytes.
     pub(super) fn new(
         path: &Path,
         mut file: Reader<'a>,
         header: &LasHeader,
         size: u64,
         extra: ExtraBytes,
-        places: Option<Vec<ChunkPlace>>,
+        wanted: Wanted,
     ) -> Result<Self> {
         let damaged = |what: String| Error::malformed(path, what);
         let record = header.record(LazVlr::USER_ID, LazVlr::RECORD_ID);
@@ -73,14 +82,15 @@ impl<'a> LazReader<'a> {
             )));
         }
         let layers = layer_count(&vlr);
-        let chunks = if let Some(places) = places {
-            chunks_at(path, &places, header)?
-        } else {
-            file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
-            check_chunk_count(path, &mut file, header, size)?;
-            let table = ChunkTable::read_from(&mut file, &vlr)
-                .map_err(|e| damaged(format!("has no readable LAZ chunk table: {e}")))?;
-            checked_chunks(path, &table, &vlr, header, size)?
+        let chunks = match wanted {
+            Wanted::Places(places) => chunks_at(path, &places, header)?,
+            Wanted::Rows(rows) => {
+                file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
+                check_chunk_count(path, &mut file, header, size)?;
+                let table = ChunkTable::read_from(&mut file, &vlr)
+                    .map_err(|e| damaged(format!("has no readable LAZ chunk table: {e}")))?;
+                with_rows(checked_chunks(path, &table, &vlr, header, size)?, &rows)
+            }
         };
         let selection = DecompressionSelection::all().skip_user_data().skip_nir().skip_wavepacket();
         let selection = if extra == ExtraBytes::Skip { selection.skip_extra_bytes() } else { selection };
@@ -94,6 +104,11 @@ impl<'a> LazReader<'a> {
             record_length: usize::from(header.record_length),
             compressed: Vec::new(),
         })
+    }
+
+    /// Points of the chunks that are still to come.
+    pub(super) fn left(&self) -> u64 {
+        self.chunks.as_slice().iter().fold(0, |sum, chunk| sum.saturating_add(chunk.entry.point_count))
     }
 
     /// Decompresses whole chunks until `wanted` points are reached; `room` makes a slice for a number of points.
@@ -255,6 +270,18 @@ fn checked_chunks(path: &Path, table: &ChunkTable, vlr: &LazVlr, header: &LasHea
         return Err(Error::malformed(path, what));
     }
     Ok(chunks)
+}
+
+/// Those of all chunks that hold any of `rows`.
+fn with_rows(mut chunks: Vec<Chunk>, rows: &[Range<u64>]) -> Vec<Chunk> {
+    let mut next = 0_u64;
+    chunks.retain(|chunk| {
+        let first = next;
+        next = first.saturating_add(chunk.entry.point_count);
+        let after = rows.partition_point(|rows| rows.end <= first);
+        rows.get(after).is_some_and(|rows| rows.start < next)
+    });
+    chunks
 }
 
 /// The chunks at `places`, which lie in the file and do not overlap.

@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use belvedere_data::{Error, Result};
@@ -32,6 +33,8 @@ const BUFFER_BYTES: usize = 1 << 12;
 pub struct Source<'a> {
     name: PathBuf,
     content: Content<'a>,
+    /// Rows of points that are not known to lie beside a window.
+    pub(crate) likely_rows: Option<Vec<Range<u64>>>,
 }
 
 enum Content<'a> {
@@ -44,7 +47,7 @@ impl<'a> Source<'a> {
     /// The file or folder at `path`, or the file at an address of the web.
     #[must_use]
     pub fn path(path: impl Into<PathBuf>) -> Self {
-        Self { name: path.into(), content: Content::Path }
+        Self { name: path.into(), content: Content::Path, likely_rows: None }
     }
 
     /// Bytes in memory, such as a download. `name` needs an extension, such as `tile.laz`.
@@ -56,7 +59,16 @@ impl<'a> Source<'a> {
     /// Anything that reads and seeks, from its first byte to its last. `name` needs an extension, such as `tile.laz`.
     #[must_use]
     pub fn reader(name: impl Into<PathBuf>, reader: impl Read + Seek + Send + 'a) -> Self {
-        Self { name: name.into(), content: Content::Reader(Box::new(reader)) }
+        Self { name: name.into(), content: Content::Reader(Box::new(reader)), likely_rows: None }
+    }
+
+    /// The same, of which it is known that the points of a window ([`crate::ReadOptions::within`]) lie in `rows` only: ranges of rows from 0, in their order and without
+    /// a row in two of them. Of LAS and LAZ files the pieces and chunks without such rows are then not read; other formats, and COPC, which has a hierarchy, know better or
+    /// are read whole. Points beside the window are left out as ever.
+    #[must_use]
+    pub fn with_likely_rows(mut self, rows: Vec<Range<u64>>) -> Self {
+        self.likely_rows = Some(rows);
+        self
     }
 
     /// The path, or the name that was given.
@@ -78,7 +90,7 @@ impl<'a> Source<'a> {
 
     /// Opens the source at its first byte.
     pub(crate) fn open(self) -> Result<Input<'a>> {
-        let Self { name, content } = self;
+        let Self { name, content, .. } = self;
         let (reader, size): (Box<dyn ReadSeek + 'a>, u64) = match content {
             Content::Path if web_address(&name).is_some() => remote(&name)?,
             Content::Path => {

@@ -1,9 +1,10 @@
 //! The files of a survey, and whether they are still what they were when the plan was made.
 
 use belvedere::io::{LasHead, Source, read_las_head, web_address};
-use belvedere::{Error, GpsTimeKind, Result};
+use belvedere::{Bounds, Error, GpsTimeKind, Result};
 use serde::{Deserialize, Serialize};
 use std::io::{Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Bytes at either end of a file that its quick fingerprint is taken of.
@@ -22,6 +23,25 @@ pub struct InputFile {
     pub bounds: [[f64; 3]; 2],
     /// FNV-1a of 64 bits over its size and its first and last 64 KiB, as hexadecimal digits.
     pub fingerprint: String,
+    /// The rectangle around each piece of its rows: west, south, east and north, whole local metres. Empty where that is not known.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) pieces: Vec<Piece>,
+}
+
+/// Rows of a file that one rectangle is kept for: a chunk of most LAZ files.
+pub(crate) const PIECE_ROWS: u64 = 50_000;
+
+/// West, south, east and north of a piece, whole local metres.
+pub(crate) type Piece = [i32; 4];
+
+/// The rectangle of a piece without points, which meets nothing.
+pub(crate) const NOWHERE: Piece = [i32::MAX, i32::MAX, i32::MIN, i32::MIN];
+
+/// Widens a rectangle to hold a local position.
+#[expect(clippy::cast_possible_truncation, reason = "some kilometres; `as` saturates")]
+pub(crate) fn hold([west, south, east, north]: &mut Piece, [x, y, _]: [f32; 3]) {
+    (*west, *south) = ((*west).min(x.floor() as i32), (*south).min(y.floor() as i32));
+    (*east, *north) = ((*east).max(x.ceil() as i32), (*north).max(y.ceil() as i32));
 }
 
 impl InputFile {
@@ -46,7 +66,37 @@ impl InputFile {
         }
         let path = absolute(path)?;
         let (_, fingerprint) = fingerprint(&path)?;
-        Ok((Self { path, bytes: head.bytes, points: head.points, bounds: head.bounds, fingerprint }, head))
+        Ok((
+            Self { path, bytes: head.bytes, points: head.points, bounds: head.bounds, fingerprint, pieces: Vec::new() },
+            head,
+        ))
+    }
+
+    /// The file, of which only rows are read that may lie in a column of local coordinates.
+    pub(crate) fn source_within(&self, column: &Bounds) -> Source<'static> {
+        let source = Source::path(&self.path);
+        if self.pieces.is_empty() {
+            return source;
+        }
+        let [low, high] = [column.low, column.high].map(|end| end.map(f64::from));
+        let meets = |&[west, south, east, north]: &Piece| {
+            let [west, south, east, north] = [west, south, east, north].map(f64::from);
+            west <= high[0] && low[0] <= east && south <= high[1] && low[1] <= north
+        };
+        let mut rows: Vec<Range<u64>> = Vec::new();
+        for (number, _) in (0_u64..).zip(&self.pieces).filter(|(_, piece)| meets(piece)) {
+            let [from, to] = [number, number + 1].map(|number| number * PIECE_ROWS);
+            match rows.last_mut() {
+                Some(last) if last.end == from => last.end = to,
+                _ => rows.push(from..to),
+            }
+        }
+        source.with_likely_rows(rows)
+    }
+
+    /// Whether the pieces are those of its points, or not known.
+    pub(crate) fn has_sound_pieces(&self) -> bool {
+        self.pieces.is_empty() || self.pieces.len() as u64 == self.points.div_ceil(PIECE_ROWS)
     }
 
     /// Refuses a file that is no longer what it was.

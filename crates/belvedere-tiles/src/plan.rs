@@ -1,7 +1,7 @@
 //! The plan of a run: everything that a tile must know beside its own points.
 
 use crate::grid::{Area, TileGrid, TileId, block_area};
-use crate::inputs::{Columns, InputFile, hash};
+use crate::inputs::{Columns, InputFile, NOWHERE, PIECE_ROWS, hash};
 use crate::planned::{Others, SideFile, added_meshes, far_terrain};
 use crate::question::{Question, ValueKind};
 use crate::record::Stage;
@@ -161,7 +161,7 @@ impl Plan {
     /// those of reading the files, and of [`SurveyFacts::estimate`].
     pub fn make(params: &PlanParams, control: &Control<'_>) -> Result<Self> {
         check_sizes(params)?;
-        let (inputs, heads) = inputs(&params.clouds)?;
+        let (mut inputs, heads) = inputs(&params.clouds)?;
         let crs = match &params.crs {
             Some(crs) => Crs::parse(crs)?,
             None => heads
@@ -208,6 +208,11 @@ impl Plan {
         let found = control.stage("surveying", usize::try_from(points).unwrap_or(0), || {
             survey(&files, &options, columns, points, &area, control)
         })?;
+        for input in &mut inputs {
+            input.pieces = found.pieces.get(&input.path).cloned().unwrap_or_default();
+            // rows at the end may all have been left out
+            input.pieces.resize(usize::try_from(input.points.div_ceil(PIECE_ROWS)).unwrap_or(0), NOWHERE);
+        }
         let bounds = found.bounds.ok_or_else(|| Error::NoPoints { what: "all points are noise".to_owned() })?;
         let model = ModelParams::default();
         let facts =
@@ -587,7 +592,9 @@ fn check_numbers(plan: &Plan) -> Option<()> {
     let finite =
         plan.frame.origin.iter().chain(&plan.frame.metres_per_unit).chain([&plan.halo, &plan.tile_size, &plan.cell]);
     let sizes = PlanParams { tile_size: plan.tile_size, cell: plan.cell, ..PlanParams::default() };
+    let are_whole = plan.inputs.iter().all(InputFile::has_sound_pieces);
     let are_sorted = plan.blocks.windows(2).all(|pair| pair[0].at < pair[1].at);
-    let is_sound = finite.clone().all(|v| v.is_finite()) && plan.halo > 0.0 && plan.halo < 1e4 && are_sorted;
+    let is_sound =
+        finite.clone().all(|v| v.is_finite()) && plan.halo > 0.0 && plan.halo < 1e4 && are_sorted && are_whole;
     (is_sound && check_sizes(&sizes).is_ok()).then_some(())
 }

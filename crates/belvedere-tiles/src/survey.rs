@@ -1,14 +1,14 @@
 //! One pass over all points: where they lie, how high, and samples of them.
 
 use crate::grid::{Area, block_of};
-use crate::inputs::Columns;
+use crate::inputs::{Columns, NOWHERE, PIECE_ROWS, Piece, hold};
 use crate::window;
 use belvedere::control::Control;
-use belvedere::io::ReadOptions;
+use belvedere::io::{CloudBatch, ReadOptions, read_batches};
 use belvedere::model::SurveyExtremes;
 use belvedere::{Bounds, PointCloud, Result};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 
 /// Most points of the sample along flight lines.
@@ -46,6 +46,8 @@ pub(crate) struct Survey {
     pub(crate) along_lines: PointCloud,
     /// All points of some places.
     pub(crate) places: PointCloud,
+    /// The rectangles around the pieces of each file.
+    pub(crate) pieces: HashMap<PathBuf, Vec<Piece>>,
 }
 
 #[derive(Default)]
@@ -72,8 +74,18 @@ pub(crate) fn survey(
     let mut of_places = PointCloud::in_frame(frame);
     let mut extremes = SurveyExtremes { top: f32::NEG_INFINITY, ..SurveyExtremes::default() };
     let mut bounds: Option<Bounds> = None;
-    for batch in window::batches(files, options, control)? {
-        let cloud = batch?.cloud;
+    let mut pieces: HashMap<PathBuf, Vec<Piece>> = HashMap::new();
+    // sources live as long as the work
+    for batch in read_batches(files.to_vec(), &options.clone().with_row_numbers(), control)? {
+        let CloudBatch { cloud, source, rows } = batch?;
+        let of_file = pieces.entry(source).or_default();
+        for (&row, &p) in rows.iter().zip(&cloud.positions) {
+            let number = usize::try_from(row / PIECE_ROWS).unwrap_or(usize::MAX);
+            if number >= of_file.len() {
+                of_file.resize(number + 1, NOWHERE);
+            }
+            hold(&mut of_file[number], p);
+        }
         let flags = cloud.attributes.flags.as_deref().unwrap_or_default();
         let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
         let times = cloud.attributes.gps_time.as_deref().filter(|_| columns.gps_times);
@@ -114,7 +126,7 @@ pub(crate) fn survey(
         let lowest = around.filter_map(|at| by_place.get(&at)).copied().fold(f32::INFINITY, f32::min);
         extremes.relief = extremes.relief.max(f64::from(block.heights[1]) - f64::from(lowest));
     }
-    Ok(Survey { blocks, bounds, extremes, along_lines, places: of_places })
+    Ok(Survey { blocks, bounds, extremes, along_lines, places: of_places, pieces })
 }
 
 impl Counted {

@@ -4,7 +4,7 @@ use crate::grid::Area;
 use crate::inputs::Columns;
 use crate::plan::Plan;
 use belvedere::control::Control;
-use belvedere::io::{CloudBatches, ReadOptions, Within, read_batches};
+use belvedere::io::{ReadOptions, Within, read_batches};
 use belvedere::{Attributes, Error, Frame, PointCloud, Result};
 
 /// The points of `area` that are asked for, in the order of the files and of their points.
@@ -12,17 +12,18 @@ use belvedere::{Attributes, Error, Frame, PointCloud, Result};
 /// # Errors
 /// Those of [`read_batches`], and [`Error::Malformed`] for a file that is no longer what it was.
 pub(crate) fn read(plan: &Plan, area: &Area, control: &Control<'_>) -> Result<PointCloud> {
+    let column = area.column();
     let mut files = Vec::new();
     for file in plan.files_meeting(area) {
         file.check()?;
-        files.push(file.path.clone());
+        files.push(file.source_within(&column));
     }
     let mut cloud = PointCloud::in_frame(plan.frame()?);
     if files.is_empty() {
         return Ok(cloud);
     }
-    let options = options(plan.crs.as_deref(), plan.frame()?).with_points_within(Within::Local(area.column()));
-    for batch in batches(&files, &options, control)? {
+    let options = options(plan.crs.as_deref(), plan.frame()?).with_points_within(Within::Local(column));
+    for batch in read_batches(files, &options, control)? {
         append(&mut cloud, batch?.cloud, plan.columns);
     }
     Ok(cloud)
@@ -34,15 +35,6 @@ pub(crate) fn options(crs: Option<&str>, frame: Frame) -> ReadOptions {
         Some(crs) => options.with_crs(crs),
         None => options,
     }
-}
-
-pub(crate) fn batches<'a>(
-    files: &[std::path::PathBuf],
-    options: &ReadOptions,
-    control: &Control<'a>,
-) -> Result<CloudBatches<'a>> {
-    // sources live as long as the work
-    read_batches(files.to_vec(), options, control)
 }
 
 /// Adds the points of `more`, with the columns that tiles need and all files have.

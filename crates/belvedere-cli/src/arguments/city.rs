@@ -31,7 +31,7 @@ pub(crate) enum CityStep {
 pub(crate) struct CityPlan {
     /// Tiles of the survey (.las .laz .copc.laz), a catalogue of tiles (.vpc), or a folder of tiles
     ///
-    /// Tiles may lie on a web server (https://...). COPC is best there: of it, each tile of the plan transfers only what it needs.
+    /// Tiles may lie on a web server (https://...): only the parts near each tile of the plan are transferred, after one look at the whole.
     #[arg(value_name = "CLOUD", required = true)]
     pub(crate) clouds: Vec<PathBuf>,
     /// Coordinate reference system, as EPSG:CODE or WKT [default: that of the files]

@@ -134,6 +134,31 @@ fn a_damaged_file_is_named_and_the_exit_status_says_so() {
 }
 
 #[test]
+fn pieces_of_files_save_reading_and_change_no_result() {
+    let place = Workplace::new();
+    assert_eq!(place.run("simulate village -o town --extent 300 --density 3").status, 0);
+    let plan = "city plan town/cloud.laz --sun 150,20 --tile-size 64 --cell 2";
+    place.summary(&format!("{plan} -o pieces"));
+    place.summary(&format!("{plan} -o whole"));
+    let mut whole: serde_json::Value = serde_json::from_str(&place.text("whole/plan.json")).unwrap();
+    let pieces = whole["inputs"][0].as_object_mut().unwrap().remove("pieces").unwrap();
+    let points = whole["inputs"][0]["points"].as_u64().unwrap();
+    assert_eq!(pieces.as_array().unwrap().len() as u64, points.div_ceil(50_000));
+    assert!(points > 200_000, "{points}");
+    place.write("whole/plan.json", &whole.to_string());
+    for run in ["pieces", "whole"] {
+        place.summary(&format!("city run {run}"));
+    }
+    let [found, expected] = ["pieces", "whole"].map(|run| results(&place.path(run)));
+    assert!(found.len() > 20);
+    assert!(found == expected, "the results differ");
+    // pieces of another file are no plan
+    whole["inputs"][0]["pieces"] = serde_json::json!([[0, 0, 1, 1]]);
+    place.write("whole/plan.json", &whole.to_string());
+    place.refusal(1, "city run whole", &["plan.json"]);
+}
+
+#[test]
 fn wrong_plans_are_refused_with_advice() {
     let place = Workplace::new();
     town(&place);

@@ -188,6 +188,40 @@ fn a_window_of_a_copc_kilometre_reads_at_most_three_times_its_bytes_and_has_all_
 }
 
 #[test]
+fn of_rows_that_hold_a_window_no_more_is_read_and_nothing_is_lost() {
+    // along x, as a scanner flies, so that a window holds few rows
+    let count = 300_000_u32;
+    let positions = (0..count).map(|i| {
+        let x = f64::from(i) / f64::from(count) * SIDE;
+        [x, SIDE * uniform(3, i.into()), 5.0].map(|v| v as f32)
+    });
+    let cloud = belvedere_data::PointCloud { positions: positions.collect(), ..Default::default() };
+    let options = window([400.0, 0.0], 100.0).with_frame(belvedere_data::Frame::default());
+    // and a piece far from it, as rectangles around rows are never quite as small as the rows
+    let rows = vec![118_000..155_000, 250_000..260_000, 290_000..999_999];
+    for name in ["cloud.las", "cloud.laz"] {
+        let mut bytes = Cursor::new(Vec::new());
+        belvedere_io::write_cloud(belvedere_io::Output::writer(name, &mut bytes), &cloud, &[]).unwrap();
+        let bytes = bytes.into_inner();
+        let read = |rows: Option<Vec<std::ops::Range<u64>>>| {
+            let read = AtomicU64::new(0);
+            let source = Source::reader(name, Counted(Cursor::new(&bytes), &read));
+            let source = if let Some(rows) = rows { source.with_likely_rows(rows) } else { source };
+            let (cloud, report) = read_cloud([source], &options, &Control::none()).unwrap();
+            (cloud.positions, report.left_out_count(), read.load(Ordering::Relaxed))
+        };
+        let (expected, left_out, whole) = read(None);
+        let (found, passed_over, part) = read(Some(rows.clone()));
+        assert!((2700..3300).contains(&expected.len()), "{name}: {}", expected.len());
+        assert_eq!(found, expected, "{name}");
+        assert_eq!(passed_over, left_out, "{name}");
+        // 57,000 of 300,000 rows; chunks of LAZ have 50,000: rows 100,000 to 200,000 and 250,000 to 300,000
+        let most = if name == "cloud.laz" { 0.55 } else { 0.2 };
+        assert!((part as f64) < most * whole as f64, "{name}: {part} of {whole} bytes");
+    }
+}
+
+#[test]
 fn a_damaged_hierarchy_is_refused_and_never_followed() {
     let nodes = nodes(12_000);
     let options = window([10.0, 10.0], 50.0);
