@@ -97,9 +97,7 @@ impl CloudBatches<'_> {
         let Some(source) = self.pending.pop_front() else { return Ok(None) };
         #[cfg(feature = "las")]
         if matches!(source.extension().as_str(), "las" | "laz") && source.folder().is_none() {
-            let mut source = source;
-            let rows = source.likely_rows.take();
-            let (mut whole, points) = las::open(source.open()?, rows, &reading)?;
+            let (mut whole, points) = las::open(source, &reading)?;
             self.systems.accept(&mut whole, &reading)?;
             self.open = Some((whole, points));
             return self.next_part();

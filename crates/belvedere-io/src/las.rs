@@ -69,7 +69,7 @@ impl<'a> LasFile<'a> {
 
     /// All points in file order, many at a time.
     pub(super) fn batches(self, extra: ExtraBytes) -> Result<Batches<'a>> {
-        let rows = iter::once(0..self.points_in_file()).collect();
+        let rows = iter::once(0..self.points_in_file());
         self.batches_of(extra, rows, None)
     }
 
@@ -87,7 +87,7 @@ impl<'a> LasFile<'a> {
         let low = std::array::from_fn(|i| bounds[i][0] - room[i]);
         let high = std::array::from_fn(|i| bounds[i][1] + room[i]);
         if are_given(&bounds) && !wanted.meets(low, high) {
-            return Ok((self.batches_of(extra, Vec::new(), None)?, all));
+            return Ok((self.batches_of(extra, iter::empty(), None)?, all));
         }
         let chunks = if self.header.compressed && all > 0 {
             copc::chunks_within(&self.name, &mut self.reader, &self.header, self.size, wanted)?
@@ -97,13 +97,14 @@ impl<'a> LasFile<'a> {
         let batches = match chunks {
             Some(chunks) => {
                 let within = chunks.iter().fold(0_u64, |sum, chunk| sum.saturating_add(chunk.points));
-                self.batches_of(extra, iter::once(0..within).collect(), Some(chunks))?
+                self.batches_of(extra, iter::once(0..within), Some(chunks))?
             }
-            None => {
-                let cut = |rows: Range<u64>| rows.start..rows.end.min(all);
-                let rows = rows.unwrap_or_else(|| iter::once(0..all).collect()).into_iter().map(cut).collect();
-                self.batches_of(extra, rows, None)?
-            }
+            None => match rows {
+                Some(rows) => {
+                    self.batches_of(extra, rows.into_iter().map(|rows| rows.start..rows.end.min(all)), None)?
+                }
+                None => self.batches_of(extra, iter::once(0..all), None)?,
+            },
         };
         let left = batches.records.left();
         Ok((batches, all.saturating_sub(left)))
@@ -113,11 +114,11 @@ impl<'a> LasFile<'a> {
     fn batches_of(
         self,
         extra: ExtraBytes,
-        rows: Vec<Range<u64>>,
+        rows: impl Iterator<Item = Range<u64>>,
         places: Option<Vec<ChunkPlace>>,
     ) -> Result<Batches<'a>> {
         let Self { name, reader, size, header, format } = self;
-        let rows: VecDeque<Range<u64>> = rows.into_iter().filter(|rows| !rows.is_empty()).collect();
+        let rows: VecDeque<Range<u64>> = rows.filter(|rows| !rows.is_empty()).collect();
         let transform = |i: usize| Transform { scale: header.scale[i], offset: header.offset[i] };
         let transforms = Vector { x: transform(0), y: transform(1), z: transform(2) };
         let batch = PointDataBuilder::new().with_format(format).with_transforms(transforms).build();
@@ -194,8 +195,8 @@ impl Batches<'_> {
 }
 
 /// The points of the source that `reading` asks for.
-pub(super) fn read(input: Input<'_>, rows: Option<Vec<Range<u64>>>, reading: &Reading<'_>) -> Result<Part> {
-    let (mut part, mut points) = open(input, rows, reading)?;
+pub(super) fn read(source: Source<'_>, reading: &Reading<'_>) -> Result<Part> {
+    let (mut part, mut points) = open(source, reading)?;
     // No more is reserved than the size of the file makes likely; columns grow where that is too little.
     let capacity = if points.selection.is_some() { 0 } else { usize::try_from(points.likely).unwrap_or(0) };
     let mut columns = points.columns(capacity);
@@ -266,13 +267,10 @@ fn check_bounds(mut part: Part, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> Resul
     Ok(part)
 }
 
-/// The points of a source, batch by batch, and what is known of all of them. Points of a window lie in `rows` only, where these are known.
-pub(super) fn open<'a>(
-    input: Input<'a>,
-    rows: Option<Vec<Range<u64>>>,
-    reading: &Reading<'_>,
-) -> Result<(Part, LasPoints<'a>)> {
-    let mut source = LasFile::open(input)?;
+/// The points of a source, batch by batch, and what is known of all of them.
+pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<(Part, LasPoints<'a>)> {
+    let rows = source.likely_rows.take();
+    let mut source = LasFile::open(source.open()?)?;
     let path = source.name.clone();
     let header = &source.header;
     let mut part = Part::new(&path, describe(&path, header));

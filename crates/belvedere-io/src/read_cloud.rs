@@ -254,11 +254,7 @@ pub(super) fn read_one(source: Source<'_>, reading: &Reading<'_>) -> Result<Part
     let part = match source.extension().as_str() {
         // the points of these files are selected batch by batch
         #[cfg(feature = "las")]
-        "las" | "laz" => {
-            let mut source = source;
-            let rows = source.likely_rows.take();
-            return las::read(source.open()?, rows, reading);
-        }
+        "las" | "laz" => return las::read(source, reading),
         #[cfg(feature = "ply")]
         "ply" => ply::read(source.open()?, reading),
         "xyz" | "txt" | "csv" => xyz::read(source.open()?, reading),

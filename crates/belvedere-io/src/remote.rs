@@ -24,9 +24,10 @@ const MOST_BYTES: u64 = 1 << 24;
 const MOST_WHOLE: u64 = 1 << 28;
 /// Time to wait before asking again, where a server was busy or a connection broke.
 const PAUSES: [Duration; 3] = [Duration::from_millis(300), Duration::from_secs(1), Duration::from_secs(3)];
-/// Longest wait for a connection, and for anything to come on it.
+/// Longest wait for a connection, for an answer, and for all of it: a whole file of the largest size at half a megabyte a second.
 const CONNECT: Duration = Duration::from_secs(20);
 const ANSWER: Duration = Duration::from_secs(60);
+const WHOLE_ANSWER: Duration = Duration::from_secs(600);
 
 /// Connections are kept open from one part to the next. The authorities that are trusted are those of the system.
 static AGENT: LazyLock<Agent> = LazyLock::new(|| {
@@ -43,7 +44,7 @@ static AGENT: LazyLock<Agent> = LazyLock::new(|| {
         .user_agent(concat!("belvedere/", env!("CARGO_PKG_VERSION")))
         .timeout_connect(Some(CONNECT))
         .timeout_recv_response(Some(ANSWER))
-        .timeout_recv_body(Some(ANSWER))
+        .timeout_recv_body(Some(WHOLE_ANSWER))
         .build();
     Agent::new_with_config(config)
 });
@@ -237,8 +238,11 @@ fn body(body: &mut Body, length: u64) -> std::result::Result<Vec<u8>, Failure> {
 }
 
 fn broken(error: Error) -> Failure {
+    let of_client = error.get_ref().and_then(|inner| inner.downcast_ref::<ureq::Error>());
+    // who was slow once will be slow again
+    let may_pass = !matches!(of_client, Some(ureq::Error::Timeout(_)));
     let what = format!("the connection to the server broke ({error}); try again");
-    Failure { error: Error::new(error.kind(), what), may_pass: true }
+    Failure { error: Error::new(error.kind(), what), may_pass }
 }
 
 fn lasting(what: String) -> Failure {
