@@ -1,7 +1,8 @@
 //! A truth that every airborne cloud carries: pulses that were left out when the model was built.
 //!
-//! The way of a pulse to its first return is free, and what lies just behind its last return on ground or a building is not
-//! seen from the scanner. Pulses that a method never saw therefore tell how often it blocks what is free and sees through
+//! The way of a pulse to its first return is free, and what lies just behind its last return is not
+//! seen from the scanner. Behind trees, fences and wires that is less certain than behind ground and buildings: a part of the beam may pass beside them, too weak for
+//! another return. Pulses that a method never saw therefore tell how often it blocks what is free and sees through
 //! what is solid. Neighbouring pulses that it did see lie close by: the test says nothing of space that no pulse reached.
 
 use belvedere::pulses::{Pulses, SensorPositions};
@@ -62,8 +63,7 @@ pub struct HeldOut {
     pub pulse_count: usize,
     /// Paths that are free: from before the first return to higher up the pulse.
     pub free: HeldOutPairs,
-    /// Places that are not seen, by how far they lie behind the last return, metres; the eye is the scanner. Only where
-    /// that return lies on ground or a building.
+    /// Places that are not seen, by how far they lie behind the last return, metres; the eye is the scanner.
     pub behind: Vec<(f64, HeldOutPairs)>,
 }
 
@@ -89,7 +89,7 @@ pub struct HeldOutScore {
     pub false_blocked_building: Tally,
     /// Those to anything else.
     pub false_blocked_other: Tally,
-    /// Places behind solid surfaces called visible, by depth.
+    /// Places behind last returns called visible, by depth.
     pub false_visible: Vec<FalseVisible>,
 }
 
@@ -102,6 +102,8 @@ pub struct FalseVisible {
     pub ground: Tally,
     /// Behind buildings.
     pub building: Tally,
+    /// Behind anything else, mostly trees.
+    pub other: Tally,
 }
 
 impl Tally {
@@ -188,7 +190,6 @@ pub fn split(
         }
         if let Some(row) = pulses.last_return(pulse)
             && let Some((from, towards, _)) = sight(row)
-            && surface(cloud, row) != Surface::Other
         {
             for (depth, pairs) in &mut held_out.behind {
                 pairs.push(along(from, towards, -*depth), scanner, surface(cloud, row));
@@ -223,12 +224,13 @@ pub fn score(method: &dyn Visibility, held_out: &HeldOut) -> Result<HeldOutScore
         of_surface.count(answer, Answer::Blocked);
     }
     for (depth, pairs) in &held_out.behind {
-        let mut at_depth = FalseVisible { depth: *depth, ground: Tally::default(), building: Tally::default() };
+        let [ground, building, other] = [Tally::default(); 3];
+        let mut at_depth = FalseVisible { depth: *depth, ground, building, other };
         for (answer, surface) in answers(method, pairs)? {
             match surface {
                 Surface::Ground => at_depth.ground.count(answer, Answer::Visible),
                 Surface::Building => at_depth.building.count(answer, Answer::Visible),
-                Surface::Other => {}
+                Surface::Other => at_depth.other.count(answer, Answer::Visible),
             }
         }
         score.false_visible.push(at_depth);

@@ -32,7 +32,7 @@ const CHEST: f32 = 1.5;
 /// Draws them into `folder`.
 pub(crate) fn draw(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|source| Error::Io { path: folder.to_owned(), source })?;
-    let place = Place::simulated(Preset::OldTown, 7)?;
+    let place = Place::simulated(Preset::OldTown, 7, None, false)?;
     let uncarved = MedialParams {
         making: BallParams::Shrunk(ShrinkParams { max_radius: f32::INFINITY, ..ShrinkParams::tau() }),
         ..MedialParams::cut_to_half_a_metre()

@@ -1,10 +1,12 @@
 //! What each rule of carved balls is worth: the same towns and questions with all rules, and with each left out.
 //!
 //! ```sh
-//! cargo run --release -p belvedere-baselines --example carving_rules -- village,town,old-town,towers 1,2,3 [VARIANT,…] [blame]
+//! cargo run --release -p belvedere-baselines --example carving_rules -- village,town,old-town,towers 1,2,3 [VARIANT,…] \
+//!     [SCANNER] [unclassified] [blame]
 //! ```
 //!
-//! prints the table of docs/methods/carving.md. With `blame` it says which surfaces hide what is called visible, and at which
+//! prints the table of docs/methods/carving.md. With a scanner of `belvedere compare --regimes`, such as `leaves` or `bare`, the town and its survey are those
+//! of the comparison, and `unclassified` takes away the classes of vegetation. With `blame` it says which surfaces hide what is called visible, and at which
 //! surfaces the balls sit that hide what is visible. `-- figures FOLDER` draws its pictures.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
@@ -17,7 +19,7 @@ use belvedere::query::{Answer, BlockRule, Viewer, Visibility};
 use belvedere::{Error, Result};
 use belvedere_baselines::agreement::{Counts, Rate};
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
-use belvedere_scenes::Preset;
+use belvedere_scenes::{Preset, Regime};
 use place::{Place, Question};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -55,8 +57,14 @@ fn main() -> Result<()> {
     {
         return figures::draw(Path::new(folder));
     }
+    let blames = arguments.iter().any(|argument| argument == "blame");
+    let unclassified = arguments.iter().any(|argument| argument == "unclassified");
+    let named = |argument: &String| Regime::ALL.into_iter().find(|regime| regime.name() == argument);
+    let regime = arguments.iter().find_map(named);
+    let is_switch = |argument: &String| argument == "blame" || argument == "unclassified" || named(argument).is_some();
+    let lists: Vec<&String> = arguments.iter().filter(|argument| !is_switch(argument)).collect();
     let list = |index: usize, usual: &str| -> Vec<String> {
-        let text = arguments.get(index).map_or(usual, String::as_str);
+        let text = lists.get(index).map_or(usual, |list| list.as_str());
         text.split(',').filter(|part| !part.is_empty()).map(str::to_owned).collect()
     };
     let presets: Vec<Preset> = list(0, "village,town,old-town,towers")
@@ -71,14 +79,13 @@ fn main() -> Result<()> {
         .collect::<Result<_>>()?;
     let seeds: Vec<u64> = list(1, "7").iter().filter_map(|seed| seed.parse().ok()).collect();
     let wanted = list(2, "");
-    let blames = arguments.iter().any(|argument| argument == "blame");
 
     let mut sums: BTreeMap<usize, Vec<Scores>> = BTreeMap::new();
     for &preset in &presets {
         for &seed in &seeds {
-            let place = Place::simulated(preset, seed)?;
+            let place = Place::simulated(preset, seed, regime, unclassified)?;
             for (number, (name, params)) in variants().into_iter().enumerate() {
-                if !wanted.is_empty() && !wanted.iter().any(|w| *w == name || w == "blame") {
+                if !wanted.is_empty() && !wanted.iter().any(|w| *w == name) {
                     continue;
                 }
                 let start = Instant::now();

@@ -10,8 +10,8 @@ use belvedere::view::to_sun;
 use belvedere::{PointCloud, Result};
 use belvedere_baselines::Survey;
 use belvedere_baselines::medial::MedialBaseline;
-use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Scene, Truth, town};
-use flown::flown;
+use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Regime, Scene, Truth};
+use flown::{flown, surveyed};
 use std::collections::BTreeMap;
 
 const EXTENT: f64 = 150.0;
@@ -44,10 +44,18 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    pub(crate) fn simulated(preset: Preset, seed: u64) -> Result<Self> {
-        let scene = town(&preset.params(EXTENT, seed));
-        let params = AirborneParams { seed, ..AirborneParams::covering(&scene, PULSES_PER_M2) };
-        let (cloud, scanner) = flown(&scene, &params)?;
+    /// A town with the usual survey from the air, or as `regime` has it; without the classes of its vegetation where it is `unclassified`.
+    pub(crate) fn simulated(preset: Preset, seed: u64, regime: Option<Regime>, unclassified: bool) -> Result<Self> {
+        let usual = preset.params(EXTENT, seed);
+        let params = regime.map_or_else(|| usual.clone(), |regime| regime.town(usual.clone()));
+        let scene = regime.unwrap_or(Regime::Air).scene(&params);
+        let (mut cloud, scanner) = match regime {
+            Some(regime) => surveyed(&regime.scan(&scene, &params, PULSES_PER_M2))?,
+            None => flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, PULSES_PER_M2) })?,
+        };
+        if unclassified && let Some(classes) = &mut cloud.attributes.classification {
+            classes.iter_mut().filter(|class| (3..=5).contains(*class)).for_each(|class| *class = 1);
+        }
         let truth = Truth::new(&scene);
         let mut place = Self {
             bounds: cloud.bounds().unwrap_or_default(),

@@ -7,7 +7,7 @@ use belvedere::trajectory::Trajectory;
 use belvedere::vector::{length, sub};
 use belvedere::{Attributes, Error, GpsTimeKind, PointCloud, Result};
 use belvedere_baselines::Survey;
-use belvedere_baselines::held_out::{HeldOut, HeldOutParams, HeldOutScore, score, split};
+use belvedere_baselines::held_out::{FalseVisible, HeldOut, HeldOutParams, HeldOutScore, score, split};
 use belvedere_baselines::hidden_points::{HiddenPoints, HiddenPointsParams};
 use belvedere_scenes::{AirborneParams, Material, Scene, TownParams, Truth, scan_airborne, town};
 
@@ -104,6 +104,8 @@ fn what_exact_rays_get_wrong_they_get_wrong_in_crowns() {
     assert!(found.false_blocked_other.share() > 0.01 && found.false_blocked_other.wrong_count > of_opaque, "{found:?}");
     assert!(found.false_blocked_building.share() < 0.005 && found.false_blocked_ground.share() < 0.005, "{found:?}");
     assert!(found.false_visible.iter().all(|at_depth| at_depth.ground.share() < 0.005), "{found:?}");
+    // what is behind opaque crowns is hidden, also from within them
+    assert!(found.false_visible.iter().all(|at| at.other.answered_count > 100 && at.other.share() < 0.02), "{found:?}");
 }
 
 #[test]
@@ -137,16 +139,14 @@ fn answers_that_never_change_are_all_right_or_all_wrong() {
     let held_out = held_out(&flown(is_solid));
     let blind = score(&Always(Answer::Blocked), &held_out).unwrap();
     assert_eq!(blind.false_blocked.wrong_count, held_out.free.targets.len());
-    assert!(blind.false_visible.iter().all(|at| at.ground.wrong_count + at.building.wrong_count == 0));
+    let wrong_behind = |at: &FalseVisible| at.ground.wrong_count + at.building.wrong_count + at.other.wrong_count;
+    assert!(blind.false_visible.iter().all(|at| wrong_behind(at) == 0));
     let by_surface = [blind.false_blocked_ground, blind.false_blocked_building, blind.false_blocked_other];
     assert_eq!(by_surface.map(|tally| tally.wrong_count).iter().sum::<usize>(), blind.false_blocked.wrong_count);
     let see_through = score(&Always(Answer::Visible), &held_out).unwrap();
     assert_eq!(see_through.false_blocked.wrong_count, 0);
     for (at, (depth, pairs)) in see_through.false_visible.iter().zip(&held_out.behind) {
-        assert_eq!(
-            (at.depth.to_bits(), at.ground.wrong_count + at.building.wrong_count),
-            (depth.to_bits(), pairs.targets.len())
-        );
+        assert_eq!((at.depth.to_bits(), wrong_behind(at)), (depth.to_bits(), pairs.targets.len()));
     }
     let silent = score(&Always(Answer::OutsideView), &held_out).unwrap();
     assert_eq!(silent.false_blocked.undecided_count, held_out.free.targets.len());

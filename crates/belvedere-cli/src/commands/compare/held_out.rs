@@ -101,6 +101,9 @@ fn shares(score: &HeldOutScore, held_out: &HeldOut) -> Vec<(String, Option<f64>)
     for at in &score.false_visible {
         shares.push((format!("{} m behind ground", at.depth), share(&at.ground)));
     }
+    for at in &score.false_visible {
+        shares.push((format!("{} m behind other", at.depth), share(&at.other)));
+    }
     let undecided = score.false_blocked.undecided_count as f64 / held_out.free.targets.len().max(1) as f64;
     shares.push(("no answer".to_owned(), Some(undecided)));
     shares

@@ -429,19 +429,22 @@ impl Found {
             let rows: Vec<_> = self.held_out.iter().filter(|result| result.cloud == *cloud).collect();
             let longest = rows.iter().max_by_key(|row| row.shares.len());
             let names = longest.map(|row| row.shares.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>());
+            let names = names.unwrap_or_default();
             let (pulses, known) = rows.first().map_or((0, String::new()), |r| (r.pulses, percent(r.scanner_known)));
             let mut table = Table::new(
                 &format!("Held-out pulses of {cloud}, %"),
                 &format!(
                     "Built from nine tenths of the pulses, tested with the others ({pulses}; the scanner is known for {known} % of \
                      all). False-blocked: paths from 30 m to 0.3 m in front of the first return, by its class. False-visible: \
-                     points behind the last return of a pulse that are called visible from the scanner."
+                     points behind the last return of a pulse that are called visible from the scanner. Other: mostly trees, \
+                     where a weak part of the beam may pass beside the last return."
                 ),
-                [vec!["method"], names.unwrap_or_default()].concat(),
+                [vec!["method"], names.clone()].concat(),
             );
             for row in rows.iter().filter(|row| row.failed.is_none()) {
-                let cells = row.shares.iter().map(|(_, share)| share.map_or("–".to_owned(), percent));
-                table.add(&row.title, cells);
+                let share =
+                    |name: &str| row.shares.iter().find(|(other, _)| other == name).and_then(|(_, share)| *share);
+                table.add(&row.title, names.iter().map(|name| share(name).map_or("–".to_owned(), percent)));
             }
             table
         };
