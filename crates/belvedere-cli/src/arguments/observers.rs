@@ -32,11 +32,17 @@ pub(crate) struct LineOfSight {
     /// detected from the shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Result")]
     pub(crate) ground: GroundChoice,
+    /// Terrain beyond the cloud: elevation raster (DTM) in the coordinate system of the cloud or in degrees (.tif)
+    ///
+    /// Ends of lines may then lie on it, and the terrain blocks beyond the cloud. Its heights are bilinear between the middles of its cells. Within the extent of the
+    /// cloud, and one cell around it, the raster blocks nothing. Cells without a value block nothing.
+    #[arg(long, value_name = "DTM", help_heading = "Far terrain")]
+    pub(crate) terrain: Option<PathBuf>,
     /// Table with a row for each pair, in their order (.csv)
     ///
     /// Columns: ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line, 4 outside the cloud), first_block_range_m from A, unproven_m (not with
     /// --unproven as-visible, which is faster), fresnel_free_percent (with --frequency-ghz), block_x, block_y, block_z, and block_ball and block_source: the rows of the first
-    /// blocking ball and of the point that it touches.
+    /// blocking ball and of the point that it touches. With --terrain: block_terrain, 1 where the terrain blocks first.
     #[arg(short, long, value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]

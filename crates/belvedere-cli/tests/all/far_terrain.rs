@@ -133,6 +133,50 @@ fn terrain_beyond_the_cloud_is_visible_where_nothing_hides_it() {
 }
 
 #[test]
+fn lines_of_sight_reach_the_terrain_beyond_the_cloud() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    write_terrain(&place, "dtm.tif", 28992, 0.0, range);
+    let ([x, y, z], [_, mast, _]) = (at(0.0, 0.0, 12.0), at(0.0, -1800.0, 0.0));
+    let flags = format!("line-of-sight {HOUSE} --terrain dtm.tif");
+    // a mast 290 m behind the crest: from h above it the line to 12 m lies 62.51 m lower over the crest, and 29 mm for the earth: h (1 - 290 / 1800) = 62.54
+    for (height, answer) in [(74.4, "blocked"), (74.7, "visible")] {
+        let ends = format!("--observer {x},{mast} --observer-height {height} --target {x},{y},{z}");
+        assert_eq!(place.summary(&format!("{flags} {ends}"))["line"]["answer"], answer);
+        let ends = format!("--target {x},{mast} --target-height {height} --observer {x},{y},{z}");
+        assert_eq!(place.summary(&format!("{flags} {ends}"))["line"]["answer"], answer);
+    }
+    let (west, east, far) = (x - 1000.0, x + 1000.0, x + 3000.0);
+    let rows = [
+        format!("{x},{mast},,{x},{y},{z}"),
+        format!("{x},{y},{z},{x},{mast},480"),
+        format!("{west},{y},,{east},{},", y + 1500.0),
+        format!("{x},{y},{z},{far},{y},100"),
+        format!("{x},{y},{z},{far},{y},"),
+    ];
+    place.write("pairs.csv", format!("ax,ay,az,bx,by,bz\n{}\n", rows.join("\n")));
+    let run = place.run(&format!("{flags} --pairs pairs.csv -o lines.csv"));
+    assert!(run.status == 0 && run.stderr.contains("outside the cloud and the terrain"), "{run:?}");
+    assert_eq!(column(&place, "lines.csv", "answer"), [0.0, 1.0, 1.0, 4.0, 3.0]);
+    let [az, bz] = ["az", "bz"].map(|name| column(&place, "lines.csv", name));
+    assert_eq!((az[0], az[2], bz[2], bz[4].is_nan()), (401.7, 1.7, 0.0, true));
+    // the first leaves its hill, 1.7 m below its eye, after 7.848 m
+    let blocked = |name: &str| column(&place, "lines.csv", name)[0];
+    assert!((blocked("first_block_range_m") - 8.030).abs() < 2e-3 && (blocked("block_z") - 400.0).abs() < 2e-3);
+    assert!((blocked("block_y") - mast - 7.848).abs() < 2e-3 && blocked("block_ball").is_nan());
+    let by_terrain = column(&place, "lines.csv", "block_terrain");
+    assert!(by_terrain[0] == 1.0 && by_terrain[1..].iter().all(|v| v.is_nan()), "{by_terrain:?}");
+    let ends = format!("--observer {x},{mast} --target {x},{y},{z}");
+    let run = place.summary(&format!("{flags} {ends} --profile-out profile.csv --distance-step-m 10"));
+    assert_eq!(run["line"]["block_terrain"], true);
+    let [ground, blocked] = ["ground", "blocked"].map(|name| column(&place, "profile.csv", name));
+    assert_eq!((ground.len(), ground[0], ground[29], ground[30], ground[31]), (181, 400.0, 400.0, 200.0, 0.0));
+    assert!(blocked[0] == 0.0 && blocked[1..30].iter().all(|v| *v == 1.0) && blocked[31..60] == [0.0; 29]);
+    place.refusal(2, &format!("{flags} {ends} --frequency-ghz 5.8"), &["--frequency-ghz", "--terrain"]);
+    place.refusal(1, &format!("line-of-sight {HOUSE} --terrain missing.tif {ends}"), &["missing.tif"]);
+}
+
+#[test]
 fn mountains_are_ground_in_the_view_of_a_window_and_maps_name_them() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
