@@ -201,8 +201,9 @@ pub(crate) struct Viewshed {
     pub(crate) far_output: Vec<PathBuf>,
     /// Terrain beyond the cloud: elevation raster (DTM) in the coordinate system of the cloud or in degrees (.tif)
     ///
-    /// Its heights are bilinear between the middles of its cells. Within the extent of the cloud, and one cell around it, the raster blocks nothing. Cells without a value block nothing.
-    #[arg(long, value_name = "DTM", requires = "far_output", help_heading = "Far terrain")]
+    /// Observers, or the target, may then be on it. Its heights are bilinear between the middles of its cells. Within the extent of the cloud, and one cell around it, the
+    /// raster blocks nothing. Cells without a value block nothing.
+    #[arg(long, value_name = "DTM", help_heading = "Far terrain")]
     pub(crate) terrain: Option<PathBuf>,
     /// Also write the minimum visible height above ground of each cell, in metres (.tif .npy)
     ///

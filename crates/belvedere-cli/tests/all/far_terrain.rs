@@ -119,7 +119,6 @@ fn terrain_beyond_the_cloud_is_visible_where_nothing_hides_it() {
     assert_eq!((raster.width(), raster.get(25, 0), raster.get(0, 0)), (50, Some(2), Some(65_535)));
     for (wrong, status, parts) in [
         ("--far-output none.tif", 2, &["--terrain"][..]),
-        ("--terrain dtm.tif -o none.tif", 2, &["--far-output"]),
         ("--terrain dtm.tif --far-output none.laz", 2, &["--far-output", "none.laz"]),
         ("--terrain dtm.tif --far-output none.tif --max-distance 9", 2, &["--max-distance", "2 x 2"]),
         ("--terrain missing.tif --far-output none.tif -o none.png", 1, &["missing.tif"]),
@@ -174,6 +173,49 @@ fn lines_of_sight_reach_the_terrain_beyond_the_cloud() {
     assert!(blocked[0] == 0.0 && blocked[1..30].iter().all(|v| *v == 1.0) && blocked[31..60] == [0.0; 29]);
     place.refusal(2, &format!("{flags} {ends} --frequency-ghz 5.8"), &["--frequency-ghz", "--terrain"]);
     place.refusal(1, &format!("line-of-sight {HOUSE} --terrain missing.tif {ends}"), &["missing.tif"]);
+}
+
+#[test]
+fn observers_and_targets_of_viewsheds_stand_on_the_terrain() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    write_terrain(&place, "dtm.tif", 28992, 0.0, range);
+    let ([x, y, z], [_, hill, _]) = (at(0.0, 0.0, 12.0), at(0.0, -1800.0, 0.0));
+    let flags = format!("viewshed {HOUSE} --terrain dtm.tif");
+    // from the hill its top is seen, 25 rows of 200 cells, and nothing of the plain below the crest
+    let run = place.summary(&format!("{flags} --observer {x},{hill} --far-output far.tif"));
+    let rounded = |name: &str| run["observers"][name].clone();
+    assert_eq!((rounded("eye")[2].as_f64(), rounded("above_ground_m").as_f64()), (Some(401.7), Some(1.7)));
+    assert_eq!(run["far_cells"]["visible"], 5000);
+    let run = place.summary(&format!("{flags} --target {x},{hill},401.7 --observer-height 0 --far-output from.tif"));
+    assert_eq!(run["far_cells"]["visible"], 5000);
+    assert_eq!(place.bytes("far.tif"), place.bytes("from.tif"));
+    // of the cloud, cells are seen from a mast of 90 m, and none from the ground (75 m: the line to 0 m lies 0.4 m above the crest at 77 m)
+    let codes = |observer: &str| {
+        let run = place.run(&format!("{flags} {observer} --cell 1 -o seen.tif"));
+        assert_eq!(run.status, 0, "{run:?}");
+        let raster = read_tif_u8(place.path("seen.tif").as_path()).unwrap();
+        [0, 1].map(|code: u8| raster.values().iter().filter(|v| **v == code).count())
+    };
+    let [blocked, visible] = codes(&format!("--observer {x},{hill},490"));
+    assert!(visible > blocked && blocked > 0, "{blocked} {visible}");
+    let [hidden, seen] = codes(&format!("--observer {x},{hill}"));
+    assert_eq!((hidden, seen), (blocked + visible, 0));
+    // with one in the cloud they count together
+    let both = format!("--observer {x},{hill},490 --observer {x},{y},{z}");
+    place.summary(&format!("{flags} {both} --cell 1 -o counts.tif --masks masks.tif"));
+    let counts = read_tif_u16(place.path("counts.tif").as_path()).unwrap();
+    assert!(counts.values().contains(&2));
+    let run = place.run(&format!("{flags} --observer {x},{y},{z} --cell 1 -o near.tif"));
+    assert!(run.status == 0 && run.stderr.contains("--terrain changes nothing"), "{run:?}");
+    for (wrong, status, parts) in [
+        (format!("--observer {x},{hill},390 -o none.tif"), 1, &["10.00 m below the ground"][..]),
+        (format!("--observer {x},{},50 -o none.tif", hill - 900.0), 1, &["outside the cloud"]),
+        (format!("--observer {x},{hill} -o none.tif --heights none.npy"), 2, &["--heights", "observer 1", "terrain"]),
+    ] {
+        place.refusal(status, &format!("{flags} {wrong}"), parts);
+    }
+    assert!(!place.path("none.tif").exists() && !place.path("none.npy").exists());
 }
 
 #[test]

@@ -1,11 +1,15 @@
-//! Lines of sight with ends on the terrain beyond a cloud, against closed forms and lines followed step by step.
+//! Lines of sight and viewsheds with ends on the terrain beyond a cloud, against closed forms and lines followed step by step.
 
-use crate::far_viewsheds::{MapBox, around, heights_above, open_scene, sag, scene};
+use crate::far_viewsheds::{MapBox, around, heights_above, observer, open_scene, sag, scene};
 use crate::mountains::{grid, mountains};
+use belvedere::apps::eyes::{EyeFault, fault_of_target, skip_unfit_eyes, skip_unfit_far_eyes};
 use belvedere::apps::profile::sight_profile;
+use belvedere::apps::viewshed::{Observer, ViewshedParams, least_visible_heights, viewshed};
 use belvedere::control::Control;
+use belvedere::ground::{Ground, MapGrid};
 use belvedere::query::{Answer, Blocker, EarthParams, LineOfSight, MedialScene, RadioWave};
 use belvedere::random::uniform;
+use belvedere::raster::Raster;
 
 fn line(scene: &MedialScene, from: [f64; 3], to: [f64; 3], earth: &EarthParams) -> LineOfSight {
     let found = scene.line_of_sight(from, to, earth).unwrap();
@@ -156,6 +160,102 @@ fn places_without_terrain_below_the_cloud_or_above_each_other_have_no_line() {
     assert_eq!(zones(&[[inside, [4400.0, -4400.0, 20.0]]]).unwrap(), [1.0]);
     let error = zones(&[[inside, [4400.0, -4400.0, 20.0]], [inside, far]]).unwrap_err().to_string();
     assert!(error.contains("number 2") && error.contains("within the cloud"), "{error}");
+}
+
+#[test]
+fn eyes_on_terrain_can_look_unless_they_are_below_it() {
+    let scene = open_scene(grid(401, 20.0, |x, _| x / 100.0), ([4000.0, -4600.0], [4600.0, -4000.0]));
+    let eyes = [
+        [1000.0, -1000.0, 11.7],
+        [1000.0, -1000.0, 9.9],
+        [1000.0, -1000.0, 9.0],
+        [1000.0, -1000.0, f64::NAN],
+        [9000.0, -1000.0, 11.7],
+        [4300.0, -4300.0, 50.0],
+    ];
+    let mut far = eyes;
+    let report = skip_unfit_far_eyes(&scene, None, &mut far, &Control::none()).unwrap();
+    let faults: Vec<_> = report.faults.iter().map(|skipped| (skipped.row, skipped.fault)).collect();
+    assert_eq!(faults, [(2, EyeFault::BelowGround(1.0)), (3, EyeFault::NoGround), (4, EyeFault::OutsideCloud)]);
+    assert_eq!(eyes.map(|eye| fault_of_target(&scene, eye).is_some()), [false, false, true, true, true, false]);
+    // where lines of sight end in the cloud, all of these are outside it
+    let mut near = eyes;
+    assert_eq!(skip_unfit_eyes(&scene, None, &mut near, &Control::none()).unwrap().skipped_outside_cloud, 5);
+}
+
+#[test]
+fn an_observer_behind_a_ridge_sees_of_the_cloud_what_lies_above_the_line_over_its_crest() {
+    // the crest at x = 5000 is 90 m high; the cloud lies east of it with one ball
+    let ridge = |x: f64, _: f64| if x == 5000.0 { 90.0 } else { 0.0 };
+    let cloud: MapBox = ([6000.0, -4300.0], [6600.0, -3700.0]);
+    let (center, radius) = ([6250.0, -4000.0, 70.0], 40.0);
+    let scene = scene(grid(501, 20.0, ridge), cloud, center, radius);
+    let eye = [2000.0, -4010.0, 140.0];
+    let targets: Vec<[f32; 3]> = (0..4000)
+        .map(|i| {
+            let [x, y, z] = [0, 1, 2].map(|k| uniform(11, 3 * i + k));
+            [6000.0 + 600.0 * x, -4300.0 + 600.0 * y, 120.0 * z].map(|v| v as f32)
+        })
+        .collect();
+    for earth in [EarthParams::default(), EarthParams::flat()] {
+        let params = ViewshedParams::default().with_earth(earth);
+        let look = |observers: &[Observer]| viewshed(&scene, observers, &targets, &params, &Control::none()).unwrap();
+        let found = look(&[observer(eye)]);
+        let mut counts = [0; 3];
+        for (target, &answer) in targets.iter().zip(&found.answers) {
+            let target = target.map(f64::from);
+            let span = (target[0] - eye[0]).hypot(target[1] - eye[1]);
+            let share = 3000.0 / (target[0] - eye[0]);
+            let over = eye[2] + (target[2] - eye[2]) * share - sag(&earth, share * span, span) - 90.0;
+            let to: [f64; 3] = std::array::from_fn(|k| target[k] - eye[k]);
+            let ball: [f64; 3] = std::array::from_fn(|k| center[k] - eye[k]);
+            let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let beside = (dot(ball, ball) - dot(ball, to).powi(2) / dot(to, to)).max(0.0).sqrt();
+            // the line sags by less than 0.4 m where the ball is, 350 m and more from the target
+            if over.abs() < 1e-3 || (beside - radius).abs() < 0.5 || (target[0] - center[0]).abs() < 60.0 {
+                continue;
+            }
+            let is_behind_ball = target[0] > center[0] && beside < radius;
+            let expected = over > 0.0 && !is_behind_ball;
+            assert_eq!(answer == Answer::Visible, expected, "{target:?} {over} {beside}");
+            counts[if over < 0.0 { 0 } else { 1 + usize::from(is_behind_ball) }] += 1;
+        }
+        assert!(counts.iter().all(|&count| count > 50), "{counts:?}");
+        // many observers, in the cloud and on the terrain, have the counts of each alone
+        let mut observers: Vec<Observer> =
+            (0..70).map(|i| observer([1000.0 + 50.0 * f64::from(i), -4000.0 - 10.0 * f64::from(i), 140.0])).collect();
+        observers.extend((0..6).map(|i| observer([6050.0 + 90.0 * f64::from(i), -4200.0, 60.0])));
+        observers.push(observer([f64::NAN; 3]));
+        let all = look(&observers);
+        let each: Vec<_> = observers.iter().map(|&one| look(&[one])).collect();
+        assert_eq!(all.seen_counts, each.iter().flat_map(|one| one.seen_counts.clone()).collect::<Vec<_>>());
+        for (i, &count) in all.counts.iter().enumerate() {
+            assert_eq!(count, each.iter().map(|one| one.counts[i]).sum::<u32>());
+        }
+        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        assert_eq!(one.install(|| look(&observers)), all);
+        // nobody in the cloud sees otherwise than without terrain
+        let near = &observers[70..76];
+        let bare = MedialScene::of_tree(scene.tree().with_rule(scene.params()).unwrap())
+            .with_coverage(scene.coverage().copied());
+        assert_eq!(viewshed(&bare, near, &targets, &params, &Control::none()).unwrap(), look(near));
+    }
+    // targets beyond the cloud are those of another function, whoever looks
+    for eye in [eye, [6100.0, -4200.0, 60.0], [3000.0, -4000.0, 90_000.0]] {
+        let params = ViewshedParams::default();
+        let beyond = [[5500.0, -4000.0, 120.0], [6300.0, -4100.0, 119.0]];
+        let found = viewshed(&scene, &[observer(eye)], &beyond, &params, &Control::none()).unwrap();
+        let outside = if eye[2] > 1e4 { Answer::OutsideView } else { Answer::OutsideCloud };
+        assert_eq!(found.answers[0], outside, "{eye:?}");
+    }
+    // heights that a thing must have are not known there
+    let cells = MapGrid { corner: [6000.0, -3700.0], cell: 100.0, width: 6, height: 6 };
+    let heights = Raster::filled(6, 6, 0.0);
+    let ground = Ground { grid: cells, gaps: heights.clone(), heights };
+    let of =
+        |eye| least_visible_heights(&scene, &[observer(eye)], &ground, 50.0, &EarthParams::flat(), &Control::none());
+    assert!(of([6100.0, -4200.0, 60.0]).is_ok());
+    assert!(of(eye).unwrap_err().to_string().contains("in the cloud"));
 }
 
 #[test]
