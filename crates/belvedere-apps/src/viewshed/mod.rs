@@ -82,6 +82,11 @@ pub fn tested_height(height: f64) -> f64 {
     if height >= 0.0 { height.max(GROUND_TOLERANCE) } else { height }
 }
 
+/// What a raster of what one observer sees says of itself.
+pub const SEEN: &str = "1 visible, 0 blocked, 2 unproven, 255 nodata";
+/// What a raster of several observers says of itself.
+pub const SEEN_BY: &str = "number of observers that see the cell, 65535 nodata";
+
 /// Default side of a cell, metres: what points of usual airborne surveys (0.3 to 0.5 m apart) can tell.
 pub const CELL: f64 = 0.5;
 
