@@ -1,6 +1,6 @@
 //! Flags of lines of sight and viewsheds.
 
-use super::{North, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, finite, length};
+use super::{North, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, height, length};
 use belvedere::ground::GroundPoints;
 use belvedere::query::{Curvature, MOST_RANDOM_PAIRS, RadioWave};
 use clap::{Args, ValueEnum};
@@ -75,10 +75,10 @@ pub(crate) struct Lines {
 #[command(next_help_heading = "Lines of sight (one of)")]
 pub(crate) struct EndHeights {
     /// Height of observers without Z above the ground in metres [default: 1.7]
-    #[arg(long, value_name = "M", value_parser = finite::<f64>, conflicts_with = "random", allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = height::<f64>, conflicts_with = "random", allow_negative_numbers = true)]
     pub(crate) observer_height: Option<f64>,
     /// Height of targets without Z above the ground in metres [default: 0]
-    #[arg(long, value_name = "M", value_parser = finite::<f64>, conflicts_with = "random", allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = height::<f64>, conflicts_with = "random", allow_negative_numbers = true)]
     pub(crate) target_height: Option<f64>,
 }
 
@@ -250,10 +250,10 @@ pub(crate) struct Looking {
     #[arg(long = "distance-step-m", value_name = "M", requires = "observers", value_parser = above_zero::<f64>, allow_negative_numbers = true)]
     pub(crate) step: Option<f64>,
     /// Height of observers above the ground in metres [default: 1.7]
-    #[arg(long, value_name = "M", value_parser = finite::<f64>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = height::<f64>, allow_negative_numbers = true)]
     pub(crate) observer_height: Option<f64>,
     /// Height of targets above the ground in metres [default: 0]
-    #[arg(long, value_name = "M", value_parser = finite::<f64>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = height::<f64>, allow_negative_numbers = true)]
     pub(crate) target_height: Option<f64>,
     /// Maximum horizontal distance in metres [default: no limit]
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true)]

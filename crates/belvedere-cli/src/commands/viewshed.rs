@@ -57,7 +57,6 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
         true => arguments.looking.observer_height.unwrap_or(OBSERVER_HEIGHT),
         false => arguments.looking.target_height.unwrap_or(TARGET_HEIGHT),
     };
-    flagged("--target-height, --observer-height", finite(target_height))?;
     let profile = arguments.scene.profile.into();
     let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
     let who = if is_reverse { "target" } else { "observer" };
@@ -190,14 +189,6 @@ fn check_far_observers(
         ));
     }
     Ok(())
-}
-
-fn finite(height: f64) -> belvedere::Result<()> {
-    if height.is_finite() {
-        return Ok(());
-    }
-    let value = height.to_string();
-    Err(belvedere::Error::InvalidParameter { name: "height above the ground", value, expected: "finite" })
 }
 
 /// Makes the eyes of observers that cannot look NaN. What is seen of a target often is its inside: only the cloud's limits count for it.

@@ -2,9 +2,11 @@
 
 use crate::far_viewsheds::{MapBox, around, heights_above, observer, open_scene, sag, scene};
 use crate::mountains::{grid, mountains};
+use belvedere::PointCloud;
 use belvedere::apps::eyes::{EyeFault, fault_of_target, skip_unfit_eyes, skip_unfit_far_eyes};
 use belvedere::apps::profile::sight_profile;
-use belvedere::apps::viewshed::{Observer, ViewshedParams, least_visible_heights, viewshed};
+use belvedere::apps::targets::{CellParams, Targets};
+use belvedere::apps::viewshed::{Observer, ViewshedParams, far_viewshed, least_visible_heights, viewshed};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::query::{Answer, Blocker, EarthParams, LineOfSight, MedialScene, RadioWave};
@@ -256,6 +258,27 @@ fn an_observer_behind_a_ridge_sees_of_the_cloud_what_lies_above_the_line_over_it
         |eye| least_visible_heights(&scene, &[observer(eye)], &ground, 50.0, &EarthParams::flat(), &Control::none());
     assert!(of([6100.0, -4200.0, 60.0]).is_ok());
     assert!(of(eye).unwrap_err().to_string().contains("in the cloud"));
+}
+
+#[test]
+fn targets_below_the_ground_are_refused() {
+    let scene = open_scene(grid(101, 20.0, |_, _| 0.0), ([800.0, -1200.0], [1200.0, -800.0]));
+    let eye = [observer([1000.0, -1000.0, 20.0])];
+    let terrain = scene.far_terrain().grid().unwrap();
+    let heights = Raster::filled(2, 2, 0.0);
+    let grid = MapGrid { corner: [900.0, -900.0], cell: 50.0, width: 2, height: 2 };
+    let ground = Ground { grid, gaps: heights.clone(), heights };
+    let cloud = PointCloud { positions: vec![[950.0, -950.0, 0.0]], ..PointCloud::default() };
+    let (params, control) = (ViewshedParams::default(), Control::none());
+    for height in [-1.0, f64::NAN, f64::INFINITY] {
+        let far = far_viewshed(&scene, &eye, terrain, height, &params, &control).map(drop);
+        let near =
+            Targets::of_cells(&cloud, ground.clone(), &CellParams::default().with_height(height), &control).map(drop);
+        for result in [far, near] {
+            let error = result.unwrap_err().to_string();
+            assert!(error.contains("0 metres or more"), "{error}");
+        }
+    }
 }
 
 #[test]
