@@ -92,9 +92,30 @@ pub fn skip_unfit_eyes(
     eyes: &mut [[f64; 3]],
     control: &Control<'_>,
 ) -> Result<EyesReport> {
+    skip(eyes, control, |place| fault_of(scene, ground, place))
+}
+
+/// The same for eyes whose lines of sight may leave the cloud: those on far terrain ([`MedialScene::is_on_far_terrain`]) can look unless they lie below it.
+///
+/// # Errors
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+pub fn skip_unfit_far_eyes(
+    scene: &MedialScene,
+    ground: Option<&Ground>,
+    eyes: &mut [[f64; 3]],
+    control: &Control<'_>,
+) -> Result<EyesReport> {
+    skip(eyes, control, |place| far_fault_of(scene, ground, place))
+}
+
+fn skip(
+    eyes: &mut [[f64; 3]],
+    control: &Control<'_>,
+    fault_of: impl Fn([f64; 3]) -> Option<EyeFault> + Sync,
+) -> Result<EyesReport> {
     let fault = |(row, &place): (usize, &[f64; 3])| {
         control.check()?;
-        Ok(fault_of(scene, ground, place).map(|fault| SkippedEye { row, place, fault }))
+        Ok(fault_of(place).map(|fault| SkippedEye { row, place, fault }))
     };
     let faults: Vec<Option<SkippedEye>> = eyes.par_iter().enumerate().map(fault).collect::<Result<_>>()?;
     let faults: Vec<SkippedEye> = faults.into_iter().flatten().collect();
@@ -134,10 +155,22 @@ pub fn fault_of(scene: &MedialScene, ground: Option<&Ground>, place: [f64; 3]) -
     (depth > TOLERANCE.max(scene.params().shell)).then(|| EyeFault::InsideObstacle(rounded(depth, 3)))
 }
 
-/// Why a target at `place`, local metres, cannot be looked at from anywhere. Other than eyes, targets may lie inside an obstacle: often it is they that are seen.
+/// The same where lines of sight may leave the cloud.
+fn far_fault_of(scene: &MedialScene, ground: Option<&Ground>, place: [f64; 3]) -> Option<EyeFault> {
+    let Some(terrain) = scene.far_terrain().grid().filter(|_| scene.is_on_far_terrain(place)) else {
+        return fault_of(scene, ground, place);
+    };
+    if place[2].is_nan() {
+        return Some(EyeFault::NoGround);
+    }
+    let below = terrain.height_at([place[0], place[1]]).map(|height| height - place[2]);
+    below.filter(|below| *below > TOLERANCE).map(|below| EyeFault::BelowGround(rounded(below, 3)))
+}
+
+/// Why a target at `place`, local metres, in the cloud or on far terrain, cannot be looked at from anywhere. Other than eyes, targets may lie inside an obstacle: often it is they that are seen.
 #[must_use]
 pub fn fault_of_target(scene: &MedialScene, place: [f64; 3]) -> Option<EyeFault> {
-    fault_of(scene, None, place).filter(|fault| !matches!(fault, EyeFault::InsideObstacle(_)))
+    far_fault_of(scene, None, place).filter(|fault| !matches!(fault, EyeFault::InsideObstacle(_)))
 }
 
 #[cfg(test)]

@@ -15,6 +15,8 @@ use std::f64::consts::TAU;
 /// # Source
 /// Auwers 1891, as the almanacs have it.
 pub const SUN_RADIUS: f64 = 959.63 / 3600.0 * std::f64::consts::PI / 180.0;
+/// What a raster of light says of itself.
+pub const LIT: &str = "share of the sun, 0 in shadow";
 /// Points that stand for the disc: shares of light to 1/64.
 const DISC_POINTS: usize = 64;
 /// Targets handed to a thread at once.

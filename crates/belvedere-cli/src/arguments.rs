@@ -34,7 +34,7 @@ pub(crate) use difference::Difference;
 pub(crate) use envelope::{Comfort, Corners, Envelope};
 pub(crate) use irradiance::{ClearSkyChoice, Irradiance, RadiationModel};
 pub(crate) use numbers::Numbers;
-use numbers::{above_zero, at_least_one, at_most, finite, known_crs, length, location};
+use numbers::{above_zero, at_least_one, at_most, finite, height, known_crs, length, location};
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Radio, Shell, Viewshed};
 pub(crate) use query::{DepthMap, Query, UnprovenChoice};
 pub(crate) use scene::{AreaChoice, CloudInput, Plan, ProfileChoice, SceneConfig, SceneInput, UpChoice};

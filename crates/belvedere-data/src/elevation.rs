@@ -75,6 +75,24 @@ impl ElevationGrid {
         Some([west + column as f64 * self.cell[0], north - row as f64 * self.cell[1], f64::from(height)])
     }
 
+    /// The height at a place on the map, both local metres, bilinear between the four nodes around it; `None` beyond the outermost nodes and where one of the four is not known.
+    #[must_use]
+    pub fn height_at(&self, [x, y]: [f64; 2]) -> Option<f64> {
+        let [west, north] = self.north_west;
+        let across = [(x - west) / self.cell[0], (north - y) / self.cell[1]];
+        let last = [self.heights.width() - 1, self.heights.height() - 1];
+        if !(0..2).all(|axis| (0.0..=last[axis] as f64).contains(&across[axis])) {
+            return None;
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the grid")]
+        let [column, row] = [0, 1].map(|axis| (across[axis] as usize).min(last[axis] - 1));
+        let [u, v] = [across[0] - column as f64, across[1] - row as f64];
+        let node = |right: usize, down: usize| self.heights.get(column + right, row + down).map_or(f64::NAN, f64::from);
+        let upper = (1.0 - u) * node(0, 0) + u * node(1, 0);
+        let lower = (1.0 - u) * node(0, 1) + u * node(1, 1);
+        Some((1.0 - v) * upper + v * lower).filter(|height| !height.is_nan())
+    }
+
     /// The nodes within a box on the map, local metres; `None` where it holds fewer than 2 x 2, or none with a height.
     #[must_use]
     pub fn part(&self, within: ([f64; 2], [f64; 2])) -> Option<Self> {
@@ -129,6 +147,13 @@ mod tests {
         assert_eq!(grid.height_range(([14.0, 29.0], [20.0, 31.0])), Some([6.0, 6.0]));
         assert_eq!(grid.height_range(([14.0, 29.0], [16.0, 31.0])), None);
         assert_eq!((grid.node(1, 1), grid.node(2, 1)), (None, Some([20.0, 30.0, 6.0])));
+        let whole = Raster::from_values(3, 2, vec![1.0, 2.0, 4.0, 3.0, 8.0, f32::NAN]).unwrap();
+        let whole = ElevationGrid::new(whole, [10.0, 50.0], [5.0, 20.0]).unwrap();
+        assert_eq!([[10.0, 50.0], [10.0, 30.0]].map(|place| whole.height_at(place)), [Some(1.0), Some(3.0)]);
+        assert_eq!(whole.height_at([12.5, 45.0]), Some(1.5 * 0.75 + 5.5 * 0.25));
+        for outside in [[9.9, 40.0], [16.0, 40.0], [12.0, 29.9], [12.0, f64::NAN], [20.1, 50.0], [15.0, 30.0]] {
+            assert_eq!(whole.height_at(outside), None, "{outside:?}");
+        }
         let part = grid.part(([14.0, 0.0], [21.0, 60.0])).unwrap();
         assert_eq!((part.north_west(), part.heights().width(), part.node(0, 0)), ([15.0, 50.0], 2, grid.node(1, 0)));
         assert_eq!((grid.part(([14.0, 0.0], [16.0, 60.0])), grid.part(([50.0; 2], [60.0; 2]))), (None, None));

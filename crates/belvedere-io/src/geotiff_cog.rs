@@ -30,11 +30,16 @@ pub enum CogValues<'a> {
     F32(&'a Raster<f32>, f32),
 }
 
-/// Writes a raster whose columns run east and whose rows run south as a cloud-optimised GeoTIFF, compressed without loss.
+/// Writes a raster whose columns run east and whose rows run south as a cloud-optimised GeoTIFF, compressed without loss; `description` says what its values are.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a raster without pixels, a turned one, and one of more than 4 GB compressed; [`Error::Io`].
-pub fn write_cog<'a>(output: impl Into<Output<'a>>, values: CogValues<'_>, place: &Georeference) -> Result<()> {
+pub fn write_cog<'a>(
+    output: impl Into<Output<'a>>,
+    values: CogValues<'_>,
+    place: &Georeference,
+    description: Option<&str>,
+) -> Result<()> {
     let ([east, tilt], [turn, south]) = (place.column_step, place.row_step);
     if tilt != 0.0 || turn != 0.0 || !(east > 0.0 && south < 0.0) {
         let value = format!("steps {:?} and {:?}", place.column_step, place.row_step);
@@ -50,7 +55,7 @@ pub fn write_cog<'a>(output: impl Into<Output<'a>>, values: CogValues<'_>, place
         CogValues::F32(raster, nodata) => (levels(raster, nodata, mean), nodata.to_string()),
     };
     let levels = levels?;
-    let bytes = file(&levels, &nodata, place)?;
+    let bytes = file(&levels, &nodata, place, description)?;
     output.into().write(|path, file| bytes.iter().try_for_each(|part| file.write_all(part)).map_err(Error::io(path)))
 }
 
@@ -187,8 +192,22 @@ impl Tag {
 }
 
 /// The parts of the file: directories from the finest level on, and the tiles, which begin with the coarsest level.
-fn file<'a>(levels: &'a [Level], nodata: &str, place: &Georeference) -> Result<Vec<std::borrow::Cow<'a, [u8]>>> {
-    let directory = |number: usize, offsets: &[u32]| tags(&levels[number], number, offsets, nodata, place);
+fn file<'a>(
+    levels: &'a [Level],
+    nodata: &str,
+    place: &Georeference,
+    description: Option<&str>,
+) -> Result<Vec<std::borrow::Cow<'a, [u8]>>> {
+    let directory = |number: usize, offsets: &[u32]| {
+        let mut tags = tags(&levels[number], offsets, nodata);
+        if number == 0 {
+            tags.extend(tags_of_whole(place, description));
+        } else {
+            tags.push(Tag::longs(254, &[1]));
+        }
+        tags.sort_by_key(|tag| tag.number);
+        tags
+    };
     // how long directories are does not depend on where tiles lie
     let sizes: Vec<usize> = (0..levels.len())
         .map(|number| {
@@ -219,14 +238,14 @@ fn file<'a>(levels: &'a [Level], nodata: &str, place: &Georeference) -> Result<V
     Ok(std::iter::once(head.into()).chain(tiles.map(|tile| tile.as_slice().into())).collect())
 }
 
-fn tags(level: &Level, number: usize, offsets: &[u32], nodata: &str, place: &Georeference) -> Vec<Tag> {
+/// The tags of each level.
+fn tags(level: &Level, offsets: &[u32], nodata: &str) -> Vec<Tag> {
     #[expect(clippy::cast_possible_truncation, reason = "tiles of a megabyte at most")]
     let sizes: Vec<u32> = level.tiles.iter().map(|tile| tile.len() as u32).collect();
     let [bits, kind] = level.kind;
     #[expect(clippy::cast_possible_truncation, reason = "512")]
     let side = TILE as u16;
-    let mut tags = vec![
-        Tag::longs(254, &[u32::from(number > 0)]),
+    vec![
         Tag::longs(256, &[level.width]),
         Tag::longs(257, &[level.height]),
         Tag::shorts(258, &[bits]),
@@ -239,18 +258,24 @@ fn tags(level: &Level, number: usize, offsets: &[u32], nodata: &str, place: &Geo
         Tag::longs(324, offsets),
         Tag::longs(325, &sizes),
         Tag::shorts(339, &[kind]),
+        Tag::text(42113, nodata),
+    ]
+}
+
+/// Those of the finest level alone, which is the raster.
+fn tags_of_whole(place: &Georeference, description: Option<&str>) -> Vec<Tag> {
+    let ([x, y], keys) = (place.upper_left, geo_keys(place));
+    let mut tags = vec![
+        Tag::longs(254, &[0]),
+        Tag::text(305, "belvedere"),
+        Tag::doubles(33550, &[place.column_step[0], -place.row_step[1], 0.0]),
+        Tag::doubles(33922, &[0.0, 0.0, 0.0, x, y, 0.0]),
+        Tag::shorts(34735, &keys.directory),
     ];
-    if number == 0 {
-        let ([x, y], keys) = (place.upper_left, geo_keys(place));
-        tags.push(Tag::doubles(33550, &[place.column_step[0], -place.row_step[1], 0.0]));
-        tags.push(Tag::doubles(33922, &[0.0, 0.0, 0.0, x, y, 0.0]));
-        tags.push(Tag::shorts(34735, &keys.directory));
-        if !keys.text.is_empty() {
-            tags.push(Tag::text(34737, &keys.text));
-        }
-        tags.insert(8, Tag::text(305, "belvedere"));
+    tags.extend(description.map(|description| Tag::text(270, description)));
+    if !keys.text.is_empty() {
+        tags.push(Tag::text(34737, &keys.text));
     }
-    tags.push(Tag::text(42113, nodata));
     tags
 }
 
@@ -282,7 +307,7 @@ fn write_directory(head: &mut Vec<u8>, tags: &[Tag], size: usize, is_last: bool)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Source, read_tif_f32, read_tif_u8};
+    use crate::{Source, read_tif, read_tif_f32, read_tif_u8};
     use belvedere_data::crs::Crs;
     use std::io::Cursor;
     use tiff::decoder::Decoder;
@@ -295,7 +320,7 @@ mod tests {
 
     fn written(values: CogValues<'_>) -> Vec<u8> {
         let mut file = Cursor::new(Vec::new());
-        write_cog(Output::writer("cog.tif", &mut file), values, &place()).unwrap();
+        write_cog(Output::writer("cog.tif", &mut file), values, &place(), Some("height in metres")).unwrap();
         file.into_inner()
     }
 
@@ -308,6 +333,8 @@ mod tests {
         numbers.values_mut()[1] = -9999.0;
         let file = written(CogValues::F32(&numbers, -9999.0));
         assert_eq!(read_tif_f32(Source::bytes("cog.tif", &file)).unwrap(), numbers);
+        let read = read_tif(Source::bytes("cog.tif", &file)).unwrap();
+        assert_eq!(read.description.as_deref(), Some("height in metres"));
         let mut decoder = Decoder::new(Cursor::new(&file)).unwrap();
         let mut first_tiles = Vec::new();
         let mut sizes = Vec::new();
@@ -342,6 +369,6 @@ mod tests {
         assert_eq!(read_tif_u8(Source::bytes("cog.tif", &file)).unwrap(), codes);
         let turned = Georeference { row_step: [0.0, 2.0], ..place() };
         let mut file = Cursor::new(Vec::new());
-        assert!(write_cog(Output::writer("cog.tif", &mut file), CogValues::U8(&codes, 255), &turned).is_err());
+        assert!(write_cog(Output::writer("cog.tif", &mut file), CogValues::U8(&codes, 255), &turned, None).is_err());
     }
 }

@@ -148,6 +148,10 @@ fn from_values(corners: Vec<[f64; 3]>, values: [Option<f64>; NAMES.len()], path:
     }
     let [height, least, most, azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt, fov, weight] =
         values.map(|value| value.filter(|v| !v.is_nan()));
+    if let Some(height) = height.filter(|height| !(*height >= 0.0 && height.is_finite())) {
+        let what = format!("an observer has the height {height}; heights above the ground are 0 metres or more");
+        return Err(Error::malformed(path, what));
+    }
     Ok(ObserverRow {
         corners,
         height,

@@ -6,7 +6,7 @@ use crate::scene::{Inner, Scene};
 use crate::targets::{ground_cloud, ground_points};
 use crate::work::run;
 use belvedere::apps::eyes::{EyesReport, skip_unfit_eyes};
-use belvedere::apps::targets::{grid_around, set_on_ground};
+use belvedere::apps::targets::{grid_around, set_on_ground, set_on_terrain};
 use belvedere::apps::viewshed::{OBSERVER_HEIGHT, TARGET_HEIGHT};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, GroundPoints};
@@ -62,7 +62,8 @@ impl Scene {
         let height = height.unwrap_or(if is_target { TARGET_HEIGHT } else { OBSERVER_HEIGHT });
         let inner = Arc::clone(&self.0);
         let placed = run(py, progress, move |control| {
-            let placed = eyes(&inner, &rows, Some(height), points, control)?;
+            let mut placed = eyes(&inner, &rows, Some(height), points, control)?;
+            set_on_terrain(placed.iter_mut().map(|place| (place, height)), &inner.model);
             Ok(placed.into_iter().map(|place| inner.frame().file_from_local(place)).collect::<Vec<_>>())
         })?;
         Ok(to_2d(py, &placed)?.into_any())

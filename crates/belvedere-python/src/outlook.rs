@@ -8,10 +8,10 @@ use crate::sights::earth;
 use crate::sun::Place;
 use crate::targets::{Cells, Grid, grid_at, grid_of, ground_points};
 use crate::work::run;
-use belvedere::apps::eyes::{EyesReport, fault_of_target};
+use belvedere::apps::eyes::{EyesReport, fault_of_target, skip_unfit_far_eyes};
 use belvedere::apps::horizon::{HorizonParams, azimuth_count, horizons};
 use belvedere::apps::isovist::{Isovist, IsovistParams, isovist};
-use belvedere::apps::targets::{CellLevel, CellParams, CoveredCells, Targets, set_on_ground};
+use belvedere::apps::targets::{CellLevel, CellParams, CoveredCells, Targets, set_on_ground, set_on_terrain};
 use belvedere::apps::viewshed::{
     OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, ViewshedParams, box_within_reach, far_viewshed,
     terrain_within_reach, tested_height, viewshed,
@@ -106,12 +106,15 @@ impl Scene {
             }
             let [height, of_cells] = heights;
             set_on_ground(eyes.iter_mut().map(|eye| (eye, height)), &ground);
+            set_on_terrain(eyes.iter_mut().map(|eye| (eye, height)), &inner.model);
             let scene = inner.blockers(unproven, control)?;
             let report = match &eyes[..] {
                 &[target] if looking.is_reverse && fault_of_target(&scene, target).is_none() => {
                     EyesReport::none_skipped(1)
                 }
-                _ => skip(&scene, Some(&ground), &mut eyes, control)?,
+                _ => control.stage("testing observers", eyes.len(), || {
+                    skip_unfit_far_eyes(&scene, Some(&ground), &mut eyes, control)
+                })?,
             };
             let observers: Vec<Observer> = eyes.into_iter().map(|eye| Observer { eye, limits }).collect();
             let params = ViewshedParams::default().with_earth(earth).with_unproven(unproven);

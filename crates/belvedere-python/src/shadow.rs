@@ -7,7 +7,7 @@ use crate::targets::{Results, Wanted};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::rows::Obstacles;
-use belvedere::apps::shadow::{Edges, scene_shadow};
+use belvedere::apps::shadow::{Edges, LIT, scene_shadow};
 use belvedere::apps::targets::Measure;
 use belvedere::query::UnprovenAs;
 use pyo3::prelude::*;
@@ -47,9 +47,7 @@ impl Scene {
             Ok((lit, found))
         })?;
         lit.into_iter()
-            .map(|values| {
-                found.results(py, vec![Measure::new("lit", values).with_description("share of the sun, 0 in shadow")])
-            })
+            .map(|values| found.results(py, vec![Measure::new("lit", values).with_description(LIT)]))
             .collect()
     }
 }

@@ -7,7 +7,7 @@ use crate::scene::{Scene, unproven_as};
 use crate::targets::{Asked, Wanted};
 use crate::work::run;
 use belvedere::query::{
-    Answer, Curvature, EarthParams, MeshTargetParams, RadioWave, SurfacePieces, UnprovenAs, Viewer, seen_faces,
+    Answer, Blocker, Curvature, EarthParams, MeshTargetParams, RadioWave, SurfacePieces, UnprovenAs, Viewer, seen_faces,
 };
 use belvedere::results::FaceRows;
 use pyo3::prelude::*;
@@ -153,6 +153,10 @@ impl Scene {
         let source =
             |i: usize| ball_of(i).and_then(|row| inner.model.balls().source.get(row)).map_or(-1, |&row| i64::from(row));
         dict.set_item("block_source", to_1d(py, each().map(source).collect()))?;
+        if inner.model.far_terrain().grid().is_some() {
+            let is_terrain = |i: usize| block(i).is_some_and(|block| block.blocker == Blocker::Terrain);
+            dict.set_item("block_terrain", to_1d(py, each().map(is_terrain).collect()))?;
+        }
         Ok(dict)
     }
 }

@@ -506,6 +506,30 @@ def test_plans(scene, run_program, folder):
         far = scene.with_terrain(folder / "dtm.tif").viewshed(**who, **arguments, far=True)
         assert_same_raster(far, folder / f"far_{name}.tif", folder)
         assert (far.values == belvedere.Answer.VISIBLE).any() and (far.values == belvedere.Answer.BLOCKED).any(), name
+    # from the top of these mountains, 1000 m above the plain, with and without a mast
+    mountains = scene.with_terrain(folder / "dtm.tif")
+    top = (float(x), float(y) - 1200)
+    standing = ["--terrain", "dtm.tif", "--observer", ",".join(map(repr, top)), "--observer-height"]
+    answers = []
+    for mast in (2.0, 900.0):
+        run_program("viewshed", "tile.laz", *standing, str(mast), "--cell", "2", "-o", "from_top.tif")
+        seen = mountains.viewshed(top, observer_height=mast, cell=2)
+        assert_same_raster(seen, folder / "from_top.tif", folder)
+        answers.append(np.isin(seen.values, [belvedere.Answer.VISIBLE, belvedere.Answer.UNPROVEN]).any())
+        line = [*standing, str(mast), "--target", ",".join(map(repr, eye)), "-o", "line.csv"]
+        run_program("line-of-sight", "tile.laz", *line)
+        sight = mountains.line_of_sight(top, eye, observer_height=mast)
+        assert sight.block_terrain == (sight.answer == belvedere.Answer.BLOCKED)
+        with (folder / "line.csv").open() as file:
+            (row,) = csv.DictReader(file)
+        assert (int(row["answer"]), row["block_terrain"]) == (sight.answer, "1" if sight.block_terrain else "")
+        if sight.block_terrain:
+            assert abs(float(row["first_block_range_m"]) - sight.first_block_range_m) <= 0.0005
+    assert answers == [False, True]
+    table = mountains.line_of_sight([top, (float(x), float(y))], eye, observer_height=900)
+    assert table["block_terrain"].dtype == bool and not table["block_terrain"].any()
+    with pytest.raises(belvedere.BelvedereError, match="within the cloud"):
+        mountains.line_of_sight(top, eye, frequency_ghz=5.8)
 
 
 def test_plans_are_not_lost_without_a_word(scene, folder):

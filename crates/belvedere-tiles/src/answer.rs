@@ -102,7 +102,7 @@ fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Con
     }
     let place = georeference(&ground.grid, &targets.frame);
     let path = Stage::Answer(question).result(run, tile);
-    found.values.write(&path, &place)?;
+    found.values.write(&path, &place, question.description())?;
     Ok(Record {
         outcome: Outcome::Done,
         result: Some(Stamp::of(&path)?),

@@ -92,13 +92,13 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Resul
     Ok(Merged { tiles: tiles.len(), without_result: plan.tiles.len() - tiles.len() })
 }
 
-/// Writes the results of a question that are there as one cloud-optimised GeoTIFF.
+/// Writes the results of a question that are there as one cloud-optimised GeoTIFF, which says what its values are.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for more cells than fit into memory; those of reading and writing rasters.
 pub fn merge(plan: &Plan, folder: &Path, question: &Question, output: &Path, control: &Control<'_>) -> Result<Merged> {
     let (values, place, merged) = gather(plan, folder, question, &plan.tiles, control)?;
-    values.write_cog(output, &place)?;
+    values.write_cog(output, &place, question.description())?;
     Ok(merged)
 }
 
@@ -120,7 +120,8 @@ pub fn merged_within(
     };
     let tiles: Vec<TileId> = plan.tiles.iter().copied().filter(touches).collect();
     let (values, place, _) = gather(plan, folder, question, &tiles, control)?;
-    Ok(PlacedRaster { values: values.numbers()?, place: Some(place), description: None })
+    let description = Some(question.description().to_owned());
+    Ok(PlacedRaster { values: values.numbers()?, place: Some(place), description })
 }
 
 /// The results of `tiles` that are there, in one raster around all of them.

@@ -1,13 +1,13 @@
 //! What is asked of a city.
 
 use crate::planned::SideFile;
-use belvedere::apps::irradiance::{ClearSky, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons};
-use belvedere::apps::shadow::ShadowSun;
-use belvedere::apps::sky_view::SkyDirections;
+use belvedere::apps::irradiance::{self, ClearSky, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons};
+use belvedere::apps::shadow::{self, ShadowSun};
+use belvedere::apps::sky_view::{self, SkyDirections};
 use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, SunSchedule, Zone, sun_days};
-use belvedere::apps::sun_hours::{SunPlan, SunRule};
+use belvedere::apps::sun_hours::{self, SunPlan, SunRule};
 use belvedere::apps::tree_light::{Crowns, Season};
-use belvedere::apps::viewshed::{Observer, SightLimits};
+use belvedere::apps::viewshed::{self, Observer, SightLimits};
 use belvedere::control::Control;
 use belvedere::io::{Source, read_weather};
 use belvedere::{Error, Result};
@@ -201,6 +201,20 @@ impl Question {
             Self::SunHours { .. } => "sun_hours",
             Self::Irradiance { .. } => "irradiance",
             Self::Viewshed { .. } => "viewshed",
+        }
+    }
+
+    /// What its values are, in the words of the rasters of the same question to one scene.
+    #[must_use]
+    pub fn description(&self) -> &'static str {
+        match self {
+            Self::Shadow { .. } => shadow::LIT,
+            Self::SkyView { .. } => sky_view::SKY_VIEW_FACTOR,
+            Self::SunHours(_) => sun_hours::SUN_HOURS,
+            Self::SunRule { .. } => sun_hours::RULE_IS_MET,
+            Self::Irradiance { .. } => irradiance::ENERGY,
+            Self::Viewshed { eyes, .. } if eyes.len() == 1 => viewshed::SEEN,
+            Self::Viewshed { .. } => viewshed::SEEN_BY,
         }
     }
 

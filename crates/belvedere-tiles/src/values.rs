@@ -106,28 +106,28 @@ impl Values {
         }
     }
 
-    /// Writes them as a cloud-optimised GeoTIFF.
+    /// Writes them as a cloud-optimised GeoTIFF; `what` says what they are.
     ///
     /// # Errors
     /// Those of [`write_cog`].
-    pub(crate) fn write_cog(&self, path: &Path, place: &Georeference) -> Result<()> {
+    pub(crate) fn write_cog(&self, path: &Path, place: &Georeference, what: &str) -> Result<()> {
         let values = match self {
             Self::Codes(raster) => CogValues::U8(raster, NO_CODE),
             Self::Counts(raster) => CogValues::U16(raster, NO_COUNT),
             Self::Numbers(raster) => CogValues::F32(raster, NO_VALUE),
         };
-        write_cog(path, values, place)
+        write_cog(path, values, place, Some(what))
     }
 
-    /// Writes them as a GeoTIFF.
+    /// Writes them as a GeoTIFF; `what` says what they are.
     ///
     /// # Errors
     /// Those of [`write_tif_u8`].
-    pub(crate) fn write(&self, path: &Path, place: &Georeference) -> Result<()> {
+    pub(crate) fn write(&self, path: &Path, place: &Georeference, what: &str) -> Result<()> {
         match self {
-            Self::Codes(raster) => write_tif_u8(path, raster, Some(place), Some(NO_CODE), None),
-            Self::Counts(raster) => write_tif_u16(path, raster, Some(place), Some(NO_COUNT), None),
-            Self::Numbers(raster) => write_tif_f32(path, raster, Some(place), Some(NO_VALUE), None),
+            Self::Codes(raster) => write_tif_u8(path, raster, Some(place), Some(NO_CODE), Some(what)),
+            Self::Counts(raster) => write_tif_u16(path, raster, Some(place), Some(NO_COUNT), Some(what)),
+            Self::Numbers(raster) => write_tif_f32(path, raster, Some(place), Some(NO_VALUE), Some(what)),
         }
     }
 }

@@ -18,6 +18,8 @@ pub const MONTH_COLUMNS: [&str; 12] = [
     "kwh_m2_11",
     "kwh_m2_12",
 ];
+/// What a raster of energies says of itself.
+pub const ENERGY: &str = "energy of the period, kWh/m2";
 /// Digits of energies, kWh/m², and of shares.
 const ENERGY_DECIMALS: usize = 2;
 const SHARE_DECIMALS: usize = 4;
@@ -39,7 +41,7 @@ pub fn irradiation_measures(sums: &[Irradiation], group_count: usize) -> Vec<Mea
         values,
     };
     let mut measures = vec![
-        energy("kwh_m2", "energy of the period, kWh/m2", column(&Irradiation::total)),
+        energy("kwh_m2", ENERGY, column(&Irradiation::total)),
         Measure {
             name: "loss".to_owned(),
             description: "share lost by shading",

@@ -19,6 +19,9 @@ pub const SKY_TARGET_HEIGHT: f64 = 0.1;
 /// Number of directions of [`SkyDirections::even`] unless said otherwise: errors of half a percent at most streets.
 pub const SKY_DIRECTIONS: usize = 577;
 
+/// What a raster of sky view factors says of itself.
+pub const SKY_VIEW_FACTOR: &str = "sky view factor, cosine";
+
 /// Targets handed to a thread at once.
 const CHUNK: usize = 256;
 
@@ -45,7 +48,7 @@ impl SkyView {
             values,
         };
         vec![
-            measure("sky_view_factor", "sky view factor, cosine", self.factors),
+            measure("sky_view_factor", SKY_VIEW_FACTOR, self.factors),
             measure("sky_openness", "sky openness, solid angle", self.openness),
         ]
     }

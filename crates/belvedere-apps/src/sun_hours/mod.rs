@@ -16,6 +16,11 @@ use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 use stretches::{Lit, Run, runs_of};
 
+/// What rasters of hours of sun, and of whether a rule is met, say of themselves.
+pub const SUN_HOURS: &str = "hours of sun a day";
+/// See [`SUN_HOURS`].
+pub const RULE_IS_MET: &str = "rule is met";
+
 /// Targets handed to a thread at once.
 const CHUNK: usize = 64;
 /// By how much the hours of a day may stay below what is asked and yet suffice, hours: what f32 rounds in a sum of steps.

@@ -1,6 +1,6 @@
 //! Suns of a period and of rules, asked about together, and the measures that follow.
 
-use super::{SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
+use super::{RULE_IS_MET, SUN_HOURS, SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
 use crate::rows::{RowBlock, Surroundings, check_normals, fold_rows, normals_of};
 use crate::sun::{Site, SunSchedule};
 use crate::targets::{Measure, Targets};
@@ -129,7 +129,7 @@ impl SunSums {
         let total: Vec<f32> =
             if day_count > 1 { self.period.hours.iter().map(of_all_days).collect() } else { Vec::new() };
         let mut measures = vec![
-            measure("sun_hours", "hours of sun a day", hours, self.period.hours),
+            measure("sun_hours", SUN_HOURS, hours, self.period.hours),
             measure("sun_share", "share of possible sun", share, self.period.share),
             measure("first_light", "first sun, hour of the day", clock, self.period.first),
             measure("last_light", "last sun, hour of the day", clock, self.period.last),
@@ -142,7 +142,7 @@ impl SunSums {
         for (planned, found) in plan.rules.iter().zip(self.rules) {
             let days = planned.schedule.days.len();
             let is_met = found.days.iter().map(|&met| if met as usize == days { 1.0 } else { 0.0 }).collect();
-            measures.push(measure(&planned.column, "rule is met", share, is_met));
+            measures.push(measure(&planned.column, RULE_IS_MET, share, is_met));
         }
         measures.iter_mut().for_each(|measure| targets.clear_unasked(&mut measure.values));
         measures

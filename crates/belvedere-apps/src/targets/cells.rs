@@ -91,16 +91,20 @@ impl Targets {
     /// The cells of `ground`, whose heights come from `cloud`, in the frame of that cloud.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a height that is not finite, those of [`top_surface`], and [`Error::Cancelled`].
+    /// [`Error::InvalidParameter`] for a height that is negative or not finite, those of [`top_surface`], and [`Error::Cancelled`].
     pub fn of_cells(
         cloud: &PointCloud,
         mut ground: Ground,
         params: &CellParams,
         control: &Control<'_>,
     ) -> Result<(Self, CellReport)> {
-        if !params.height.is_finite() {
+        if !(params.height >= 0.0 && params.height.is_finite()) {
             let value = params.height.to_string();
-            return Err(Error::InvalidParameter { name: "height above the ground", value, expected: "finite" });
+            return Err(Error::InvalidParameter {
+                name: "height above the ground",
+                value,
+                expected: "0 metres or more",
+            });
         }
         if params.level == CellLevel::Surface {
             ground.heights = control.stage("computing top surface", 0, || {

@@ -20,7 +20,7 @@ mod windows;
 
 pub use cells::{CellLevel, CellParams, CellReport, CoveredCells};
 pub use measure::{Measure, MeasureStatistics};
-pub use on_ground::{grid_around, set_on_ground};
+pub use on_ground::{grid_around, set_on_ground, set_on_terrain};
 pub use routes::Route;
 pub use surfaces::{FaceMeans, Facing, MeshParams, object_areas};
 pub use windows::{Window, objects_of_windows};

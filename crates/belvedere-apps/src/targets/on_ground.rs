@@ -2,6 +2,7 @@
 
 use crate::viewshed::cell_for;
 use belvedere_core::ground::{Ground, MapGrid};
+use belvedere_core::model::SceneModel;
 use belvedere_data::Result;
 
 /// Ground made around places that need it, metres.
@@ -40,6 +41,19 @@ pub fn set_on_ground<'a>(places: impl IntoIterator<Item = (&'a mut [f64; 3], f64
         }
     }
     unknown
+}
+
+/// The same for places that lie beyond the cloud, on the far terrain of `model`: they stand on its raster. The height of the others stays.
+pub fn set_on_terrain<'a>(places: impl IntoIterator<Item = (&'a mut [f64; 3], f64)>, model: &SceneModel) {
+    let (Some(coverage), Some(terrain)) = (model.coverage(), model.far_terrain().grid()) else { return };
+    for (place, height) in places {
+        if place[2].is_nan()
+            && !coverage.holds_on_map(*place)
+            && let Some(level) = terrain.height_at([place[0], place[1]])
+        {
+            place[2] = level + height;
+        }
+    }
 }
 
 #[cfg(test)]

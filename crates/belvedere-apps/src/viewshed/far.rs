@@ -48,6 +48,10 @@ pub fn far_viewshed(
     control: &Control<'_>,
 ) -> Result<Viewshed> {
     check(observers, &params.earth)?;
+    if !(height >= 0.0 && height.is_finite()) {
+        let (name, value) = ("height above the terrain", height.to_string());
+        return Err(Error::InvalidParameter { name, value, expected: "0 metres or more" });
+    }
     let width = terrain.heights().width();
     let mut answers = vec![Answer::OutsideCloud; terrain.heights().values().len()];
     let mut counts = vec![0; answers.len()];

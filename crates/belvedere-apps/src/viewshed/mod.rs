@@ -82,6 +82,11 @@ pub fn tested_height(height: f64) -> f64 {
     if height >= 0.0 { height.max(GROUND_TOLERANCE) } else { height }
 }
 
+/// What a raster of what one observer sees says of itself.
+pub const SEEN: &str = "1 visible, 0 blocked, 2 unproven, 255 nodata";
+/// What a raster of several observers says of itself.
+pub const SEEN_BY: &str = "number of observers that see the cell, 65535 nodata";
+
 /// Default side of a cell, metres: what points of usual airborne surveys (0.3 to 0.5 m apart) can tell.
 pub const CELL: f64 = 0.5;
 
@@ -134,7 +139,8 @@ pub fn cell_targets(ground: &Ground, height: f64) -> Vec<[f32; 3]> {
 }
 
 /// What `observers` see of `targets`, (M, 3) local metres; control counts observers. An observer whose eye is not finite
-/// ([`crate::eyes::skip_unfit_eyes`]) sees nothing and keeps its number.
+/// ([`crate::eyes::skip_unfit_eyes`]) sees nothing and keeps its number. Observers may stand on far terrain ([`MedialScene::is_on_far_terrain`]); for targets there,
+/// see [`far_viewshed`].
 ///
 /// A reverse viewshed, from where a target is seen, is the viewshed of an observer in its place, of the eyes that might see it: a
 /// line of sight is the same both ways. Balls that hold the target are then left out, and those at the eyes give way.
@@ -222,7 +228,7 @@ impl Asked<'_> {
     /// Blocked for what somebody looks at, otherwise outside the view; outside the cloud for what lies there.
     fn before_anybody_sees(&self, observers: &[Observer]) -> Vec<Answer> {
         let lookers: Vec<&Observer> =
-            observers.iter().filter(|observer| !self.scene.is_outside_cloud(observer.eye)).collect();
+            observers.iter().filter(|observer| !self.scene.is_outside(observer.eye)).collect();
         let is_looked_at = |&target: &[f32; 3]| {
             let target = target.map(f64::from);
             lookers.iter().any(|observer| observer.eye != target && observer.limits.allow(observer.eye, target))
@@ -248,8 +254,8 @@ impl Asked<'_> {
             _ => {}
         };
         let can_look = |observer: &Observer| observer.eye.iter().all(|v| v.is_finite());
-        if threading == Threading::Shared || observers.iter().any(|observer| can_look(observer) && self.bends(observer))
-        {
+        let is_single = |observer: &Observer| can_look(observer) && self.needs_single_lines(observer);
+        if threading == Threading::Shared || observers.iter().any(is_single) {
             for (number, observer) in observers.iter().enumerate() {
                 control.check()?;
                 if can_look(observer) {
@@ -275,15 +281,16 @@ impl Asked<'_> {
         Ok(Band { seen, unproven, seen_counts })
     }
 
-    /// Whether any line of sight of an observer is curved.
-    fn bends(&self, observer: &Observer) -> bool {
-        self.tree.any_corner(|corner| self.params.earth.bends(corner, observer.eye))
+    /// Whether any line of sight of an observer is curved, or crosses far terrain.
+    fn needs_single_lines(&self, observer: &Observer) -> bool {
+        self.scene.is_on_far_terrain(observer.eye)
+            || self.tree.any_corner(|corner| self.params.earth.bends(corner, observer.eye))
     }
 
     /// What one observer sees, all threads at work: (M), blocked where the observer does not look.
     fn seen_by(&self, observer: &Observer, control: &Control<'_>) -> Result<Vec<Answer>> {
         let allowed = |target: [f32; 3]| observer.limits.allow(observer.eye, target.map(f64::from));
-        if !self.bends(observer) {
+        if !self.needs_single_lines(observer) {
             let mut answers = self.scene.answer_among(Viewer::Eye(observer.eye), self.tree, control)?;
             let targets = self.targets.par_iter().with_min_len(CHUNK);
             answers.par_iter_mut().zip(targets).filter(|(_, target)| !allowed(**target)).for_each(|(answer, _)| {
@@ -295,7 +302,11 @@ impl Asked<'_> {
             if !allowed(target) {
                 return Answer::Blocked;
             }
-            self.scene.sight_answer(observer.eye, target.map(f64::from), &self.params.earth)
+            let target = target.map(f64::from);
+            match self.scene.is_outside_cloud(target) {
+                true => Answer::OutsideCloud,
+                false => self.scene.sight_answer(observer.eye, target, &self.params.earth),
+            }
         };
         let chunks = self.targets.par_chunks(CHUNK).map(|targets| {
             control.check()?;
@@ -330,7 +341,7 @@ fn add(result: &mut Viewshed, band: Band, masks: Masks) {
 /// those of the ground.
 ///
 /// # Errors
-/// As [`viewshed`], and for a ceiling below zero.
+/// As [`viewshed`], and for a ceiling below zero, and for an observer on far terrain: the terrain before it is not asked here.
 pub fn least_visible_heights(
     scene: &MedialScene,
     observers: &[Observer],
@@ -345,6 +356,13 @@ pub fn least_visible_heights(
             name: "maximum height",
             value: ceiling.to_string(),
             expected: "0 metres or more",
+        });
+    }
+    if let Some(row) = observers.iter().position(|observer| scene.is_on_far_terrain(observer.eye)) {
+        return Err(Error::InvalidParameter {
+            name: "observer of minimum visible heights",
+            value: format!("number {}, on the terrain beyond the cloud", row + 1),
+            expected: "observers in the cloud",
         });
     }
     let feet = cell_targets(ground, 0.0);

@@ -186,6 +186,7 @@ impl Sums {
                     let kind = match blocker {
                         Blocker::Ball(row) => kinds.balls.get(row).copied().unwrap_or_default(),
                         Blocker::Mesh(number) => kinds.meshes.get(number).copied().unwrap_or(Seen::Building),
+                        Blocker::Terrain => Seen::Ground,
                     };
                     (kind, range, scene.is_unproven(place, direction, range))
                 }

@@ -1,7 +1,7 @@
 //! Flags of camera placement.
 
 use super::{
-    Earth, GivingWay, GroundChoice, North, Radio, SceneInput, above_zero, at_least_one, at_most, finite, length,
+    Earth, GivingWay, GroundChoice, North, Radio, SceneInput, above_zero, at_least_one, at_most, finite, height, length,
 };
 use belvedere::apps::cameras::Level;
 use clap::Args;
@@ -17,7 +17,7 @@ pub(crate) struct Cameras {
         help_heading = "Candidates (one of)")]
     pub(crate) step: Option<f64>,
     /// Height of cameras without Z above the ground or the roof, in metres [default: 4 above the ground, 1 above roofs]
-    #[arg(long, value_name = "M", value_parser = finite::<f64>, allow_negative_numbers = true, help_heading = "Candidates (one of)")]
+    #[arg(long, value_name = "M", value_parser = height::<f64>, allow_negative_numbers = true, help_heading = "Candidates (one of)")]
     pub(crate) camera_height: Option<f64>,
     /// Cameras that exist already and stay, from a table (.csv) or GeoJSON; they do not count towards --count
     ///
@@ -151,7 +151,7 @@ pub(crate) struct CameraTargets {
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true)]
     pub(crate) cell: Option<f64>,
     /// Height of cells and of points without Z above the ground in metres [default: 1.5]
-    #[arg(long, value_name = "M", value_parser = finite::<f64>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = height::<f64>, allow_negative_numbers = true)]
     pub(crate) target_height: Option<f64>,
     /// Maximum side of the triangles that a mesh is cut into, in metres [default: 0.5]
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true)]

@@ -2,7 +2,7 @@
 
 use super::{
     ClearSkyChoice, FarTerrain, North, Numbers, Place, RadiationModel, SunPeriod, SunPlace, ThroughTrees, above_zero,
-    at_least_one, finite, known_crs,
+    at_least_one, height, known_crs,
 };
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -65,7 +65,7 @@ pub(crate) struct CityPlan {
     #[arg(long = "observer", value_name = "X,Y[,Z]", allow_hyphen_values = true, help_heading = "Questions")]
     pub(crate) observers: Vec<Place>,
     /// Height of observers above the ground in metres [default: 1.7]
-    #[arg(long, value_name = "M", value_parser = finite::<f64>, requires = "observers", allow_negative_numbers = true,
+    #[arg(long, value_name = "M", value_parser = height::<f64>, requires = "observers", allow_negative_numbers = true,
         help_heading = "Questions")]
     pub(crate) observer_height: Option<f64>,
     /// Maximum horizontal distance of what observers see, in metres [default: no limit]

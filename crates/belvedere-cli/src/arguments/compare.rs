@@ -20,8 +20,10 @@ pub(crate) struct Compare {
     /// Side of a town in metres, 60 to 5000
     #[arg(long, value_name = "M", default_value_t = 150.0, value_parser = within::<60, 5000>, help_heading = "Simulated towns")]
     pub(crate) extent: f64,
-    /// Pulses per square metre, all strips together, 0.1 to 200, separated by commas
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "10", value_parser = density, help_heading = "Simulated towns")]
+    /// Pulses per square metre, all strips together, 0.1 to 200, separated by commas [default: 10]
+    ///
+    /// For scanners that fly; others are refused, or compared once beside these.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = density, help_heading = "Simulated towns")]
     pub(crate) density: Vec<f64>,
     /// Simulated scanners, separated by commas
     ///
@@ -68,7 +70,49 @@ pub(crate) struct Compare {
     pub(crate) page: Option<PathBuf>,
 }
 
+/// Pulses per square metre of scanners that fly, unless said otherwise.
+const DENSITY: f64 = 10.0;
+
 impl Compare {
+    /// Pulses per square metre.
+    pub(crate) fn densities(&self) -> &[f64] {
+        if self.density.is_empty() { &[DENSITY] } else { &self.density }
+    }
+
+    /// Whether towns are simulated, and not only real places compared.
+    pub(crate) fn has_towns(&self) -> bool {
+        self.mesh.is_none() && (self.held_out.is_empty() || !self.presets.is_empty())
+    }
+
+    /// Names of the scanners that have no density of their own choice.
+    fn scanners_without_density(&self) -> Vec<&'static str> {
+        self.regimes.iter().filter(|regime| !regime.flies()).map(|regime| regime.name()).collect()
+    }
+
+    /// Refuses densities that no scanner has, and gives a warning for scanners that have none beside others.
+    pub(crate) fn check_density(&self) -> Result<Option<String>, Usage> {
+        let without = self.scanners_without_density();
+        if self.density.is_empty() {
+            return Ok(None);
+        }
+        if !self.has_towns() {
+            let what = "--density applies to simulated towns only, and there are none: leave it out";
+            return Err(Usage(what.to_owned()));
+        }
+        let names = without.join(", ");
+        if without.len() == self.regimes.len() {
+            return Err(Usage(format!("--density applies to scanners that fly only, not to {names}: leave it out")));
+        }
+        let is_one = without.len() == 1;
+        Ok((!without.is_empty()).then(|| {
+            format!(
+                "--density does not apply to {names}, which {} compared once, with {} own number of pulses",
+                if is_one { "is" } else { "are" },
+                if is_one { "its" } else { "their" }
+            )
+        }))
+    }
+
     /// Whether a method is selected: by the start of its key, or by its whole key if it runs only when named.
     pub(crate) fn wants(&self, key: &str, listing: Listing) -> bool {
         match listing {

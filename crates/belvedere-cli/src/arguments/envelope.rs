@@ -2,7 +2,7 @@
 
 use super::{
     GroundChoice, North, Numbers, PatchesChoice, SceneInput, Shell, SunPeriod, SunPlace, above_zero, at_least_one,
-    finite,
+    height,
 };
 use clap::Args;
 use std::path::PathBuf;
@@ -73,7 +73,7 @@ pub(crate) struct Envelope {
     #[arg(long, value_name = "FILE|CORNERS", required = true, allow_hyphen_values = true, help_heading = "Land")]
     pub(crate) protect: Vec<Corners>,
     /// Height of a fence on protected lines and points, in metres; shadows may reach its top [default: 0]
-    #[arg(long = "fence-height", value_name = "M", allow_negative_numbers = true, value_parser = finite::<f32>, help_heading = "Land")]
+    #[arg(long = "fence-height", value_name = "M", allow_negative_numbers = true, value_parser = height::<f32>, help_heading = "Land")]
     pub(crate) fence: Option<f32>,
     /// Maximum height above the ground, in metres [default: no limit]
     #[arg(long = "max-height", value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Land")]
@@ -134,7 +134,7 @@ pub(crate) struct Comfort {
         help_heading = "Targets")]
     pub(crate) route_step: Option<f64>,
     /// Height of targets on a route above the ground, in metres [default: 1.1, as defined for PET and UTCI]
-    #[arg(long = "target-height", value_name = "M", requires = "route", allow_negative_numbers = true, value_parser = finite::<f32>, help_heading = "Targets")]
+    #[arg(long = "target-height", value_name = "M", requires = "route", allow_negative_numbers = true, value_parser = height::<f32>, help_heading = "Targets")]
     pub(crate) height: Option<f32>,
     /// Maximum side of the triangles that windows of a mesh are cut into, in metres [default: 0.5]
     #[arg(long, value_name = "M", requires = "windows", value_parser = above_zero::<f64>, allow_negative_numbers = true,

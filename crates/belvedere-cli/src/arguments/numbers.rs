@@ -37,6 +37,14 @@ pub(super) fn length(text: &str) -> Result<f32, String> {
     text.parse().ok().filter(|v: &f32| *v >= 0.0).ok_or_else(|| "must be a number of metres, 0 or more".to_owned())
 }
 
+/// A height above the ground: below it nothing can be seen.
+pub(super) fn height<T: FromStr + Copy + Into<f64>>(text: &str) -> Result<T, String> {
+    text.parse()
+        .ok()
+        .filter(|&v: &T| v.into() >= 0.0 && v.into().is_finite())
+        .ok_or_else(|| "must be a height above the ground of 0 metres or more".to_owned())
+}
+
 pub(super) fn above_zero<T: FromStr + Copy + Into<f64>>(text: &str) -> Result<T, String> {
     text.parse()
         .ok()

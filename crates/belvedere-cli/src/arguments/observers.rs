@@ -1,6 +1,6 @@
 //! Flags of lines of sight and viewsheds.
 
-use super::{North, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, finite, length};
+use super::{North, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, height, length};
 use belvedere::ground::GroundPoints;
 use belvedere::query::{Curvature, MOST_RANDOM_PAIRS, RadioWave};
 use clap::{Args, ValueEnum};
@@ -32,11 +32,17 @@ pub(crate) struct LineOfSight {
     /// detected from the shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Result")]
     pub(crate) ground: GroundChoice,
+    /// Terrain beyond the cloud: elevation raster (DTM) in the coordinate system of the cloud or in degrees (.tif)
+    ///
+    /// Ends of lines may then lie on it, and the terrain blocks beyond the cloud. Its heights are bilinear between the middles of its cells. Within the extent of the
+    /// cloud, and one cell around it, the raster blocks nothing. Cells without a value block nothing.
+    #[arg(long, value_name = "DTM", help_heading = "Far terrain")]
+    pub(crate) terrain: Option<PathBuf>,
     /// Table with a row for each pair, in their order (.csv)
     ///
     /// Columns: ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line, 4 outside the cloud), first_block_range_m from A, unproven_m (not with
     /// --unproven as-visible, which is faster), fresnel_free_percent (with --frequency-ghz), block_x, block_y, block_z, and block_ball and block_source: the rows of the first
-    /// blocking ball and of the point that it touches.
+    /// blocking ball and of the point that it touches. With --terrain: block_terrain, 1 where the terrain blocks first.
     #[arg(short, long, value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
@@ -69,10 +75,10 @@ pub(crate) struct Lines {
 #[command(next_help_heading = "Lines of sight (one of)")]
 pub(crate) struct EndHeights {
     /// Height of observers without Z above the ground in metres [default: 1.7]
-    #[arg(long, value_name = "M", value_parser = finite::<f64>, conflicts_with = "random", allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = height::<f64>, conflicts_with = "random", allow_negative_numbers = true)]
     pub(crate) observer_height: Option<f64>,
     /// Height of targets without Z above the ground in metres [default: 0]
-    #[arg(long, value_name = "M", value_parser = finite::<f64>, conflicts_with = "random", allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = height::<f64>, conflicts_with = "random", allow_negative_numbers = true)]
     pub(crate) target_height: Option<f64>,
 }
 
@@ -195,8 +201,9 @@ pub(crate) struct Viewshed {
     pub(crate) far_output: Vec<PathBuf>,
     /// Terrain beyond the cloud: elevation raster (DTM) in the coordinate system of the cloud or in degrees (.tif)
     ///
-    /// Its heights are bilinear between the middles of its cells. Within the extent of the cloud, and one cell around it, the raster blocks nothing. Cells without a value block nothing.
-    #[arg(long, value_name = "DTM", requires = "far_output", help_heading = "Far terrain")]
+    /// Observers, or the target, may then be on it. Its heights are bilinear between the middles of its cells. Within the extent of the cloud, and one cell around it, the
+    /// raster blocks nothing. Cells without a value block nothing.
+    #[arg(long, value_name = "DTM", help_heading = "Far terrain")]
     pub(crate) terrain: Option<PathBuf>,
     /// Also write the minimum visible height above ground of each cell, in metres (.tif .npy)
     ///
@@ -243,10 +250,10 @@ pub(crate) struct Looking {
     #[arg(long = "distance-step-m", value_name = "M", requires = "observers", value_parser = above_zero::<f64>, allow_negative_numbers = true)]
     pub(crate) step: Option<f64>,
     /// Height of observers above the ground in metres [default: 1.7]
-    #[arg(long, value_name = "M", value_parser = finite::<f64>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = height::<f64>, allow_negative_numbers = true)]
     pub(crate) observer_height: Option<f64>,
     /// Height of targets above the ground in metres [default: 0]
-    #[arg(long, value_name = "M", value_parser = finite::<f64>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = height::<f64>, allow_negative_numbers = true)]
     pub(crate) target_height: Option<f64>,
     /// Maximum horizontal distance in metres [default: no limit]
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true)]

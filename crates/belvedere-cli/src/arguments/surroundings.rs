@@ -1,6 +1,6 @@
 //! Flags of mesh targets, landmarks, protected views, isovists and horizons.
 
-use super::{Earth, FarTerrain, GivingWay, GroundChoice, North, Place, SceneInput, above_zero};
+use super::{Earth, FarTerrain, GivingWay, GroundChoice, North, Place, SceneInput, above_zero, height};
 use belvedere::query::BackFaces;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -58,7 +58,7 @@ pub(crate) struct Landmark {
         help_heading = "Observers")]
     pub(crate) cell: Option<f64>,
     /// Height of observers above the ground in metres [default: 1.7]
-    #[arg(long, value_name = "M", allow_negative_numbers = true, help_heading = "Observers")]
+    #[arg(long, value_name = "M", value_parser = height::<f64>, allow_negative_numbers = true, help_heading = "Observers")]
     pub(crate) observer_height: Option<f64>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///
@@ -126,7 +126,7 @@ pub(crate) struct Eyes {
     #[arg(long = "observers", value_name = "FILE", conflicts_with = "eye")]
     pub(crate) eyes: Option<PathBuf>,
     /// Height of observers above the ground in metres [default: 1.7]
-    #[arg(long = "observer-height", value_name = "M", allow_negative_numbers = true)]
+    #[arg(long = "observer-height", value_name = "M", value_parser = height::<f64>, allow_negative_numbers = true)]
     pub(crate) height: Option<f64>,
     /// Source of the ground heights for observers without Z: auto, classed, found or cloud=FILE
     ///

@@ -1,5 +1,6 @@
 //! `belvedere line-of-sight`.
 
+use super::far_terrain::set_terrain;
 use super::sights::{Proving, blockers, enclosure_note, ground, ground_cloud};
 use super::{check_output, extension};
 use crate::arguments::{Global, GroundChoice, LineOfSight, Place, Usage};
@@ -9,7 +10,7 @@ use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::eyes::skip_unfit_eyes;
 use belvedere::apps::profile::{SightProfile, sight_profile};
-use belvedere::apps::targets::{grid_around, set_on_ground};
+use belvedere::apps::targets::{grid_around, set_on_ground, set_on_terrain};
 use belvedere::apps::viewshed::{OBSERVER_HEIGHT, TARGET_HEIGHT};
 use belvedere::figures::{profile_picture, write_png};
 use belvedere::ground::{Ground, MapGrid};
@@ -18,6 +19,8 @@ use belvedere::query::{Answer, AnswerCounts, Blocker, EarthParams, MedialScene, 
 use std::path::Path;
 
 const OUTSIDE_LINE: &str = "have an end outside the cloud, where nothing is known, and no answer";
+const OUTSIDE_BOTH: &str =
+    "have an end outside the cloud and the terrain, or below the cloud, where nothing is known, and no answer";
 /// Columns of a table of pairs.
 const ENDS: [&str; 6] = ["ax", "ay", "az", "bx", "by", "bz"];
 
@@ -30,11 +33,19 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     }
     let earth = arguments.earth.params()?;
     let wave = arguments.radio.wave()?;
+    if wave.is_some() && arguments.terrain.is_some() {
+        let what = "--frequency-ghz cannot be used with --terrain: Fresnel zones are not tested over the terrain beyond the cloud. \
+                    Test the line of sight with --terrain, and the zone within the cloud without it";
+        return Err(Usage(what.to_owned()).into());
+    }
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     // ends may need the ground
     let points = if arguments.lines.random.is_some() { Points::LetGo } else { Points::Keep };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
+    if let Some(path) = &arguments.terrain {
+        set_terrain(path, &mut scene, &mut stages, &mut summary)?;
+    }
     let (mut pairs, rows) = pairs(arguments, &scene, global.seed, &mut stages)?;
     set_ends_on_ground(&mut pairs, arguments, &mut scene, &mut stages, &mut summary)?;
     let mut section = Summary::default();
@@ -67,7 +78,8 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     section.add("observers_inside_obstacle", fit.skipped_inside_obstacle);
     summary.add("lines_of_sight", counted(&answers, unproven_as, section));
     let outside = AnswerCounts::of(&answers).outside_cloud;
-    summary.warn_of_share(outside, answers.len(), "lines of sight", OUTSIDE_LINE);
+    let is_outside = if arguments.terrain.is_some() { OUTSIDE_BOTH } else { OUTSIDE_LINE };
+    summary.warn_of_share(outside, answers.len(), "lines of sight", is_outside);
     if let ([[observer, _]], [sight]) = (&pairs[..], &sights[..]) {
         let mut one = Summary::default();
         if let Some(sight) = sight {
@@ -83,6 +95,9 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
                 }
                 if let Some(name) = mesh_name(&blockers, block.blocker) {
                     one.add("block_mesh", name);
+                }
+                if block.blocker == Blocker::Terrain {
+                    one.add("block_terrain", true);
                 }
             }
             if scene.model.pulses().is_some() && sight.answer != Answer::OutsideCloud {
@@ -175,6 +190,8 @@ fn set_ends_on_ground(
     let coverage = scene.model.coverage();
     // ground is made where there are points: one end far away would make its cells large for all
     let over = |place: &[f64; 3]| coverage.is_none_or(|coverage| coverage.holds_on_map(*place));
+    let heights = &arguments.heights;
+    let heights = [heights.observer_height.unwrap_or(OBSERVER_HEIGHT), heights.target_height.unwrap_or(TARGET_HEIGHT)];
     let grid = grid_around(pairs.iter().flatten().copied().filter(over), scene.cloud.frame.origin);
     if let Some(grid) = flagged("--pairs", grid)? {
         let (cloud, points) = ground_cloud(&arguments.ground, scene, stages)?;
@@ -183,11 +200,9 @@ fn set_ends_on_ground(
             // a profile needs it again
             scene.cloud = cloud;
         }
-        let heights = &arguments.heights;
-        let heights =
-            [heights.observer_height.unwrap_or(OBSERVER_HEIGHT), heights.target_height.unwrap_or(TARGET_HEIGHT)];
         set_on_ground(pairs.iter_mut().flat_map(|pair| pair.iter_mut().zip(heights)), &ground);
     }
+    set_on_terrain(pairs.iter_mut().flat_map(|pair| pair.iter_mut().zip(heights)), &scene.model);
     let unknown = pairs.iter().flatten().filter(|end| end[2].is_nan()).count();
     summary.warn_of_share(unknown, 2 * pairs.len(), "ends of lines", "have no height and no known ground below");
     Ok(())
@@ -247,6 +262,11 @@ fn write(
     if blockers.added().is_some() {
         columns.push(("block_mesh", Cells::Words(&meshes)));
     }
+    let terrain: Vec<Option<u64>> =
+        (0..count).map(|i| block(i).map(|block| u64::from(block.blocker == Blocker::Terrain))).collect();
+    if blockers.far_terrain().grid().is_some() {
+        columns.push(("block_terrain", Cells::Whole(&terrain)));
+    }
     let read = rows.columns(0..rows.row_count());
     Ok(write_table(output, &with_columns_read(&read, &ENDS, &columns))?)
 }
@@ -293,12 +313,7 @@ fn write_profile(
         });
         stages.run("writing", 0, |_| write_png(output, &picture))?;
     } else {
-        let blocked: Vec<Option<u64>> = profile
-            .solid
-            .iter()
-            .zip(&profile.line)
-            .map(|(pieces, line)| Some(u64::from(pieces.iter().any(|[low, high]| low < line && line < high))))
-            .collect();
+        let blocked: Vec<Option<u64>> = profile.blocked.iter().map(|&blocked| Some(u64::from(blocked))).collect();
         let blocks: Vec<String> = profile
             .solid
             .iter()

@@ -9,7 +9,7 @@ use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::apps::rows::Obstacles;
-use belvedere::apps::shadow::{Edges, ShadowSun, scene_shadow, sun_directions, unproven_light};
+use belvedere::apps::shadow::{Edges, LIT, ShadowSun, scene_shadow, sun_directions, unproven_light};
 use belvedere::apps::sun::{Site, SunPosition, Zone, sun_days, sun_position_with};
 use belvedere::apps::targets::Measure;
 use belvedere::apps::tree_light::Season;
@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     };
     let decimals = if edges == Edges::Soft { 4 } else { 2 };
     let of_sun = |(sun, values): (&Sun, &Vec<f32>)| {
-        let measure = Measure::new(&sun.column, values.clone()).with_description("share of the sun, 0 in shadow");
+        let measure = Measure::new(&sun.column, values.clone()).with_description(LIT);
         measure.with_decimals(decimals).with_range(Some([0.0, 1.0]))
     };
     let mut measures: Vec<Measure> = suns.iter().zip(&lit).map(of_sun).collect();

@@ -5,7 +5,7 @@ use crate::pipeline::{Scene, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
-use belvedere::apps::eyes::{EyeFault, EyesReport, SkippedEye, skip_unfit_eyes};
+use belvedere::apps::eyes::{EyeFault, EyesReport, SkippedEye, skip_unfit_eyes, skip_unfit_far_eyes};
 use belvedere::depth::Profile;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
 use belvedere::io::{ReadOptions, read_cloud};
@@ -164,6 +164,23 @@ pub(crate) fn skip_unfit(
     summary: &mut Summary,
 ) -> Result<EyesReport> {
     let report = stages.run("testing observers", 0, |control| skip_unfit_eyes(blockers, ground, eyes, control))?;
+    warn_of_skipped(report, (who, frame), summary)
+}
+
+/// The same for observers that may stand on far terrain.
+pub(crate) fn skip_unfit_far(
+    blockers: &MedialScene,
+    ground: Option<&Ground>,
+    who: (&str, &Frame),
+    eyes: &mut [[f64; 3]],
+    stages: &mut Stages,
+    summary: &mut Summary,
+) -> Result<EyesReport> {
+    let report = stages.run("testing observers", 0, |control| skip_unfit_far_eyes(blockers, ground, eyes, control))?;
+    warn_of_skipped(report, who, summary)
+}
+
+fn warn_of_skipped(report: EyesReport, (who, frame): (&str, &Frame), summary: &mut Summary) -> Result<EyesReport> {
     let named = |skipped: &SkippedEye| {
         let [x, y, _] = frame.file_from_local(skipped.place);
         (format!("{who} {} at {x:.3},{y:.3}", skipped.row + 1), skipped.fault)

@@ -5,9 +5,9 @@ mod who;
 
 use super::far_terrain::set_terrain;
 use super::heights::write_heights;
-use super::sights::{OUTSIDE_CLOUD, enclosure_note, ground, ground_cloud, proving_blockers, skip_unfit};
+use super::sights::{OUTSIDE_CLOUD, enclosure_note, ground, ground_cloud, proving_blockers, skip_unfit_far};
 use super::{check_output, warn_of_geojson};
-use crate::arguments::{Global, Viewshed};
+use crate::arguments::{Global, Usage, Viewshed};
 use crate::pipeline::{self, Points, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
@@ -51,17 +51,19 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     let grid = grid(arguments, &scene, &rows)?;
     let (cloud, ground_points) = ground_cloud(&arguments.ground, &mut scene, &mut stages)?;
     let ground = ground(&cloud, ground_points, grid, &mut stages, &mut summary)?;
-    let mut observers = who::observers(&rows, &ground);
+    let mut observers = who::observers(&rows, &ground, &scene.model);
     let is_reverse = arguments.who.target.is_some();
     let target_height = match is_reverse {
         true => arguments.looking.observer_height.unwrap_or(OBSERVER_HEIGHT),
         false => arguments.looking.target_height.unwrap_or(TARGET_HEIGHT),
     };
-    flagged("--target-height, --observer-height", finite(target_height))?;
     let profile = arguments.scene.profile.into();
     let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
     let who = if is_reverse { "target" } else { "observer" };
     let report = skip_observers(&mut observers, &blockers, &ground, (who, &cloud), &mut stages, &mut summary)?;
+    if arguments.terrain.is_some() {
+        check_far_observers(arguments, &blockers, &observers, who, &mut summary)?;
+    }
     let terrain = far_cells(arguments, &blockers, &observers)?;
     let key = if is_reverse { "target" } else { "observers" };
     summary.add(key, told(&observers, report, &ground, &blockers, &cloud));
@@ -155,6 +157,9 @@ fn grid(arguments: &Viewshed, scene: &pipeline::Scene, rows: &[who::Row]) -> Res
 /// The cells of the terrain beyond the cloud that observers may see, if these are asked about.
 fn far_cells(arguments: &Viewshed, blockers: &MedialScene, observers: &[Observer]) -> Result<Option<ElevationGrid>> {
     let (Some(path), Some(terrain)) = (&arguments.terrain, blockers.far_terrain().grid()) else { return Ok(None) };
+    if arguments.far_output.is_empty() {
+        return Ok(None);
+    }
     let cells = flagged("--max-distance", terrain_within_reach(terrain, observers))?;
     if far_targets(blockers, &cells).next().is_none() {
         bail!("--terrain {}: has no heights beyond the cloud within --max-distance", path.display());
@@ -162,12 +167,28 @@ fn far_cells(arguments: &Viewshed, blockers: &MedialScene, observers: &[Observer
     Ok(Some(cells))
 }
 
-fn finite(height: f64) -> belvedere::Result<()> {
-    if height.is_finite() {
-        return Ok(());
+/// Refuses what observers on far terrain cannot have, and warns where the terrain changes nothing.
+fn check_far_observers(
+    arguments: &Viewshed,
+    blockers: &MedialScene,
+    observers: &[Observer],
+    who: &str,
+    summary: &mut Summary,
+) -> Result<()> {
+    let far = observers.iter().position(|observer| blockers.is_on_far_terrain(observer.eye));
+    if let (Some(row), Some(_)) = (far, &arguments.heights) {
+        let what = format!(
+            "--heights needs a place in the cloud, but {who} {} is on the terrain beyond it: use -o for what is visible from there",
+            row + 1
+        );
+        return Err(Usage(what).into());
     }
-    let value = height.to_string();
-    Err(belvedere::Error::InvalidParameter { name: "height above the ground", value, expected: "finite" })
+    if far.is_none() && arguments.far_output.is_empty() {
+        summary.warn(format!(
+            "--terrain changes nothing: no {who} is on the terrain beyond the cloud, and there is no --far-output"
+        ));
+    }
+    Ok(())
 }
 
 /// Makes the eyes of observers that cannot look NaN. What is seen of a target often is its inside: only the cloud's limits count for it.
@@ -182,7 +203,7 @@ fn skip_observers(
     let mut eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
     let report = match (who, &eyes[..]) {
         ("target", &[eye]) if fault_of_target(blockers, eye).is_none() => EyesReport::none_skipped(1),
-        _ => skip_unfit(blockers, Some(ground), (who, &cloud.frame), &mut eyes, stages, summary)?,
+        _ => skip_unfit_far(blockers, Some(ground), (who, &cloud.frame), &mut eyes, stages, summary)?,
     };
     observers.iter_mut().zip(eyes).for_each(|(observer, eye)| observer.eye = eye);
     Ok(report)
@@ -213,17 +234,21 @@ fn told(
     cloud: &PointCloud,
 ) -> Summary {
     let mut section = Summary::of(&report);
+    let height_below = |observer: &Observer| {
+        let place = [observer.eye[0], observer.eye[1]];
+        let terrain = blockers.far_terrain().grid().filter(|_| blockers.is_on_far_terrain(observer.eye));
+        terrain.map_or_else(|| ground.height_at(place), |terrain| terrain.height_at(place))
+    };
     if let [one] = observers {
         section.add("eye", cloud.frame.file_from_local(one.eye).map(|v| rounded(v, 3)).to_vec());
-        if let Some(height) = ground.height_at([one.eye[0], one.eye[1]]) {
+        if let Some(height) = height_below(one) {
             section.add("above_ground_m", rounded(one.eye[2] - height, 3));
         }
     }
     let mut notes = Vec::new();
     for (number, observer) in observers.iter().enumerate().filter(|(_, observer)| observer.eye[0].is_finite()) {
         let who = format!("eye {}", number + 1);
-        let height = ground.height_at([observer.eye[0], observer.eye[1]]);
-        if let Some(height) = height.filter(|height| observer.eye[2] < *height) {
+        if let Some(height) = height_below(observer).filter(|height| observer.eye[2] < *height) {
             notes.push(format!("{who} is {:.2} m below the ground", height - observer.eye[2]));
         }
         notes.extend(enclosure_note(blockers, observer.eye, &who));

@@ -1,6 +1,6 @@
 //! `belvedere city`: steps, interruptions, damaged tiles.
 
-use crate::common::Workplace;
+use crate::common::{Workplace, house};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Stdio;
@@ -248,4 +248,23 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     // a disc of 30 m, on cells of 16 m²
     assert!((150..200).contains(&(of_code(0) + of_code(1))), "{} {}", of_code(0), of_code(1));
     assert!(of_code(1) > 20 && of_code(2) == 0, "{}", of_code(1));
+    // rasters say what they hold, as those of single scenes do: other quantities are neither subtracted without a word nor taken for terrain
+    let shadow = "shadow_20260320_124500";
+    place.summary(&format!("city merge run --result {shadow} -o {shadow}.tif"));
+    let what = |name: &str| belvedere::io::read_tif(place.path(name).as_path()).unwrap().description.unwrap();
+    assert_eq!(what(&format!("{shadow}.tif")), "share of the sun, 0 in shadow");
+    assert_eq!(what("seen.tif"), "1 visible, 0 blocked, 2 unproven, 255 nodata");
+    let tile = std::fs::read_dir(place.path("run/sun_hours")).unwrap().map(|entry| entry.unwrap().path());
+    let tile = tile.into_iter().find(|path| path.extension().is_some_and(|extension| extension == "tif")).unwrap();
+    let of_tile = belvedere::io::read_tif(tile.as_path()).unwrap().description;
+    assert_eq!(
+        (of_tile, what("sun_hours.tif")),
+        (Some("hours of sun a day".to_owned()), "hours of sun a day".to_owned())
+    );
+    place.summary("difference sun_hours.tif sun_hours.tif -o same.tif");
+    let run = place.run("difference sun_hours.tif irradiance.tif -o other.tif");
+    assert!(run.status == 0 && run.stderr.contains("different quantities"), "{run:?}");
+    place.write_cloud("house.laz", &house());
+    let shadow = "shadow house.laz --orient given --method tau --sun 180,25 --cell 1 -o lit.csv";
+    place.refusal(1, &format!("{shadow} --terrain irradiance.tif"), &["irradiance.tif", "energy of the period"]);
 }

@@ -239,6 +239,23 @@ fn what_cannot_be_compared_is_refused() {
 #[test]
 fn scanners_and_densities_are_kept_apart() {
     let place = Workplace::new();
+    for name in ["c.laz", "m.obj"] {
+        place.write(name, "never read");
+    }
+    for (flags, parts) in [
+        ("--regimes tripods,room --density 4", &["--density", "tripods, room", "fly"][..]),
+        ("--clouds c.laz --mesh m.obj --density 4", &["--density", "simulated towns"]),
+        ("--held-out c.laz --density 4", &["--density", "simulated towns"]),
+    ] {
+        place.refusal(2, &format!("compare {flags} -o none"), parts);
+        assert!(!place.path("none").exists());
+    }
+    let beside = "compare --extent 60 --regimes air,room --density 2 --target-count 200 --methods dsm -o beside";
+    let run = place.run(beside);
+    assert!(
+        run.status == 0 && run.stderr.contains("--density does not apply to room, which is compared once"),
+        "{run:?}"
+    );
     let run = "compare --extent 60 --regimes air,conical --density 2,4 --target-count 300 --methods dsm -o out";
     let results = &place.summary(run)["results"];
     let scanners: Vec<(&str, f64)> = results["methods"]

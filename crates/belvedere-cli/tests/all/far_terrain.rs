@@ -119,7 +119,6 @@ fn terrain_beyond_the_cloud_is_visible_where_nothing_hides_it() {
     assert_eq!((raster.width(), raster.get(25, 0), raster.get(0, 0)), (50, Some(2), Some(65_535)));
     for (wrong, status, parts) in [
         ("--far-output none.tif", 2, &["--terrain"][..]),
-        ("--terrain dtm.tif -o none.tif", 2, &["--far-output"]),
         ("--terrain dtm.tif --far-output none.laz", 2, &["--far-output", "none.laz"]),
         ("--terrain dtm.tif --far-output none.tif --max-distance 9", 2, &["--max-distance", "2 x 2"]),
         ("--terrain missing.tif --far-output none.tif -o none.png", 1, &["missing.tif"]),
@@ -130,6 +129,93 @@ fn terrain_beyond_the_cloud_is_visible_where_nothing_hides_it() {
     let flags = "--terrain holes.tif --max-distance 25 --far-output none.tif -o none.png";
     place.refusal(1, &format!("viewshed {HOUSE} --observer {x},{y},{z} {flags}"), &["holes.tif", "beyond the cloud"]);
     assert!(!place.path("none.tif").exists() && !place.path("none.png").exists());
+}
+
+#[test]
+fn lines_of_sight_reach_the_terrain_beyond_the_cloud() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    write_terrain(&place, "dtm.tif", 28992, 0.0, range);
+    let ([x, y, z], [_, mast, _]) = (at(0.0, 0.0, 12.0), at(0.0, -1800.0, 0.0));
+    let flags = format!("line-of-sight {HOUSE} --terrain dtm.tif");
+    // a mast 290 m behind the crest: from h above it the line to 12 m lies 62.51 m lower over the crest, and 29 mm for the earth: h (1 - 290 / 1800) = 62.54
+    for (height, answer) in [(74.4, "blocked"), (74.7, "visible")] {
+        let ends = format!("--observer {x},{mast} --observer-height {height} --target {x},{y},{z}");
+        assert_eq!(place.summary(&format!("{flags} {ends}"))["line"]["answer"], answer);
+        let ends = format!("--target {x},{mast} --target-height {height} --observer {x},{y},{z}");
+        assert_eq!(place.summary(&format!("{flags} {ends}"))["line"]["answer"], answer);
+    }
+    let (west, east, far) = (x - 1000.0, x + 1000.0, x + 3000.0);
+    let rows = [
+        format!("{x},{mast},,{x},{y},{z}"),
+        format!("{x},{y},{z},{x},{mast},480"),
+        format!("{west},{y},,{east},{},", y + 1500.0),
+        format!("{x},{y},{z},{far},{y},100"),
+        format!("{x},{y},{z},{far},{y},"),
+    ];
+    place.write("pairs.csv", format!("ax,ay,az,bx,by,bz\n{}\n", rows.join("\n")));
+    let run = place.run(&format!("{flags} --pairs pairs.csv -o lines.csv"));
+    assert!(run.status == 0 && run.stderr.contains("outside the cloud and the terrain"), "{run:?}");
+    assert_eq!(column(&place, "lines.csv", "answer"), [0.0, 1.0, 1.0, 4.0, 3.0]);
+    let [az, bz] = ["az", "bz"].map(|name| column(&place, "lines.csv", name));
+    assert_eq!((az[0], az[2], bz[2], bz[4].is_nan()), (401.7, 1.7, 0.0, true));
+    // the first leaves its hill, 1.7 m below its eye, after 7.848 m
+    let blocked = |name: &str| column(&place, "lines.csv", name)[0];
+    assert!((blocked("first_block_range_m") - 8.030).abs() < 2e-3 && (blocked("block_z") - 400.0).abs() < 2e-3);
+    assert!((blocked("block_y") - mast - 7.848).abs() < 2e-3 && blocked("block_ball").is_nan());
+    let by_terrain = column(&place, "lines.csv", "block_terrain");
+    assert!(by_terrain[0] == 1.0 && by_terrain[1..].iter().all(|v| v.is_nan()), "{by_terrain:?}");
+    let ends = format!("--observer {x},{mast} --target {x},{y},{z}");
+    let run = place.summary(&format!("{flags} {ends} --profile-out profile.csv --distance-step-m 10"));
+    assert_eq!(run["line"]["block_terrain"], true);
+    let [ground, blocked] = ["ground", "blocked"].map(|name| column(&place, "profile.csv", name));
+    assert_eq!((ground.len(), ground[0], ground[29], ground[30], ground[31]), (181, 400.0, 400.0, 200.0, 0.0));
+    assert!(blocked[0] == 0.0 && blocked[1..30].iter().all(|v| *v == 1.0) && blocked[31..60] == [0.0; 29]);
+    place.refusal(2, &format!("{flags} {ends} --frequency-ghz 5.8"), &["--frequency-ghz", "--terrain"]);
+    place.refusal(1, &format!("line-of-sight {HOUSE} --terrain missing.tif {ends}"), &["missing.tif"]);
+}
+
+#[test]
+fn observers_and_targets_of_viewsheds_stand_on_the_terrain() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    write_terrain(&place, "dtm.tif", 28992, 0.0, range);
+    let ([x, y, z], [_, hill, _]) = (at(0.0, 0.0, 12.0), at(0.0, -1800.0, 0.0));
+    let flags = format!("viewshed {HOUSE} --terrain dtm.tif");
+    // from the hill its top is seen, 25 rows of 200 cells, and nothing of the plain below the crest
+    let run = place.summary(&format!("{flags} --observer {x},{hill} --far-output far.tif"));
+    let rounded = |name: &str| run["observers"][name].clone();
+    assert_eq!((rounded("eye")[2].as_f64(), rounded("above_ground_m").as_f64()), (Some(401.7), Some(1.7)));
+    assert_eq!(run["far_cells"]["visible"], 5000);
+    let run = place.summary(&format!("{flags} --target {x},{hill},401.7 --observer-height 0 --far-output from.tif"));
+    assert_eq!(run["far_cells"]["visible"], 5000);
+    assert_eq!(place.bytes("far.tif"), place.bytes("from.tif"));
+    // of the cloud, cells are seen from a mast of 90 m, and none from the ground (75 m: the line to 0 m lies 0.4 m above the crest at 77 m)
+    let codes = |observer: &str| {
+        let run = place.run(&format!("{flags} {observer} --cell 1 -o seen.tif"));
+        assert_eq!(run.status, 0, "{run:?}");
+        let raster = read_tif_u8(place.path("seen.tif").as_path()).unwrap();
+        [0, 1].map(|code: u8| raster.values().iter().filter(|v| **v == code).count())
+    };
+    let [blocked, visible] = codes(&format!("--observer {x},{hill},490"));
+    assert!(visible > blocked && blocked > 0, "{blocked} {visible}");
+    let [hidden, seen] = codes(&format!("--observer {x},{hill}"));
+    assert_eq!((hidden, seen), (blocked + visible, 0));
+    // with one in the cloud they count together
+    let both = format!("--observer {x},{hill},490 --observer {x},{y},{z}");
+    place.summary(&format!("{flags} {both} --cell 1 -o counts.tif --masks masks.tif"));
+    let counts = read_tif_u16(place.path("counts.tif").as_path()).unwrap();
+    assert!(counts.values().contains(&2));
+    let run = place.run(&format!("{flags} --observer {x},{y},{z} --cell 1 -o near.tif"));
+    assert!(run.status == 0 && run.stderr.contains("--terrain changes nothing"), "{run:?}");
+    for (wrong, status, parts) in [
+        (format!("--observer {x},{hill},390 -o none.tif"), 1, &["10.00 m below the ground"][..]),
+        (format!("--observer {x},{},50 -o none.tif", hill - 900.0), 1, &["outside the cloud"]),
+        (format!("--observer {x},{hill} -o none.tif --heights none.npy"), 2, &["--heights", "observer 1", "terrain"]),
+    ] {
+        place.refusal(status, &format!("{flags} {wrong}"), parts);
+    }
+    assert!(!place.path("none.tif").exists() && !place.path("none.npy").exists());
 }
 
 #[test]

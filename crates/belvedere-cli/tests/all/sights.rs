@@ -228,6 +228,8 @@ fn what_cannot_be_is_refused_with_advice() {
     place.refusal(1, "viewshed house.laz --method tau --ground classed --observer 85000,446000 -o a.tif", &["class 2"]);
     place.write("pairs.csv", "ax,ay,az,bx\n1,2,3,4\n");
     place.refusal(1, "line-of-sight house.laz --method tau --pairs pairs.csv -o out.csv", &["by", "ax, ay"]);
+    place.write("low.csv", format!("x,y,height\n{EAST},{NORTH},-0.5\n"));
+    place.refusal(1, "viewshed house.laz --method tau --observers low.csv -o low.tif", &["low.csv", "height -0.5"]);
     place.write("pairs.csv", "ax,ay,az,bx,by,bz\n1,2,3,4,5,six\n");
     place.refusal(1, "line-of-sight house.laz --method tau --pairs pairs.csv -o out.csv", &["row 1", "six", "bz"]);
     place.write("pairs.csv", "ax,ay,az,bx,by,bz\n1,2,3,4,5\n");

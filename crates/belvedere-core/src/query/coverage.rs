@@ -9,7 +9,7 @@ use rayon::prelude::*;
 const MARGIN: f64 = 1.0;
 /// How far above its highest point a position may lie, metres. Nothing stands there, so that an aircraft or a drone may look from there; what
 /// lies higher is a mistake in the coordinates.
-const CEILING: f64 = 10_000.0;
+pub(super) const CEILING: f64 = 10_000.0;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 4096;
 

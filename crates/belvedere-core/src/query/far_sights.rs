@@ -1,9 +1,69 @@
 //! Lines of sight that leave the cloud: to the terrain around it, and from there.
 
 use super::far_terrain::piece_over;
-use super::{Answer, EarthParams, MedialScene};
+use super::{Answer, Block, Blocker, EarthParams, LineOfSight, MedialScene};
+use belvedere_data::vector::{length, sub};
+
+/// A line of sight over far terrain.
+struct FarLine<'a> {
+    observer: [f64; 3],
+    target: [f64; 3],
+    /// Unit vector to the target on the map, and how far it is there, metres.
+    along: [f64; 2],
+    span: f64,
+    /// Tangent of the elevation at which the target appears.
+    tangent: f64,
+    earth: &'a EarthParams,
+}
+
+impl<'a> FarLine<'a> {
+    /// `None` where a coordinate is not finite or one end is above the other.
+    fn new(observer: [f64; 3], target: [f64; 3], earth: &'a EarthParams) -> Option<Self> {
+        let across = [target[0] - observer[0], target[1] - observer[1]];
+        let span = across[0].hypot(across[1]);
+        if !(span > 0.0 && span.is_finite() && (target[2] - observer[2]).is_finite()) {
+            return None;
+        }
+        let tangent = earth.apparent_tangent(target[2] - observer[2], span);
+        Some(Self { observer, target, along: across.map(|v| v / span), span, tangent, earth })
+    }
+
+    fn ends(&self) -> ([f64; 3], [f64; 3]) {
+        (self.observer, self.target)
+    }
+
+    /// Its place `span` metres from the observer on the map.
+    fn at(&self, span: f64) -> [f64; 3] {
+        let height = self.observer[2] + self.earth.height_along(self.tangent, span);
+        [self.observer[0] + self.along[0] * span, self.observer[1] + self.along[1] * span, height]
+    }
+
+    /// How far a place on it lies from the observer on the map, metres.
+    fn span_to(&self, place: [f64; 3]) -> f64 {
+        (place[0] - self.observer[0]).hypot(place[1] - self.observer[1])
+    }
+}
 
 impl MedialScene {
+    /// Whether a position, local metres, lies beyond the cloud and over the raster of [`MedialScene::with_far_terrain`], so that lines of sight to it have answers. It may lie below the surface, and
+    /// its height may be NaN. False where it is not known over which space the cloud lies.
+    #[must_use]
+    pub fn is_on_far_terrain(&self, position: [f64; 3]) -> bool {
+        self.coverage().is_some_and(|coverage| !coverage.holds_on_map(position)) && self.far_terrain.holds(position)
+    }
+
+    /// Whether a position, local metres, lies neither over the cloud nor over far terrain.
+    #[must_use]
+    pub fn is_outside(&self, position: [f64; 3]) -> bool {
+        self.is_outside_cloud(position) && !self.is_on_far_terrain(position)
+    }
+
+    /// Whether the line of sight between two ends, local metres, leaves the cloud for far terrain, and has an answer.
+    #[must_use]
+    pub fn leaves_cloud(&self, ends: [[f64; 3]; 2]) -> bool {
+        ends.into_iter().any(|end| self.is_on_far_terrain(end)) && !ends.into_iter().any(|end| self.is_outside(end))
+    }
+
     /// Whether `observer` sees `target`, local metres, where one of them or both lie beyond the cloud. Visible, blocked, or unproven where pulses are known;
     /// [`Answer::OutsideView`] where a coordinate is not finite or one end is above the other.
     ///
@@ -12,28 +72,51 @@ impl MedialScene {
     /// horizons. A target on the surface does not hide itself. The profile of far terrain, which has no distances, is not asked.
     #[must_use]
     pub fn far_sight_answer(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Answer {
-        let across = [target[0] - observer[0], target[1] - observer[1]];
-        let span = across[0].hypot(across[1]);
-        if !(span > 0.0 && span.is_finite() && (target[2] - observer[2]).is_finite()) {
-            return Answer::OutsideView;
-        }
-        let along = across.map(|v| v / span);
-        let tangent = earth.apparent_tangent(target[2] - observer[2], span);
-        if self.far_terrain.blocks_sight((observer, target), along, tangent, earth) {
+        let Some(line) = FarLine::new(observer, target, earth) else { return Answer::OutsideView };
+        if self.far_terrain.blocks_sight(line.ends(), line.along, line.tangent, earth) {
             return Answer::Blocked;
         }
-        let cloud = self.coverage().map(|coverage| coverage.bounds().on_map());
-        let over = match cloud {
-            Some((low, high)) => piece_over([low, high], observer, along, span),
-            None => Some([0.0, span]),
+        match self.corners_over_cloud(&line) {
+            Some(corners) => self.answer_on_chords(line.ends(), &corners),
+            None => Answer::Visible,
+        }
+    }
+
+    /// The same with what blocks first; `None` instead of [`Answer::OutsideView`].
+    pub(super) fn far_line_of_sight(
+        &self,
+        observer: [f64; 3],
+        target: [f64; 3],
+        earth: &EarthParams,
+    ) -> Option<LineOfSight> {
+        let line = FarLine::new(observer, target, earth)?;
+        let terrain = self.far_terrain.meets_sight(line.ends(), line.along, line.tangent, earth);
+        let free = LineOfSight { answer: Answer::Visible, first_block: None, unproven_length: 0.0 };
+        let mut sight = match self.corners_over_cloud(&line) {
+            Some(corners) => self.sight_on_chords(line.ends(), &corners),
+            None => free,
         };
-        let Some([from, to]) = over else { return Answer::Visible };
-        let at = |range: f64| {
-            let height = observer[2] + earth.height_along(tangent, range);
-            [observer[0] + along[0] * range, observer[1] + along[1] * range, height]
+        if let Some(span) = terrain
+            && sight.first_block.is_none_or(|block| span < line.span_to(block.place))
+        {
+            let block = Block { range: 0.0, blocker: Blocker::Terrain, place: line.at(span) };
+            sight = LineOfSight { answer: Answer::Blocked, first_block: Some(block), ..free };
+        }
+        if let Some(block) = &mut sight.first_block {
+            block.range = length(sub(block.place, observer));
+        }
+        Some(sight)
+    }
+
+    /// Corners of the chords of a line over the box of the cloud, from the side of the observer on; `None` where it passes beside it.
+    fn corners_over_cloud(&self, line: &FarLine<'_>) -> Option<Vec<[f64; 3]>> {
+        let over = match self.coverage().map(|coverage| coverage.bounds().on_map()) {
+            Some((low, high)) => piece_over([low, high], line.observer, line.along, line.span),
+            None => Some([0.0, line.span]),
         };
-        let first = if from > 0.0 { at(from) } else { observer };
-        let last = if to < span { at(to) } else { target };
-        self.answer_on_chords((observer, target), &earth.corners(first, last))
+        let [from, to] = over?;
+        let first = if from > 0.0 { line.at(from) } else { line.observer };
+        let last = if to < line.span { line.at(to) } else { line.target };
+        Some(line.earth.corners(first, last))
     }
 }

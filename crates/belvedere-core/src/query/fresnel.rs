@@ -237,7 +237,8 @@ impl MedialScene {
     /// [`MedialScene::lines_of_sight`]. A link that is blocked has none free, and one with an end outside the cloud, or without a line, is NaN. Progress counts pairs.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] for another number of lines of sight, and [`Error::Cancelled`].
+    /// [`Error::LengthMismatch`] for another number of lines of sight; [`Error::InvalidParameter`] for a link over far terrain, of which it is not known how far it reaches into the zone; and
+    /// [`Error::Cancelled`].
     pub fn fresnel_clearances(
         &self,
         pairs: &[[[f64; 3]; 2]],
@@ -249,6 +250,13 @@ impl MedialScene {
         let (expected, found) = (pairs.len(), sights.len());
         if expected != found {
             return Err(Error::LengthMismatch { what: "lines of sight of the links", expected, found });
+        }
+        if let Some(row) = pairs.iter().position(|&ends| self.leaves_cloud(ends)) {
+            return Err(Error::InvalidParameter {
+                name: "frequency of a radio link",
+                value: format!("a link over far terrain, number {}", row + 1),
+                expected: "links within the cloud: Fresnel zones are not tested over far terrain",
+            });
         }
         let of_pair = |(&ends, sight): (&[[f64; 3]; 2], &Option<LineOfSight>)| {
             control.check()?;

@@ -127,7 +127,8 @@ impl MedialScene {
         self
     }
 
-    /// The same balls before far terrain: every direction below its horizon is blocked. Lines of sight that end are not.
+    /// The same balls before far terrain: every direction below its horizon is blocked. Of lines of sight that end, its raster blocks those that leave the cloud
+    /// ([`MedialScene::line_of_sight`]).
     #[must_use]
     pub fn with_far_terrain(mut self, far_terrain: FarTerrain) -> Self {
         self.far_terrain = far_terrain;

@@ -24,7 +24,7 @@ pub struct LineOfSight {
     /// What the observer sees in place of the target, if the line is blocked.
     pub first_block: Option<Block>,
     /// How much of it no pulse came near to, metres; 0 where pulses are not known, and where it is blocked; NaN
-    /// outside the cloud.
+    /// outside the cloud. Of a line that leaves the cloud, only the part over the cloud counts.
     pub unproven_length: f64,
 }
 
@@ -35,6 +35,8 @@ pub enum Blocker {
     Ball(usize),
     /// A mesh that was added, by its number ([`super::AddedMeshes::names`]).
     Mesh(usize),
+    /// The raster of far terrain, on lines of sight that leave the cloud.
+    Terrain,
 }
 
 impl Blocker {
@@ -54,7 +56,7 @@ impl Blocker {
 /// What stands before a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
-    /// Where the line of sight meets it, metres from the observer along the line.
+    /// Where the line of sight meets it, metres from the observer along the line; on a line that leaves the cloud, straight from the observer.
     pub range: f64,
     /// What it is.
     pub blocker: Blocker,
@@ -107,9 +109,14 @@ impl MedialScene {
     /// The answer is that of [`MedialScene::answer`] for the same pair on a plane earth. A curved line is cut into chords; the rules for
     /// the ends (balls that hold the observer are left out, balls near the target give way) are asked of the ends of
     /// the whole line.
+    ///
+    /// Where an end lies on far terrain ([`MedialScene::is_on_far_terrain`]) the answer is that of [`MedialScene::far_sight_answer`]: `None` also where one end is above the other.
     #[must_use]
     pub fn line_of_sight(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Option<LineOfSight> {
         let straight = Ray::new(target, sub(observer, target), [0.0, length(sub(observer, target))])?;
+        if self.leaves_cloud([observer, target]) {
+            return self.far_line_of_sight(observer, target, earth);
+        }
         if [observer, target].into_iter().any(|end| self.is_outside_cloud(end)) {
             let answer = Answer::OutsideCloud;
             return Some(LineOfSight { answer, first_block: None, unproven_length: f64::NAN });
@@ -119,23 +126,35 @@ impl MedialScene {
         } else {
             vec![(Piece { ray: self.biased(straight), target, observer }, 0.0)]
         };
-        let whole = pieces.len() == 1;
-        for (piece, passed) in &pieces {
+        Some(self.sight_on_pieces(&pieces, pieces.len() == 1))
+    }
+
+    /// What is known of the part of a line of sight that [`MedialScene::answer_on_chords`] answers.
+    pub(super) fn sight_on_chords(
+        &self,
+        (observer, target): ([f64; 3], [f64; 3]),
+        corners: &[[f64; 3]],
+    ) -> LineOfSight {
+        self.sight_on_pieces(&self.chords(observer, target, corners), false)
+    }
+
+    fn sight_on_pieces(&self, pieces: &[(Piece, f64)], whole: bool) -> LineOfSight {
+        for (piece, passed) in pieces {
             if let Some((blocker, from_observer)) = self.first_on(piece, whole) {
                 let place = piece.ray.at(piece.ray.ranges[1] - from_observer);
                 let block = Block { range: passed + from_observer, blocker, place };
-                return Some(LineOfSight { answer: Answer::Blocked, first_block: Some(block), unproven_length: 0.0 });
+                return LineOfSight { answer: Answer::Blocked, first_block: Some(block), unproven_length: 0.0 };
             }
         }
         let Some(proof) = &self.proof else {
-            return Some(LineOfSight { answer: Answer::Visible, first_block: None, unproven_length: 0.0 });
+            return LineOfSight { answer: Answer::Visible, first_block: None, unproven_length: 0.0 };
         };
         let unseen = |(piece, _): &(Piece, f64)| {
             self.unproven_length(proof, piece.ray.origin, piece.ray.direction, piece.ray.ranges[1])
         };
         let unproven_length = pieces.iter().map(unseen).sum();
         let answer = if unproven_length > proof.tolerance() { Answer::Unproven } else { Answer::Visible };
-        Some(LineOfSight { answer, first_block: None, unproven_length })
+        LineOfSight { answer, first_block: None, unproven_length }
     }
 
     /// [`MedialScene::line_of_sight`] for each of `pairs`, (N, observer and target), local metres, in their order. Progress counts pairs.
@@ -163,6 +182,9 @@ impl MedialScene {
     pub fn sight_answer(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Answer {
         let range = length(sub(observer, target));
         let Some(ray) = Ray::new(target, sub(observer, target), [0.0, range]) else { return Answer::OutsideView };
+        if self.leaves_cloud([observer, target]) {
+            return self.far_sight_answer(observer, target, earth);
+        }
         if [observer, target].into_iter().any(|end| self.is_outside_cloud(end)) {
             return Answer::OutsideCloud;
         }

@@ -218,8 +218,12 @@ def number_pair(value: object, what: str, advice: str) -> tuple[float, float]:
     return float(array[0]), float(array[1])
 
 
+#: Heights above the ground, below which nothing can be seen.
+_HEIGHTS = frozenset(["observer_height", "target_height", "camera_height", "fence_height"])
+
+
 def check_finite(**values: float | None) -> None:
-    """Refuses numbers that are none."""
+    """Refuses numbers that are none, and heights below the ground."""
     for name, value in values.items():
         if value is None:
             continue
@@ -227,6 +231,8 @@ def check_finite(**values: float | None) -> None:
             raise wrong(name, repr(value), "give a number")
         if not np.isfinite(value):
             raise wrong(name, value, "give a finite number")
+        if name in _HEIGHTS and value < 0:
+            raise wrong(name, value, "give a height above the ground of 0 metres or more")
 
 
 def reporter(progress: Progress) -> Callable[[str, int, int], object] | None:

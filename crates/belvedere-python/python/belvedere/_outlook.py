@@ -49,10 +49,11 @@ class Outlook:
         Parameters
         ----------
         observers : array_like, shape (2,), (3,), (N, 2) or (N, 3), optional
-            Places in the coordinates of the file. Without z, eyes are `observer_height` above the ground.
+            Places in the coordinates of the file. Without z, eyes are `observer_height` above the ground. After
+            `with_terrain` they may be on the terrain beyond the cloud.
         target : array_like, shape (2,) or (3,), optional
             In place of observers: cells are those from which this place is seen by eyes `observer_height` above the
-            ground. Without z, it is `target_height` above the ground.
+            ground. Without z, it is `target_height` above the ground. After `with_terrain` it may be on the terrain.
         observer_height : float, optional
             Height of eyes above the ground, metres; 1.7 if not given.
         target_height : float, optional

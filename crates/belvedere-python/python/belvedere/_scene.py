@@ -261,7 +261,8 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         """The same scene before the terrain of an elevation raster: each place has its own horizon.
 
         Horizons are exact for the cells of the raster, with the curvature of the earth and refraction. Within the
-        extent of the cloud, and one cell around it, the raster blocks nothing.
+        extent of the cloud, and one cell around it, the raster blocks nothing. Places of `line_of_sight` and
+        `viewshed` may then be on the terrain.
 
         Parameters
         ----------

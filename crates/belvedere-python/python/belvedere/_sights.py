@@ -30,6 +30,8 @@ class Sight(NamedTuple):
         Where the line is blocked first, in the coordinates of the file.
     fresnel_free_percent : float
         How much of the radius of the first Fresnel zone is free; NaN without a frequency.
+    block_terrain : bool
+        Whether it is the terrain of `with_terrain` that blocks first.
 
     Examples
     --------
@@ -43,6 +45,7 @@ class Sight(NamedTuple):
     unproven_m: float
     block: tuple[float, float, float]
     fresnel_free_percent: float = float("nan")
+    block_terrain: bool = False
 
 
 class Sights:
@@ -114,6 +117,8 @@ class Sights:
     ) -> Any:
         """What is known of lines of sight between pairs of places.
 
+        With `with_terrain`, places may lie on the terrain beyond the cloud, which then blocks as in `viewshed`.
+
         Parameters
         ----------
         observer, target : array_like, shape (3,), (N, 3), (2,) or (N, 2)
@@ -132,15 +137,16 @@ class Sights:
         refraction : float, optional
             Share of the curvature that light follows, 0 to below 1; 1/7 if not given.
         frequency_ghz : float, optional
-            Frequency of a radio link, 0.001 to 1000: also tests its first Fresnel zone.
+            Frequency of a radio link, 0.001 to 1000: also tests its first Fresnel zone. Not for places on the terrain
+            beyond the cloud.
         progress : bool or callable, optional
 
         Returns
         -------
         Sight or Table
             A `Sight` for one pair. For several a `Table` with ``answer``, ``first_block_range_m``, ``unproven_m``
-            (where pulses are known), ``fresnel_free_percent`` (with a frequency), ``block`` (N, 3), ``block_ball`` and
-            ``block_source`` (-1 where nothing blocks).
+            (where pulses are known), ``fresnel_free_percent`` (with a frequency), ``block`` (N, 3), ``block_ball``,
+            ``block_source`` (-1 where no ball blocks) and ``block_terrain`` (with terrain).
 
         Raises
         ------
@@ -174,6 +180,7 @@ class Sights:
             float(columns["unproven_m"][0]) if "unproven_m" in columns else nan,
             (float(block[0]), float(block[1]), float(block[2])),
             float(columns["fresnel_free_percent"][0]) if "fresnel_free_percent" in columns else nan,
+            bool(columns["block_terrain"][0]) if "block_terrain" in columns else False,
         )
 
     def _ends(

@@ -12,10 +12,10 @@ use belvedere::random::uniform;
 use belvedere::{Bounds, ElevationGrid};
 use std::f64::consts::TAU;
 
-type MapBox = ([f64; 2], [f64; 2]);
+pub(crate) type MapBox = ([f64; 2], [f64; 2]);
 
 /// A scene over `cloud` on the map with one ball, before `terrain`.
-fn scene(terrain: ElevationGrid, (low, high): MapBox, center: [f64; 3], radius: f64) -> MedialScene {
+pub(crate) fn scene(terrain: ElevationGrid, (low, high): MapBox, center: [f64; 3], radius: f64) -> MedialScene {
     let mut balls = MedialBalls::default();
     balls.push(0, center.map(|v| v as f32), radius as f32, 0);
     let corner = |[x, y]: [f64; 2], z: f32| [x as f32, y as f32, z];
@@ -27,15 +27,15 @@ fn scene(terrain: ElevationGrid, (low, high): MapBox, center: [f64; 3], radius: 
 }
 
 /// The same with a ball that is in nobody's way.
-fn open_scene(terrain: ElevationGrid, cloud: MapBox) -> MedialScene {
+pub(crate) fn open_scene(terrain: ElevationGrid, cloud: MapBox) -> MedialScene {
     scene(terrain, cloud, [cloud.0[0], cloud.0[1], -4000.0], 1.0)
 }
 
-fn around([x, y, _]: [f64; 3], half: f64) -> MapBox {
+pub(crate) fn around([x, y, _]: [f64; 3], half: f64) -> MapBox {
     ([x - half, y - half], [x + half, y + half])
 }
 
-fn observer(eye: [f64; 3]) -> Observer {
+pub(crate) fn observer(eye: [f64; 3]) -> Observer {
     Observer { eye, limits: SightLimits::default() }
 }
 
@@ -54,7 +54,7 @@ fn nodes<'a>(scene: &'a MedialScene, seen: &'a Viewshed) -> impl Iterator<Item =
 }
 
 /// How far a line of sight sags below the straight one between its ends: (1 - k) s (S - s) / 2R.
-fn sag(earth: &EarthParams, s: f64, span: f64) -> f64 {
+pub(crate) fn sag(earth: &EarthParams, s: f64, span: f64) -> f64 {
     if earth.curvature == Curvature::Off {
         0.0
     } else {
@@ -110,6 +110,18 @@ fn a_ridge_hides_what_lies_below_the_line_over_its_crest() {
 
 /// The least height of a line of sight above the terrain beyond `cloud` and a cell around it, by steps of a 32nd of each patch: no maxima, no closed form.
 fn clearance(grid: &ElevationGrid, cloud: MapBox, eye: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
+    // NaN is never the smaller one
+    heights_above(grid, cloud, eye, target, earth).into_iter().map(|[_, above]| above).fold(f64::INFINITY, f64::min)
+}
+
+/// The heights of a line of sight above the terrain in these steps, with the distance of each from the eye on the map; NaN where the terrain is not known.
+pub(crate) fn heights_above(
+    grid: &ElevationGrid,
+    cloud: MapBox,
+    eye: [f64; 3],
+    target: [f64; 3],
+    earth: &EarthParams,
+) -> Vec<[f64; 2]> {
     let (heights, cell, [west, north]) = (grid.heights(), grid.cell(), grid.north_west());
     let across = [target[0] - eye[0], target[1] - eye[1]];
     let span = across[0].hypot(across[1]);
@@ -124,7 +136,7 @@ fn clearance(grid: &ElevationGrid, cloud: MapBox, eye: [f64; 3], target: [f64; 3
     }
     shares.sort_by(f64::total_cmp);
     let room = cell[0].max(cell[1]);
-    let mut least = f64::INFINITY;
+    let mut found = Vec::new();
     for pair in shares.windows(2) {
         let middle = f64::midpoint(pair[0], pair[1]);
         let [column, row] = [0, 1].map(|axis| (from[axis] + slope[axis] * middle).floor().max(0.0) as usize);
@@ -138,11 +150,10 @@ fn clearance(grid: &ElevationGrid, cloud: MapBox, eye: [f64; 3], target: [f64; 3
             let at = |c: usize, r: usize| heights.get(column + c, row + r).map_or(f64::NAN, f64::from);
             let ground = (1.0 - v) * ((1.0 - u) * at(0, 0) + u * at(1, 0)) + v * ((1.0 - u) * at(0, 1) + u * at(1, 1));
             let line = eye[2] + (target[2] - eye[2]) * share - sag(earth, share * span, span);
-            // NaN is never the smaller one
-            least = least.min(line - ground);
+            found.push([share * span, line - ground]);
         }
     }
-    least
+    found
 }
 
 /// Compares a viewshed with lines followed step by step for each `step`th node. Gives the numbers of blocked and visible nodes, and of those that differ because terrain rises above the

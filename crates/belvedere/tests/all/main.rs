@@ -22,6 +22,7 @@ mod common;
 mod crowns;
 mod depth_map;
 mod exposure;
+mod far_lines;
 mod far_terrain;
 mod far_viewsheds;
 mod ground;

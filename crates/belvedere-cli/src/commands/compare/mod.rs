@@ -28,13 +28,18 @@ pub(crate) fn run(arguments: &Compare, global: &Global) -> Result<Summary> {
     if arguments.trajectory.is_some() && arguments.scene.is_empty() && arguments.held_out.is_empty() {
         return Err(Usage("--trajectory needs --clouds or --held-out".to_owned()).into());
     }
+    let about_density = arguments.check_density()?;
     let models: Vec<&str> = arguments.model.iter().map(|model| model.name.as_str()).chain(place::MODELS).collect();
     arguments.check_methods(&method_keys(&models))?;
     let folder = &arguments.output;
     let folders = [folder.clone(), folder.join("results"), folder.join("pictures")];
     let missing: Vec<_> = folders.iter().filter(|folder| !folder.exists()).collect();
     folders.iter().try_for_each(|folder| atomic::make_folder(folder))?;
-    let compared = compare_all(arguments, global);
+    let mut summary = Summary::default();
+    if let Some(warning) = about_density {
+        summary.warn(warning);
+    }
+    let compared = compare_all(arguments, global, summary);
     if compared.is_err() {
         // those that hold a result already stay
         missing.into_iter().rev().for_each(|folder| drop(std::fs::remove_dir(folder)));
@@ -42,11 +47,10 @@ pub(crate) fn run(arguments: &Compare, global: &Global) -> Result<Summary> {
     compared
 }
 
-fn compare_all(arguments: &Compare, global: &Global) -> Result<Summary> {
+fn compare_all(arguments: &Compare, global: &Global, mut summary: Summary) -> Result<Summary> {
     let folder = &arguments.output;
     let mut stages = Stages::new(global);
     let mut found = report::Found::default();
-    let mut summary = Summary::default();
     for place in Place::all(arguments) {
         compare_on(&place, arguments, global, (&mut stages, &mut summary), &mut found)?;
     }

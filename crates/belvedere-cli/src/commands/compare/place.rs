@@ -39,7 +39,8 @@ impl Place {
             .regimes
             .iter()
             .flat_map(|&regime| {
-                let densities = if regime.flies() { &arguments.density[..] } else { &arguments.density[..1] };
+                let all = arguments.densities();
+                let densities = if regime.flies() { all } else { &all[..1] };
                 densities.iter().map(move |&density| (regime, density))
             })
             .collect();

@@ -3,7 +3,7 @@
 use crate::arguments::Usage;
 use crate::commands::extension;
 use anyhow::Result;
-use belvedere::apps::viewshed::Viewshed;
+use belvedere::apps::viewshed::{SEEN, SEEN_BY, Viewshed};
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{
@@ -79,8 +79,7 @@ impl SeenCells<'_> {
                 };
                 let values = self.seen.answers.iter().map(code).collect();
                 let raster = Raster::from_values(width, height, values)?;
-                let what = "1 visible, 0 blocked, 2 unproven, 255 nodata";
-                Ok(write_tif_u8(output, &raster, Some(&place), Some(NODATA), Some(what))?)
+                Ok(write_tif_u8(output, &raster, Some(&place), Some(NODATA), Some(SEEN))?)
             }
             _ => {
                 let count = |(answer, &count): (&Answer, &u32)| match answer {
@@ -89,8 +88,7 @@ impl SeenCells<'_> {
                 };
                 let values = self.seen.answers.iter().zip(&self.seen.counts).map(count).collect();
                 let raster = Raster::from_values(width, height, values)?;
-                let what = "number of observers that see the cell, 65535 nodata";
-                Ok(write_tif_u16(output, &raster, Some(&place), Some(NO_COUNT), Some(what))?)
+                Ok(write_tif_u16(output, &raster, Some(&place), Some(NO_COUNT), Some(SEEN_BY))?)
             }
         }
     }

@@ -6,10 +6,11 @@ use crate::commands::surroundings::least_count;
 use crate::pipeline::flagged;
 use anyhow::Result;
 use belvedere::PointCloud;
-use belvedere::apps::targets::set_on_ground;
+use belvedere::apps::targets::{set_on_ground, set_on_terrain};
 use belvedere::apps::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, places_along};
 use belvedere::ground::Ground;
 use belvedere::io::{ObserverRow, RowsAre, read_observers};
+use belvedere::model::SceneModel;
 use std::path::PathBuf;
 
 /// Metres between the observers on a line of GeoJSON.
@@ -119,9 +120,10 @@ fn limits_of(row: &ObserverRow, typed: SightLimits, grid_north: f64) -> SightLim
     }
 }
 
-/// The observers with their eyes above the ground; the height of an eye is NaN where no ground is known below it.
-pub(super) fn observers(rows: &[Row], ground: &Ground) -> Vec<Observer> {
+/// The observers with their eyes above the ground, or above the far terrain of `model`; the height of an eye is NaN where no ground is known below it.
+pub(super) fn observers(rows: &[Row], ground: &Ground, model: &SceneModel) -> Vec<Observer> {
     let mut eyes: Vec<[f64; 3]> = rows.iter().map(|row| row.place).collect();
+    set_on_terrain(eyes.iter_mut().zip(rows).map(|(eye, row)| (eye, row.height)), model);
     set_on_ground(eyes.iter_mut().zip(rows).map(|(eye, row)| (eye, row.height)), ground);
     eyes.into_iter().zip(rows).map(|(eye, row)| Observer { eye, limits: row.limits }).collect()
 }

@@ -4,6 +4,7 @@ mod relief;
 mod rows;
 
 use super::EarthParams;
+use super::coverage::CEILING;
 use belvedere_data::ElevationGrid;
 use belvedere_data::horizon::HorizonProfile;
 use rayon::prelude::*;
@@ -69,6 +70,26 @@ impl FarTerrain {
                 let (along, tangent) = on_map(direction);
                 relief.hides(place, along, tangent, &self.earth)
             })
+    }
+
+    /// Whether the raster says something about `position`, local metres: it lies over it on the map, and no more than 10 km above its highest height. The height may be NaN.
+    pub(super) fn holds(&self, position: [f64; 3]) -> bool {
+        self.relief.as_ref().is_some_and(|relief| {
+            let (low, high) = relief.grid().on_map();
+            (0..2).all(|i| (low[i]..=high[i]).contains(&position[i]))
+                && !(position[2] > f64::from(relief.highest()) + CEILING)
+        })
+    }
+
+    /// Where the raster first rises above such a line of sight as [`FarTerrain::blocks_sight`] has, metres from its first end on the map.
+    pub(super) fn meets_sight(
+        &self,
+        ends: ([f64; 3], [f64; 3]),
+        along: [f64; 2],
+        tangent: f64,
+        earth: &EarthParams,
+    ) -> Option<f64> {
+        self.relief.as_ref()?.meets_sight(ends, along, tangent, earth)
     }
 
     /// Whether the raster rises above the line of sight between two ends, local metres, that leaves the first along the unit vector `along` on the map with the tangent `tangent` of its

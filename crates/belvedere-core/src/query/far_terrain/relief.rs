@@ -11,6 +11,9 @@ const LEAST_SLOPE: f64 = 1e-14;
 /// Terrain nearer to the first end of a line of sight than this does not block it, metres: the ground at the feet of an eye that lies on it.
 const FOOT: f64 = 0.1;
 
+/// Halvings in which the place is found where terrain rises above a line: a patch of a kilometre becomes less than a nanometre.
+const HALVINGS: usize = 50;
+
 /// Heights between the nodes of a raster, bilinear in each patch of four nodes, with the highest node of all blocks of patches of 2, 4, 8, … a side.
 #[derive(Debug)]
 pub(super) struct Relief {
@@ -91,6 +94,11 @@ impl Relief {
         &self.grid
     }
 
+    /// The highest node of a patch without gaps; −∞ where there is none.
+    pub(super) fn highest(&self) -> f32 {
+        self.levels.last().and_then(|level| level.highest.first()).copied().unwrap_or(f32::NEG_INFINITY)
+    }
+
     /// The highest terrain from a place in a direction on the map, a unit vector. Exact for the bilinear surface over the curved earth, whatever
     /// `guess` is: a distance where terrain may be high, which saves time if it is.
     pub(super) fn top(&self, place: [f64; 3], along: [f64; 2], earth: &EarthParams, guess: Option<f64>) -> Option<Top> {
@@ -135,27 +143,63 @@ impl Relief {
     /// Whether terrain rises above the line of sight between two ends, which leaves the first in a direction on the map with the tangent of its elevation. At the ends themselves it does not.
     pub(super) fn blocks_sight(
         &self,
-        (from, to): ([f64; 3], [f64; 3]),
+        ends: ([f64; 3], [f64; 3]),
         along: [f64; 2],
         tangent: f64,
         earth: &EarthParams,
     ) -> bool {
+        self.first_patch(ends, along, tangent, earth).is_some()
+    }
+
+    /// Where terrain first rises above such a line, metres from its first end on the map; `None` where it does not.
+    pub(super) fn meets_sight(
+        &self,
+        ends: ([f64; 3], [f64; 3]),
+        along: [f64; 2],
+        tangent: f64,
+        earth: &EarthParams,
+    ) -> Option<f64> {
+        let (patch, [from, _], top) = self.first_patch(ends, along, tangent, earth)?;
+        let lines = self.lines(&Places { low: ends.0, high: ends.0 }, along, earth);
+        let limit = tangent + rounding(tangent);
+        // between the near side of the patch and its highest place the terrain comes through the line once
+        let [mut below, mut above] = [from, top];
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(below, above);
+            let rises = lines.top_of_patch(corners(&self.grid, patch[0], patch[1]), patch, [middle; 2]);
+            if rises.is_some_and(|top| top.tangent > limit) { above = middle } else { below = middle }
+        }
+        Some(above)
+    }
+
+    /// The first patch in which terrain rises above such a line: its column and row, between which distances the line is over it, and the distance of its highest place.
+    fn first_patch(
+        &self,
+        (from, to): ([f64; 3], [f64; 3]),
+        along: [f64; 2],
+        tangent: f64,
+        earth: &EarthParams,
+    ) -> Option<([usize; 2], [f64; 2], f64)> {
         let span = (to[0] - from[0]).hypot(to[1] - from[1]);
         let lines = self.lines(&Places { low: from, high: from }, along, earth);
         // a target on the surface is not hidden by what is rounded
         let mut limit = Top { tangent: tangent + rounding(tangent), span: 0.0 };
         let [enter, leave] = piece_over(self.within, from, along, span).unwrap_or([span; 2]);
-        [[FOOT, enter], [leave.max(FOOT), span]].into_iter().any(|spans| {
-            spans[0] < spans[1]
-                && self
-                    .descend(&lines, spans, &mut limit, &mut |corners, place, spans, limit| match lines
-                        .top_of_patch(corners, place, spans)
-                    {
-                        Some(found) if found.tangent > limit.tangent => ControlFlow::Break(()),
-                        _ => ControlFlow::Continue(()),
-                    })
-                    .is_break()
-        })
+        let mut first = None;
+        for spans in [[FOOT, enter], [leave.max(FOOT), span]] {
+            if spans[0] < spans[1] && first.is_none() {
+                let _ = self.descend(&lines, spans, &mut limit, &mut |corners, patch, spans, limit| match lines
+                    .top_of_patch(corners, patch, spans)
+                {
+                    Some(found) if found.tangent > limit.tangent => {
+                        first = Some((patch, spans, found.span));
+                        ControlFlow::Break(())
+                    }
+                    _ => ControlFlow::Continue(()),
+                });
+            }
+        }
+        first
     }
 
     /// Whether terrain may rise above a line from any of these places. Never false where [`Relief::hides`] is true for one of them.
