@@ -85,7 +85,7 @@ fn main() -> Result<()> {
         for &seed in &seeds {
             let place = Place::simulated(preset, seed, regime, unclassified)?;
             for (number, (name, params)) in variants().into_iter().enumerate() {
-                if !wanted.is_empty() && !wanted.iter().any(|w| *w == name) {
+                if !wanted.is_empty() && !wanted.contains(&name) {
                     continue;
                 }
                 let start = Instant::now();
