@@ -227,11 +227,12 @@ def check_finite(**values: float | None) -> None:
     for name, value in values.items():
         if value is None:
             continue
-        if isinstance(value, (str, bytes)) or not np.isscalar(value):
+        number = value
+        if isinstance(value, (str, bytes, complex)) or not np.isscalar(value):
             raise wrong(name, repr(value), "give a number")
         if not np.isfinite(value):
             raise wrong(name, value, "give a finite number")
-        if name in _HEIGHTS and value < 0:
+        if name in _HEIGHTS and number < 0:
             raise wrong(name, value, "give a height above the ground of 0 metres or more")
 
 
