@@ -5,7 +5,7 @@ use crate::arguments::{Difference, Global};
 use crate::progress::Stages;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
-use belvedere::apps::difference::difference;
+use belvedere::apps::difference::{clear_unproven, difference};
 use belvedere::figures::write_png;
 use belvedere::io::{Cells, Georeference, PlacedRaster, read_tif, write_table, write_tif_f32};
 use belvedere::raster::Raster;
@@ -22,8 +22,8 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
     let mut stages = Stages::new(global);
     let mut summary = Summary::default();
     let read = |path: &Path, stages: &mut Stages| stages.run("reading", 0, |_| read_tif(path));
-    let before = read(&arguments.before, &mut stages)?;
-    let after = read(&arguments.after, &mut stages)?;
+    let mut before = read(&arguments.before, &mut stages)?;
+    let mut after = read(&arguments.after, &mut stages)?;
     check_same_cells(&before, &after, arguments)?;
     if let (Some(first), Some(second)) = (&before.description, &after.description)
         && first != second
@@ -33,6 +33,12 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
             "{} holds \"{first}\" and {} \"{second}\"; a difference of different quantities means nothing",
             files[0], files[1]
         ));
+    }
+    for (path, raster) in [(&arguments.before, &mut before), (&arguments.after, &mut after)] {
+        let unproven = clear_unproven(raster.values.values_mut(), raster.description.as_deref());
+        if unproven > 0 {
+            summary.warn(format!("{}: unproven cells count as cells without a value ({unproven})", path.display()));
+        }
     }
     let place = before.place.as_ref();
     let unit = place.map_or(1.0, |place| place.crs.metres_per_unit);

@@ -1,6 +1,8 @@
 //! Scenes as planned: meshes added to the house whose shadow is known.
 
 use crate::common::{EAST, NORTH, Workplace, at, column, house};
+use belvedere::io::write_tif_u8;
+use belvedere::raster::Raster;
 
 const HOUSE: &str = "house.laz --orient given --method tau";
 
@@ -160,6 +162,22 @@ fn differences_are_those_of_the_two_results_cell_by_cell() {
     place.refusal(1, "difference before.tif coarse.tif -o change.tif", &["coarse.tif", "--cell"]);
     place.refusal(1, "difference before.tif before.csv -o change.tif", &["before.csv"]);
     place.refusal(2, "difference before.tif after.tif -o change.gif", &["extension"]);
+}
+
+#[test]
+fn cells_that_become_unproven_are_neither_gain_nor_loss() {
+    let place = Workplace::new();
+    let seen = Some("1 visible, 0 blocked, 2 unproven, 255 nodata");
+    for (name, values) in [("before.tif", vec![0, 1, 1, 2, 255, 0]), ("after.tif", vec![2, 2, 0, 1, 0, 1])] {
+        let raster = Raster::from_values(3, 2, values).unwrap();
+        write_tif_u8(place.path(name).as_path(), &raster, None, Some(255), seen).unwrap();
+    }
+    let run = place.summary("difference before.tif after.tif -o change.csv");
+    let cells = ["cells", "cells_gain", "cells_loss", "cells_only_before", "cells_only_after"];
+    assert_eq!(cells.map(|name| run["difference"][name].as_u64().unwrap()), [2, 1, 1, 2, 2]);
+    let warnings = [0, 1].map(|i| run["warnings"][i].as_str().unwrap());
+    assert!(warnings[0].contains("before.tif: unproven cells count as cells without a value (1)"), "{warnings:?}");
+    assert!(warnings[1].contains("after.tif: unproven cells count as cells without a value (2)"), "{warnings:?}");
 }
 
 #[test]
