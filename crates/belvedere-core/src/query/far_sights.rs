@@ -1,48 +1,9 @@
 //! Lines of sight that leave the cloud: to the terrain around it, and from there.
 
+use super::far_line::FarLine;
 use super::far_terrain::piece_over;
 use super::{Answer, Block, Blocker, EarthParams, LineOfSight, MedialScene};
 use belvedere_data::vector::{length, sub};
-
-/// A line of sight over far terrain.
-struct FarLine<'a> {
-    observer: [f64; 3],
-    target: [f64; 3],
-    /// Unit vector to the target on the map, and how far it is there, metres.
-    along: [f64; 2],
-    span: f64,
-    /// Tangent of the elevation at which the target appears.
-    tangent: f64,
-    earth: &'a EarthParams,
-}
-
-impl<'a> FarLine<'a> {
-    /// `None` where a coordinate is not finite or one end is above the other.
-    fn new(observer: [f64; 3], target: [f64; 3], earth: &'a EarthParams) -> Option<Self> {
-        let across = [target[0] - observer[0], target[1] - observer[1]];
-        let span = across[0].hypot(across[1]);
-        if !(span > 0.0 && span.is_finite() && (target[2] - observer[2]).is_finite()) {
-            return None;
-        }
-        let tangent = earth.apparent_tangent(target[2] - observer[2], span);
-        Some(Self { observer, target, along: across.map(|v| v / span), span, tangent, earth })
-    }
-
-    fn ends(&self) -> ([f64; 3], [f64; 3]) {
-        (self.observer, self.target)
-    }
-
-    /// Its place `span` metres from the observer on the map.
-    fn at(&self, span: f64) -> [f64; 3] {
-        let height = self.observer[2] + self.earth.height_along(self.tangent, span);
-        [self.observer[0] + self.along[0] * span, self.observer[1] + self.along[1] * span, height]
-    }
-
-    /// How far a place on it lies from the observer on the map, metres.
-    fn span_to(&self, place: [f64; 3]) -> f64 {
-        (place[0] - self.observer[0]).hypot(place[1] - self.observer[1])
-    }
-}
 
 impl MedialScene {
     /// Whether a position, local metres, lies beyond the cloud and over the raster of [`MedialScene::with_far_terrain`], so that lines of sight to it have answers. It may lie below the surface, and
@@ -73,7 +34,7 @@ impl MedialScene {
     #[must_use]
     pub fn far_sight_answer(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Answer {
         let Some(line) = FarLine::new(observer, target, earth) else { return Answer::OutsideView };
-        if self.far_terrain.blocks_sight(line.ends(), line.along, line.tangent, earth) {
+        if self.far_terrain.blocks_sight(&line) {
             return Answer::Blocked;
         }
         match self.corners_over_cloud(&line) {
@@ -90,7 +51,7 @@ impl MedialScene {
         earth: &EarthParams,
     ) -> Option<LineOfSight> {
         let line = FarLine::new(observer, target, earth)?;
-        let terrain = self.far_terrain.meets_sight(line.ends(), line.along, line.tangent, earth);
+        let terrain = self.far_terrain.meets_sight(&line);
         let free = LineOfSight { answer: Answer::Visible, first_block: None, unproven_length: 0.0 };
         let mut sight = match self.corners_over_cloud(&line) {
             Some(corners) => self.sight_on_chords(line.ends(), &corners),

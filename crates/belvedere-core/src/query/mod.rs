@@ -20,6 +20,7 @@ mod clear_height;
 pub mod coverage;
 pub mod cpu;
 pub mod earth;
+mod far_line;
 mod far_sights;
 mod far_terrain;
 mod fingerprint;

@@ -5,6 +5,7 @@ mod rows;
 
 use super::EarthParams;
 use super::coverage::CEILING;
+use super::far_line::FarLine;
 use belvedere_data::ElevationGrid;
 use belvedere_data::horizon::HorizonProfile;
 use rayon::prelude::*;
@@ -81,27 +82,14 @@ impl FarTerrain {
         })
     }
 
-    /// Where the raster first rises above such a line of sight as [`FarTerrain::blocks_sight`] has, metres from its first end on the map.
-    pub(super) fn meets_sight(
-        &self,
-        ends: ([f64; 3], [f64; 3]),
-        along: [f64; 2],
-        tangent: f64,
-        earth: &EarthParams,
-    ) -> Option<f64> {
-        self.relief.as_ref()?.meets_sight(ends, along, tangent, earth)
+    /// Where the raster first rises above a line of sight, metres from the observer on the map.
+    pub(super) fn meets_sight(&self, line: &FarLine<'_>) -> Option<f64> {
+        self.relief.as_ref()?.meets_sight(line)
     }
 
-    /// Whether the raster rises above the line of sight between two ends, local metres, that leaves the first along the unit vector `along` on the map with the tangent `tangent` of its
-    /// elevation.
-    pub(super) fn blocks_sight(
-        &self,
-        ends: ([f64; 3], [f64; 3]),
-        along: [f64; 2],
-        tangent: f64,
-        earth: &EarthParams,
-    ) -> bool {
-        self.relief.as_ref().is_some_and(|relief| relief.blocks_sight(ends, along, tangent, earth))
+    /// Whether the raster rises above a line of sight.
+    pub(super) fn blocks_sight(&self, line: &FarLine<'_>) -> bool {
+        self.relief.as_ref().is_some_and(|relief| relief.blocks_sight(line))
     }
 
     /// Elevations of the horizon of `place`, local metres, over the earth of `earth`: at `count` azimuths from grid north, the first `first` and `step`

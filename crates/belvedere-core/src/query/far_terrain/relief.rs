@@ -1,6 +1,7 @@
 //! An elevation raster and the maxima of its blocks: exact horizons without a look at every cell.
 
 use super::super::EarthParams;
+use super::super::far_line::FarLine;
 use super::piece_over;
 use belvedere_data::ElevationGrid;
 use std::ops::ControlFlow;
@@ -140,47 +141,30 @@ impl Relief {
         hit.is_break()
     }
 
-    /// Whether terrain rises above the line of sight between two ends, which leaves the first in a direction on the map with the tangent of its elevation. At the ends themselves it does not.
-    pub(super) fn blocks_sight(
-        &self,
-        ends: ([f64; 3], [f64; 3]),
-        along: [f64; 2],
-        tangent: f64,
-        earth: &EarthParams,
-    ) -> bool {
-        self.first_patch(ends, along, tangent, earth).is_some()
+    /// Whether terrain rises above a line of sight. At its ends themselves it does not.
+    pub(super) fn blocks_sight(&self, line: &FarLine<'_>) -> bool {
+        self.first_patch(line).is_some()
     }
 
-    /// Where terrain first rises above such a line, metres from its first end on the map; `None` where it does not.
-    pub(super) fn meets_sight(
-        &self,
-        ends: ([f64; 3], [f64; 3]),
-        along: [f64; 2],
-        tangent: f64,
-        earth: &EarthParams,
-    ) -> Option<f64> {
-        let (patch, [from, _], top) = self.first_patch(ends, along, tangent, earth)?;
-        let lines = self.lines(&Places { low: ends.0, high: ends.0 }, along, earth);
-        let limit = tangent + rounding(tangent);
+    /// Where terrain first rises above a line of sight, metres from the observer on the map; `None` where it does not.
+    pub(super) fn meets_sight(&self, line: &FarLine<'_>) -> Option<f64> {
+        let (patch, [from, _], top) = self.first_patch(line)?;
+        let lines = self.lines(&Places { low: line.observer, high: line.observer }, line.along, line.earth);
+        let limit = line.tangent + rounding(line.tangent);
+        let corners = corners(&self.grid, patch[0], patch[1]);
         // between the near side of the patch and its highest place the terrain comes through the line once
         let [mut below, mut above] = [from, top];
         for _ in 0..HALVINGS {
             let middle = f64::midpoint(below, above);
-            let rises = lines.top_of_patch(corners(&self.grid, patch[0], patch[1]), patch, [middle; 2]);
+            let rises = lines.top_of_patch(corners, patch, [middle; 2]);
             if rises.is_some_and(|top| top.tangent > limit) { above = middle } else { below = middle }
         }
         Some(above)
     }
 
-    /// The first patch in which terrain rises above such a line: its column and row, between which distances the line is over it, and the distance of its highest place.
-    fn first_patch(
-        &self,
-        (from, to): ([f64; 3], [f64; 3]),
-        along: [f64; 2],
-        tangent: f64,
-        earth: &EarthParams,
-    ) -> Option<([usize; 2], [f64; 2], f64)> {
-        let span = (to[0] - from[0]).hypot(to[1] - from[1]);
+    /// The first patch in which terrain rises above a line of sight: its column and row, between which distances the line is over it, and the distance of its highest place.
+    fn first_patch(&self, line: &FarLine<'_>) -> Option<([usize; 2], [f64; 2], f64)> {
+        let FarLine { observer: from, along, span, tangent, earth, .. } = *line;
         let lines = self.lines(&Places { low: from, high: from }, along, earth);
         // a target on the surface is not hidden by what is rounded
         let mut limit = Top { tangent: tangent + rounding(tangent), span: 0.0 };

@@ -1,0 +1,43 @@
+//! A line of sight over the curved earth, from its observer on.
+
+use super::EarthParams;
+
+/// A line of sight over far terrain, local metres.
+pub(super) struct FarLine<'a> {
+    pub(super) observer: [f64; 3],
+    pub(super) target: [f64; 3],
+    /// Unit vector to the target on the map, and how far it is there, metres.
+    pub(super) along: [f64; 2],
+    pub(super) span: f64,
+    /// Tangent of the elevation at which the target appears.
+    pub(super) tangent: f64,
+    pub(super) earth: &'a EarthParams,
+}
+
+impl<'a> FarLine<'a> {
+    /// `None` where a coordinate is not finite or one end is above the other.
+    pub(super) fn new(observer: [f64; 3], target: [f64; 3], earth: &'a EarthParams) -> Option<Self> {
+        let across = [target[0] - observer[0], target[1] - observer[1]];
+        let span = across[0].hypot(across[1]);
+        if !(span > 0.0 && span.is_finite() && (target[2] - observer[2]).is_finite()) {
+            return None;
+        }
+        let tangent = earth.apparent_tangent(target[2] - observer[2], span);
+        Some(Self { observer, target, along: across.map(|v| v / span), span, tangent, earth })
+    }
+
+    pub(super) fn ends(&self) -> ([f64; 3], [f64; 3]) {
+        (self.observer, self.target)
+    }
+
+    /// Its place `span` metres from the observer on the map.
+    pub(super) fn at(&self, span: f64) -> [f64; 3] {
+        let height = self.observer[2] + self.earth.height_along(self.tangent, span);
+        [self.observer[0] + self.along[0] * span, self.observer[1] + self.along[1] * span, height]
+    }
+
+    /// How far a place on it lies from the observer on the map, metres.
+    pub(super) fn span_to(&self, place: [f64; 3]) -> f64 {
+        (place[0] - self.observer[0]).hypot(place[1] - self.observer[1])
+    }
+}
