@@ -75,11 +75,10 @@ pub const TARGET_HEIGHT: f64 = 0.0;
 /// the false-blocked cells (6.9 to 3.7 %); 0.1 gains no more and sees more of what is hidden.
 pub const GROUND_TOLERANCE: f64 = 0.05;
 
-/// The height above the ground at which a target of `height` metres is tested: no lower than [`GROUND_TOLERANCE`], unless it lies below the
-/// ground.
+/// The height above the ground at which a target of `height` metres is tested: no lower than [`GROUND_TOLERANCE`].
 #[must_use]
 pub fn tested_height(height: f64) -> f64 {
-    if height >= 0.0 { height.max(GROUND_TOLERANCE) } else { height }
+    height.max(GROUND_TOLERANCE)
 }
 
 /// What a raster of what one observer sees says of itself.
