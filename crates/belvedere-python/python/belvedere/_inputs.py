@@ -7,6 +7,7 @@ import operator
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from numbers import Real
 from typing import Any, BinaryIO, Union
 
 import numpy as np
@@ -227,12 +228,11 @@ def check_finite(**values: float | None) -> None:
     for name, value in values.items():
         if value is None:
             continue
-        number = value
-        if isinstance(value, (str, bytes, complex)) or not np.isscalar(value):
+        if not isinstance(value, Real):
             raise wrong(name, repr(value), "give a number")
         if not np.isfinite(value):
             raise wrong(name, value, "give a finite number")
-        if name in _HEIGHTS and number < 0:
+        if name in _HEIGHTS and value < 0:
             raise wrong(name, value, "give a height above the ground of 0 metres or more")
 
 
