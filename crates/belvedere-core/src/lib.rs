@@ -6,6 +6,7 @@ pub mod blocking;
 pub mod clean;
 pub mod depth;
 pub mod ground;
+mod instructions;
 pub mod medial;
 pub mod model;
 pub mod neighbors;

@@ -1,20 +1,26 @@
 //! The one index that rays are traced through: boxes around whatever may block, such as balls, discs and triangles.
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+mod walk;
+
+use crate::instructions::Instructions;
 use belvedere_data::vector::unit;
 use belvedere_data::{Error, Result};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::cwbvh::{CwBvh, bvh2_to_cwbvh::bvh2_to_cwbvh};
 use obvhs::ploc::PlocBuilder;
-use obvhs::ray::RayHit;
 use obvhs::{Boundable, BvhBuildParams};
+use walk::{Scalar, TreeRay, walk};
 
 /// Padding of the boxes, as a share of the size of the scene: the tree works in f32 and a ray enters it at the box of the
 /// scene, so that its slab test errs by a few units of 6e-8 of that size.
 const BOX_PADDING: f64 = 1e-6;
-/// Least padding, and how much farther than asked the tree looks, metres: it passes over boxes that a ray leaves, or stops
-/// before, within its first 0.1 mm.
+/// Least padding, and how much farther than asked the tree looks, metres: far more than f32 errs within some hundred metres.
 const TREE_SLACK: f64 = 1e-3;
+/// What ends a walk: no range is below zero.
+const END: f32 = -1.0;
 
 /// A piece of a straight line, local metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +55,7 @@ pub struct RayIndex {
     tree: CwBvh,
     center: [f64; 3],
     half_size: [f64; 3],
+    instructions: Instructions,
 }
 
 /// The parts of a node of a [`RayIndex`].
@@ -113,7 +120,8 @@ impl RayIndex {
             }
         }
         if boxes.is_empty() {
-            return Ok(Self { tree: CwBvh::default(), center: [0.0; 3], half_size: [0.0; 3] });
+            let instructions = Instructions::detect();
+            return Ok(Self { tree: CwBvh::default(), center: [0.0; 3], half_size: [0.0; 3], instructions });
         }
         let center: [f64; 3] = std::array::from_fn(|i| (low[i] + high[i]) / 2.0);
         let size = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
@@ -129,7 +137,7 @@ impl RayIndex {
             })
             .collect();
         let tree = search_tree(&padded);
-        Ok(Self { tree, center, half_size })
+        Ok(Self { tree, center, half_size, instructions: Instructions::detect() })
     }
 
     /// For each row of the index, the box it was made from. Obstacles kept in this order lie close together in memory where
@@ -142,8 +150,12 @@ impl RayIndex {
     /// Whether `blocks` is true for any row whose box `ray` may meet.
     pub fn any(&self, ray: &Ray, mut blocks: impl FnMut(usize) -> bool) -> bool {
         let Some(entry) = self.enter(ray) else { return false };
-        // only "in reach or not" counts here: a range of zero ends the search
-        !self.tree.ray_traverse_miss(entry.ray, |_, row| if blocks(row) { 0.0 } else { f32::INFINITY })
+        let mut any = false;
+        self.walk(entry.ray, |row| {
+            any = blocks(row);
+            if any { END } else { f32::INFINITY }
+        });
+        any
     }
 
     /// The row whose `range` is least within the ranges of `ray`, and that range; the lowest row where several are equal.
@@ -151,7 +163,7 @@ impl RayIndex {
     pub fn nearest(&self, ray: &Ray, mut range: impl FnMut(usize) -> Option<f64>) -> Option<(usize, f64)> {
         let entry = self.enter(ray)?;
         let mut best: Option<(usize, f64)> = None;
-        self.tree.ray_traverse(entry.ray, &mut RayHit::none(), |_, row| {
+        self.walk(entry.ray, |row| {
             let Some(range) = range(row) else { return f32::INFINITY };
             let nearer = best.is_none_or(|(best_row, best)| (range, row) < (best, best_row));
             if !nearer || range < ray.ranges[0] || range > ray.ranges[1] {
@@ -166,7 +178,19 @@ impl RayIndex {
     /// Calls `visit` for every row whose box `ray` may meet, in no particular order.
     pub fn each(&self, ray: &Ray, mut visit: impl FnMut(usize)) {
         if let Some(entry) = self.enter(ray) {
-            self.tree.ray_traverse_anyhit(entry.ray, |_, row| visit(row));
+            self.walk(entry.ray, |row| {
+                visit(row);
+                f32::INFINITY
+            });
+        }
+    }
+
+    #[inline]
+    fn walk(&self, ray: TreeRay, visit: impl FnMut(usize) -> f32) {
+        match self.instructions {
+            Instructions::Scalar => walk::<Scalar>(&self.tree.nodes, ray, visit),
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2 => avx2::run(&self.tree.nodes, ray, visit),
         }
     }
 
@@ -292,10 +316,8 @@ impl RayIndex {
         if !(start <= end) {
             return None;
         }
-        // −0 + 0 = +0: the tree takes the slope of −0 for negative but its sign for positive, and would miss every box
-        let direction = to_f32(ray.direction).map(|component| component + 0.0);
         let origin = to_f32(std::array::from_fn(|i| local[i] + start * ray.direction[i]));
-        let ray = obvhs::ray::Ray::new(origin.into(), direction.into(), 0.0, tree_reach(end - start));
+        let ray = TreeRay::new(origin, to_f32(ray.direction), tree_reach(end - start));
         Some(Entry { ray, start })
     }
 }
@@ -318,7 +340,7 @@ fn search_tree(boxes: &[PaddedBox]) -> CwBvh {
 
 /// A ray as the tree takes it.
 struct Entry {
-    ray: obvhs::ray::Ray,
+    ray: TreeRay,
     /// Range at which the tree's ray starts.
     start: f64,
 }
@@ -332,4 +354,111 @@ fn to_f32(v: [f64; 3]) -> [f32; 3] {
 #[expect(clippy::cast_possible_truncation, reason = "rounded up on purpose")]
 fn tree_reach(range: f64) -> f32 {
     ((range + TREE_SLACK) as f32).next_up()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_data::random::uniform;
+    use std::collections::BTreeSet;
+
+    #[expect(clippy::cast_possible_truncation, reason = "boxes are f32")]
+    fn boxes(count: u64) -> Vec<[[f32; 3]; 2]> {
+        let random = |i: u64, k: u64| uniform(8, 16 * i + k) as f32;
+        (0..count)
+            .map(|i| {
+                let low: [f32; 3] = std::array::from_fn(|k| [80.0, 50.0, 20.0][k] * random(i, k as u64));
+                // from flat ones to some that reach over a part of the scene
+                let size = |k: u64| random(i, 8 + k).powi(6) * 15.0;
+                [low, [low[0] + size(0), low[1] + size(1), low[2] + size(2)]]
+            })
+            .collect()
+    }
+
+    /// Rays in general directions, along axes and in planes of two axes, some from inside, some cut off.
+    fn rays(count: u64) -> Vec<Ray> {
+        let random = |i: u64, k: u64| uniform(9, 16 * i + k);
+        let component = |i: u64, k: u64| match i % 5 {
+            0 if k == 1 => 0.0,
+            1 if k != 2 => -0.0,
+            _ => random(i, 4 + k) - 0.5,
+        };
+        (0..count)
+            .filter_map(|i| {
+                let origin = std::array::from_fn(|k| [100.0, 70.0, 40.0][k] * random(i, k as u64) - 10.0);
+                let end = if i % 3 == 0 { 60.0 * random(i, 8) } else { f64::INFINITY };
+                Ray::new(origin, std::array::from_fn(|k| component(i, k as u64)), [random(i, 9), end])
+            })
+            .collect()
+    }
+
+    fn meets(ray: &Ray, [low, high]: [[f32; 3]; 2]) -> bool {
+        let [mut from, mut to] = ray.ranges;
+        for axis in 0..3 {
+            let (low, high) = (f64::from(low[axis]), f64::from(high[axis]));
+            let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
+            if direction == 0.0 {
+                if origin < low || origin > high {
+                    return false;
+                }
+                continue;
+            }
+            let (a, b) = ((low - origin) / direction, (high - origin) / direction);
+            (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
+        }
+        from <= to
+    }
+
+    #[test]
+    fn every_box_that_a_ray_meets_is_proposed_on_all_instructions() {
+        let boxes = boxes(5000);
+        let mut index = RayIndex::new(&boxes).unwrap();
+        let (rays, mut proposals) = (rays(2000), 0);
+        for instructions in [Instructions::Scalar, Instructions::detect()] {
+            index.instructions = instructions;
+            for ray in &rays {
+                let mut proposed = BTreeSet::new();
+                index.each(ray, |row| assert!(proposed.insert(index.order()[row] as usize), "a row comes twice"));
+                proposals += proposed.len();
+                for (number, corners) in boxes.iter().enumerate() {
+                    let is_met = meets(ray, *corners);
+                    assert!(!is_met || proposed.contains(&number), "{instructions:?} {ray:?} {corners:?}");
+                }
+            }
+        }
+        // a tree that proposed everything would pass as well
+        assert!(proposals < 2 * rays.len() * boxes.len() / 50, "{proposals} proposals");
+    }
+
+    #[test]
+    fn all_instructions_visit_the_same_rows_in_the_same_order() {
+        let mut index = RayIndex::new(&boxes(5000)).unwrap();
+        for ray in rays(2000) {
+            let visited = [Instructions::Scalar, Instructions::detect()].map(|instructions| {
+                index.instructions = instructions;
+                let mut rows = Vec::new();
+                index.each(&ray, |row| rows.push(row));
+                let mut until_third = 0;
+                let ended = index.any(&ray, |_| {
+                    until_third += 1;
+                    until_third == 3
+                });
+                // rows as they come stand for ranges
+                let nearest = index.nearest(&ray, |row| Some((row * 7919 % 50) as f64));
+                (rows, until_third, ended, nearest)
+            });
+            assert_eq!(visited[0], visited[1]);
+        }
+    }
+
+    #[test]
+    fn a_chain_of_boxes_deeper_than_the_stack_is_walked_to_its_end() {
+        // each box holds all those before: trees over such boxes are as deep as they get
+        let boxes: Vec<[[f32; 3]; 2]> = (1..2000_u16).map(|i| [[0.0; 3], [f32::from(i).powi(2); 3]]).collect();
+        let index = RayIndex::new(&boxes).unwrap();
+        let ray = Ray::new([-1.0, 0.5, 0.5], [1.0, 0.0, 0.0], [0.0, f64::INFINITY]).unwrap();
+        let mut count = 0;
+        index.each(&ray, |_| count += 1);
+        assert_eq!(count, boxes.len());
+    }
 }

@@ -21,6 +21,7 @@ mod lanes;
 mod search;
 mod tangent_ball;
 
+pub use crate::instructions::Instructions;
 pub use tangent_ball::Tangent;
 
 use belvedere_data::control::Control;
@@ -34,28 +35,6 @@ pub struct Neighbor {
     pub index: u32,
     /// Its squared distance from the query, square metres.
     pub distance_squared: f32,
-}
-
-/// Which instructions a search runs on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Instructions {
-    /// Eight lanes one after the other: every machine.
-    Scalar,
-    /// Eight lanes at once.
-    #[cfg(target_arch = "x86_64")]
-    Avx2,
-}
-
-impl Instructions {
-    /// The fastest set this machine has.
-    #[must_use]
-    pub fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            return Self::Avx2;
-        }
-        Self::Scalar
-    }
 }
 
 /// A spatial index over points, built once and searched by any number of threads.

@@ -20,7 +20,8 @@ const CRATES: [(&str, &[&str]); 13] = [
 ];
 
 /// Level of each module of `belvedere-core`: a module imports from lower levels, or from its own folder.
-const LEVELS: [(&str, u8); 13] = [
+const LEVELS: [(&str, u8); 14] = [
+    ("instructions", 0),
     ("neighbors", 1),
     ("ray_index", 1),
     ("blocking", 1),
@@ -56,7 +57,8 @@ const ONE_HOME: [(&str, &str); 32] = [
     ("png::", "figures/src/png.rs"),
     ("delaunator::", "core/src/ground/triangulate.rs"),
     ("nalgebra::", "core/src/pulses/estimate/"),
-    ("obvhs::", "core/src/ray_index.rs"),
+    ("obvhs::", "core/src/ray_index"),
+    ("smallvec::", "core/src/ray_index/walk.rs"),
     ("proj_core::", "data/src/crs"),
     ("proj_wkt::", "data/src/crs"),
     ("solar_positioning::", "apps/src/sun/position.rs"),
