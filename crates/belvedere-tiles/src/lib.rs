@@ -14,6 +14,7 @@
 //! all; and every step of the way looks at points no farther away than the margin.
 
 mod answer;
+mod cell_sizes;
 mod grid;
 mod inputs;
 mod lines;
@@ -32,6 +33,7 @@ mod survey;
 mod values;
 mod window;
 
+pub use cell_sizes::{CellSizes, Topic};
 pub use grid::{TileGrid, TileId};
 pub use inputs::InputFile;
 pub use make_balls::make_balls;

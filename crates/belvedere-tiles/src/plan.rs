@@ -1,5 +1,6 @@
 //! The plan of a run: everything that a tile must know beside its own points.
 
+use crate::cell_sizes::CellSizes;
 use crate::grid::{Area, TileGrid, TileId, block_area};
 use crate::inputs::{Columns, InputFile, NOWHERE, PIECE_ROWS, hash};
 use crate::planned::{Others, SideFile, added_meshes, far_terrain};
@@ -23,15 +24,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Version of the layout of plans and records.
-const LAYOUT: u32 = 5;
+const LAYOUT: u32 = 6;
 /// Corners that the origin of local coordinates is one of, metres: of blocks of 64 m, and few, so that neighbouring surveys share it.
 const ORIGIN_STEP: f64 = 1024.0;
 /// Farthest that a point may lie from the origin, metres: up to here f32 keeps a millimetre.
 const FARTHEST: f64 = 16_384.0;
-/// Smallest side of a tile, metres.
+/// Smallest and largest side of a tile, metres.
 const LEAST_TILE: f64 = 16.0;
-/// Steps that the side of a cell must be a whole number of, metres: middles of cells are then exact numbers.
-const CELL_STEP: f64 = 1.0 / 64.0;
+const LARGEST_TILE: f64 = 8192.0;
 /// Memory for each point of a window while balls are made, and without any, bytes. As measured in docs/scale.md.
 const BYTES_PER_POINT: f64 = 450.0;
 const BYTES_AT_LEAST: f64 = 100e6;
@@ -53,8 +53,8 @@ pub struct PlanParams {
     pub crs: Option<String>,
     /// Side of a tile, metres. Default 512: a multiple of the blocks of 64 m, so that no point is looked at for nothing.
     pub tile_size: f64,
-    /// Side of the cells of results, metres. Default 1.
-    pub cell: f64,
+    /// Sides of the cells of results. Default 1 m.
+    pub cells: CellSizes,
     /// Places that the survey must hold, in its coordinates: one outside is refused before points are read. Default none.
     pub places: Vec<[f64; 2]>,
     /// Most memory that a tile may take, bytes: tiles are quartered until the largest fits. `None` for any.
@@ -69,7 +69,7 @@ impl Default for PlanParams {
             clouds: Vec::new(),
             crs: None,
             tile_size: 512.0,
-            cell: 1.0,
+            cells: CellSizes::default(),
             places: Vec::new(),
             memory: None,
             program: String::new(),
@@ -91,8 +91,8 @@ pub struct Plan {
     pub(crate) columns: Columns,
     /// Side of a tile, metres.
     pub tile_size: f64,
-    /// Side of a cell of results, metres.
-    pub cell: f64,
+    /// Sides of the cells of results.
+    pub cells: CellSizes,
     /// How far around a tile points are read, metres.
     pub halo: f64,
     /// What is asked.
@@ -224,7 +224,7 @@ impl Plan {
             crs: params.crs.clone(),
             columns,
             tile_size: params.tile_size,
-            cell: params.cell,
+            cells: params.cells.clone(),
             // in steps, so that it does not look more exact than it is
             halo: facts.halo(&model).ceil(),
             questions: Vec::new(),
@@ -359,23 +359,32 @@ impl Plan {
         })
     }
 
-    /// Tiles with cells that may get a height: those near points.
+    /// The tiles with cells for the result of a question, from the south-west: all but some at the edge of the survey that only larger cells reach.
+    pub(crate) fn tiles_of(&self, question: &Question) -> Vec<TileId> {
+        let cell = self.cells.of(question);
+        self.tiles.iter().copied().filter(|&tile| self.has_cells(tile, cell)).collect()
+    }
+
+    /// Tiles with cells for any result.
     fn tiles_with_cells(&self) -> Vec<TileId> {
-        let grid = self.grid();
-        let reach = SurfaceParams::reach(self.cell);
+        let (grid, cell) = (self.grid(), self.cells.largest());
         let of_block = |block: &Block| {
-            let area = block_area(block.at).widened(reach);
+            let area = block_area(block.at).widened(SurfaceParams::reach(cell));
             let (first, last) = (grid.tile_of(area.low), grid.tile_of(area.high));
             (first.north..=last.north)
                 .flat_map(move |north| (first.east..=last.east).map(move |east| TileId { east, north }))
         };
         let tiles: BTreeSet<TileId> = self.blocks.iter().flat_map(of_block).collect();
+        tiles.into_iter().filter(|&tile| self.has_cells(tile, cell)).collect()
+    }
+
+    /// Whether cells of a side may get a height on a tile: it is near points.
+    fn has_cells(&self, tile: TileId, cell: f64) -> bool {
+        let reach = SurfaceParams::reach(cell);
+        let core = self.grid().core(tile);
         let (low, high) = self.bounds().on_map();
-        let has_survey = |tile: &TileId| {
-            let core = grid.core(*tile);
-            (0..2).all(|axis| core.low[axis] <= high[axis] + reach && low[axis] - reach < core.high[axis])
-        };
-        tiles.into_iter().filter(has_survey).collect()
+        (0..2).all(|axis| core.low[axis] <= high[axis] + reach && low[axis] - reach < core.high[axis])
+            && self.blocks_in(&core.widened(reach)).next().is_some()
     }
 
     /// Points that a tile reads, about.
@@ -511,8 +520,7 @@ impl Plan {
     fn fitting(mut self, memory: u64) -> Result<Self> {
         let (size, needed) = (self.tile_size, self.estimate().memory_bytes);
         while self.estimate().memory_bytes > memory {
-            let cells = self.tile_size / 2.0 / self.cell;
-            if self.tile_size / 2.0 < LEAST_TILE || cells != cells.floor() {
+            if self.tile_size / 2.0 < LEAST_TILE || !self.cells.divide(self.tile_size / 2.0) {
                 let megabytes = |bytes: u64| bytes as f64 / 1e6;
                 return Err(Error::InvalidParameter {
                     name: "memory for a tile",
@@ -570,28 +578,19 @@ fn inputs(clouds: &[PathBuf]) -> Result<(Vec<InputFile>, Vec<LasHead>)> {
 }
 
 fn check_sizes(params: &PlanParams) -> Result<()> {
-    let invalid =
-        |name, value: f64, expected| Err(Error::InvalidParameter { name, value: format!("{value} m"), expected });
-    let steps = params.cell / CELL_STEP;
-    if !(steps >= 1.0 && steps == steps.floor() && params.cell <= 64.0) {
-        return invalid(
-            "cell",
-            params.cell,
-            "a whole number of sixty-fourths of a metre up to 64, such as 0.25, 0.5, 1 or 2",
-        );
-    }
-    let cells = params.tile_size / params.cell;
-    if !(params.tile_size >= LEAST_TILE && params.tile_size <= 8192.0 && cells == cells.floor()) {
-        return invalid("tile size", params.tile_size, "16 to 8192 m, and a whole number of cells");
+    params.cells.check()?;
+    let size = params.tile_size;
+    if !(size >= LEAST_TILE && size <= LARGEST_TILE && params.cells.divide(size)) {
+        let expected = "16 to 8192 m, and a whole number of cells";
+        return Err(Error::InvalidParameter { name: "tile size", value: format!("{size} m"), expected });
     }
     Ok(())
 }
 
 /// The numbers of a plan that must not be anything.
 fn check_numbers(plan: &Plan) -> Option<()> {
-    let finite =
-        plan.frame.origin.iter().chain(&plan.frame.metres_per_unit).chain([&plan.halo, &plan.tile_size, &plan.cell]);
-    let sizes = PlanParams { tile_size: plan.tile_size, cell: plan.cell, ..PlanParams::default() };
+    let finite = plan.frame.origin.iter().chain(&plan.frame.metres_per_unit).chain([&plan.halo, &plan.tile_size]);
+    let sizes = PlanParams { tile_size: plan.tile_size, cells: plan.cells.clone(), ..PlanParams::default() };
     let are_whole = plan.inputs.iter().all(InputFile::has_sound_pieces);
     let are_sorted = plan.blocks.windows(2).all(|pair| pair[0].at < pair[1].at);
     let is_sound =

@@ -37,13 +37,14 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         clouds: arguments.clouds.clone(),
         crs: arguments.crs.clone(),
         tile_size: arguments.tile_size,
-        cell: arguments.cell,
+        cells: questions::cells(arguments)?,
         places: arguments.observers.iter().filter(|place| place.1.is_none()).map(|place| place.0).collect(),
         memory: arguments.memory.map(|memory| memory.0),
         program: concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned(),
     };
     let plan = Plan::make(&params, &stages.control()).map_err(|error| match error {
         Error::InvalidParameter { name: "cell", .. } => Usage(format!("--cell: {error}")).into(),
+        Error::InvalidParameter { name: "cell of some results", .. } => Usage(format!("--cell-for: {error}")).into(),
         Error::InvalidParameter { name: "observer", .. } => Usage(format!("--observer: {error}")).into(),
         Error::InvalidParameter { name: "tile size", .. } => Usage(format!("--tile-size: {error}")).into(),
         Error::InvalidParameter { name: "memory for a tile", .. } => Usage(format!("--memory: {error}")).into(),

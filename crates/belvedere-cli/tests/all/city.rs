@@ -167,6 +167,12 @@ fn wrong_plans_are_refused_with_advice() {
     place.refusal(2, &format!("{plan} --sun 150,-3"), &["--sun", "horizon"]);
     place.refusal(2, &format!("{plan} --sky-view --cell 0.3"), &["--cell", "sixty-fourths"]);
     place.refusal(2, &format!("{plan} --sky-view --tile-size 100.5"), &["--tile-size", "whole number of cells"]);
+    place.refusal(2, &format!("{plan} --sky-view --cell-for sky=2"), &["--cell-for", "sky-view", "viewshed"]);
+    place.refusal(2, &format!("{plan} --sky-view --cell-for sky-view=-1"), &["--cell-for", "above zero"]);
+    place.refusal(2, &format!("{plan} --sky-view --cell-for sky-view=0.3"), &["--cell-for", "sixty-fourths"]);
+    place.refusal(2, &format!("{plan} --sky-view --cell-for shadow=2"), &["--cell-for shadow", "--sun"]);
+    let twice = "--cell-for sky-view=2 --cell-for sky-view=4";
+    place.refusal(2, &format!("{plan} --sky-view {twice}"), &["--cell-for", "sky-view is given twice"]);
     place.refusal(2, &format!("{plan} --sky-view --memory 3"), &["--memory", "3G"]);
     place.refusal(2, &format!("{plan} --sky-view --memory 101M"), &["--memory", "101 MB"]);
     place.refusal(2, &format!("{plan} --sun-hours"), &["--sun-hours", "--date"]);
@@ -225,7 +231,8 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     town(&place);
     let flags = "--time 2026-03-20T12:45+01:00 --sun-hours --date 2026-03-20 --time-step-min 60 --irradiance --clear-sky haurwitz \
                  --patch-division 1 --sun-cell-deg 20 --observer 155000,462985 --max-distance 30";
-    let plan = place.summary(&format!("city plan town/cloud.laz -o run --tile-size 128 --cell 4 {flags}"));
+    let cells = "--cell 4 --cell-for shadow=2 --cell-for irradiance=8";
+    let plan = place.summary(&format!("city plan town/cloud.laz -o run --tile-size 128 {cells} {flags}"));
     assert_eq!(plan["results"], serde_json::json!(["shadow_20260320_124500", "sun_hours", "irradiance", "viewshed"]));
     let kept: serde_json::Value = serde_json::from_slice(&place.bytes("run/plan.json")).unwrap();
     // noon at an equinox: 90 degrees less the latitude, 52.155
@@ -248,11 +255,16 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     // a disc of 30 m, on cells of 16 m²
     assert!((150..200).contains(&(of_code(0) + of_code(1))), "{} {}", of_code(0), of_code(1));
     assert!(of_code(1) > 20 && of_code(2) == 0, "{}", of_code(1));
+    let width = |name: &str| belvedere::io::read_tif_f32(&place.path(&format!("{name}.tif"))).unwrap().width();
+    assert_eq!(width("sun_hours"), 2 * width("irradiance"));
     // rasters say what they hold, as those of single scenes do: other quantities are neither subtracted without a word nor taken for terrain
     let shadow = "shadow_20260320_124500";
     place.summary(&format!("city merge run --result {shadow} -o {shadow}.tif"));
     let what = |name: &str| belvedere::io::read_tif(place.path(name).as_path()).unwrap().description.unwrap();
     assert_eq!(what(&format!("{shadow}.tif")), "share of the sun, 0 in shadow");
+    assert_eq!(width(shadow), 2 * width("sun_hours"));
+    let catalogue = place.text(&format!("run/{shadow}.vrt"));
+    assert!(catalogue.contains("<Description>share of the sun, 0 in shadow</Description>"), "{catalogue}");
     assert_eq!(what("seen.tif"), "1 visible, 0 blocked, 2 unproven, 255 nodata");
     let tile = std::fs::read_dir(place.path("run/sun_hours")).unwrap().map(|entry| entry.unwrap().path());
     let tile = tile.into_iter().find(|path| path.extension().is_some_and(|extension| extension == "tif")).unwrap();
