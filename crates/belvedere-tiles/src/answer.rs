@@ -1,5 +1,6 @@
 //! The answer to a question on the cells of a tile.
 
+use crate::cleared::{ClassedPoint, ClearedSurface, classed};
 use crate::grid::TileId;
 use crate::lines::Lines;
 use crate::obstacles::{Found, rule};
@@ -274,10 +275,17 @@ fn cells(
     control: &Control<'_>,
 ) -> Result<Targets> {
     let (kept, _) = clean(cloud, &plan.facts.cleaning(&plan.model().clean), control)?;
-    let positions: Vec<[f32; 3]> = kept.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
     let core = plan.grid().core(tile);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
     let count = (plan.tile_size / cell).round() as usize;
+    let grid = MapGrid { corner: [core.low[0], core.high[1]], cell, width: count, height: count };
+    let places = (0..count).flat_map(|row| (0..count).map(move |column| (column, row)));
+    let middles: Vec<[f64; 2]> = places.clone().map(|(column, row)| grid.center(column, row)).collect();
+    let points = classed(cloud, kept.iter().map(|&row| row as usize));
+    let areas = (&area_of_cells(plan, tile, cell), &core);
+    let cleared = ClearedSurface::new(plan, areas, &points, &middles, control)?;
+    let stays = |(point, is_cleared): (&ClassedPoint, &bool)| (!is_cleared).then_some(point.0);
+    let positions: Vec<[f32; 3]> = points.iter().zip(&cleared.is_cleared).filter_map(stays).collect();
     let rim = RIM as f64 * cell;
     let wide = MapGrid {
         corner: [core.low[0] - rim, core.high[1] + rim],
@@ -289,10 +297,15 @@ fn cells(
     let flat = Ground { grid: wide, heights: unknown.clone(), gaps: unknown };
     let params = SurfaceParams { farthest: plan.facts.farthest(), ..SurfaceParams::default() };
     let heights = top_surface(&positions, &flat, &params, control)?;
-    let grid = MapGrid { corner: [core.low[0], core.high[1]], cell, width: count, height: count };
-    let places = (0..count).flat_map(|row| (0..count).map(move |column| (column, row)));
     let of_cell = |(column, row): (usize, usize)| heights.get(column + RIM, row + RIM).unwrap_or(f32::NAN);
     let mut heights = Raster::from_values(count, count, places.clone().map(of_cell).collect())?;
+    for (place, height) in cleared.ground {
+        if let Some(value) = heights.values_mut().get_mut(place).filter(|value| value.is_nan()) {
+            #[expect(clippy::cast_possible_truncation, reason = "local heights are f32")]
+            let height = height as f32;
+            *value = height;
+        }
+    }
     if let Some(added) = added {
         added.raise(&mut heights, &grid);
     }

@@ -15,6 +15,8 @@
 
 mod answer;
 mod cell_sizes;
+mod cleared;
+mod estimate;
 mod grid;
 mod inputs;
 mod lines;
@@ -34,11 +36,12 @@ mod values;
 mod window;
 
 pub use cell_sizes::{CellSizes, Topic};
+pub use estimate::Estimate;
 pub use grid::{TileGrid, TileId};
 pub use inputs::InputFile;
 pub use make_balls::make_balls;
 pub use merge::{Merged, merge, merged_within, write_catalogue};
-pub use plan::{Estimate, Plan, PlanFrame, PlanParams};
+pub use plan::{Plan, PlanFrame, PlanParams};
 pub use planned::SideFile;
 pub use question::{Question, Radiation, SunQuestion};
 pub use record::{Outcome, Record, Stage};

@@ -12,9 +12,9 @@ use belvedere::apps::targets::{grid_around, set_on_ground};
 use belvedere::apps::tree_light::Crowns;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
-use belvedere::ground::{Ground, GroundParams, SurfaceParams};
+use belvedere::ground::{Ground, GroundParams};
 use belvedere::io::{LasHead, atomic, cloud_files};
-use belvedere::model::{ModelParams, SurveyFacts};
+use belvedere::model::{ClearedArea, ModelParams, SurveyFacts};
 use belvedere::query::Coverage;
 use belvedere::{Bounds, Error, Frame, Result};
 use serde::{Deserialize, Serialize};
@@ -32,18 +32,8 @@ const FARTHEST: f64 = 16_384.0;
 /// Smallest and largest side of a tile, metres.
 const LEAST_TILE: f64 = 16.0;
 const LARGEST_TILE: f64 = 8192.0;
-/// Memory for each point of a window while balls are made, and without any, bytes. As measured in docs/scale.md.
-const BYTES_PER_POINT: f64 = 450.0;
-const BYTES_AT_LEAST: f64 = 100e6;
-/// Memory for each ball of those that are asked together, bytes: measured 435 to 490, and room for cells and their points.
-const BYTES_PER_BALL: f64 = 700.0;
-/// Balls that are always asked together: fewer would save no memory that counts.
-const LEAST_BALLS: usize = 100_000;
 /// Points around a place that its ground is taken from, metres, beside the usual ones.
 const GROUND_AROUND: f64 = 32.0;
-/// Bytes of a ball file for each point of a tile.
-const DISK_PER_POINT: f64 = 30.0;
-
 /// How a plan is made.
 #[derive(Clone, Debug)]
 pub struct PlanParams {
@@ -100,6 +90,9 @@ pub struct Plan {
     /// Meshes of what is planned, which block beside what was surveyed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     meshes: Vec<SideFile>,
+    /// Areas without what stands there now.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) cleared: Vec<ClearedArea>,
     /// Heights of the ground beyond the survey.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     terrain: Option<SideFile>,
@@ -136,21 +129,6 @@ pub struct PlanFrame {
 struct Version {
     layout: u32,
     program: String,
-}
-
-/// What a plan will take.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Estimate {
-    /// Points of all tiles.
-    pub points: u64,
-    /// Points that are read, those around tiles among them.
-    pub points_with_halo: u64,
-    /// Most points that one tile reads.
-    pub most_points_of_a_tile: u64,
-    /// Memory that this tile takes, bytes.
-    pub memory_bytes: u64,
-    /// Disk that balls take, bytes.
-    pub disk_bytes: u64,
 }
 
 impl Plan {
@@ -229,6 +207,7 @@ impl Plan {
             halo: facts.halo(&model).ceil(),
             questions: Vec::new(),
             meshes: Vec::new(),
+            cleared: Vec::new(),
             terrain: None,
             horizon: None,
             trees: None,
@@ -366,10 +345,10 @@ impl Plan {
     }
 
     /// Tiles with cells for any result.
-    fn tiles_with_cells(&self) -> Vec<TileId> {
+    pub(crate) fn tiles_with_cells(&self) -> Vec<TileId> {
         let (grid, cell) = (self.grid(), self.cells.largest());
         let of_block = |block: &Block| {
-            let area = block_area(block.at).widened(SurfaceParams::reach(cell));
+            let area = block_area(block.at).widened(self.reach(cell));
             let (first, last) = (grid.tile_of(area.low), grid.tile_of(area.high));
             (first.north..=last.north)
                 .flat_map(move |north| (first.east..=last.east).map(move |east| TileId { east, north }))
@@ -380,44 +359,11 @@ impl Plan {
 
     /// Whether cells of a side may get a height on a tile: it is near points.
     fn has_cells(&self, tile: TileId, cell: f64) -> bool {
-        let reach = SurfaceParams::reach(cell);
+        let reach = self.reach(cell);
         let core = self.grid().core(tile);
         let (low, high) = self.bounds().on_map();
         (0..2).all(|axis| core.low[axis] <= high[axis] + reach && low[axis] - reach < core.high[axis])
             && self.blocks_in(&core.widened(reach)).next().is_some()
-    }
-
-    /// Points that a tile reads, about.
-    fn window_points(&self, area: &Area) -> f64 {
-        let share = |block: &Block| {
-            let own = block_area(block.at);
-            let side = |axis: usize| (area.high[axis].min(own.high[axis]) - area.low[axis].max(own.low[axis])).max(0.0);
-            side(0) * side(1) / (crate::grid::CELL * crate::grid::CELL) * block.points as f64
-        };
-        self.blocks_in(area).map(share).sum()
-    }
-
-    /// What the run will take, about.
-    #[must_use]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "estimates; `as` saturates")]
-    pub fn estimate(&self) -> Estimate {
-        let windows: Vec<f64> = self.tiles.iter().map(|&tile| self.window_points(&self.window(tile))).collect();
-        let most = windows.iter().copied().fold(0.0, f64::max);
-        let points: u64 = self.blocks.iter().map(|block| block.points).sum();
-        Estimate {
-            points,
-            points_with_halo: windows.iter().sum::<f64>() as u64,
-            most_points_of_a_tile: most as u64,
-            memory_bytes: memory_of(most) as u64,
-            disk_bytes: (points as f64 * DISK_PER_POINT) as u64,
-        }
-    }
-
-    /// Most balls that are asked together: as many as take no more memory than making those of the largest tile.
-    pub(crate) fn balls_at_a_time(&self) -> usize {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an estimate; `as` saturates")]
-        let balls = ((self.estimate().memory_bytes as f64 - BYTES_AT_LEAST) / BYTES_PER_BALL) as usize;
-        balls.max(LEAST_BALLS)
     }
 
     /// This with other questions.
@@ -561,10 +507,6 @@ fn without_ground(value: String) -> Error {
     Error::InvalidParameter { name: "observer", value, expected }
 }
 
-fn memory_of(points: f64) -> f64 {
-    BYTES_AT_LEAST + points * BYTES_PER_POINT
-}
-
 fn inputs(clouds: &[PathBuf]) -> Result<(Vec<InputFile>, Vec<LasHead>)> {
     let found: Vec<(InputFile, LasHead)> =
         cloud_files(clouds)?.iter().map(|file| InputFile::new(file)).collect::<Result<_>>()?;
@@ -580,7 +522,7 @@ fn inputs(clouds: &[PathBuf]) -> Result<(Vec<InputFile>, Vec<LasHead>)> {
 fn check_sizes(params: &PlanParams) -> Result<()> {
     params.cells.check()?;
     let size = params.tile_size;
-    if !(size >= LEAST_TILE && size <= LARGEST_TILE && params.cells.divide(size)) {
+    if !((LEAST_TILE..=LARGEST_TILE).contains(&size) && params.cells.divide(size)) {
         let expected = "16 to 8192 m, and a whole number of cells";
         return Err(Error::InvalidParameter { name: "tile size", value: format!("{size} m"), expected });
     }
@@ -595,5 +537,5 @@ fn check_numbers(plan: &Plan) -> Option<()> {
     let are_sorted = plan.blocks.windows(2).all(|pair| pair[0].at < pair[1].at);
     let is_sound =
         finite.clone().all(|v| v.is_finite()) && plan.halo > 0.0 && plan.halo < 1e4 && are_sorted && are_whole;
-    (is_sound && check_sizes(&sizes).is_ok()).then_some(())
+    (is_sound && plan.has_sound_areas(plan.frame.origin) && check_sizes(&sizes).is_ok()).then_some(())
 }

@@ -10,7 +10,6 @@ use crate::planned::Others;
 use crate::record::{Outcome, Record, Stage};
 use crate::report::write_report;
 use belvedere::control::Control;
-use belvedere::ground::SurfaceParams;
 use belvedere::{Error, Result};
 use serde::Serialize;
 use std::path::Path;
@@ -105,9 +104,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             }
             // other shares may not have come to them
             let core = plan.grid().core(tile);
-            let around = core.widened(SurfaceParams::reach(cell));
-            let heights = plan.blocks_in(&around).map(|block| f64::from(block.heights[0]));
-            let lowest = heights.fold(f64::INFINITY, f64::min);
+            let lowest = plan.lowest_of_cells(tile, cell);
             for other in tiles(plan, &Lines::of(&asked, core, lowest)) {
                 work.missing_balls(other)?;
             }

@@ -1,8 +1,8 @@
 //! Flags of runs over whole cities.
 
 use super::{
-    ClearSkyChoice, FarTerrain, North, Numbers, Place, RadiationModel, SunPeriod, SunPlace, ThroughTrees, above_zero,
-    at_least_one, height, known_crs,
+    AreaChoice, ClearSkyChoice, FarTerrain, North, Numbers, Place, RadiationModel, SunPeriod, SunPlace, ThroughTrees,
+    above_zero, at_least_one, height, known_crs,
 };
 use belvedere_tiles::Topic;
 use clap::{Args, Subcommand};
@@ -111,6 +111,12 @@ pub(crate) struct CityPlan {
     /// Its triangles block exactly as they are, and cells lie on top of it. Coordinates are those of the survey.
     #[arg(long, value_name = "MESH", help_heading = "Plan")]
     pub(crate) add: Vec<PathBuf>,
+    /// Clear what stands in an area: POLYGON.geojson, X0,Y0,X1,Y1 or class:N; repeatable
+    ///
+    /// Polygons, a box from the lowest to the highest x and y, or the points of a class, in the coordinates of the survey. What goes is as in other commands (belvedere shadow
+    /// --help). It comes before --add, so that a building can replace another.
+    #[arg(long, value_name = "AREA", help_heading = "Plan", allow_hyphen_values = true)]
+    pub(crate) clear: Vec<AreaChoice>,
     #[command(flatten)]
     pub(crate) far_terrain: FarTerrain,
     /// Side of the cells of results in metres: a whole number of sixty-fourths, such as 0.25, 0.5, 1 or 2

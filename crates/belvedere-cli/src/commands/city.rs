@@ -4,7 +4,7 @@ mod questions;
 
 use super::{check_folder, check_output};
 use crate::arguments::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, Usage};
-use crate::pipeline::flagged;
+use crate::pipeline::{areas, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
@@ -81,6 +81,12 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
 fn planned(plan: Plan, arguments: &CityPlan) -> Result<Plan> {
     let meshes = arguments.add.iter().map(|path| SideFile::new(path)).collect::<belvedere::Result<Vec<_>>>()?;
     let plan = flagged("--add", plan.with_meshes(meshes))?;
+    let frame = plan.frame()?;
+    let mut cleared = Vec::new();
+    for choice in &arguments.clear {
+        cleared.extend(areas(choice, &frame)?);
+    }
+    let plan = flagged("--clear", plan.with_cleared(cleared))?;
     let side = |path: &Option<PathBuf>| path.as_deref().map(SideFile::new).transpose();
     let (terrain, horizon) = (side(&arguments.far_terrain.terrain)?, side(&arguments.far_terrain.horizon)?);
     let plan = flagged("--terrain", plan.with_far_terrain(terrain, horizon))?;

@@ -182,6 +182,8 @@ fn wrong_plans_are_refused_with_advice() {
     place.refusal(2, &format!("{plan} --time 2026-03-20T02:00+01:00"), &["--time", "horizon"]);
     place.refusal(2, &format!("{plan} --time 2026-03-20T10:00"), &["--time", "zone"]);
     place.refusal(2, &format!("{plan} --sun 150,20 --sun 150,20"), &["shadow_150_20 twice"]);
+    place.refusal(2, &format!("{plan} --sky-view --clear class:2"), &["--clear", "stands on the ground"]);
+    place.refusal(2, &format!("{plan} --sky-view --clear 0,0,9,9"), &["--clear", "on the cloud"]);
     place.refusal(2, &format!("{plan} --observer 10,10"), &["--observer", "10, 10", "height"]);
     place.refusal(1, "city run nowhere", &["plan.json", "belvedere city plan"]);
     // scans from the ground are no survey of tiles, and it is said what else to do
@@ -193,6 +195,7 @@ fn wrong_plans_are_refused_with_advice() {
     for (flags, words) in [
         ("-o other --sky-view --add no.obj", ["no.obj", "faces"]),
         ("-o other --sky-view --add .", ["error: .: ", "mesh"]),
+        ("-o other --sky-view --clear gone.geojson", ["gone.geojson", "check the path"]),
         ("-o other --sky-view --terrain no.obj", ["no.obj", "TIFF"]),
         ("-o other --sky-view --terrain gone.tif", ["gone.tif", "check the path"]),
         ("-o other --sky-view --horizon no.obj", ["no.obj", "azimuth"]),
@@ -223,6 +226,29 @@ fn wrong_plans_are_refused_with_advice() {
     std::fs::write(place.path("run/plan.json"), "{").unwrap();
     place.summary(&format!("{plan} --sun 150,20 --cell 2"));
     assert_eq!(place.summary("city status run")["is_complete"], true);
+}
+
+#[test]
+fn a_cleared_area_loses_its_shadow_and_keeps_its_cells() {
+    let place = Workplace::new();
+    town(&place);
+    // all of the survey: only the ground is left
+    let area = "[[154900,462900],[155100,462900],[155100,463100],[154900,463100],[154900,462900]]";
+    let polygon = format!("{{\"type\": \"Polygon\", \"coordinates\": [{area}]}}");
+    place.write("all.geojson", &polygon);
+    let plan = "city plan town/cloud.laz --sun 150,20 --cell 2 --tile-size 64";
+    let lit = |name: &str, flags: &str| {
+        place.summary(&format!("{plan} {flags} -o {name}"));
+        place.summary(&format!("city run {name}"));
+        place.summary(&format!("city merge {name} -o {name}.tif"));
+        let raster = belvedere::io::read_tif_u8(&place.path(&format!("{name}.tif"))).unwrap();
+        [0, 1].map(|code| raster.values().iter().filter(|&&value| value == code).count())
+    };
+    let [dark, light] = lit("before", "");
+    let [still_dark, now_light] = lit("polygon", "--clear all.geojson");
+    assert!(dark > 500 && still_dark * 50 < now_light, "{dark} {light} {still_dark} {now_light}");
+    assert!(still_dark + now_light >= dark + light, "{dark} {light} {still_dark} {now_light}");
+    assert_eq!(lit("box", "--clear 154900,462900,155100,463100"), [still_dark, now_light]);
 }
 
 #[test]

@@ -4,20 +4,21 @@ use crate::common::{run_all, write_town};
 use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, Zone};
 use belvedere::control::Control;
-use belvedere::io::read_tif_f32;
+use belvedere::io::read_tif;
 use belvedere_tiles::{CellSizes, Plan, PlanParams, Question, SunQuestion, Topic, merge, status, write_catalogue};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 fn questions() -> Vec<Question> {
     let site = Site { latitude: 0.91, longitude: 0.09, height: 10.0, convergence: 0.02 };
     let day = Period::Days(vec![Date::new(2026, 4, 10).unwrap()]);
-    let hours = DayParams::default().with_step(7200.0).with_least_elevation(0.14);
+    let hours = DayParams::default().with_step(3600.0).with_least_elevation(0.14);
     let hours = SunQuestion::new(site, &Zone::mean_solar(&site), &day, hours, Binning::Auto).unwrap();
     let to_sun = ShadowSun::at(2.2, 0.4).to_sun;
     vec![
         Question::Shadow { name: "shadow".to_owned(), to_sun, season: None },
         Question::SunHours(hours),
-        Question::SkyView { directions: 13 },
+        Question::SkyView { directions: 25 },
     ]
 }
 
@@ -66,17 +67,16 @@ fn results_with_their_own_cells_are_those_of_plans_with_one_question_and_of_any_
         // one tile over all, cell by cell: rasters around it are larger
         let values = [(&tiles, &folder), (&whole, &whole_folder)].map(|(plan, folder)| {
             raster(plan, folder, question);
-            let cells = belvedere::io::read_tif(folder.join("merged.tif").as_path()).unwrap();
-            let corner = cells.place.unwrap().upper_left;
-            let raster = read_tif_f32(&folder.join("merged.tif")).unwrap();
+            let cells = read_tif(folder.join("merged.tif").as_path()).unwrap();
+            let (corner, raster) = (cells.place.unwrap().upper_left, cells.values);
+            #[expect(clippy::cast_possible_truncation, reason = "cells of a town are few")]
             let number = |v: f64| (v / side).round() as i64;
             let place = |at: usize| {
                 let [column, row] = [at % raster.width(), at / raster.width()].map(|v| v as i64);
                 [number(corner[0]) + column, number(corner[1]) - row]
             };
-            let none = if name == "shadow" { 255.0 } else { -9999.0 };
-            let known = raster.values().iter().enumerate().filter(|(_, value)| **value != none);
-            known.map(|(at, value)| (place(at), value.to_bits())).collect::<std::collections::BTreeMap<_, _>>()
+            let known = raster.values().iter().enumerate().filter(|(_, value)| value.is_finite());
+            known.map(|(at, value)| (place(at), value.to_bits())).collect::<BTreeMap<_, _>>()
         });
         let least = 140.0 * 140.0 / (side * side) * 0.9;
         assert!(values[0].len() as f64 > least && values[0] == values[1], "{name}: {}", values[0].len());

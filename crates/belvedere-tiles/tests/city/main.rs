@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod cells;
+mod cleared;
 mod common;
 mod country;
 mod hostile;

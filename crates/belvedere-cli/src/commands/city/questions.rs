@@ -1,19 +1,21 @@
 //! From flags to the questions of a plan.
 
-use crate::arguments::{CellFor, CityPlan, Numbers, Place, Usage};
+use crate::arguments::{AreaChoice, CellFor, CityPlan, Numbers, Place, Usage};
 use crate::commands::irradiance::radiation;
 use crate::commands::shadow::moment;
 use crate::commands::sun_hours::rules;
 use crate::pipeline::flagged;
 use crate::summary::Summary;
 use anyhow::Result;
+use belvedere::Error;
 use belvedere::apps::irradiance::PARTS;
 use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sun::{Binning, Period, sun_position_with};
 use belvedere::apps::tree_light::Season;
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::control::Control;
-use belvedere::io::{read_horizon, read_mesh, read_tif, read_weather};
+use belvedere::crs::Crs;
+use belvedere::io::{read_geojson, read_horizon, read_mesh, read_tif, read_weather};
 use belvedere_tiles::{CellSizes, Plan, Question, Radiation, SideFile, SunQuestion, Topic};
 
 /// Refuses what cannot be asked, before the survey is read.
@@ -43,6 +45,15 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
     Place::refuse_twice("--observer", &arguments.observers)?;
     for mesh in &arguments.add {
         read_mesh(mesh)?;
+    }
+    for choice in &arguments.clear {
+        if let AreaChoice::File(path) = choice {
+            match read_geojson(path, &Crs::default()) {
+                // that of the survey is not known yet
+                Ok(_) | Err(Error::UnusableCrs { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
     }
     if let Some(weather) = &arguments.weather {
         read_weather(weather.as_path())?;
