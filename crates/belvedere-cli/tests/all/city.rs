@@ -281,7 +281,8 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     // a disc of 30 m, on cells of 16 m²
     assert!((150..200).contains(&(of_code(0) + of_code(1))), "{} {}", of_code(0), of_code(1));
     assert!(of_code(1) > 20 && of_code(2) == 0, "{}", of_code(1));
-    let width = |name: &str| belvedere::io::read_tif_f32(&place.path(&format!("{name}.tif"))).unwrap().width();
+    let raster = |name: &str| belvedere::io::read_tif(place.path(&format!("{name}.tif")).as_path()).unwrap();
+    let width = |name: &str| raster(name).values.width();
     assert_eq!(width("sun_hours"), 2 * width("irradiance"));
     // rasters say what they hold, as those of single scenes do: other quantities are neither subtracted without a word nor taken for terrain
     let shadow = "shadow_20260320_124500";
