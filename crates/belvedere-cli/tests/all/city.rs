@@ -257,7 +257,7 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     town(&place);
     let flags = "--time 2026-03-20T12:45+01:00 --sun-hours --date 2026-03-20 --time-step-min 60 --irradiance --clear-sky haurwitz \
                  --patch-division 1 --sun-cell-deg 20 --observer 155000,462985 --max-distance 30";
-    let cells = "--cell 4 --cell-for shadow=2 --cell-for irradiance=8";
+    let cells = "--cell 4 --cell-for shadow=2";
     let plan = place.summary(&format!("city plan town/cloud.laz -o run --tile-size 128 {cells} {flags}"));
     assert_eq!(plan["results"], serde_json::json!(["shadow_20260320_124500", "sun_hours", "irradiance", "viewshed"]));
     let kept: serde_json::Value = serde_json::from_slice(&place.bytes("run/plan.json")).unwrap();
@@ -283,7 +283,6 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     assert!(of_code(1) > 20 && of_code(2) == 0, "{}", of_code(1));
     let raster = |name: &str| belvedere::io::read_tif(place.path(&format!("{name}.tif")).as_path()).unwrap();
     let width = |name: &str| raster(name).values.width();
-    assert_eq!(width("sun_hours"), 2 * width("irradiance"));
     // rasters say what they hold, as those of single scenes do: other quantities are neither subtracted without a word nor taken for terrain
     let shadow = "shadow_20260320_124500";
     place.summary(&format!("city merge run --result {shadow} -o {shadow}.tif"));
