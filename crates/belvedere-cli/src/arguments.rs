@@ -27,7 +27,7 @@ pub(crate) use balls::{
     Balls, Cleaning, MethodChoice, NeighborChoice, Normals, OrientChoice, Orienting, Shrinking, SideChoice,
 };
 pub(crate) use cameras::{CameraLens, CameraTargets, Cameras};
-pub(crate) use city::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};
+pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};
 #[cfg(feature = "compare")]
 pub(crate) use compare::Compare;
 pub(crate) use difference::Difference;

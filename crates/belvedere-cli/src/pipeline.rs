@@ -3,7 +3,7 @@
 pub(crate) mod params;
 mod plan;
 
-pub(crate) use plan::{mesh_in, planned};
+pub(crate) use plan::{areas, mesh_in, planned};
 
 use crate::arguments::{
     CloudInput, MethodChoice, OrientChoice, ProfileChoice, SceneInput, SizeChoice, UnprovenChoice, UpChoice, Usage,

@@ -146,6 +146,8 @@ for result, kind, nodata in (("shadow_235_30", "uint8", 255), ("sky_view_factor"
         assert raster.dtypes == (kind,) and raster.nodata == tiles.nodata == nodata, raster.meta
         assert raster.crs.to_epsg() in (7415, 28992) and raster.transform == tiles.transform
         assert (values == tiles.read(1)).all() and (values != nodata).any()
+        what = raster.tags()["TIFFTAG_IMAGEDESCRIPTION"]
+        assert tiles.tags()["TIFFTAG_IMAGEDESCRIPTION"] == what and tiles.descriptions == (what,), tiles.tags()
         levels = raster.overviews(1)
         assert raster.block_shapes == [(512, 512)] and levels[0] == 2 and max(raster.shape) / levels[-1] <= 512, levels
         # directories come first and in order; of the data, the coarsest level comes first

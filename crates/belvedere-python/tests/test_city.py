@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import threading
@@ -53,6 +54,12 @@ def test_a_killed_worker_loses_nothing(folder):
 def test_flags_and_errors_are_those_of_the_program(folder, tile):
     plan = belvedere.city.plan(tile, folder / "flags", sun=[(150, 20), (-30, 40)], sky_view=True, cell=4)
     assert plan["results"] == ["shadow_150_20", "shadow_-30_40", "sky_view_factor"]
+    cells = {"shadow": 2, "sky-view": 8}
+    belvedere.city.plan(tile, folder / "cells", sun=[(150, 20)], sky_view=True, cell=4, cell_for=cells)
+    kept = json.loads((folder / "cells" / "plan.json").read_text(encoding="utf-8"))
+    assert kept["cells"] == {"usual": 4, "others": {"shadow": 2, "sky_view": 8}}
+    with pytest.raises(belvedere.BelvedereError, match="--cell-for"):
+        belvedere.city.plan(tile, folder / "wrong", sky_view=True, cell_for={"shadow": 2})
     with pytest.raises(belvedere.BelvedereError, match="--sunny"):
         belvedere.city.plan(tile, folder / "wrong", sunny=True)
     with pytest.raises(belvedere.BelvedereError, match="questions are missing"):

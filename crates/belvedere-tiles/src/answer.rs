@@ -1,5 +1,6 @@
 //! The answer to a question on the cells of a tile.
 
+use crate::cleared::{ClassedPoint, ClearedSurface, classed};
 use crate::grid::TileId;
 use crate::lines::Lines;
 use crate::obstacles::{Found, rule};
@@ -61,9 +62,9 @@ pub(crate) fn answer(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, cont
 }
 
 /// The area of the points that the cells of a tile need.
-fn area_of_cells(plan: &Plan, tile: TileId) -> crate::grid::Area {
+fn area_of_cells(plan: &Plan, tile: TileId, cell: f64) -> crate::grid::Area {
     let farthest = f64::from(plan.facts.farthest()) + plan.facts.isolation_radius.unwrap_or(0.0);
-    plan.grid().core(tile).widened(farthest + (RIM + 1) as f64 * plan.cell)
+    plan.grid().core(tile).widened(farthest + (RIM + 1) as f64 * cell)
 }
 
 fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Control<'_>) -> Result<Record> {
@@ -73,10 +74,11 @@ fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Con
     if Lines::of(asked, core, 0.0).is_empty() {
         return nothing(0);
     }
-    let cloud = control.stage("reading", 0, || window::read(plan, &area_of_cells(plan, tile), control))?;
+    let cell = plan.cells.of(question);
+    let cloud = control.stage("reading", 0, || window::read(plan, &area_of_cells(plan, tile, cell), control))?;
     let points = cloud.len();
-    let targets =
-        control.stage("computing top surface", 0, || cells(plan, tile, &cloud, others.added.as_ref(), control))?;
+    let added = others.added.as_ref();
+    let targets = control.stage("computing top surface", 0, || cells(plan, (tile, cell), &cloud, added, control))?;
     let (cells, Layout::Cells(ground)) = (targets.asked_count(), &targets.layout) else { return nothing(points) };
     if cells == 0 {
         return nothing(points);
@@ -264,23 +266,30 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// The cells of a tile as targets on top of what stands there, or will.
+/// The cells of a tile, of a side in metres, as targets on top of what stands there, or will.
 fn cells(
     plan: &Plan,
-    tile: TileId,
+    (tile, cell): (TileId, f64),
     cloud: &PointCloud,
     added: Option<&AddedMeshes>,
     control: &Control<'_>,
 ) -> Result<Targets> {
     let (kept, _) = clean(cloud, &plan.facts.cleaning(&plan.model().clean), control)?;
-    let positions: Vec<[f32; 3]> = kept.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
     let core = plan.grid().core(tile);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
-    let count = (plan.tile_size / plan.cell).round() as usize;
-    let rim = RIM as f64 * plan.cell;
+    let count = (plan.tile_size / cell).round() as usize;
+    let grid = MapGrid { corner: [core.low[0], core.high[1]], cell, width: count, height: count };
+    let places = (0..count).flat_map(|row| (0..count).map(move |column| (column, row)));
+    let middles: Vec<[f64; 2]> = places.clone().map(|(column, row)| grid.center(column, row)).collect();
+    let points = classed(cloud, kept.iter().map(|&row| row as usize));
+    let areas = (&area_of_cells(plan, tile, cell), &core);
+    let cleared = ClearedSurface::new(plan, areas, &points, &middles, control)?;
+    let stays = |(point, is_cleared): (&ClassedPoint, &bool)| (!is_cleared).then_some(point.0);
+    let positions: Vec<[f32; 3]> = points.iter().zip(&cleared.is_cleared).filter_map(stays).collect();
+    let rim = RIM as f64 * cell;
     let wide = MapGrid {
         corner: [core.low[0] - rim, core.high[1] + rim],
-        cell: plan.cell,
+        cell,
         width: count + 2 * RIM,
         height: count + 2 * RIM,
     };
@@ -288,10 +297,15 @@ fn cells(
     let flat = Ground { grid: wide, heights: unknown.clone(), gaps: unknown };
     let params = SurfaceParams { farthest: plan.facts.farthest(), ..SurfaceParams::default() };
     let heights = top_surface(&positions, &flat, &params, control)?;
-    let grid = MapGrid { corner: [core.low[0], core.high[1]], cell: plan.cell, width: count, height: count };
-    let places = (0..count).flat_map(|row| (0..count).map(move |column| (column, row)));
     let of_cell = |(column, row): (usize, usize)| heights.get(column + RIM, row + RIM).unwrap_or(f32::NAN);
     let mut heights = Raster::from_values(count, count, places.clone().map(of_cell).collect())?;
+    for (place, height) in cleared.ground {
+        if let Some(value) = heights.values_mut().get_mut(place).filter(|value| value.is_nan()) {
+            #[expect(clippy::cast_possible_truncation, reason = "local heights are f32")]
+            let height = height as f32;
+            *value = height;
+        }
+    }
     if let Some(added) = added {
         added.raise(&mut heights, &grid);
     }

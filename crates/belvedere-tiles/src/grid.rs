@@ -81,6 +81,17 @@ impl Area {
         side(0).hypot(side(1))
     }
 
+    /// The smallest rectangle around both.
+    pub(crate) fn joined(&self, other: &Self) -> Self {
+        let low = [0, 1].map(|axis| self.low[axis].min(other.low[axis]));
+        Self { low, high: [0, 1].map(|axis| self.high[axis].max(other.high[axis])) }
+    }
+
+    /// Whether they have a place in common.
+    pub(crate) fn meets(&self, other: &Self) -> bool {
+        (0..2).all(|axis| self.low[axis] < other.high[axis] && other.low[axis] < self.high[axis])
+    }
+
     pub(crate) fn widened(&self, by: f64) -> Self {
         Self { low: self.low.map(|v| v - by), high: self.high.map(|v| v + by) }
     }

@@ -14,6 +14,9 @@
 //! all; and every step of the way looks at points no farther away than the margin.
 
 mod answer;
+mod cell_sizes;
+mod cleared;
+mod estimate;
 mod grid;
 mod inputs;
 mod lines;
@@ -32,11 +35,13 @@ mod survey;
 mod values;
 mod window;
 
+pub use cell_sizes::{CellSizes, Topic};
+pub use estimate::Estimate;
 pub use grid::{TileGrid, TileId};
 pub use inputs::InputFile;
 pub use make_balls::make_balls;
 pub use merge::{Merged, merge, merged_within, write_catalogue};
-pub use plan::{Estimate, Plan, PlanFrame, PlanParams};
+pub use plan::{Plan, PlanFrame, PlanParams};
 pub use planned::SideFile;
 pub use question::{Question, Radiation, SunQuestion};
 pub use record::{Outcome, Record, Stage};

@@ -1,5 +1,6 @@
 //! The balls of a tile.
 
+use crate::cleared::{ClassedPoint, classed, clear_balls};
 use crate::grid::{Area, TileId, block_of};
 use crate::plan::Plan;
 use crate::record::{Outcome, Record, Stage, Stamp};
@@ -29,25 +30,27 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     let nothing = Record { points, ..Record::default() };
     let core = plan.grid().core(tile);
     let is_in = |p: &[f32; 3]| core.holds([p[0].into(), p[1].into()]);
-    if !cloud.positions.iter().any(is_in) {
-        return Ok(nothing);
+    let all = classed(&cloud, 0..points);
+    // those of other tiles may be cleared within this one
+    let mut parts = ModelParts { frame: plan.frame()?, ..ModelParts::default() };
+    if all.iter().any(|point| is_in(&point.0)) {
+        parts = match SceneModel::build_owned(cloud, &plan.model(), control) {
+            Ok((model, _)) => model.into_parts(),
+            Err(error) if window::is_nothing(&error) => parts,
+            Err(error) => return Err(error),
+        };
     }
-    let positions = cloud.positions.clone();
-    let parts = match SceneModel::build_owned(cloud, &plan.model(), control) {
-        Ok((model, _)) => model.into_parts(),
-        Err(error) if window::is_nothing(&error) => return Ok(nothing),
-        Err(error) => return Err(error),
-    };
-    let is_own = |row: &usize| {
-        let source = parts.balls.source.get(*row).and_then(|&source| positions.get(source as usize));
-        source.is_some_and(is_in)
-    };
+    let of_ball = |row: usize| parts.balls.source.get(row).and_then(|&source| all.get(source as usize)).copied();
+    let is_own = |row: &usize| of_ball(*row).is_some_and(|point| is_in(&point.0));
     let own: Vec<usize> = (0..parts.balls.len()).filter(is_own).collect();
-    if own.is_empty() {
+    let own_points: Vec<ClassedPoint> = own.iter().filter_map(|&row| of_ball(row)).collect();
+    let mut transmission = own.iter().filter_map(|&row| parts.transmission.get(row).copied()).collect();
+    let mut balls = parts.balls.select(&own);
+    drop(all);
+    clear_balls(plan, &core, &mut balls, &mut transmission, &own_points, control)?;
+    if balls.is_empty() {
         return Ok(nothing);
     }
-    let transmission = own.iter().filter_map(|&row| parts.transmission.get(row).copied()).collect();
-    let balls = parts.balls.select(&own);
     let tops = tops(&balls);
     let count = balls.len();
     // lines of sight are proven by pulses of the whole; here they are not kept

@@ -42,9 +42,10 @@ fn results(plan: &Plan, folder: &Path, question: &Question, tiles: &[TileId]) ->
     if tiles.is_empty() {
         return Err(Error::NoPoints { what: "the plan has no tile there".to_owned() });
     }
+    let cell = plan.cells.of(question);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
-    let count = |axis: usize| ((high[axis] - low[axis]) / plan.cell).round() as usize;
-    let cells = MapGrid { corner: [low[0], high[1]], cell: plan.cell, width: count(0), height: count(1) };
+    let count = |axis: usize| ((high[axis] - low[axis]) / cell).round() as usize;
+    let cells = MapGrid { corner: [low[0], high[1]], cell, width: count(0), height: count(1) };
     Ok((tiles.iter().copied().filter(has_result).collect(), cells))
 }
 
@@ -52,29 +53,36 @@ fn results(plan: &Plan, folder: &Path, question: &Question, tiles: &[TileId]) ->
 fn place_of(plan: &Plan, cells: &MapGrid, tile: TileId) -> [usize; 3] {
     let core = plan.grid().core(tile);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
-    let number = |metres: f64| (metres / plan.cell).round() as usize;
+    let number = |metres: f64| (metres / cells.cell).round() as usize;
     [number(core.low[0] - cells.corner[0]), number(cells.corner[1] - core.high[1]), number(plan.tile_size)]
 }
 
-/// Writes a catalogue (`.vrt`) of the results of a question that are there, which QGIS, GDAL and rasterio open as one raster.
+fn in_xml(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}
+
+/// Writes a catalogue (`.vrt`) of the results of a question that are there, which QGIS, GDAL and rasterio open as one raster that says what its values are.
 ///
 /// # Errors
 /// [`Error::Io`].
 pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Result<Merged> {
-    let (tiles, cells) = results(plan, folder, question, &plan.tiles)?;
+    let planned = plan.tiles_of(question);
+    let (tiles, cells) = results(plan, folder, question, &planned)?;
     let frame = plan.frame()?;
     let place = georeference(&cells, &frame);
     let (kind, no_data) = plan.kind_of(question).in_vrt();
     let mut text = format!("<VRTDataset rasterXSize=\"{}\" rasterYSize=\"{}\">\n", cells.width, cells.height);
     if let Some(system) = wkt_line(&frame.crs) {
-        let system = system.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
-        let _ = writeln!(text, "  <SRS>{system}</SRS>");
+        let _ = writeln!(text, "  <SRS>{}</SRS>", in_xml(&system));
     }
     let [x, y] = place.upper_left;
     let step = place.column_step[0];
     let _ = writeln!(text, "  <GeoTransform>{x}, {step}, 0, {y}, 0, {}</GeoTransform>", -step);
-    let _ =
-        writeln!(text, "  <VRTRasterBand dataType=\"{kind}\" band=\"1\">\n    <NoDataValue>{no_data}</NoDataValue>");
+    // as GDAL calls the description of a TIFF, so that one that is made from the catalogue has it too
+    let what = in_xml(question.description());
+    let _ = writeln!(text, "  <Metadata>\n    <MDI key=\"TIFFTAG_IMAGEDESCRIPTION\">{what}</MDI>\n  </Metadata>");
+    let _ = writeln!(text, "  <VRTRasterBand dataType=\"{kind}\" band=\"1\">\n    <Description>{what}</Description>");
+    let _ = writeln!(text, "    <NoDataValue>{no_data}</NoDataValue>");
     for &tile in &tiles {
         let [column, row, side] = place_of(plan, &cells, tile);
         let _ = writeln!(
@@ -89,7 +97,7 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Resul
     text.push_str("  </VRTRasterBand>\n</VRTDataset>\n");
     let path = folder.join(format!("{}.vrt", question.name()));
     atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(Error::io(&path)))?;
-    Ok(Merged { tiles: tiles.len(), without_result: plan.tiles.len() - tiles.len() })
+    Ok(Merged { tiles: tiles.len(), without_result: planned.len() - tiles.len() })
 }
 
 /// Writes the results of a question that are there as one cloud-optimised GeoTIFF, which says what its values are.
@@ -97,7 +105,7 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Resul
 /// # Errors
 /// [`Error::InvalidParameter`] for more cells than fit into memory; those of reading and writing rasters.
 pub fn merge(plan: &Plan, folder: &Path, question: &Question, output: &Path, control: &Control<'_>) -> Result<Merged> {
-    let (values, place, merged) = gather(plan, folder, question, &plan.tiles, control)?;
+    let (values, place, merged) = gather(plan, folder, question, &plan.tiles_of(question), control)?;
     values.write_cog(output, &place, question.description())?;
     Ok(merged)
 }
@@ -118,7 +126,7 @@ pub fn merged_within(
         let core = grid.core(*tile);
         (0..2).all(|i| core.low[i] < high[i] - origin[i] && core.high[i] > low[i] - origin[i])
     };
-    let tiles: Vec<TileId> = plan.tiles.iter().copied().filter(touches).collect();
+    let tiles: Vec<TileId> = plan.tiles_of(question).into_iter().filter(touches).collect();
     let (values, place, _) = gather(plan, folder, question, &tiles, control)?;
     let description = Some(question.description().to_owned());
     Ok(PlacedRaster { values: values.numbers()?, place: Some(place), description })

@@ -1,5 +1,6 @@
 //! The plan of a run: everything that a tile must know beside its own points.
 
+use crate::cell_sizes::CellSizes;
 use crate::grid::{Area, TileGrid, TileId, block_area};
 use crate::inputs::{Columns, InputFile, NOWHERE, PIECE_ROWS, hash};
 use crate::planned::{Others, SideFile, added_meshes, far_terrain};
@@ -11,9 +12,9 @@ use belvedere::apps::targets::{grid_around, set_on_ground};
 use belvedere::apps::tree_light::Crowns;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
-use belvedere::ground::{Ground, GroundParams, SurfaceParams};
+use belvedere::ground::{Ground, GroundParams};
 use belvedere::io::{LasHead, atomic, cloud_files};
-use belvedere::model::{ModelParams, SurveyFacts};
+use belvedere::model::{ClearedArea, ModelParams, SurveyFacts};
 use belvedere::query::Coverage;
 use belvedere::{Bounds, Error, Frame, Result};
 use serde::{Deserialize, Serialize};
@@ -23,27 +24,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Version of the layout of plans and records.
-const LAYOUT: u32 = 5;
+const LAYOUT: u32 = 6;
 /// Corners that the origin of local coordinates is one of, metres: of blocks of 64 m, and few, so that neighbouring surveys share it.
 const ORIGIN_STEP: f64 = 1024.0;
 /// Farthest that a point may lie from the origin, metres: up to here f32 keeps a millimetre.
 const FARTHEST: f64 = 16_384.0;
-/// Smallest side of a tile, metres.
+/// Smallest and largest side of a tile, metres.
 const LEAST_TILE: f64 = 16.0;
-/// Steps that the side of a cell must be a whole number of, metres: middles of cells are then exact numbers.
-const CELL_STEP: f64 = 1.0 / 64.0;
-/// Memory for each point of a window while balls are made, and without any, bytes. As measured in docs/scale.md.
-const BYTES_PER_POINT: f64 = 450.0;
-const BYTES_AT_LEAST: f64 = 100e6;
-/// Memory for each ball of those that are asked together, bytes: measured 435 to 490, and room for cells and their points.
-const BYTES_PER_BALL: f64 = 700.0;
-/// Balls that are always asked together: fewer would save no memory that counts.
-const LEAST_BALLS: usize = 100_000;
+const LARGEST_TILE: f64 = 8192.0;
 /// Points around a place that its ground is taken from, metres, beside the usual ones.
 const GROUND_AROUND: f64 = 32.0;
-/// Bytes of a ball file for each point of a tile.
-const DISK_PER_POINT: f64 = 30.0;
-
 /// How a plan is made.
 #[derive(Clone, Debug)]
 pub struct PlanParams {
@@ -53,8 +43,8 @@ pub struct PlanParams {
     pub crs: Option<String>,
     /// Side of a tile, metres. Default 512: a multiple of the blocks of 64 m, so that no point is looked at for nothing.
     pub tile_size: f64,
-    /// Side of the cells of results, metres. Default 1.
-    pub cell: f64,
+    /// Sides of the cells of results. Default 1 m.
+    pub cells: CellSizes,
     /// Places that the survey must hold, in its coordinates: one outside is refused before points are read. Default none.
     pub places: Vec<[f64; 2]>,
     /// Most memory that a tile may take, bytes: tiles are quartered until the largest fits. `None` for any.
@@ -69,7 +59,7 @@ impl Default for PlanParams {
             clouds: Vec::new(),
             crs: None,
             tile_size: 512.0,
-            cell: 1.0,
+            cells: CellSizes::default(),
             places: Vec::new(),
             memory: None,
             program: String::new(),
@@ -91,8 +81,8 @@ pub struct Plan {
     pub(crate) columns: Columns,
     /// Side of a tile, metres.
     pub tile_size: f64,
-    /// Side of a cell of results, metres.
-    pub cell: f64,
+    /// Sides of the cells of results.
+    pub cells: CellSizes,
     /// How far around a tile points are read, metres.
     pub halo: f64,
     /// What is asked.
@@ -100,6 +90,9 @@ pub struct Plan {
     /// Meshes of what is planned, which block beside what was surveyed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     meshes: Vec<SideFile>,
+    /// Areas without what stands there now.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) cleared: Vec<ClearedArea>,
     /// Heights of the ground beyond the survey.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     terrain: Option<SideFile>,
@@ -136,21 +129,6 @@ pub struct PlanFrame {
 struct Version {
     layout: u32,
     program: String,
-}
-
-/// What a plan will take.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Estimate {
-    /// Points of all tiles.
-    pub points: u64,
-    /// Points that are read, those around tiles among them.
-    pub points_with_halo: u64,
-    /// Most points that one tile reads.
-    pub most_points_of_a_tile: u64,
-    /// Memory that this tile takes, bytes.
-    pub memory_bytes: u64,
-    /// Disk that balls take, bytes.
-    pub disk_bytes: u64,
 }
 
 impl Plan {
@@ -224,11 +202,12 @@ impl Plan {
             crs: params.crs.clone(),
             columns,
             tile_size: params.tile_size,
-            cell: params.cell,
+            cells: params.cells.clone(),
             // in steps, so that it does not look more exact than it is
             halo: facts.halo(&model).ceil(),
             questions: Vec::new(),
             meshes: Vec::new(),
+            cleared: Vec::new(),
             terrain: None,
             horizon: None,
             trees: None,
@@ -359,56 +338,32 @@ impl Plan {
         })
     }
 
-    /// Tiles with cells that may get a height: those near points.
-    fn tiles_with_cells(&self) -> Vec<TileId> {
-        let grid = self.grid();
-        let reach = SurfaceParams::reach(self.cell);
+    /// The tiles with cells for the result of a question, from the south-west: all but some at the edge of the survey that only larger cells reach.
+    pub(crate) fn tiles_of(&self, question: &Question) -> Vec<TileId> {
+        let cell = self.cells.of(question);
+        self.tiles.iter().copied().filter(|&tile| self.has_cells(tile, cell)).collect()
+    }
+
+    /// Tiles with cells for any result.
+    pub(crate) fn tiles_with_cells(&self) -> Vec<TileId> {
+        let (grid, cell) = (self.grid(), self.cells.largest());
         let of_block = |block: &Block| {
-            let area = block_area(block.at).widened(reach);
+            let area = block_area(block.at).widened(self.reach(cell));
             let (first, last) = (grid.tile_of(area.low), grid.tile_of(area.high));
             (first.north..=last.north)
                 .flat_map(move |north| (first.east..=last.east).map(move |east| TileId { east, north }))
         };
         let tiles: BTreeSet<TileId> = self.blocks.iter().flat_map(of_block).collect();
+        tiles.into_iter().filter(|&tile| self.has_cells(tile, cell)).collect()
+    }
+
+    /// Whether cells of a side may get a height on a tile: it is near points.
+    fn has_cells(&self, tile: TileId, cell: f64) -> bool {
+        let reach = self.reach(cell);
+        let core = self.grid().core(tile);
         let (low, high) = self.bounds().on_map();
-        let has_survey = |tile: &TileId| {
-            let core = grid.core(*tile);
-            (0..2).all(|axis| core.low[axis] <= high[axis] + reach && low[axis] - reach < core.high[axis])
-        };
-        tiles.into_iter().filter(has_survey).collect()
-    }
-
-    /// Points that a tile reads, about.
-    fn window_points(&self, area: &Area) -> f64 {
-        let share = |block: &Block| {
-            let own = block_area(block.at);
-            let side = |axis: usize| (area.high[axis].min(own.high[axis]) - area.low[axis].max(own.low[axis])).max(0.0);
-            side(0) * side(1) / (crate::grid::CELL * crate::grid::CELL) * block.points as f64
-        };
-        self.blocks_in(area).map(share).sum()
-    }
-
-    /// What the run will take, about.
-    #[must_use]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "estimates; `as` saturates")]
-    pub fn estimate(&self) -> Estimate {
-        let windows: Vec<f64> = self.tiles.iter().map(|&tile| self.window_points(&self.window(tile))).collect();
-        let most = windows.iter().copied().fold(0.0, f64::max);
-        let points: u64 = self.blocks.iter().map(|block| block.points).sum();
-        Estimate {
-            points,
-            points_with_halo: windows.iter().sum::<f64>() as u64,
-            most_points_of_a_tile: most as u64,
-            memory_bytes: memory_of(most) as u64,
-            disk_bytes: (points as f64 * DISK_PER_POINT) as u64,
-        }
-    }
-
-    /// Most balls that are asked together: as many as take no more memory than making those of the largest tile.
-    pub(crate) fn balls_at_a_time(&self) -> usize {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an estimate; `as` saturates")]
-        let balls = ((self.estimate().memory_bytes as f64 - BYTES_AT_LEAST) / BYTES_PER_BALL) as usize;
-        balls.max(LEAST_BALLS)
+        (0..2).all(|axis| core.low[axis] <= high[axis] + reach && low[axis] - reach < core.high[axis])
+            && self.blocks_in(&core.widened(reach)).next().is_some()
     }
 
     /// This with other questions.
@@ -511,8 +466,7 @@ impl Plan {
     fn fitting(mut self, memory: u64) -> Result<Self> {
         let (size, needed) = (self.tile_size, self.estimate().memory_bytes);
         while self.estimate().memory_bytes > memory {
-            let cells = self.tile_size / 2.0 / self.cell;
-            if self.tile_size / 2.0 < LEAST_TILE || cells != cells.floor() {
+            if self.tile_size / 2.0 < LEAST_TILE || !self.cells.divide(self.tile_size / 2.0) {
                 let megabytes = |bytes: u64| bytes as f64 / 1e6;
                 return Err(Error::InvalidParameter {
                     name: "memory for a tile",
@@ -553,10 +507,6 @@ fn without_ground(value: String) -> Error {
     Error::InvalidParameter { name: "observer", value, expected }
 }
 
-fn memory_of(points: f64) -> f64 {
-    BYTES_AT_LEAST + points * BYTES_PER_POINT
-}
-
 fn inputs(clouds: &[PathBuf]) -> Result<(Vec<InputFile>, Vec<LasHead>)> {
     let found: Vec<(InputFile, LasHead)> =
         cloud_files(clouds)?.iter().map(|file| InputFile::new(file)).collect::<Result<_>>()?;
@@ -570,31 +520,22 @@ fn inputs(clouds: &[PathBuf]) -> Result<(Vec<InputFile>, Vec<LasHead>)> {
 }
 
 fn check_sizes(params: &PlanParams) -> Result<()> {
-    let invalid =
-        |name, value: f64, expected| Err(Error::InvalidParameter { name, value: format!("{value} m"), expected });
-    let steps = params.cell / CELL_STEP;
-    if !(steps >= 1.0 && steps == steps.floor() && params.cell <= 64.0) {
-        return invalid(
-            "cell",
-            params.cell,
-            "a whole number of sixty-fourths of a metre up to 64, such as 0.25, 0.5, 1 or 2",
-        );
-    }
-    let cells = params.tile_size / params.cell;
-    if !(params.tile_size >= LEAST_TILE && params.tile_size <= 8192.0 && cells == cells.floor()) {
-        return invalid("tile size", params.tile_size, "16 to 8192 m, and a whole number of cells");
+    params.cells.check()?;
+    let size = params.tile_size;
+    if !((LEAST_TILE..=LARGEST_TILE).contains(&size) && params.cells.divide(size)) {
+        let expected = "16 to 8192 m, and a whole number of cells";
+        return Err(Error::InvalidParameter { name: "tile size", value: format!("{size} m"), expected });
     }
     Ok(())
 }
 
 /// The numbers of a plan that must not be anything.
 fn check_numbers(plan: &Plan) -> Option<()> {
-    let finite =
-        plan.frame.origin.iter().chain(&plan.frame.metres_per_unit).chain([&plan.halo, &plan.tile_size, &plan.cell]);
-    let sizes = PlanParams { tile_size: plan.tile_size, cell: plan.cell, ..PlanParams::default() };
+    let finite = plan.frame.origin.iter().chain(&plan.frame.metres_per_unit).chain([&plan.halo, &plan.tile_size]);
+    let sizes = PlanParams { tile_size: plan.tile_size, cells: plan.cells.clone(), ..PlanParams::default() };
     let are_whole = plan.inputs.iter().all(InputFile::has_sound_pieces);
     let are_sorted = plan.blocks.windows(2).all(|pair| pair[0].at < pair[1].at);
     let is_sound =
         finite.clone().all(|v| v.is_finite()) && plan.halo > 0.0 && plan.halo < 1e4 && are_sorted && are_whole;
-    (is_sound && check_sizes(&sizes).is_ok()).then_some(())
+    (is_sound && plan.has_sound_areas(plan.frame.origin) && check_sizes(&sizes).is_ok()).then_some(())
 }

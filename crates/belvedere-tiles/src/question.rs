@@ -1,5 +1,6 @@
 //! What is asked of a city.
 
+use crate::cell_sizes::Topic;
 use crate::planned::SideFile;
 use belvedere::apps::irradiance::{self, ClearSky, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons};
 use belvedere::apps::shadow::{self, ShadowSun};
@@ -201,6 +202,19 @@ impl Question {
             Self::SunHours { .. } => "sun_hours",
             Self::Irradiance { .. } => "irradiance",
             Self::Viewshed { .. } => "viewshed",
+        }
+    }
+
+    /// What it is about.
+    #[must_use]
+    pub fn topic(&self) -> Topic {
+        match self {
+            Self::Shadow { .. } => Topic::Shadow,
+            Self::SkyView { .. } => Topic::SkyView,
+            Self::SunHours(_) => Topic::SunHours,
+            Self::SunRule { .. } => Topic::Rule,
+            Self::Irradiance { .. } => Topic::Irradiance,
+            Self::Viewshed { .. } => Topic::Viewshed,
         }
     }
 

@@ -18,13 +18,15 @@ pub(crate) fn write_report(plan: &Plan, folder: &Path) -> Result<()> {
     let points: u64 = plan.inputs.iter().map(|file| file.points).sum();
     let _ = writeln!(
         text,
-        "{} files with {points} points, {} tiles of {} m, points read up to {} m around a tile, cells of {} m.",
+        "{} files with {points} points, {} tiles of {} m, points read up to {} m around a tile.",
         plan.inputs.len(),
         found.tiles,
         plan.tile_size,
-        plan.halo,
-        plan.cell
+        plan.halo
     );
+    for question in &plan.questions {
+        let _ = writeln!(text, "Cells of `{}`: {} m.", question.name(), plan.cells.of(question));
+    }
     let _ = writeln!(text, "Made with {}.\n", if plan.program.is_empty() { "belvedere" } else { &plan.program });
     text.push_str("| step | tiles done | empty | left | failed | cells unproven | points read | hours |\n|---|---|---|---|---|---|---|---|\n");
     for stage in &found.stages {

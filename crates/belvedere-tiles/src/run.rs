@@ -10,7 +10,6 @@ use crate::planned::Others;
 use crate::record::{Outcome, Record, Stage};
 use crate::report::write_report;
 use belvedere::control::Control;
-use belvedere::ground::SurfaceParams;
 use belvedere::{Error, Result};
 use serde::Serialize;
 use std::path::Path;
@@ -95,7 +94,8 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
     for question in questions {
         let asked = question.prepare(plan.trees, control)?;
         let task = Task { question, asked: &asked, others: &others, most_balls };
-        for tile in own() {
+        let (with_cells, cell) = (plan.tiles_of(question), plan.cells.of(question));
+        for tile in own().filter(|tile| with_cells.binary_search(tile).is_ok()) {
             // what was unproven for lack of balls may have them now
             let record = work.settled(Stage::Answer(question), tile);
             if record.is_some_and(|record| record.unproven_cells == 0) {
@@ -104,9 +104,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             }
             // other shares may not have come to them
             let core = plan.grid().core(tile);
-            let around = core.widened(SurfaceParams::reach(plan.cell));
-            let heights = plan.blocks_in(&around).map(|block| f64::from(block.heights[0]));
-            let lowest = heights.fold(f64::INFINITY, f64::min);
+            let lowest = plan.lowest_of_cells(tile, cell);
             for other in tiles(plan, &Lines::of(&asked, core, lowest)) {
                 work.missing_balls(other)?;
             }

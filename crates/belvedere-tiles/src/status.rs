@@ -52,7 +52,11 @@ pub fn status(plan: &Plan, folder: &Path) -> Status {
 
 fn of_stage(plan: &Plan, folder: &Path, stage: Stage<'_>) -> StageStatus {
     let mut status = StageStatus { name: stage.name().to_owned(), ..StageStatus::default() };
-    for &tile in &plan.tiles {
+    let with_cells = match stage {
+        Stage::Balls => None,
+        Stage::Answer(question) => Some(plan.tiles_of(question)),
+    };
+    for &tile in with_cells.as_ref().unwrap_or(&plan.tiles) {
         let record = Record::read(plan, folder, stage, tile);
         let Some(record) = record.filter(|record| record.damage(folder, stage, tile).is_none()) else {
             status.left += 1;

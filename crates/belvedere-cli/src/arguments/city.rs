@@ -1,9 +1,10 @@
 //! Flags of runs over whole cities.
 
 use super::{
-    ClearSkyChoice, FarTerrain, North, Numbers, Place, RadiationModel, SunPeriod, SunPlace, ThroughTrees, above_zero,
-    at_least_one, height, known_crs,
+    AreaChoice, ClearSkyChoice, FarTerrain, North, Numbers, Place, RadiationModel, SunPeriod, SunPlace, ThroughTrees,
+    above_zero, at_least_one, height, known_crs,
 };
+use belvedere_tiles::Topic;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -110,12 +111,23 @@ pub(crate) struct CityPlan {
     /// Its triangles block exactly as they are, and cells lie on top of it. Coordinates are those of the survey.
     #[arg(long, value_name = "MESH", help_heading = "Plan")]
     pub(crate) add: Vec<PathBuf>,
+    /// Clear what stands in an area: POLYGON.geojson, X0,Y0,X1,Y1 or class:N; repeatable
+    ///
+    /// Polygons, a box from the lowest to the highest x and y, or the points of a class, in the coordinates of the survey. What goes is as in other commands (belvedere shadow
+    /// --help). It comes before --add, so that a building can replace another.
+    #[arg(long, value_name = "AREA", help_heading = "Plan", allow_hyphen_values = true)]
+    pub(crate) clear: Vec<AreaChoice>,
     #[command(flatten)]
     pub(crate) far_terrain: FarTerrain,
     /// Side of the cells of results in metres: a whole number of sixty-fourths, such as 0.25, 0.5, 1 or 2
     #[arg(long, value_name = "M", default_value_t = 1.0, value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Tiles")]
     pub(crate) cell: f64,
+    /// Side of the cells of one kind of result in metres, such as shadow=0.5, in place of --cell; repeatable
+    ///
+    /// Kinds: shadow (of --sun and --time), sun-hours, rule, irradiance, sky-view, viewshed (of --observer).
+    #[arg(long, value_name = "KIND=M", help_heading = "Tiles")]
+    pub(crate) cell_for: Vec<CellFor>,
     /// Side of a tile in metres, 16 to 8192; it does not change results
     ///
     /// Multiples of 64 read the fewest points.
@@ -183,6 +195,22 @@ impl FromStr for Memory {
         let number: f64 = text.get(..text.len() - 1).and_then(|number| number.parse().ok()).ok_or_else(wrong)?;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
         if number > 0.0 && number.is_finite() { Ok(Self((number * scale) as u64)) } else { Err(wrong()) }
+    }
+}
+
+/// The side of the cells of one kind of result, metres.
+#[derive(Clone, Copy)]
+pub(crate) struct CellFor(pub(crate) Topic, pub(crate) f64);
+
+impl FromStr for CellFor {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let (kind, side) = text.split_once('=').ok_or("must be a kind of result and metres, such as shadow=0.5")?;
+        let topic = Topic::ALL.into_iter().find(|topic| topic.name() == kind).ok_or_else(|| {
+            format!("{kind} is no kind of result: give one of {}", Topic::ALL.map(Topic::name).join(", "))
+        })?;
+        Ok(Self(topic, above_zero(side)?))
     }
 }
 

@@ -4,7 +4,7 @@ mod questions;
 
 use super::{check_folder, check_output};
 use crate::arguments::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, Usage};
-use crate::pipeline::flagged;
+use crate::pipeline::{areas, flagged};
 use crate::progress::Stages;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
@@ -37,13 +37,14 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         clouds: arguments.clouds.clone(),
         crs: arguments.crs.clone(),
         tile_size: arguments.tile_size,
-        cell: arguments.cell,
+        cells: questions::cells(arguments)?,
         places: arguments.observers.iter().filter(|place| place.1.is_none()).map(|place| place.0).collect(),
         memory: arguments.memory.map(|memory| memory.0),
         program: concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned(),
     };
     let plan = Plan::make(&params, &stages.control()).map_err(|error| match error {
         Error::InvalidParameter { name: "cell", .. } => Usage(format!("--cell: {error}")).into(),
+        Error::InvalidParameter { name: "cell of some results", .. } => Usage(format!("--cell-for: {error}")).into(),
         Error::InvalidParameter { name: "observer", .. } => Usage(format!("--observer: {error}")).into(),
         Error::InvalidParameter { name: "tile size", .. } => Usage(format!("--tile-size: {error}")).into(),
         Error::InvalidParameter { name: "memory for a tile", .. } => Usage(format!("--memory: {error}")).into(),
@@ -80,6 +81,12 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
 fn planned(plan: Plan, arguments: &CityPlan) -> Result<Plan> {
     let meshes = arguments.add.iter().map(|path| SideFile::new(path)).collect::<belvedere::Result<Vec<_>>>()?;
     let plan = flagged("--add", plan.with_meshes(meshes))?;
+    let frame = plan.frame()?;
+    let mut cleared = Vec::new();
+    for choice in &arguments.clear {
+        cleared.extend(areas(choice, &frame)?);
+    }
+    let plan = flagged("--clear", plan.with_cleared(cleared))?;
     let side = |path: &Option<PathBuf>| path.as_deref().map(SideFile::new).transpose();
     let (terrain, horizon) = (side(&arguments.far_terrain.terrain)?, side(&arguments.far_terrain.horizon)?);
     let plan = flagged("--terrain", plan.with_far_terrain(terrain, horizon))?;

@@ -36,7 +36,7 @@ pub(super) fn clear(scene: &mut Scene, plan: &Plan, stages: &mut Stages, summary
 }
 
 /// The areas that were typed, local metres.
-fn areas(choice: &AreaChoice, frame: &Frame) -> Result<Vec<ClearedArea>> {
+pub(crate) fn areas(choice: &AreaChoice, frame: &Frame) -> Result<Vec<ClearedArea>> {
     let path = match choice {
         AreaChoice::Class(class) => return Ok(vec![ClearedArea::Class(*class)]),
         AreaChoice::Box([x0, y0, x1, y1]) => {

@@ -167,6 +167,12 @@ fn wrong_plans_are_refused_with_advice() {
     place.refusal(2, &format!("{plan} --sun 150,-3"), &["--sun", "horizon"]);
     place.refusal(2, &format!("{plan} --sky-view --cell 0.3"), &["--cell", "sixty-fourths"]);
     place.refusal(2, &format!("{plan} --sky-view --tile-size 100.5"), &["--tile-size", "whole number of cells"]);
+    place.refusal(2, &format!("{plan} --sky-view --cell-for sky=2"), &["--cell-for", "sky-view", "viewshed"]);
+    place.refusal(2, &format!("{plan} --sky-view --cell-for sky-view=-1"), &["--cell-for", "above zero"]);
+    place.refusal(2, &format!("{plan} --sky-view --cell-for sky-view=0.3"), &["--cell-for", "sixty-fourths"]);
+    place.refusal(2, &format!("{plan} --sky-view --cell-for shadow=2"), &["--cell-for shadow", "--sun"]);
+    let twice = "--cell-for sky-view=2 --cell-for sky-view=4";
+    place.refusal(2, &format!("{plan} --sky-view {twice}"), &["--cell-for", "sky-view is given twice"]);
     place.refusal(2, &format!("{plan} --sky-view --memory 3"), &["--memory", "3G"]);
     place.refusal(2, &format!("{plan} --sky-view --memory 101M"), &["--memory", "101 MB"]);
     place.refusal(2, &format!("{plan} --sun-hours"), &["--sun-hours", "--date"]);
@@ -176,6 +182,8 @@ fn wrong_plans_are_refused_with_advice() {
     place.refusal(2, &format!("{plan} --time 2026-03-20T02:00+01:00"), &["--time", "horizon"]);
     place.refusal(2, &format!("{plan} --time 2026-03-20T10:00"), &["--time", "zone"]);
     place.refusal(2, &format!("{plan} --sun 150,20 --sun 150,20"), &["shadow_150_20 twice"]);
+    place.refusal(2, &format!("{plan} --sky-view --clear class:2"), &["--clear", "stands on the ground"]);
+    place.refusal(2, &format!("{plan} --sky-view --clear 0,0,9,9"), &["--clear", "on the cloud"]);
     place.refusal(2, &format!("{plan} --observer 10,10"), &["--observer", "10, 10", "height"]);
     place.refusal(1, "city run nowhere", &["plan.json", "belvedere city plan"]);
     // scans from the ground are no survey of tiles, and it is said what else to do
@@ -187,6 +195,7 @@ fn wrong_plans_are_refused_with_advice() {
     for (flags, words) in [
         ("-o other --sky-view --add no.obj", ["no.obj", "faces"]),
         ("-o other --sky-view --add .", ["error: .: ", "mesh"]),
+        ("-o other --sky-view --clear gone.geojson", ["gone.geojson", "check the path"]),
         ("-o other --sky-view --terrain no.obj", ["no.obj", "TIFF"]),
         ("-o other --sky-view --terrain gone.tif", ["gone.tif", "check the path"]),
         ("-o other --sky-view --horizon no.obj", ["no.obj", "azimuth"]),
@@ -220,12 +229,36 @@ fn wrong_plans_are_refused_with_advice() {
 }
 
 #[test]
+fn a_cleared_area_loses_its_shadow_and_keeps_its_cells() {
+    let place = Workplace::new();
+    town(&place);
+    // all of the survey: only the ground is left
+    let area = "[[154900,462900],[155100,462900],[155100,463100],[154900,463100],[154900,462900]]";
+    let polygon = format!("{{\"type\": \"Polygon\", \"coordinates\": [{area}]}}");
+    place.write("all.geojson", &polygon);
+    let plan = "city plan town/cloud.laz --sun 150,20 --cell 2 --tile-size 64";
+    let lit = |name: &str, flags: &str| {
+        place.summary(&format!("{plan} {flags} -o {name}"));
+        place.summary(&format!("city run {name}"));
+        place.summary(&format!("city merge {name} -o {name}.tif"));
+        let raster = belvedere::io::read_tif_u8(&place.path(&format!("{name}.tif"))).unwrap();
+        [0, 1].map(|code| raster.values().iter().filter(|&&value| value == code).count())
+    };
+    let [dark, light] = lit("before", "");
+    let [still_dark, now_light] = lit("polygon", "--clear all.geojson");
+    assert!(dark > 500 && still_dark * 50 < now_light, "{dark} {light} {still_dark} {now_light}");
+    assert!(still_dark + now_light >= dark + light, "{dark} {light} {still_dark} {now_light}");
+    assert_eq!(lit("box", "--clear 154900,462900,155100,463100"), [still_dark, now_light]);
+}
+
+#[test]
 fn questions_are_those_of_the_commands_they_are_named_after() {
     let place = Workplace::new();
     town(&place);
     let flags = "--time 2026-03-20T12:45+01:00 --sun-hours --date 2026-03-20 --time-step-min 60 --irradiance --clear-sky haurwitz \
                  --patch-division 1 --sun-cell-deg 20 --observer 155000,462985 --max-distance 30";
-    let plan = place.summary(&format!("city plan town/cloud.laz -o run --tile-size 128 --cell 4 {flags}"));
+    let cells = "--cell 4 --cell-for shadow=2";
+    let plan = place.summary(&format!("city plan town/cloud.laz -o run --tile-size 128 {cells} {flags}"));
     assert_eq!(plan["results"], serde_json::json!(["shadow_20260320_124500", "sun_hours", "irradiance", "viewshed"]));
     let kept: serde_json::Value = serde_json::from_slice(&place.bytes("run/plan.json")).unwrap();
     // noon at an equinox: 90 degrees less the latitude, 52.155
@@ -248,11 +281,16 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     // a disc of 30 m, on cells of 16 m²
     assert!((150..200).contains(&(of_code(0) + of_code(1))), "{} {}", of_code(0), of_code(1));
     assert!(of_code(1) > 20 && of_code(2) == 0, "{}", of_code(1));
+    let raster = |name: &str| belvedere::io::read_tif(place.path(&format!("{name}.tif")).as_path()).unwrap();
+    let width = |name: &str| raster(name).values.width();
     // rasters say what they hold, as those of single scenes do: other quantities are neither subtracted without a word nor taken for terrain
     let shadow = "shadow_20260320_124500";
     place.summary(&format!("city merge run --result {shadow} -o {shadow}.tif"));
     let what = |name: &str| belvedere::io::read_tif(place.path(name).as_path()).unwrap().description.unwrap();
     assert_eq!(what(&format!("{shadow}.tif")), "share of the sun, 0 in shadow");
+    assert_eq!(width(shadow), 2 * width("sun_hours"));
+    let catalogue = place.text(&format!("run/{shadow}.vrt"));
+    assert!(catalogue.contains("<Description>share of the sun, 0 in shadow</Description>"), "{catalogue}");
     assert_eq!(what("seen.tif"), "1 visible, 0 blocked, 2 unproven, 255 nodata");
     let tile = std::fs::read_dir(place.path("run/sun_hours")).unwrap().map(|entry| entry.unwrap().path());
     let tile = tile.into_iter().find(|path| path.extension().is_some_and(|extension| extension == "tif")).unwrap();

@@ -9,6 +9,7 @@
 mod blocked_pulses;
 mod build;
 mod clear;
+mod clearing;
 mod close_range_normals;
 mod facts;
 mod params;
@@ -19,6 +20,7 @@ mod terrain;
 
 pub use belvedere_data::model::ModelParts;
 pub use clear::{ClearReport, ClearedArea};
+pub use clearing::Clearing;
 pub use facts::{SurveyExtremes, SurveyFacts};
 pub use params::{BallParams, ModelParams, OrientBy};
 pub use prepare::OrientedSurvey;

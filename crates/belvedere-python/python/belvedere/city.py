@@ -42,8 +42,9 @@ def plan(clouds: str | Path | Iterable[str | Path], folder: str | Path, **flags:
         Folder for the plan and the results; created if it does not exist.
     **flags
         The flags of ``belvedere city plan`` with underscores: ``sun=[(150, 20)]``, ``time="2026-03-21T10:00+01:00"``,
-        ``sun_hours=True``, ``date="2026-03-21"``, ``sky_view=True``, ``cell=0.5``, ``memory="4G"``. A list repeats a
-        flag; the numbers of a tuple are joined by commas.
+        ``sun_hours=True``, ``date="2026-03-21"``, ``sky_view=True``, ``cell=1``, ``cell_for={"shadow": 0.5}`` (metres),
+        ``memory="4G"``. A list repeats a flag, and so does a dictionary, as name=value; the numbers of a tuple are
+        joined by commas.
 
     Examples
     --------
@@ -131,6 +132,8 @@ def _typed(name: str, value: object) -> list[str]:
         return []
     if value is True:
         return [flag]
+    if isinstance(value, dict):
+        return [f"{flag}={key}={each}" for key, each in value.items()]
     if isinstance(value, list):
         return [word for each in value for word in _typed(name, each)]
     # with "=", so that a value that begins with a minus is no flag

@@ -1,6 +1,8 @@
 //! Runs of a simulated town in tiles.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod cells;
+mod cleared;
 mod common;
 mod country;
 mod hostile;

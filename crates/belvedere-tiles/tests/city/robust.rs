@@ -4,7 +4,7 @@ use crate::common::{plan, run_all, suns, write_town};
 use belvedere::Error;
 use belvedere::control::{Control, Watcher};
 use belvedere::io::read_tif_u8;
-use belvedere_tiles::{Plan, PlanParams, RunParams, Shard, Steps, merge, run, status};
+use belvedere_tiles::{CellSizes, Plan, PlanParams, RunParams, Shard, Steps, merge, run, status};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -193,7 +193,7 @@ fn tiles_are_quartered_until_they_fit_into_the_memory_and_sizes_out_of_range_are
     let error = make(&PlanParams { memory: Some(1_000_000), ..params.clone() }).unwrap_err().to_string();
     assert!(error.contains("1 MB") && error.contains("of 16 m"), "{error}");
     for (tile_size, cell) in [(100.0, 0.3), (100.5, 1.0), (4.0, 1.0), (f64::NAN, 1.0)] {
-        let params = PlanParams { tile_size, cell, ..params.clone() };
+        let params = PlanParams { tile_size, cells: CellSizes::all(cell), ..params.clone() };
         assert!(Plan::make(&params, &Control::none()).is_err(), "{tile_size} {cell}");
     }
 }

@@ -1,20 +1,22 @@
 //! From flags to the questions of a plan.
 
-use crate::arguments::{CityPlan, Numbers, Place, Usage};
+use crate::arguments::{AreaChoice, CellFor, CityPlan, Numbers, Place, Usage};
 use crate::commands::irradiance::radiation;
 use crate::commands::shadow::moment;
 use crate::commands::sun_hours::rules;
 use crate::pipeline::flagged;
 use crate::summary::Summary;
 use anyhow::Result;
+use belvedere::Error;
 use belvedere::apps::irradiance::PARTS;
 use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sun::{Binning, Period, sun_position_with};
 use belvedere::apps::tree_light::Season;
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::control::Control;
-use belvedere::io::{read_horizon, read_mesh, read_tif, read_weather};
-use belvedere_tiles::{Plan, Question, Radiation, SideFile, SunQuestion};
+use belvedere::crs::Crs;
+use belvedere::io::{read_geojson, read_horizon, read_mesh, read_tif, read_weather};
+use belvedere_tiles::{CellSizes, Plan, Question, Radiation, SideFile, SunQuestion, Topic};
 
 /// Refuses what cannot be asked, before the survey is read.
 pub(super) fn check(arguments: &CityPlan) -> Result<()> {
@@ -44,6 +46,15 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
     for mesh in &arguments.add {
         read_mesh(mesh)?;
     }
+    for choice in &arguments.clear {
+        if let AreaChoice::File(path) = choice {
+            match read_geojson(path, &Crs::default()) {
+                // that of the survey is not known yet
+                Ok(_) | Err(Error::UnusableCrs { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
     if let Some(weather) = &arguments.weather {
         read_weather(weather.as_path())?;
     }
@@ -55,6 +66,32 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
     }
     radiation::params(&arguments.model)?;
     radiation::check_linke(arguments.clear_sky, &arguments.model)
+}
+
+/// Sides of cells, for kinds of results that are asked for.
+pub(super) fn cells(arguments: &CityPlan) -> Result<CellSizes> {
+    let mut cells = CellSizes::all(arguments.cell);
+    let mut given = Vec::new();
+    for &CellFor(topic, side) in &arguments.cell_for {
+        let name = topic.name();
+        if given.contains(&topic) {
+            return Err(Usage(format!("--cell-for: {name} is given twice")).into());
+        }
+        let (is_asked, flag) = match topic {
+            Topic::Shadow => (!arguments.suns.is_empty() || !arguments.times.is_empty(), "--sun or --time"),
+            Topic::SunHours => (arguments.sun_hours, "--sun-hours"),
+            Topic::Rule => (!arguments.rule.is_empty(), "--rule"),
+            Topic::Irradiance => (arguments.irradiance, "--irradiance"),
+            Topic::SkyView => (arguments.sky_view, "--sky-view"),
+            Topic::Viewshed => (!arguments.observers.is_empty(), "--observer"),
+        };
+        if !is_asked {
+            return Err(Usage(format!("--cell-for {name} needs {flag}")).into());
+        }
+        given.push(topic);
+        cells = cells.with(topic, side);
+    }
+    Ok(cells)
 }
 
 /// What was typed as questions. Azimuths count from the north, and the sun is that, at the middle of the survey.

@@ -1,0 +1,207 @@
+//! What clearing an area does to a place: whether a point goes, how far a ball is cut, and where the ground is closed.
+
+use super::ClearedArea;
+use crate::ground::{Ground, GroundParams, GroundPoints, MapGrid, ground_points};
+use belvedere_data::control::Control;
+use belvedere_data::polygon::is_inside;
+use belvedere_data::raster::Raster;
+use belvedere_data::vector::{sub, unit};
+use belvedere_data::{PointCloud, Result};
+
+/// ASPRS class of ground.
+const GROUND: u8 = 2;
+/// Height above the ground up to which a point or a ball belongs to it, metres: that up to which points are taken for ground where none are
+/// classed.
+const ABOVE_GROUND: f64 = 0.3;
+/// Distance on the map from a point that is cleared up to which its column is, metres: across gaps between points on roofs and in crowns.
+const AROUND: f64 = 2.0;
+/// The same where points of a class are cleared, which may stand close to others.
+const AROUND_OF_CLASS: f64 = 1.0;
+/// Distance to the next ground point from which the ground is closed with balls, metres: beyond what ground points hold themselves.
+const GAP: f32 = 0.7;
+/// Radius of balls that close the ground, metres, and how far they lie apart: their tops are up to 0.03 m below the ground between them.
+const GROUND_RADIUS: f64 = 1.0;
+const GROUND_STEP: f64 = 0.35;
+/// Smallest radius to which a ball is cut that reaches into the area, metres; smaller ones are cleared.
+const LEAST_RADIUS: f64 = 0.05;
+/// Halvings that find the radius of such a ball: to a thousandth of its radius.
+const HALVINGS: usize = 10;
+
+/// An area that is cleared over the cells of a grid.
+#[derive(Clone, Debug)]
+pub struct Clearing {
+    area: ClearedArea,
+    ground: Ground,
+    /// Height of what stood there, NaN where nothing did.
+    tops: Raster<f32>,
+    /// Whether points below what is cleared go too, unless their class is ground.
+    clears_low: bool,
+}
+
+impl Clearing {
+    /// Side of the columns in which space is freed, metres, where they are not made larger to have fewer.
+    pub const CELL: f64 = 0.25;
+    /// Farthest on the map from a point that is cleared to the middle of a column that is, metres.
+    pub const REACH: f64 = AROUND;
+
+    /// What clearing `area` does over `grid`, which `cloud` holds all points around, so far that the ground is known.
+    ///
+    /// # Errors
+    /// Those of [`ground_points`], and of [`Ground::of_points`].
+    pub fn new(area: &ClearedArea, cloud: &PointCloud, grid: MapGrid, control: &Control<'_>) -> Result<Self> {
+        let params = GroundParams::default();
+        let (rows, from) = ground_points(cloud, &params, control)?;
+        let points: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
+        let ground = Ground::of_points(&points, grid, params.reach, control)?;
+        let clears_low = matches!((area, from), (ClearedArea::Polygon(_), GroundPoints::Classed));
+        let nothing = Raster::filled(grid.width, grid.height, f32::NAN);
+        let clearing = Self { area: area.clone(), ground, tops: nothing, clears_low };
+        let tops = clearing.tops_of(cloud);
+        Ok(Self { tops, ..clearing })
+    }
+
+    /// Whether a point, local metres, goes.
+    #[must_use]
+    pub fn clears(&self, position: [f32; 3], class: Option<u8>) -> bool {
+        let [x, y, _] = position.map(f64::from);
+        let is_below = || self.ground.grid.cell_of([x, y]).is_some_and(|[column, row]| self.top(column, row).is_some());
+        self.stands_in(position, class) || (self.clears_low && class != Some(GROUND) && is_below())
+    }
+
+    /// Height of the ground at a place of the map, local metres, where something is cleared there.
+    #[must_use]
+    pub fn ground_at(&self, place: [f64; 2]) -> Option<f64> {
+        let [column, row] = self.ground.grid.cell_of(place)?;
+        self.top(column, row)?;
+        self.ground.height_at(place)
+    }
+
+    /// A ball, made smaller at the point of the surface that it is tangent at until it does not reach into what a polygon clears; `None` where it
+    /// vanishes. Beside points of a class balls stay.
+    #[must_use]
+    pub fn cut(&self, center: [f32; 3], radius: f32, point: [f32; 3]) -> Option<([f32; 3], f32)> {
+        let (middle, whole) = (center.map(f64::from), f64::from(radius));
+        if matches!(self.area, ClearedArea::Class(_)) || !self.reaches_in(middle, whole) {
+            return Some((center, radius));
+        }
+        let inward = unit(sub(middle, point.map(f64::from)))?;
+        let tangent: [f64; 3] = std::array::from_fn(|i| middle[i] - whole * inward[i]);
+        let center_of = |radius: f64| -> [f64; 3] { std::array::from_fn(|i| tangent[i] + radius * inward[i]) };
+        let (mut free, mut too_large) = (0.0, whole);
+        for _ in 0..HALVINGS {
+            let radius = f64::midpoint(free, too_large);
+            if self.reaches_in(center_of(radius), radius) { too_large = radius } else { free = radius }
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
+        (free >= LEAST_RADIUS).then(|| (center_of(free).map(|v| v as f32), free as f32))
+    }
+
+    /// Balls that close the ground where no ground point is near: centres and radii.
+    pub fn closing_balls(&self) -> impl Iterator<Item = ([f32; 3], f32)> {
+        let grid = self.ground.grid;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cells")]
+        let step = (GROUND_STEP / grid.cell).floor().max(1.0) as usize;
+        let places = (0..grid.height)
+            .step_by(step)
+            .flat_map(move |row| (0..grid.width).step_by(step).map(move |column| (column, row)));
+        places.filter_map(move |(column, row)| {
+            let is_open = self.ground.gaps.get(column, row).is_some_and(|gap| gap > GAP);
+            let height = self.ground.heights.get(column, row).map_or(f64::NAN, f64::from);
+            if !is_open || self.top(column, row).is_none() || !height.is_finite() {
+                return None;
+            }
+            let [x, y] = grid.center(column, row);
+            #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
+            Some(([x, y, height - GROUND_RADIUS].map(|v| v as f32), GROUND_RADIUS as f32))
+        })
+    }
+
+    /// The cells, and the height up to which each is cleared, NaN where it is not.
+    #[must_use]
+    pub fn into_columns(self) -> (MapGrid, Raster<f32>) {
+        (self.ground.grid, self.tops)
+    }
+
+    fn top(&self, column: usize, row: usize) -> Option<f64> {
+        self.tops.get(column, row).map(f64::from).filter(|top| top.is_finite())
+    }
+
+    /// Whether a point is one of those that stand in the area.
+    fn stands_in(&self, position: [f32; 3], class: Option<u8>) -> bool {
+        let [x, y, z] = position.map(f64::from);
+        match &self.area {
+            ClearedArea::Class(own) => class == Some(*own),
+            ClearedArea::Polygon(rings) => {
+                self.ground.grid.cell_of([x, y]).is_some()
+                    && is_inside(rings, [x, y])
+                    && !self.ground.height_at([x, y]).is_some_and(|height| z <= height + ABOVE_GROUND)
+            }
+        }
+    }
+
+    /// Whether a ball reaches into the space above the ground over the middle of a cleared column.
+    fn reaches_in(&self, center: [f64; 3], radius: f64) -> bool {
+        let grid = &self.ground.grid;
+        let place = [(center[0] - grid.corner[0]) / grid.cell, (grid.corner[1] - center[1]) / grid.cell];
+        let reach = radius / grid.cell;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
+        let range = |axis: usize, count: usize| {
+            let end = |value: f64| value.clamp(0.0, count as f64) as usize;
+            end(place[axis] - reach)..end((place[axis] + reach).ceil())
+        };
+        range(1, grid.height).any(|row| {
+            range(0, grid.width).any(|column| {
+                let [x, y] = grid.center(column, row);
+                let half_square = radius * radius - (x - center[0]).powi(2) - (y - center[1]).powi(2);
+                let Some(top) = self.top(column, row).filter(|_| half_square > 0.0) else { return false };
+                let ground = self.ground.heights.get(column, row).map_or(f64::NAN, f64::from);
+                let half = half_square.sqrt();
+                !(center[2] + half <= ground + ABOVE_GROUND) && center[2] - half < top
+            })
+        })
+    }
+
+    /// Height of what stands in the area around the middle of each cell; NaN where nothing does.
+    fn tops_of(&self, cloud: &PointCloud) -> Raster<f32> {
+        let grid = &self.ground.grid;
+        let mut tops = Raster::filled(grid.width, grid.height, f32::NAN);
+        let around = if matches!(self.area, ClearedArea::Class(_)) { AROUND_OF_CLASS } else { AROUND };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cells")]
+        let reach = (around / grid.cell) as usize;
+        let mut highest = Raster::filled(grid.width, grid.height, f32::NEG_INFINITY);
+        let standing = (0..cloud.len()).filter(|&row| self.stands_in(cloud.positions[row], class_of(cloud, row)));
+        for position in standing.map(|row| cloud.positions[row]) {
+            let cell = grid.cell_of([f64::from(position[0]), f64::from(position[1])]);
+            if let Some([column, row]) = cell
+                && let Some(highest) = highest.values_mut().get_mut(row * grid.width + column)
+            {
+                *highest = highest.max(position[2]);
+            }
+        }
+        for row in 0..grid.height {
+            for column in 0..grid.width {
+                let Some(top) = highest.get(column, row).filter(|top| top.is_finite()) else { continue };
+                for near_row in row.saturating_sub(reach)..(row + reach + 1).min(grid.height) {
+                    for near in column.saturating_sub(reach)..(column + reach + 1).min(grid.width) {
+                        let is_in = match &self.area {
+                            ClearedArea::Class(_) => true,
+                            ClearedArea::Polygon(rings) => is_inside(rings, grid.center(near, near_row)),
+                        };
+                        let is_near = near.abs_diff(column).pow(2) + near_row.abs_diff(row).pow(2) <= reach * reach;
+                        if let Some(own) =
+                            tops.values_mut().get_mut(near_row * grid.width + near).filter(|_| is_in && is_near)
+                        {
+                            *own = own.max(top);
+                        }
+                    }
+                }
+            }
+        }
+        tops
+    }
+}
+
+/// The class of a point.
+pub(super) fn class_of(cloud: &PointCloud, row: usize) -> Option<u8> {
+    cloud.attributes.classification.as_deref().and_then(|classes| classes.get(row)).copied()
+}

@@ -1,0 +1,113 @@
+//! Sides of the cells of results: one for all, and others where single results need finer or coarser ones.
+
+use crate::question::Question;
+use belvedere::{Error, Result};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Steps that the side of a cell must be a whole number of, metres: middles of cells are then exact numbers.
+const CELL_STEP: f64 = 1.0 / 64.0;
+/// Largest side, metres.
+const LARGEST: f64 = 64.0;
+
+/// What a result is about. Results about the same have cells of the same size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Topic {
+    /// The shadow of one sun.
+    Shadow,
+    /// Hours of sun.
+    SunHours,
+    /// Rules of sunlight.
+    Rule,
+    /// Energy of sun and sky.
+    Irradiance,
+    /// The sky view factor.
+    SkyView,
+    /// What observers see.
+    Viewshed,
+}
+
+impl Topic {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::Shadow, Self::SunHours, Self::Rule, Self::Irradiance, Self::SkyView, Self::Viewshed];
+
+    /// The word that users type for it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Shadow => "shadow",
+            Self::SunHours => "sun-hours",
+            Self::Rule => "rule",
+            Self::Irradiance => "irradiance",
+            Self::SkyView => "sky-view",
+            Self::Viewshed => "viewshed",
+        }
+    }
+}
+
+/// Sides of the cells of results, metres: whole numbers of sixty-fourths up to 64.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CellSizes {
+    usual: f64,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    others: BTreeMap<Topic, f64>,
+}
+
+impl Default for CellSizes {
+    /// 1 m for all.
+    fn default() -> Self {
+        Self::all(1.0)
+    }
+}
+
+impl CellSizes {
+    /// The same for all results.
+    #[must_use]
+    pub fn all(side: f64) -> Self {
+        Self { usual: side, others: BTreeMap::new() }
+    }
+
+    /// This with another side for the results about `topic`.
+    #[must_use]
+    pub fn with(mut self, topic: Topic, side: f64) -> Self {
+        self.others.insert(topic, side);
+        self
+    }
+
+    /// The side for the result of a question.
+    #[must_use]
+    pub fn of(&self, question: &Question) -> f64 {
+        self.others.get(&question.topic()).copied().unwrap_or(self.usual)
+    }
+
+    /// All sides.
+    pub(crate) fn sides(&self) -> impl Iterator<Item = f64> {
+        std::iter::once(self.usual).chain(self.others.values().copied())
+    }
+
+    pub(crate) fn largest(&self) -> f64 {
+        self.sides().fold(0.0, f64::max)
+    }
+
+    /// Whether a tile of this size is a whole number of cells, whichever these are.
+    pub(crate) fn divide(&self, tile_size: f64) -> bool {
+        self.sides().map(|side| tile_size / side).all(|cells| cells == cells.floor())
+    }
+
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a side out of range.
+    pub(crate) fn check(&self) -> Result<()> {
+        let check = |name, side: f64| {
+            let steps = side / CELL_STEP;
+            if steps >= 1.0 && steps == steps.floor() && side <= LARGEST {
+                return Ok(());
+            }
+            let expected = "a whole number of sixty-fourths of a metre up to 64, such as 0.25, 0.5, 1 or 2";
+            Err(Error::InvalidParameter { name, value: format!("{side} m"), expected })
+        };
+        check("cell", self.usual)?;
+        self.others.values().try_for_each(|&side| check("cell of some results", side))
+    }
+}

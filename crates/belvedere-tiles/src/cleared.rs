@@ -1,0 +1,228 @@
+//! What is cleared of a survey, in blocks of 64 m that are the same for all tiles.
+//!
+//! What clearing does at a place follows from what is around: from the ground below, which is interpolated, and from what stands there. Each block is looked
+//! at by itself, with all points of the eight blocks around it, so that points and balls fare alike in all tiles that meet them.
+
+use crate::grid::{Area, CELL, TileId, block_area, block_of};
+use crate::plan::Plan;
+use crate::window;
+use belvedere::control::Control;
+use belvedere::ground::{MapGrid, SurfaceParams};
+use belvedere::medial::{LIMIT_TOUCH, MedialBalls};
+use belvedere::model::{ClearedArea, Clearing};
+use belvedere::{PointCloud, Result};
+use std::collections::HashMap;
+
+/// How far beyond a block its columns reach, metres: as far as a ball at one of its points, 10 m at most, and what is cleared around a point.
+const BESIDE: f64 = 12.0;
+
+/// A point as clearing looks at it: local metres, and its class.
+pub(crate) type ClassedPoint = ([f32; 3], Option<u8>);
+
+/// The points of `rows`.
+pub(crate) fn classed(cloud: &PointCloud, rows: impl Iterator<Item = usize>) -> Vec<ClassedPoint> {
+    let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
+    rows.filter_map(|row| Some((*cloud.positions.get(row)?, classes.get(row).copied()))).collect()
+}
+
+impl Plan {
+    /// This without what stands in some areas now: points, the balls at them, and what balls beside a polygon reach into it. The ground below is closed.
+    ///
+    /// # Errors
+    /// [`belvedere::Error::InvalidParameter`] for an area beside the survey and for the class of the ground.
+    pub fn with_cleared(mut self, areas: Vec<ClearedArea>) -> Result<Self> {
+        let (bounds, origin) = (self.bounds(), self.frame()?.origin);
+        areas.iter().try_for_each(|area| area.rectangle_on(&bounds, origin).map(|_| ()))?;
+        self.cleared = areas;
+        self.tiles = self.tiles_with_cells();
+        Ok(self)
+    }
+
+    /// Whether all areas can be cleared of a survey in a frame with this origin.
+    pub(crate) fn has_sound_areas(&self, origin: [f64; 3]) -> bool {
+        self.cleared.iter().all(|area| area.rectangle_on(&self.bounds(), origin).is_ok())
+    }
+
+    /// Greatest distance from a point at which a cell of a side may get a height, metres: also where the ground is closed.
+    pub(crate) fn reach(&self, cell: f64) -> f64 {
+        let reach = SurfaceParams::reach(cell);
+        if self.cleared.is_empty() { reach } else { reach.max(Clearing::REACH + cell) }
+    }
+
+    /// No cell of a side on a tile is lower, local metres.
+    pub(crate) fn lowest_of_cells(&self, tile: TileId, cell: f64) -> f64 {
+        let core = self.grid().core(tile);
+        let around = core.widened(self.reach(cell));
+        // ground that was closed is interpolated between points of all blocks around
+        let around = if self.cleared.is_empty() { around } else { around.joined(&core.in_blocks().widened(CELL)) };
+        self.blocks_in(&around).map(|block| f64::from(block.heights[0])).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Clears the balls of a tile, which belong to `points`, and closes the ground in `core`. Transmissions are those of balls, or none.
+///
+/// # Errors
+/// Those of reading the files, and of [`Clearing::new`].
+pub(crate) fn clear_balls(
+    plan: &Plan,
+    core: &Area,
+    balls: &mut MedialBalls,
+    transmission: &mut Vec<f32>,
+    points: &[ClassedPoint],
+    control: &Control<'_>,
+) -> Result<()> {
+    if plan.cleared.is_empty() {
+        return Ok(());
+    }
+    let mut fates: Vec<Option<([f32; 3], f32)>> =
+        balls.centers.iter().zip(&balls.radii).map(|(&center, &radius)| Some((center, radius))).collect();
+    let of_blocks = by_block(points.iter().map(|point| point.0));
+    let mut closing = Vec::new();
+    each_block(plan, core, core, control, |block, clearings| {
+        for &row in of_blocks.get(&block).into_iter().flatten() {
+            let (position, class) = points[row as usize];
+            let fate = &mut fates[row as usize];
+            for clearing in clearings {
+                let clears = clearing.clears(position, class);
+                *fate = fate.filter(|_| !clears).and_then(|(center, radius)| clearing.cut(center, radius, position));
+            }
+        }
+        let is_own = |ball: &([f32; 3], f32)| {
+            let place = [ball.0[0], ball.0[1]];
+            block_of(place) == block && core.holds(place.map(f64::from))
+        };
+        closing.extend(clearings.iter().flat_map(Clearing::closing_balls).filter(is_own));
+    })?;
+    let rows: Vec<usize> = (0..fates.len()).filter(|&row| fates[row].is_some()).collect();
+    let mut left = balls.select(&rows);
+    let cut = fates.into_iter().flatten();
+    for ((own_center, own_radius), (center, radius)) in left.centers.iter_mut().zip(&mut left.radii).zip(cut) {
+        (*own_center, *own_radius) = (center, radius);
+    }
+    closing.into_iter().for_each(|(center, radius)| left.push(0, center, radius, LIMIT_TOUCH));
+    if !transmission.is_empty() {
+        *transmission = rows.iter().filter_map(|&row| transmission.get(row).copied()).collect();
+        transmission.resize(left.len(), f32::NAN);
+    }
+    *balls = left;
+    Ok(())
+}
+
+/// What clearing leaves of the surface of a tile.
+pub(crate) struct ClearedSurface {
+    /// Points that go.
+    pub(crate) is_cleared: Vec<bool>,
+    /// Height of the ground at those of the places below which something went.
+    pub(crate) ground: HashMap<usize, f64>,
+}
+
+impl ClearedSurface {
+    /// Of the `points` of `area`, and of `places` on the map in the core of a tile.
+    ///
+    /// # Errors
+    /// Those of reading the files, and of [`Clearing::new`].
+    pub(crate) fn new(
+        plan: &Plan,
+        (area, core): (&Area, &Area),
+        points: &[ClassedPoint],
+        places: &[[f64; 2]],
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        let is_of =
+            |class: Option<u8>| plan.cleared.iter().any(|area| class.map(ClearedArea::Class).as_ref() == Some(area));
+        let mut is_cleared: Vec<bool> = points.iter().map(|point| is_of(point.1)).collect();
+        let mut ground = HashMap::new();
+        if plan.cleared.is_empty() {
+            return Ok(Self { is_cleared, ground });
+        }
+        let of_blocks = by_block(points.iter().map(|point| point.0));
+        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+        let places_of_blocks = by_block(places.iter().map(|&[x, y]| [x as f32, y as f32, 0.0]));
+        each_block(plan, area, core, control, |block, clearings| {
+            for &row in of_blocks.get(&block).into_iter().flatten() {
+                let (position, class) = points[row as usize];
+                is_cleared[row as usize] |= clearings.iter().any(|clearing| clearing.clears(position, class));
+            }
+            for &place in places_of_blocks.get(&block).into_iter().flatten() {
+                // where areas overlap, the last one knows what all of them left
+                let found = clearings.iter().rev().find_map(|clearing| clearing.ground_at(places[place as usize]));
+                ground.extend(found.map(|height| (place as usize, height)));
+            }
+        })?;
+        Ok(Self { is_cleared, ground })
+    }
+}
+
+/// Gives `look` each block of `area` that polygons reach, and of `core` also those with points of cleared classes, with what clearing does there.
+fn each_block(
+    plan: &Plan,
+    area: &Area,
+    core: &Area,
+    control: &Control<'_>,
+    mut look: impl FnMut([i32; 2], &[Clearing]),
+) -> Result<()> {
+    let (bounds, frame) = (plan.bounds(), plan.frame()?);
+    let mut areas: Vec<(&ClearedArea, Option<Area>)> = Vec::new();
+    for cleared in &plan.cleared {
+        areas.push((cleared, cleared.rectangle_on(&bounds, frame.origin)?.map(|(low, high)| Area { low, high })));
+    }
+    let reaches = |polygon: &Area, block: &Area| polygon.distance(block) <= BESIDE + Clearing::REACH;
+    let is_near = |block: &Area| {
+        areas.iter().any(|(_, polygon)| polygon.map_or_else(|| block.meets(core), |polygon| reaches(&polygon, block)))
+    };
+    let blocks: Vec<[i32; 2]> = area.blocks().filter(|&at| is_near(&block_area(at))).collect();
+    let around = blocks.iter().map(|&at| block_area(at).widened(CELL)).reduce(|all, block| all.joined(&block));
+    let Some(around) = around else { return Ok(()) };
+    let cloud = control.stage("reading", 0, || window::read(plan, &around, control))?;
+    let rows = by_block(cloud.positions.iter().copied());
+    control.stage("clearing", blocks.len(), || {
+        for at in blocks {
+            control.check()?;
+            let [east, north] = at;
+            let beside = (north - 1..=north + 1).flat_map(|north| (east - 1..=east + 1).map(move |east| [east, north]));
+            let mut own: Vec<u32> = beside.filter_map(|at| rows.get(&at)).flatten().copied().collect();
+            own.sort_unstable();
+            let mut left = cloud.select(&own);
+            let columns = block_area(at).widened(BESIDE);
+            let origin = [frame.origin[0], frame.origin[1]];
+            let grid = MapGrid::covering(columns.low, columns.high, Clearing::CELL, origin)?;
+            let mut clearings = Vec::new();
+            for (cleared, polygon) in &areas {
+                let has_class = |class: u8| {
+                    left.attributes.classification.as_deref().is_some_and(|classes| classes.contains(&class))
+                };
+                let is_concerned = match (cleared, polygon) {
+                    (ClearedArea::Class(class), _) => has_class(*class),
+                    (ClearedArea::Polygon(_), polygon) => polygon.is_some_and(|area| reaches(&area, &block_area(at))),
+                };
+                if left.is_empty() || !is_concerned {
+                    continue;
+                }
+                let clearing = match Clearing::new(cleared, &left, grid, control) {
+                    Ok(clearing) => clearing,
+                    Err(error) if window::is_nothing(&error) => continue,
+                    Err(error) => return Err(error),
+                };
+                let points = classed(&left, 0..left.len());
+                let stays = |(_, point): &(u32, &ClassedPoint)| !clearing.clears(point.0, point.1);
+                let kept: Vec<u32> = (0..).zip(&points).filter(stays).map(|(row, _)| row).collect();
+                if kept.len() < left.len() {
+                    left = left.select(&kept);
+                }
+                clearings.push(clearing);
+            }
+            look(at, &clearings);
+            control.advance(1);
+        }
+        Ok(())
+    })
+}
+
+/// Numbers of positions by the block that they lie in, rising.
+fn by_block(positions: impl Iterator<Item = [f32; 3]>) -> HashMap<[i32; 2], Vec<u32>> {
+    let mut rows: HashMap<[i32; 2], Vec<u32>> = HashMap::new();
+    for (row, [x, y, _]) in (0..).zip(positions) {
+        rows.entry(block_of([x, y])).or_default().push(row);
+    }
+    rows
+}
