@@ -2,42 +2,91 @@
 
 use crate::clean::drop_near;
 use crate::neighbors::{Neighbor, NeighborIndex};
-use crate::normals::Normals;
-use crate::normals::estimate::{Neighborhood, estimate};
+use crate::normals::estimate::{Neighborhood, estimate_with_scatter, estimate_within_reach};
+use crate::normals::{Normals, Scatter};
 use belvedere_data::Result;
 use belvedere_data::control::{Control, Stop};
+use belvedere_data::vector::dot;
 use rayon::prelude::*;
 
-/// Distance between the points that normals are estimated from, metres: several times the noise of such scanners. Nearer ones
-/// lie on one scan line, or their noise outweighs the distance between them, as above a tripod.
+/// Distance between the places that normals are estimated at, metres: nearer points mostly have one surface in common.
 const LEAST_DISTANCE: f64 = 0.01;
+/// How far from a place all points count at least, in noises of ranges: a smaller part of a surface is as thick as it is wide.
+const NOISES_WIDE: f32 = 5.0;
+/// Neighbours that tell how far others count where neighbourhoods choose their size.
+const USUAL_NEIGHBORS: usize = 16;
 
-/// One normal per point of `positions`, (N, 3) local metres: that of the nearest of those points that lie [`LEAST_DISTANCE`] or more apart.
-///
-/// # Errors
-/// Those of [`estimate`].
-pub(super) fn close_range_normals(
-    positions: &[[f32; 3]],
-    neighborhood: Neighborhood,
-    control: &Control<'_>,
-) -> Result<Normals> {
-    let Ok(count) = u32::try_from(positions.len()) else { return Ok(Normals::default()) };
-    let mut rows: Vec<u32> = (0..count).collect();
-    drop_near(positions, &mut rows, LEAST_DISTANCE, control)?;
-    let apart: Vec<[f32; 3]> = rows.iter().map(|&row| positions[row as usize]).collect();
-    let index = NeighborIndex::new(&apart, control)?;
-    let normals = estimate(&apart, &index, neighborhood, control)?;
-    let stop = Stop::new(control);
-    let nearest = |near: &mut Vec<_>, &p: &[f32; 3]| {
-        if !stop.is_set() {
-            index.k_nearest(p, 1, near);
+/// What the neighbourhoods of points from the ground tell.
+pub(super) struct CloseRange {
+    /// One per point.
+    pub(super) normals: Normals,
+    /// The planes that these belong to.
+    pub(super) scatter: Scatter,
+    /// Noise of ranges, metres.
+    pub(super) noise: Option<f32>,
+}
+
+impl CloseRange {
+    /// For points at `positions`, which `index` was built from, measured from `scanner`, both (N, 3) local metres.
+    ///
+    /// The plane of a point is that of the nearest of those points that lie a centimetre or more apart; it is the plane of all points as near to it as its
+    /// neighbours among these, and at least five times the noise. Above and below a tripod hundreds of points lie there, and a few of them
+    /// would scatter as much as the points themselves.
+    ///
+    /// # Errors
+    /// Those of [`estimate_with_scatter`].
+    pub(super) fn estimate(
+        positions: &[[f32; 3]],
+        index: &NeighborIndex,
+        scanner: &[[f32; 3]],
+        neighborhood: Neighborhood,
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        let mut rows: Vec<u32> = (0..u32::try_from(positions.len()).unwrap_or(u32::MAX)).collect();
+        drop_near(positions, &mut rows, LEAST_DISTANCE, control)?;
+        let of_rows = |column: &[[f32; 3]]| -> Vec<[f32; 3]> {
+            rows.iter().filter_map(|&row| column.get(row as usize).copied()).collect()
+        };
+        let (places, scanner) = (of_rows(positions), of_rows(scanner));
+        let apart = NeighborIndex::new(&places, control)?;
+        let (normals, scatter) = estimate_with_scatter(&places, &apart, neighborhood, control)?;
+        let least = NOISES_WIDE * scatter.noise_of_ranges(&places, &normals.vectors, &scanner).unwrap_or_default();
+        let count = match neighborhood {
+            Neighborhood::Fixed { k } => k,
+            Neighborhood::Adaptive { .. } => USUAL_NEIGHBORS,
+        };
+        let stop = Stop::new(control);
+        let reach = |near: &mut Vec<Neighbor>, &place: &[f32; 3]| {
+            if !stop.is_set() {
+                apart.k_nearest(place, count + 1, near);
+            }
+            near.last().map_or(0.0, |farthest| farthest.distance_squared.sqrt()).max(least)
+        };
+        let reach: Vec<f32> = places.par_iter().map_init(Vec::new, reach).collect();
+        stop.check()?;
+        let (of_places, planes) = estimate_within_reach(positions, index, &places, &reach, control)?;
+        let noise = planes.noise_of_ranges(&places, &of_places.vectors, &scanner);
+        let at_nearest = |near: &mut Vec<Neighbor>, &p: &[f32; 3]| {
+            if !stop.is_set() {
+                apart.k_nearest(p, 1, near);
+            }
+            near.first().map_or(([0.0; 3], 0.0, [0.0; 3], f32::INFINITY), |found| {
+                let place = found.index as usize;
+                let normal = of_places.vectors[place];
+                let from = std::array::from_fn(|i| places[place][i] + planes.to_plane[place][i] - p[i]);
+                let to_plane = normal.map(|v| v * dot(normal, from));
+                (normal, of_places.quality[place], to_plane, planes.roughness[place])
+            })
+        };
+        let found: Vec<_> = positions.par_iter().map_init(Vec::new, at_nearest).collect();
+        stop.check()?;
+        let (mut normals, mut scatter) = (Normals::default(), Scatter::default());
+        for (vector, quality, to_plane, roughness) in found {
+            normals.vectors.push(vector);
+            normals.quality.push(quality);
+            scatter.to_plane.push(to_plane);
+            scatter.roughness.push(roughness);
         }
-        near.first().map_or(([0.0; 3], 0.0), |found: &Neighbor| {
-            let row = found.index as usize;
-            (normals.vectors[row], normals.quality[row])
-        })
-    };
-    let (vectors, quality) = positions.par_iter().map_init(Vec::new, nearest).unzip();
-    stop.check()?;
-    Ok(Normals { vectors, quality })
+        Ok(Self { normals, scatter, noise })
+    }
 }

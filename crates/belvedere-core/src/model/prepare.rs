@@ -1,6 +1,6 @@
 //! From a cloud to a cleaned cloud with outward normals, and what its pulses prove empty.
 
-use super::close_range_normals::close_range_normals;
+use super::close_range_normals::CloseRange;
 use super::facts::SurveyFacts;
 use super::params::{Carving, ModelParams, OrientBy};
 use super::report::{BuildReport, NormalsReport, PulsesReport, SmoothingReport};
@@ -18,6 +18,9 @@ use std::borrow::Cow;
 
 /// Points no farther from a line than this lie on it, metres: the step of coordinates in most files.
 const LINE_WIDTH: f64 = 1e-3;
+/// How far before its return a pulse proves its way at most, in noises of ranges, where nothing else is uncertain: one return in 30,000 lies so much too
+/// far away, and balls begin below the surface.
+const NOISES_BEFORE_RETURNS: f32 = 4.0;
 
 /// A cloud that is ready for balls: cleaned, with outward normals, an index, and what its pulses prove empty.
 pub struct OrientedSurvey {
@@ -125,7 +128,7 @@ pub(super) fn prepare(
     } else {
         Scanner::default()
     };
-    let carving = match carving {
+    let mut carving = match carving {
         Carving::Unwanted => None,
         carving => {
             let (input, pulses) = carving_input(&cloud, &scanner, carving, params, control)?;
@@ -148,27 +151,33 @@ pub(super) fn prepare(
     let index = control.stage("indexing points", cloud.len(), || NeighborIndex::new(&cloud.positions, control))?;
     let by = orientation(&cloud, params, &scanner, wants_scanner, carving.is_some());
     let is_from_the_ground = carving.as_ref().is_some_and(|input| input.needles.are_from_the_ground());
+    let mut noise = facts.and_then(|facts| facts.noise);
     let (normals, scatter) = match by {
         Orientation::Given => (Normals::default(), Scatter::default()),
         _ if is_from_the_ground => control.stage("estimating normals", cloud.len(), || {
-            close_range_normals(&cloud.positions, params.neighborhood, control)
-                .map(|normals| (normals, Scatter::default()))
+            let found =
+                CloseRange::estimate(&cloud.positions, &index, &scanner.positions, params.neighborhood, control)?;
+            noise = found.noise;
+            Ok((found.normals, found.scatter))
         })?,
         _ => control.stage("estimating normals", cloud.len(), || {
             let farthest = facts.map_or(f32::INFINITY, SurveyFacts::farthest);
             estimate_within(&cloud.positions, &index, params.neighborhood, farthest, control)
         })?,
     };
-    // balls of scanners on the ground have sizes of their own, which noise is part of
-    let is_flown = carving.is_some() && !is_from_the_ground;
-    let scatter = (is_flown && params.balls.smooths() && !scatter.roughness.is_empty()).then_some(scatter);
+    let scatter = (carving.is_some() && params.balls.smooths() && !scatter.roughness.is_empty()).then_some(scatter);
     let (mut oriented, orientation) =
         control.stage("orienting normals", cloud.len(), || orient(&cloud, normals, &by, control))?;
     report.normals = NormalsReport::new(&by, orientation);
+    if let (true, Some(noise), Some(input)) = (is_from_the_ground, noise, &mut carving) {
+        input.lead_up_to(noise, &scanner, params, control)?;
+    }
     let mut index = index;
     let measured = if facts.is_some() { oriented.positions().to_vec() } else { Vec::new() };
     if let Some(scatter) = scatter {
-        let noise = facts.map_or_else(|| scatter.noise(), |facts| facts.noise);
+        if facts.is_none() && !is_from_the_ground {
+            noise = scatter.noise();
+        }
         let (positions, moved) = scatter.smoothed_within(noise, oriented.positions());
         index = index.moved_to(&positions)?;
         oriented = oriented.moved_to(positions);
@@ -176,6 +185,20 @@ pub(super) fn prepare(
     }
     let bounds = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?;
     Ok((OrientedSurvey { oriented, index, kept, bounds, measured, classification, carving }, report))
+}
+
+impl CarvingInput {
+    /// Lets pulses that all come from one place prove their way up to a few times the `noise` of their ranges, metres, before their returns.
+    /// Where they come from several, how well these places are known counts as well, which the cloud does not tell.
+    fn lead_up_to(&mut self, noise: f32, scanner: &Scanner, params: &ModelParams, control: &Control<'_>) -> Result<()> {
+        let mut known = scanner.positions.iter().filter(|p| p.iter().all(|v| v.is_finite()));
+        let first = known.next();
+        let nearer = params.needles.end_margin - NOISES_BEFORE_RETURNS * noise;
+        if nearer > 0.0 && known.all(|p| Some(p) == first) {
+            self.needles = self.needles.extended(nearer, control)?;
+        }
+        Ok(())
+    }
 }
 
 /// Refuses points that cannot lie on a surface: fewer than four, or all within a millimetre of one line.

@@ -32,7 +32,7 @@ pub struct BuildReport {
 /// How points were moved onto the surface that they scatter about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct SmoothingReport {
-    /// Noise of the cloud along its normals, metres.
+    /// Noise of the cloud along its normals, metres; for scanners on the ground noise of their ranges.
     #[serde(rename = "noise_m", serialize_with = "in_tenths_of_millimetres")]
     pub noise: f32,
     /// Points that were moved: those with flat surroundings.

@@ -2,7 +2,7 @@
 
 use super::{Normals, Scatter};
 use crate::neighbors::{Neighbor, NeighborIndex};
-use belvedere_data::control::Control;
+use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::dot;
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
@@ -142,6 +142,43 @@ pub fn estimate_within(
     Ok((normals, scatter))
 }
 
+/// The planes of all `positions`, (N, 3) local metres, within `reach`, (M), metres, of each of `places`, (M, 3); the points are moved onto planes from
+/// `places`. `index` must have been built from the positions.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] where lengths differ; [`Error::Cancelled`].
+pub(crate) fn estimate_within_reach(
+    positions: &[[f32; 3]],
+    index: &NeighborIndex,
+    places: &[[f32; 3]],
+    reach: &[f32],
+    control: &Control<'_>,
+) -> Result<(Normals, Scatter)> {
+    for (what, expected, found) in
+        [("neighbour index", positions.len(), index.len()), ("reaches", places.len(), reach.len())]
+    {
+        if expected != found {
+            return Err(Error::LengthMismatch { what, expected, found });
+        }
+    }
+    let stop = Stop::new(control);
+    let plane_at = |(&place, &reach): (&[f32; 3], &f32)| {
+        let mut moments = Moments::default();
+        if !stop.is_set() {
+            index.within_radius(place, reach, |found| moments.add(relative(positions, &found, place)));
+        }
+        let (values, normal) = least_component(moments.covariance());
+        Plane::new(values, normal, moments.mean())
+    };
+    let planes: Vec<Plane> = places.par_iter().zip(reach).map(plane_at).collect();
+    stop.check()?;
+    let mut found = (Normals::default(), Scatter::default());
+    for plane in planes {
+        plane.push_to(&mut found);
+    }
+    Ok(found)
+}
+
 /// The plane through a neighbourhood.
 #[derive(Clone, Copy)]
 struct Plane {
@@ -235,6 +272,13 @@ fn eigenentropy(values: [f64; 3]) -> f64 {
 const LINE: f64 = 1e-4;
 
 impl Plane {
+    fn push_to(&self, (normals, scatter): &mut (Normals, Scatter)) {
+        normals.vectors.push(self.normal);
+        normals.quality.push(self.quality);
+        scatter.to_plane.push(self.normal.map(|v| v * self.offset));
+        scatter.roughness.push(self.roughness);
+    }
+
     /// That of a spot or a line.
     const NONE: Self = Self { normal: [0.0; 3], quality: 0.0, offset: 0.0, roughness: f32::INFINITY };
 

@@ -4,6 +4,7 @@
 //! there are, the farther out that is. Balls are therefore tangent to the planes that neighbourhoods lie on, where noise and not shape
 //! is what moves points away from them.
 
+use belvedere_data::vector::{dot, sub};
 use rayon::prelude::*;
 
 /// Share of the points whose neighbourhoods are rougher by noise alone: in every cloud that this was tried on a quarter or more of the
@@ -11,6 +12,8 @@ use rayon::prelude::*;
 const SMOOTH_SHARE: f64 = 0.25;
 /// A neighbourhood counts as flat up to this many times the noise of the cloud. Among 17 points of a plane one in a thousand is rougher.
 const MOST_NOISE: f32 = 2.0;
+/// Cosine of the angle between a pulse and the normal from which on the noise of ranges outweighs that of directions, and is not divided by nearly nothing: 60°.
+const STEEP: f32 = 0.5;
 
 /// Where the plane through the neighbourhood of each point lies.
 #[derive(Clone, Debug, Default)]
@@ -25,10 +28,22 @@ impl Scatter {
     /// Noise of the cloud along its normals, metres: the lower quartile of the roughness. `None` where no point has a plane.
     #[must_use]
     pub fn noise(&self) -> Option<f32> {
-        let mut finite: Vec<f32> = self.roughness.iter().copied().filter(|roughness| roughness.is_finite()).collect();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a length")]
-        let place = (finite.len() as f64 * SMOOTH_SHARE) as usize;
-        (!finite.is_empty()).then(|| *finite.select_nth_unstable_by(place, f32::total_cmp).1)
+        lower_quartile(self.roughness.clone())
+    }
+
+    /// Noise of ranges, metres: the lower quartile of the roughness as ranges show it, for points at `positions` with `normals`, measured from
+    /// `scanner`, all (N, 3), local metres. A range that is wrong by σ moves a point by σ cos i away from a surface that the pulse meets at the
+    /// angle i to its normal. Among scanners on the ground most pulses are slanted, so that [`Scatter::noise`] is too small for those that are not. `None` where no
+    /// point with a plane is met steeply enough.
+    #[must_use]
+    pub fn noise_of_ranges(&self, positions: &[[f32; 3]], normals: &[[f32; 3]], scanner: &[[f32; 3]]) -> Option<f32> {
+        let rows = self.roughness.par_iter().zip(positions).zip(normals).zip(scanner);
+        let of_range = |(((&roughness, &p), &normal), &s): (((&f32, _), &[f32; 3]), _)| {
+            let sight = sub(s, p);
+            let cosine = (dot(normal, sight) / dot(sight, sight).sqrt()).abs();
+            (cosine >= STEEP).then(|| roughness / cosine)
+        };
+        lower_quartile(rows.filter_map(of_range).collect())
     }
 
     /// `positions`, (N, 3) local metres, each on its plane where the neighbourhood is flat within noise, and how many were moved. Points at
@@ -49,6 +64,14 @@ impl Scatter {
         let moved = positions.par_iter().zip(planes).map(on_plane).collect();
         (moved, self.roughness.iter().filter(|&&roughness| roughness <= most).count())
     }
+}
+
+/// The lower quartile of those that are finite.
+fn lower_quartile(mut roughness: Vec<f32>) -> Option<f32> {
+    roughness.retain(|roughness| roughness.is_finite());
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a length")]
+    let place = (roughness.len() as f64 * SMOOTH_SHARE) as usize;
+    (!roughness.is_empty()).then(|| *roughness.select_nth_unstable_by(place, f32::total_cmp).1)
 }
 
 #[cfg(test)]
@@ -103,5 +126,32 @@ mod tests {
         let farthest =
             moved.iter().zip(&points).filter(|(_, p)| at_edge(p)).map(|(q, p)| (q[1] - p[1]).hypot(q[2] - p[2]));
         assert!(farthest.fold(0.0, f32::max) < 0.05);
+    }
+
+    #[test]
+    fn noise_of_ranges_is_that_of_ranges_however_slanted_pulses_are() {
+        // a wall 3 m off, met at angles up to 56°, and farther along at 70° and more
+        for along in [-1.5, 4.0, 9.0] {
+            let mut points = Vec::new();
+            for i in 0..80 * 80_u64 {
+                let (u, v) = (along + (i % 80) as f64 * 0.05, (i / 80) as f64 * 0.05 - 1.5);
+                let sight = [u, 3.0, v];
+                let range = sight.map(|v| v * v).iter().sum::<f64>().sqrt();
+                let error = (12 * i..12 * i + 12).map(|number| uniform(5, number) - 0.5).sum::<f64>();
+                #[expect(clippy::cast_possible_truncation, reason = "a few metres")]
+                points.push(sight.map(|v| (v * (1.0 + 0.005 * error / range)) as f32));
+            }
+            let index = NeighborIndex::new(&points, &Control::none()).unwrap();
+            let (normals, scatter) =
+                estimate_with_scatter(&points, &index, Neighborhood::default(), &Control::none()).unwrap();
+            let noise = scatter.noise_of_ranges(&points, &normals.vectors, &vec![[0.0; 3]; points.len()]);
+            if along > 5.0 {
+                assert_eq!(noise, None, "no pulse is steep");
+            } else {
+                // a quartile of what 17 points about a plane of three parameters show
+                let noise = f64::from(noise.unwrap()) / 0.005;
+                assert!((0.7..1.0).contains(&noise), "{along}: {noise}");
+            }
+        }
     }
 }

@@ -25,7 +25,8 @@ const CHECK_EACH: usize = 4096;
 /// How pulses become needles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeedleParams {
-    /// Length before the first return that is not counted as empty, metres, 0 to 1. Default 0.05: the noise of a range.
+    /// Length before the first return that is not counted as empty, metres, 0 to 1. Default 0.05: the noise of a range. A model of a
+    /// scan from one place on the ground takes less where it finds less noise.
     pub end_margin: f32,
     /// Height above the highest return up to which needles reach, metres, above 0. Default 2; nothing stands higher.
     pub headroom: f32,
@@ -163,6 +164,21 @@ impl Needles {
         }
         report.used = by_way.iter().map(Vec::len).sum();
         Ok((Self::index(by_way, top, control)?, report))
+    }
+
+    /// The same needles, each beginning `by` metres nearer to its return.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub(crate) fn extended(&self, by: f32, control: &Control<'_>) -> Result<Self> {
+        let mut by_way = NeedlesByWay::default();
+        for needle in &self.needles {
+            let start = std::array::from_fn(|i| needle.start[i] - by * needle.direction[i]);
+            if let Some(way) = Way::of(needle.direction.map(f64::from)) {
+                by_way[way.number()].push(Needle { start, length: needle.length + by, ..*needle });
+            }
+        }
+        Self::index(by_way, self.top, control)
     }
 
     /// The needles of each way, none of which rises above `top`.

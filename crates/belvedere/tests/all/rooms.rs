@@ -1,10 +1,12 @@
 //! A room scanned from inside: walls block although nothing was seen behind them, and what the room holds is free.
 
+use crate::common::data;
 use belvedere::apps::isovist::{IsovistParams, isovist};
 use belvedere::control::Control;
+use belvedere::io::{ReadOptions, read_cloud};
 use belvedere::medial::ShrinkParams;
 use belvedere::model::{BallParams, BallsReport, ModelParams, SceneModel};
-use belvedere::query::{Answer, UnprovenAs, Viewer, Visibility};
+use belvedere::query::{Answer, MedialScene, UnprovenAs, Viewer, Visibility};
 use belvedere::random::uniform;
 use belvedere::{Attributes, PointCloud};
 
@@ -38,8 +40,8 @@ fn scanned(spacing: f64) -> PointCloud {
     PointCloud { positions, attributes, scanner_positions: STATIONS.to_vec(), ..PointCloud::default() }
 }
 
-/// The same room as two tripods with steps of half a degree see it. Neither looks lower than 20° from straight down.
-fn scanned_by_tripods() -> PointCloud {
+/// The same room as two tripods with steps of half a degree and ranges up to `noise` metres wrong see it. Neither looks lower than 20° from straight down.
+fn scanned_by_tripods(noise: f64) -> PointCloud {
     let (mut positions, mut scanner_index) = (Vec::new(), Vec::new());
     for (number, station) in (0_u16..).zip(STATIONS) {
         let eye = station.map(f64::from);
@@ -50,8 +52,8 @@ fn scanned_by_tripods() -> PointCloud {
                 let face = if ahead[axis] > 0.0 { ROOM[axis] } else { 0.0 };
                 if ahead[axis] == 0.0 { f64::INFINITY } else { (face - eye[axis]) / ahead[axis] }
             };
-            let noise = NOISE * (2.0 * uniform(positions.len() as u64, 0) - 1.0);
-            let range = (0..3).map(to_face).fold(f64::INFINITY, f64::min) + noise;
+            let error = noise * (2.0 * uniform(positions.len() as u64, 0) - 1.0);
+            let range = (0..3).map(to_face).fold(f64::INFINITY, f64::min) + error;
             #[expect(clippy::cast_possible_truncation, reason = "a room in f32")]
             positions.push(std::array::from_fn(|axis| (eye[axis] + range * ahead[axis]) as f32));
             scanner_index.push(number);
@@ -63,7 +65,7 @@ fn scanned_by_tripods() -> PointCloud {
 
 #[test]
 fn floors_below_tripods_and_ceilings_above_them_are_closed() {
-    let cloud = scanned_by_tripods();
+    let cloud = scanned_by_tripods(NOISE);
     let (model, report) = SceneModel::build(&cloud, &ModelParams::default(), &Control::none()).unwrap();
     let Some(BallsReport::Carved(balls)) = report.interior_balls else { panic!("{report:?}") };
     // two discs of 0.62 and 0.66 m, a place every 0.075 m
@@ -73,6 +75,50 @@ fn floors_below_tripods_and_ceilings_above_them_are_closed() {
     for eye in [[2.5, 3.0, 1.5], [7.5, 2.0, 1.0], [5.0, 3.0, 2.0]] {
         let seen = isovist(&scene, eye, &IsovistParams::default(), &Control::none()).unwrap();
         assert!((seen.volume / expected - 1.0).abs() < 0.02, "{} of {expected} m³", seen.volume);
+    }
+}
+
+/// The share of `places` that nothing blocks from `eye`.
+fn free_share(scene: &MedialScene, eye: [f64; 3], places: &[[f32; 3]]) -> f64 {
+    let answers = scene.visible(Viewer::Eye(eye), places).unwrap();
+    answers.iter().filter(|answer| **answer != Answer::Blocked).count() as f64 / places.len() as f64
+}
+
+#[test]
+fn ceilings_above_tripods_are_as_smooth_as_their_noise_lets_them_be() {
+    // a millimetre from point to point, and a standard deviation of 5 mm
+    let cloud = scanned_by_tripods(0.009);
+    let (model, report) = SceneModel::build(&cloud, &ModelParams::default(), &Control::none()).unwrap();
+    let noise = f64::from(report.smoothing.unwrap().noise);
+    // a quartile, of ranges that stray evenly
+    assert!((0.7..1.05).contains(&(noise / (0.009 / 3f64.sqrt()))), "{noise}");
+    let scene = model.scene(&model.rule(), UnprovenAs::Reported, &Control::none()).unwrap();
+    let [x, y, _] = STATIONS[0];
+    let above = |p: &&[f32; 3]| (p[0] - x).hypot(p[1] - y) < 0.5 && p[2] > 2.5;
+    let above: Vec<[f32; 3]> = cloud.positions.iter().filter(above).copied().collect();
+    assert!(above.len() > 20_000, "{}", above.len());
+    for eye in [[2.5, 3.0, 1.5], [4.0, 4.5, 1.7], [8.0, 1.0, 1.2]] {
+        let free = free_share(&scene, eye, &above);
+        assert!(free > 0.99, "from {eye:?}: {free}");
+    }
+}
+
+#[test]
+fn a_scan_from_one_place_sees_its_own_points() {
+    let both = scanned_by_tripods(0.009);
+    let index = both.attributes.scanner_index.as_deref().unwrap();
+    let rows: Vec<u32> = (0..).zip(index).filter(|(_, station)| **station == 0).map(|(row, _)| row).collect();
+    let mut clouds = vec![both.select(&rows)];
+    if let Some(path) = data("a_scan_from_one_place_sees_its_own_points", "data/tls_e57/pumpAVisualReferenceImage.e57")
+    {
+        clouds.push(read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap().0);
+    }
+    for cloud in clouds {
+        let (model, report) = SceneModel::build(&cloud, &ModelParams::default(), &Control::none()).unwrap();
+        assert_eq!(report.pulses.unwrap().blocked.unwrap().count, 0);
+        let scene = model.scene(&model.rule(), UnprovenAs::Reported, &Control::none()).unwrap();
+        let free = free_share(&scene, cloud.scanner_positions[0].map(f64::from), &cloud.positions);
+        assert!(free > 0.995, "{free}");
     }
 }
 
