@@ -12,6 +12,7 @@ mod clear;
 mod close_range_normals;
 mod facts;
 mod params;
+mod pictures;
 mod prepare;
 mod questions;
 mod report;

@@ -1,9 +1,11 @@
-//! How fast does a device decide lines of sight in many directions, and how far is that from the limit of its memory?
+//! How fast does a device decide lines of sight in many directions and draw depth maps, and how far is that from the limit of its memory?
 //!
-//!     cargo run --release -p belvedere-gpu --example device_rates -- [DEVICE] [CLOUD or BALLS] [TARGETS]
+//!     cargo run --release -p belvedere-gpu --example device_rates -- [DEVICE] [CLOUD or BALLS] [TARGETS] [SHARE]
 //!
-//! With a cloud, the targets are its points; else the scene is a simulated place of 400 m with ground, blocks and crowns, and a grid of targets. Without a
-//! device it lists what there is.
+//! With a cloud, the targets are its points; else the scene is a simulated place of 400 m with ground, blocks and crowns, and a grid of targets. Of every SHAREth
+//! target bits are compared with those of the CPU. With 0 targets only depth maps of the simulated place are drawn. Without a device it lists what there is.
+
+mod depth_maps;
 
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud};
@@ -114,6 +116,13 @@ fn main() -> Result<()> {
         let (number, name, kind, interface, driver) =
             (info.number, &info.name, info.kind, &info.interface, &info.driver);
         say(format!("device {number}: {name} ({kind:?}; {interface}; driver {driver})"));
+    }
+    if number(3) == Some(0) {
+        let balls = place(number(2).unwrap_or(300_000) as u64);
+        return match found.get(number(1).unwrap_or(0)) {
+            Some(info) => depth_maps::measure(info, &balls, SIDE, &mut say),
+            None => Ok(()),
+        };
     }
     let control = Control::none();
     let most = number(3).unwrap_or(1_000_000);
