@@ -35,6 +35,8 @@ const RANGES: usize = 4096;
 /// Words before the list of balls for the CPU, and balls in that list.
 const HEAD: usize = 8;
 const MOST_LEFT: usize = 65_536;
+/// Most balls at a time on a device in software: Mesa's ends the loops of a thread after 65 535 turns in all, and each pixel may turn twice for each ball.
+const SOFTWARE_BALLS: usize = 1 << 14;
 /// Views farther away, or with a nearest depth beyond it, are the CPU's, metres.
 const FARTHEST: f64 = 1e9;
 /// What a limit of depth without end is on a device, metres: beyond all that it draws.
@@ -114,7 +116,11 @@ impl Painter {
     /// # Errors
     /// [`Error::Device`] where they do not fit, [`Error::Cancelled`].
     pub(crate) fn canvas(&self, balls: &MedialBalls, control: &Control<'_>) -> Result<Canvas> {
-        let most = (self.device.limit() / (4 * MOST_TILES)).clamp(1, MOST_GROUPS * GROUP);
+        let most = match self.device.info.kind {
+            DeviceKind::Software => SOFTWARE_BALLS,
+            DeviceKind::Separate | DeviceKind::Integrated => MOST_GROUPS * GROUP,
+        };
+        let most = (self.device.limit() / (4 * MOST_TILES)).clamp(1, most);
         let count = balls.len();
         let of_part = count.div_ceil(count.div_ceil(most).max(1)).max(1);
         let mut parts = Vec::new();

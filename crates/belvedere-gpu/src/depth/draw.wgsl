@@ -50,7 +50,8 @@ var<workgroup> chunk_size: atomic<u32>;
 var<workgroup> chunk_count: u32;
 // where the lists of each step and level begin and end
 var<workgroup> spans: array<vec2<u32>, 224>;
-var<workgroup> totals: array<u32, 32>;
+// where steps begin among all entries of the tile, and the end
+var<workgroup> step_begins: array<u32, 33>;
 var<workgroup> farthest_bits: atomic<u32>;
 var<workgroup> farthest_shared: u32;
 var<workgroup> cone: Cone;
@@ -239,6 +240,15 @@ fn span(at: u32, tile: vec2<u32>) -> vec2<u32> {
     return vec2<u32>(before[(list - 1u) / BLOCK] + atomicLoad(&counters[list - 1u]), end);
 }
 
+// The step of an entry of the tile.
+fn step_of(entry: u32) -> u32 {
+    var step = 0u;
+    for (var half = STEPS / 2u; half > 0u; half /= 2u) {
+        step += select(0u, half, step_begins[step + half] <= entry);
+    }
+    return step;
+}
+
 // The depth that no pixel of the tile exceeds.
 fn farthest(lane: u32, upper: f32) -> f32 {
     if lane == 0u {
@@ -253,6 +263,13 @@ fn farthest(lane: u32, upper: f32) -> f32 {
     return bitcast<f32>(workgroupUniformLoad(&farthest_shared));
 }
 
+fn store(pixel: u32, depth: u32, row: u32) {
+    pixels[pixel] = depth;
+    if WITH_ROWS {
+        rows[pixel] = row;
+    }
+}
+
 @compute @workgroup_size(256)
 fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let tile = vec2<u32>(group.x, group.y + piece.first_row);
@@ -260,29 +277,21 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         spans[at] = span(at, tile);
     }
     workgroupBarrier();
-    if lane < STEPS {
-        var total = 0u;
-        for (var level = 0u; level < LEVELS; level++) {
-            let of_level = spans[level * STEPS + lane];
-            total += of_level.y - of_level.x;
+    if lane <= STEPS {
+        // of all steps before this one
+        var sum = 0u;
+        for (var at = 0u; at < STEPS * LEVELS; at++) {
+            if at % STEPS < lane {
+                sum += spans[at].y - spans[at].x;
+            }
         }
-        totals[lane] = total;
+        step_begins[lane] = sum;
     }
     let column = tile.x * TILE + lane % TILE;
     let row = tile.y * TILE + lane / TILE;
     let is_inside = column < view.width && row < view.height;
     let pixel = row * view.width + column;
     let place = vec2<f32>(f32(column) + 0.5, f32(row + view.top) + 0.5);
-    var sight = Sight(vec3<f32>(0.0), 1.0);
-    var corner = vec2<f32>(f32(tile.x * TILE), f32(tile.y * TILE + view.top));
-    if KIND != PARALLEL {
-        if is_inside {
-            sight = exact_sight(column, row);
-        }
-        if lane == 0u {
-            cone = cone_of(corner - vec2<f32>(0.0, f32(view.top)));
-        }
-    }
     // pixels beside the picture are full
     var best = select(0u, INFINITE_SINGLE, is_inside);
     var best_row = NO_BALL;
@@ -292,74 +301,87 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
             best_row = rows[pixel];
         }
     }
+    let total = workgroupUniformLoad(&step_begins[STEPS]);
+    if total == 0u {
+        if is_inside {
+            store(pixel, best, best_row);
+        }
+        return;
+    }
+    var sight = Sight(vec3<f32>(0.0), 1.0);
+    let corner = vec2<f32>(f32(tile.x * TILE), f32(tile.y * TILE + view.top));
+    if KIND != PARALLEL {
+        if is_inside {
+            sight = exact_sight(column, row);
+        }
+        if lane == 0u {
+            cone = cone_of(corner - vec2<f32>(0.0, f32(view.top)));
+        }
+    }
     var upper = select(bitcast<f32>(best), ENDLESS_DEPTH, best == INFINITE_SINGLE);
     var limit = farthest(lane, upper);
     var computed = 0u;
     for (var turn = 0u; turn < 2u; turn++) {
-        for (var step = 0u; step < STEPS; step++) {
-            let total = workgroupUniformLoad(&totals[step]);
-            if total == 0u {
-                continue;
-            }
-            if bitcast<f32>(steps[RANGES + step]) > limit {
+        for (var first = 0u; first < total; first += 256u) {
+            if bitcast<f32>(steps[RANGES + step_of(first)]) > limit {
                 break;
             }
-            for (var first = 0u; first < total; first += 256u) {
-                if lane == 0u {
-                    atomicStore(&chunk_size, 0u);
+            if lane == 0u {
+                atomicStore(&chunk_size, 0u);
+            }
+            workgroupBarrier();
+            var entry = first + lane;
+            if entry < total {
+                let step = step_of(entry);
+                entry -= step_begins[step];
+                var level = 0u;
+                var of_level = spans[step];
+                while entry >= of_level.y - of_level.x {
+                    entry -= of_level.y - of_level.x;
+                    level++;
+                    of_level = spans[level * STEPS + step];
                 }
-                workgroupBarrier();
-                var entry = first + lane;
-                if entry < total {
-                    var level = 0u;
-                    var of_level = spans[step];
-                    while entry >= of_level.y - of_level.x {
-                        entry -= of_level.y - of_level.x;
-                        level++;
-                        of_level = spans[level * STEPS + step];
-                    }
-                    let ball = listed[of_level.x + entry];
-                    let splat = splats[ball];
-                    // a depth equal to the limit may be that of a lower row
-                    if least_depth(bitcast<vec4<f32>>(splat), corner) <= limit {
-                        let at = atomicAdd(&chunk_size, 1u);
-                        chunk[at] = splat;
-                        chunk_balls[at] = ball;
-                    }
+                let ball = listed[of_level.x + entry];
+                let splat = splats[ball];
+                // a depth equal to the limit may be that of a lower row
+                if least_depth(bitcast<vec4<f32>>(splat), corner) <= limit {
+                    let at = atomicAdd(&chunk_size, 1u);
+                    chunk[at] = splat;
+                    chunk_balls[at] = ball;
                 }
-                workgroupBarrier();
-                if lane == 0u {
-                    chunk_count = atomicLoad(&chunk_size);
-                }
-                let count = workgroupUniformLoad(&chunk_count);
-                if IS_COUNTED && lane == 0u {
-                    atomicAdd(&left_out[2], min(total - first, 256u));
-                    atomicAdd(&left_out[3], count);
-                }
-                for (var at = 0u; at < count; at++) {
-                    let splat = chunk[at];
-                    let depths = bounds(bitcast<vec4<f32>>(splat), place, sight);
-                    if turn == 0u {
-                        upper = min(upper, depths.y);
-                    } else if is_inside && depths.x <= upper && depths.x < ENDLESS_DEPTH {
-                        computed += 1u;
-                        var exact: u32;
-                        if KIND == PARALLEL {
-                            exact = exact_parallel(splat, place);
-                        } else {
-                            exact = exact_central(splat, sight);
-                        }
-                        let ball = view.first_ball + chunk_balls[at];
-                        if exact < best || (WITH_ROWS && exact == best && exact != INFINITE_SINGLE && ball < best_row) {
-                            best = exact;
-                            best_row = ball;
-                        }
-                    }
-                }
-                workgroupBarrier();
+            }
+            workgroupBarrier();
+            if lane == 0u {
+                chunk_count = atomicLoad(&chunk_size);
+            }
+            let count = workgroupUniformLoad(&chunk_count);
+            if IS_COUNTED && lane == 0u {
+                atomicAdd(&left_out[2], min(total - first, 256u));
+                atomicAdd(&left_out[3], count);
+            }
+            for (var at = 0u; at < count; at++) {
+                let splat = chunk[at];
+                let depths = bounds(bitcast<vec4<f32>>(splat), place, sight);
                 if turn == 0u {
-                    limit = farthest(lane, upper);
+                    upper = min(upper, depths.y);
+                } else if is_inside && depths.x <= upper && depths.x < ENDLESS_DEPTH {
+                    computed += 1u;
+                    var exact: u32;
+                    if KIND == PARALLEL {
+                        exact = exact_parallel(splat, place);
+                    } else {
+                        exact = exact_central(splat, sight);
+                    }
+                    let ball = view.first_ball + chunk_balls[at];
+                    if exact < best || (WITH_ROWS && exact == best && exact != INFINITE_SINGLE && ball < best_row) {
+                        best = exact;
+                        best_row = ball;
+                    }
                 }
+            }
+            workgroupBarrier();
+            if turn == 0u {
+                limit = farthest(lane, upper);
             }
         }
         limit = farthest(lane, upper);
@@ -368,9 +390,6 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         atomicAdd(&left_out[4], computed);
     }
     if is_inside {
-        pixels[pixel] = best;
-        if WITH_ROWS {
-            rows[pixel] = best_row;
-        }
+        store(pixel, best, best_row);
     }
 }

@@ -180,6 +180,25 @@ fn multiply_single(a: u32, b: u32) -> u32 {
     return rounded_single(sign, exponent, significand << 1u);
 }
 
+struct Root {
+    // two bits of what the root is taken of for each of the root's
+    waiting: u32,
+    rest: u32,
+    root: u32,
+}
+
+fn next_bit(so_far: Root) -> Root {
+    let rest = (so_far.rest << 2u) | (so_far.waiting >> 30u);
+    let next = (so_far.root << 2u) | 1u;
+    let is_one = rest >= next;
+    return Root(so_far.waiting << 2u, select(rest, rest - next, is_one), (so_far.root << 1u) | select(0u, 1u, is_one));
+}
+
+fn next_six_bits(so_far: Root) -> Root {
+    return next_bit(next_bit(next_bit(next_bit(next_bit(next_bit(so_far))))));
+}
+
+// Without a loop: depths need many roots, and software devices end loops that turn too often.
 fn root_single(a: u32) -> u32 {
     if (a & ~SIGN) == 0u || a == INFINITE_SINGLE {
         return a;
@@ -189,21 +208,9 @@ fn root_single(a: u32) -> u32 {
     }
     let x = normal_single(a);
     let exponent = bitcast<i32>(x.y) - 127;
-    // two bits for each of the root
-    var waiting = x.x << (7u + (u32(exponent) & 1u));
-    var rest = 0u;
-    var root = 0u;
-    for (var i = 0u; i < 26u; i++) {
-        rest = (rest << 2u) | (waiting >> 30u);
-        waiting <<= 2u;
-        let next = (root << 2u) | 1u;
-        root <<= 1u;
-        if rest >= next {
-            rest -= next;
-            root |= 1u;
-        }
-    }
-    return rounded_single(0u, (exponent >> 1u) + 127, (root << 5u) | select(0u, 1u, rest != 0u));
+    let begin = Root(x.x << (7u + (u32(exponent) & 1u)), 0u, 0u);
+    let all = next_bit(next_bit(next_six_bits(next_six_bits(next_six_bits(next_six_bits(begin))))));
+    return rounded_single(0u, (exponent >> 1u) + 127, (all.root << 5u) | select(0u, 1u, all.rest != 0u));
 }
 
 // Double precision.

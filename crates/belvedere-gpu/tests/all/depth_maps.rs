@@ -53,14 +53,14 @@ fn assert_same(drawn: &DepthMap, expected: &DepthMap, what: &str) {
     assert!(drawn == expected, "{what}");
 }
 
-/// Draws on a device with and without balls of pixels, and on the CPU. Says how many pixels show something.
-fn assert_equal_on(gpu: &Gpu, balls: &MedialBalls, view: &View, what: &str) -> usize {
+/// Draws on a device and on the CPU. Says how many pixels show something.
+fn assert_equal_on(gpu: &Gpu, balls: &MedialBalls, view: &View, all_items: &[ItemBuffer], what: &str) -> usize {
     let pixels = view.size_px[0] * view.size_px[1];
     // a small picture is asked of the device too
     let drawable = gpu.drawable(balls, pixels.max(10_000), &Control::none()).unwrap();
     let drawable = drawable.unwrap_or_else(|| panic!("{what}: the device is not asked"));
     let mut shown = 0;
-    for items in [ItemBuffer::Without, ItemBuffer::With] {
+    for &items in all_items {
         let expected = depth_map(balls, view, Profile::Sphere, items, &Control::none()).unwrap();
         let drawn = drawable.depth_map(view, items, &Control::none()).unwrap();
         assert_same(&drawn, &expected, what);
@@ -81,7 +81,8 @@ fn depth_maps_of_random_balls_are_those_of_the_cpu() {
         let gpu = on(&device);
         for (name, view) in views() {
             let what = format!("{name} on {}", device.name);
-            let shown = assert_equal_on(&gpu, &few, &view, &what) + assert_equal_on(&gpu, &many, &view, &what);
+            let shown = assert_equal_on(&gpu, &few, &view, &[ItemBuffer::Without], &what)
+                + assert_equal_on(&gpu, &many, &view, &[ItemBuffer::With], &what);
             assert!(shown > 0, "{what}: nothing is seen");
         }
         assert!(gpu.notes().is_empty() && gpu.used().is_some(), "{:?}", gpu.notes());
@@ -144,7 +145,8 @@ fn depth_maps_of_hostile_balls_are_those_of_the_cpu() {
         let gpu = on(&device);
         for (of, balls) in hostile() {
             for (name, view) in views() {
-                assert_equal_on(&gpu, &balls, &view, &format!("{of}, {name} on {}", device.name));
+                let what = format!("{of}, {name} on {}", device.name);
+                assert_equal_on(&gpu, &balls, &view, &[ItemBuffer::With], &what);
             }
         }
         assert!(gpu.notes().is_empty(), "{:?}", gpu.notes());
@@ -158,7 +160,8 @@ fn balls_and_pictures_larger_than_the_buffers_are_drawn_in_parts() {
         // 20 000 balls need lists of 720 kB, and pictures of 60 000 pixels 240 kB
         let gpu = Gpu::limited(device.number, 150_000, None).unwrap();
         for (name, view) in views() {
-            assert_equal_on(&gpu, &balls, &view, &format!("{name}, in parts on {}", device.name));
+            let what = format!("{name}, in parts on {}", device.name);
+            assert_equal_on(&gpu, &balls, &view, &[ItemBuffer::With], &what);
         }
         assert!(gpu.notes().is_empty() && gpu.used().is_some(), "{:?}", gpu.notes());
     }
@@ -170,14 +173,14 @@ fn a_device_lost_in_the_middle_of_a_picture_loses_nothing() {
     let view = views()[0].1;
     for device in devices_or_skip("a_device_lost_in_the_middle_of_a_picture_loses_nothing") {
         let gpu = Gpu::limited(device.number, 150_000, Some(1)).unwrap();
-        assert_equal_on(&gpu, &balls, &view, "lost");
+        assert_equal_on(&gpu, &balls, &view, &[ItemBuffer::Without, ItemBuffer::With], "lost");
         assert!(gpu.notes().len() == 1 && gpu.notes()[0].contains("the CPU does the rest"), "{:?}", gpu.notes());
         assert!(gpu.device().is_none() && gpu.used().is_none());
         // and it is not asked again
         assert!(gpu.drawable(&balls, 1 << 20, &Control::none()).unwrap().is_none());
         // a device whose buffers hold next to nothing
         let tiny = Gpu::limited(device.number, 64, None).unwrap();
-        assert_equal_on(&tiny, &balls, &view, "tiny");
+        assert_equal_on(&tiny, &balls, &view, &[ItemBuffer::Without], "tiny");
         assert_eq!(tiny.notes().len(), 1, "{:?}", tiny.notes());
     }
 }
