@@ -117,8 +117,9 @@ impl Painter {
     /// [`Error::Device`] where they do not fit, [`Error::Cancelled`].
     pub(crate) fn canvas(&self, balls: &MedialBalls, control: &Control<'_>) -> Result<Canvas> {
         let most = match self.device.info.kind {
-            DeviceKind::Software => SOFTWARE_BALLS,
-            DeviceKind::Separate | DeviceKind::Integrated => MOST_GROUPS * GROUP,
+            // what a bench counts is the work of a graphics card
+            DeviceKind::Software if !self.is_counted => SOFTWARE_BALLS,
+            _ => MOST_GROUPS * GROUP,
         };
         let most = (self.device.limit() / (4 * MOST_TILES)).clamp(1, most);
         let count = balls.len();

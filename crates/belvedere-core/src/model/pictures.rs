@@ -32,17 +32,12 @@ impl SceneModel {
     ///
     /// # Errors
     /// Those of [`panorama`].
-    pub fn panorama(
-        &self,
-        eye: [f64; 3],
-        width: usize,
-        items: ItemBuffer,
-        control: &Control<'_>,
-    ) -> Result<Panorama> {
+    pub fn panorama(&self, eye: [f64; 3], width: usize, items: ItemBuffer, control: &Control<'_>) -> Result<Panorama> {
         let balls = self.balls();
         // two square maps
         let pixel_count = width.saturating_mul(width).saturating_mul(2);
-        let drawable = self.backend.as_ref().map(|backend| backend.drawable(balls, pixel_count, control)).transpose()?;
+        let drawable =
+            self.backend.as_ref().map(|backend| backend.drawable(balls, pixel_count, control)).transpose()?;
         match drawable.flatten() {
             Some(drawable) => {
                 let draw = |view: &View| drawable.depth_map(view, ItemBuffer::With, control);

@@ -6,8 +6,8 @@
 
 use super::ball_tree::BallTree;
 use crate::depth::{DepthBounds, DepthMap, ItemBuffer};
-use belvedere_data::balls::MedialBalls;
 use belvedere_data::Result;
+use belvedere_data::balls::MedialBalls;
 use belvedere_data::control::Control;
 use belvedere_data::view::View;
 use std::sync::Arc;

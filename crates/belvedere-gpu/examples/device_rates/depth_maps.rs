@@ -9,8 +9,6 @@ use belvedere_data::Result;
 use belvedere_gpu::{DeviceInfo, Gpu, Work};
 use std::time::Instant;
 
-/// Side of pictures, pixels.
-const SIDE: usize = 4096;
 /// Whole-number and single-precision instructions, and bytes that the memory of the device moves; docs/gpu.md says how they were counted.
 const OF_A_BALL: [f64; 2] = [1700.0, 16.0 + 16.0 + 8.0 + 2.0 * 8.0];
 const OF_AN_ENTRY: [f64; 2] = [60.0, 2.0 * 8.0 + 4.0];
@@ -33,32 +31,43 @@ fn best_of(times: usize, mut work: impl FnMut() -> Result<DepthMap>) -> Result<(
     Ok((last, best))
 }
 
-/// Views of a place of so many metres.
-fn views(side: f64) -> Result<Vec<(&'static str, View)>> {
+/// Views of a place of so many metres, in pictures of so many pixels on a side.
+fn views(side: f64, pixels: usize) -> Result<Vec<(&'static str, View)>> {
     let (low, high) = ([0.0, 0.0, -4.0], [side, side, 18.0]);
     let middle = [0.5 * side, 0.5 * side, 4.0];
-    let pixel = side / (SIDE as f64 - 1.0);
+    let pixel = side / (pixels as f64 - 0.5);
     let corner = [-0.1 * side, -0.1 * side, 0.2 * side];
     Ok(vec![
         ("a plan", View::parallel([0.0, 0.0, -1.0], low, high, pixel)?),
-        ("a camera above a corner", View::perspective(corner, middle, 1.0, [SIDE; 2], 0.0, f64::INFINITY)?),
-        ("a hemisphere from the middle", View::hemisphere([middle[0], middle[1], 1.6], [0.0, 0.0, 1.0], SIDE)?),
+        ("a camera above a corner", View::perspective(corner, middle, 1.0, [pixels; 2], 0.0, f64::INFINITY)?),
+        ("a hemisphere from the middle", View::hemisphere([middle[0], middle[1], 1.6], [0.0, 0.0, 1.0], pixels)?),
     ])
 }
 
 /// Draws every kind of view on a device and on the CPU, and says what that took.
-pub(crate) fn measure(info: &DeviceInfo, balls: &MedialBalls, side: f64, say: &mut dyn FnMut(String)) -> Result<()> {
+pub(crate) fn measure(
+    info: &DeviceInfo,
+    balls: &MedialBalls,
+    side: f64,
+    pixels: usize,
+    say: &mut dyn FnMut(String),
+) -> Result<()> {
     let control = Control::none();
     let (gpu, counting) = (Gpu::new(belvedere_gpu::Choice::Number(info.number))?, Gpu::counting(info.number)?);
     let start = Instant::now();
-    let drawable = gpu.drawable(balls, SIDE * SIDE, &control)?;
-    say(format!("depth maps on {}: {:.3} s to bring {} balls there", info.name, start.elapsed().as_secs_f64(), balls.len()));
+    let drawable = gpu.drawable(balls, pixels * pixels, &control)?;
+    say(format!(
+        "depth maps on {}: {:.3} s to bring {} balls there",
+        info.name,
+        start.elapsed().as_secs_f64(),
+        balls.len()
+    ));
     let Some(drawable) = drawable else {
         say(format!("the device draws nothing: {:?}", gpu.notes()));
         return Ok(());
     };
     let mut work_before = Work::default();
-    for (name, view) in views(side)? {
+    for (name, view) in views(side, pixels)? {
         let [width, height] = view.size_px;
         for items in [ItemBuffer::Without, ItemBuffer::With] {
             let (drawn, on_device) = best_of(3, || drawable.depth_map(&view, items, &control))?;
@@ -72,7 +81,7 @@ pub(crate) fn measure(info: &DeviceInfo, balls: &MedialBalls, side: f64, say: &m
                 1e3 * on_cpu
             ));
         }
-        if let Some(drawable) = counting.drawable(balls, SIDE * SIDE, &control)? {
+        if let Some(drawable) = counting.drawable(balls, pixels * pixels, &control)? {
             drawable.depth_map(&view, ItemBuffer::Without, &control)?;
         }
         let total = counting.work();

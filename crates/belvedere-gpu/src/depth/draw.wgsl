@@ -30,6 +30,16 @@ const ONE: vec2<u32> = vec2<u32>(0u, 0x3ff00000u);
 // A cone around a tile beyond this cosine is as good as everything.
 const WIDEST: f32 = 0.75;
 
+// Balls that a pixel keeps to compute them when all pixels do, so that these do not wait for each other: mostly there are one or two.
+const KEPT: u32 = 4u;
+
+// What a pixel shows.
+struct Shown {
+    // bits
+    depth: u32,
+    row: u32,
+}
+
 // A direction of sight in a view from an eye.
 struct Sight {
     direction: vec3<f32>,
@@ -263,10 +273,26 @@ fn farthest(lane: u32, upper: f32) -> f32 {
     return bitcast<f32>(workgroupUniformLoad(&farthest_shared));
 }
 
-fn store(pixel: u32, depth: u32, row: u32) {
-    pixels[pixel] = depth;
+// What a pixel shows, a ball more considered; of equally near ones the ball with the lowest row.
+fn nearer(shown: Shown, splat: vec4<u32>, ball: u32, place: vec2<f32>, sight: Sight) -> Shown {
+    var depth: u32;
+    if KIND == PARALLEL {
+        depth = exact_parallel(splat, place);
+    } else {
+        depth = exact_central(splat, sight);
+    }
+    let row = view.first_ball + ball;
+    let is_nearer = depth < shown.depth || (depth == shown.depth && depth != INFINITE_SINGLE && row < shown.row);
+    if is_nearer {
+        return Shown(depth, row);
+    }
+    return shown;
+}
+
+fn store(pixel: u32, shown: Shown) {
+    pixels[pixel] = shown.depth;
     if WITH_ROWS {
-        rows[pixel] = row;
+        rows[pixel] = shown.row;
     }
 }
 
@@ -293,18 +319,17 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let pixel = row * view.width + column;
     let place = vec2<f32>(f32(column) + 0.5, f32(row + view.top) + 0.5);
     // pixels beside the picture are full
-    var best = select(0u, INFINITE_SINGLE, is_inside);
-    var best_row = NO_BALL;
+    var shown = Shown(select(0u, INFINITE_SINGLE, is_inside), NO_BALL);
     if is_inside && view.first_ball > 0u {
-        best = pixels[pixel];
+        shown.depth = pixels[pixel];
         if WITH_ROWS {
-            best_row = rows[pixel];
+            shown.row = rows[pixel];
         }
     }
     let total = workgroupUniformLoad(&step_begins[STEPS]);
     if total == 0u {
         if is_inside {
-            store(pixel, best, best_row);
+            store(pixel, shown);
         }
         return;
     }
@@ -318,9 +343,11 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
             cone = cone_of(corner - vec2<f32>(0.0, f32(view.top)));
         }
     }
-    var upper = select(bitcast<f32>(best), ENDLESS_DEPTH, best == INFINITE_SINGLE);
+    var upper = select(bitcast<f32>(shown.depth), ENDLESS_DEPTH, shown.depth == INFINITE_SINGLE);
     var limit = farthest(lane, upper);
     var computed = 0u;
+    var kept: array<u32, KEPT>;
+    var kept_count = 0u;
     for (var turn = 0u; turn < 2u; turn++) {
         for (var first = 0u; first < total; first += 256u) {
             if bitcast<f32>(steps[RANGES + step_of(first)]) > limit {
@@ -366,16 +393,11 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
                     upper = min(upper, depths.y);
                 } else if is_inside && depths.x <= upper && depths.x < ENDLESS_DEPTH {
                     computed += 1u;
-                    var exact: u32;
-                    if KIND == PARALLEL {
-                        exact = exact_parallel(splat, place);
+                    if kept_count < KEPT {
+                        kept[kept_count] = chunk_balls[at];
+                        kept_count += 1u;
                     } else {
-                        exact = exact_central(splat, sight);
-                    }
-                    let ball = view.first_ball + chunk_balls[at];
-                    if exact < best || (WITH_ROWS && exact == best && exact != INFINITE_SINGLE && ball < best_row) {
-                        best = exact;
-                        best_row = ball;
+                        shown = nearer(shown, splat, chunk_balls[at], place, sight);
                     }
                 }
             }
@@ -386,10 +408,13 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         }
         limit = farthest(lane, upper);
     }
+    for (var at = 0u; at < kept_count; at++) {
+        shown = nearer(shown, splats[kept[at]], kept[at], place, sight);
+    }
     if IS_COUNTED {
         atomicAdd(&left_out[4], computed);
     }
     if is_inside {
-        store(pixel, best, best_row);
+        store(pixel, shown);
     }
 }

@@ -126,7 +126,8 @@ fn check(@builtin(global_invocation_id) thread: vec3<u32>) {{
         cache: None,
     });
     let size = 8 * pairs.len() as u64;
-    let buffer = |usage| wgpu.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });
+    let buffer =
+        |usage| wgpu.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });
     let results = buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let staging = buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
     let given = device.filled_buffer(cast_slice(pairs));
@@ -158,7 +159,8 @@ fn whole_numbers_give_the_same_bits_as_floating_point() {
     let found = devices();
     if found.is_empty() {
         let what = "this computer has no device with a driver for Vulkan, Metal or DirectX 12";
-        let _ = writeln!(std::io::stderr().lock(), "SKIPPED whole_numbers_give_the_same_bits_as_floating_point: {what}");
+        let _ =
+            writeln!(std::io::stderr().lock(), "SKIPPED whole_numbers_give_the_same_bits_as_floating_point: {what}");
     }
     let [singles, doubles] = [pairs(23, 255), pairs(52, 2047)];
     for info in found {

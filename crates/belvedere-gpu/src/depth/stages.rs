@@ -67,7 +67,12 @@ pub(super) struct Buffers {
 
 impl Buffers {
     /// Those for so many balls, and for pictures of a width and height.
-    pub(super) fn new(device: &wgpu::Device, ball_count: usize, [width, height]: [usize; 2], items: ItemBuffer) -> Self {
+    pub(super) fn new(
+        device: &wgpu::Device,
+        ball_count: usize,
+        [width, height]: [usize; 2],
+        items: ItemBuffer,
+    ) -> Self {
         let with_usage = |bytes: usize, usage| {
             let size = bytes.max(16) as u64;
             device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })

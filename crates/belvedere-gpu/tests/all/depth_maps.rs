@@ -19,9 +19,8 @@ fn views() -> Vec<(&'static str, View)> {
     let parallel = |forward, pixel| View::parallel(forward, low, high, pixel).unwrap();
     let [inner_low, inner_high] = box_of(9.0);
     let inner = View::parallel([0.3, 0.5, -0.4], inner_low, inner_high, 0.07).unwrap();
-    let camera = |eye, at, fov: f64, size, near, far| {
-        View::perspective(eye, at, fov.to_radians(), size, near, far).unwrap()
-    };
+    let camera =
+        |eye, at, fov: f64, size, near, far| View::perspective(eye, at, fov.to_radians(), size, near, far).unwrap();
     let endless = f64::INFINITY;
     vec![
         ("from above", parallel([0.0, 0.0, -1.0], 0.23)),
@@ -41,6 +40,9 @@ fn views() -> Vec<(&'static str, View)> {
         ),
     ]
 }
+
+/// Views of a hundred thousand balls, one of each kind: software takes seconds for each.
+const WITH_MANY_BALLS: [&str; 3] = ["from the side, slanting", "limits of depth", "a hemisphere far below"];
 
 fn assert_same(drawn: &DepthMap, expected: &DepthMap, what: &str) {
     let [width, _] = expected.view.size_px;
@@ -81,9 +83,10 @@ fn depth_maps_of_random_balls_are_those_of_the_cpu() {
         let gpu = on(&device);
         for (name, view) in views() {
             let what = format!("{name} on {}", device.name);
-            let shown = assert_equal_on(&gpu, &few, &view, &[ItemBuffer::Without], &what)
-                + assert_equal_on(&gpu, &many, &view, &[ItemBuffer::With], &what);
-            assert!(shown > 0, "{what}: nothing is seen");
+            assert!(assert_equal_on(&gpu, &few, &view, &[ItemBuffer::Without], &what) > 0, "{what}: nothing is seen");
+            if WITH_MANY_BALLS.contains(&name) {
+                assert_equal_on(&gpu, &many, &view, &[ItemBuffer::With], &what);
+            }
         }
         assert!(gpu.notes().is_empty() && gpu.used().is_some(), "{:?}", gpu.notes());
     }
@@ -118,7 +121,10 @@ fn hostile() -> Vec<(&'static str, MedialBalls)> {
     vec![
         ("balls of radius zero", balls_of(plain.iter().map(|(center, _)| (*center, 0.0)))),
         ("tiny balls", with(&[([0.0; 3], 1e-30), ([1.0; 3], 1e-42), ([2.0, 3.0, 1e-30], 1e-7)])),
-        ("huge balls", with(&[([0.0, 0.0, -9e6], 9e6), ([3e5, 0.0, 0.0], 3e5 - 40.0), ([0.0, -1e12, 0.0], 1e12 - 60.0)])),
+        (
+            "huge balls",
+            with(&[([0.0, 0.0, -9e6], 9e6), ([3e5, 0.0, 0.0], 3e5 - 40.0), ([0.0, -1e12, 0.0], 1e12 - 60.0)]),
+        ),
         ("the largest numbers", with(&[([3e38, 0.0, 0.0], 3e38), ([0.0, -3e38, 1.0], 1.0), ([1e20; 3], 1e19)])),
         ("balls far away", with(&[([8e6, -8e6, 5e6], 1.0), ([0.0, 0.0, -4000.0], 900.0), ([1e5, 1e5, 0.0], 3e4)])),
         ("balls around eyes", with(&around_eyes)),
@@ -155,11 +161,11 @@ fn depth_maps_of_hostile_balls_are_those_of_the_cpu() {
 
 #[test]
 fn balls_and_pictures_larger_than_the_buffers_are_drawn_in_parts() {
-    let balls = balls_of(random_balls(20_000, SIZE, 1.0));
+    let balls = balls_of(random_balls(8000, SIZE, 1.5));
     for device in devices_or_skip("balls_and_pictures_larger_than_the_buffers_are_drawn_in_parts") {
-        // 20 000 balls need lists of 720 kB, and pictures of 60 000 pixels 240 kB
+        // 8000 balls need lists of 288 kB, and pictures of 60 000 pixels 240 kB
         let gpu = Gpu::limited(device.number, 150_000, None).unwrap();
-        for (name, view) in views() {
+        for (name, view) in views().into_iter().step_by(2) {
             let what = format!("{name}, in parts on {}", device.name);
             assert_equal_on(&gpu, &balls, &view, &[ItemBuffer::With], &what);
         }
@@ -197,9 +203,8 @@ pub(crate) fn assert_pictures_are_equal(name: &str, on_cpu: &SceneModel, on_devi
         View::perspective(beside, middle, 1.2, [320, 200], 0.0, f64::INFINITY).unwrap(),
     ];
     for view in &views {
-        let draw = |model: &SceneModel| {
-            model.depth_map(view, Profile::Sphere, ItemBuffer::With, &Control::none()).unwrap()
-        };
+        let draw =
+            |model: &SceneModel| model.depth_map(view, Profile::Sphere, ItemBuffer::With, &Control::none()).unwrap();
         let expected = draw(on_cpu);
         assert!(expected.depth.values().iter().filter(|depth| depth.is_finite()).count() > 10_000, "{name}");
         assert_same(&draw(on_device), &expected, name);

@@ -12,8 +12,8 @@ use belvedere_gpu::{Choice, DeviceInfo, Gpu, devices};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
 use std::sync::Arc;
 
-use crate::{balls_of, data, devices_or_skip, random_balls};
 use crate::depth_maps::assert_pictures_are_equal;
+use crate::{balls_of, data, devices_or_skip, random_balls};
 
 /// The directions of a sky view, and some along axes, flat and downward.
 fn directions() -> Vec<[f64; 3]> {

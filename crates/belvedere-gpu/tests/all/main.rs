@@ -57,4 +57,3 @@ fn data(test: &str, relative: &str) -> Option<PathBuf> {
     }
     Some(path)
 }
-
