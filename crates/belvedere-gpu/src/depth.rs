@@ -81,7 +81,7 @@ pub struct Work {
     pub listed: u64,
     /// Entries of lists that tiles looked at.
     pub looked_at: u64,
-    /// Balls that each pixel of a tile was tested with.
+    /// Balls that each pixel of a block of 8 x 8 was tested with.
     pub tested: u64,
     /// Depths that were computed exactly.
     pub exact: u64,

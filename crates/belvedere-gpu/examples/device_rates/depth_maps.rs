@@ -9,15 +9,15 @@ use belvedere_data::Result;
 use belvedere_gpu::{DeviceInfo, Gpu, Work};
 use std::time::Instant;
 
-/// Whole-number and single-precision instructions, and bytes that the memory of the device moves; docs/gpu.md says how they were counted.
-const OF_A_BALL: [f64; 2] = [1700.0, 16.0 + 16.0 + 8.0 + 2.0 * 8.0];
+/// Instructions and bytes that the memory of the device moves: those of the shaders in SPIR-V, both sides of each branch and each turn of a loop.
+const OF_A_BALL: [f64; 2] = [5900.0, 16.0 + 16.0 + 3.0 * 8.0];
 const OF_AN_ENTRY: [f64; 2] = [60.0, 2.0 * 8.0 + 4.0];
-const OF_A_LOOK: [f64; 2] = [40.0, 4.0 + 16.0];
-const OF_A_TEST: [f64; 2] = [30.0, 0.0];
-const OF_AN_EXACT_DEPTH: [f64; 2] = [700.0, 0.0];
-const OF_A_CENTRAL_DEPTH: [f64; 2] = [1300.0, 0.0];
-const OF_A_DIRECTION: [f64; 2] = [3000.0, 0.0];
-const OF_A_PIXEL: [f64; 2] = [20.0, 4.0];
+const OF_A_LOOK: [f64; 2] = [300.0, 4.0 + 16.0];
+const OF_A_TEST: [f64; 2] = [70.0, 0.0];
+const OF_AN_EXACT_DEPTH: [f64; 2] = [1600.0, 16.0];
+const OF_A_CENTRAL_DEPTH: [f64; 2] = [3300.0, 16.0];
+const OF_A_DIRECTION: [f64; 2] = [6600.0, 0.0];
+const OF_A_PIXEL: [f64; 2] = [450.0, 8.0];
 /// A data-centre card: instructions on whole numbers a second (an H100: 132 groups of 64 at 1.7 GHz), and bytes of memory a second.
 const CARD: [f64; 2] = [1.4e13, 3e12];
 
@@ -98,8 +98,8 @@ pub(crate) fn measure(
 fn say_work(view: &View, ball_count: usize, [before, after]: [Work; 2], say: &mut dyn FnMut(String)) {
     let count = |of: fn(&Work) -> u64| (of(&after) - of(&before)) as f64;
     let (entries, looks) = (count(|work| work.listed), count(|work| work.looked_at));
-    // each ball is tested with 256 pixels
-    let (tests, exact) = (256.0 * count(|work| work.tested), count(|work| work.exact));
+    // each ball is tested with the 64 pixels of a block
+    let (tests, exact) = (64.0 * count(|work| work.tested), count(|work| work.exact));
     let (balls, pixels) = (ball_count as f64, (view.size_px[0] * view.size_px[1]) as f64);
     let (of_depth, of_pixel) = if view.is_central() {
         (OF_A_CENTRAL_DEPTH, [OF_A_DIRECTION[0] + OF_A_PIXEL[0], OF_A_PIXEL[1]])

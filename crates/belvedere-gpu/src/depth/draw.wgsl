@@ -1,7 +1,8 @@
 // The nearest ball at each pixel: the twin of `depths` and `least_depth` in belvedere-core/src/depth/parallel.rs and central.rs, and of the tiles in tiles.rs.
 //
-// A group of threads draws a tile of 16 x 16 pixels, a thread for each. First each pixel finds, with room for what f32 rounds, a depth that the nearest ball does not
-// exceed. Then the balls that may come as near are computed exactly, in whole numbers. The proof of the room is on the project's page on graphics processors.
+// A group of threads draws a tile of four blocks of 8 x 8 pixels, a thread for each pixel. Each pixel finds, with room for what f32 rounds, a depth that the nearest ball
+// does not exceed, and keeps the balls that may come as near. Then these are computed exactly, in whole numbers. A second turn finds those of pixels that could not keep
+// all. The proof of the room is on the project's page on graphics processors.
 
 struct Piece {
     // of this dispatch
@@ -27,11 +28,13 @@ const LEAST_SQUARE: f32 = 1e-30;
 const BESIDE_ROOM: f32 = 9.5367432e-7;
 const DEPTH_ROOM: f32 = 1.9073487e-6;
 const ONE: vec2<u32> = vec2<u32>(0u, 0x3ff00000u);
-// A cone around a tile beyond this cosine is as good as everything.
+// Side of a block, pixels, and blocks of a tile.
+const SIDE: u32 = 8u;
+const BLOCKS: u32 = 4u;
+// A lower bound of the depth of no ball: it is above every upper bound.
+const NONE: f32 = 3.2e38;
+// A cone around a block beyond this cosine is as good as everything.
 const WIDEST: f32 = 0.75;
-
-// Balls that a pixel keeps to compute them when all pixels do, so that these do not wait for each other: mostly there are one or two.
-const KEPT: u32 = 4u;
 
 // What a pixel shows.
 struct Shown {
@@ -46,7 +49,7 @@ struct Sight {
     depth_per_range: f32,
 }
 
-// The directions of a tile lie in this cone.
+// The directions of a block lie in this cone.
 struct Cone {
     middle: vec3<f32>,
     cosine: f32,
@@ -54,17 +57,21 @@ struct Cone {
     least_depth_per_range: f32,
 }
 
+// balls that some block has to look at, and which of them each block has to
 var<workgroup> chunk: array<vec4<u32>, 256>;
 var<workgroup> chunk_balls: array<u32, 256>;
-var<workgroup> chunk_size: atomic<u32>;
-var<workgroup> chunk_count: u32;
+var<workgroup> chosen: array<u32, 1024>;
+var<workgroup> chosen_count: array<atomic<u32>, 4>;
 // where the lists of each step and level begin and end
 var<workgroup> spans: array<vec2<u32>, 224>;
 // where steps begin among all entries of the tile, and the end
 var<workgroup> step_begins: array<u32, 33>;
-var<workgroup> farthest_bits: atomic<u32>;
-var<workgroup> farthest_shared: u32;
-var<workgroup> cone: Cone;
+// the depth that no pixel of a block exceeds, as bits, and of the tile
+var<workgroup> farthest_bits: array<atomic<u32>, 4>;
+var<workgroup> farthest_of_all: u32;
+var<workgroup> is_again: atomic<u32>;
+var<workgroup> is_again_shared: u32;
+var<workgroup> cones: array<Cone, 4>;
 
 // As `View::direction`, in f64.
 fn exact_sight(column: u32, row: u32) -> Sight {
@@ -100,7 +107,7 @@ fn direction(place: vec2<f32>) -> vec3<f32> {
 }
 
 fn cone_of(corner: vec2<f32>) -> Cone {
-    let side = f32(TILE);
+    let side = f32(SIDE);
     var found: Cone;
     found.middle = direction(corner + 0.5 * side);
     found.least_depth_per_range = 1.0;
@@ -119,18 +126,19 @@ fn cone_of(corner: vec2<f32>) -> Cone {
     return found;
 }
 
-// At most the depth of a ball anywhere in a tile.
-fn least_depth(splat: vec4<f32>, corner: vec2<f32>) -> f32 {
+// At most the depth of a ball anywhere in a block, above all limits where it is beside the block.
+fn least_depth(splat: vec4<f32>, corner: vec2<f32>, block: u32) -> f32 {
     let radius = splat.w;
     if KIND == PARALLEL {
-        let beside = max(max(corner + 0.5 - splat.xy, splat.xy - corner - (f32(TILE) - 0.5)), vec2<f32>(0.0));
+        let beside = max(max(corner + 0.5 - splat.xy, splat.xy - corner - (f32(SIDE) - 0.5)), vec2<f32>(0.0));
         let offset = beside * view.metres_per_pixel;
         let square = radius * radius * (1.0 + SQUARE_ROOM) - dot(offset, offset) + LEAST_SQUARE;
         let room = DEPTH_ROOM * (abs(splat.z) + radius) + LEAST_ROOM;
-        return select(ENDLESS_DEPTH, max(splat.z - sqrt(max(square, 0.0)) - room, 0.0), square > 0.0);
+        return select(NONE, max(splat.z - sqrt(max(square, 0.0)) - room, 0.0), square > 0.0);
     }
     let distance = length(splat.xyz);
     let room = CENTRAL_ROOM * (distance + radius) + LEAST_ROOM;
+    let cone = cones[block];
     let middle_along = dot(splat.xyz, cone.middle);
     let middle_beside = length(cross(splat.xyz, cone.middle));
     let beside = middle_beside * cone.cosine - middle_along * cone.sine - room;
@@ -140,7 +148,7 @@ fn least_depth(splat: vec4<f32>, corner: vec2<f32>) -> f32 {
     let along = middle_along * cone.cosine + middle_beside * cone.sine + room;
     let half_chord = sqrt(max((radius - beside) * (radius + beside), 0.0));
     if beside >= radius || along + half_chord < 0.0 {
-        return ENDLESS_DEPTH;
+        return NONE;
     }
     return max((along - half_chord - 2.0 * room) * cone.least_depth_per_range, view.near);
 }
@@ -259,18 +267,22 @@ fn step_of(entry: u32) -> u32 {
     return step;
 }
 
-// The depth that no pixel of the tile exceeds.
+// Shares the depths that no pixel of each block exceeds, and returns that of the tile.
 fn farthest(lane: u32, upper: f32) -> f32 {
-    if lane == 0u {
-        atomicStore(&farthest_bits, 0u);
+    if lane < BLOCKS {
+        atomicStore(&farthest_bits[lane], 0u);
     }
     workgroupBarrier();
-    atomicMax(&farthest_bits, bitcast<u32>(upper));
+    atomicMax(&farthest_bits[lane / 64u], bitcast<u32>(upper));
     workgroupBarrier();
     if lane == 0u {
-        farthest_shared = atomicLoad(&farthest_bits);
+        var most = 0u;
+        for (var block = 0u; block < BLOCKS; block++) {
+            most = max(most, atomicLoad(&farthest_bits[block]));
+        }
+        farthest_of_all = most;
     }
-    return bitcast<f32>(workgroupUniformLoad(&farthest_shared));
+    return bitcast<f32>(workgroupUniformLoad(&farthest_of_all));
 }
 
 // What a pixel shows, a ball more considered; of equally near ones the ball with the lowest row.
@@ -296,11 +308,39 @@ fn store(pixel: u32, shown: Shown) {
     }
 }
 
+// Lists an entry of the tile for the blocks in which its ball may be as near as what is there.
+fn choose(lane: u32, entry_of_tile: u32, corner: vec2<f32>) {
+    let step = step_of(entry_of_tile);
+    var entry = entry_of_tile - step_begins[step];
+    var level = 0u;
+    var of_level = spans[step];
+    while entry >= of_level.y - of_level.x {
+        entry -= of_level.y - of_level.x;
+        level++;
+        of_level = spans[level * STEPS + step];
+    }
+    let ball = listed[of_level.x + entry];
+    let splat = splats[ball];
+    chunk[lane] = splat;
+    chunk_balls[lane] = ball;
+    for (var block = 0u; block < BLOCKS; block++) {
+        let of_block = corner + vec2<f32>(f32((block & 1u) * SIDE), f32((block >> 1u) * SIDE));
+        let limit = bitcast<f32>(atomicLoad(&farthest_bits[block]));
+        // a depth equal to the limit may be that of a lower row
+        if least_depth(bitcast<vec4<f32>>(splat), of_block, block) <= limit {
+            chosen[block * 256u + atomicAdd(&chosen_count[block], 1u)] = lane;
+        }
+    }
+}
+
 @compute @workgroup_size(256)
 fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let tile = vec2<u32>(group.x, group.y + piece.first_row);
     for (var at = lane; at < STEPS * LEVELS; at += 256u) {
         spans[at] = span(at, tile);
+    }
+    if lane == 0u {
+        atomicStore(&is_again, 0u);
     }
     workgroupBarrier();
     if lane <= STEPS {
@@ -313,8 +353,9 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         }
         step_begins[lane] = sum;
     }
-    let column = tile.x * TILE + lane % TILE;
-    let row = tile.y * TILE + lane / TILE;
+    let block = lane / 64u;
+    let column = tile.x * TILE + (block & 1u) * SIDE + (lane & 7u);
+    let row = tile.y * TILE + (block >> 1u) * SIDE + ((lane >> 3u) & 7u);
     let is_inside = column < view.width && row < view.height;
     let pixel = row * view.width + column;
     let place = vec2<f32>(f32(column) + 0.5, f32(row + view.top) + 0.5);
@@ -339,66 +380,75 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         if is_inside {
             sight = exact_sight(column, row);
         }
-        if lane == 0u {
-            cone = cone_of(corner - vec2<f32>(0.0, f32(view.top)));
+        if lane < BLOCKS {
+            let of_block = vec2<f32>(f32((lane & 1u) * SIDE), f32((lane >> 1u) * SIDE));
+            cones[lane] = cone_of(corner + of_block - vec2<f32>(0.0, f32(view.top)));
         }
     }
     var upper = select(bitcast<f32>(shown.depth), ENDLESS_DEPTH, shown.depth == INFINITE_SINGLE);
     var limit = farthest(lane, upper);
     var computed = 0u;
-    var kept: array<u32, KEPT>;
-    var kept_count = 0u;
+    // up to three balls, and bounds of their depths; the least of those that found no room
+    var kept = vec3<u32>(0u);
+    var kept_lower = vec3<f32>(NONE);
+    var missed = NONE;
     for (var turn = 0u; turn < 2u; turn++) {
+        if turn == 1u {
+            if missed <= upper {
+                atomicStore(&is_again, 1u);
+            }
+            workgroupBarrier();
+            if lane == 0u {
+                is_again_shared = atomicLoad(&is_again);
+            }
+            if workgroupUniformLoad(&is_again_shared) == 0u {
+                break;
+            }
+        }
         for (var first = 0u; first < total; first += 256u) {
             if bitcast<f32>(steps[RANGES + step_of(first)]) > limit {
                 break;
             }
-            if lane == 0u {
-                atomicStore(&chunk_size, 0u);
+            if lane < BLOCKS {
+                atomicStore(&chosen_count[lane], 0u);
             }
             workgroupBarrier();
-            var entry = first + lane;
-            if entry < total {
-                let step = step_of(entry);
-                entry -= step_begins[step];
-                var level = 0u;
-                var of_level = spans[step];
-                while entry >= of_level.y - of_level.x {
-                    entry -= of_level.y - of_level.x;
-                    level++;
-                    of_level = spans[level * STEPS + step];
-                }
-                let ball = listed[of_level.x + entry];
-                let splat = splats[ball];
-                // a depth equal to the limit may be that of a lower row
-                if least_depth(bitcast<vec4<f32>>(splat), corner) <= limit {
-                    let at = atomicAdd(&chunk_size, 1u);
-                    chunk[at] = splat;
-                    chunk_balls[at] = ball;
-                }
+            if first + lane < total {
+                choose(lane, first + lane, corner);
             }
             workgroupBarrier();
-            if lane == 0u {
-                chunk_count = atomicLoad(&chunk_size);
-            }
-            let count = workgroupUniformLoad(&chunk_count);
-            if IS_COUNTED && lane == 0u {
-                atomicAdd(&left_out[2], min(total - first, 256u));
+            let count = atomicLoad(&chosen_count[block]);
+            if IS_COUNTED && lane % 64u == 0u {
+                atomicAdd(&left_out[2], min(total - first, 256u) / BLOCKS);
                 atomicAdd(&left_out[3], count);
             }
-            for (var at = 0u; at < count; at++) {
+            for (var i = 0u; i < count; i++) {
+                let at = chosen[block * 256u + i];
                 let splat = chunk[at];
                 let depths = bounds(bitcast<vec4<f32>>(splat), place, sight);
-                if turn == 0u {
-                    upper = min(upper, depths.y);
-                } else if is_inside && depths.x <= upper && depths.x < ENDLESS_DEPTH {
-                    computed += 1u;
-                    if kept_count < KEPT {
-                        kept[kept_count] = chunk_balls[at];
-                        kept_count += 1u;
-                    } else {
+                if !is_inside || depths.x > upper || depths.x >= ENDLESS_DEPTH {
+                    continue;
+                }
+                if turn == 1u {
+                    if missed <= upper {
+                        computed += 1u;
                         shown = nearer(shown, splat, chunk_balls[at], place, sight);
                     }
+                    continue;
+                }
+                upper = min(upper, depths.y);
+                // in the place of one that is certainly behind
+                if kept_lower.x > upper {
+                    kept.x = chunk_balls[at];
+                    kept_lower.x = depths.x;
+                } else if kept_lower.y > upper {
+                    kept.y = chunk_balls[at];
+                    kept_lower.y = depths.x;
+                } else if kept_lower.z > upper {
+                    kept.z = chunk_balls[at];
+                    kept_lower.z = depths.x;
+                } else {
+                    missed = min(missed, depths.x);
                 }
             }
             workgroupBarrier();
@@ -406,10 +456,15 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
                 limit = farthest(lane, upper);
             }
         }
-        limit = farthest(lane, upper);
     }
-    for (var at = 0u; at < kept_count; at++) {
-        shown = nearer(shown, splats[kept[at]], kept[at], place, sight);
+    if missed > upper {
+        // all pixels together, so that they do not wait for each other
+        for (var i = 0u; i < 3u; i++) {
+            if kept_lower[i] <= upper {
+                computed += 1u;
+                shown = nearer(shown, splats[kept[i]], kept[i], place, sight);
+            }
+        }
     }
     if IS_COUNTED {
         atomicAdd(&left_out[4], computed);

@@ -36,7 +36,7 @@ struct View {
 }
 
 override KIND: u32;
-// Whether work is counted: entries looked at, balls that all pixels of a tile are tested with, exact depths, and all entries.
+// Whether work is counted: entries looked at, balls that all pixels of a block are tested with, exact depths, and all entries.
 override IS_COUNTED: bool;
 const PARALLEL: u32 = 0u;
 const PERSPECTIVE: u32 = 1u;
