@@ -17,8 +17,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 const WORTH_A_DEVICE: usize = 1 << 24;
 /// Lines of sight from which on a device that is ready is asked: a question to it takes the time of some thousands on the CPU.
 const WORTH_ASKING: usize = 1 << 14;
-/// Lines of sight that the CPU follows in the time in which it draws a ball or a pixel of a depth map.
-const LINES_OF_A_PIXEL: usize = 3;
+/// Balls and pixels from which on a device is asked for a depth map.
+const WORTH_DRAWING: usize = 1 << 12;
 
 /// Which device is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -229,8 +229,11 @@ impl Backend for Gpu {
         pixel_count: usize,
         control: &Control<'_>,
     ) -> Result<Option<Box<dyn Drawable + 'b>>> {
-        let lines = balls.len().saturating_add(pixel_count).saturating_mul(LINES_OF_A_PIXEL);
-        let Some(ready) = (lines >= WORTH_ASKING).then(|| self.shared.ready(lines)).flatten() else { return Ok(None) };
+        // from which size on a picture pays to make a device ready for was not measured: it has to be asked for
+        if self.shared.choice == Choice::Automatic || balls.len().saturating_add(pixel_count) < WORTH_DRAWING {
+            return Ok(None);
+        }
+        let Some(ready) = self.shared.ready(0) else { return Ok(None) };
         let drawing = Drawing::new(Arc::clone(&self.shared), ready, balls, control)?;
         Ok(drawing.map(|drawing| Box::new(drawing) as Box<dyn Drawable + 'b>))
     }

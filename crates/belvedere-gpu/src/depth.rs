@@ -349,13 +349,13 @@ fn view_bytes(view: &View, [top, rows]: Band, [first_ball, ball_count]: [usize; 
     let singles = [scale, 1.0 / scale, near, far.min(ENDLESS), least_pixel].map(single);
     let words = [ball_count, width, rows, top].map(whole);
     let middle = [middle[0], middle[1] - top as f64].map(single);
-    let lists = [before[LEVELS as usize] * STEPS].into_iter().chain(before[..LEVELS as usize].iter().copied());
+    let tiles = before[..LEVELS as usize].iter().copied();
     (doubles.flat_map(f64::to_le_bytes))
         .chain(singles.into_iter().flat_map(f32::to_le_bytes))
         .chain(words.into_iter().flat_map(u32::to_le_bytes))
         .chain([0; 4])
         .chain(middle.into_iter().flat_map(f32::to_le_bytes))
-        .chain(lists.chain([first_ball]).map(whole).flat_map(u32::to_le_bytes))
+        .chain(tiles.chain([first_ball]).map(whole).flat_map(u32::to_le_bytes))
         .collect()
 }
 

@@ -67,8 +67,8 @@ impl Scene {
                 (.., eye, None) => {
                     let eye = local(eye.unwrap_or_default());
                     let width = camera.width.unwrap_or(PANORAMA_WIDTH);
-                    let found = control
-                        .stage("drawing", 0, || model.panorama(eye, width, ItemBuffer::With, control))?;
+                    let found =
+                        control.stage("drawing", 0, || model.panorama(eye, width, ItemBuffer::With, control))?;
                     return Ok((found.range, found.balls));
                 }
                 _ => {
@@ -79,8 +79,8 @@ impl Scene {
                     });
                 }
             };
-            let found = control
-                .stage("drawing", 0, || model.depth_map(&view, Profile::Sphere, ItemBuffer::With, control))?;
+            let found =
+                control.stage("drawing", 0, || model.depth_map(&view, Profile::Sphere, ItemBuffer::With, control))?;
             Ok((found.depth, found.balls))
         })?;
         Ok((to_array(py, depth)?, balls.map(|balls| to_array(py, balls)).transpose()?))

@@ -21,7 +21,7 @@ const BLOCK: u32 = 2048u;
 var<workgroup> sums: array<u32, 256>;
 var<workgroup> least: array<atomic<u32>, 32>;
 
-// What the threads before this one have together; `total` of all is in the last of the sums.
+// What the threads before this one have together. The last of the sums is that of all threads.
 fn sum_before(lane: u32, own: u32) -> u32 {
     sums[lane] = own;
     workgroupBarrier();

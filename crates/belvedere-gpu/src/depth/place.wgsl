@@ -18,7 +18,7 @@ struct View {
     // limits of depth
     near: f32,
     far: f32,
-    // the sine of a quarter of the smallest pixel's width
+    // a quarter of the diagonal of the smallest pixel, radians
     least_pixel: f32,
     ball_count: u32,
     // of the picture, or the part of it that is drawn now
@@ -28,7 +28,6 @@ struct View {
     top: u32,
     // of the whole picture, pixels from the upper left corner of the part
     middle: vec2<f32>,
-    counter_count: u32,
     // before each level
     tiles_before: array<u32, 7>,
     // of balls among those of the scene
