@@ -16,7 +16,7 @@ const OF_A_LOOK: [f64; 2] = [300.0, 4.0 + 16.0];
 const OF_A_TEST: [f64; 2] = [70.0, 0.0];
 const OF_AN_EXACT_DEPTH: [f64; 2] = [1600.0, 16.0];
 const OF_A_CENTRAL_DEPTH: [f64; 2] = [3300.0, 16.0];
-const OF_A_DIRECTION: [f64; 2] = [6600.0, 0.0];
+const OF_A_DIRECTION: [f64; 2] = [4600.0, 0.0];
 const OF_A_PIXEL: [f64; 2] = [450.0, 8.0];
 /// A data-centre card: instructions on whole numbers a second (an H100: 132 groups of 64 at 1.7 GHz), and bytes of memory a second.
 const CARD: [f64; 2] = [1.4e13, 3e12];

@@ -327,6 +327,31 @@ fn multiply_double(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
     return rounded_double(sign, exponent, left_64(high, 1u));
 }
 
+struct Division {
+    digit: u32,
+    rest: vec2<u32>,
+}
+
+// Sixteen bits more of a quotient: how often a divisor, whose highest bit is at 63, goes into 2^16 times a number below it.
+fn next_digit(number: vec2<u32>, divisor: vec2<u32>) -> Division {
+    // from the first words only: the digit, or one or two more (Knuth 1997, section 4.3.1, theorem B)
+    var digit = min(number.y / (divisor.y >> 16u), 0xffffu);
+    let low = product_64(digit, divisor.x);
+    let high = sum_64(product_64(digit, divisor.y), vec2<u32>(low.y, 0u));
+    let taken = vec2<u32>(low.x, high.x);
+    let given = vec2<u32>(number.x << 16u, (number.y << 16u) | (number.x >> 16u));
+    var rest = difference_64(given, taken);
+    var top = (number.y >> 16u) - high.y - select(0u, 1u, is_less_64(given, taken));
+    for (var i = 0u; i < 2u; i++) {
+        if (top & SIGN) != 0u {
+            digit -= 1u;
+            rest = sum_64(rest, divisor);
+            top += select(0u, 1u, is_less_64(rest, divisor));
+        }
+    }
+    return Division(digit, rest);
+}
+
 fn divide_double(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
     let sign = (a.y ^ b.y) & SIGN;
     let is_a_infinite = (a.y & ~SIGN) >= INFINITE_DOUBLE;
@@ -344,23 +369,19 @@ fn divide_double(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
     }
     let x = normal_double(a);
     let y = normal_double(b);
-    var rest = x.significand;
+    let divisor = left_64(y.significand, 11u);
+    let first = next_digit(left_64(x.significand, 10u), divisor);
+    let second = next_digit(first.rest, divisor);
+    let third = next_digit(second.rest, divisor);
+    let fourth = next_digit(third.rest, divisor);
+    var quotient = vec2<u32>((third.digit << 16u) | fourth.digit, (first.digit << 16u) | second.digit);
     var exponent = x.exponent - y.exponent + 1023;
-    if is_less_64(rest, y.significand) {
-        rest = left_64(rest, 1u);
+    if (quotient.y & SIGN) != 0u {
+        quotient = right_64(quotient, 1u);
+    } else {
         exponent -= 1;
     }
-    var quotient = vec2<u32>(0u);
-    for (var i = 0u; i < 55u; i++) {
-        quotient = vec2<u32>(quotient.x << 1u, (quotient.y << 1u) | (quotient.x >> 31u));
-        if !is_less_64(rest, y.significand) {
-            rest = difference_64(rest, y.significand);
-            quotient.x |= 1u;
-        }
-        rest = vec2<u32>(rest.x << 1u, (rest.y << 1u) | (rest.x >> 31u));
-    }
-    quotient = left_64(quotient, 8u);
-    quotient.x |= select(0u, 1u, (rest.x | rest.y) != 0u);
+    quotient.x |= select(0u, 1u, (fourth.rest.x | fourth.rest.y) != 0u);
     return rounded_double(sign, exponent, quotient);
 }
 
