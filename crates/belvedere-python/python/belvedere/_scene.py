@@ -301,7 +301,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
 
     @property
     def device(self) -> str | None:
-        """The graphics processor that is ready to be asked; None for the CPU.
+        """The graphics processor that is ready to be used; None for the CPU.
 
         Examples
         --------
