@@ -90,7 +90,7 @@ pub(crate) struct Global {
     /// Number of threads, at most 1024; it does not change results [default: all processors]
     #[arg(long, global = true, value_name = "N", value_parser = at_most::<1024>)]
     pub(crate) threads: Option<usize>,
-    /// What tests many lines of sight; it does not change results: auto, cpu, gpu, or the number of a device
+    /// What tests many lines of sight and draws depth maps; it does not change results: auto, cpu, gpu, or the number of a device
     #[arg(long, global = true, value_name = "DEVICE", default_value = "auto", allow_negative_numbers = true)]
     pub(crate) device: DeviceChoice,
     /// Seed of the random numbers

@@ -1,10 +1,13 @@
 //! The device as a backend: what it decides, and what happens when it cannot.
 
+use crate::depth::{Painter, Work};
 use crate::device::{Device, DeviceInfo, DeviceKind, devices};
+use crate::drawing::Drawing;
 use crate::lines::{Liner, Loaded, Words};
 use belvedere_core::depth::DepthBounds;
 use belvedere_core::query::cpu::PreparedBalls;
-use belvedere_core::query::{Backend, BallTree, Prepared, Profile, Settled, Viewers};
+use belvedere_core::query::{Backend, BallTree, Drawable, Prepared, Profile, Settled, Viewers};
+use belvedere_data::balls::MedialBalls;
 use belvedere_data::control::Control;
 use belvedere_data::view::View;
 use belvedere_data::{Error, Result};
@@ -14,6 +17,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 const WORTH_A_DEVICE: usize = 1 << 24;
 /// Lines of sight from which on a device that is ready is asked: a question to it takes the time of some thousands on the CPU.
 const WORTH_ASKING: usize = 1 << 14;
+/// Balls and pixels from which on a device is asked for a depth map.
+const WORTH_DRAWING: usize = 1 << 12;
 
 /// Which device is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,21 +38,31 @@ pub struct Gpu {
 }
 
 #[derive(Debug)]
-struct Shared {
+pub(crate) struct Shared {
     choice: Choice,
     state: Mutex<State>,
     notes: Mutex<Vec<String>>,
     /// The device that decided anything.
     used: OnceLock<DeviceInfo>,
-    /// For tests: after so many directions the device fails.
-    fails_after: Option<usize>,
+    /// For tests: after so many directions, or parts of a picture, the device fails.
+    pub(crate) fails_after: Option<usize>,
+    /// For benches: how much work the depth maps were.
+    counted: Option<Mutex<Work>>,
+}
+
+/// A device that is ready, with what it can do.
+#[derive(Debug)]
+pub(crate) struct Ready {
+    pub(crate) device: Arc<Device>,
+    liner: Liner,
+    pub(crate) painter: Painter,
 }
 
 #[derive(Debug)]
 enum State {
     /// Not yet needed.
     Unopened,
-    Ready(Arc<Liner>),
+    Ready(Arc<Ready>),
     /// There is none, or it failed.
     Gone,
 }
@@ -59,14 +74,14 @@ impl Gpu {
     /// [`Error::Device`] where no device has that number, or it cannot be made ready. That there is no graphics processor for [`Choice::Gpu`] is no
     /// error: the CPU gives the same results, and [`Gpu::notes`] says so.
     pub fn new(choice: Choice) -> Result<Self> {
-        let gpu = Self::with_failure(choice, None);
+        let gpu = Self::unopened(choice, None, None);
         match choice {
             Choice::Automatic => {}
             Choice::Number(number) => {
-                *gpu.shared.lock() = State::Ready(Arc::new(Liner::new(Device::open(number)?)?));
+                *gpu.shared.lock() = State::Ready(Arc::new(gpu.shared.make_ready(Device::open(number)?)?));
             }
             Choice::Gpu => {
-                gpu.shared.liner(usize::MAX);
+                gpu.shared.ready(usize::MAX);
             }
         }
         Ok(gpu)
@@ -79,16 +94,35 @@ impl Gpu {
     /// Those of [`Gpu::new`].
     #[doc(hidden)]
     pub fn limited(number: usize, most_bytes: u64, fails_after: Option<usize>) -> Result<Self> {
-        let gpu = Self::with_failure(Choice::Number(number), fails_after);
+        let gpu = Self::unopened(Choice::Number(number), fails_after, None);
         let mut device = Device::open(number)?;
         device.info.most_bytes = device.info.most_bytes.min(most_bytes);
-        *gpu.shared.lock() = State::Ready(Arc::new(Liner::new(device)?));
+        *gpu.shared.lock() = State::Ready(Arc::new(gpu.shared.make_ready(device)?));
         Ok(gpu)
     }
 
-    fn with_failure(choice: Choice, fails_after: Option<usize>) -> Self {
+    /// As [`Gpu::new`] with a device that counts how much work depth maps are, which takes time: what benches need.
+    ///
+    /// # Errors
+    /// Those of [`Gpu::new`].
+    #[doc(hidden)]
+    pub fn counting(number: usize) -> Result<Self> {
+        let gpu = Self::unopened(Choice::Number(number), None, Some(Mutex::default()));
+        *gpu.shared.lock() = State::Ready(Arc::new(gpu.shared.make_ready(Device::open(number)?)?));
+        Ok(gpu)
+    }
+
+    fn unopened(choice: Choice, fails_after: Option<usize>, counted: Option<Mutex<Work>>) -> Self {
         let (state, notes) = (Mutex::new(State::Unopened), Mutex::default());
-        Self { shared: Arc::new(Shared { choice, state, notes, used: OnceLock::new(), fails_after }) }
+        Self { shared: Arc::new(Shared { choice, state, notes, used: OnceLock::new(), fails_after, counted }) }
+    }
+
+    /// How much work depth maps were so far, of a device that counts ([`Gpu::counting`]).
+    #[doc(hidden)]
+    #[must_use]
+    pub fn work(&self) -> Work {
+        let counted = self.shared.counted.as_ref();
+        counted.map_or_else(Work::default, |work| *work.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// The device that some question was answered with. Small questions are the CPU's.
@@ -101,7 +135,7 @@ impl Gpu {
     #[must_use]
     pub fn device(&self) -> Option<DeviceInfo> {
         match &*self.shared.lock() {
-            State::Ready(liner) => Some(liner.device.info.clone()),
+            State::Ready(ready) => Some(ready.device.info.clone()),
             State::Unopened | State::Gone => None,
         }
     }
@@ -125,12 +159,35 @@ impl Shared {
         }
     }
 
-    /// The device for a question about so many lines of sight, made ready if it is not yet.
-    fn liner(&self, lines: usize) -> Option<Arc<Liner>> {
+    fn make_ready(&self, device: Device) -> Result<Ready> {
+        let device = Arc::new(device);
+        let painter = Painter::new(Arc::clone(&device), self.counted.is_some());
+        Ok(Ready { liner: Liner::new(Arc::clone(&device))?, painter, device })
+    }
+
+    /// Says which device was of use.
+    pub(crate) fn set_used(&self, device: &Device) {
+        self.used.get_or_init(|| device.info.clone());
+    }
+
+    pub(crate) fn count(&self, work: Work) {
+        if let Some(counted) = &self.counted {
+            *counted.lock().unwrap_or_else(PoisonError::into_inner) += work;
+        }
+    }
+
+    /// The device failed: from now on the CPU does all.
+    pub(crate) fn give_up(&self, device: &Device, what: &str) {
+        self.note(format!("{}: {what}; the CPU does the rest, with the same results", device.info.name));
+        *self.lock() = State::Gone;
+    }
+
+    /// The device for a question that takes the CPU as long as so many lines of sight, made ready if it is not yet.
+    pub(crate) fn ready(&self, lines: usize) -> Option<Arc<Ready>> {
         let mut state = self.lock();
         if matches!(*state, State::Unopened) && (self.choice != Choice::Automatic || lines >= WORTH_A_DEVICE) {
             *state = match self.open() {
-                Ok(Some(liner)) => State::Ready(Arc::new(liner)),
+                Ok(Some(ready)) => State::Ready(Arc::new(ready)),
                 Ok(None) => State::Gone,
                 Err(error) => {
                     self.note(format!("{error}; the CPU does all instead, with the same results"));
@@ -139,12 +196,12 @@ impl Shared {
             };
         }
         match &*state {
-            State::Ready(liner) => Some(Arc::clone(liner)),
+            State::Ready(ready) => Some(Arc::clone(ready)),
             State::Unopened | State::Gone => None,
         }
     }
 
-    fn open(&self) -> Result<Option<Liner>> {
+    fn open(&self) -> Result<Option<Ready>> {
         let of_kind = |kind| move |info: &DeviceInfo| info.kind == kind;
         let found = devices();
         let separate = found.iter().find(|info| of_kind(DeviceKind::Separate)(info));
@@ -153,7 +210,7 @@ impl Shared {
             _ => separate.or_else(|| found.iter().find(|info| of_kind(DeviceKind::Integrated)(info))),
         };
         match chosen {
-            Some(info) => Ok(Some(Liner::new(Device::open(info.number)?)?)),
+            Some(info) => Ok(Some(self.make_ready(Device::open(info.number)?)?)),
             None if self.choice == Choice::Automatic => Ok(None),
             None => Err(Error::Device { what: "there is no graphics processor with a driver".to_owned() }),
         }
@@ -164,6 +221,21 @@ impl Backend for Gpu {
     fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn Prepared>> {
         let (tree, cpu) = (Arc::clone(balls), PreparedBalls::new(balls));
         Ok(Box::new(OnDevice { tree, cpu, shared: Arc::clone(&self.shared), memory: Mutex::default() }))
+    }
+
+    fn drawable<'b>(
+        &self,
+        balls: &'b MedialBalls,
+        pixel_count: usize,
+        control: &Control<'_>,
+    ) -> Result<Option<Box<dyn Drawable + 'b>>> {
+        // from which size on a picture pays to make a device ready for was not measured: it has to be asked for
+        if self.shared.choice == Choice::Automatic || balls.len().saturating_add(pixel_count) < WORTH_DRAWING {
+            return Ok(None);
+        }
+        let Some(ready) = self.shared.ready(0) else { return Ok(None) };
+        let drawing = Drawing::new(Arc::clone(&self.shared), ready, balls, control)?;
+        Ok(drawing.map(|drawing| Box::new(drawing) as Box<dyn Drawable + 'b>))
     }
 
     fn device(&self) -> Option<String> {
@@ -226,18 +298,12 @@ impl OnDevice {
     ) -> Result<Option<(Settled, usize)>> {
         let lines = targets.len().saturating_mul(viewers.len());
         let is_worth_it = lines >= WORTH_ASKING && self.tree.rule().profile == Profile::Sphere;
-        let Some(liner) = is_worth_it.then(|| self.shared.liner(lines)).flatten() else { return Ok(None) };
+        let Some(ready) = is_worth_it.then(|| self.shared.ready(lines)).flatten() else { return Ok(None) };
         let mut settled = Settled::new(targets.len(), viewers.len());
         let mut finished = 0;
-        match self.decide_on(&liner, targets, viewers, control, &mut settled, &mut finished) {
-            Ok(()) => {
-                self.shared.used.get_or_init(|| liner.device.info.clone());
-            }
-            Err(Error::Device { what }) => {
-                let name = &liner.device.info.name;
-                self.shared.note(format!("{name}: {what}; the CPU does the rest, with the same results"));
-                *self.shared.lock() = State::Gone;
-            }
+        match self.decide_on(&ready.liner, targets, viewers, control, &mut settled, &mut finished) {
+            Ok(()) => self.shared.set_used(&ready.device),
+            Err(Error::Device { what }) => self.shared.give_up(&ready.device, &what),
             Err(other) => return Err(other),
         }
         Ok(Some((settled, finished)))

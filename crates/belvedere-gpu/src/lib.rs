@@ -1,7 +1,7 @@
-//! Lines of sight on a graphics processor, with the same bits as on the CPU.
+//! Lines of sight and depth maps on a graphics processor, with the same bits as on the CPU.
 //!
 //! [`Gpu`] is a [`Backend`](belvedere_core::query::Backend): it follows lines of sight through the tree of balls in single precision, decides those that rounding cannot change, and leaves
-//! the others to the CPU, which decides exactly. When there is no device, too little memory, or the device is lost in the middle of the work, the CPU does what
+//! the others to the CPU, which decides exactly. Depth maps it draws with an arithmetic of whole numbers that repeats the CPU's. When there is no device, too little memory, or the device is lost in the middle of the work, the CPU does what
 //! is left, and [`Gpu::notes`] says so in a line.
 //!
 //! ```no_run
@@ -23,8 +23,11 @@
 #![forbid(unsafe_code)]
 
 mod backend;
+mod depth;
 mod device;
+mod drawing;
 mod lines;
 
 pub use backend::{Choice, Gpu};
+pub use depth::Work;
 pub use device::{DeviceInfo, DeviceKind, devices};

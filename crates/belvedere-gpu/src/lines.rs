@@ -9,6 +9,7 @@ use belvedere_data::vector::dot;
 use belvedere_data::{Error, Result};
 use bytemuck::cast_slice;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Targets of a group of threads.
 const GROUP: usize = 64;
@@ -37,7 +38,7 @@ const UNIT: f64 = 1e-12;
 /// A device with the shader.
 #[derive(Debug)]
 pub(crate) struct Liner {
-    pub(crate) device: Device,
+    device: Arc<Device>,
     pipeline: wgpu::ComputePipeline,
 }
 
@@ -85,7 +86,7 @@ impl Words {
 impl Liner {
     /// # Errors
     /// [`Error::Device`] where the device cannot run the shader.
-    pub(crate) fn new(device: Device) -> Result<Self> {
+    pub(crate) fn new(device: Arc<Device>) -> Result<Self> {
         let module = device.device.create_shader_module(wgpu::include_wgsl!("lines.wgsl"));
         let pipeline = device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some("lines"),

@@ -3,7 +3,7 @@
 use crate::scene::Scene;
 use crate::sun::Place;
 use crate::work::run;
-use belvedere::depth::{ItemBuffer, Profile, depth_map, panorama};
+use belvedere::depth::{ItemBuffer, Profile};
 use belvedere::raster::Raster;
 use belvedere::view::{CAMERA_FOV, CAMERA_SIZE, PANORAMA_WIDTH, View, default_pixel_size, to_sun};
 use numpy::PyArray2;
@@ -67,8 +67,8 @@ impl Scene {
                 (.., eye, None) => {
                     let eye = local(eye.unwrap_or_default());
                     let width = camera.width.unwrap_or(PANORAMA_WIDTH);
-                    let found = control
-                        .stage("drawing", 0, || panorama(model.balls(), eye, width, ItemBuffer::With, control))?;
+                    let found =
+                        control.stage("drawing", 0, || model.panorama(eye, width, ItemBuffer::With, control))?;
                     return Ok((found.range, found.balls));
                 }
                 _ => {
@@ -79,8 +79,8 @@ impl Scene {
                     });
                 }
             };
-            let found = control
-                .stage("drawing", 0, || depth_map(model.balls(), &view, Profile::Sphere, ItemBuffer::With, control))?;
+            let found =
+                control.stage("drawing", 0, || model.depth_map(&view, Profile::Sphere, ItemBuffer::With, control))?;
             Ok((found.depth, found.balls))
         })?;
         Ok((to_array(py, depth)?, balls.map(|balls| to_array(py, balls)).transpose()?))

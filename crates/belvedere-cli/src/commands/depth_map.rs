@@ -8,7 +8,7 @@ use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::control::Control;
-use belvedere::depth::{ItemBuffer, NO_BALL, Profile, depth_map, panorama};
+use belvedere::depth::{ItemBuffer, NO_BALL, Profile};
 use belvedere::figures::{Picture, camera_picture, depth_picture, panorama_picture, write_png};
 use belvedere::io::{Georeference, write_npy_f32_2d, write_npy_u32_2d, write_tif_f32, write_tif_u32};
 use belvedere::raster::Raster;
@@ -103,14 +103,14 @@ fn draw(
     let profile = arguments.scene.profile.into();
     if let [view] = views {
         let look = if view.is_central() { Look::Camera(*view) } else { Look::Parallel };
-        let map = flagged("--ball-profile", depth_map(scene.model.balls(), view, profile, items, control))?;
+        let map = flagged("--ball-profile", scene.model.depth_map(view, profile, items, control))?;
         return Ok(Drawn { depth: map.depth, balls: map.balls, around_eye_count: map.around_eye_count, look });
     }
     if profile != Profile::Sphere {
         return Err(Usage("--ball-profile: the paper's cone is for parallel views only".to_owned()).into());
     }
     let eye = views.first().map_or([0.0; 3], |view| view.frame.eye);
-    let map = panorama(scene.model.balls(), eye, arguments.view.panorama_width()?, items, control)?;
+    let map = scene.model.panorama(eye, arguments.view.panorama_width()?, items, control)?;
     Ok(Drawn { depth: map.range, balls: map.balls, around_eye_count: map.around_eye_count, look: Look::Panorama })
 }
 

@@ -6,7 +6,7 @@ use crate::pipeline::{self, Points, Scene};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
-use belvedere::depth::{ItemBuffer, Profile, depth_map};
+use belvedere::depth::{ItemBuffer, Profile};
 use belvedere::io::{
     ExtraColumn, ExtraValues, ReadOptions, TextRows, WriteReport, read_cloud, read_text_rows, write_cloud,
     write_npy_u8, write_text_rows,
@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     } else {
         let Some(view) = views.first() else { bail!("there is no view") };
         let map = stages.run("drawing depth map", 0, |control| {
-            depth_map(model.balls(), view, arguments.scene.profile.into(), ItemBuffer::Without, control)
+            model.depth_map(view, arguments.scene.profile.into(), ItemBuffer::Without, control)
         })?;
         let bias = arguments.bias.unwrap_or_else(|| map.default_depth_bias());
         section.add("method", "depth map").add("depth_bias_m", rounded(f64::from(bias), 4));

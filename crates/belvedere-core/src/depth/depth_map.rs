@@ -15,7 +15,7 @@ use rayon::prelude::*;
 pub const NO_BALL: u32 = u32::MAX;
 
 /// Whether a depth map also says which ball each pixel shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ItemBuffer {
     /// Depths only.
     #[default]

@@ -11,4 +11,5 @@ mod tiles;
 pub use crate::blocking::{Profile, surface_bias};
 pub use bounds::{BoundsParams, DepthBounds, depth_bounds};
 pub use depth_map::{DepthMap, ItemBuffer, NO_BALL, depth_map};
+pub(crate) use panorama::panorama_of_maps;
 pub use panorama::{Panorama, panorama};

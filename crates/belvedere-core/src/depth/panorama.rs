@@ -1,6 +1,6 @@
 //! Depth all around an eye, as a picture that people read: azimuth across, elevation down.
 
-use super::depth_map::{ItemBuffer, NO_BALL, depth_map};
+use super::depth_map::{DepthMap, ItemBuffer, NO_BALL, depth_map};
 use crate::blocking::Profile;
 use crate::medial::MedialBalls;
 use belvedere_data::Result;
@@ -48,10 +48,19 @@ pub fn panorama(
     items: ItemBuffer,
     control: &Control<'_>,
 ) -> Result<Panorama> {
-    let maps = View::panorama(eye, width.max(1))?
-        .iter()
-        .map(|view| depth_map(balls, view, Profile::Sphere, ItemBuffer::With, control))
-        .collect::<Result<Vec<_>>>()?;
+    let draw = |view: &View| depth_map(balls, view, Profile::Sphere, ItemBuffer::With, control);
+    panorama_of_maps(balls, eye, width, items, draw)
+}
+
+/// The same, from two depth maps with item buffers, however `draw` makes them.
+pub(crate) fn panorama_of_maps(
+    balls: &MedialBalls,
+    eye: [f64; 3],
+    width: usize,
+    items: ItemBuffer,
+    draw: impl FnMut(&View) -> Result<DepthMap>,
+) -> Result<Panorama> {
+    let maps = View::panorama(eye, width.max(1))?.iter().map(draw).collect::<Result<Vec<_>>>()?;
     let width = width.max(1).next_multiple_of(2);
     let height = width / 2;
     let pixels: Vec<(f32, u32)> = (0..width * height)

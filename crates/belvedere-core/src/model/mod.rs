@@ -13,6 +13,7 @@ mod clearing;
 mod close_range_normals;
 mod facts;
 mod params;
+mod pictures;
 mod prepare;
 mod questions;
 mod report;

@@ -5,8 +5,9 @@
 //! answers are the same bits on any device.
 
 use super::ball_tree::BallTree;
-use crate::depth::DepthBounds;
+use crate::depth::{DepthBounds, DepthMap, ItemBuffer};
 use belvedere_data::Result;
+use belvedere_data::balls::MedialBalls;
 use belvedere_data::control::Control;
 use belvedere_data::view::View;
 use std::sync::Arc;
@@ -18,6 +19,20 @@ pub trait Backend: Send + Sync + std::fmt::Debug {
     /// # Errors
     /// What the device reports.
     fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn Prepared>>;
+
+    /// Takes balls to draw them in views of so many pixels; `None`, the default, where that is no faster than [`depth_map`](crate::depth::depth_map).
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    fn drawable<'b>(
+        &self,
+        balls: &'b MedialBalls,
+        pixel_count: usize,
+        control: &Control<'_>,
+    ) -> Result<Option<Box<dyn Drawable + 'b>>> {
+        let _ = (balls, pixel_count, control);
+        Ok(None)
+    }
 
     /// The name of the device that is ready to be asked; `None`, the default, for the processor.
     fn device(&self) -> Option<String> {
@@ -55,6 +70,15 @@ pub trait Prepared: Send + Sync {
         let _ = (targets, viewers, control);
         Ok(None)
     }
+}
+
+/// Balls made ready to be drawn by a backend.
+pub trait Drawable: Send + Sync {
+    /// The depth map of the balls in `view`, as [`depth_map`](crate::depth::depth_map) makes it of spheres, bit by bit.
+    ///
+    /// # Errors
+    /// Those of [`depth_map`](crate::depth::depth_map).
+    fn depth_map(&self, view: &View, items: ItemBuffer, control: &Control<'_>) -> Result<DepthMap>;
 }
 
 /// Viewers of one kind.

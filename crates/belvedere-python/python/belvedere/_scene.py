@@ -276,16 +276,16 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         return self._plan(self._core.with_terrain(os.fspath(path)), self.report)
 
     def with_device(self, device: str | int = "auto") -> Scene:
-        """The same scene, whose lines of sight a graphics processor decides: the same results, sooner.
+        """The same scene, whose lines of sight and depth maps are the work of a graphics processor: the same results, sooner.
 
         Wheels are built without graphics processors: the page on graphics processors tells how to build one with them.
 
         Parameters
         ----------
         device : str or int
-            ``"auto"``: a graphics card, for questions of many lines of sight. ``"cpu"``. ``"gpu"``: the first graphics
-            card, or else integrated graphics; where there is none, the CPU, with a warning. A number: that of
-            :func:`belvedere.devices`.
+            ``"auto"``: a graphics card, for questions of many lines of sight, not for depth maps. ``"cpu"``. ``"gpu"``:
+            the first graphics card, or else integrated graphics; where there is none, the CPU, with a warning. A
+            number: that of :func:`belvedere.devices`.
 
         Examples
         --------
@@ -301,7 +301,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
 
     @property
     def device(self) -> str | None:
-        """The graphics processor that is ready to decide lines of sight; None for the CPU.
+        """The graphics processor that is ready to be used; None for the CPU.
 
         Examples
         --------

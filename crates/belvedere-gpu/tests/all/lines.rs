@@ -1,8 +1,4 @@
-//! What a device decides is what the CPU decides: on random and hostile balls, on whole scenes, and when the device is lost in the middle.
-//!
-//! The tests run on every device of the computer, software ones among them (Debian: `mesa-vulkan-drivers`).
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-#![allow(clippy::cast_possible_truncation, reason = "the numbers of tests are small, or made to be f32")]
+//! What a device decides of lines of sight is what the CPU decides: on random and hostile balls, on whole scenes, and when the device is lost in the middle.
 
 use belvedere::apps::sky_view::SkyDirections;
 use belvedere::control::Control;
@@ -14,42 +10,10 @@ use belvedere::query::{Answer, Backend, Ball, BallTree, BlockRule, Line, MedialS
 use belvedere::random::uniform;
 use belvedere_gpu::{Choice, DeviceInfo, Gpu, devices};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
-use std::io::Write;
-use std::path::PathBuf;
 use std::sync::Arc;
 
-fn skipped(what: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "SKIPPED {what}");
-}
-
-fn devices_or_skip(test: &str) -> Vec<DeviceInfo> {
-    let found = devices();
-    if found.is_empty() {
-        skipped(&format!("{test}: this computer has no device with a driver for Vulkan, Metal or DirectX 12"));
-    }
-    found
-}
-
-fn balls_of(balls: impl Iterator<Item = ([f64; 3], f64)>) -> MedialBalls {
-    let mut all = MedialBalls::default();
-    for (center, radius) in balls {
-        all.centers.push(center.map(|v| v as f32));
-        all.radii.push(radius as f32);
-        all.source.push(0);
-        all.touch.push(0);
-        all.separation_angles.push(1.0);
-    }
-    all
-}
-
-/// Balls in a box of some size.
-fn random_balls(count: u64, size: [f64; 3], largest: f64) -> impl Iterator<Item = ([f64; 3], f64)> {
-    (0..count).map(move |i| {
-        let random = |k: u64| uniform(21, 4 * i + k);
-        let center = std::array::from_fn(|axis| (random(axis as u64) - 0.5) * size[axis]);
-        (center, largest * random(3).powi(3))
-    })
-}
+use crate::depth_maps::assert_pictures_are_equal;
+use crate::{balls_of, data, devices_or_skip, random_balls};
 
 /// The directions of a sky view, and some along axes, flat and downward.
 fn directions() -> Vec<[f64; 3]> {
@@ -232,6 +196,7 @@ fn assert_scene_is_equal(name: &str, model: &SceneModel) {
         let tree = model.scene(&model.rule(), UnprovenAs::Visible, &Control::none()).unwrap();
         let open = assert_equal_on(&device, model.balls(), tree.params(), &targets, name);
         assert!(open < 0.001, "{name}: {open} of the lines stay open");
+        assert_pictures_are_equal(name, model, &with_gpu);
     }
 }
 
@@ -263,18 +228,6 @@ fn real_tiles_have_the_same_answers() {
         let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &Control::none()).unwrap();
         assert_scene_is_equal(tile, &model);
     }
-}
-
-/// The file at `relative` under `BELVEDERE_TEST_DATA` (default: `shared` beside the repository), or `None` after saying that the test is skipped.
-fn data(test: &str, relative: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("BELVEDERE_TEST_DATA")
-        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared")), PathBuf::from);
-    let path = root.join(relative);
-    if !path.exists() {
-        skipped(&format!("{test}: {relative} is not under BELVEDERE_TEST_DATA"));
-        return None;
-    }
-    Some(path)
 }
 
 #[test]

@@ -1,9 +1,13 @@
-//! How fast does a device decide lines of sight in many directions, and how far is that from the limit of its memory?
+//! How fast does a device decide lines of sight in many directions and draw depth maps, and how far is that from the limit of its memory?
 //!
-//!     cargo run --release -p belvedere-gpu --example device_rates -- [DEVICE] [CLOUD or BALLS] [TARGETS]
+//!     cargo run --release -p belvedere-gpu --example device_rates -- [DEVICE] [CLOUD or BALLS] [TARGETS] [SHARE]
 //!
-//! With a cloud, the targets are its points; else the scene is a simulated place of 400 m with ground, blocks and crowns, and a grid of targets. Without a
-//! device it lists what there is.
+//! With a cloud, the targets are its points; else the scene is a simulated place of 400 m with ground, blocks and crowns, and a grid of targets. Of every SHAREth
+//! target bits are compared with those of the CPU. Without a device it lists what there is. Depth maps of the simulated place:
+//!
+//!     cargo run --release -p belvedere-gpu --example device_rates -- DEVICE BALLS 0 [METRES] [PIXELS]
+
+mod depth_maps;
 
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud};
@@ -20,17 +24,19 @@ use std::time::Instant;
 
 /// Side of the simulated place, metres.
 const SIDE: f64 = 400.0;
+/// Side of pictures, pixels.
+const PIXELS: usize = 4096;
 const DIRECTIONS: u32 = 577;
 /// Observers, at most.
 const EYES: usize = 64;
 /// Targets and directions between two of which steps are counted.
 const SAMPLE: [usize; 2] = [997, 7];
 
-fn place(count: u64) -> MedialBalls {
+fn place(count: u64, side: f64) -> MedialBalls {
     let mut balls = MedialBalls::default();
     for i in 0..count {
         let u = |k: u64| uniform(31, 8 * i + k);
-        let (x, y) = (SIDE * u(0), SIDE * u(1));
+        let (x, y) = (side * u(0), side * u(1));
         let (z, radius) = match i % 3 {
             0 => (-2.0 + 0.2 * u(2), 2.0),
             1 => ((12.0 * u(2)), 0.3 + 1.5 * u(3) * f64::from(u8::from((x / 25.0).fract() < 0.5))),
@@ -115,6 +121,14 @@ fn main() -> Result<()> {
             (info.number, &info.name, info.kind, &info.interface, &info.driver);
         say(format!("device {number}: {name} ({kind:?}; {interface}; driver {driver})"));
     }
+    if number(3) == Some(0) {
+        let side = number(4).map_or(SIDE, |metres| metres as f64);
+        let balls = place(number(2).unwrap_or(300_000) as u64, side);
+        return match found.get(number(1).unwrap_or(0)) {
+            Some(info) => depth_maps::measure(info, &balls, side, number(5).unwrap_or(PIXELS), &mut say),
+            None => Ok(()),
+        };
+    }
     let control = Control::none();
     let most = number(3).unwrap_or(1_000_000);
     let (scene, targets) = match (argument(2), number(2)) {
@@ -124,7 +138,9 @@ fn main() -> Result<()> {
             let targets = cloud.positions.iter().copied().cycle().take(most).collect();
             (model.scene(&model.rule(), UnprovenAs::Visible, &control)?, targets)
         }
-        (_, balls) => (MedialScene::new(&place(balls.unwrap_or(300_000) as u64), &BlockRule::carved())?, grid(most)),
+        (_, balls) => {
+            (MedialScene::new(&place(balls.unwrap_or(300_000) as u64, SIDE), &BlockRule::carved())?, grid(most))
+        }
     };
     let tree = Arc::new(BallTree::clone(scene.tree()));
     let directions = directions();
