@@ -2,7 +2,10 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+mod opened;
 mod walk;
+
+pub(crate) use opened::{OpenNode, Sides};
 
 use crate::instructions::Instructions;
 use belvedere_data::vector::unit;
@@ -239,16 +242,7 @@ impl RayIndex {
     #[inline]
     pub fn parts(&self, node: u32) -> Option<Parts> {
         let node = self.tree.nodes.get(node as usize)?;
-        let parts = std::array::from_fn(|child| {
-            if node.is_child_empty(child) {
-                Part::Nothing
-            } else if node.is_leaf(child) {
-                let (first, count) = node.child_primitives(child);
-                Part::Rows { first, count }
-            } else {
-                Part::Node(node.child_node_index(child))
-            }
-        });
+        let parts = std::array::from_fn(|child| opened::part_of(node, child));
         let steps = node.compute_extent().to_array();
         let origin = node.p.to_array();
         let sides = [

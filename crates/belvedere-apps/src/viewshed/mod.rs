@@ -180,10 +180,12 @@ pub fn viewshed_among(
         masks: Vec::new(),
         seen_counts: Vec::with_capacity(observers.len()),
     };
-    // few observers share the threads, each of many has one to itself; as many bands at once as there are threads bound the memory
+    // few observers share the threads, each of many has one to itself; as many bands at once as there are threads bound the memory,
+    // and more of small ones leave no thread waiting
     let threads = rayon::current_num_threads();
+    let at_once = if targets.len() <= SMALL { 4 * threads } else { threads };
     let (threading, at_once) =
-        if observers.len() < 2 * threads { (Threading::Shared, 1) } else { (Threading::OneEach, threads) };
+        if observers.len() < 2 * threads { (Threading::Shared, 1) } else { (Threading::OneEach, at_once) };
     let bands: Vec<&[Observer]> = observers.chunks(BAND).collect();
     for round in bands.chunks(at_once) {
         let seen: Result<Vec<Band>> = round.par_iter().map(|band| asked.band(band, threading, control)).collect();
@@ -194,6 +196,8 @@ pub fn viewshed_among(
     Ok(result)
 }
 
+/// Targets of which a band takes little memory: 4 MB.
+const SMALL: usize = 1_000_000;
 /// Observers of a band of masks.
 const BAND: usize = 32;
 

@@ -87,7 +87,9 @@ const fn turned() -> [[Children; 256]; LANES] {
         while children < 256 {
             let mut child = 0;
             while child < LANES {
-                table[bits][children] |= ((children >> child & 1) as Children) << (child ^ bits);
+                if children >> child & 1 == 1 {
+                    table[bits][children] |= 1 << (child ^ bits);
+                }
                 child += 1;
             }
             children += 1;

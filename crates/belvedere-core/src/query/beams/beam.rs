@@ -1,46 +1,39 @@
 //! The space that all lines of sight of a box of targets run through.
 
-use super::blockers::{LANES, Node};
-use super::{Apex, OPENED_SHARE, Sweep};
+use super::blockers::Node;
+use super::lanes::ConvexSpace;
+use super::sweep::{Apex, Sweep};
 use crate::query::target_tree::TargetNode;
-use crate::ray_index::{PARTS, Parts};
 use belvedere_data::vector::{cross, dot, sub};
+
+/// A node of balls is opened where it is larger than so many widths of the beam: with less, balls that only a part of the beam meets
+/// are looked at by all of it, with more, parts of the beam open the same nodes again. For targets on the ground of a town 2 and 3.2 take 5 % longer.
+const OPENED_SHARE: f32 = 2.5;
 
 /// All lines of sight of a box of targets lie between these planes.
 pub(super) struct Beam {
-    /// Outward unit normals, and how far out the planes lie along them, local metres; widened by what f32 rounds.
-    normals: [[f32; 3]; PLANES],
-    offsets: [f32; PLANES],
+    /// Two on either side, one behind the targets and one behind the eye; widened by what f32 rounds.
+    pub(super) space: ConvexSpace,
     /// Width of the beam as a linear function of the position: at the local origin, and how it grows.
     width: f32,
     growth: [f32; 3],
 }
 
-/// Two on either side, one behind the targets and one behind the eye.
-const PLANES: usize = 6;
-
-/// What a beam has to do with some balls.
-pub(super) struct Met {
-    /// It may meet the ball.
-    pub(super) is_hit: [bool; LANES],
-    /// The ball reaches about as far on all sides as the beam: worth the exact question whether it hides all of it.
-    pub(super) may_be_covered: [bool; LANES],
-}
-
 impl Beam {
     pub(super) fn new(sweep: &Sweep<'_>, target: &TargetNode) -> Self {
-        let corners = target.corners(0.0);
+        let outline = sweep.outline(target, 0.0);
+        let corners = outline.points();
         let width = (0..3).map(|i| f64::from(target.high[i]) - f64::from(target.low[i])).fold(0.0, f64::max);
-        let middle = std::array::from_fn(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 8.0);
+        let middle =
+            std::array::from_fn(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / corners.len() as f64);
         let forward = match sweep.apex {
             Apex::Eye(eye) => belvedere_data::vector::unit(sub(middle, eye)),
             Apex::Direction(direction) => Some(direction),
         };
-        let mut beam = Self { normals: [[0.0; 3]; PLANES], offsets: [f32::MAX; PLANES], width: 0.0, growth: [0.0; 3] };
+        let mut beam = Self { space: ConvexSpace::all(), width: 0.0, growth: [0.0; 3] };
         #[expect(clippy::cast_possible_truncation, reason = "widened by more than what is rounded")]
         let mut bound = |plane: usize, normal: [f64; 3], offset: f64| {
-            beam.normals[plane] = normal.map(|v| v as f32);
-            beam.offsets[plane] = (offset + sweep.room) as f32;
+            beam.space.set(plane, normal.map(|v| v as f32), (offset + sweep.room) as f32);
         };
         let range = |value: &dyn Fn(&[f64; 3]) -> f64| {
             let values = corners.iter().map(value);
@@ -98,57 +91,11 @@ impl Beam {
         beam
     }
 
-    /// What the beam has to do with balls given by their centres and radii.
+    /// Whether a node is large against the beam there.
     #[inline(always)]
-    pub(super) fn meets(&self, [x, y, z, radius]: [[f32; LANES]; 4]) -> Met {
-        let mut depths = [[0.0; LANES]; PLANES];
-        for ((depths, normal), offset) in depths.iter_mut().zip(&self.normals).zip(self.offsets) {
-            for lane in 0..LANES {
-                depths[lane] = offset - (normal[0] * x[lane] + normal[1] * y[lane] + normal[2] * z[lane]);
-            }
-        }
-        let mut met = Met { is_hit: [false; LANES], may_be_covered: [false; LANES] };
-        for lane in 0..LANES {
-            let mut least = radius[lane];
-            for depths in &depths {
-                least = if depths[lane] < least { depths[lane] } else { least };
-            }
-            let larger = |a: f32, b: f32| if a > b { a } else { b };
-            let [across, along] = [[0, 1], [2, 3]].map(|[a, b]| larger(depths[a][lane], depths[b][lane]));
-            met.is_hit[lane] = -least <= radius[lane];
-            met.may_be_covered[lane] = across * across + along * along <= radius[lane] * radius[lane];
-        }
-        met
-    }
-
-    /// Which parts of a node the beam may meet.
-    #[inline(always)]
-    pub(super) fn meets_boxes(&self, parts: &Parts) -> [bool; PARTS] {
-        let Parts { centers, half_sizes: halves, .. } = parts;
-        let mut most = [f32::NEG_INFINITY; PARTS];
-        for (normal, offset) in self.normals.iter().zip(self.offsets) {
-            for lane in 0..PARTS {
-                let center = normal[0] * centers[0][lane] + normal[1] * centers[1][lane] + normal[2] * centers[2][lane];
-                let half = normal[0].abs() * halves[0][lane]
-                    + normal[1].abs() * halves[1][lane]
-                    + normal[2].abs() * halves[2][lane];
-                let beyond = center - half - offset;
-                most[lane] = if beyond > most[lane] { beyond } else { most[lane] };
-            }
-        }
-        most.map(|most| most <= 0.0)
-    }
-
-    pub(super) fn meets_box(&self, node: &Node) -> bool {
-        self.normals
-            .iter()
-            .zip(self.offsets)
-            .all(|(&normal, offset)| dot(normal, node.center) - dot(normal.map(f32::abs), node.half) <= offset)
-    }
-
-    /// Whether something of this size is large against the beam at `center`.
-    #[inline]
-    pub(super) fn is_narrower_than(&self, size: f32, center: [f32; 3]) -> bool {
+    pub(super) fn is_narrower_than(&self, Node { sides: [x, y, z], .. }: &Node) -> bool {
+        let size = (x[1] - x[0]).max(y[1] - y[0]).max(z[1] - z[0]);
+        let center = [0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]), 0.5 * (z[0] + z[1])];
         size > OPENED_SHARE * (self.width + dot(self.growth, center))
     }
 }

@@ -1,89 +1,149 @@
-//! Balls and boxes of the index as beams take them: by column, so that several are tested at once.
+//! Balls and boxes of the index as beams take them: eight side by side, so that they are tested at once.
 
 use crate::blocking::Ball;
-use crate::ray_index::{PARTS, Parts};
-use belvedere_data::vector::{cross, dot};
+use crate::ray_index::{OpenNode, PARTS, Sides};
 
-/// Balls that are tested side by side.
-pub(super) const LANES: usize = 8;
+/// Balls, or nodes, that are tested side by side.
+pub(super) const LANES: usize = PARTS;
 
-/// A node of the index as a box, local metres.
+/// A node of the index and its box.
 #[derive(Clone, Copy)]
 pub(super) struct Node {
-    pub(super) center: [f32; 3],
-    pub(super) half: [f32; 3],
+    /// Lowest and highest side by axis, local metres.
+    pub(super) sides: [[f32; 2]; 3],
     pub(super) number: u32,
 }
 
-impl Node {
-    pub(super) fn of(number: u32, parts: &Parts, lane: usize) -> Self {
-        let part = |sides: &[[f32; PARTS]; 3]| sides.map(|sides| sides[lane]);
-        Self { center: part(&parts.centers), half: part(&parts.half_sizes), number }
+/// Up to eight nodes.
+#[derive(Clone, Copy)]
+pub(super) struct NodeBlock {
+    pub(super) sides: Sides,
+    pub(super) number: [u32; LANES],
+    /// Those that are taken.
+    pub(super) count: usize,
+}
+
+/// Up to eight balls.
+#[derive(Clone, Copy)]
+pub(super) struct BallBlock {
+    /// Centres by axis, and radii: below zero for those that are not taken, which nothing meets.
+    pub(super) columns: [[f32; LANES]; 4],
+    /// Rows of the balls among those of the index.
+    pub(super) row: [u32; LANES],
+}
+
+/// Things in blocks of eight. Lists that follow each other start with a block of their own.
+pub(super) struct Blocks<B> {
+    blocks: Vec<B>,
+    /// How many places of the last block are taken.
+    last: usize,
+}
+
+/// A block of eight things.
+pub(super) trait Block: Copy {
+    type Item;
+    const EMPTY: Self;
+    fn set(&mut self, lane: usize, item: Self::Item);
+}
+
+impl Block for NodeBlock {
+    type Item = Node;
+    const EMPTY: Self = Self { sides: [[[0.0; LANES]; 2]; 3], number: [0; LANES], count: 0 };
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, node: Node) {
+        for axis in 0..3 {
+            for side in 0..2 {
+                self.sides[axis][side][lane] = node.sides[axis][side];
+            }
+        }
+        self.number[lane] = node.number;
+        self.count = lane + 1;
     }
 }
 
-/// Balls by column, so that several are tested at once; padded to whole lanes with balls that nothing meets.
-#[derive(Default)]
-pub(super) struct BallColumns {
-    x: Vec<f32>,
-    y: Vec<f32>,
-    z: Vec<f32>,
-    radius: Vec<f32>,
-    pub(super) row: Vec<u32>,
+impl NodeBlock {
+    #[inline(always)]
+    pub(super) fn get(&self, lane: usize) -> Node {
+        Node { sides: sides_of(&self.sides, lane), number: self.number[lane] }
+    }
 }
 
-impl BallColumns {
-    /// Fills up the lanes.
-    pub(super) fn pad(&mut self) {
-        while !self.len().is_multiple_of(LANES) {
-            self.push(Ball { center: [0.0; 3], radius: f32::NEG_INFINITY }, 0);
+impl Node {
+    /// The part of an opened node, which is a node.
+    #[inline(always)]
+    pub(super) fn of(opened: &OpenNode<'_>, part: usize) -> Self {
+        Self { sides: sides_of(&opened.sides, part), number: opened.number(part) }
+    }
+}
+
+#[inline(always)]
+fn sides_of([x, y, z]: &Sides, lane: usize) -> [[f32; 2]; 3] {
+    [[x[0][lane], x[1][lane]], [y[0][lane], y[1][lane]], [z[0][lane], z[1][lane]]]
+}
+
+impl Block for BallBlock {
+    type Item = (Ball, u32);
+    const EMPTY: Self =
+        Self { columns: [[0.0; LANES], [0.0; LANES], [0.0; LANES], [f32::NEG_INFINITY; LANES]], row: [0; LANES] };
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, (ball, row): Self::Item) {
+        self.columns[0][lane] = ball.center[0];
+        self.columns[1][lane] = ball.center[1];
+        self.columns[2][lane] = ball.center[2];
+        self.columns[3][lane] = ball.radius;
+        self.row[lane] = row;
+    }
+}
+
+impl BallBlock {
+    #[inline(always)]
+    pub(super) fn get(&self, lane: usize) -> (Ball, u32) {
+        let [x, y, z, radius] = &self.columns;
+        (Ball { center: [x[lane], y[lane], z[lane]], radius: radius[lane] }, self.row[lane])
+    }
+}
+
+impl<B> Default for Blocks<B> {
+    fn default() -> Self {
+        Self { blocks: Vec::new(), last: LANES }
+    }
+}
+
+impl<B: Block> Blocks<B> {
+    /// Number of blocks; what is pushed next gets a block of its own.
+    pub(super) fn end(&mut self) -> usize {
+        self.last = LANES;
+        self.blocks.len()
+    }
+
+    #[inline(always)]
+    pub(super) fn push(&mut self, item: B::Item) {
+        if self.last == LANES {
+            self.blocks.push(B::EMPTY);
+            self.last = 0;
+        }
+        if let Some(block) = self.blocks.last_mut() {
+            block.set(self.last, item);
+            self.last += 1;
         }
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.row.len()
-    }
-
-    #[inline]
-    pub(super) fn push(&mut self, ball: Ball, row: u32) {
-        self.x.push(ball.center[0]);
-        self.y.push(ball.center[1]);
-        self.z.push(ball.center[2]);
-        self.radius.push(ball.radius);
-        self.row.push(row);
-    }
-
-    #[inline]
-    pub(super) fn get(&self, place: usize) -> (Ball, u32) {
-        let center = [self.x[place], self.y[place], self.z[place]];
-        (Ball { center, radius: self.radius[place] }, self.row[place])
-    }
-
-    pub(super) fn truncate(&mut self, length: usize) {
-        self.x.truncate(length);
-        self.y.truncate(length);
-        self.z.truncate(length);
-        self.radius.truncate(length);
-        self.row.truncate(length);
-    }
-
-    /// Centres and radii of `LANES` balls from `start` on.
     #[inline(always)]
-    pub(super) fn lanes(&self, start: usize) -> [[f32; LANES]; 4] {
-        [&self.x, &self.y, &self.z, &self.radius].map(|column| {
-            column.get(start..start + LANES).and_then(|lanes| lanes.try_into().ok()).unwrap_or([f32::NAN; LANES])
-        })
+    pub(super) fn at(&self, block: usize) -> &B {
+        &self.blocks[block]
     }
 
-    /// Which of the balls from `start` on may touch the half line from `origin` along the unit vector `direction`.
-    #[inline]
-    pub(super) fn near_line(&self, start: usize, origin: [f32; 3], direction: [f32; 3], room: f32) -> [bool; LANES] {
-        let [x, y, z, radius] = self.lanes(start);
-        std::array::from_fn(|lane| {
-            let m = [x[lane] - origin[0], y[lane] - origin[1], z[lane] - origin[2]];
-            let across = cross(m, direction);
-            let reach = radius[lane] + room;
-            (dot(across, across) <= reach * reach) & (dot(m, direction) >= -reach) & (reach > 0.0)
-        })
+    /// The blocks from a number on.
+    #[inline(always)]
+    pub(super) fn from(&self, first: usize) -> &[B] {
+        self.blocks.get(first..).unwrap_or_default()
+    }
+
+    /// Drops all blocks but the first `count`.
+    pub(super) fn truncate(&mut self, count: usize) {
+        self.blocks.truncate(count);
+        self.last = LANES;
     }
 }

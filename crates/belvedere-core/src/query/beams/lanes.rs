@@ -1,0 +1,228 @@
+//! Tests of eight boxes or balls at once. They only propose: what they pass is tested exactly.
+
+use super::blockers::LANES;
+use crate::blocking::Ball;
+use crate::ray_index::Sides;
+use belvedere_data::vector::{cross, dot};
+
+/// Planes around a beam.
+pub(super) const PLANES: usize = 6;
+
+/// Centres by axis, and radii, of eight balls.
+pub(super) type Columns = [[f32; LANES]; 4];
+
+/// A convex space between planes.
+pub(super) struct ConvexSpace {
+    pub(super) normals: [[f32; 3]; PLANES],
+    pub(super) offsets: [f32; PLANES],
+    /// For each plane and axis the side of a box that lies farther inward: 0 for the lowest, 1 for the highest.
+    pub(super) inward: [[u8; 3]; PLANES],
+}
+
+impl ConvexSpace {
+    /// All space.
+    pub(super) fn all() -> Self {
+        Self { normals: [[0.0; 3]; PLANES], offsets: [f32::MAX; PLANES], inward: [[0; 3]; PLANES] }
+    }
+
+    /// Limits the space by a plane with an outward unit normal, so far out along it, local metres. What f32 rounds must be added to the offset; boxes
+    /// of nodes are padded by as much again.
+    pub(super) fn set(&mut self, plane: usize, normal: [f32; 3], offset: f32) {
+        self.normals[plane] = normal;
+        self.offsets[plane] = offset;
+        self.inward[plane] = normal.map(|v| u8::from(v < 0.0));
+    }
+}
+
+/// A half line from `origin` along the unit vector `direction`, and by how much it is widened.
+#[derive(Clone, Copy)]
+pub(super) struct HalfLine {
+    pub(super) origin: [f32; 3],
+    pub(super) direction: [f32; 3],
+    pub(super) room: f32,
+}
+
+/// Which of eight things fulfil a condition: one bit each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Bits(pub(super) u32);
+
+impl Bits {
+    /// Those of the first `count` things.
+    #[inline(always)]
+    pub(super) fn first(self, count: usize) -> Self {
+        if count < LANES { Self(self.0 & !(u32::MAX << count)) } else { self }
+    }
+
+    #[inline(always)]
+    pub(super) fn holds(self, lane: usize) -> bool {
+        self.0 >> lane & 1 == 1
+    }
+}
+
+impl Iterator for Bits {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        if self.0 == 0 {
+            return None;
+        }
+        let lane = self.0.trailing_zeros() as usize;
+        self.0 &= self.0 - 1;
+        Some(lane)
+    }
+}
+
+/// The tests, for one set of instructions. All forms do the same arithmetic in the same order.
+pub(super) trait Kernels {
+    /// Which boxes may reach into the space.
+    fn meet_boxes(space: &ConvexSpace, sides: &Sides) -> Bits;
+    /// Which balls may reach into the space.
+    fn meet_balls(space: &ConvexSpace, balls: &Columns) -> Bits;
+    /// Which balls reach about as far on all sides as the space, of which the first four planes lie around: worth the exact question whether
+    /// they hide all of it.
+    fn may_cover(space: &ConvexSpace, balls: &Columns) -> Bits;
+    /// Which balls may touch a half line.
+    fn near_line(balls: &Columns, line: &HalfLine) -> Bits;
+    /// Balls by column.
+    fn columns(balls: &[Ball; LANES]) -> Columns;
+}
+
+/// Plain loops over eight lanes without branches, which compilers turn into what instructions they may use.
+pub(super) struct Scalar;
+
+/// The bits of lanes that are true.
+#[inline(always)]
+fn bits(lanes: [bool; LANES]) -> Bits {
+    let mut bits = 0;
+    for (lane, holds) in lanes.into_iter().enumerate() {
+        bits |= u32::from(holds) << lane;
+    }
+    Bits(bits)
+}
+
+/// How far inside a plane centres lie, metres.
+#[inline(always)]
+fn depths(space: &ConvexSpace, plane: usize, [x, y, z, _]: &Columns) -> [f32; LANES] {
+    let (normal, offset) = (space.normals[plane], space.offsets[plane]);
+    let mut depths = [0.0; LANES];
+    for lane in 0..LANES {
+        depths[lane] = offset - dot(normal, [x[lane], y[lane], z[lane]]);
+    }
+    depths
+}
+
+impl Kernels for Scalar {
+    #[inline(always)]
+    fn meet_boxes(space: &ConvexSpace, sides: &Sides) -> Bits {
+        let mut outside = [f32::NEG_INFINITY; LANES];
+        for plane in 0..PLANES {
+            let (normal, offset, [x, y, z]) = (space.normals[plane], space.offsets[plane], space.inward[plane]);
+            let x = &sides[0][usize::from(x & 1)];
+            let y = &sides[1][usize::from(y & 1)];
+            let z = &sides[2][usize::from(z & 1)];
+            for lane in 0..LANES {
+                let beyond = dot(normal, [x[lane], y[lane], z[lane]]) - offset;
+                outside[lane] = if beyond > outside[lane] { beyond } else { outside[lane] };
+            }
+        }
+        let mut meets = [false; LANES];
+        for lane in 0..LANES {
+            meets[lane] = outside[lane] <= 0.0;
+        }
+        bits(meets)
+    }
+
+    #[inline(always)]
+    fn meet_balls(space: &ConvexSpace, balls: &Columns) -> Bits {
+        let radius = &balls[3];
+        let mut least = *radius;
+        for plane in 0..PLANES {
+            let depths = depths(space, plane, balls);
+            for lane in 0..LANES {
+                least[lane] = if depths[lane] < least[lane] { depths[lane] } else { least[lane] };
+            }
+        }
+        let mut meets = [false; LANES];
+        for lane in 0..LANES {
+            meets[lane] = least[lane] >= -radius[lane];
+        }
+        bits(meets)
+    }
+
+    #[inline(always)]
+    fn may_cover(space: &ConvexSpace, balls: &Columns) -> Bits {
+        let planes: [[f32; LANES]; 4] = std::array::from_fn(|plane| depths(space, plane, balls));
+        let larger = |a: f32, b: f32| if a > b { a } else { b };
+        let mut covers = [false; LANES];
+        for lane in 0..LANES {
+            let across = larger(planes[0][lane], planes[1][lane]);
+            let along = larger(planes[2][lane], planes[3][lane]);
+            covers[lane] = across * across + along * along <= balls[3][lane] * balls[3][lane];
+        }
+        bits(covers)
+    }
+
+    #[inline(always)]
+    fn near_line([x, y, z, radius]: &Columns, line: &HalfLine) -> Bits {
+        let mut near = [false; LANES];
+        for lane in 0..LANES {
+            let m = [x[lane] - line.origin[0], y[lane] - line.origin[1], z[lane] - line.origin[2]];
+            let across = cross(m, line.direction);
+            let reach = radius[lane] + line.room;
+            near[lane] = (dot(across, across) <= reach * reach) & (dot(m, line.direction) >= -reach) & (reach > 0.0);
+        }
+        bits(near)
+    }
+
+    #[inline(always)]
+    fn columns(balls: &[Ball; LANES]) -> Columns {
+        let axis = |axis: usize| balls.map(|ball| ball.center[axis]);
+        [axis(0), axis(1), axis(2), balls.map(|ball| ball.radius)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The wedge of points with x from −1 to 1 and y at most 2.
+    fn wedge() -> ConvexSpace {
+        let mut space = ConvexSpace::all();
+        space.set(0, [1.0, 0.0, 0.0], 1.0);
+        space.set(1, [-1.0, 0.0, 0.0], 1.0);
+        space.set(4, [0.0, 1.0, 0.0], 2.0);
+        space
+    }
+
+    #[test]
+    fn boxes_and_balls_that_reach_into_a_space_are_met_and_others_are_not() {
+        let x = [0.0, 3.0, 2.0, -2.0, 0.0, 0.0, 1.5, -9.0];
+        let y = [0.0, 0.0, 0.0, 0.0, 3.0, 4.0, 2.5, 0.0];
+        // each with a half size, or a radius, of 1: it touches in the third, fourth and fifth case
+        let met = Bits(0b0101_1101);
+        let around = |centers: [f32; LANES]| [centers.map(|v| v - 1.0), centers.map(|v| v + 1.0)];
+        assert_eq!(Scalar::meet_boxes(&wedge(), &[around(x), around(y), around([7.0; LANES])]), met);
+        let balls: Columns = [x, y, [7.0; LANES], [1.0; LANES]];
+        assert_eq!(Scalar::meet_balls(&wedge(), &balls), met);
+        assert_eq!(Scalar::meet_balls(&wedge(), &[x, y, x, [f32::NEG_INFINITY; LANES]]), Bits(0));
+    }
+
+    #[test]
+    fn balls_near_a_half_line_are_those_before_or_at_its_start_and_beside_it() {
+        let line = HalfLine { origin: [0.0; 3], direction: [1.0, 0.0, 0.0], room: 0.0 };
+        let x = [5.0, -0.5, -2.0, 5.0, 5.0, 0.0, 100.0, 1.0];
+        let y = [0.5, 0.0, 0.0, 1.5, -1.0, 0.0, 0.0, 0.0];
+        let radius = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, f32::NEG_INFINITY];
+        assert_eq!(Scalar::near_line(&[x, y, [0.0; LANES], radius], &line), Bits(0b0111_0011));
+    }
+
+    #[test]
+    fn bits_are_gone_through_from_the_lowest() {
+        let bits = Bits(0b1010_0110);
+        assert_eq!(bits.collect::<Vec<_>>(), [1, 2, 5, 7]);
+        assert_eq!(bits.first(5).collect::<Vec<_>>(), [1, 2]);
+        assert_eq!(bits.first(8), bits);
+        assert!(bits.holds(5) && !bits.holds(0));
+    }
+}

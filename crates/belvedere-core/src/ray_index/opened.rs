@@ -1,0 +1,133 @@
+//! Nodes whose parts are tested side by side, for searches that follow more than one ray at once.
+
+use super::{PARTS, Part, RayIndex};
+use obvhs::cwbvh::node::CwBvhNode;
+use std::ops::Range;
+
+/// Lowest and highest sides of eight boxes, by axis, local metres.
+pub(crate) type Sides = [[[f32; PARTS]; 2]; 3];
+
+/// A node whose parts are looked at. Parts are given as bits, the lowest for the first.
+pub(crate) struct OpenNode<'a> {
+    node: &'a CwBvhNode,
+    /// Boxes of the parts; those of parts that are not taken mean nothing.
+    pub(crate) sides: Sides,
+}
+
+impl RayIndex {
+    /// Opens the node of a number.
+    #[inline(always)]
+    pub(crate) fn open(&self, node: u32) -> Option<OpenNode<'_>> {
+        let node = self.tree.nodes.get(node as usize)?;
+        let (origin, steps) = (node.p.to_array(), node.compute_extent().to_array());
+        let parts = [
+            [&node.child_min_x, &node.child_max_x],
+            [&node.child_min_y, &node.child_max_y],
+            [&node.child_min_z, &node.child_max_z],
+        ];
+        let mut sides = [[[0.0; PARTS]; 2]; 3];
+        for axis in 0..3 {
+            #[expect(clippy::cast_possible_truncation, reason = "a rounding that callers allow for")]
+            let start = (f64::from(origin[axis]) + self.center[axis]) as f32;
+            for side in 0..2 {
+                for part in 0..PARTS {
+                    sides[axis][side][part] = start + steps[axis] * f32::from(parts[axis][side][part]);
+                }
+            }
+        }
+        Some(OpenNode { node, sides })
+    }
+}
+
+impl OpenNode<'_> {
+    /// Those of `parts` that are nodes.
+    #[inline(always)]
+    pub(crate) fn nodes(&self, parts: u32) -> u32 {
+        parts & u32::from(self.node.imask)
+    }
+
+    /// Number of the node that a part is.
+    #[inline(always)]
+    pub(crate) fn number(&self, part: usize) -> u32 {
+        self.node.child_node_index(part)
+    }
+
+    /// Rows from the first to the last, exclusive, of those of `parts` that are rows; others may lie between.
+    #[inline(always)]
+    pub(crate) fn rows(&self, parts: u32) -> Range<u32> {
+        let mut left = parts & !u32::from(self.node.imask);
+        let (mut from, mut to) = (u32::MAX, 0);
+        while left != 0 {
+            let part = left.trailing_zeros() as usize;
+            left &= left - 1;
+            if !self.node.is_child_empty(part) {
+                let (first, count) = self.node.child_primitives(part);
+                from = from.min(first);
+                to = to.max(first + count);
+            }
+        }
+        from.min(to)..to
+    }
+}
+
+/// What a part of a node is.
+#[inline(always)]
+pub(super) fn part_of(node: &CwBvhNode, part: usize) -> Part {
+    if node.is_child_empty(part) {
+        Part::Nothing
+    } else if node.is_leaf(part) {
+        let (first, count) = node.child_primitives(part);
+        Part::Rows { first, count }
+    } else {
+        Part::Node(node.child_node_index(part))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_data::random::uniform;
+
+    #[test]
+    fn an_opened_node_has_the_parts_of_the_node_and_all_their_rows() {
+        #[expect(clippy::cast_possible_truncation, reason = "boxes are f32")]
+        let random = |i: u64, k: u64| uniform(7, 8 * i + k) as f32;
+        let boxes: Vec<[[f32; 3]; 2]> = (0..5000)
+            .map(|i| {
+                let low = std::array::from_fn(|axis| 3000.0 + 100.0 * random(i, axis as u64));
+                [low, low.map(|v| v + 4.0 * random(i, 3))]
+            })
+            .collect();
+        let index = RayIndex::new(&boxes).unwrap();
+        let mut row_count = 0;
+        let mut waiting: Vec<u32> = index.root().into_iter().collect();
+        while let Some(number) = waiting.pop() {
+            let (node, parts) = (index.open(number).unwrap(), index.parts(number).unwrap());
+            for (place, part) in parts.parts.into_iter().enumerate() {
+                let bit = 1 << place;
+                assert_eq!(node.nodes(bit) != 0, matches!(part, Part::Node(_)));
+                match part {
+                    Part::Nothing => assert!(node.rows(bit).is_empty()),
+                    Part::Node(child) => {
+                        assert_eq!(node.number(place), child);
+                        assert!(node.rows(bit).is_empty());
+                        waiting.push(child);
+                    }
+                    Part::Rows { first, count } => {
+                        assert_eq!(node.rows(bit), first..first + count);
+                        let all = node.rows(0xff);
+                        assert!(all.contains(&first) && all.end >= first + count);
+                        row_count += count;
+                        for row in first..first + count {
+                            let given = boxes[index.order()[row as usize] as usize];
+                            for (axis, [low, high]) in node.sides.iter().enumerate() {
+                                assert!(low[place] <= given[0][axis] && high[place] >= given[1][axis]);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        assert_eq!(row_count, 5000);
+    }
+}
