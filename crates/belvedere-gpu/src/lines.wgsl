@@ -75,9 +75,6 @@ const NO_SIGHT: f32 = 1.0;
 const ROOT_ROOM: f32 = 1e-5;
 // Nodes above a node, at most.
 const STACK: u32 = 32u;
-// Nodes that a line is followed through; past more it stays open. Mesa's device in software ends the loops of a thread after 65 535 turns in all,
-// and a node takes at most 39.
-const MOST_NODES: u32 = 1600u;
 
 var<workgroup> free_words: array<atomic<u32>, 2>;
 var<workgroup> blocked_words: array<atomic<u32>, 2>;
@@ -164,7 +161,6 @@ fn line(place: vec3<f32>, sight: Sight) -> u32 {
     var state = FREE;
     var stack: array<vec2<u32>, STACK>;
     var height = 0u;
-    var node_count = 0u;
     // the first of the nodes below a node; which of its parts are met, and which are nodes
     var group = vec2<u32>(0u, 0x101u);
     loop {
@@ -175,10 +171,6 @@ fn line(place: vec3<f32>, sight: Sight) -> u32 {
             height--;
             group = stack[height];
         }
-        if node_count == MOST_NODES {
-            return OPEN;
-        }
-        node_count++;
         let part = firstTrailingBit(group.y & 0xffu);
         group.y &= ~(1u << part);
         let node = 5u * (group.x + countOneBits((group.y >> 8u) & ((1u << part) - 1u)));

@@ -134,26 +134,6 @@ fn assert_eyes_are_equal_on(device: &DeviceInfo, tree: &Arc<BallTree>, targets: 
 }
 
 #[test]
-fn a_line_past_more_balls_than_a_device_follows_is_decided_by_the_cpu() {
-    // boxes that the line runs through, of balls that it misses, and one ball that blocks it
-    let past = (0..100_000_u32).map(|i| ([0.1 * f64::from(i), 0.8, 0.8], 1.0));
-    let balls = balls_of(past.chain([([10_050.0, 0.0, 0.0], 1.0)]));
-    let tree = Arc::new(BallTree::new(&balls, &BlockRule::default()).unwrap());
-    // few that meet all boxes, and as many others as make a question worth a device
-    let sights =
-        [([-10.0_f32, 0.0, 0.0], Line::Open), ([-10.0, -3.0, 0.0], Line::Free), ([10_040.0, 0.0, 0.0], Line::Blocked)];
-    let asked = |number: usize| sights[if number < 64 { 0 } else { 1 + number % 2 }];
-    let targets: Vec<[f32; 3]> = (0..20_000).map(|number| asked(number).0).collect();
-    for device in devices_or_skip("lines past many balls") {
-        let gpu = Gpu::new(Choice::Number(device.number)).unwrap();
-        let settled = gpu.prepare(&tree).unwrap().settle(&targets, &[[1.0, 0.0, 0.0]], &Control::none()).unwrap();
-        for number in 0..targets.len() {
-            assert_eq!(settled.line(number, 0), asked(number).1, "{number} on {}", device.name);
-        }
-    }
-}
-
-#[test]
 fn lines_past_random_and_hostile_balls_are_those_of_the_cpu() {
     let size = [60.0, 60.0, 15.0];
     let plain: Vec<_> = random_balls(2000, size, 2.0).collect();
