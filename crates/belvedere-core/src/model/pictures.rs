@@ -8,10 +8,10 @@ use belvedere_data::control::Control;
 use belvedere_data::view::View;
 
 impl SceneModel {
-    /// The depth map of its balls in `view`: [`depth_map`], which the backend of the model may draw, with the same bits.
+    /// The depth map of its balls in `view`: [`depth_map()`], which the backend of the model may draw, with the same bits.
     ///
     /// # Errors
-    /// Those of [`depth_map`].
+    /// Those of [`depth_map()`].
     pub fn depth_map(
         &self,
         view: &View,
@@ -28,10 +28,10 @@ impl SceneModel {
         }
     }
 
-    /// The panorama of its balls around `eye`: [`panorama`], whose depth maps the backend of the model may draw, with the same bits.
+    /// The panorama of its balls around `eye`: [`panorama()`], whose depth maps the backend of the model may draw, with the same bits.
     ///
     /// # Errors
-    /// Those of [`panorama`].
+    /// Those of [`panorama()`].
     pub fn panorama(&self, eye: [f64; 3], width: usize, items: ItemBuffer, control: &Control<'_>) -> Result<Panorama> {
         let balls = self.balls();
         // two square maps

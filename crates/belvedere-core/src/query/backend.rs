@@ -20,7 +20,7 @@ pub trait Backend: Send + Sync + std::fmt::Debug {
     /// What the device reports.
     fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn Prepared>>;
 
-    /// Takes balls to draw them in views of so many pixels; `None`, the default, where that is no faster than [`depth_map`](crate::depth::depth_map).
+    /// Takes balls to draw them in views of so many pixels; `None`, the default, where that is no faster than [`depth_map`](crate::depth::depth_map()).
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -74,10 +74,10 @@ pub trait Prepared: Send + Sync {
 
 /// Balls made ready to be drawn by a backend.
 pub trait Drawable: Send + Sync {
-    /// The depth map of the balls in `view`, as [`depth_map`](crate::depth::depth_map) makes it of spheres, bit by bit.
+    /// The depth map of the balls in `view`, as [`depth_map`](crate::depth::depth_map()) makes it of spheres, bit by bit.
     ///
     /// # Errors
-    /// Those of [`depth_map`](crate::depth::depth_map).
+    /// Those of [`depth_map`](crate::depth::depth_map()).
     fn depth_map(&self, view: &View, items: ItemBuffer, control: &Control<'_>) -> Result<DepthMap>;
 }
 

@@ -33,8 +33,9 @@ impl MedialScene {
     /// Targets that are not finite are [`Answer::OutsideView`], those beside or below the cloud [`Answer::OutsideCloud`].
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a viewer that is not finite, [`Error::UnsupportedViewer`] for [`Viewer::Each`], and
-    /// [`Error::Cancelled`].
+    /// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) for a viewer that is not finite,
+    /// [`Error::UnsupportedViewer`](belvedere_data::Error::UnsupportedViewer) for [`Viewer::Each`], and
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub fn answer_among(&self, viewer: Viewer<'_>, targets: &TargetTree, control: &Control<'_>) -> Result<Vec<Answer>> {
         let sweep = Sweep::new(self, viewer, targets, control)?;
         let settled = match viewer {
