@@ -276,7 +276,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         return self._plan(self._core.with_terrain(os.fspath(path)), self.report)
 
     def with_device(self, device: str | int = "auto") -> Scene:
-        """The same scene, whose lines of sight and depth maps are the work of a graphics processor: the same results, sooner.
+        """The same scene, whose lines of sight and depth maps are the work of a graphics processor: the same results.
 
         Wheels are built without graphics processors: the page on graphics processors tells how to build one with them.
 
