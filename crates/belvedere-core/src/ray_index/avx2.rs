@@ -1,8 +1,8 @@
 //! Eight boxes at once on machines with AVX2: the same arithmetic as [`super::walk::Scalar`], in the same order.
 #![expect(
     unsafe_code,
-    reason = "lines of sight that are tested one by one take most of the time of sky views, and the test of boxes most of theirs; the tests compare \
-              every answer with the scalar form"
+    reason = "lines of sight that are tested one by one take about half of the time of sky views; AVX2 saves 9 % of the whole (`walk.rs`), and the \
+              tests compare every answer with the scalar form"
 )]
 
 use super::walk::{LANES, Test, TreeRay, walk};
