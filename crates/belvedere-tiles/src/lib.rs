@@ -31,6 +31,7 @@ mod record;
 mod report;
 mod run;
 mod status;
+mod strips;
 mod survey;
 mod values;
 mod window;

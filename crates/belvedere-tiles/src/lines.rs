@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 /// Directions up to which each is looked at by itself.
 const FEW: usize = 8;
 /// By how much lines of sight are taken for wider than they are, metres: more than f32 rounds.
-const ROOM: f64 = 0.25;
+pub(crate) const ROOM: f64 = 0.25;
 /// How far above and beside its points any ball reaches at most, metres: twice the radius that they start with.
 pub(crate) const MOST_BALL: f64 = 10.0;
 
@@ -43,11 +43,6 @@ impl<'a> Lines<'a> {
             }
         };
         Self::new(targets, lowest, to)
-    }
-
-    /// Lines of sight from targets over an area, none lower than `lowest`, along unit vectors upward.
-    pub(crate) fn towards(targets: Area, lowest: f64, directions: &'a [[f64; 3]]) -> Self {
-        Self::new(targets, lowest, To::Directions(directions))
     }
 
     fn new(targets: Area, lowest: f64, to: To<'a>) -> Self {
@@ -84,24 +79,6 @@ impl<'a> Lines<'a> {
             return false;
         }
         directions.len() > FEW || directions.iter().any(|direction| self.meets_along(direction, area, rise))
-    }
-
-    /// Those of the directions in `columns` of `directions` in which something on one of the blocks of 64 m with the highest `tops` may block.
-    pub(crate) fn columns_meeting(
-        &self,
-        directions: &[[f64; 3]],
-        columns: &[usize],
-        tops: &[([i32; 2], f32)],
-    ) -> Vec<usize> {
-        let rise = |top: f32| f64::from(top) - self.lowest + ROOM;
-        let blocks: Vec<(Area, f64)> =
-            tops.iter().map(|&(block, top)| (block_area(block), rise(top))).filter(|(_, rise)| *rise >= 0.0).collect();
-        let is_met = |column: &usize| {
-            directions
-                .get(*column)
-                .is_some_and(|direction| blocks.iter().any(|(area, rise)| self.meets_along(direction, area, *rise)))
-        };
-        columns.iter().copied().filter(is_met).collect()
     }
 
     /// The same for one direction, of which it is known which way on the map it runs.

@@ -2,14 +2,15 @@
 //!
 //! The lowest of many directions of the sky meets balls all over a city. But a line of sight is free where no ball blocks it, so that balls may be
 //! asked one part after the other, and the answer does not depend on how they are cut into parts. Parts are squares of tiles, nearest first: most lines end
-//! at the nearest, and a distant part is only asked about low directions towards it in which some cell still sees the sky. Lines of sight to observers are
-//! asked in parts as well.
+//! at the nearest, and of a distant part only balls are asked that are high enough to block a line that is still free. Lines of sight to observers are asked
+//! in parts as well.
 
-use crate::grid::{Area, TileId};
-use crate::lines::Lines;
+use crate::grid::{Area, CELL, TileId, block_area};
+use crate::lines::{Lines, MOST_BALL};
 use crate::obstacles::{BallTile, Found, ball_tiles, may_block, push, rule};
 use crate::plan::Plan;
 use crate::planned::Others;
+use crate::strips::Strips;
 use belvedere::Result;
 use belvedere::apps::rows::ObstacleParts;
 use belvedere::apps::tree_light::Crowns;
@@ -21,13 +22,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
+/// Distances from the cells up to which the balls of a tile are asked before the others, metres: after the first, few lines of sight are left.
+const BANDS: [f64; 4] = [64.0, 192.0, 448.0, f64::INFINITY];
+/// Balls that are asked before more are looked up, if there are as many.
+const WORTH_ASKING: usize = 100_000;
+
 /// The balls that may matter for the cells of a tile, of which a part is in memory at a time.
 pub(crate) struct Parts<'a> {
     plan: &'a Plan,
     run: &'a Path,
-    /// Where the cells lie, and the height of the lowest, local metres.
+    /// Where the cells lie.
     cells: Area,
-    lowest: f64,
     /// What blocks beside balls.
     others: &'a Others,
     /// Most balls of a part.
@@ -51,8 +56,7 @@ impl<'a> Parts<'a> {
     ) -> Result<Self> {
         let mut found = Found::default();
         let squares = squares(tile, ball_tiles(plan, run, lines, &mut found, control)?, most_balls);
-        let (cells, lowest) = (lines.targets, lines.lowest);
-        Ok(Self { plan, run, cells, lowest, others, most_balls, squares, found: Mutex::new(found) })
+        Ok(Self { plan, run, cells: lines.targets, others, most_balls, squares, found: Mutex::new(found) })
     }
 
     /// Gives `look` scenes of at most so many balls that may block one of `lines`, until all were given. A line of sight is free where it is free in all.
@@ -102,35 +106,40 @@ impl<'a> Parts<'a> {
         found: &mut Found,
         control: &Control<'_>,
     ) -> Result<()> {
-        let left = free.without_trees.free_columns();
-        let lines = Lines::towards(self.cells, self.lowest, directions);
-        let mut columns = BTreeSet::new();
-        let mut met = Vec::new();
-        for of_tile in square {
-            let own = lines.columns_meeting(directions, &left, &of_tile.tops);
-            if !own.is_empty() {
-                met.push(of_tile.tile);
-                columns.extend(own);
-            }
-        }
-        let columns: Vec<usize> = columns.into_iter().collect();
-        let towards: Vec<[f64; 3]> = columns.iter().filter_map(|&column| directions.get(column).copied()).collect();
-        let lines = Lines::towards(self.cells, self.lowest, &towards);
+        let (mut left, mut strips) = free.left(directions, &self.cells);
         let mut part = Part::default();
-        for tile in met {
+        for BallTile { tile, tops, .. } in square {
             control.check()?;
-            let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, tile, control))?;
+            if strips.meeting(tops).is_empty() {
+                continue;
+            }
+            let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, *tile, control))?;
             let Some(ModelParts { balls, transmission, .. }) = read else { continue };
             let vegetation = self.plan.trees.map(|_| vegetation_of_transmission(&transmission)).unwrap_or_default();
-            for row in may_block(&balls, &lines) {
-                if part.ball_count() == self.most_balls {
-                    std::mem::take(&mut part).hide(free, &columns, self.plan, found, control)?;
+            let mut from = f64::NEG_INFINITY;
+            for to in BANDS {
+                // as far as the far corner of a block that a ball reaches into
+                let reach = 1.5 * CELL + MOST_BALL;
+                let is_in = |&&(block, _): &&([i32; 2], f32)| self.cells.distance(&block_area(block)) + reach > from;
+                let in_band: Vec<_> = tops.iter().filter(is_in).copied().collect();
+                let met = strips.meeting(&in_band);
+                part.columns.extend(met.iter().filter_map(|&number| left.get(number)));
+                for row in strips.blocking_rows(&met, &balls, (&self.cells, [from, to])) {
+                    if part.ball_count() == self.most_balls {
+                        part.hide(free, self.plan, found, control)?;
+                    }
+                    let is_vegetation = vegetation.get(row) == Some(&true);
+                    push(if is_vegetation { &mut part.vegetation } else { &mut part.opaque }, &balls, row);
                 }
-                let is_vegetation = vegetation.get(row) == Some(&true);
-                push(if is_vegetation { &mut part.vegetation } else { &mut part.opaque }, &balls, row);
+                from = to;
+                if part.ball_count() >= WORTH_ASKING {
+                    part.hide(free, self.plan, found, control)?;
+                    part.columns.clear();
+                    (left, strips) = free.left(directions, &self.cells);
+                }
             }
         }
-        part.hide(free, &columns, self.plan, found, control)
+        part.hide(free, self.plan, found, control)
     }
 }
 
@@ -178,12 +187,23 @@ struct Free<'a> {
     target_count: usize,
 }
 
+impl Free<'_> {
+    /// The columns with lines that balls may still block, and where these run from targets over an area. Crowns block no others.
+    fn left(&self, directions: &[[f64; 3]], targets: &Area) -> (Vec<usize>, Strips) {
+        let columns = self.without_trees.free_columns();
+        let strips = Strips::new(&self.without_trees, directions, &columns, targets);
+        (columns, strips)
+    }
+}
+
 /// Balls that are asked together.
 #[derive(Default)]
 struct Part {
     opaque: MedialBalls,
     /// Where trees let light through.
     vegetation: MedialBalls,
+    /// Those of the directions in which any of them may block.
+    columns: BTreeSet<usize>,
 }
 
 impl Part {
@@ -191,32 +211,26 @@ impl Part {
         self.opaque.len() + self.vegetation.len()
     }
 
-    /// Takes what the balls hide from `free`.
-    fn hide(
-        self,
-        free: &mut Free<'_>,
-        columns: &[usize],
-        plan: &Plan,
-        found: &mut Found,
-        control: &Control<'_>,
-    ) -> Result<()> {
+    /// Takes what the balls hide from `free`, and lets them go.
+    fn hide(&mut self, free: &mut Free<'_>, plan: &Plan, found: &mut Found, control: &Control<'_>) -> Result<()> {
         found.ball_count += self.ball_count();
         found.most_held = found.most_held.max(self.ball_count());
-        let Self { opaque, vegetation } = self;
-        let hide = |lines: &mut FreeLines<'_>, balls: MedialBalls| {
+        let columns: Vec<usize> = self.columns.iter().copied().collect();
+        let hide = |lines: &mut FreeLines<'_>, balls: &mut MedialBalls| {
+            let balls = std::mem::take(balls);
             if balls.is_empty() {
                 return Ok(());
             }
             let scene = control.stage("indexing balls", balls.len(), || MedialScene::new(&balls, &rule(plan)))?;
             drop(balls);
             control.stage("testing lines of sight", free.target_count, || {
-                lines.hide_behind_balls(&scene, columns, control)
+                lines.hide_behind_balls(&scene, &columns, control)
             })
         };
-        hide(&mut free.without_trees, opaque)?;
+        hide(&mut free.without_trees, &mut self.opaque)?;
         if let Some(all) = &mut free.all {
             all.hide_what_is_hidden_in(&free.without_trees)?;
-            hide(all, vegetation)?;
+            hide(all, &mut self.vegetation)?;
         }
         Ok(())
     }

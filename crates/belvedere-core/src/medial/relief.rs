@@ -5,12 +5,13 @@
 //! points, where it is most certain to be solid.
 
 use super::bounds::Kind;
-use super::chains::Chain;
+use super::chains::{Chain, LEAST_SHARE};
 use crate::neighbors::NeighborIndex;
 use crate::pulses::Needles;
 use belvedere_data::Result;
 use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
 use belvedere_data::control::{Control, Stop};
+use belvedere_data::vector::{dot, sub};
 use rayon::prelude::*;
 
 /// How thin relief is told and filled.
@@ -34,11 +35,21 @@ pub struct ReliefParams {
     /// Distance of these balls below each other, metres, above 0. Default 0.15; 0.2 saves a fifth of them and lets
     /// 0.1 points more through, on roofs and streets.
     pub spacing: f32,
+    /// Distance to the tangent plane of a neighbour up to which a point lies on it, metres, 0 or more: a ball below the point stays below this plane too. Default
+    /// 0.05, more than noise; without, balls below ridges reach out of the roof and shade it where the sun grazes it.
+    pub on_plane: f32,
 }
 
 impl Default for ReliefParams {
     fn default() -> Self {
-        Self { reach_spacings: 2.4, heights: [0.2, 1.5], well_represented: 0.75, radius_spacings: 0.47, spacing: 0.15 }
+        Self {
+            reach_spacings: 2.4,
+            heights: [0.2, 1.5],
+            well_represented: 0.75,
+            radius_spacings: 0.47,
+            spacing: 0.15,
+            on_plane: 0.05,
+        }
     }
 }
 
@@ -48,6 +59,7 @@ const CHUNK: usize = 512;
 /// The thin relief of a cloud.
 pub(super) struct Relief<'a> {
     positions: &'a [[f32; 3]],
+    normals: &'a [[f32; 3]],
     params: &'a ReliefParams,
     /// Rows of its points, and the height of the next lower level at each.
     points: Vec<(usize, f32)>,
@@ -60,7 +72,7 @@ impl<'a> Relief<'a> {
     /// lowest point near by as the parameters say; what lies deeper than the most of that is not looked at. Row i of `balls` must be the
     /// ball of point i, pruned or not.
     pub(super) fn find(
-        positions: &'a [[f32; 3]],
+        (positions, normals): (&'a [[f32; 3]], &'a [[f32; 3]]),
         kinds: &[Kind],
         is_left_out: impl Fn(usize) -> bool + Sync,
         (balls, spacing): (&MedialBalls, &'a [f32]),
@@ -91,7 +103,7 @@ impl<'a> Relief<'a> {
         let points = rows.filter(|&row| !stop.is_set() && is_wanted(row)).filter_map(point).collect();
         stop.check()?;
         control.advance(positions.len());
-        Ok(Self { positions, params, points, spacing })
+        Ok(Self { positions, normals, params, points, spacing })
     }
 
     /// Number of its points.
@@ -99,16 +111,28 @@ impl<'a> Relief<'a> {
         self.points.len()
     }
 
-    /// Adds balls below its points down to the next lower level, as large as the pulses leave them, and says how many.
+    /// Adds balls below its points down to the next lower level, as large as the pulses and the planes around leave them, and says how many.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &Needles, control: &Control<'_>) -> Result<usize> {
+    pub(super) fn fill(
+        &self,
+        balls: &mut MedialBalls,
+        index: &NeighborIndex,
+        needles: &Needles,
+        control: &Control<'_>,
+    ) -> Result<usize> {
         let stop = Stop::new(control);
         let points = self.points.par_iter().with_min_len(CHUNK);
         let below = |&(row, level): &(usize, f32)| {
             let chain = Chain { radius: self.params.radius_spacings * self.spacing[row], spacing: self.params.spacing };
-            chain.below(self.positions[row], level, needles).map(move |ball| (row, ball))
+            let planes = self.planes(row, index);
+            let below_planes = move |(center, radius): ([f32; 3], f32)| {
+                let depths = planes.iter().map(|(point, normal)| dot(sub(*point, center), *normal));
+                (center, depths.filter(|depth| *depth > 0.0).fold(radius, f32::min))
+            };
+            let balls = chain.below(self.positions[row], level, needles).map(below_planes);
+            balls.filter(move |(_, radius)| *radius >= LEAST_SHARE * chain.radius).map(move |ball| (row, ball))
         };
         let found: Vec<_> = points.filter(|_| !stop.is_set()).flat_map_iter(below).collect();
         stop.check()?;
@@ -116,5 +140,18 @@ impl<'a> Relief<'a> {
             balls.push(row, center, radius, PULSE_TOUCH);
         }
         Ok(found.len())
+    }
+
+    /// Points around one of its points, with their normals, whose tangent planes it lies on.
+    fn planes(&self, row: usize, index: &NeighborIndex) -> Vec<([f32; 3], [f32; 3])> {
+        let point = self.positions[row];
+        let mut planes = Vec::new();
+        index.within_radius(point, self.params.reach_spacings * self.spacing[row], |found| {
+            let (near, normal) = (self.positions[found.index as usize], self.normals[found.index as usize]);
+            if dot(sub(point, near), normal).abs() < self.params.on_plane {
+                planes.push((near, normal));
+            }
+        });
+        planes
     }
 }

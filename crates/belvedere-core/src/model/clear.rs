@@ -77,8 +77,8 @@ impl SceneModel {
         let kept = cloud.select(&rows);
         if report.points_cleared > 0 {
             self.clear_balls(cloud, &is_cleared, &clearing, &mut report);
+            self.close_ground(cloud, &is_cleared, &clearing, &mut report, control)?;
             self.renumber(&rows, cloud.len());
-            self.close_ground(&kept, &clearing, &mut report, control)?;
             self.tree = None;
             self.normals =
                 self.normals.map(|normals| rows.iter().filter_map(|&row| normals.get(row as usize).copied()).collect());
@@ -127,18 +127,23 @@ impl SceneModel {
         }
     }
 
-    /// Puts balls below the ground where no ground point is near.
+    /// Puts balls below the ground where no ground point is near. Their source is the nearest point of the ground, which stays when more is cleared.
     fn close_ground(
         &mut self,
         cloud: &PointCloud,
+        is_cleared: &[bool],
         clearing: &Clearing,
         report: &mut ClearReport,
         control: &Control<'_>,
     ) -> Result<()> {
-        let index = NeighborIndex::new(&cloud.positions, control)?;
+        let rows: Vec<usize> =
+            clearing.ground_rows().iter().map(|&row| row as usize).filter(|&row| !is_cleared[row]).collect();
+        let positions: Vec<[f32; 3]> = rows.iter().map(|&row| cloud.positions[row]).collect();
+        let index = NeighborIndex::new(&positions, control)?;
         for (center, radius) in clearing.closing_balls() {
             let Some(near) = index.nearest_within(center, f32::INFINITY) else { continue };
-            self.parts.balls.push(near.index as usize, center, radius, LIMIT_TOUCH);
+            let Some(&source) = rows.get(near.index as usize) else { continue };
+            self.parts.balls.push(source, center, radius, LIMIT_TOUCH);
             report.ground_balls_added += 1;
         }
         let count = self.parts.balls.len();

@@ -32,6 +32,8 @@ const HALVINGS: usize = 10;
 pub struct Clearing {
     area: ClearedArea,
     ground: Ground,
+    /// Rows of the cloud that are points of the ground.
+    ground_rows: Vec<u32>,
     /// Height of what stood there, NaN where nothing did.
     tops: Raster<f32>,
     /// Whether points below what is cleared go too, unless their class is ground.
@@ -55,7 +57,7 @@ impl Clearing {
         let ground = Ground::of_points(&points, grid, params.reach, control)?;
         let clears_low = matches!((area, from), (ClearedArea::Polygon(_), GroundPoints::Classed));
         let nothing = Raster::filled(grid.width, grid.height, f32::NAN);
-        let clearing = Self { area: area.clone(), ground, tops: nothing, clears_low };
+        let clearing = Self { area: area.clone(), ground, ground_rows: rows, tops: nothing, clears_low };
         let tops = clearing.tops_of(cloud);
         Ok(Self { tops, ..clearing })
     }
@@ -66,6 +68,11 @@ impl Clearing {
         let [x, y, _] = position.map(f64::from);
         let is_below = || self.ground.grid.cell_of([x, y]).is_some_and(|[column, row]| self.top(column, row).is_some());
         self.stands_in(position, class) || (self.clears_low && class != Some(GROUND) && is_below())
+    }
+
+    /// Rows of the cloud that are points of the ground.
+    pub(super) fn ground_rows(&self) -> &[u32] {
+        &self.ground_rows
     }
 
     /// Height of the ground at a place of the map, local metres, where something is cleared there.

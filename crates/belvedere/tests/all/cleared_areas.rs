@@ -95,6 +95,42 @@ fn a_cleared_building_is_gone_and_the_ground_below_it_closed() {
 }
 
 #[test]
+fn the_ground_stays_closed_when_what_was_near_is_cleared_next() {
+    let (_, mut cloud) = surveyed();
+    let control = Control::none();
+    // in the building, where no pulse reached the ground, stands a hedge close to it; the survey has classes
+    let is_low = |position: &[f32; 3]| f64::from(position[2]) + cloud.frame.origin[2] < 0.3;
+    let classes = cloud.positions.iter().map(|position| if is_low(position) { 2 } else { 6 }).collect();
+    cloud.attributes.classification = Some(classes);
+    let mut rows: Vec<u32> = (0..cloud.len() as u32).collect();
+    let hedge: Vec<[f32; 3]> = (0..16)
+        .map(|i| [FIRST[0] - 4.0 + 0.5 * f64::from(i), FIRST[1], 0.4])
+        .map(|place| std::array::from_fn(|i| (place[i] - cloud.frame.origin[i]) as f32))
+        .collect();
+    let count = rows.len();
+    rows.extend(0..hedge.len() as u32);
+    cloud = cloud.select(&rows);
+    cloud.positions[count..].copy_from_slice(&hedge);
+    cloud.attributes.classification.as_mut().unwrap()[count..].fill(5);
+    let (mut model, _) = SceneModel::build(&cloud, &ModelParams::default(), &control).unwrap();
+    let mut left = cloud.clone();
+    let mut closing = 0;
+    for class in [6, 5] {
+        let report;
+        (model, left, report) = model.without(&ClearedArea::Class(class), &left, &control).unwrap();
+        assert!(report.points_cleared >= hedge.len(), "{report:?}");
+        closing += report.ground_balls_added;
+    }
+    assert!(closing > 300, "{closing}");
+    let scene = model.scene(&model.rule(), UnprovenAs::Reported, &control).unwrap();
+    let up = to_sun(1.0, 0.9);
+    for place in random_targets([20.5, 26.5, -1.0], [27.5, 33.5, -0.5], 500, 4) {
+        let place: [f64; 3] = std::array::from_fn(|i| f64::from(place[i]) - cloud.frame.origin[i]);
+        assert_eq!(scene.answer(place, up, f64::INFINITY), Answer::Blocked, "{place:?}");
+    }
+}
+
+#[test]
 fn adding_a_building_and_clearing_it_restores_every_answer() {
     let (model, cloud) = surveyed();
     let control = Control::none();

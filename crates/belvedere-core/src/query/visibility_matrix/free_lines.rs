@@ -19,6 +19,9 @@ const BATCH: usize = 512;
 /// Targets that are looked at before the next: as many as keep what is settled of them below 100 MB.
 const MOST_TARGETS: usize = BLOCK << 10;
 
+/// By how much the box around balls is taken for larger, metres: far more than is rounded.
+const ROOM: f64 = 0.01;
+
 /// Which of many directions each of many targets sees, as far as obstacles were asked.
 ///
 /// A line of sight is free where no obstacle blocks it, so that neither their order nor how they are cut into parts matters: with the balls of a
@@ -66,6 +69,38 @@ impl<'a> FreeLines<'a> {
         (0..self.directions.len()).filter(is_free).collect()
     }
 
+    /// How many targets there are.
+    #[must_use]
+    pub fn target_count(&self) -> usize {
+        self.tree.positions().len()
+    }
+
+    /// Calls `visit` with the places on the map where lines of sight that are still free start: the number of their column in `columns`, the lowest and the
+    /// highest corner of a rectangle, and the height that no target there is below, local metres. So many neighbours as `together` says, at least one, share a place.
+    pub fn each_start(&self, columns: &[usize], together: usize, mut visit: impl FnMut(usize, [[f32; 2]; 2], f32)) {
+        let asked = self.words_of(columns);
+        let together = together.max(1);
+        let rows = self.words.chunks(self.width.max(1) * together);
+        let mut any = vec![0; self.width];
+        for (rows, targets) in rows.zip(self.tree.positions().chunks(together)) {
+            any.copy_from_slice(&asked);
+            let of_rows = |word: usize| rows.chunks(self.width).fold(0, |bits, row| bits | row[word]);
+            any.iter_mut().enumerate().for_each(|(word, any)| *any &= of_rows(word));
+            if any.iter().all(|word| *word == 0) {
+                continue;
+            }
+            let bound = |axis: usize, pick: fn(f32, f32) -> f32, start: f32| {
+                targets.iter().map(|target| target[axis]).fold(start, pick)
+            };
+            let low: [f32; 3] = std::array::from_fn(|axis| bound(axis, f32::min, f32::INFINITY));
+            let high = [0, 1].map(|axis| bound(axis, f32::max, f32::NEG_INFINITY));
+            let is_free = |column: usize| any[column / WORD] >> (column % WORD) & 1 == 1;
+            for (number, _) in columns.iter().enumerate().filter(|(_, column)| is_free(**column)) {
+                visit(number, [[low[0], low[1]], high], low[2]);
+            }
+        }
+    }
+
     /// Takes away what the balls of `scene` block of the directions in `columns`, each given once. Progress counts targets.
     ///
     /// # Errors
@@ -82,31 +117,81 @@ impl<'a> FreeLines<'a> {
         if scene.ball_count() == 0 || columns.is_empty() {
             return Ok(());
         }
-        let headings = headings(self.directions, columns);
-        // batches of the same size, so that none is too small to be worth a sweep
-        let batch = headings.len().div_ceil(headings.len().div_ceil(BATCH));
         // a target counts as done when as many lines of sight are
         let asked = AtomicUsize::new(0);
         let advance = |lines: usize| {
             let before = asked.fetch_add(lines, Ordering::Relaxed);
             control.advance((before + lines) / columns.len() - before / columns.len());
         };
+        let (open, met) = self.meeting(scene, columns);
+        let headings = headings(self.directions, &met);
+        // batches of the same size, so that none is too small to be worth a sweep
+        let batch = headings.len().div_ceil(headings.len().div_ceil(BATCH).max(1)).max(1);
         let (width, positions) = (self.width, self.tree.positions());
-        for (words, targets) in self.words.chunks_mut(width * MOST_TARGETS).zip(positions.chunks(MOST_TARGETS)) {
+        let of_block = |block: &usize| positions.chunks(BLOCK).nth(*block).unwrap_or_default();
+        let open_count: usize = open.iter().map(|block| of_block(block).len()).sum();
+        advance(positions.len() * columns.len() - open_count * met.len());
+        for open in open.chunks(MOST_TARGETS / BLOCK) {
+            let targets = open.iter().map(of_block).collect::<Vec<_>>().concat();
+            let mut numbers = vec![None; positions.len().div_ceil(BLOCK)];
+            open.iter().zip(0..).for_each(|(&block, number)| numbers[block] = Some(number));
             for headings in headings.chunks(batch) {
                 let of_batch: Vec<[f64; 3]> = headings.iter().map(|heading| heading.direction).collect();
-                let settled = scene.prepared()?.settle(targets, &of_batch, control)?;
+                let settled = scene.prepared()?.settle(&targets, &of_batch, control)?;
                 let sky = Sky::new(scene.tree(), headings, &settled, self.directions.len());
-                let blocks = words.par_chunks_mut(width * BLOCK).zip(targets.par_chunks(BLOCK));
-                blocks.enumerate().try_for_each(|(block, (rows, targets))| {
+                let blocks = self.words.par_chunks_mut(width * BLOCK).zip(positions.par_chunks(BLOCK)).zip(&numbers);
+                blocks.try_for_each(|((rows, targets), number)| {
+                    let Some(number) = *number else { return Ok(()) };
                     control.check()?;
-                    sky.look(targets, block, rows, width);
+                    sky.look(targets, number, rows, width);
                     advance(targets.len() * headings.len());
                     Ok(())
                 })?;
             }
         }
         Ok(())
+    }
+
+    /// The blocks of targets, and those of `columns`, with lines that are still free and run through the box around the balls of `scene`.
+    fn meeting(&self, scene: &MedialScene, columns: &[usize]) -> (Vec<usize>, Vec<usize>) {
+        let index = scene.tree().index();
+        let asked = self.words_of(columns);
+        let of_block = |(rows, targets): (&[u64], &[[f32; 3]])| -> Vec<u64> {
+            let mut met = asked.clone();
+            for (word, met) in met.iter_mut().enumerate() {
+                *met &= rows.chunks(self.width).fold(0, |bits, row| bits | row[word]);
+            }
+            let bound = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| {
+                targets.iter().map(|target| f64::from(target[axis])).fold(start, pick)
+            };
+            // the box as seen from the targets
+            let sides: [[f64; 2]; 3] = std::array::from_fn(|axis| {
+                let (middle, half) = (index.center()[axis], index.half_size()[axis] + ROOM);
+                [
+                    middle - half - bound(axis, f64::max, f64::NEG_INFINITY),
+                    middle + half - bound(axis, f64::min, f64::INFINITY),
+                ]
+            });
+            for &column in columns {
+                if !passes(sides, self.directions[column]) {
+                    met[column / WORD] &= !(1 << (column % WORD));
+                }
+            }
+            met
+        };
+        let blocks = self.words.par_chunks(self.width * BLOCK).zip(self.tree.positions().par_chunks(BLOCK));
+        let met: Vec<Vec<u64>> = blocks.map(of_block).collect();
+        let is_any = |met: &Vec<u64>| met.iter().any(|word| *word != 0);
+        let of_any = |column: &&usize| met.iter().any(|met| met[**column / WORD] >> (**column % WORD) & 1 == 1);
+        let blocks = met.iter().enumerate().filter(|(_, met)| is_any(met)).map(|(block, _)| block).collect();
+        (blocks, columns.iter().filter(of_any).copied().collect())
+    }
+
+    /// The words of a row that sees `columns` only.
+    fn words_of(&self, columns: &[usize]) -> Vec<u64> {
+        let mut words = vec![0; self.width];
+        columns.iter().for_each(|column| words[column / WORD] |= 1 << (column % WORD));
+        words
     }
 
     /// Takes away what meshes block.
@@ -154,4 +239,20 @@ impl<'a> FreeLines<'a> {
         }
         VisibilityMatrix { places, direction_count: self.directions.len(), width: self.width, words: self.words }
     }
+}
+
+/// Whether a line from the origin along `direction` runs through a box between `sides`.
+fn passes(sides: [[f64; 2]; 3], direction: [f64; 3]) -> bool {
+    let (mut from, mut to) = (0.0_f64, f64::INFINITY);
+    for ([low, high], step) in sides.into_iter().zip(direction) {
+        if step == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return false;
+            }
+            continue;
+        }
+        let (a, b) = (low / step, high / step);
+        (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
+    }
+    from <= to
 }

@@ -1,0 +1,223 @@
+//! Where lines of sight that are still free run, and what is high enough to block one of them.
+//!
+//! Seen along a direction, the lines from a tile lie side by side in strips. What stands in a strip must be higher than the lowest line there. Few lines reach
+//! far: so most of what stands far away never needs to be looked at, let alone indexed.
+
+use crate::grid::{Area, block_area};
+use crate::lines::{MOST_BALL, ROOM};
+use belvedere::medial::MedialBalls;
+use belvedere::query::FreeLines;
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Least width of a strip, metres, and most strips of a direction.
+const WIDTH: f64 = 4.0;
+const MOST_STRIPS: f64 = 1024.0;
+/// Slope in place of that of lines that are steeper, metres of height for each metre on the map: in the highest scene they move by less than [`ROOM`].
+const STEEPEST: f64 = 1e6;
+/// Slope below which lines reach far: 11 degrees.
+const LOW_SLOPE: f64 = 0.2;
+/// Lines of these up to which each has its own start, and neighbours that share one where lines are steeper.
+const MOST_STARTS: usize = 1 << 24;
+const NEIGHBOURS: usize = 256;
+/// Directions handed to a thread at once.
+const TOGETHER: usize = 32;
+/// Side of the cells that balls are told apart by, metres.
+const CELL: f64 = 8.0;
+/// Radii up to which balls are looked up together, metres.
+const RADII: [f64; 2] = [1.0, MOST_BALL];
+
+/// The lines of sight in one direction.
+struct Course {
+    /// Unit vector on the map that they run along.
+    along: [f64; 2],
+    slope: f64,
+    /// Where the first strip begins to the left of that.
+    left: f64,
+    strips: Vec<Strip>,
+}
+
+/// Lines of sight side by side.
+#[derive(Clone, Copy)]
+struct Strip {
+    /// Where the first starts along the direction.
+    start: f64,
+    /// Height of the lowest, continued back to where the distance along the direction is zero.
+    height: f64,
+}
+
+/// Lines of sight that are still free.
+pub(crate) struct Strips {
+    width: f64,
+    courses: Vec<Course>,
+}
+
+impl Strips {
+    /// Of the directions in `columns`, from targets over an area.
+    pub(crate) fn new(free: &FreeLines<'_>, directions: &[[f64; 3]], columns: &[usize], targets: &Area) -> Self {
+        let extent = (targets.high[0] - targets.low[0]).hypot(targets.high[1] - targets.low[1]);
+        let width = WIDTH.max(extent / MOST_STRIPS);
+        let slope = |column: usize| directions.get(column).map_or(0.0, |d| d[2] / d[0].hypot(d[1]));
+        let low_count = columns.iter().filter(|&&column| slope(column) < LOW_SLOPE).count();
+        // where lines reach far each has its own start
+        let of_low = (free.target_count() * low_count).div_ceil(MOST_STARTS);
+        let of_columns = |columns: &[usize]| {
+            let towards = columns.iter().filter_map(|&column| directions.get(column));
+            let mut courses: Vec<Course> = towards.map(|direction| Course::new(*direction, targets, width)).collect();
+            let (low, high): (Vec<usize>, Vec<usize>) =
+                (0..courses.len()).partition(|&number| courses.get(number).is_some_and(|c| c.slope < LOW_SLOPE));
+            for (numbers, together) in [(low, of_low), (high, NEIGHBOURS)] {
+                let columns: Vec<usize> = numbers.iter().filter_map(|&number| columns.get(number).copied()).collect();
+                free.each_start(&columns, together, |number, corners, lowest| {
+                    let [low, high] = corners.map(|corner| corner.map(f64::from));
+                    if let Some(course) = numbers.get(number).and_then(|&number| courses.get_mut(number)) {
+                        course.add(&Area { low, high }, f64::from(lowest), width);
+                    }
+                });
+            }
+            courses
+        };
+        let courses = columns.par_chunks(TOGETHER).flat_map_iter(of_columns).collect();
+        Self { width, courses }
+    }
+
+    /// The numbers of the directions in which something on one of the blocks of 64 m with the highest `tops` may block a line.
+    pub(crate) fn meeting(&self, tops: &[([i32; 2], f32)]) -> Vec<usize> {
+        let blocks: Vec<(Area, f64)> = tops.iter().map(|&(block, top)| (block_area(block), f64::from(top))).collect();
+        let meets = |course: &Course| blocks.iter().any(|(area, top)| *top >= course.least_top(area, self.width));
+        (0..self.courses.len()).filter(|&number| self.courses.get(number).is_some_and(meets)).collect()
+    }
+
+    /// The rows of balls that may block a line in any of the directions with these numbers: of balls with a centre so far from an area on the map, beyond the
+    /// first distance and up to the second.
+    pub(crate) fn blocking_rows(
+        &self,
+        numbers: &[usize],
+        balls: &MedialBalls,
+        (area, [beyond, to]): (&Area, [f64; 2]),
+    ) -> Vec<usize> {
+        let courses: Vec<&Course> = numbers.iter().filter_map(|&number| self.courses.get(number)).collect();
+        let mut least_tops: HashMap<([i32; 2], usize), f64> = HashMap::new();
+        let mut may_block = |center: &[f32; 3], radius: f64| {
+            let distance = area.distance(&Area::at(center.map(f64::from)));
+            if !(distance > beyond && distance <= to) {
+                return false;
+            }
+            let Some(kind) = RADII.iter().position(|most| radius <= *most) else { return true };
+            #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
+            let cell = [center[0], center[1]].map(|v| (f64::from(v) / CELL).floor() as i32);
+            let least_top = || {
+                let low = cell.map(|number| f64::from(number) * CELL);
+                let around = Area { low, high: low.map(|v| v + CELL) }.widened(RADII[kind]);
+                courses.iter().map(|course| course.least_top(&around, self.width)).fold(f64::INFINITY, f64::min)
+            };
+            f64::from(center[2]) + radius >= *least_tops.entry((cell, kind)).or_insert_with(least_top)
+        };
+        let rows = balls.centers.iter().zip(&balls.radii).enumerate();
+        rows.filter(|(_, (center, radius))| may_block(center, f64::from(**radius))).map(|(row, _)| row).collect()
+    }
+}
+
+impl Course {
+    fn new(direction: [f64; 3], targets: &Area, width: f64) -> Self {
+        let level = direction[0].hypot(direction[1]);
+        let slope = direction[2] / level;
+        let (along, slope) = if slope < STEEPEST {
+            ([direction[0] / level, direction[1] / level], slope)
+        } else {
+            ([1.0, 0.0], STEEPEST)
+        };
+        let [left, right] = targets.widened(ROOM).span([-along[1], along[0]]);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by the width of a strip")]
+        let count = ((right - left) / width).max(0.0) as usize + 1;
+        let none = Strip { start: f64::INFINITY, height: f64::INFINITY };
+        Self { along, slope, left, strips: vec![none; count] }
+    }
+
+    /// From where to where an area reaches along the lines and across.
+    fn spans(&self, area: &Area) -> [[f64; 2]; 2] {
+        [area.span(self.along), area.span([-self.along[1], self.along[0]])]
+    }
+
+    /// The strips that something between two places across the lines meets.
+    fn met(&self, [from, to]: [f64; 2], width: f64) -> std::ops::Range<usize> {
+        let place = |v: f64| (v - self.left) / width;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
+        let number = |v: f64| (v.max(0.0) as usize).min(self.strips.len());
+        if place(to) < 0.0 { 0..0 } else { number(place(from))..number(place(to) + 1.0) }
+    }
+
+    /// Adds lines that start over an area, none lower than `lowest`.
+    fn add(&mut self, area: &Area, lowest: f64, width: f64) {
+        let [[first, last], across] = self.spans(area);
+        let met = self.met(across, width);
+        let height = lowest - last * self.slope;
+        for strip in self.strips.get_mut(met).into_iter().flatten() {
+            *strip = Strip { start: strip.start.min(first), height: strip.height.min(height) };
+        }
+    }
+
+    /// How high something over `area` must be to block a line, local metres.
+    fn least_top(&self, area: &Area, width: f64) -> f64 {
+        let [[near, far], [left, right]] = self.spans(area);
+        let met = self.strips.get(self.met([left - ROOM, right + ROOM], width)).unwrap_or_default();
+        let ahead = met.iter().filter(|strip| far >= strip.start - ROOM);
+        ahead.map(|strip| strip.height + near.max(strip.start) * self.slope - ROOM).fold(f64::INFINITY, f64::min)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere::random::uniform;
+
+    /// Rays and balls at random, and steep ones among them: what meets is never left out, and much that does not is.
+    #[test]
+    fn what_blocks_a_line_is_found_and_little_else() {
+        let random = |seed: u64, i: u64, low: f64, high: f64| low + (high - low) * uniform(seed, i);
+        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+        let place = |seed: u64, i: u64, across: [f64; 2], heights: [f64; 2]| -> [f32; 3] {
+            let ranges = [across, across, heights];
+            std::array::from_fn(|axis| random(seed + axis as u64, i, ranges[axis][0], ranges[axis][1]) as f32)
+        };
+        let mut directions: Vec<[f64; 3]> = (0..30)
+            .map(|i| {
+                let (azimuth, elevation) = (random(1, i, 0.0, 6.3), random(2, i, 0.01, 0.5));
+                [azimuth.sin() * elevation.cos(), azimuth.cos() * elevation.cos(), elevation.sin()]
+            })
+            .collect();
+        directions.extend([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]);
+        let columns: Vec<usize> = (0..directions.len()).collect();
+        for count in [3, 300, 40_000] {
+            let targets: Vec<[f32; 3]> = (0..count).map(|i| place(3, i, [0.0, 200.0], [0.0, 8.0])).collect();
+            let free = FreeLines::new(&targets, &directions).unwrap();
+            let area = Area { low: [0.0; 2], high: [200.0; 2] };
+            let strips = Strips::new(&free, &directions, &columns, &area);
+            let balls = MedialBalls {
+                centers: (0..2000).map(|i| place(6, i, [-300.0, 500.0], [-20.0, 30.0])).collect(),
+                radii: (0..2000).map(|i| if i % 50 == 0 { 12.0 } else { 0.1 + 0.04 * (i % 100) as f32 }).collect(),
+                source: vec![0; 2000],
+                touch: vec![0; 2000],
+                separation_angles: vec![1.0; 2000],
+            };
+            let bands = [f64::NEG_INFINITY, 20.0, 100.0, f64::INFINITY];
+            let in_band = |band: &[f64]| strips.blocking_rows(&columns, &balls, (&area, [band[0], band[1]]));
+            let mut rows = bands.windows(2).map(in_band).collect::<Vec<_>>().concat();
+            rows.sort_unstable();
+            assert!(rows.windows(2).all(|pair| pair[0] < pair[1]));
+            let blocks = |row: usize| {
+                let (center, radius) = (balls.centers[row].map(f64::from), f64::from(balls.radii[row]));
+                targets.iter().any(|target| {
+                    let way: [f64; 3] = std::array::from_fn(|i| center[i] - f64::from(target[i]));
+                    directions.iter().any(|direction| {
+                        let span = (0..3).map(|i| way[i] * direction[i]).sum::<f64>().max(0.0);
+                        (0..3).map(|i| (way[i] - span * direction[i]).powi(2)).sum::<f64>() < radius * radius
+                    })
+                })
+            };
+            let blocking: Vec<usize> = (0..2000).filter(|&row| blocks(row)).collect();
+            assert!(blocking.iter().all(|row| rows.binary_search(row).is_ok()), "{count} targets");
+            assert!(rows.len() < 1900, "{count} targets: {} of 2000 for {}", rows.len(), blocking.len());
+        }
+    }
+}
