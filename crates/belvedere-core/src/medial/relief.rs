@@ -5,7 +5,7 @@
 //! points, where it is most certain to be solid.
 
 use super::bounds::Kind;
-use super::chains::{Chain, LEAST_SHARE};
+use super::chains::Chain;
 use crate::neighbors::NeighborIndex;
 use crate::pulses::Needles;
 use belvedere_data::Result;
@@ -35,8 +35,8 @@ pub struct ReliefParams {
     /// Distance of these balls below each other, metres, above 0. Default 0.15; 0.2 saves a fifth of them and lets
     /// 0.1 points more through, on roofs and streets.
     pub spacing: f32,
-    /// Distance to the tangent plane of a neighbour up to which a point lies on it, metres, 0 or more: a ball below the point stays below this plane too. Default
-    /// 0.05, more than noise; without, balls below ridges reach out of the roof and shade it where the sun grazes it.
+    /// Distance to the tangent plane of a neighbour up to which a point lies on it, metres, 0 or more: the balls below the point stay below slopes that it lies on.
+    /// Default 0.05, more than noise; with 0, balls below ridges reach out of the roof and shade it where the sun grazes it.
     pub on_plane: f32,
 }
 
@@ -53,6 +53,8 @@ impl Default for ReliefParams {
     }
 }
 
+/// Upward part of the normal of a slope at least.
+const SLOPE_NORMAL_Z: f32 = 0.5;
 /// Points handed to a thread at once.
 const CHUNK: usize = 512;
 
@@ -111,7 +113,7 @@ impl<'a> Relief<'a> {
         self.points.len()
     }
 
-    /// Adds balls below its points down to the next lower level, as large as the pulses and the planes around leave them, and says how many.
+    /// Adds balls below its points down to the next lower level, as large as the pulses leave them, and says how many.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -126,13 +128,8 @@ impl<'a> Relief<'a> {
         let points = self.points.par_iter().with_min_len(CHUNK);
         let below = |&(row, level): &(usize, f32)| {
             let chain = Chain { radius: self.params.radius_spacings * self.spacing[row], spacing: self.params.spacing };
-            let planes = self.planes(row, index);
-            let below_planes = move |(center, radius): ([f32; 3], f32)| {
-                let depths = planes.iter().map(|(point, normal)| dot(sub(*point, center), *normal));
-                (center, depths.filter(|depth| *depth > 0.0).fold(radius, f32::min))
-            };
-            let balls = chain.below(self.positions[row], level, needles).map(below_planes);
-            balls.filter(move |(_, radius)| *radius >= LEAST_SHARE * chain.radius).map(move |ball| (row, ball))
+            let top = self.top(row, chain.radius, index);
+            chain.below(top, level, needles).map(move |ball| (row, ball))
         };
         let found: Vec<_> = points.filter(|_| !stop.is_set()).flat_map_iter(below).collect();
         stop.check()?;
@@ -142,16 +139,17 @@ impl<'a> Relief<'a> {
         Ok(found.len())
     }
 
-    /// Points around one of its points, with their normals, whose tangent planes it lies on.
-    fn planes(&self, row: usize, index: &NeighborIndex) -> Vec<([f32; 3], [f32; 3])> {
+    /// Where the first ball below one of its points begins: so low that it stays below the slopes that the point lies on.
+    fn top(&self, row: usize, radius: f32, index: &NeighborIndex) -> [f32; 3] {
         let point = self.positions[row];
-        let mut planes = Vec::new();
+        let mut sinks = 0.0_f32;
         index.within_radius(point, self.params.reach_spacings * self.spacing[row], |found| {
             let (near, normal) = (self.positions[found.index as usize], self.normals[found.index as usize]);
-            if dot(sub(point, near), normal).abs() < self.params.on_plane {
-                planes.push((near, normal));
+            let below = dot(sub(near, point), normal);
+            if below.abs() < self.params.on_plane && normal[2] > SLOPE_NORMAL_Z {
+                sinks = sinks.max((radius - below) / normal[2] - radius);
             }
         });
-        planes
+        [point[0], point[1], point[2] - sinks]
     }
 }

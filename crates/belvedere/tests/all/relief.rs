@@ -126,10 +126,10 @@ fn a_ridge_does_not_shade_the_slope_that_the_sun_grazes() {
     let elevation = 0.7f64.atan() + 2f64.to_radians();
     let sun = [-elevation.cos(), 0.0, elevation.sin()];
     let survey = ridge();
-    let shaded = |relief| {
-        let found = balls(&survey, Some(relief));
-        assert!(found.report.relief_fills > 100, "{:?}", found.report);
-        let scene = MedialScene::new(&found.balls, &BlockRule::default()).unwrap();
+    let shaded = |relief: Option<ReliefParams>| {
+        let found = balls(&survey, relief);
+        assert_eq!(found.report.relief_fills > 1000, relief.is_some(), "{:?}", found.report);
+        let scene = MedialScene::new(&found.balls, &BlockRule::carved()).unwrap();
         let is_shaded = |i: &u64| {
             let place = [0.9 * uniform(6, *i) + 0.1, 20.0 * (uniform(7, *i) - 0.5)];
             scene.answer([place[0], place[1], 0.02 - 0.7 * place[0]], sun, f64::INFINITY) == Answer::Blocked
@@ -137,8 +137,9 @@ fn a_ridge_does_not_shade_the_slope_that_the_sun_grazes() {
         (0..4000).filter(is_shaded).count()
     };
     let default = ReliefParams::default();
-    let [free, limited] = [0.0, default.on_plane].map(|on_plane| shaded(ReliefParams { on_plane, ..default }));
-    assert!(limited == 0 && free > 200, "{limited} of 4000 are shaded, {free} without planes");
+    let none = shaded(None);
+    let [free, limited] = [0.0, default.on_plane].map(|on_plane| shaded(Some(ReliefParams { on_plane, ..default })));
+    assert!(limited == none && free > none + 20, "{none} of 4000 are shaded without relief, {limited} and {free} with");
 }
 
 #[test]
