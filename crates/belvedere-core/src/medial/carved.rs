@@ -374,15 +374,7 @@ pub(crate) fn carve_survey(
                 || oriented.normals()[row][2].abs() < FACE_NORMAL_Z
         };
         control.stage("finding thin relief", oriented.len(), || {
-            Relief::find(
-                (positions, oriented.normals()),
-                &kinds,
-                is_left_out,
-                (&balls, &spacing),
-                index,
-                params,
-                control,
-            )
+            Relief::find(positions, &kinds, is_left_out, (&balls, &spacing), index, params, control)
         })
     };
     let relief = params.relief.as_ref().map(find_relief).transpose()?;
@@ -392,7 +384,7 @@ pub(crate) fn carve_survey(
             report.crown_fills = crowns.fill(&mut balls, needles, control)?;
         }
         if let Some(relief) = &relief {
-            report.relief_fills = relief.fill(&mut balls, index, needles, control)?;
+            report.relief_fills = relief.fill(&mut balls, needles, control)?;
         }
         if let Some(slender) = &slender {
             report.slender_fills = slender.fill(&mut balls, needles, control)?;

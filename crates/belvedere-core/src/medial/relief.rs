@@ -11,7 +11,6 @@ use crate::pulses::Needles;
 use belvedere_data::Result;
 use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
 use belvedere_data::control::{Control, Stop};
-use belvedere_data::vector::{dot, sub};
 use rayon::prelude::*;
 
 /// How thin relief is told and filled.
@@ -35,33 +34,20 @@ pub struct ReliefParams {
     /// Distance of these balls below each other, metres, above 0. Default 0.15; 0.2 saves a fifth of them and lets
     /// 0.1 points more through, on roofs and streets.
     pub spacing: f32,
-    /// Distance to the tangent plane of a neighbour up to which a point lies on it, metres, 0 or more: the balls below the point stay below slopes that it lies on.
-    /// Default 0.05, more than noise; with 0, balls below ridges reach out of the roof and shade it where the sun grazes it.
-    pub on_plane: f32,
 }
 
 impl Default for ReliefParams {
     fn default() -> Self {
-        Self {
-            reach_spacings: 2.4,
-            heights: [0.2, 1.5],
-            well_represented: 0.75,
-            radius_spacings: 0.47,
-            spacing: 0.15,
-            on_plane: 0.05,
-        }
+        Self { reach_spacings: 2.4, heights: [0.2, 1.5], well_represented: 0.75, radius_spacings: 0.47, spacing: 0.15 }
     }
 }
 
-/// Upward part of the normal of a slope at least.
-const SLOPE_NORMAL_Z: f32 = 0.5;
 /// Points handed to a thread at once.
 const CHUNK: usize = 512;
 
 /// The thin relief of a cloud.
 pub(super) struct Relief<'a> {
     positions: &'a [[f32; 3]],
-    normals: &'a [[f32; 3]],
     params: &'a ReliefParams,
     /// Rows of its points, and the height of the next lower level at each.
     points: Vec<(usize, f32)>,
@@ -74,7 +60,7 @@ impl<'a> Relief<'a> {
     /// lowest point near by as the parameters say; what lies deeper than the most of that is not looked at. Row i of `balls` must be the
     /// ball of point i, pruned or not.
     pub(super) fn find(
-        (positions, normals): (&'a [[f32; 3]], &'a [[f32; 3]]),
+        positions: &'a [[f32; 3]],
         kinds: &[Kind],
         is_left_out: impl Fn(usize) -> bool + Sync,
         (balls, spacing): (&MedialBalls, &'a [f32]),
@@ -105,7 +91,7 @@ impl<'a> Relief<'a> {
         let points = rows.filter(|&row| !stop.is_set() && is_wanted(row)).filter_map(point).collect();
         stop.check()?;
         control.advance(positions.len());
-        Ok(Self { positions, normals, params, points, spacing })
+        Ok(Self { positions, params, points, spacing })
     }
 
     /// Number of its points.
@@ -117,19 +103,12 @@ impl<'a> Relief<'a> {
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-    pub(super) fn fill(
-        &self,
-        balls: &mut MedialBalls,
-        index: &NeighborIndex,
-        needles: &Needles,
-        control: &Control<'_>,
-    ) -> Result<usize> {
+    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &Needles, control: &Control<'_>) -> Result<usize> {
         let stop = Stop::new(control);
         let points = self.points.par_iter().with_min_len(CHUNK);
         let below = |&(row, level): &(usize, f32)| {
             let chain = Chain { radius: self.params.radius_spacings * self.spacing[row], spacing: self.params.spacing };
-            let top = self.top(row, chain.radius, index);
-            chain.below(top, level, needles).map(move |ball| (row, ball))
+            chain.below(self.positions[row], level, needles).map(move |ball| (row, ball))
         };
         let found: Vec<_> = points.filter(|_| !stop.is_set()).flat_map_iter(below).collect();
         stop.check()?;
@@ -137,19 +116,5 @@ impl<'a> Relief<'a> {
             balls.push(row, center, radius, PULSE_TOUCH);
         }
         Ok(found.len())
-    }
-
-    /// Where the first ball below one of its points begins: so low that it stays below the slopes that the point lies on.
-    fn top(&self, row: usize, radius: f32, index: &NeighborIndex) -> [f32; 3] {
-        let point = self.positions[row];
-        let mut sinks = 0.0_f32;
-        index.within_radius(point, self.params.reach_spacings * self.spacing[row], |found| {
-            let (near, normal) = (self.positions[found.index as usize], self.normals[found.index as usize]);
-            let below = dot(sub(near, point), normal);
-            if below.abs() < self.params.on_plane && normal[2] > SLOPE_NORMAL_Z {
-                sinks = sinks.max((radius - below) / normal[2] - radius);
-            }
-        });
-        [point[0], point[1], point[2] - sinks]
     }
 }
