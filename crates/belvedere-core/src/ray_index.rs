@@ -354,6 +354,7 @@ fn tree_reach(range: f64) -> f32 {
 mod tests {
     use super::*;
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::piece_in_box;
     use std::collections::BTreeSet;
 
     #[expect(clippy::cast_possible_truncation, reason = "boxes are f32")]
@@ -387,20 +388,8 @@ mod tests {
     }
 
     fn meets(ray: &Ray, [low, high]: [[f32; 3]; 2]) -> bool {
-        let [mut from, mut to] = ray.ranges;
-        for axis in 0..3 {
-            let (low, high) = (f64::from(low[axis]), f64::from(high[axis]));
-            let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
-            if direction == 0.0 {
-                if origin < low || origin > high {
-                    return false;
-                }
-                continue;
-            }
-            let (a, b) = ((low - origin) / direction, (high - origin) / direction);
-            (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
-        }
-        from <= to
+        let sides = std::array::from_fn(|axis| [low[axis], high[axis]].map(|side| f64::from(side) - ray.origin[axis]));
+        piece_in_box(sides, ray.direction, ray.ranges).is_some()
     }
 
     #[test]

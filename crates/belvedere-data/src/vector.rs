@@ -37,3 +37,47 @@ pub fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
     let length = length(a);
     (length.is_finite() && length > 0.0).then(|| a.map(|v| v / length))
 }
+
+/// The piece of a ray that lies in a box: the first and the last of the multiples of its `step` within `piece`. The box is between two `sides` on each axis, as seen from
+/// where the ray starts. `None` where the ray passes beside it, and for a box whose sides are in the wrong order.
+#[must_use]
+#[inline]
+pub fn piece_in_box<const N: usize>(sides: [[f64; 2]; N], step: [f64; N], piece: [f64; 2]) -> Option<[f64; 2]> {
+    let [mut from, mut to] = piece;
+    for ([low, high], step) in sides.into_iter().zip(step) {
+        if low > high || step == 0.0 && (low > 0.0 || high < 0.0) {
+            return None;
+        }
+        if step != 0.0 {
+            let (a, b) = (low / step, high / step);
+            (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
+        }
+    }
+    (from <= to).then_some([from, to])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_piece_of_a_ray_in_a_box_is_where_it_enters_and_leaves() {
+        let unit = [[1.0, 2.0]; 2];
+        let endless = [0.0, f64::INFINITY];
+        for (step, piece, expected) in [
+            ([1.0, 1.0], endless, Some([1.0, 2.0])),
+            ([2.0, 1.5], endless, Some([2.0 / 3.0, 1.0])),
+            ([-1.0, -1.0], endless, None),
+            ([-1.0, -1.0], [f64::NEG_INFINITY, 0.0], Some([-2.0, -1.0])),
+            ([1.0, 1.0], [0.0, 1.5], Some([1.0, 1.5])),
+            ([1.0, 1.0], [0.0, 0.5], None),
+            ([1.0, 2.0], endless, Some([1.0, 1.0])),
+            ([1.0, 2.5], endless, None),
+            ([1.0, 0.0], endless, None),
+        ] {
+            assert_eq!(piece_in_box(unit, step, piece), expected, "{step:?} {piece:?}");
+        }
+        assert_eq!(piece_in_box([[1.0, 2.0], [-1.0, 1.0]], [1.0, 0.0], endless), Some([1.0, 2.0]));
+        assert_eq!(piece_in_box([[2.0, 1.0], [-1.0, 1.0]], [1.0, 0.0], endless), None);
+    }
+}

@@ -4,6 +4,7 @@ use crate::grid::{Area, TileId, block_area};
 use crate::plan::Plan;
 use crate::question::Asked;
 use belvedere::query::EarthParams;
+use belvedere::vector::piece_in_box;
 use std::collections::BTreeSet;
 
 /// Directions up to which each is looked at by itself.
@@ -139,20 +140,9 @@ pub(crate) fn tiles(plan: &Plan, lines: &Lines<'_>) -> Vec<TileId> {
 /// Whether the line of sight from a target, local metres, may meet what stands over `area` up to `top`: the line runs along `way` and ends after
 /// `length` times that, or never.
 pub(crate) fn passes(target: [f64; 3], way: [f64; 3], length: f64, area: &Area, top: f64) -> bool {
-    let (mut from, mut to) = (0.0_f64, length);
-    for axis in 0..2 {
-        let (low, high) = (area.low[axis] - target[axis], area.high[axis] - target[axis]);
-        if way[axis] == 0.0 {
-            if low > 0.0 || high < 0.0 {
-                return false;
-            }
-            continue;
-        }
-        let (a, b) = (low / way[axis], high / way[axis]);
-        from = from.max(a.min(b));
-        to = to.min(a.max(b));
-    }
-    from <= to && target[2] + way[2] * (if way[2] > 0.0 { from } else { to }) <= top
+    let sides = [0, 1].map(|axis| [area.low[axis] - target[axis], area.high[axis] - target[axis]]);
+    let over = piece_in_box(sides, [way[0], way[1]], [0.0, length]);
+    over.is_some_and(|[from, to]| target[2] + way[2] * (if way[2] >= 0.0 { from } else { to }) <= top)
 }
 
 #[cfg(test)]
@@ -223,6 +213,7 @@ mod tests {
         assert!(!towards([0.0; 3], [-half, 0.0, half]));
         assert!(!towards([0.0, 9.0, 0.0], [half, 0.0, half]));
         assert!(towards([15.0, 0.0, 0.0], [0.0, 0.0, 1.0]));
+        assert!(towards([0.0; 3], [1.0, 0.0, 0.0]) && !towards([0.0, 0.0, 31.0], [1.0, 0.0, 0.0]));
         // to an eye before the area, beyond it, and down from above
         assert!(!passes([0.0; 3], [8.0, 0.0, 0.0], 1.0, &area, 30.0));
         assert!(passes([0.0; 3], [30.0, 0.0, 0.0], 1.0, &area, 30.0));

@@ -8,6 +8,7 @@ use super::coverage::CEILING;
 use super::far_line::FarLine;
 use belvedere_data::ElevationGrid;
 use belvedere_data::horizon::HorizonProfile;
+use belvedere_data::vector::piece_in_box;
 use rayon::prelude::*;
 use relief::{Places, Relief};
 pub(super) use rows::hide_behind_terrain;
@@ -125,14 +126,6 @@ fn on_map([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
 /// The piece of a line over a box on the map, its low and high corner: from and to, metres from where the line starts, which is `span` metres long and runs along the unit vector `along`.
 /// `None` where the line passes beside it.
 pub(super) fn piece_over([low, high]: [[f64; 2]; 2], start: [f64; 3], along: [f64; 2], span: f64) -> Option<[f64; 2]> {
-    let mut piece = [0.0, span];
-    for axis in 0..2 {
-        if along[axis] == 0.0 {
-            (low[axis] <= start[axis] && start[axis] <= high[axis]).then_some(())?;
-            continue;
-        }
-        let sides = [low[axis], high[axis]].map(|side| (side - start[axis]) / along[axis]);
-        piece = [piece[0].max(sides[0].min(sides[1])), piece[1].min(sides[0].max(sides[1]))];
-    }
-    (low.iter().zip(high).all(|(low, high)| *low <= high) && piece[0] < piece[1]).then_some(piece)
+    let sides = std::array::from_fn(|axis| [low[axis] - start[axis], high[axis] - start[axis]]);
+    piece_in_box(sides, along, [0.0, span]).filter(|[from, to]| from < to)
 }

@@ -8,7 +8,7 @@ use super::VisibilityMatrix;
 use super::behind_added::hide_behind_added;
 use super::looking::{Sky, headings};
 use belvedere_data::control::Control;
-use belvedere_data::vector::length;
+use belvedere_data::vector::{length, piece_in_box};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -173,7 +173,7 @@ impl<'a> FreeLines<'a> {
                 ]
             });
             for &column in columns {
-                if !passes(sides, self.directions[column]) {
+                if piece_in_box(sides, self.directions[column], [0.0, f64::INFINITY]).is_none() {
                     met[column / WORD] &= !(1 << (column % WORD));
                 }
             }
@@ -239,20 +239,4 @@ impl<'a> FreeLines<'a> {
         }
         VisibilityMatrix { places, direction_count: self.directions.len(), width: self.width, words: self.words }
     }
-}
-
-/// Whether a line from the origin along `direction` runs through a box between `sides`.
-fn passes(sides: [[f64; 2]; 3], direction: [f64; 3]) -> bool {
-    let (mut from, mut to) = (0.0_f64, f64::INFINITY);
-    for ([low, high], step) in sides.into_iter().zip(direction) {
-        if step == 0.0 {
-            if low > 0.0 || high < 0.0 {
-                return false;
-            }
-            continue;
-        }
-        let (a, b) = (low / step, high / step);
-        (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
-    }
-    from <= to
 }
