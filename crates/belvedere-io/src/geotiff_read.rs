@@ -1,6 +1,6 @@
 //! Values of GeoTIFF rasters.
 
-use std::io::{Read, Seek};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
@@ -125,12 +125,53 @@ fn read<T: Copy>(source: Source<'_>, of_kind: impl Fn(DecodingResult) -> Option<
 }
 
 /// A decoder that allocates no more than a file of `size` bytes can hold.
-fn decoder(reader: Reader<'_>, size: u64) -> TiffResult<Decoder<Reader<'_>>> {
+fn decoder(mut reader: Reader<'_>, size: u64) -> TiffResult<Decoder<Reader<'_>>> {
+    if longest_value(&mut reader).is_ok_and(|longest| longest > size) {
+        return Err(TiffError::LimitsExceeded);
+    }
+    reader.rewind()?;
     let most = usize::try_from(size.saturating_mul(MOST_PACKED)).unwrap_or(usize::MAX);
     let mut limits = Limits::default();
     limits.decoding_buffer_size = limits.decoding_buffer_size.min(most);
     limits.intermediate_buffer_size = limits.intermediate_buffer_size.min(most);
     Ok(Decoder::new(reader)?.with_limits(limits))
+}
+
+/// Bytes that the longest entry of the first directory claims to have. The decoder reads this directory, and allocates what it claims, before it takes limits.
+///
+/// # Errors
+/// Those of reading; what is no TIFF file is left to the decoder.
+fn longest_value(reader: &mut Reader<'_>) -> io::Result<u64> {
+    let mut start = [0; 4];
+    reader.read_exact(&mut start)?;
+    let is_large = start.contains(&43);
+    let number = |reader: &mut Reader<'_>, length: usize| {
+        let mut bytes = [0; 8];
+        reader.read_exact(&mut bytes[..length])?;
+        if start.starts_with(b"MM") {
+            bytes[..length].reverse();
+        }
+        Ok::<u64, io::Error>(u64::from_le_bytes(bytes))
+    };
+    let (of_offset, of_count) = if is_large { (8, 8) } else { (4, 2) };
+    if is_large {
+        number(reader, 4)?;
+    }
+    let directory = number(reader, of_offset)?;
+    reader.seek(SeekFrom::Start(directory))?;
+    let mut longest = 0;
+    for _ in 0..number(reader, of_count)? {
+        let [_, kind] = [number(reader, 2)?, number(reader, 2)?];
+        let [values, _] = [number(reader, of_offset)?, number(reader, of_offset)?];
+        let of_value = match kind {
+            3 | 8 => 2,
+            4 | 9 | 11 | 13 => 4,
+            5 | 10 | 12 | 16..=18 => 8,
+            _ => 1,
+        };
+        longest = longest.max(values.saturating_mul(of_value));
+    }
+    Ok(longest)
 }
 
 /// Width and height, and the values.
