@@ -1,11 +1,12 @@
 //! Arrays of NumPy's archive format, written and read with every promise of a header held against what is really there.
 
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Take, Write};
 
 use npyz::npz::{NpzArchive, NpzWriter};
 use npyz::zip::ZipWriter;
+use npyz::zip::read::ZipFile;
 use npyz::zip::write::FileOptions;
-use npyz::{AutoSerialize, Deserialize, NpyWriter, Order, WriterBuilder};
+use npyz::{AutoSerialize, Deserialize, NpyReader, NpyWriter, Order, WriterBuilder};
 
 use crate::npy_header::read_header;
 
@@ -55,6 +56,8 @@ pub(crate) fn begin_array<'a, T: AutoSerialize, W: Write + Seek>(
 const MOST_BYTES_OF_SMALL: u64 = 1 << 26;
 /// Bytes that all arrays may hold for each byte of the archive. Compressed balls hold 2 to 4, matrices of open land at most 20.
 const MOST_BYTES_FOR_EACH: u64 = 100;
+/// Bytes of an entry that are read at once.
+const BUFFER_BYTES: usize = 1 << 16;
 /// The record that ends an archive without a comment.
 const END_BYTES: usize = 22;
 
@@ -151,11 +154,14 @@ pub(crate) fn in_blocks<T: Deserialize, R: Read + Seek, E: From<io::Error>>(
     })
 }
 
+/// The values of an array, by way of a buffer: a value at a time, the entry of an archive is slow.
+type Values<'a, 'z, T> = NpyReader<T, &'a mut BufReader<Take<ZipFile<'z>>>>;
+
 /// Lets `read` read an array, of which it is given the shape and the values, and checks the sum of the whole.
 fn read_array<T: Deserialize, R: Read + Seek, O, E: From<io::Error>>(
     archive: &mut NpzArchive<R>,
     name: &str,
-    read: impl FnOnce(&[u64], &mut dyn Iterator<Item = io::Result<T>>) -> Result<O, E>,
+    read: impl FnOnce(&[u64], &mut Values<'_, '_, T>) -> Result<O, E>,
 ) -> Result<O, E> {
     if !has(archive, name) {
         return Err(invalid(format!("there is no array {name}")).into());
@@ -178,6 +184,7 @@ fn read_array<T: Deserialize, R: Read + Seek, O, E: From<io::Error>>(
         let what = format!("the array {name} is in Fortran order; save it with numpy.ascontiguousarray");
         return Err(invalid(what).into());
     }
+    let mut file = BufReader::with_capacity(BUFFER_BYTES, file);
     let data = npyz::NpyFile::with_header(header, &mut file).data::<T>();
     let mut values = data.map_err(|e| invalid(format!("array {name}: {e}")))?;
     let found = read(&shape, &mut values)?;
