@@ -3,8 +3,10 @@
 use belvedere::Bounds;
 use serde::{Deserialize, Serialize};
 
-/// Side of the cells that tops are kept on, and of the blocks that some rules for balls work in, metres.
+/// Side of the blocks that the survey counts points in and that some rules for balls work in, metres.
 pub(crate) const CELL: f64 = 64.0;
+/// Side of the squares that tops of balls are kept on, metres.
+pub(crate) const TOP_SIDE: f64 = 16.0;
 
 /// A tile: number east and north on the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -126,14 +128,24 @@ impl Area {
 
 /// The area of a block of 64 m.
 pub(crate) fn block_area(block: [i32; 2]) -> Area {
-    let low = block.map(|number| f64::from(number) * CELL);
-    Area { low, high: low.map(|v| v + CELL) }
+    square_area(block, CELL)
 }
 
 /// The block of 64 m that a local position lies in.
-#[expect(clippy::cast_possible_truncation, reason = "blocks of a frame of kilometres; `as` saturates")]
-pub(crate) fn block_of([x, y]: [f32; 2]) -> [i32; 2] {
-    [x, y].map(|v| (f64::from(v) / CELL).floor() as i32)
+pub(crate) fn block_of(position: [f32; 2]) -> [i32; 2] {
+    square_at(position, CELL)
+}
+
+/// The square of a side with a number, counted east and north from the origin of local coordinates.
+pub(crate) fn square_area(number: [i32; 2], side: f64) -> Area {
+    let low = number.map(|number| f64::from(number) * side);
+    Area { low, high: low.map(|v| v + side) }
+}
+
+/// The number of the square of a side that a local position lies in.
+#[expect(clippy::cast_possible_truncation, reason = "squares of a frame of kilometres; `as` saturates")]
+pub(crate) fn square_at(position: [f32; 2], side: f64) -> [i32; 2] {
+    position.map(|v| (f64::from(v) / side).floor() as i32)
 }
 
 #[cfg(test)]

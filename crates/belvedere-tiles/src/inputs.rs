@@ -21,7 +21,7 @@ pub struct InputFile {
     pub points: u64,
     /// Lowest and highest corner, in its own coordinates.
     pub bounds: [[f64; 3]; 2],
-    /// FNV-1a of 64 bits over its size and its first and last 64 KiB, as hexadecimal digits.
+    /// CRC-32 over its size and its first and last 64 KiB, as hexadecimal digits.
     pub fingerprint: String,
     /// The rectangle around each piece of its rows: west, south, east and north, whole local metres. Empty where that is not known.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -130,10 +130,9 @@ fn fingerprint(path: &Path) -> Result<(u64, String)> {
     Ok((size, hash(&bytes)))
 }
 
-/// FNV-1a of 64 bits, as hexadecimal digits.
+/// CRC-32, as hexadecimal digits: what changed is to be found, and no more than that.
 pub(crate) fn hash(bytes: &[u8]) -> String {
-    let mix = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    format!("{:016x}", bytes.iter().fold(0xcbf2_9ce4_8422_2325, mix))
+    format!("{:08x}", crc32fast::hash(bytes))
 }
 
 /// The columns of points that all files have and tiles need.

@@ -5,7 +5,7 @@
 //! records are the ledger: what has one is done, and whatever was interrupted is done again by [`run`].
 //!
 //! Balls are made once for each tile, from the points of the tile and a margin around it, and belong to the tile that their point lies in. A question is
-//! then answered tile by tile with the balls of all tiles that can matter for it: the highest tops of balls, on cells of 64 m, say which these
+//! then answered tile by tile with the balls of all tiles that can matter for it: the highest tops of balls, on squares of 16 m, say which these
 //! are. Where balls that can matter are missing, the answer is unproven and never lit.
 //!
 //! # Tiles make no difference

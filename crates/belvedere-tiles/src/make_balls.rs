@@ -1,7 +1,7 @@
 //! The balls of a tile.
 
 use crate::cleared::{ClassedPoint, classed, clear_balls};
-use crate::grid::{Area, TileId, block_of};
+use crate::grid::{Area, TOP_SIDE, TileId, square_at};
 use crate::plan::Plan;
 use crate::record::{Outcome, Record, Stage, Stamp};
 use crate::window;
@@ -61,11 +61,11 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     Ok(Record { outcome: Outcome::Done, result, points, balls: count, tops, ..Record::default() })
 }
 
-/// The highest top of balls over each block of 64 m that any reaches into.
-fn tops(balls: &MedialBalls) -> Vec<([i32; 2], f32)> {
+/// The highest top of balls over each square of 16 m that any reaches into.
+pub(crate) fn tops(balls: &MedialBalls) -> Vec<([i32; 2], f32)> {
     let mut tops: BTreeMap<[i32; 2], f32> = BTreeMap::new();
     for (&[x, y, z], &radius) in balls.centers.iter().zip(&balls.radii) {
-        let (first, last) = (block_of([x - radius, y - radius]), block_of([x + radius, y + radius]));
+        let [first, last] = [-radius, radius].map(|by| square_at([x + by, y + by], TOP_SIDE));
         for north in first[1]..=last[1] {
             for east in first[0]..=last[0] {
                 let top = tops.entry([east, north]).or_insert(f32::NEG_INFINITY);

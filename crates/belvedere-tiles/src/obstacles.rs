@@ -1,6 +1,6 @@
 //! What can block lines of sight from a tile: the balls of all tiles that are high and near enough.
 
-use crate::grid::{Area, CELL, TileId, block_area};
+use crate::grid::{Area, CELL, TOP_SIDE, TileId, block_area, square_area};
 use crate::lines::{Lines, MOST_BALL, passes, tiles};
 use crate::make_balls::{make_balls, square_of};
 use crate::plan::Plan;
@@ -17,7 +17,7 @@ use std::path::Path;
 pub(crate) struct BallTile {
     pub(crate) tile: TileId,
     pub(crate) ball_count: usize,
-    /// Blocks of 64 m that balls reach into, and the highest top of them there, local metres.
+    /// Squares of 16 m that balls reach into, and the highest top of them there, local metres.
     pub(crate) tops: Vec<([i32; 2], f32)>,
 }
 
@@ -77,7 +77,7 @@ pub(crate) fn ball_tiles(
     control: &Control<'_>,
 ) -> Result<Vec<BallTile>> {
     let mut ball_tiles = Vec::new();
-    let may_meet = |&(block, top): &([i32; 2], f32)| lines.may_meet(&block_area(block), top.into());
+    let may_meet = |&(number, top): &([i32; 2], f32)| lines.may_meet(&square_area(number, TOP_SIDE), top.into());
     for tile in tiles(plan, lines) {
         control.check()?;
         match Record::read(plan, run, Stage::Balls, tile) {

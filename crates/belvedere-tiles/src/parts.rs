@@ -5,7 +5,7 @@
 //! at the nearest, and of a distant part only balls are asked that are high enough to block a line that is still free. Lines of sight to observers are asked
 //! in parts as well.
 
-use crate::grid::{Area, CELL, TileId, block_area};
+use crate::grid::{Area, TOP_SIDE, TileId, square_area};
 use crate::lines::{Lines, MOST_BALL};
 use crate::obstacles::{BallTile, Found, ball_tiles, may_block, push, rule};
 use crate::plan::Plan;
@@ -18,6 +18,7 @@ use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, vegetation_of_transmission};
 use belvedere::model::ModelParts;
 use belvedere::query::{FreeLines, MedialScene, VisibilityMatrix};
+use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -116,15 +117,25 @@ impl<'a> Parts<'a> {
             let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, *tile, control))?;
             let Some(ModelParts { balls, transmission, .. }) = read else { continue };
             let vegetation = self.plan.trees.map(|_| vegetation_of_transmission(&transmission)).unwrap_or_default();
+            let distance = |center: &[f32; 3]| self.cells.distance(&Area::at(center.map(f64::from)));
+            let distances: Vec<f64> = balls.centers.par_iter().map(distance).collect();
             let mut from = f64::NEG_INFINITY;
             for to in BANDS {
-                // as far as the far corner of a block that a ball reaches into
-                let reach = 1.5 * CELL + MOST_BALL;
-                let is_in = |&&(block, _): &&([i32; 2], f32)| self.cells.distance(&block_area(block)) + reach > from;
-                let in_band: Vec<_> = tops.iter().filter(is_in).copied().collect();
-                let met = strips.meeting(&in_band);
+                // as far as the far corner of a square that a ball reaches into
+                let reach = 1.5 * TOP_SIDE + MOST_BALL;
+                let may_reach = |&&(number, _): &&([i32; 2], f32)| {
+                    let distance = self.cells.distance(&square_area(number, TOP_SIDE));
+                    distance + reach > from && distance <= to + reach
+                };
+                let tops: Vec<_> = tops.iter().filter(may_reach).copied().collect();
+                let met = strips.meeting(&tops);
                 part.columns.extend(met.iter().filter_map(|&number| left.get(number)));
-                for row in strips.blocking_rows(&met, &balls, (&self.cells, [from, to])) {
+                let least_tops = strips.least_tops(&met, &tops);
+                let is_in = |row: &usize| distances[*row] > from && distances[*row] <= to;
+                let may_block = |row: &usize| least_tops.may_block(balls.centers[*row], balls.radii[*row]);
+                let rows: Vec<usize> =
+                    (0..balls.len()).into_par_iter().filter(|row| is_in(row) && may_block(row)).collect();
+                for row in rows {
                     if part.ball_count() == self.most_balls {
                         part.hide(free, self.plan, found, control)?;
                     }

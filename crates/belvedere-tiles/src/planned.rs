@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SideFile {
     path: PathBuf,
-    /// FNV-1a of 64 bits of its bytes, as hexadecimal digits.
+    /// CRC-32 of its bytes, as hexadecimal digits.
     fingerprint: String,
 }
 

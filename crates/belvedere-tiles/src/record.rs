@@ -64,7 +64,7 @@ pub enum Outcome {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Stamp {
     bytes: u64,
-    /// FNV-1a of 64 bits, as hexadecimal digits.
+    /// CRC-32, as hexadecimal digits.
     fingerprint: String,
 }
 
@@ -104,7 +104,7 @@ pub struct Record {
     /// Seconds that it took, where the program has a clock.
     #[serde(default)]
     pub seconds: f64,
-    /// Blocks of 64 m that balls reach into, and the highest top of them there, local metres.
+    /// Squares of 16 m that balls reach into, and the highest top of them there, local metres.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) tops: Vec<([i32; 2], f32)>,
     /// Balls that were found damaged on the way, and were made again.

@@ -3,9 +3,8 @@
 //! Seen along a direction, the lines from a tile lie side by side in strips. What stands in a strip must be higher than the lowest line there. Few lines reach
 //! far: so most of what stands far away never needs to be looked at, let alone indexed.
 
-use crate::grid::{Area, block_area};
+use crate::grid::{Area, TOP_SIDE, square_area, square_at};
 use crate::lines::{MOST_BALL, ROOM};
-use belvedere::medial::MedialBalls;
 use belvedere::query::FreeLines;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -22,8 +21,9 @@ const MOST_STARTS: usize = 1 << 24;
 const NEIGHBOURS: usize = 256;
 /// Directions handed to a thread at once.
 const TOGETHER: usize = 32;
-/// Side of the cells that balls are told apart by, metres.
-const CELL: f64 = 8.0;
+/// Cells of a square along a side, and their side, metres: balls are told apart by them.
+const PARTS: i32 = 2;
+const CELL: f64 = TOP_SIDE / PARTS as f64;
 /// Radii up to which balls are looked up together, metres.
 const RADII: [f64; 2] = [1.0, MOST_BALL];
 
@@ -81,40 +81,40 @@ impl Strips {
         Self { width, courses }
     }
 
-    /// The numbers of the directions in which something on one of the blocks of 64 m with the highest `tops` may block a line.
+    /// The numbers of the directions in which something on one of the squares of 16 m with the highest `tops` may block a line.
     pub(crate) fn meeting(&self, tops: &[([i32; 2], f32)]) -> Vec<usize> {
-        let blocks: Vec<(Area, f64)> = tops.iter().map(|&(block, top)| (block_area(block), f64::from(top))).collect();
-        let meets = |course: &Course| blocks.iter().any(|(area, top)| *top >= course.least_top(area, self.width));
-        (0..self.courses.len()).filter(|&number| self.courses.get(number).is_some_and(meets)).collect()
+        let squares: Vec<(Area, f64)> =
+            tops.iter().map(|&(number, top)| (square_area(number, TOP_SIDE), f64::from(top))).collect();
+        let meets = |course: &Course| squares.iter().any(|(area, top)| *top >= course.least_top(area, self.width));
+        let courses = self.courses.par_iter().enumerate();
+        courses.filter(|(_, course)| meets(course)).map(|(number, _)| number).collect()
     }
 
-    /// The rows of balls that may block a line in any of the directions with these numbers: of balls with a centre so far from an area on the map, beyond the
-    /// first distance and up to the second.
-    pub(crate) fn blocking_rows(
-        &self,
-        numbers: &[usize],
-        balls: &MedialBalls,
-        (area, [beyond, to]): (&Area, [f64; 2]),
-    ) -> Vec<usize> {
+    /// How high balls on squares of 16 m with the highest `tops` must be to block a line in any of the directions with these numbers.
+    pub(crate) fn least_tops(&self, numbers: &[usize], tops: &[([i32; 2], f32)]) -> LeastTops {
         let courses: Vec<&Course> = numbers.iter().filter_map(|&number| self.courses.get(number)).collect();
-        let mut least_tops: HashMap<([i32; 2], usize), f64> = HashMap::new();
-        let mut may_block = |center: &[f32; 3], radius: f64| {
-            let distance = area.distance(&Area::at(center.map(f64::from)));
-            if !(distance > beyond && distance <= to) {
-                return false;
-            }
-            let Some(kind) = RADII.iter().position(|most| radius <= *most) else { return true };
-            #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
-            let cell = [center[0], center[1]].map(|v| (f64::from(v) / CELL).floor() as i32);
-            let least_top = || {
-                let low = cell.map(|number| f64::from(number) * CELL);
-                let around = Area { low, high: low.map(|v| v + CELL) }.widened(RADII[kind]);
-                courses.iter().map(|course| course.least_top(&around, self.width)).fold(f64::INFINITY, f64::min)
-            };
-            f64::from(center[2]) + radius >= *least_tops.entry((cell, kind)).or_insert_with(least_top)
+        let least =
+            |area: &Area| courses.iter().map(|course| course.least_top(area, self.width)).fold(f64::INFINITY, f64::min);
+        let of_square = |&(number, top): &([i32; 2], f32)| {
+            let reached = f64::from(top) >= least(&square_area(number, TOP_SIDE).widened(MOST_BALL));
+            let cells = number.map(|number| PARTS * number);
+            let cells = (0..PARTS * PARTS).map(move |part| [cells[0] + part % PARTS, cells[1] + part / PARTS]);
+            let with_least = move |cell| (cell, RADII.map(|radius| least(&square_area(cell, CELL).widened(radius))));
+            cells.filter(move |_| reached).map(with_least)
         };
-        let rows = balls.centers.iter().zip(&balls.radii).enumerate();
-        rows.filter(|(_, (center, radius))| may_block(center, f64::from(**radius))).map(|(row, _)| row).collect()
+        LeastTops(tops.par_iter().flat_map_iter(of_square).collect())
+    }
+}
+
+/// How high balls must be to block a line: by the cell of their centre, those of small and those of any radius. In other cells none blocks.
+pub(crate) struct LeastTops(HashMap<[i32; 2], [f64; 2]>);
+
+impl LeastTops {
+    pub(crate) fn may_block(&self, [x, y, z]: [f32; 3], radius: f32) -> bool {
+        let radius = f64::from(radius);
+        let Some(kind) = RADII.iter().position(|most| radius <= *most) else { return true };
+        let least = self.0.get(&square_at([x, y], CELL));
+        least.is_some_and(|least| f64::from(z) + radius >= least[kind])
     }
 }
 
@@ -169,6 +169,8 @@ impl Course {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::make_balls::tops;
+    use belvedere::medial::MedialBalls;
     use belvedere::random::uniform;
 
     /// Rays and balls at random, and steep ones among them: what meets is never left out, and much that does not is.
@@ -200,11 +202,10 @@ mod tests {
                 touch: vec![0; 2000],
                 separation_angles: vec![1.0; 2000],
             };
-            let bands = [f64::NEG_INFINITY, 20.0, 100.0, f64::INFINITY];
-            let in_band = |band: &[f64]| strips.blocking_rows(&columns, &balls, (&area, [band[0], band[1]]));
-            let mut rows = bands.windows(2).map(in_band).collect::<Vec<_>>().concat();
-            rows.sort_unstable();
-            assert!(rows.windows(2).all(|pair| pair[0] < pair[1]));
+            let tops = tops(&balls);
+            let least_tops = strips.least_tops(&strips.meeting(&tops), &tops);
+            let may_block = |row: &usize| least_tops.may_block(balls.centers[*row], balls.radii[*row]);
+            let rows: Vec<usize> = (0..2000).filter(may_block).collect();
             let blocks = |row: usize| {
                 let (center, radius) = (balls.centers[row].map(f64::from), f64::from(balls.radii[row]));
                 targets.iter().any(|target| {
