@@ -97,8 +97,10 @@ impl Strips {
             |area: &Area| courses.iter().map(|course| course.least_top(area, self.width)).fold(f64::INFINITY, f64::min);
         let of_square = |&(number, top): &([i32; 2], f32)| {
             let reached = f64::from(top) >= least(&square_area(number, TOP_SIDE).widened(MOST_BALL));
-            let cells = number.map(|number| PARTS * number);
-            let cells = (0..PARTS * PARTS).map(move |part| [cells[0] + part % PARTS, cells[1] + part / PARTS]);
+            // numbers in a damaged record may be any
+            let [east, north] = number.map(|number| number.wrapping_mul(PARTS));
+            let cells =
+                (0..PARTS * PARTS).map(move |part| [east.wrapping_add(part % PARTS), north.wrapping_add(part / PARTS)]);
             let with_least = move |cell| (cell, RADII.map(|radius| least(&square_area(cell, CELL).widened(radius))));
             cells.filter(move |_| reached).map(with_least)
         };
