@@ -201,3 +201,37 @@ fn damaged(name: &Path, error: TiffError) -> Error {
         other => Error::malformed(name, format!("is no raster that can be read: {other}")),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A number in so many bytes, the most significant first or last.
+    fn number(value: u64, length: usize, is_big_endian: bool) -> Vec<u8> {
+        if is_big_endian { value.to_be_bytes()[8 - length..].to_vec() } else { value.to_le_bytes()[..length].to_vec() }
+    }
+
+    #[test]
+    fn the_longest_value_is_found_in_all_four_layouts() {
+        for (is_big_endian, is_large) in [(false, false), (true, false), (false, true), (true, true)] {
+            let number = |value, length| number(value, length, is_big_endian);
+            let (of_offset, of_count) = if is_large { (8, 8) } else { (4, 2) };
+            let mut bytes = if is_big_endian { b"MM".to_vec() } else { b"II".to_vec() };
+            if is_large {
+                bytes.extend([number(43, 2), number(8, 2), number(0, 2), number(16, 8)].concat());
+            } else {
+                bytes.extend([number(42, 2), number(8, 4)].concat());
+            }
+            bytes.extend(number(3, of_count));
+            // bytes, shorts, doubles
+            for (kind, values) in [(1, 7000), (3, 3000), (12, 1000)] {
+                bytes.extend(
+                    [number(256, 2), number(kind, 2), number(values, of_offset), number(0, of_offset)].concat(),
+                );
+            }
+            let longest = |bytes| longest_value(&mut Source::bytes("raster.tif", bytes).open().unwrap().reader);
+            assert_eq!(longest(&bytes[..]).unwrap(), 8000, "{is_big_endian} {is_large}");
+            assert!(longest(&bytes[..bytes.len() - 1]).is_err());
+        }
+    }
+}
