@@ -110,7 +110,7 @@ fn sound(
     match read(record) {
         Ok(balls) => return Ok(Some(balls)),
         Err(Error::Cancelled) => return Err(Error::Cancelled),
-        Err(error) => damaged.push(error.to_string()),
+        Err(_) => damaged.push(format!("{} is damaged", path.display())),
     }
     match make_balls(plan, run, tile, control).and_then(|record| read(&record)) {
         Ok(balls) => Ok(Some(balls)),
