@@ -2,6 +2,10 @@
 //!
 //! What is checked, and why, is listed in `docs/upstream.md`.
 
+mod chunks;
+mod gps_times;
+mod point14;
+
 use std::io::{Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
@@ -145,7 +149,7 @@ impl<'a> LazReader<'a> {
             return Err(damaged("has a LAZ chunk whose sizes or streams are damaged"));
         }
         let (compressed, vlr) = (&self.compressed, &self.vlr);
-        ::laz::laszip::parallel::par_decompress_selective(compressed, room(points), vlr, &batch, self.selection)
+        chunks::decompress(compressed, room(points), vlr, &batch, self.selection)
             .map_err(|e| damaged(&format!("has points that cannot be decompressed: {e}")))?;
         Ok(points)
     }
@@ -179,9 +183,8 @@ impl<'a> LazReader<'a> {
     }
 }
 
-/// Whether an arithmetic-coded stream begins with a value below its interval. From 0xFFFFFFFF the decoder yields the
-/// same symbol forever without consuming a byte, on which the laz crate (0.13) recurses until the stack overflows, or looks for symbols
-/// that are not in its tables.
+/// Whether an arithmetic-coded stream begins with a value below its interval. From 0xFFFFFFFF the decoder of the laz crate (0.13) yields the
+/// same symbol forever without consuming a byte, or looks for symbols that are not in its tables.
 fn begins_soundly(stream: &[u8]) -> bool {
     stream.first_chunk() != Some(&[0xff; 4])
 }
