@@ -1,6 +1,6 @@
 //! Lines of sight from which obstacles are taken away, all at once or part by part.
 
-use super::super::backend::{BLOCK, WORD};
+use super::super::backend::{BLOCK, Settled, WORD};
 use super::super::far_terrain::hide_behind_terrain;
 use super::super::target_tree::TargetTree;
 use super::super::{AddedMeshes, FarTerrain, MedialScene};
@@ -19,8 +19,27 @@ const BATCH: usize = 512;
 /// Targets that are looked at before the next: as many as keep what is settled of them below 100 MB.
 const MOST_TARGETS: usize = BLOCK << 10;
 
+/// Share of the lines of sight of targets that run near balls below which each is asked by itself: about what settling a line takes of the time of asking one.
+const WORTH_SETTLING: f64 = 0.1;
+
 /// By how much the box around balls is taken for larger, metres: far more than is rounded.
 const ROOM: f64 = 0.01;
+
+/// Lines of sight that are still free and run near balls.
+struct Meeting {
+    /// At least as many as there are.
+    line_count: usize,
+    /// Columns of any of them.
+    columns: Vec<usize>,
+    /// Blocks of targets with any of them.
+    blocks: Vec<OpenBlock>,
+}
+
+/// A block of targets by its number, with the columns of its lines that run near balls as words of a row.
+struct OpenBlock {
+    block: usize,
+    met: Vec<u64>,
+}
 
 /// Which of many directions each of many targets sees, as far as obstacles were asked.
 ///
@@ -123,27 +142,32 @@ impl<'a> FreeLines<'a> {
             let before = asked.fetch_add(lines, Ordering::Relaxed);
             control.advance((before + lines) / columns.len() - before / columns.len());
         };
-        let (open, met) = self.meeting(scene, columns);
-        let headings = headings(self.directions, &met);
+        let meeting = self.meeting(scene, columns);
+        let headings = headings(self.directions, &meeting.columns);
         // batches of the same size, so that none is too small to be worth a sweep
         let batch = headings.len().div_ceil(headings.len().div_ceil(BATCH).max(1)).max(1);
         let (width, positions) = (self.width, self.tree.positions());
-        let of_block = |block: &usize| positions.chunks(BLOCK).nth(*block).unwrap_or_default();
-        let open_count: usize = open.iter().map(|block| of_block(block).len()).sum();
-        advance(positions.len() * columns.len() - open_count * met.len());
-        for open in open.chunks(MOST_TARGETS / BLOCK) {
-            let targets = open.iter().map(of_block).collect::<Vec<_>>().concat();
+        let of_block = |block: usize| positions.chunks(BLOCK).nth(block).unwrap_or_default();
+        let open_count: usize = meeting.blocks.iter().map(|open| of_block(open.block).len()).sum();
+        let is_worth_settling = meeting.line_count as f64 > WORTH_SETTLING * open_count as f64 * headings.len() as f64;
+        advance(positions.len() * columns.len() - open_count * headings.len());
+        for open in meeting.blocks.chunks(MOST_TARGETS / BLOCK) {
+            let targets = open.iter().map(|open| of_block(open.block)).collect::<Vec<_>>().concat();
             let mut numbers = vec![None; positions.len().div_ceil(BLOCK)];
-            open.iter().zip(0..).for_each(|(&block, number)| numbers[block] = Some(number));
+            open.iter().enumerate().for_each(|(number, open)| numbers[open.block] = Some((number, &open.met)));
             for headings in headings.chunks(batch) {
                 let of_batch: Vec<[f64; 3]> = headings.iter().map(|heading| heading.direction).collect();
-                let settled = scene.prepared()?.settle(&targets, &of_batch, control)?;
+                let settled = if is_worth_settling {
+                    scene.prepared()?.settle(&targets, &of_batch, control)?
+                } else {
+                    Settled::new(targets.len(), of_batch.len())
+                };
                 let sky = Sky::new(scene.tree(), headings, &settled, self.directions.len());
                 let blocks = self.words.par_chunks_mut(width * BLOCK).zip(positions.par_chunks(BLOCK)).zip(&numbers);
                 blocks.try_for_each(|((rows, targets), number)| {
-                    let Some(number) = *number else { return Ok(()) };
+                    let Some((number, met)) = *number else { return Ok(()) };
                     control.check()?;
-                    sky.look(targets, number, rows, width);
+                    sky.look(targets, number, met, rows);
                     advance(targets.len() * headings.len());
                     Ok(())
                 })?;
@@ -152,15 +176,11 @@ impl<'a> FreeLines<'a> {
         Ok(())
     }
 
-    /// The blocks of targets, and those of `columns`, with lines that are still free and run through the box around the balls of `scene`.
-    fn meeting(&self, scene: &MedialScene, columns: &[usize]) -> (Vec<usize>, Vec<usize>) {
+    /// Which lines in the directions of `columns` are still free and run through the box around the balls of `scene`.
+    fn meeting(&self, scene: &MedialScene, columns: &[usize]) -> Meeting {
         let index = scene.tree().index();
         let asked = self.words_of(columns);
-        let of_block = |(rows, targets): (&[u64], &[[f32; 3]])| -> Vec<u64> {
-            let mut met = asked.clone();
-            for (word, met) in met.iter_mut().enumerate() {
-                *met &= rows.chunks(self.width).fold(0, |bits, row| bits | row[word]);
-            }
+        let of_block = |(block, (rows, targets)): (usize, (&[u64], &[[f32; 3]]))| {
             let bound = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| {
                 targets.iter().map(|target| f64::from(target[axis])).fold(start, pick)
             };
@@ -172,19 +192,29 @@ impl<'a> FreeLines<'a> {
                     middle + half - bound(axis, f64::min, f64::INFINITY),
                 ]
             });
+            let mut met = asked.clone();
+            for (word, met) in met.iter_mut().enumerate() {
+                *met &= rows.chunks(self.width).fold(0, |bits, row| bits | row[word]);
+            }
             for &column in columns {
                 if piece_in_box(sides, self.directions[column], [0.0, f64::INFINITY]).is_none() {
                     met[column / WORD] &= !(1 << (column % WORD));
                 }
             }
-            met
+            let of_row =
+                |row: &[u64]| row.iter().zip(&met).map(|(row, met)| (row & met).count_ones() as usize).sum::<usize>();
+            (rows.chunks(self.width).map(of_row).sum(), OpenBlock { block, met })
         };
         let blocks = self.words.par_chunks(self.width * BLOCK).zip(self.tree.positions().par_chunks(BLOCK));
-        let met: Vec<Vec<u64>> = blocks.map(of_block).collect();
-        let is_any = |met: &Vec<u64>| met.iter().any(|word| *word != 0);
-        let of_any = |column: &&usize| met.iter().any(|met| met[**column / WORD] >> (**column % WORD) & 1 == 1);
-        let blocks = met.iter().enumerate().filter(|(_, met)| is_any(met)).map(|(block, _)| block).collect();
-        (blocks, columns.iter().filter(of_any).copied().collect())
+        let mut found: Vec<(usize, OpenBlock)> = blocks.enumerate().map(of_block).collect();
+        found.retain(|(line_count, _)| *line_count > 0);
+        let is_met = |open: &OpenBlock, column: usize| open.met[column / WORD] >> (column % WORD) & 1 == 1;
+        let of_any = |column: &&usize| found.iter().any(|(_, open)| is_met(open, **column));
+        Meeting {
+            line_count: found.iter().map(|(line_count, _)| line_count).sum(),
+            columns: columns.iter().filter(of_any).copied().collect(),
+            blocks: found.into_iter().map(|(_, open)| open).collect(),
+        }
     }
 
     /// The words of a row that sees `columns` only.

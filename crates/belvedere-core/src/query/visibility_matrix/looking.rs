@@ -27,6 +27,23 @@ pub(super) fn headings(directions: &[[f64; 3]], columns: &[usize]) -> Vec<Headin
     order.into_iter().map(|column| Heading { direction: directions[column], column }).collect()
 }
 
+/// Headings whose columns share a word of the rows.
+struct Group {
+    word: usize,
+    /// Bits and numbers of the headings.
+    headings: Vec<(usize, usize)>,
+}
+
+impl Group {
+    /// Those of the headings of a word whose bits are set in `met`; `None` where that is none.
+    fn new((word, (numbers, met)): (usize, (&[Option<usize>], &u64))) -> Option<Self> {
+        let of_column = |(column, number): (usize, &Option<usize>)| Some((column, (*number)?));
+        let is_met = |(column, _): &(usize, usize)| met >> column & 1 == 1;
+        let headings: Vec<_> = numbers.iter().enumerate().filter_map(of_column).filter(is_met).collect();
+        (!headings.is_empty()).then_some(Self { word, headings })
+    }
+}
+
 /// What all targets look at.
 pub(super) struct Sky<'a> {
     tree: &'a BallTree,
@@ -47,21 +64,18 @@ impl<'a> Sky<'a> {
         Self { tree, headings, settled, numbers }
     }
 
-    /// Unsets the bits of directions that are blocked in the rows, of `width` words each, of the targets of a block. Only those that are set are
-    /// asked about.
-    pub(super) fn look(&self, targets: &[[f32; 3]], block: usize, rows: &mut [u64], width: usize) {
+    /// Unsets the bits of directions that are blocked in the rows of the targets of a block, which is the `block`-th of those that the backend was given. Only
+    /// those that are set are asked about, in columns that are set in `met`, the words of a row.
+    pub(super) fn look(&self, targets: &[[f32; 3]], block: usize, met: &[u64], rows: &mut [u64]) {
+        let width = met.len();
+        let groups: Vec<Group> = self.numbers.chunks(WORD).zip(met).enumerate().filter_map(Group::new).collect();
         let mut known = vec![[0; WORDS]; self.headings.len()];
-        for (group, columns) in self.numbers.chunks(WORD).enumerate() {
-            if columns.iter().all(Option::is_none) {
-                continue;
-            }
+        for group in &groups {
             for (word, rows) in rows.chunks(width * WORD).enumerate() {
-                let of_target = |target: usize| rows.get(target * width + group).copied().unwrap_or(0);
+                let of_target = |target: usize| rows.get(target * width + group.word).copied().unwrap_or(0);
                 let of_columns = transposed(std::array::from_fn(of_target));
-                for (number, seen) in
-                    columns.iter().zip(of_columns).filter_map(|(number, seen)| Some(((*number)?, seen)))
-                {
-                    known[number][word] = seen;
+                for &(column, number) in &group.headings {
+                    known[number][word] = of_columns[column];
                 }
             }
         }
@@ -74,17 +88,13 @@ impl<'a> Sky<'a> {
         for ((known, free), open) in known.iter_mut().zip(free).zip(&open) {
             *known = std::array::from_fn(|word| known[word] & free[word] | open[word]);
         }
-        for (group, columns) in self.numbers.chunks(WORD).enumerate() {
-            let asked =
-                columns.iter().zip(0..).fold(0_u64, |bits, (number, bit)| bits | u64::from(number.is_some()) << bit);
-            if asked == 0 {
-                continue;
-            }
+        for group in &groups {
+            let asked = group.headings.iter().fold(0_u64, |bits, (column, _)| bits | 1 << column);
             for (word, rows) in rows.chunks_mut(width * WORD).enumerate() {
-                let of_column = |column: usize| columns.get(column).copied().flatten().map_or(0, |n| known[n][word]);
-                let of_targets = transposed(std::array::from_fn(of_column));
-                for (row, seen) in rows.chunks_mut(width).zip(of_targets) {
-                    row[group] &= seen | !asked;
+                let mut of_columns = [0; WORD];
+                group.headings.iter().for_each(|&(column, number)| of_columns[column] = known[number][word]);
+                for (row, seen) in rows.chunks_mut(width).zip(transposed(of_columns)) {
+                    row[group.word] &= seen | !asked;
                 }
             }
         }
