@@ -3,6 +3,7 @@
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 mod opened;
+mod search_tree;
 mod walk;
 
 pub(crate) use opened::{OpenNode, Sides};
@@ -11,10 +12,8 @@ use crate::instructions::Instructions;
 use belvedere_data::vector::unit;
 use belvedere_data::{Error, Result};
 use obvhs::aabb::Aabb;
-use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::cwbvh::{CwBvh, bvh2_to_cwbvh::bvh2_to_cwbvh};
-use obvhs::ploc::PlocBuilder;
-use obvhs::{Boundable, BvhBuildParams};
+use obvhs::cwbvh::CwBvh;
+use search_tree::search_tree;
 use walk::{Scalar, TreeRay, walk};
 
 /// Padding of the boxes, as a share of the size of the scene: the tree works in f32 and a ray enters it at the box of the
@@ -93,14 +92,6 @@ pub enum Part {
     },
 }
 
-struct PaddedBox(Aabb);
-
-impl Boundable for PaddedBox {
-    fn aabb(&self) -> Aabb {
-        self.0
-    }
-}
-
 impl RayIndex {
     /// Indexes boxes given by their lowest and highest corner, local metres. The rows of the index are numbered in the
     /// order of the tree, see [`RayIndex::order`].
@@ -130,13 +121,13 @@ impl RayIndex {
         let size = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
         let padding = (BOX_PADDING * size).max(TREE_SLACK);
         let half_size = std::array::from_fn(|i| (high[i] - low[i]) / 2.0 + padding);
-        let padded: Vec<PaddedBox> = boxes
+        let padded: Vec<Aabb> = boxes
             .iter()
             .map(|[low, high]| {
                 let local = |corner: &[f32; 3], padding: f64| -> [f32; 3] {
                     to_f32(std::array::from_fn(|i| f64::from(corner[i]) - center[i] + padding))
                 };
-                PaddedBox(Aabb::new(local(low, -padding).into(), local(high, padding).into()))
+                Aabb::new(local(low, -padding).into(), local(high, padding).into())
             })
             .collect();
         let tree = search_tree(&padded);
@@ -314,22 +305,6 @@ impl RayIndex {
         let ray = TreeRay::new(origin, to_f32(ray.direction), tree_reach(end - start));
         Some(Entry { ray, start })
     }
-}
-
-/// The tree over `boxes`, which must not be empty: the steps of `build_cwbvh`, but for its check of the boxes in debug builds,
-/// which allows for errors of 1e-5 and panics on sound trees wider than some hundred metres.
-fn search_tree(boxes: &[PaddedBox]) -> CwBvh {
-    let params = BvhBuildParams::medium_build();
-    let rows = (0..).take(boxes.len()).collect();
-    let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
-        params.ploc_search_distance,
-        boxes,
-        rows,
-        params.sort_precision,
-        params.search_depth_threshold,
-    );
-    ReinsertionOptimizer::default().run(&mut binary, params.reinsertion_batch_ratio, None);
-    bvh2_to_cwbvh(&binary, params.max_prims_per_leaf.clamp(1, 3), true, false)
 }
 
 /// A ray as the tree takes it.
