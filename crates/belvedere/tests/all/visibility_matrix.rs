@@ -5,6 +5,7 @@ use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
 use belvedere::query::{Answer, BlockRule, FreeLines, MedialScene, VisibilityMatrix};
 use belvedere::random::uniform;
+use belvedere::view::to_sun;
 
 /// Blocks of balls on a bumpy ground, crowns of small ones between.
 fn place(count: u64, seed: u64) -> MedialBalls {
@@ -135,4 +136,45 @@ fn balls_asked_part_by_part_give_the_bits_of_all_at_once() {
     kept.hide_what_is_hidden_in(&free).unwrap();
     assert!(kept.into_matrix() == matrix);
     assert!(free.hide_what_is_hidden_in(&above).is_err());
+}
+
+#[test]
+fn few_lines_near_distant_balls_have_the_bits_of_many() {
+    // a wall of 9 m to the east, and balls 300 m behind it that only targets near its height see
+    let mut wall = MedialBalls::default();
+    for (y, z) in (-60..=60).flat_map(|y| [0, 2, 4, 6].map(|z| (y, z))) {
+        wall.push(0, [60.0, y as f32, z as f32], 3.0, 0);
+    }
+    let mut far = MedialBalls::default();
+    for i in 0..200 {
+        let u = |k: u64| uniform(3, 8 * i + k);
+        far.push(0, [360.0 + 20.0 * u(0), 200.0 * u(1) - 100.0, 14.0 * u(2)].map(|v| v as f32), 2.0, 0);
+    }
+    let directions: Vec<[f64; 3]> = (0..60)
+        .map(|i| {
+            let u = |k: u64| uniform(5, 8 * i + k);
+            to_sun((80.0 + 20.0 * u(0)).to_radians(), (0.2 + 1.3 * u(1)).to_radians())
+        })
+        .collect();
+    let targets: Vec<[f32; 3]> = (0..4000)
+        .map(|i| {
+            let u = |k: u64| uniform(9, 8 * i + k);
+            [80.0 * u(0) - 40.0, 80.0 * u(1) - 40.0, 8.5 * u(2)].map(|v| v as f32)
+        })
+        .collect();
+    let none = Control::none();
+    let scene = |balls: &MedialBalls| MedialScene::new(balls, &BlockRule::carved()).unwrap();
+    let columns: Vec<usize> = (0..60).collect();
+    let mut free = FreeLines::new(&targets, &directions).unwrap();
+    free.hide_behind_balls(&scene(&wall), &columns, &none).unwrap();
+    let count = |matrix: &VisibilityMatrix| (0..4000).map(|row| matrix.sum(row, &[1.0; 60])).sum::<f64>() as usize;
+    let past_wall = count(&free.clone().into_matrix());
+    free.hide_behind_balls(&scene(&far), &columns, &none).unwrap();
+    let found = free.into_matrix();
+    for i in 0..far.len() {
+        wall.push(0, far.centers[i], far.radii[i], 0);
+    }
+    assert!(found == scene(&wall).visibility_matrix(&targets, &directions, &none).unwrap());
+    // a tenth of 240 000 lines, below which they are asked one by one
+    assert!(past_wall < 24_000 && count(&found) < past_wall * 9 / 10, "{past_wall}, {}", count(&found));
 }
