@@ -8,8 +8,8 @@ use serde::Serialize;
 /// Memory for each point of a window while balls are made, and without any, bytes. As measured in docs/scale.md.
 const BYTES_PER_POINT: f64 = 450.0;
 const BYTES_AT_LEAST: f64 = 100e6;
-/// Memory for each ball of those that are asked together, bytes: measured 435 to 490, and room for cells and their points.
-const BYTES_PER_BALL: f64 = 700.0;
+/// Memory for each ball of those that are asked together, bytes: measured 290, and room for cells and their points.
+const BYTES_PER_BALL: f64 = 450.0;
 /// Balls that are always asked together: fewer would save no memory that counts.
 const LEAST_BALLS: usize = 100_000;
 /// Bytes of a ball file for each point of a tile.

@@ -42,7 +42,7 @@ const ONE_HOME: [(&str, &str); 33] = [
     ("ab_glyph::", "figures/src/font.rs"),
     ("colorous::", "io/src/colors.rs"),
     ("las::", "io/src/"),
-    ("laz::", "io/src/laz.rs"),
+    ("laz::", "io/src/laz"),
     ("npyz::", "io/src/"),
     ("csv::", "io/src/table.rs"),
     ("e57::", "io/src/e57.rs"),
