@@ -5,13 +5,13 @@
     reason = "nodes and rows are numbered with 32 bits, sides and exponents with 8"
 )]
 
+use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::cwbvh::node::CwBvhNode;
 use obvhs::cwbvh::{BRANCHING, CwBvh};
 use obvhs::ploc::PlocBuilder;
-use obvhs::{Boundable, BvhBuildParams};
 use rayon::prelude::*;
 
 /// Boxes from which on a tree is made of parts: fewer take some hundredths of a second.
@@ -21,24 +21,14 @@ const MOST_IN_LEAF: u32 = 3;
 /// What tells a node among the parts of a node, beside the number of its place.
 const IS_NODE: u8 = 0b0011_1000;
 
-#[derive(Clone, Copy)]
-struct Bounded(Aabb);
-
-impl Boundable for Bounded {
-    fn aabb(&self) -> Aabb {
-        self.0
-    }
-}
-
 /// The tree over `boxes`, which must not be empty. It depends on the boxes only, not on the number of threads.
 pub(super) fn search_tree(boxes: &[Aabb]) -> CwBvh {
     let mut rows: Vec<u32> = (0..).take(boxes.len()).collect();
-    let boxes: Vec<Bounded> = boxes.iter().map(|bounds| Bounded(*bounds)).collect();
-    tree_of(&boxes, &mut rows)
+    tree_of(boxes, &mut rows)
 }
 
 /// The tree over the boxes of `rows`.
-fn tree_of(boxes: &[Bounded], rows: &mut [u32]) -> CwBvh {
+fn tree_of(boxes: &[Aabb], rows: &mut [u32]) -> CwBvh {
     if rows.len() < LARGE {
         return one_tree(boxes, rows);
     }
@@ -52,9 +42,9 @@ fn tree_of(boxes: &[Bounded], rows: &mut [u32]) -> CwBvh {
 
 /// The tree over the boxes of `rows`, made at once: the steps of `build_cwbvh`, but for its check of the boxes in debug builds,
 /// which allows for errors of 1e-5 and panics on sound trees wider than some hundred metres.
-fn one_tree(boxes: &[Bounded], rows: &[u32]) -> CwBvh {
+fn one_tree(boxes: &[Aabb], rows: &[u32]) -> CwBvh {
     let params = BvhBuildParams::medium_build();
-    let of_rows: Vec<Bounded> = rows.iter().map(|&row| boxes[row as usize]).collect();
+    let of_rows: Vec<Aabb> = rows.iter().map(|&row| boxes[row as usize]).collect();
     let mut binary = PlocBuilder::with_capacity(rows.len()).build(
         params.ploc_search_distance,
         &of_rows,
@@ -69,9 +59,9 @@ fn one_tree(boxes: &[Bounded], rows: &[u32]) -> CwBvh {
 }
 
 /// The rows in two halves, side by side along the longest side of the box around the middles of their boxes.
-fn halves<'r>(boxes: &[Bounded], rows: &'r mut [u32]) -> [&'r mut [u32]; 2] {
+fn halves<'r>(boxes: &[Aabb], rows: &'r mut [u32]) -> [&'r mut [u32]; 2] {
     let middle = |row: u32| {
-        let Bounded(bounds) = boxes[row as usize];
+        let bounds = boxes[row as usize];
         (bounds.min + bounds.max).to_array()
     };
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
