@@ -1,8 +1,8 @@
 //! GPS times of LAZ points, decoded by a loop: the laz crate (0.13) decodes them by recursion, which damaged files drive through the
 //! end of the stack (`docs/upstream.md`).
 //!
-//! Source: M. Isenburg, LASzip: lossless compression of LiDAR data, PE&RS 79(2), 2013, section "GPS times", and what LASzip 3 writes: times follow up to four sequences, and
-//! each goes on by about a multiple of its last difference.
+//! Source: M. Isenburg, LASzip: lossless compression of LiDAR data, PE&RS 79(2), 2013, and what LASzip 3 writes: times follow up to four sequences, and each
+//! goes on by about a multiple of its last difference.
 
 use std::io::{self, Read};
 

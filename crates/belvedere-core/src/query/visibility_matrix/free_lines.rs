@@ -19,7 +19,8 @@ const BATCH: usize = 512;
 /// Targets that are looked at before the next: as many as keep what is settled of them below 100 MB.
 const MOST_TARGETS: usize = BLOCK << 10;
 
-/// Share of the lines of sight of targets that run near balls below which each is asked by itself: about what settling a line takes of the time of asking one.
+/// Share of the lines of sight of targets that run near balls below which each is asked by itself: settling a line takes about a tenth of
+/// the time of asking one (6 and 53 ns on two cores, a strip of balls beside a tile of a village).
 const WORTH_SETTLING: f64 = 0.1;
 
 /// By how much the box around balls is taken for larger, metres: far more than is rounded.
