@@ -38,6 +38,37 @@ impl Plan {
         Ok(self)
     }
 
+    /// Whether anything stands in the areas that are cleared. Tiles are looked at one after the other until something does.
+    ///
+    /// # Errors
+    /// Those of reading the files, of [`Clearing::new`], and [`belvedere::Error::Cancelled`].
+    pub fn clears_anything(&self, control: &Control<'_>) -> Result<bool> {
+        let areas = self.cleared_areas()?;
+        for &tile in &self.tiles {
+            let core = self.grid().core(tile);
+            for (_, polygon) in &areas {
+                let Some(own) = polygon.map_or(Some(core), |polygon| polygon.common(&core)) else { continue };
+                control.check()?;
+                let cloud = control.stage("reading", 0, || window::read(self, &own, control))?;
+                let points = classed(&cloud, 0..cloud.len());
+                if ClearedSurface::new(self, (&own, &own), &points, &[], control)?.is_cleared.contains(&true) {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// The areas that are cleared, with the rectangles around polygons on the survey.
+    fn cleared_areas(&self) -> Result<Vec<(&ClearedArea, Option<Area>)>> {
+        let (bounds, origin) = (self.bounds(), self.frame()?.origin);
+        let mut areas = Vec::new();
+        for cleared in &self.cleared {
+            areas.push((cleared, cleared.rectangle_on(&bounds, origin)?.map(|(low, high)| Area { low, high })));
+        }
+        Ok(areas)
+    }
+
     /// Whether all areas can be cleared of a survey in a frame with this origin.
     pub(crate) fn has_sound_areas(&self, origin: [f64; 3]) -> bool {
         self.cleared.iter().all(|area| area.rectangle_on(&self.bounds(), origin).is_ok())
@@ -161,11 +192,7 @@ fn each_block(
     control: &Control<'_>,
     mut look: impl FnMut([i32; 2], &[Clearing]),
 ) -> Result<()> {
-    let (bounds, frame) = (plan.bounds(), plan.frame()?);
-    let mut areas: Vec<(&ClearedArea, Option<Area>)> = Vec::new();
-    for cleared in &plan.cleared {
-        areas.push((cleared, cleared.rectangle_on(&bounds, frame.origin)?.map(|(low, high)| Area { low, high })));
-    }
+    let (areas, frame) = (plan.cleared_areas()?, plan.frame()?);
     let reaches = |polygon: &Area, block: &Area| polygon.distance(block) <= BESIDE + Clearing::REACH;
     let is_near = |block: &Area| {
         areas.iter().any(|(_, polygon)| polygon.map_or_else(|| block.meets(core), |polygon| reaches(&polygon, block)))

@@ -89,6 +89,13 @@ impl Area {
         Self { low, high: [0, 1].map(|axis| self.high[axis].max(other.high[axis])) }
     }
 
+    /// The rectangle that both have in common, if they do.
+    pub(crate) fn common(&self, other: &Self) -> Option<Self> {
+        let low = [0, 1].map(|axis| self.low[axis].max(other.low[axis]));
+        let high = [0, 1].map(|axis| self.high[axis].min(other.high[axis]));
+        self.meets(other).then_some(Self { low, high })
+    }
+
     /// Whether they have a place in common.
     pub(crate) fn meets(&self, other: &Self) -> bool {
         (0..2).all(|axis| self.low[axis] < other.high[axis] && other.low[axis] < self.high[axis])

@@ -59,6 +59,9 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         Error::InvalidParameter { name: "questions", .. } => Usage(error.to_string()).into(),
         other => anyhow::Error::from(other),
     })?;
+    if !arguments.clear.is_empty() && !plan.clears_anything(&stages.control())? {
+        summary.warn("--clear: nothing stands there");
+    }
     plan.write(&arguments.output)?;
     let estimate = plan.estimate();
     summary

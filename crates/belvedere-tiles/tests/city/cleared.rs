@@ -157,7 +157,7 @@ fn as_in_one_scene(clouds: &[std::path::PathBuf], plan: &Plan, (before, after): 
 }
 
 #[test]
-fn areas_beside_the_survey_and_its_ground_are_refused() {
+fn areas_beside_the_survey_and_its_ground_are_refused_and_empty_ones_found() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 84.0, 1.0);
     let plan = plan(&clouds, &place.path().join("run"), 512.0, suns());
@@ -170,4 +170,7 @@ fn areas_beside_the_survey_and_its_ground_are_refused() {
         let error = plan.clone().with_cleared(vec![area]).unwrap_err().to_string();
         assert!(error.contains(word), "{error}");
     }
+    let clears = |area: ClearedArea| plan.clone().with_cleared(vec![area]).unwrap().clears_anything(&Control::none());
+    assert!(clears(ClearedArea::Class(TREES)).unwrap() && !clears(ClearedArea::Class(77)).unwrap());
+    assert!(areas(&plan).into_iter().all(|area| clears(area).unwrap()));
 }
