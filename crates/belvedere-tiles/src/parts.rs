@@ -99,19 +99,11 @@ impl<'a> Parts<'a> {
     }
 
     /// Takes from `free` what a square of tiles hides, part by part.
-    fn hide(
-        &self,
-        free: &mut Free<'_>,
-        square: &[BallTile],
-        directions: &[[f64; 3]],
-        found: &mut Found,
-        control: &Control<'_>,
-    ) -> Result<()> {
-        let (mut left, mut strips) = free.left(directions, &self.cells);
+    fn hide(&self, free: &mut Free<'_>, square: &[BallTile], found: &mut Found, control: &Control<'_>) -> Result<()> {
         let mut part = Part::default();
         for BallTile { tile, tops, .. } in square {
             control.check()?;
-            if strips.meeting(tops).is_empty() {
+            if free.strips.meeting(tops).is_empty() {
                 continue;
             }
             let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, *tile, control))?;
@@ -128,9 +120,9 @@ impl<'a> Parts<'a> {
                     distance + reach > from && distance <= to + reach
                 };
                 let tops: Vec<_> = tops.iter().filter(may_reach).copied().collect();
-                let met = strips.meeting(&tops);
-                part.columns.extend(met.iter().filter_map(|&number| left.get(number)));
-                let least_tops = strips.least_tops(&met, &tops);
+                let met = free.strips.meeting(&tops);
+                part.columns.extend(&met);
+                let least_tops = free.strips.least_tops(&met, &tops);
                 let is_in = |row: &usize| distances[*row] > from && distances[*row] <= to;
                 let may_block = |row: &usize| least_tops.may_block(balls.centers[*row], balls.radii[*row]);
                 let rows: Vec<usize> =
@@ -146,7 +138,6 @@ impl<'a> Parts<'a> {
                 if part.ball_count() >= WORTH_ASKING {
                     part.hide(free, self.plan, found, control)?;
                     part.columns.clear();
-                    (left, strips) = free.left(directions, &self.cells);
                 }
             }
         }
@@ -167,12 +158,14 @@ impl ObstacleParts for Parts<'_> {
     ) -> Result<(VisibilityMatrix, Option<VisibilityMatrix>)> {
         let without_trees = FreeLines::new(targets, directions)?;
         let all = self.crowns().map(|_| without_trees.clone());
-        let mut free = Free { without_trees, all, target_count: targets.len() };
+        let mut strips = Strips::new(directions, &self.cells);
+        strips.look_up(&without_trees, &without_trees.free_columns());
+        let mut free = Free { without_trees, all, target_count: targets.len(), strips };
         let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
         found.ball_count = 0;
         for square in &self.squares {
             control.check()?;
-            self.hide(&mut free, square, directions, &mut found, control)?;
+            self.hide(&mut free, square, &mut found, control)?;
         }
         let Free { mut without_trees, mut all, .. } = free;
         if let Some(added) = &self.others.added {
@@ -196,15 +189,8 @@ struct Free<'a> {
     /// By all, where trees let light through.
     all: Option<FreeLines<'a>>,
     target_count: usize,
-}
-
-impl Free<'_> {
-    /// The columns with lines that balls may still block, and where these run from targets over an area. Crowns block no others.
-    fn left(&self, directions: &[[f64; 3]], targets: &Area) -> (Vec<usize>, Strips) {
-        let columns = self.without_trees.free_columns();
-        let strips = Strips::new(&self.without_trees, directions, &columns, targets);
-        (columns, strips)
-    }
+    /// Where lines run that balls may still block. Crowns block no others.
+    strips: Strips,
 }
 
 /// Balls that are asked together.
@@ -243,6 +229,7 @@ impl Part {
             all.hide_what_is_hidden_in(&free.without_trees)?;
             hide(all, &mut self.vegetation)?;
         }
+        free.strips.look_up(&free.without_trees, &columns);
         Ok(())
     }
 }

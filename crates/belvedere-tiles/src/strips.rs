@@ -20,7 +20,7 @@ const LOW_SLOPE: f64 = 0.2;
 const MOST_STARTS: usize = 1 << 24;
 const NEIGHBOURS: usize = 256;
 /// Directions handed to a thread at once.
-const TOGETHER: usize = 32;
+const TOGETHER: usize = 64;
 /// Cells of a square along a side, and their side, metres: balls are told apart by them.
 const PARTS: i32 = 2;
 const CELL: f64 = TOP_SIDE / PARTS as f64;
@@ -46,53 +46,61 @@ struct Strip {
     height: f64,
 }
 
+const NO_LINES: Strip = Strip { start: f64::INFINITY, height: f64::INFINITY };
+
 /// Lines of sight that are still free.
 pub(crate) struct Strips {
     width: f64,
+    /// Those of each direction.
     courses: Vec<Course>,
 }
 
 impl Strips {
-    /// Of the directions in `columns`, from targets over an area.
-    pub(crate) fn new(free: &FreeLines<'_>, directions: &[[f64; 3]], columns: &[usize], targets: &Area) -> Self {
+    /// No lines yet, in `directions` from targets over an area.
+    pub(crate) fn new(directions: &[[f64; 3]], targets: &Area) -> Self {
         let extent = (targets.high[0] - targets.low[0]).hypot(targets.high[1] - targets.low[1]);
         let width = WIDTH.max(extent / MOST_STRIPS);
-        let slope = |column: usize| directions.get(column).map_or(0.0, |d| d[2] / d[0].hypot(d[1]));
-        let low_count = columns.iter().filter(|&&column| slope(column) < LOW_SLOPE).count();
+        Self { width, courses: directions.iter().map(|direction| Course::new(*direction, targets, width)).collect() }
+    }
+
+    /// Looks up where the lines of `free` in the directions of `columns` run, which ascend.
+    pub(crate) fn look_up(&mut self, free: &FreeLines<'_>, columns: &[usize]) {
+        let (width, courses) = (self.width, self.courses.iter_mut().enumerate());
+        let mut looked_up: Vec<(usize, &mut Course)> =
+            courses.filter(|(column, _)| columns.binary_search(column).is_ok()).collect();
+        let low_count = looked_up.iter().filter(|(_, course)| course.is_low()).count();
         // where lines reach far each has its own start
         let of_low = (free.target_count() * low_count).div_ceil(MOST_STARTS);
-        let of_columns = |columns: &[usize]| {
-            let towards = columns.iter().filter_map(|&column| directions.get(column));
-            let mut courses: Vec<Course> = towards.map(|direction| Course::new(*direction, targets, width)).collect();
-            let (low, high): (Vec<usize>, Vec<usize>) =
-                (0..courses.len()).partition(|&number| courses.get(number).is_some_and(|c| c.slope < LOW_SLOPE));
-            for (numbers, together) in [(low, of_low), (high, NEIGHBOURS)] {
-                let columns: Vec<usize> = numbers.iter().filter_map(|&number| columns.get(number).copied()).collect();
+        looked_up.par_chunks_mut(TOGETHER).for_each(|courses| {
+            for (is_low, together) in [(true, of_low), (false, NEIGHBOURS)] {
+                let (columns, mut courses): (Vec<usize>, Vec<&mut Course>) = courses
+                    .iter_mut()
+                    .filter(|(_, course)| course.is_low() == is_low)
+                    .map(|(column, course)| (*column, &mut **course))
+                    .unzip();
+                courses.iter_mut().for_each(|course| course.strips.fill(NO_LINES));
                 free.each_start(&columns, together, |number, corners, lowest| {
                     let [low, high] = corners.map(|corner| corner.map(f64::from));
-                    if let Some(course) = numbers.get(number).and_then(|&number| courses.get_mut(number)) {
+                    if let Some(course) = courses.get_mut(number) {
                         course.add(&Area { low, high }, f64::from(lowest), width);
                     }
                 });
             }
-            courses
-        };
-        let courses = columns.par_chunks(TOGETHER).flat_map_iter(of_columns).collect();
-        Self { width, courses }
+        });
     }
 
-    /// The numbers of the directions in which something on one of the squares of 16 m with the highest `tops` may block a line.
+    /// The columns of the directions in which something on one of the squares of 16 m with the highest `tops` may block a line.
     pub(crate) fn meeting(&self, tops: &[([i32; 2], f32)]) -> Vec<usize> {
         let squares: Vec<(Area, f64)> =
             tops.iter().map(|&(number, top)| (square_area(number, TOP_SIDE), f64::from(top))).collect();
         let meets = |course: &Course| squares.iter().any(|(area, top)| *top >= course.least_top(area, self.width));
         let courses = self.courses.par_iter().enumerate();
-        courses.filter(|(_, course)| meets(course)).map(|(number, _)| number).collect()
+        courses.filter(|(_, course)| meets(course)).map(|(column, _)| column).collect()
     }
 
-    /// How high balls on squares of 16 m with the highest `tops` must be to block a line in any of the directions with these numbers.
-    pub(crate) fn least_tops(&self, numbers: &[usize], tops: &[([i32; 2], f32)]) -> LeastTops {
-        let courses: Vec<&Course> = numbers.iter().filter_map(|&number| self.courses.get(number)).collect();
+    /// How high balls on squares of 16 m with the highest `tops` must be to block a line in the directions of any of `columns`.
+    pub(crate) fn least_tops(&self, columns: &[usize], tops: &[([i32; 2], f32)]) -> LeastTops {
+        let courses: Vec<&Course> = columns.iter().filter_map(|&column| self.courses.get(column)).collect();
         let least =
             |area: &Area| courses.iter().map(|course| course.least_top(area, self.width)).fold(f64::INFINITY, f64::min);
         let of_square = |&(number, top): &([i32; 2], f32)| {
@@ -132,8 +140,12 @@ impl Course {
         let [left, right] = targets.widened(ROOM).span([-along[1], along[0]]);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by the width of a strip")]
         let count = ((right - left) / width).max(0.0) as usize + 1;
-        let none = Strip { start: f64::INFINITY, height: f64::INFINITY };
-        Self { along, slope, left, strips: vec![none; count] }
+        Self { along, slope, left, strips: vec![NO_LINES; count] }
+    }
+
+    /// Whether lines reach far.
+    fn is_low(&self) -> bool {
+        self.slope < LOW_SLOPE
     }
 
     /// From where to where an area reaches along the lines and across.
@@ -196,7 +208,8 @@ mod tests {
             let targets: Vec<[f32; 3]> = (0..count).map(|i| place(3, i, [0.0, 200.0], [0.0, 8.0])).collect();
             let free = FreeLines::new(&targets, &directions).unwrap();
             let area = Area { low: [0.0; 2], high: [200.0; 2] };
-            let strips = Strips::new(&free, &directions, &columns, &area);
+            let mut strips = Strips::new(&directions, &area);
+            strips.look_up(&free, &columns);
             let balls = MedialBalls {
                 centers: (0..2000).map(|i| place(6, i, [-300.0, 500.0], [-20.0, 30.0])).collect(),
                 radii: (0..2000).map(|i| if i % 50 == 0 { 12.0 } else { 0.1 + 0.04 * (i % 100) as f32 }).collect(),

@@ -95,28 +95,33 @@ impl<'a> FreeLines<'a> {
         self.tree.positions().len()
     }
 
-    /// Calls `visit` with the places on the map where lines of sight that are still free start: the number of their column in `columns`, the lowest and the
-    /// highest corner of a rectangle, and the height that no target there is below, local metres. So many neighbours as `together` says, at least one, share a place.
+    /// Calls `visit` with the places on the map where lines of sight that are still free start: the number of their column among `columns`, which ascend, the lowest and
+    /// the highest corner of a rectangle, and the height that no target there is below, local metres. So many neighbours as `together` says, at least one, share a place.
     pub fn each_start(&self, columns: &[usize], together: usize, mut visit: impl FnMut(usize, [[f32; 2]; 2], f32)) {
-        let asked = self.words_of(columns);
+        // the words with any of the columns, these, and how many come before
+        let mut asked: Vec<(usize, u64, usize)> = Vec::new();
+        let mut before = 0;
+        for (word, bits) in self.words_of(columns).into_iter().enumerate().filter(|(_, bits)| *bits != 0) {
+            asked.push((word, bits, before));
+            before += bits.count_ones() as usize;
+        }
+        if asked.is_empty() {
+            return;
+        }
         let together = together.max(1);
-        let rows = self.words.chunks(self.width.max(1) * together);
-        let mut any = vec![0; self.width];
+        let rows = self.words.chunks(self.width * together);
         for (rows, targets) in rows.zip(self.tree.positions().chunks(together)) {
-            any.copy_from_slice(&asked);
-            let of_rows = |word: usize| rows.chunks(self.width).fold(0, |bits, row| bits | row[word]);
-            any.iter_mut().enumerate().for_each(|(word, any)| *any &= of_rows(word));
-            if any.iter().all(|word| *word == 0) {
-                continue;
-            }
-            let bound = |axis: usize, pick: fn(f32, f32) -> f32, start: f32| {
-                targets.iter().map(|target| target[axis]).fold(start, pick)
-            };
-            let low: [f32; 3] = std::array::from_fn(|axis| bound(axis, f32::min, f32::INFINITY));
-            let high = [0, 1].map(|axis| bound(axis, f32::max, f32::NEG_INFINITY));
-            let is_free = |column: usize| any[column / WORD] >> (column % WORD) & 1 == 1;
-            for (number, _) in columns.iter().enumerate().filter(|(_, column)| is_free(**column)) {
-                visit(number, [[low[0], low[1]], high], low[2]);
+            let mut place = None;
+            for &(word, columns, before) in &asked {
+                let of_rows = rows.chunks(self.width).fold(0, |bits, row| bits | row[word]);
+                let mut free = of_rows & columns;
+                while free != 0 {
+                    let lowest = free & free.wrapping_neg();
+                    free ^= lowest;
+                    let number = before + (columns & (lowest - 1)).count_ones() as usize;
+                    let [low, high] = *place.get_or_insert_with(|| corners(targets));
+                    visit(number, [[low[0], low[1]], [high[0], high[1]]], low[2]);
+                }
             }
         }
     }
@@ -270,4 +275,12 @@ impl<'a> FreeLines<'a> {
         }
         VisibilityMatrix { places, direction_count: self.directions.len(), width: self.width, words: self.words }
     }
+}
+
+/// Lowest and highest corner of the box around targets.
+fn corners(targets: &[[f32; 3]]) -> [[f32; 3]; 2] {
+    let bound = |pick: fn(f32, f32) -> f32, start: f32| -> [f32; 3] {
+        std::array::from_fn(|axis| targets.iter().map(|target| target[axis]).fold(start, pick))
+    };
+    [bound(f32::min, f32::INFINITY), bound(f32::max, f32::NEG_INFINITY)]
 }
