@@ -182,7 +182,7 @@ impl RayIndex {
     #[inline]
     fn walk(&self, ray: TreeRay, visit: impl FnMut(usize) -> f32) {
         match self.instructions {
-            Instructions::Scalar => walk::<Scalar>(&self.tree.nodes, ray, visit),
+            Instructions::Scalar => walk::<Scalar<false>>(&self.tree.nodes, ray, visit),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::run(&self.tree.nodes, ray, visit),
         }
@@ -388,25 +388,39 @@ mod tests {
         assert!(proposals < 2 * rays.len() * boxes.len() / 50, "{proposals} proposals");
     }
 
-    #[test]
-    fn all_instructions_visit_the_same_rows_in_the_same_order() {
-        let mut index = RayIndex::new(&boxes(5000)).unwrap();
-        for ray in rays(2000) {
-            let visited = [Instructions::Scalar, Instructions::detect()].map(|instructions| {
-                index.instructions = instructions;
-                let mut rows = Vec::new();
-                index.each(&ray, |row| rows.push(row));
-                let mut until_third = 0;
-                let ended = index.any(&ray, |_| {
-                    until_third += 1;
-                    until_third == 3
-                });
-                // rows as they come stand for ranges
-                let nearest = index.nearest(&ray, |row| Some((row * 7919 % 50) as f64));
-                (rows, until_third, ended, nearest)
+    /// The rows that a walk visits in turn: all, the first three, and those of a ray that each row shortens.
+    fn visited(walk: impl Fn(&mut dyn FnMut(usize) -> f32)) -> [Vec<usize>; 3] {
+        let of_reach = |reach: &dyn Fn(usize) -> f32| {
+            let mut rows = Vec::new();
+            walk(&mut |row| {
+                rows.push(row);
+                reach(rows.len())
             });
-            assert_eq!(visited[0], visited[1]);
+            rows
+        };
+        [
+            of_reach(&|_| f32::INFINITY),
+            of_reach(&|count| if count < 3 { f32::INFINITY } else { END }),
+            of_reach(&|count| 100.0 / count as f32),
+        ]
+    }
+
+    #[test]
+    fn eight_boxes_at_once_give_the_rows_of_one_after_the_other() {
+        let index = RayIndex::new(&boxes(5000)).unwrap();
+        if index.instructions == Instructions::Scalar {
+            println!("SKIPPED: this machine has no AVX2 or no FMA");
+            return;
         }
+        let mut counts = [0; 3];
+        for ray in rays(2000) {
+            let Some(entry) = index.enter(&ray) else { continue };
+            let fused = |visit: &mut dyn FnMut(usize) -> f32| walk::<Scalar<true>>(&index.tree.nodes, entry.ray, visit);
+            let rows = visited(fused);
+            assert_eq!(visited(|visit| index.walk(entry.ray, visit)), rows);
+            counts.iter_mut().zip(&rows).for_each(|(count, rows)| *count += rows.len());
+        }
+        assert!(counts[0] > counts[2] && counts[2] > counts[1] && counts[1] > 2000, "{counts:?}");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Eight boxes at once on machines with AVX2: the same arithmetic as [`super::walk::Scalar`], in the same order.
+//! Eight boxes at once on machines with AVX2 and FMA: the same arithmetic as [`super::walk::Scalar`] with fused products, in the same order.
 #![expect(
     unsafe_code,
     reason = "lines of sight that are tested one by one take about half of the time of sky views; AVX2 saves 9 % of the whole (`walk.rs`), and the \
@@ -11,7 +11,7 @@ use std::arch::x86_64::*;
 
 /// [`walk`] on a machine that has these instructions.
 pub(super) fn run(nodes: &[CwBvhNode], ray: TreeRay, visit: impl FnMut(usize) -> f32) {
-    #[target_feature(enable = "avx2,popcnt,lzcnt")]
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt,lzcnt")]
     fn run(nodes: &[CwBvhNode], ray: TreeRay, visit: impl FnMut(usize) -> f32) {
         walk::<Avx2>(nodes, ray, visit);
     }
@@ -34,8 +34,8 @@ fn cut(part: [__m256; 2], low: [u8; LANES], high: [u8; LANES], [scale, start]: [
     // SAFETY: see `numbers`
     unsafe {
         let (scale, start) = (_mm256_set1_ps(scale), _mm256_set1_ps(start));
-        let low = _mm256_add_ps(_mm256_mul_ps(numbers(low), scale), start);
-        let high = _mm256_add_ps(_mm256_mul_ps(numbers(high), scale), start);
+        let low = _mm256_fmadd_ps(numbers(low), scale, start);
+        let high = _mm256_fmadd_ps(numbers(high), scale, start);
         [_mm256_max_ps(part[0], _mm256_min_ps(low, high)), _mm256_min_ps(part[1], _mm256_max_ps(low, high))]
     }
 }

@@ -49,24 +49,30 @@ impl OpenNode<'_> {
     /// Number of the node that a part is.
     #[inline(always)]
     pub(crate) fn number(&self, part: usize) -> u32 {
-        self.node.child_node_index(part)
+        let before = u32::from(self.node.imask) & !(u32::MAX << part);
+        self.node.child_base_idx + before.count_ones()
     }
 
-    /// Rows from the first to the last, exclusive, of those of `parts` that are rows; others may lie between.
+    /// Rows from the first to the last, exclusive, of those of `parts` that are rows; others may lie between. Rows of later parts come later.
     #[inline(always)]
     pub(crate) fn rows(&self, parts: u32) -> Range<u32> {
-        let mut left = parts & !u32::from(self.node.imask);
-        let (mut from, mut to) = (u32::MAX, 0);
-        while left != 0 {
-            let part = left.trailing_zeros() as usize;
-            left &= left - 1;
-            if !self.node.is_child_empty(part) {
-                let (first, count) = self.node.child_primitives(part);
-                from = from.min(first);
-                to = to.max(first + count);
-            }
+        let rows = parts & self.taken() & !u32::from(self.node.imask);
+        if rows == 0 {
+            return 0..0;
         }
-        from.min(to)..to
+        let [first, last] = [rows.trailing_zeros(), rows.ilog2()].map(|part| self.node.child_primitives(part as usize));
+        first.0..last.0 + last.1
+    }
+
+    /// Parts that are nodes or rows.
+    #[inline(always)]
+    fn taken(&self) -> u32 {
+        /// Set in the byte of each part that is taken.
+        const TAKEN: u64 = 0x2020_2020_2020_2020;
+        /// Brings the bits of bytes together in the highest byte.
+        const TOGETHER: u64 = 0x0102_0408_1020_4080;
+        let bytes = u64::from_le_bytes(self.node.child_meta);
+        (((bytes & TAKEN) >> 5).wrapping_mul(TOGETHER) >> 56) as u32
     }
 }
 

@@ -53,10 +53,10 @@ pub(super) trait Test {
     fn met(node: &CwBvhNode, ray: &TreeRay) -> Children;
 }
 
-/// One box after the other: every machine.
-pub(super) struct Scalar;
+/// One box after the other: every machine. With `FUSED`, products are added before they are rounded, which is slow on machines that have no such instruction.
+pub(super) struct Scalar<const FUSED: bool>;
 
-impl Test for Scalar {
+impl<const FUSED: bool> Test for Scalar<FUSED> {
     #[inline(always)]
     fn met(node: &CwBvhNode, ray: &TreeRay) -> Children {
         let sides = [
@@ -67,7 +67,8 @@ impl Test for Scalar {
         let (mut from, mut to) = ([0.0_f32; LANES], [ray.reach; LANES]);
         for ((low, high), [scale, start]) in sides.into_iter().zip(ray.scale(node)) {
             for lane in 0..LANES {
-                let [a, b] = [low[lane], high[lane]].map(|side| f32::from(side) * scale + start);
+                let range = |side: f32| if FUSED { side.mul_add(scale, start) } else { side * scale + start };
+                let [a, b] = [low[lane], high[lane]].map(|side| range(f32::from(side)));
                 from[lane] = from[lane].max(a.min(b));
                 to[lane] = to[lane].min(a.max(b));
             }

@@ -1,4 +1,4 @@
-//! Eight lanes at once on machines with AVX2: the same arithmetic as [`super::lanes::Scalar`], in the same order.
+//! Eight lanes at once on machines with AVX2 and FMA: the same arithmetic as [`super::lanes::Scalar`] with fused products, in the same order.
 #![expect(
     unsafe_code,
     reason = "nearly all of the time of viewsheds of many observers goes into these tests (docs/methods/viewshed.md); tests compare them with \
@@ -9,27 +9,28 @@ use super::blockers::LANES;
 use super::lanes::{Bits, Columns, ConvexSpace, HalfLine, Kernels, PLANES};
 use super::sweep::Sweep;
 use crate::blocking::Ball;
+use crate::instructions::Instructions;
 use crate::ray_index::Sides;
 use std::arch::x86_64::*;
 
-/// Visits the places of the targets below `node` that no ball blocks; false on a machine without AVX2, where nothing is done.
+/// Visits the places of the targets below `node` that no ball blocks; false on a machine without these instructions, where nothing is done.
 pub(super) fn search(sweep: &Sweep<'_>, node: usize, visit: &mut impl FnMut(usize)) -> bool {
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     fn run(sweep: &Sweep<'_>, node: usize, visit: &mut impl FnMut(usize)) {
         sweep.search::<Avx2>(node, visit);
     }
-    let is_able = std::arch::is_x86_feature_detected!("avx2");
+    let is_able = Instructions::detect() == Instructions::Avx2;
     if is_able {
-        // SAFETY: the machine has AVX2
+        // SAFETY: `detect` found all of these
         unsafe { run(sweep, node, visit) }
     }
     is_able
 }
 
-/// AVX2.
+/// AVX2 and FMA.
 pub(super) struct Avx2;
 
-// SAFETY of the blocks below: the methods are only used where AVX2 was found, and inlined into functions that enable it; `load` and `store` touch
+// SAFETY of the blocks below: the methods are only used where AVX2 and FMA were found, and inlined into functions that enable them; `load` and `store` touch
 // arrays of exactly eight f32.
 
 #[inline(always)]
@@ -65,10 +66,10 @@ fn dot(a: [__m256; 3], b: [__m256; 3]) -> __m256 {
 }
 
 #[inline(always)]
-fn depth(space: &ConvexSpace, plane: usize, center: [__m256; 3]) -> __m256 {
-    let [x, y, z] = space.normals[plane];
+fn depth(space: &ConvexSpace, plane: usize, [x, y, z]: [__m256; 3]) -> __m256 {
+    let (normal, offset) = (space.normals[plane].map(all), all(space.offsets[plane]));
     // SAFETY: see above
-    unsafe { _mm256_sub_ps(all(space.offsets[plane]), dot([all(x), all(y), all(z)], center)) }
+    unsafe { _mm256_fnmadd_ps(normal[2], z, _mm256_fnmadd_ps(normal[1], y, _mm256_fnmadd_ps(normal[0], x, offset))) }
 }
 
 impl Kernels for Avx2 {
@@ -76,18 +77,17 @@ impl Kernels for Avx2 {
     fn meet_boxes(space: &ConvexSpace, sides: &Sides) -> Bits {
         // SAFETY: see above
         unsafe {
-            let mut outside = all(f32::NEG_INFINITY);
+            let mut least = all(f32::INFINITY);
             for plane in 0..PLANES {
-                let ([nx, ny, nz], [x, y, z]) = (space.normals[plane], space.inward[plane]);
+                let [x, y, z] = space.inward[plane];
                 let corner = [
                     load(&sides[0][usize::from(x & 1)]),
                     load(&sides[1][usize::from(y & 1)]),
                     load(&sides[2][usize::from(z & 1)]),
                 ];
-                let beyond = _mm256_sub_ps(dot([all(nx), all(ny), all(nz)], corner), all(space.offsets[plane]));
-                outside = _mm256_max_ps(outside, beyond);
+                least = _mm256_min_ps(least, depth(space, plane, corner));
             }
-            bits(_mm256_cmp_ps::<_CMP_LE_OQ>(outside, _mm256_setzero_ps()))
+            bits(_mm256_cmp_ps::<_CMP_GE_OQ>(least, _mm256_setzero_ps()))
         }
     }
 
@@ -160,6 +160,9 @@ mod tests {
     use crate::query::beams::lanes::Scalar;
     use belvedere_data::random::uniform;
 
+    /// The scalar form with fused products.
+    type Fused = Scalar<true>;
+
     /// Balls, boxes, spaces and lines of all sizes; every fourth number is a round one, so that equal values and zeros occur.
     fn random(seed: u64, index: u64) -> f32 {
         let value = uniform(seed, index);
@@ -172,8 +175,8 @@ mod tests {
 
     #[test]
     fn every_test_gives_the_bits_of_its_scalar_form() {
-        if !std::arch::is_x86_feature_detected!("avx2") {
-            println!("SKIPPED: this machine has no AVX2");
+        if Instructions::detect() != Instructions::Avx2 {
+            println!("SKIPPED: this machine has no AVX2 or no FMA");
             return;
         }
         let mut passed = [0; 4];
@@ -203,14 +206,14 @@ mod tests {
                 direction: [next(), next(), 0.0].map(|v| 0.1 * v),
                 room: 0.01,
             };
-            // SAFETY of the calls: this machine has AVX2, as asked above
+            // SAFETY of the calls: this machine has AVX2 and FMA, as asked above
             let columns = Avx2::columns(&balls);
-            assert_eq!(columns, Scalar::columns(&balls));
+            assert_eq!(columns, Fused::columns(&balls));
             let pairs = [
-                [Avx2::meet_boxes(&space, &sides), Scalar::meet_boxes(&space, &sides)],
-                [Avx2::meet_balls(&space, &columns), Scalar::meet_balls(&space, &columns)],
-                [Avx2::may_cover(&space, &columns), Scalar::may_cover(&space, &columns)],
-                [Avx2::near_line(&columns, &line), Scalar::near_line(&columns, &line)],
+                [Avx2::meet_boxes(&space, &sides), Fused::meet_boxes(&space, &sides)],
+                [Avx2::meet_balls(&space, &columns), Fused::meet_balls(&space, &columns)],
+                [Avx2::may_cover(&space, &columns), Fused::may_cover(&space, &columns)],
+                [Avx2::near_line(&columns, &line), Fused::near_line(&columns, &line)],
             ];
             for (passed, [avx2, scalar]) in passed.iter_mut().zip(pairs) {
                 assert_eq!(avx2, scalar, "seed {seed}");

@@ -73,7 +73,7 @@ impl Iterator for Bits {
     }
 }
 
-/// The tests, for one set of instructions. All forms do the same arithmetic in the same order.
+/// The tests, for one set of instructions.
 pub(super) trait Kernels {
     /// Which boxes may reach into the space.
     fn meet_boxes(space: &ConvexSpace, sides: &Sides) -> Bits;
@@ -88,8 +88,9 @@ pub(super) trait Kernels {
     fn columns(balls: &[Ball; LANES]) -> Columns;
 }
 
-/// Plain loops over eight lanes without branches, which compilers turn into what instructions they may use.
-pub(super) struct Scalar;
+/// Plain loops over eight lanes without branches, which compilers turn into what instructions they may use. With `FUSED`, products are added before they are rounded, which
+/// is slow on machines that have no such instruction.
+pub(super) struct Scalar<const FUSED: bool>;
 
 /// The bits of lanes that are true.
 #[inline(always)]
@@ -101,44 +102,41 @@ fn bits(lanes: [bool; LANES]) -> Bits {
     Bits(bits)
 }
 
-/// How far inside a plane centres lie, metres.
-#[inline(always)]
-fn depths(space: &ConvexSpace, plane: usize, [x, y, z, _]: &Columns) -> [f32; LANES] {
-    let (normal, offset) = (space.normals[plane], space.offsets[plane]);
-    let mut depths = [0.0; LANES];
-    for lane in 0..LANES {
-        depths[lane] = offset - dot(normal, [x[lane], y[lane], z[lane]]);
-    }
-    depths
-}
-
-impl Kernels for Scalar {
+impl<const FUSED: bool> Scalar<FUSED> {
+    /// How far inside a plane places lie, metres.
     #[inline(always)]
-    fn meet_boxes(space: &ConvexSpace, sides: &Sides) -> Bits {
-        let mut outside = [f32::NEG_INFINITY; LANES];
-        for plane in 0..PLANES {
-            let (normal, offset, [x, y, z]) = (space.normals[plane], space.offsets[plane], space.inward[plane]);
-            let x = &sides[0][usize::from(x & 1)];
-            let y = &sides[1][usize::from(y & 1)];
-            let z = &sides[2][usize::from(z & 1)];
-            for lane in 0..LANES {
-                let beyond = dot(normal, [x[lane], y[lane], z[lane]]) - offset;
-                outside[lane] = if beyond > outside[lane] { beyond } else { outside[lane] };
+    fn depths(space: &ConvexSpace, plane: usize, [x, y, z]: [&[f32; LANES]; 3]) -> [f32; LANES] {
+        let (normal, offset) = (space.normals[plane], space.offsets[plane]);
+        let less = |depth: f32, a: f32, b: f32| if FUSED { (-a).mul_add(b, depth) } else { depth - a * b };
+        let mut depths = [offset; LANES];
+        for lane in 0..LANES {
+            for (axis, place) in [x, y, z].into_iter().enumerate() {
+                depths[lane] = less(depths[lane], normal[axis], place[lane]);
             }
         }
-        let mut meets = [false; LANES];
-        for lane in 0..LANES {
-            meets[lane] = outside[lane] <= 0.0;
+        depths
+    }
+}
+
+impl<const FUSED: bool> Kernels for Scalar<FUSED> {
+    #[inline(always)]
+    fn meet_boxes(space: &ConvexSpace, sides: &Sides) -> Bits {
+        let mut least = [f32::INFINITY; LANES];
+        for plane in 0..PLANES {
+            let [x, y, z] = space.inward[plane].map(|side| usize::from(side & 1));
+            let depths = Self::depths(space, plane, [&sides[0][x], &sides[1][y], &sides[2][z]]);
+            for lane in 0..LANES {
+                least[lane] = if depths[lane] < least[lane] { depths[lane] } else { least[lane] };
+            }
         }
-        bits(meets)
+        bits(least.map(|least| least >= 0.0))
     }
 
     #[inline(always)]
-    fn meet_balls(space: &ConvexSpace, balls: &Columns) -> Bits {
-        let radius = &balls[3];
+    fn meet_balls(space: &ConvexSpace, [x, y, z, radius]: &Columns) -> Bits {
         let mut least = *radius;
         for plane in 0..PLANES {
-            let depths = depths(space, plane, balls);
+            let depths = Self::depths(space, plane, [x, y, z]);
             for lane in 0..LANES {
                 least[lane] = if depths[lane] < least[lane] { depths[lane] } else { least[lane] };
             }
@@ -151,14 +149,14 @@ impl Kernels for Scalar {
     }
 
     #[inline(always)]
-    fn may_cover(space: &ConvexSpace, balls: &Columns) -> Bits {
-        let planes: [[f32; LANES]; 4] = std::array::from_fn(|plane| depths(space, plane, balls));
+    fn may_cover(space: &ConvexSpace, [x, y, z, radius]: &Columns) -> Bits {
+        let planes: [[f32; LANES]; 4] = std::array::from_fn(|plane| Self::depths(space, plane, [x, y, z]));
         let larger = |a: f32, b: f32| if a > b { a } else { b };
         let mut covers = [false; LANES];
         for lane in 0..LANES {
             let across = larger(planes[0][lane], planes[1][lane]);
             let along = larger(planes[2][lane], planes[3][lane]);
-            covers[lane] = across * across + along * along <= balls[3][lane] * balls[3][lane];
+            covers[lane] = across * across + along * along <= radius[lane] * radius[lane];
         }
         bits(covers)
     }
@@ -186,6 +184,9 @@ impl Kernels for Scalar {
 mod tests {
     use super::*;
 
+    /// The form for machines without fused products.
+    type Plain = Scalar<false>;
+
     /// The wedge of points with x from −1 to 1 and y at most 2.
     fn wedge() -> ConvexSpace {
         let mut space = ConvexSpace::all();
@@ -202,10 +203,10 @@ mod tests {
         // each with a half size, or a radius, of 1: it touches in the third, fourth and fifth case
         let met = Bits(0b0101_1101);
         let around = |centers: [f32; LANES]| [centers.map(|v| v - 1.0), centers.map(|v| v + 1.0)];
-        assert_eq!(Scalar::meet_boxes(&wedge(), &[around(x), around(y), around([7.0; LANES])]), met);
+        assert_eq!(Plain::meet_boxes(&wedge(), &[around(x), around(y), around([7.0; LANES])]), met);
         let balls: Columns = [x, y, [7.0; LANES], [1.0; LANES]];
-        assert_eq!(Scalar::meet_balls(&wedge(), &balls), met);
-        assert_eq!(Scalar::meet_balls(&wedge(), &[x, y, x, [f32::NEG_INFINITY; LANES]]), Bits(0));
+        assert_eq!(Plain::meet_balls(&wedge(), &balls), met);
+        assert_eq!(Plain::meet_balls(&wedge(), &[x, y, x, [f32::NEG_INFINITY; LANES]]), Bits(0));
     }
 
     #[test]
@@ -214,7 +215,7 @@ mod tests {
         let x = [5.0, -0.5, -2.0, 5.0, 5.0, 0.0, 100.0, 1.0];
         let y = [0.5, 0.0, 0.0, 1.5, -1.0, 0.0, 0.0, 0.0];
         let radius = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, f32::NEG_INFINITY];
-        assert_eq!(Scalar::near_line(&[x, y, [0.0; LANES], radius], &line), Bits(0b0111_0011));
+        assert_eq!(Plain::near_line(&[x, y, [0.0; LANES], radius], &line), Bits(0b0111_0011));
     }
 
     #[test]
