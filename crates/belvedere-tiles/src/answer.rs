@@ -48,15 +48,32 @@ pub(crate) struct Task<'a> {
     pub(crate) most_balls: usize,
 }
 
+/// The cells of a tile on top of what stands there, or will: the next question may be about the same.
+pub(crate) struct Surface {
+    tile: TileId,
+    /// Side of a cell, metres.
+    cell: f64,
+    /// Points that were read for it.
+    points: usize,
+    targets: Targets,
+}
+
 /// Answers a question for the cells of a tile on top of what stands there, with the balls that are in the folder of the run, and writes the answer
-/// and its record. Where balls that can matter are missing, answers are unproven.
+/// and its record. Where balls that can matter are missing, answers are unproven. `last` is the surface of the last answer.
 ///
 /// # Errors
 /// Those of reading the files and the balls, and of writing.
-pub(crate) fn answer(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Control<'_>) -> Result<Record> {
+pub(crate) fn answer(
+    plan: &Plan,
+    run: &Path,
+    task: Task<'_>,
+    tile: TileId,
+    last: &mut Option<Surface>,
+    control: &Control<'_>,
+) -> Result<Record> {
     let stage = Stage::Answer(task.question);
     atomic::make_folder(&stage.folder(run))?;
-    let record = answered(plan, run, task, tile, control)?;
+    let record = answered(plan, run, task, tile, last, control)?;
     record.write(plan, run, stage, tile)?;
     Ok(record)
 }
@@ -67,7 +84,14 @@ fn area_of_cells(plan: &Plan, tile: TileId, cell: f64) -> crate::grid::Area {
     plan.grid().core(tile).widened(farthest + (RIM + 1) as f64 * cell)
 }
 
-fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Control<'_>) -> Result<Record> {
+fn answered(
+    plan: &Plan,
+    run: &Path,
+    task: Task<'_>,
+    tile: TileId,
+    last: &mut Option<Surface>,
+    control: &Control<'_>,
+) -> Result<Record> {
     let Task { question, asked, others, most_balls } = task;
     let core = plan.grid().core(tile);
     let nothing = |points: usize| Ok(Record { points, ..Record::default() });
@@ -75,10 +99,12 @@ fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Con
         return nothing(0);
     }
     let cell = plan.cells.of(question);
-    let cloud = control.stage("reading", 0, || window::read(plan, &area_of_cells(plan, tile, cell), control))?;
-    let points = cloud.len();
-    let added = others.added.as_ref();
-    let targets = control.stage("computing top surface", 0, || cells(plan, (tile, cell), &cloud, added, control))?;
+    let surface = match last.take().filter(|last| (last.tile, last.cell) == (tile, cell)) {
+        Some(surface) => surface,
+        None => Surface::new(plan, tile, cell, others, control)?,
+    };
+    let Surface { points, targets, .. } = last.insert(surface);
+    let points = *points;
     let (cells, Layout::Cells(ground)) = (targets.asked_count(), &targets.layout) else { return nothing(points) };
     if cells == 0 {
         return nothing(points);
@@ -97,7 +123,7 @@ fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Con
             let balls = parts.into_found();
             (sight.answered(&balls, size)?, balls)
         }
-        Asked::Light(light) => lit(light, parts, &targets, size, control)?,
+        Asked::Light(light) => lit(light, parts, targets, size, control)?,
     };
     if found.values.are_nothing() && found.unproven_cells == 0 {
         return Ok(Record { points, damaged: balls.damaged, ..Record::default() });
@@ -117,6 +143,16 @@ fn answered(plan: &Plan, run: &Path, task: Task<'_>, tile: TileId, control: &Con
         skipped_observers: found.skipped_observers,
         ..Record::default()
     })
+}
+
+impl Surface {
+    fn new(plan: &Plan, tile: TileId, cell: f64, others: &Others, control: &Control<'_>) -> Result<Self> {
+        let cloud = control.stage("reading", 0, || window::read(plan, &area_of_cells(plan, tile, cell), control))?;
+        let added = others.added.as_ref();
+        let targets =
+            control.stage("computing top surface", 0, || cells(plan, (tile, cell), &cloud, added, control))?;
+        Ok(Self { tile, cell, points: cloud.len(), targets })
+    }
 }
 
 /// What was found of the cells of a tile.

@@ -210,6 +210,9 @@ impl Part {
 
     /// Takes what the balls hide from `free`, and lets them go.
     fn hide(&mut self, free: &mut Free<'_>, plan: &Plan, found: &mut Found, control: &Control<'_>) -> Result<()> {
+        if self.ball_count() == 0 {
+            return Ok(());
+        }
         found.ball_count += self.ball_count();
         found.most_held = found.most_held.max(self.ball_count());
         let columns: Vec<usize> = self.columns.iter().copied().collect();

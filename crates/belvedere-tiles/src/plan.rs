@@ -358,7 +358,7 @@ impl Plan {
     }
 
     /// Whether cells of a side may get a height on a tile: it is near points.
-    fn has_cells(&self, tile: TileId, cell: f64) -> bool {
+    pub(crate) fn has_cells(&self, tile: TileId, cell: f64) -> bool {
         let reach = self.reach(cell);
         let core = self.grid().core(tile);
         let (low, high) = self.bounds().on_map();

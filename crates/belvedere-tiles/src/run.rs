@@ -1,6 +1,6 @@
 //! A run: all tiles that are not done yet, one after the other.
 
-use crate::answer::{Task, answer};
+use crate::answer::{Surface, Task, answer};
 use crate::grid::TileId;
 use crate::lines::{Lines, tiles};
 use crate::make_balls::make_balls;
@@ -91,11 +91,18 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
     let questions = if params.steps == Steps::All { &plan.questions[..] } else { &[] };
     let most_balls = params.most_balls.unwrap_or_else(|| plan.balls_at_a_time());
     let others = if questions.is_empty() { Others::none() } else { plan.others()? };
+    let mut prepared = Vec::new();
     for question in questions {
-        let asked = question.prepare(plan.trees, control)?;
-        let task = Task { question, asked: &asked, others: &others, most_balls };
-        let (with_cells, cell) = (plan.tiles_of(question), plan.cells.of(question));
-        for tile in own().filter(|tile| with_cells.binary_search(tile).is_ok()) {
+        prepared.push((plan.cells.of(question), question, question.prepare(plan.trees, control)?));
+    }
+    // those on cells of one size follow each other and share the surface of a tile
+    prepared.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for tile in own() {
+        let mut last = None;
+        for (cell, question, asked) in &prepared {
+            if !plan.has_cells(tile, *cell) {
+                continue;
+            }
             // what was unproven for lack of balls may have them now
             let record = work.settled(Stage::Answer(question), tile);
             if record.is_some_and(|record| record.unproven_cells == 0) {
@@ -104,11 +111,12 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             }
             // other shares may not have come to them
             let core = plan.grid().core(tile);
-            let lowest = plan.lowest_of_cells(tile, cell);
-            for other in tiles(plan, &Lines::of(&asked, core, lowest)) {
+            let lowest = plan.lowest_of_cells(tile, *cell);
+            for other in tiles(plan, &Lines::of(asked, core, lowest)) {
                 work.missing_balls(other)?;
             }
-            work.answer(task, tile)?;
+            let task = Task { question, asked, others: &others, most_balls };
+            work.answer(task, tile, &mut last)?;
         }
     }
     for question in questions {
@@ -155,9 +163,9 @@ impl Work<'_> {
         Ok(())
     }
 
-    fn answer(&mut self, task: Task<'_>, tile: TileId) -> Result<()> {
+    fn answer(&mut self, task: Task<'_>, tile: TileId, last: &mut Option<Surface>) -> Result<()> {
         let stage = Stage::Answer(task.question);
-        let record = self.attempt(stage, tile, || answer(self.plan, self.folder, task, tile, self.control))?;
+        let record = self.attempt(stage, tile, || answer(self.plan, self.folder, task, tile, last, self.control))?;
         self.report.answers_made += 1;
         self.report.unproven_cells += record.unproven_cells;
         self.report.damaged.extend(record.damaged);
