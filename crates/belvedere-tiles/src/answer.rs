@@ -48,9 +48,8 @@ pub(crate) struct Task<'a> {
     pub(crate) most_balls: usize,
 }
 
-/// The cells of a tile on top of what stands there, or will: the next question may be about the same.
+/// Cells of a tile on top of what stands there, or will.
 pub(crate) struct Surface {
-    tile: TileId,
     /// Side of a cell, metres.
     cell: f64,
     /// Points that were read for it.
@@ -59,7 +58,8 @@ pub(crate) struct Surface {
 }
 
 /// Answers a question for the cells of a tile on top of what stands there, with the balls that are in the folder of the run, and writes the answer
-/// and its record. Where balls that can matter are missing, answers are unproven. `last` is the surface of the last answer.
+/// and its record. Where balls that can matter are missing, answers are unproven. `last` is the surface of the last
+/// answer for the tile, which may be on the same cells.
 ///
 /// # Errors
 /// Those of reading the files and the balls, and of writing.
@@ -99,7 +99,7 @@ fn answered(
         return nothing(0);
     }
     let cell = plan.cells.of(question);
-    let surface = match last.take().filter(|last| (last.tile, last.cell) == (tile, cell)) {
+    let surface = match last.take().filter(|last| last.cell == cell) {
         Some(surface) => surface,
         None => Surface::new(plan, tile, cell, others, control)?,
     };
@@ -151,7 +151,7 @@ impl Surface {
         let added = others.added.as_ref();
         let targets =
             control.stage("computing top surface", 0, || cells(plan, (tile, cell), &cloud, added, control))?;
-        Ok(Self { tile, cell, points: cloud.len(), targets })
+        Ok(Self { cell, points: cloud.len(), targets })
     }
 }
 

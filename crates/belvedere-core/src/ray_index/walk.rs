@@ -53,7 +53,8 @@ pub(super) trait Test {
     fn met(node: &CwBvhNode, ray: &TreeRay) -> Children;
 }
 
-/// One box after the other: every machine. With `FUSED`, products are added before they are rounded, which is slow on machines that have no such instruction.
+/// One box after the other: every machine. With `FUSED`, products are added before they are rounded, which is slow on machines that have no such
+/// instruction.
 pub(super) struct Scalar<const FUSED: bool>;
 
 impl<const FUSED: bool> Test for Scalar<FUSED> {

@@ -88,8 +88,8 @@ pub(super) trait Kernels {
     fn columns(balls: &[Ball; LANES]) -> Columns;
 }
 
-/// Plain loops over eight lanes without branches, which compilers turn into what instructions they may use. With `FUSED`, products are added before they are rounded, which
-/// is slow on machines that have no such instruction.
+/// Plain loops over eight lanes without branches, which compilers turn into what instructions they may use. With `FUSED`, products are added before
+/// they are rounded, which is slow on machines that have no such instruction.
 pub(super) struct Scalar<const FUSED: bool>;
 
 /// The bits of lanes that are true.

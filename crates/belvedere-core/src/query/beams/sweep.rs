@@ -12,8 +12,8 @@ use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Result};
 use std::ops::Range;
 
-/// What f32 may err by in the test of a beam, as a share of the largest coordinate: a dozen roundings of 6e-8, of which fused products save some. Sides of boxes are rounded twice more; boxes are padded
-/// by at least as much ([`RayIndex`]).
+/// What f32 may err by in the test of a beam, as a share of the largest coordinate: a dozen roundings of 6e-8, fewer where products are fused. Sides of
+/// boxes are rounded twice more; boxes are padded by at least as much ([`RayIndex`]).
 const ROUNDING: f64 = 1e-6;
 /// How much smaller a ball counts where it is to hide a box, as a share of its squared radius and of squared distances: whatever f64
 /// rounds in the exact test, and then some.
