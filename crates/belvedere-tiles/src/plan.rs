@@ -140,14 +140,10 @@ impl Plan {
     pub fn make(params: &PlanParams, control: &Control<'_>) -> Result<Self> {
         check_sizes(params)?;
         let (mut inputs, heads) = inputs(&params.clouds)?;
+        let with_crs = heads.iter().position(|head| head.crs.epsg.is_some() || head.crs.wkt.is_some()).unwrap_or(0);
         let crs = match &params.crs {
             Some(crs) => Crs::parse(crs)?,
-            None => heads
-                .iter()
-                .map(|head| &head.crs)
-                .find(|crs| crs.epsg.is_some() || crs.wkt.is_some())
-                .cloned()
-                .unwrap_or_else(|| heads[0].crs.clone()),
+            None => heads[with_crs].crs.clone(),
         };
         let metres_per_unit = crs.metres_per_unit_xyz();
         let ends = |end: usize, axis: usize| {
@@ -159,7 +155,7 @@ impl Plan {
             return Err(Error::NoPoints { what: "no file has a point".to_owned() });
         }
         if let Some(what) = crs.refusal(low.map(|v| v / metres_per_unit[0])) {
-            return Err(Error::UnusableCrs { path: inputs[0].path.clone(), what });
+            return Err(Error::UnusableCrs { path: inputs[with_crs].path.clone(), what });
         }
         let holds = |place: &[f64; 2]| (0..2).all(|i| (low[i]..=high[i]).contains(&(place[i] * metres_per_unit[i])));
         if let Some([x, y]) = params.places.iter().find(|place| !holds(place)) {
@@ -177,6 +173,11 @@ impl Plan {
         }
         let system = crs.wkt.clone().or_else(|| crs.epsg.map(|code| format!("EPSG:{code}"))).unwrap_or_default();
         let frame = PlanFrame { origin, metres_per_unit, system };
+        if frame.to_frame().is_err() {
+            let what =
+                format!("its reference system, {}, is not known to this program; give it with --crs", crs.describe());
+            return Err(Error::UnusableCrs { path: inputs[with_crs].path.clone(), what });
+        }
         let columns = Columns::common(&heads);
         let files: Vec<PathBuf> = inputs.iter().map(|file| file.path.clone()).collect();
         let points = inputs.iter().map(|file| file.points).sum();

@@ -3,7 +3,8 @@
 use crate::common::{plan, run_all, suns, write_town};
 use belvedere::Error;
 use belvedere::control::{Control, Watcher};
-use belvedere::io::read_tif_u8;
+use belvedere::crs::Crs;
+use belvedere::io::{ReadOptions, read_cloud, read_tif_u8, write_cloud};
 use belvedere_tiles::{CellSizes, Plan, PlanParams, RunParams, Shard, Steps, merge, run, status};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -196,4 +197,18 @@ fn tiles_are_quartered_until_they_fit_into_the_memory_and_sizes_out_of_range_are
         let params = PlanParams { tile_size, cells: CellSizes::all(cell), ..params.clone() };
         assert!(Plan::make(&params, &Control::none()).is_err(), "{tile_size} {cell}");
     }
+}
+
+#[test]
+fn a_reference_system_that_is_not_known_is_named_with_its_file() {
+    let place = tempfile::tempdir().unwrap();
+    let path = write_town(place.path(), 84.0, 1.0).remove(0);
+    let (mut cloud, _) = read_cloud([path.as_path()], &ReadOptions::default(), &Control::none()).unwrap();
+    cloud.frame.crs = Crs { epsg: Some(9650), wkt: None, vertical_epsg: None, ..cloud.frame.crs };
+    write_cloud(&path, &cloud, &[]).unwrap();
+    let params = PlanParams { clouds: vec![path], ..PlanParams::default() };
+    let error = Plan::make(&params, &Control::none()).unwrap_err().to_string();
+    assert!(error.contains("half_0.laz") && error.contains("EPSG:9650") && error.contains("--crs"), "{error}");
+    let params = PlanParams { crs: Some("EPSG:7415".to_owned()), ..params };
+    assert!(Plan::make(&params, &Control::none()).is_ok());
 }
