@@ -57,9 +57,15 @@ pub(crate) struct Surface {
     targets: Targets,
 }
 
-/// Answers a question for the cells of a tile on top of what stands there, with the balls that are in the folder of the run, and writes the answer
-/// and its record. Where balls that can matter are missing, answers are unproven. `last` is the surface of the last
-/// answer for the tile, which may be on the same cells.
+/// The area of the points that the cells of a tile need.
+fn area_of_cells(plan: &Plan, tile: TileId, cell: f64) -> crate::grid::Area {
+    let farthest = f64::from(plan.facts.farthest()) + plan.facts.isolation_radius.unwrap_or(0.0);
+    plan.grid().core(tile).widened(farthest + (RIM + 1) as f64 * cell)
+}
+
+/// Answers a question for the cells of a tile on top of what stands there, with the balls that are in the folder of the run, and writes the answer; its
+/// record is to be written next. Where balls that can matter are missing, answers are unproven. `last` is the surface of the last answer for the tile,
+/// which may be on the same cells.
 ///
 /// # Errors
 /// Those of reading the files and the balls, and of writing.
@@ -71,28 +77,9 @@ pub(crate) fn answer(
     last: &mut Option<Surface>,
     control: &Control<'_>,
 ) -> Result<Record> {
-    let stage = Stage::Answer(task.question);
-    atomic::make_folder(&stage.folder(run))?;
-    let record = answered(plan, run, task, tile, last, control)?;
-    record.write(plan, run, stage, tile)?;
-    Ok(record)
-}
-
-/// The area of the points that the cells of a tile need.
-fn area_of_cells(plan: &Plan, tile: TileId, cell: f64) -> crate::grid::Area {
-    let farthest = f64::from(plan.facts.farthest()) + plan.facts.isolation_radius.unwrap_or(0.0);
-    plan.grid().core(tile).widened(farthest + (RIM + 1) as f64 * cell)
-}
-
-fn answered(
-    plan: &Plan,
-    run: &Path,
-    task: Task<'_>,
-    tile: TileId,
-    last: &mut Option<Surface>,
-    control: &Control<'_>,
-) -> Result<Record> {
     let Task { question, asked, others, most_balls } = task;
+    let stage = Stage::Answer(question);
+    atomic::make_folder(&stage.folder(run))?;
     let core = plan.grid().core(tile);
     let nothing = |points: usize| Ok(Record { points, ..Record::default() });
     if Lines::of(asked, core, 0.0).is_empty() {
@@ -129,7 +116,7 @@ fn answered(
         return Ok(Record { points, damaged: balls.damaged, ..Record::default() });
     }
     let place = georeference(&ground.grid, &targets.frame);
-    let path = Stage::Answer(question).result(run, tile);
+    let path = stage.result(run, tile);
     found.values.write(&path, &place, question.description())?;
     Ok(Record {
         outcome: Outcome::Done,
