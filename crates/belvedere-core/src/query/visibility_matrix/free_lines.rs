@@ -223,10 +223,12 @@ impl<'a> FreeLines<'a> {
         }
     }
 
-    /// The words of a row that sees `columns` only.
+    /// The words of a row that sees `columns` only, without those beyond the last.
     fn words_of(&self, columns: &[usize]) -> Vec<u64> {
         let mut words = vec![0; self.width];
-        columns.iter().for_each(|column| words[column / WORD] |= 1 << (column % WORD));
+        for column in columns {
+            words.get_mut(column / WORD).into_iter().for_each(|word| *word |= 1 << (column % WORD));
+        }
         words
     }
 
