@@ -7,6 +7,7 @@ mod search_tree;
 mod walk;
 
 pub(crate) use opened::{OpenNode, Sides};
+pub(crate) use walk::Visit;
 
 use crate::instructions::Instructions;
 use belvedere_data::vector::unit;
@@ -22,7 +23,7 @@ const BOX_PADDING: f64 = 1e-6;
 /// Least padding, and how much farther than asked the tree looks, metres: far more than f32 errs within some hundred metres.
 const TREE_SLACK: f64 = 1e-3;
 /// What ends a walk: no range is below zero.
-const END: f32 = -1.0;
+pub(crate) const END: f32 = -1.0;
 
 /// A piece of a straight line, local metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,7 +144,7 @@ impl RayIndex {
 
     /// Whether `blocks` is true for any row whose box `ray` may meet.
     pub fn any(&self, ray: &Ray, mut blocks: impl FnMut(usize) -> bool) -> bool {
-        let Some(entry) = self.enter(ray) else { return false };
+        let Some(entry) = self.enter(ray, [0.0; 3]) else { return false };
         let mut any = false;
         self.walk(entry.ray, |row| {
             any = blocks(row);
@@ -152,10 +153,18 @@ impl RayIndex {
         any
     }
 
+    /// Visits the rows whose boxes may be met by a ray that runs as `ray` does, between the same ranges, but starts up to `room` metres from its origin
+    /// along each axis, roughly from there on.
+    pub(crate) fn visit_beside(&self, ray: &Ray, room: [f64; 3], visit: impl Visit) {
+        if let Some(entry) = self.enter(ray, room) {
+            self.walk(entry.ray, visit);
+        }
+    }
+
     /// The row whose `range` is least within the ranges of `ray`, and that range; the lowest row where several are equal.
     /// `range` gives the range at which the ray meets the obstacle of a row first, if it does.
     pub fn nearest(&self, ray: &Ray, mut range: impl FnMut(usize) -> Option<f64>) -> Option<(usize, f64)> {
-        let entry = self.enter(ray)?;
+        let entry = self.enter(ray, [0.0; 3])?;
         let mut best: Option<(usize, f64)> = None;
         self.walk(entry.ray, |row| {
             let Some(range) = range(row) else { return f32::INFINITY };
@@ -171,7 +180,7 @@ impl RayIndex {
 
     /// Calls `visit` for every row whose box `ray` may meet, in no particular order.
     pub fn each(&self, ray: &Ray, mut visit: impl FnMut(usize)) {
-        if let Some(entry) = self.enter(ray) {
+        if let Some(entry) = self.enter(ray, [0.0; 3]) {
             self.walk(entry.ray, |row| {
                 visit(row);
                 f32::INFINITY
@@ -180,7 +189,7 @@ impl RayIndex {
     }
 
     #[inline]
-    fn walk(&self, ray: TreeRay, visit: impl FnMut(usize) -> f32) {
+    fn walk(&self, ray: TreeRay, visit: impl Visit) {
         match self.instructions {
             Instructions::Scalar => walk::<Scalar<false>>(&self.tree.nodes, ray, visit),
             #[cfg(target_arch = "x86_64")]
@@ -285,14 +294,15 @@ impl RayIndex {
         })
     }
 
-    /// The part of a ray inside the box of the scene, as the tree takes it, or `None` where it misses the box.
-    fn enter(&self, ray: &Ray) -> Option<Entry> {
+    /// The part of a ray inside the box of the scene, larger by `room`, as the tree takes it, or `None` where it misses the box.
+    fn enter(&self, ray: &Ray, room: [f64; 3]) -> Option<Entry> {
         let local: [f64; 3] = std::array::from_fn(|i| ray.origin[i] - self.center[i]);
         let [mut start, mut end] = ray.ranges;
         if self.tree.nodes.is_empty() {
             return None;
         }
-        for ((local, half_size), direction) in local.into_iter().zip(self.half_size).zip(ray.direction) {
+        for (axis, (local, direction)) in local.into_iter().zip(ray.direction).enumerate() {
+            let half_size = self.half_size[axis] + room[axis];
             let (a, b) = ((-half_size - local) / direction, (half_size - local) / direction);
             // a ray that runs in a face of the box gives 0 / 0 = NaN, which `min` and `max` pass over: not clipped there
             start = start.max(a.min(b));
@@ -302,7 +312,7 @@ impl RayIndex {
             return None;
         }
         let origin = to_f32(std::array::from_fn(|i| local[i] + start * ray.direction[i]));
-        let ray = TreeRay::new(origin, to_f32(ray.direction), tree_reach(end - start));
+        let ray = TreeRay::new(origin, to_f32(ray.direction), to_f32(room), tree_reach(end - start));
         Some(Entry { ray, start })
     }
 }
@@ -388,6 +398,35 @@ mod tests {
         assert!(proposals < 2 * rays.len() * boxes.len() / 50, "{proposals} proposals");
     }
 
+    #[test]
+    fn every_box_that_a_ray_beside_meets_is_visited_on_all_instructions() {
+        let boxes = boxes(3000);
+        let mut index = RayIndex::new(&boxes).unwrap();
+        let room = [1.5, 0.0, 0.4];
+        let mut visits = 0;
+        for instructions in [Instructions::Scalar, Instructions::detect()] {
+            index.instructions = instructions;
+            for (number, ray) in (0..).zip(rays(1000)) {
+                let mut visited = BTreeSet::new();
+                index.visit_beside(&ray, room, |row: usize| {
+                    assert!(visited.insert(index.order()[row] as usize), "a row comes twice");
+                    f32::INFINITY
+                });
+                visits += visited.len();
+                for place in 0..4 {
+                    let aside =
+                        |axis: usize| room[axis] * (2.0 * uniform(11, 12 * number + 3 * place + axis as u64) - 1.0);
+                    let beside = Ray { origin: std::array::from_fn(|axis| ray.origin[axis] + aside(axis)), ..ray };
+                    for (number, corners) in boxes.iter().enumerate() {
+                        let is_met = meets(&beside, *corners);
+                        assert!(!is_met || visited.contains(&number), "{instructions:?} {beside:?} {corners:?}");
+                    }
+                }
+            }
+        }
+        assert!(visits < 2 * 1000 * boxes.len() / 20, "{visits} visits");
+    }
+
     /// The rows that a walk visits in turn: all, the first three, and those of a ray that each row shortens.
     fn visited(walk: impl Fn(&mut dyn FnMut(usize) -> f32)) -> [Vec<usize>; 3] {
         let of_reach = |reach: &dyn Fn(usize) -> f32| {
@@ -413,8 +452,8 @@ mod tests {
             return;
         }
         let mut counts = [0; 3];
-        for ray in rays(2000) {
-            let Some(entry) = index.enter(&ray) else { continue };
+        for (ray, room) in rays(2000).into_iter().zip([[0.0; 3], [0.7, 0.0, 0.2]].into_iter().cycle()) {
+            let Some(entry) = index.enter(&ray, room) else { continue };
             let fused = |visit: &mut dyn FnMut(usize) -> f32| walk::<Scalar<true>>(&index.tree.nodes, entry.ray, visit);
             let rows = visited(fused);
             assert_eq!(visited(|visit| index.walk(entry.ray, visit)), rows);

@@ -18,6 +18,8 @@ pub(super) struct TreeRay {
     origin: [f32; 3],
     /// One by each component of the direction.
     inverse: [f32; 3],
+    /// How much larger boxes are taken for along each axis, metres: how far rays that run beside this one lie from it.
+    room: [f32; 3],
     /// How far the ray runs, metres.
     pub(super) reach: f32,
     /// The bits of a child's number that are turned over, so that the children with the highest numbers come first along the ray.
@@ -25,21 +27,23 @@ pub(super) struct TreeRay {
 }
 
 impl TreeRay {
-    pub(super) fn new(origin: [f32; 3], direction: [f32; 3], reach: f32) -> Self {
+    pub(super) fn new(origin: [f32; 3], direction: [f32; 3], room: [f32; 3], reach: f32) -> Self {
         let inverse =
             direction.map(|component| if component.abs() < 1.0 / STEEPEST { STEEPEST } else { component.recip() });
         // the builder gives the last child of a node to what lies lowest along all axes, the first to what lies highest
         let turned = inverse.iter().fold(0, |bits, inverse| bits << 1 | usize::from(*inverse > 0.0));
-        Self { origin, inverse, reach, turned }
+        Self { origin, inverse, room, reach, turned }
     }
 
-    /// Ranges at which the ray meets the sides of the children of a node along an axis are multiples of the first number, counted from the second.
+    /// Ranges at which the ray meets the sides of the children of a node along an axis are multiples of the first number, counted from the second for low
+    /// sides and from the third for high ones.
     #[inline(always)]
-    pub(super) fn scale(&self, node: &CwBvhNode) -> [[f32; 2]; 3] {
+    pub(super) fn scale(&self, node: &CwBvhNode) -> [[f32; 3]; 3] {
         let (corner, steps) = (node.p.to_array(), node.compute_extent().to_array());
         std::array::from_fn(|axis| {
-            let inverse = self.inverse[axis];
-            [steps[axis] * inverse, (corner[axis] - self.origin[axis]) * inverse]
+            let (inverse, room) = (self.inverse[axis], self.room[axis]);
+            let from = corner[axis] - self.origin[axis];
+            [steps[axis] * inverse, (from - room) * inverse, (from + room) * inverse]
         })
     }
 }
@@ -66,10 +70,13 @@ impl<const FUSED: bool> Test for Scalar<FUSED> {
             (&node.child_min_z, &node.child_max_z),
         ];
         let (mut from, mut to) = ([0.0_f32; LANES], [ray.reach; LANES]);
-        for ((low, high), [scale, start]) in sides.into_iter().zip(ray.scale(node)) {
+        for ((low, high), [scale, start_low, start_high]) in sides.into_iter().zip(ray.scale(node)) {
             for lane in 0..LANES {
-                let range = |side: f32| if FUSED { side.mul_add(scale, start) } else { side * scale + start };
-                let [a, b] = [low[lane], high[lane]].map(|side| range(f32::from(side)));
+                let range = |side: u8, start: f32| {
+                    let side = f32::from(side);
+                    if FUSED { side.mul_add(scale, start) } else { side * scale + start }
+                };
+                let (a, b) = (range(low[lane], start_low), range(high[lane], start_high));
                 from[lane] = from[lane].max(a.min(b));
                 to[lane] = to[lane].min(a.max(b));
             }
@@ -101,10 +108,22 @@ const fn turned() -> [[Children; 256]; LANES] {
     table
 }
 
-/// Calls `visit` for each row whose box the ray meets, roughly from its origin on, until that returns a range below zero. What it returns
-/// shortens the ray.
+/// What is done with the rows that a walk comes to.
+pub(crate) trait Visit {
+    /// Looks at a row, and returns how far the ray still runs, metres; below zero ends the walk.
+    fn visit(&mut self, row: usize) -> f32;
+}
+
+impl<F: FnMut(usize) -> f32> Visit for F {
+    #[inline(always)]
+    fn visit(&mut self, row: usize) -> f32 {
+        self(row)
+    }
+}
+
+/// Visits each row whose box the ray meets, roughly from its origin on.
 #[inline(always)]
-pub(super) fn walk<T: Test>(nodes: &[CwBvhNode], mut ray: TreeRay, mut visit: impl FnMut(usize) -> f32) {
+pub(super) fn walk<T: Test>(nodes: &[CwBvhNode], mut ray: TreeRay, mut rows: impl Visit) {
     let turned = &TURNED[ray.turned % LANES];
     let take_first = |places: &mut Children| -> usize {
         let place = places.ilog2();
@@ -117,11 +136,11 @@ pub(super) fn walk<T: Test>(nodes: &[CwBvhNode], mut ray: TreeRay, mut visit: im
     loop {
         let Some(node) = nodes.get(number as usize) else { return };
         let children = T::met(node, &ray);
-        let mut rows = turned[usize::from(children & !node.imask)];
-        while rows != 0 {
-            let (first, count) = node.child_primitives(take_first(&mut rows));
+        let mut leaves = turned[usize::from(children & !node.imask)];
+        while leaves != 0 {
+            let (first, count) = node.child_primitives(take_first(&mut leaves));
             for row in first..first + count {
-                let reach = visit(row as usize);
+                let reach = rows.visit(row as usize);
                 if reach < 0.0 {
                     return;
                 }

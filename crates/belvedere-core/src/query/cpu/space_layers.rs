@@ -27,11 +27,39 @@ pub(super) struct SpaceLayers {
     /// Words of a row.
     pub(super) width: usize,
     /// Bit i, j: whether any ball reaches one of the cells i, i + 1, j, j + 1.
-    pub(super) reached: Vec<u64>,
+    pub(super) reached: Cells,
     /// Bit i, j: whether each of the cells i, i + 1, j, j + 1 is filled by one ball, however it gives way.
-    pub(super) filled: Vec<u64>,
-    /// For each layer the first row that anything reaches, and the row after the last.
-    taken: Vec<[usize; 2]>,
+    pub(super) filled: Cells,
+}
+
+/// Bits of cells, row after row of all layers. Most rows above the ground are empty but for a few buildings.
+#[derive(Default)]
+pub(super) struct Cells {
+    bits: Vec<u64>,
+    /// Words of a row.
+    width: usize,
+    /// For each row its first word with a bit that is set, and the word after the last.
+    taken: Vec<[u32; 2]>,
+}
+
+impl Cells {
+    fn new(bits: Vec<u64>, width: usize) -> Self {
+        #[expect(clippy::cast_possible_truncation, reason = "there are at most 2^30 cells")]
+        let of_row = |row: &[u64]| {
+            let first = row.iter().position(|word| *word != 0).unwrap_or(0);
+            [first, row.iter().rposition(|word| *word != 0).map_or(first, |last| last + 1)].map(|word| word as u32)
+        };
+        let taken = bits.par_chunks(width).with_min_len(CHUNK).map(of_row).collect();
+        Self { bits, width, taken }
+    }
+
+    /// The words of a row from the first to the last with a bit that is set, and the number of the first.
+    #[inline]
+    pub(super) fn row(&self, row: usize) -> (usize, &[u64]) {
+        let [first, end] = self.taken.get(row).map_or([0; 2], |taken| taken.map(|word| word as usize));
+        let start = row * self.width;
+        (first, self.bits.get(start + first..start + end).unwrap_or_default())
+    }
 }
 
 impl SpaceLayers {
@@ -64,7 +92,7 @@ impl SpaceLayers {
         let bits = || -> Vec<AtomicU64> { (0..width * size[1] * size[2]).map(|_| AtomicU64::new(0)).collect() };
         let (reached, filled) = (bits(), bits());
         let low = [low[0] - cell, low[1] - cell, low[2]];
-        let mut layers = Self { low, cell, size, width, reached: Vec::new(), filled: Vec::new(), taken: Vec::new() };
+        let mut layers = Self { low, cell, size, width, reached: Cells::default(), filled: Cells::default() };
         // bits are only ever set, so that their order does not matter
         balls.par_iter().with_min_len(CHUNK).try_for_each(|&Ball { center, radius }| {
             let radius = f64::from(radius);
@@ -73,15 +101,14 @@ impl SpaceLayers {
             control.check()
         })?;
         let plain = |bits: Vec<AtomicU64>| -> Vec<u64> { bits.into_iter().map(AtomicU64::into_inner).collect() };
-        layers.reached = layers.joined(&plain(reached), |a, b| a | b);
-        layers.filled = layers.joined(&plain(filled), |a, b| a & b);
-        layers.taken = layers.taken();
+        layers.reached = Cells::new(layers.joined(&plain(reached), |a, b| a | b), width);
+        layers.filled = Cells::new(layers.joined(&plain(filled), |a, b| a & b), width);
         Ok(layers)
     }
 
     /// Words that a direction is swept through.
     pub(super) fn word_count(&self) -> usize {
-        self.reached.len()
+        self.reached.bits.len()
     }
 
     /// Marks the cells that a ball with the first of two radii reaches, and those that one with the second fills.
@@ -141,29 +168,6 @@ impl SpaceLayers {
             }
         });
         out
-    }
-
-    /// For each layer the first row that anything reaches, and the row after the last.
-    fn taken(&self) -> Vec<[usize; 2]> {
-        let is_taken = |row: &[u64]| row.iter().any(|word| *word != 0);
-        let of_layer = |layer: &[u64]| {
-            let rows = || layer.chunks_exact(self.width);
-            let first = rows().position(is_taken).unwrap_or(0);
-            [first, rows().rposition(is_taken).map_or(first, |last| last + 1)]
-        };
-        self.reached.par_chunks(self.width * self.size[1]).map(of_layer).collect()
-    }
-
-    /// The rows of a layer that anything reaches.
-    pub(super) fn rows(&self, layer: usize) -> std::ops::Range<usize> {
-        self.taken.get(layer).map_or(0..0, |[first, end]| *first..*end)
-    }
-
-    /// A row of `bits`.
-    #[inline]
-    pub(super) fn row<'a>(&self, bits: &'a [u64], layer: usize, row: usize) -> &'a [u64] {
-        let start = (layer * self.size[1] + row) * self.width;
-        bits.get(start..start + self.width).unwrap_or_default()
     }
 }
 

@@ -1,6 +1,6 @@
 //! One direction swept through the layers of space from the top down: 64 lines of sight at a time.
 
-use super::space_layers::SpaceLayers;
+use super::space_layers::{Cells, SpaceLayers};
 use super::whole_cells::{Heading, Place};
 use crate::query::backend::WORD;
 use belvedere_data::Result;
@@ -48,17 +48,17 @@ impl Lines {
         Self { first, size, width, bits: vec![0; width * size[1]] }
     }
 
-    /// Adds the bits of a layer that lies `by` cells to the east and north of the lines.
-    fn add(&mut self, space: &SpaceLayers, bits: &[u64], layer: usize, by: [i64; 2]) {
+    /// Adds the cells of a layer that lies `by` cells to the east and north of the lines.
+    fn add(&mut self, space: &SpaceLayers, cells: &Cells, layer: usize, by: [i64; 2]) {
         // cell i of the layer belongs to the lines i − by
         let [Ok(x), Ok(y)] = [0, 1].map(|axis| usize::try_from(-by[axis] - self.first[axis])) else { return };
         let (word, shift) = (x / WORD, x % WORD);
-        for row in space.rows(layer) {
-            let start = (y + row) * self.width + word;
-            let cells = space.row(bits, layer, row);
+        for row in 0..space.size[1] {
+            let (from, cells) = cells.row(layer * space.size[1] + row);
+            let (Some(&first), Some(&last)) = (cells.first(), cells.last()) else { continue };
+            let start = (y + row) * self.width + word + from;
             let Some(out) = self.bits.get_mut(start..=start + cells.len()) else { return };
             let (head, tail) = out.split_at_mut(1);
-            let (Some(&first), Some(&last)) = (cells.first(), cells.last()) else { return };
             if shift == 0 {
                 head[0] |= first;
                 tail.iter_mut().zip(&cells[1..]).for_each(|(out, cells)| *out |= cells);

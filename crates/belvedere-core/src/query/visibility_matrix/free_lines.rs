@@ -20,7 +20,7 @@ const BATCH: usize = 512;
 const MOST_TARGETS: usize = BLOCK << 10;
 
 /// Share of the lines of sight of targets that run near balls below which each is asked by itself: settling a line takes about a tenth of
-/// the time of asking one (6 and 53 ns on two cores, a strip of balls beside a tile of a village).
+/// the time of asking one (6 and 53 ns on two cores before lines walked in packets, a strip of balls beside a tile of a village).
 const WORTH_SETTLING: f64 = 0.1;
 
 /// By how much the box around balls is taken for larger, metres: far more than is rounded.

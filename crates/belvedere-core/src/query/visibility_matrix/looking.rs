@@ -2,7 +2,7 @@
 
 use super::super::backend::{BLOCK, Bits, Settled, WORD, WORDS};
 use super::super::ball_tree::BallTree;
-use crate::ray_index::Ray;
+use super::packet::{Blockers, LANES, Packet};
 
 /// A direction and its column in the matrix.
 pub(super) struct Heading {
@@ -106,45 +106,60 @@ impl<'a> Sky<'a> {
         // what blocked each target last
         let mut before: Vec<Option<u32>> = vec![None; targets.len()];
         for ((heading, open), &open_from) in self.headings.iter().zip(open).zip(&self.settled.open_from) {
-            // what blocked the targets before in this direction
-            let mut last = [None; 2];
-            for (word, open) in open.iter_mut().enumerate() {
-                for bit in bits(*open) {
-                    let i = word * WORD + bit;
-                    let target = targets[i].map(f64::from);
-                    let ray = self.tree.ray(target, heading.direction, f64::INFINITY);
-                    let is_by = |&ball: &u32| self.tree.front(ball as usize, &ray).is_some();
-                    let [last_one, one_before] = last;
-                    let found = last_one
-                        .filter(is_by)
-                        .or_else(|| one_before.filter(is_by))
-                        .or_else(|| before[i].filter(is_by))
-                        .or_else(|| self.block_from(open_from, &ray));
-                    if found.is_some() {
-                        *open &= !(1 << bit);
-                        before[i] = found;
-                        if found != last_one {
-                            last = [found, last_one];
-                        }
-                    }
+            let asked = *open;
+            let mut of_direction = OfDirection { open, before: &mut before, last: [None; 2] };
+            let mut packet = Packet::new(self.tree, heading.direction, open_from);
+            let mut taken = Vec::with_capacity(LANES);
+            let targets_asked =
+                (0..).zip(asked).flat_map(|(word, asked)| bits(asked).map(move |bit| word * WORD + bit));
+            for target in targets_asked {
+                let ray = self.tree.ray(targets[target].map(f64::from), heading.direction, f64::INFINITY);
+                let blocks = |&ball: &u32| self.tree.front(ball as usize, &ray).is_some();
+                if let Some(ball) = of_direction.likely(target).into_iter().flatten().find(blocks) {
+                    of_direction.block(target, ball);
+                    continue;
                 }
+                if !packet.take(targets[target]) {
+                    of_direction.block_all(taken.drain(..), packet.find());
+                    packet.take(targets[target]);
+                }
+                taken.push(target);
             }
+            of_direction.block_all(taken.drain(..), packet.find());
+        }
+    }
+}
+
+/// What is found in a direction.
+struct OfDirection<'a> {
+    /// A bit for each target that nothing blocks yet.
+    open: &'a mut Bits,
+    /// What blocked each target last.
+    before: &'a mut [Option<u32>],
+    /// What blocked the targets before.
+    last: [Option<u32>; 2],
+}
+
+impl OfDirection<'_> {
+    /// Balls that may block a target, as they block its neighbours, or it in other directions.
+    #[inline]
+    fn likely(&self, target: usize) -> [Option<u32>; 3] {
+        [self.last[0], self.last[1], self.before[target]]
+    }
+
+    #[inline]
+    fn block(&mut self, target: usize, ball: u32) {
+        self.open[target / WORD] &= !(1 << (target % WORD));
+        self.before[target] = Some(ball);
+        if self.last[0] != Some(ball) {
+            self.last = [Some(ball), self.last[0]];
         }
     }
 
-    /// A ball that blocks `ray`, where none does before the range `start`.
-    fn block_from(&self, start: f64, ray: &Ray) -> Option<u32> {
-        let mut block = None;
-        let far = Ray { ranges: [start.max(ray.ranges[0]), ray.ranges[1]], ..*ray };
-        self.tree.index().any(&far, |number| {
-            let blocks = self.tree.front(number, ray).is_some();
-            #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
-            if blocks {
-                block = Some(number as u32);
-            }
-            blocks
-        });
-        block
+    fn block_all(&mut self, targets: impl Iterator<Item = usize>, blockers: Blockers) {
+        for (target, blocker) in targets.zip(blockers) {
+            blocker.into_iter().for_each(|ball| self.block(target, ball));
+        }
     }
 }
 

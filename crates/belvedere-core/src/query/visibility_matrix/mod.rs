@@ -3,6 +3,7 @@
 mod behind_added;
 mod free_lines;
 mod looking;
+mod packet;
 
 pub use free_lines::FreeLines;
 
