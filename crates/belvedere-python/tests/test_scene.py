@@ -225,7 +225,7 @@ def test_laspy_objects_and_paths_become_scenes(tile, scene):
 
 
 def test_a_device_changes_no_result(scene, eye, targets):
-    """Wheels have no graphics processors: the CPU is named, all others are refused in words."""
+    """What is not there is refused in words."""
     other = scene.with_device("cpu")
     assert other.device is None
     assert other.device_notes == []
@@ -238,5 +238,5 @@ def test_a_device_changes_no_result(scene, eye, targets):
         sky, same = scene.sky_view(targets=targets), on_device.sky_view(targets=targets)
         assert all(np.array_equal(same[name], sky[name], equal_nan=True) for name in sky)
     else:
-        with pytest.raises(belvedere.BelvedereError, match="without the cargo feature `gpu`"):
+        with pytest.raises(belvedere.BelvedereError, match="without the cargo feature `gpu`|there is no device 0"):
             scene.with_device(0)

@@ -12,6 +12,8 @@ mod compare;
 mod conventions;
 mod depth_maps;
 mod determinism;
+#[cfg(feature = "gpu")]
+mod devices;
 mod envelopes;
 mod far_terrain;
 mod given_rows;

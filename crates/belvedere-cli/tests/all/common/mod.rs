@@ -38,6 +38,8 @@ impl Workplace {
     pub(crate) fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_belvedere"));
         command.current_dir(self.0.path()).args(arguments.split_ascii_whitespace()).stdin(Stdio::null());
+        // drivers of graphics processors complain on computers that set none
+        command.env("XDG_RUNTIME_DIR", self.0.path());
         command
     }
 
