@@ -61,10 +61,21 @@ struct Tile {
     all: u64,
 }
 
-/// The bits from one up to another, which is left out; both at most 64.
+/// The bits from one up to another, which is left out and at most 64.
 #[inline]
-fn bits(from: usize, to: usize) -> u64 {
+fn bits(from: u32, to: u32) -> u64 {
     if from < to { u64::MAX >> (64 - (to - from)) << from } else { 0 }
+}
+
+/// The lower of two numbers, and the higher: one instruction each, since neither is NaN here.
+#[inline]
+fn lower(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline]
+fn higher(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 impl Tile {
@@ -157,9 +168,10 @@ impl SeenSpace {
         let lean = [0, 1].map(|axis| (end[axis] - start[axis]) / (top - bottom));
         let place = [0, 1].map(|axis| start[axis] - self.low[axis] - (first[axis] as f64 + 0.5) * self.side);
         // the layers that it passes through between two heights above its lower end; that it begins in is not one of them
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; saturates")]
-        let layers_between =
-            |from: f64, to: f64| bits((bottom + from) as usize + 1, ((bottom + to) as usize).min(self.layers));
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 64, and `as` saturates")]
+        let layers_between = |from: f64, to: f64| {
+            bits(((bottom + from) as u32).saturating_add(1), ((bottom + to) as u32).min(self.layers as u32))
+        };
         // a needle that ends at the top of all counts for the highest layer
         let rise = top - bottom + ROUNDING / self.height;
         self.mark_lowest([bottom, bottom + rise], place, lean, boxes);
@@ -168,7 +180,7 @@ impl SeenSpace {
         for axis in 0..2 {
             if lean[axis] != 0.0 {
                 let [a, b] = over.map(|over| (over[axis] - start[axis]) / lean[axis]);
-                inside = [inside[0].max(a.min(b)), inside[1].min(a.max(b))];
+                inside = [higher(inside[0], lower(a, b)), lower(inside[1], higher(a, b))];
             }
         }
         if !(inside[0] < inside[1]) {
@@ -181,7 +193,7 @@ impl SeenSpace {
             let mut beside = inside;
             if lean[1] != 0.0 {
                 let [a, b] = [-self.reach, self.reach].map(|edge| (edge - y) / lean[1]);
-                beside = [beside[0].max(a.min(b)), beside[1].min(a.max(b))];
+                beside = [higher(beside[0], lower(a, b)), lower(beside[1], higher(a, b))];
             }
             if !(beside[0] < beside[1]) {
                 continue;
@@ -202,7 +214,7 @@ impl SeenSpace {
                 } else if discriminant > 0.0 {
                     let root = discriminant.sqrt();
                     let [from, to] = [-half - root, root - half].map(|r| r / square);
-                    *word |= layers_between(from.max(beside[0]), to.min(beside[1]).max(0.0));
+                    *word |= layers_between(higher(from, beside[0]), higher(lower(to, beside[1]), 0.0));
                 }
             }
         }
@@ -235,8 +247,9 @@ impl SeenSpace {
     #[inline]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the tile")]
     fn boxes_between(&self, a: f64, b: f64, reach: f64) -> Range<usize> {
-        let [low, high] = [a.min(b) - reach, a.max(b) + reach].map(|place| place * self.per_side);
-        low.clamp(0.0, TILE as f64) as usize..(high + 1.0).clamp(0.0, TILE as f64) as usize
+        let [low, high] = [lower(a, b) - reach, higher(a, b) + reach].map(|place| place * self.per_side);
+        let within = |place: f64| lower(higher(place, 0.0), TILE as f64) as u32 as usize;
+        within(low)..within(high + 1.0)
     }
 
     /// Marks those other boxes of a tile whose middle any needle passes so closely that all of the box is near to it.
@@ -319,6 +332,25 @@ mod tests {
         // from an aircraft, leaning to all sides, and from the ground, where fewer boxes that are near are found to be
         assert_boxes([[-130.0, -80.0, 300.0], [170.0, 120.0, 300.0]], 0.75);
         assert_boxes([[12.0, 18.0, 1.6], [12.5, 18.0, 1.6]], 0.5);
+    }
+
+    #[test]
+    fn a_needle_that_hardly_leans_marks_what_an_upright_one_does() {
+        let returns = [[-3.0, -3.0, 0.0], [3.0, 3.0, 9.0]];
+        let scanner = [[0.0, 0.0, 300.0]; 2];
+        let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
+        let space = SeenSpace::new(&needles, [[-3.0; 2], [3.0; 2]], 1.1);
+        let marked = |lean: f64| {
+            let mut boxes = [0; TILE * TILE];
+            space.mark([[0.0, 0.0, 0.5], [lean, -lean, 300.0]], [[-9.0; 2], [9.0; 2]], [0, 0], &mut boxes);
+            boxes
+        };
+        let upright = marked(0.0);
+        assert!(upright.contains(&0) && upright.iter().any(|word| *word != 0));
+        // squares of the smallest are zero, and places where the others come into reach are beyond all whole numbers
+        for lean in [1e-300, 1e-100, 1e-30, 1e-20, 1e-12] {
+            assert_eq!([lean, -lean].map(marked), [upright; 2], "{lean}");
+        }
     }
 
     /// Asks for boxes near needles only, and for a share of all of them, under scanners between two places.
