@@ -238,5 +238,5 @@ def test_a_device_changes_no_result(scene, eye, targets):
         sky, same = scene.sky_view(targets=targets), on_device.sky_view(targets=targets)
         assert all(np.array_equal(same[name], sky[name], equal_nan=True) for name in sky)
     else:
-        with pytest.raises(belvedere.BelvedereError, match="without the cargo feature `gpu`|there is no device 0"):
+        with pytest.raises(belvedere.BelvedereError, match=r"without the cargo feature `gpu`|there is no device 0"):
             scene.with_device(0)
