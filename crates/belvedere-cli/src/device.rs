@@ -1,8 +1,6 @@
 //! `--device`: the graphics processor that was chosen, for all scenes of this run.
 
-#[cfg(feature = "gpu")]
-use crate::arguments::DeviceChoice;
-use crate::arguments::Global;
+use crate::arguments::{DeviceChoice, Global};
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::model::SceneModel;
@@ -32,21 +30,22 @@ pub(crate) fn choose(global: &Global) -> Result<()> {
 /// Refuses what this program was built without.
 #[cfg(not(feature = "gpu"))]
 pub(crate) fn choose(global: &Global) -> Result<()> {
-    use crate::arguments::{DeviceChoice, Usage};
-    match global.device {
-        DeviceChoice::Automatic | DeviceChoice::Cpu => Ok(()),
-        DeviceChoice::Gpu | DeviceChoice::Number(_) => {
-            let device = match global.device {
-                DeviceChoice::Number(number) => number.to_string(),
-                _ => "gpu".to_owned(),
-            };
-            Err(Usage(format!(
-                "--device {device}: this program was built without the cargo feature `gpu`; leave --device out (the CPU gives the same \
-                 results), or install the program with `cargo install belvedere-cli --features gpu`"
-            ))
-            .into())
-        }
-    }
+    refuse_without_feature(global.device)
+}
+
+/// Refuses all devices but the CPU.
+#[cfg(any(test, not(feature = "gpu")))]
+fn refuse_without_feature(device: DeviceChoice) -> Result<()> {
+    let device = match device {
+        DeviceChoice::Automatic | DeviceChoice::Cpu => return Ok(()),
+        DeviceChoice::Gpu => "gpu".to_owned(),
+        DeviceChoice::Number(number) => number.to_string(),
+    };
+    Err(crate::arguments::Usage(format!(
+        "--device {device}: this program was built without the cargo feature `gpu`; leave --device out (the CPU gives the same results), or \
+         install the program with `cargo install belvedere-cli --features gpu`"
+    ))
+    .into())
 }
 
 /// The same model, whose scenes use the device.
@@ -92,4 +91,22 @@ pub(crate) fn list(summary: &mut Summary) {
     }
     #[cfg(not(feature = "gpu"))]
     let _ = summary;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_without_the_feature_refuses_devices_and_names_flag_and_feature() {
+        for device in [DeviceChoice::Automatic, DeviceChoice::Cpu] {
+            assert!(refuse_without_feature(device).is_ok());
+        }
+        for (device, flag) in [(DeviceChoice::Gpu, "--device gpu"), (DeviceChoice::Number(7), "--device 7")] {
+            let error = refuse_without_feature(device).unwrap_err();
+            assert!(error.is::<crate::arguments::Usage>());
+            let text = error.to_string();
+            assert!(text.contains(flag) && text.contains("--features gpu"), "{text}");
+        }
+    }
 }
