@@ -9,7 +9,8 @@ use belvedere_data::vector::{cross, dot, length, sub, unit};
 
 /// Most lines of a packet.
 pub(super) const LANES: usize = 8;
-/// Farthest that the targets of a packet lie apart along an axis, metres.
+/// Farthest that the targets of a packet lie apart along an axis, metres. The sky of the points of a town (10 per m², 256 directions) took 20.3 s with 0.5, 16.1 with 1, 15.4
+/// with 2 and 16.3 with 4, in one session.
 const SPREAD: f32 = 2.0;
 /// By how much radii are taken for larger until lines are tested exactly: far more than f32 errs. Metres, a share of the size of the scene, a share of the radius.
 const MARGIN: f64 = 1e-3;
