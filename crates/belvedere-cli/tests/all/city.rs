@@ -137,7 +137,8 @@ fn a_damaged_file_is_named_and_the_exit_status_says_so() {
 fn pieces_of_files_save_reading_and_change_no_result() {
     let place = Workplace::new();
     assert_eq!(place.run("simulate village -o town --extent 300 --density 3").status, 0);
-    let plan = "city plan town/cloud.laz --sun 150,20 --tile-size 64 --cell 2";
+    // a high sun, so that a sixth of the tiles needs few others
+    let plan = "city plan town/cloud.laz --sun 150,80 --tile-size 64 --cell 2";
     place.summary(&format!("{plan} -o pieces"));
     place.summary(&format!("{plan} -o whole"));
     let mut whole: serde_json::Value = serde_json::from_str(&place.text("whole/plan.json")).unwrap();
@@ -147,10 +148,10 @@ fn pieces_of_files_save_reading_and_change_no_result() {
     assert!(points > 200_000, "{points}");
     place.write("whole/plan.json", &whole.to_string());
     for run in ["pieces", "whole"] {
-        place.summary(&format!("city run {run}"));
+        place.summary(&format!("city run {run} --shard 1/6"));
     }
     let [found, expected] = ["pieces", "whole"].map(|run| results(&place.path(run)));
-    assert!(found.len() > 20);
+    assert!(found.len() > 15, "{}", found.len());
     assert!(found == expected, "the results differ");
     // pieces of another file are no plan
     whole["inputs"][0]["pieces"] = serde_json::json!([[0, 0, 1, 1]]);
@@ -187,7 +188,7 @@ fn wrong_plans_are_refused_with_advice() {
     place.refusal(2, &format!("{plan} --observer 10,10"), &["--observer", "10, 10", "height"]);
     place.refusal(1, "city run nowhere", &["plan.json", "belvedere city plan"]);
     // scans from the ground are no survey of tiles, and it is said what else to do
-    assert_eq!(place.run("simulate village -o scans --extent 60 --scanner terrestrial").status, 0);
+    assert_eq!(place.run("simulate village -o scans --extent 60 --scanner terrestrial --angle-step-deg 1").status, 0);
     let words = ["scans/cloud.laz", "from the ground", "`shadow`"];
     place.refusal(1, "city plan scans/cloud.laz -o other --sky-view", &words);
     // before the survey is read: no stage is reported

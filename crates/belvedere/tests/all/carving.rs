@@ -77,10 +77,10 @@ fn brute_force(tangent: &Tangent, returns: &[[f32; 3]], scanner: &[[f32; 3]], pa
             let square: f64 = q.iter().map(|v| v * v).sum();
             if height > 0.0 { square / (2.0 * height) } else { f64::INFINITY }
         };
-        // 1 cm apart, then closing in about the best: the function has one valley
+        // 5 cm apart, then closing in about the best: the function has one valley
         let steps = ((to - from) / 0.05).ceil().max(1.0) as u32;
         let place = |k: u32| from + (to - from) * f64::from(k) / f64::from(steps);
-        let best = (0..=steps).min_by(|&a, &b| radius(place(a)).total_cmp(&radius(place(b)))).unwrap();
+        let (_, best) = (0..=steps).map(|k| (radius(place(k)), k)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
         let (mut low, mut high) = (place(best.saturating_sub(1)), place((best + 1).min(steps)));
         for _ in 0..80 {
             let third = (high - low) / 3.0;
@@ -102,7 +102,7 @@ fn the_ball_that_no_pulse_enters_is_that_of_all_pulses_tried_in_turn() {
         let (needles, report) = Needles::new(&returns, &scanner, &params, &Control::none()).unwrap();
         assert_eq!((report.used, report.without_scanner), (3000, 0));
         let mut cut_count = 0;
-        for i in 0..120 {
+        for i in 0..60 {
             let tangent = pencil(i);
             let expected = brute_force(&tangent, &returns, &scanner, &params);
             let found = needles.smallest_tangent_ball(&tangent, 12.0);
@@ -115,7 +115,7 @@ fn the_ball_that_no_pulse_enters_is_that_of_all_pulses_tried_in_turn() {
                 assert!(expected > 11.98, "pencil {i}: a pulse enters down to {expected}");
             }
         }
-        assert!((40..=120).contains(&cut_count), "{cut_count}");
+        assert!((20..=60).contains(&cut_count), "{cut_count}");
     }
 }
 

@@ -50,18 +50,20 @@ fn segments(returns: &[[f32; 3]], scanner: &[[f32; 3]]) -> Vec<[[f64; 3]; 2]> {
     returns.iter().zip(scanner).map(piece).collect()
 }
 
+/// Square of the distance of a point to a piece of a line.
+fn square(point: [f64; 3], [a, b]: &[[f64; 3]; 2]) -> f64 {
+    let (mut along, mut length) = (0.0, 0.0);
+    for k in 0..3 {
+        along += (point[k] - a[k]) * (b[k] - a[k]);
+        length += (b[k] - a[k]).powi(2);
+    }
+    let share = (along / length).clamp(0.0, 1.0);
+    (0..3).map(|k| (a[k] + share * (b[k] - a[k]) - point[k]).powi(2)).sum()
+}
+
 /// Distance of a point to the nearest of many pieces of lines.
 fn distance(point: [f64; 3], segments: &[[[f64; 3]; 2]]) -> f64 {
-    let square = |[a, b]: &[[f64; 3]; 2]| {
-        let (mut along, mut length) = (0.0, 0.0);
-        for k in 0..3 {
-            along += (point[k] - a[k]) * (b[k] - a[k]);
-            length += (b[k] - a[k]).powi(2);
-        }
-        let share = (along / length).clamp(0.0, 1.0);
-        (0..3).map(|k| (a[k] + share * (b[k] - a[k]) - point[k]).powi(2)).sum::<f64>()
-    };
-    segments.iter().map(square).fold(f64::INFINITY, f64::min).sqrt()
+    segments.iter().map(|segment| square(point, segment)).fold(f64::INFINITY, f64::min).sqrt()
 }
 
 fn random_point(seed: u64, i: u64) -> [f64; 3] {
@@ -134,7 +136,8 @@ fn unproven_lengths_are_those_of_dense_samples() {
                 let at = (k as f64 + 0.5) * SPACING;
                 let p: [f64; 3] = std::array::from_fn(|axis| from[axis] + at * direction[axis]);
                 let beside = !(0..2).all(|axis| rim[axis].contains(&p[axis]));
-                let is_unseen = p[2] <= top && (beside || distance(p, &segments) >= nearness);
+                let is_near = || segments.iter().any(|segment| square(p, segment) < nearness * nearness);
+                let is_unseen = p[2] <= top && (beside || !is_near());
                 unseen += usize::from(is_unseen);
                 changes += usize::from(is_unseen != before);
                 before = is_unseen;
