@@ -232,7 +232,7 @@ mod tests {
                 })
             };
             // as many lines tried in turn for many targets as for few
-            let tried = (0..2000).step_by(1 + count as usize / 2000);
+            let tried = (0..2000).step_by(1 + targets.len() / 2000);
             let blocking: Vec<usize> = tried.filter(|&row| blocks(row)).collect();
             assert!(!blocking.is_empty());
             assert!(blocking.iter().all(|row| rows.binary_search(row).is_ok()), "{count} targets");
