@@ -1,6 +1,6 @@
 //! The pictures of docs/methods/carving.md: a section through a street, and its shade, with balls made in three ways.
 
-use crate::place::Place;
+use crate::place::{Missing, Place};
 use belvedere::Bounds;
 use belvedere::figures::{Picture, side_by_side, write_png};
 use belvedere::medial::{MedialBalls, ShrinkParams};
@@ -32,7 +32,7 @@ const CHEST: f32 = 1.5;
 /// Draws them into `folder`.
 pub(crate) fn draw(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|source| Error::Io { path: folder.to_owned(), source })?;
-    let place = Place::simulated(Preset::OldTown, 7, None, false)?;
+    let place = Place::simulated(Preset::OldTown, 7, None, Missing::default())?;
     let uncarved = MedialParams {
         making: BallParams::Shrunk(ShrinkParams { max_radius: f32::INFINITY, ..ShrinkParams::tau() }),
         ..MedialParams::cut_to_half_a_metre()

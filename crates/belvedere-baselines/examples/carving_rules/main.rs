@@ -2,11 +2,11 @@
 //!
 //! ```sh
 //! cargo run --release -p belvedere-baselines --example carving_rules -- village,town,old-town,towers 1,2,3 [VARIANT,…] \
-//!     [SCANNER] [unclassified] [blame]
+//!     [SCANNER] [unclassified] [water] [blame]
 //! ```
 //!
 //! prints the table of docs/methods/carving.md. With a scanner of `belvedere compare --regimes`, such as `leaves` or `bare`, the town and its survey are those
-//! of the comparison, and `unclassified` takes away the classes of vegetation. With `blame` it says which surfaces hide what is called visible, and at which
+//! of the comparison, and `unclassified` takes away the classes of vegetation. With `water` pulses do not return from the ground in strips of 12 m. With `blame` it says which surfaces hide what is called visible, and at which
 //! surfaces the balls sit that hide what is visible. `-- figures FOLDER` draws its pictures.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
@@ -20,7 +20,7 @@ use belvedere::{Error, Result};
 use belvedere_baselines::agreement::{Counts, Rate};
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
 use belvedere_scenes::{Preset, Regime};
-use place::{Place, Question};
+use place::{Missing, Place, Question};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
@@ -57,11 +57,13 @@ fn main() -> Result<()> {
     {
         return figures::draw(Path::new(folder));
     }
-    let blames = arguments.iter().any(|argument| argument == "blame");
-    let unclassified = arguments.iter().any(|argument| argument == "unclassified");
+    let has = |switch: &str| arguments.iter().any(|argument| argument == switch);
+    let blames = has("blame");
+    let missing = Missing { vegetation: has("unclassified"), water: has("water") };
     let named = |argument: &String| Regime::ALL.into_iter().find(|regime| regime.name() == argument);
     let regime = arguments.iter().find_map(named);
-    let is_switch = |argument: &String| argument == "blame" || argument == "unclassified" || named(argument).is_some();
+    let switches = ["blame", "unclassified", "water"];
+    let is_switch = |argument: &String| switches.contains(&argument.as_str()) || named(argument).is_some();
     let lists: Vec<&String> = arguments.iter().filter(|argument| !is_switch(argument)).collect();
     let list = |index: usize, usual: &str| -> Vec<String> {
         let text = lists.get(index).map_or(usual, |list| list.as_str());
@@ -83,7 +85,7 @@ fn main() -> Result<()> {
     let mut sums: BTreeMap<usize, Vec<Scores>> = BTreeMap::new();
     for &preset in &presets {
         for &seed in &seeds {
-            let place = Place::simulated(preset, seed, regime, unclassified)?;
+            let place = Place::simulated(preset, seed, regime, missing)?;
             for (number, (name, params)) in variants().into_iter().enumerate() {
                 if !wanted.is_empty() && !wanted.contains(&name) {
                     continue;

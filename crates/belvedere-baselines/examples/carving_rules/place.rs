@@ -43,9 +43,31 @@ pub(crate) struct Place {
     pub(crate) questions: Vec<Question>,
 }
 
+/// What a survey lacks.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Missing {
+    /// Classes of vegetation.
+    pub(crate) vegetation: bool,
+    /// Returns from the ground in strips, as if these were canals.
+    pub(crate) water: bool,
+}
+
+/// Canals run north: how far it is from one to the next and how wide each is, metres.
+const CANALS_EACH: f32 = 36.0;
+const CANAL_WIDTH: f32 = 12.0;
+
+/// What a survey would be if the ground were water in canals: pulses that end there do not return.
+fn without_returns_from_water(cloud: &PointCloud, scanner: &[[f32; 3]]) -> (PointCloud, Vec<[f32; 3]>) {
+    let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
+    let is_water =
+        |row: usize| classes.get(row) == Some(&2) && cloud.positions[row][0].rem_euclid(CANALS_EACH) < CANAL_WIDTH;
+    let (rows, scanner): (Vec<u32>, Vec<_>) = (0..).zip(scanner).filter(|(row, _)| !is_water(*row as usize)).unzip();
+    (cloud.select(&rows), scanner)
+}
+
 impl Place {
-    /// A town with the usual survey from the air, or as `regime` has it; without the classes of its vegetation where it is `unclassified`.
-    pub(crate) fn simulated(preset: Preset, seed: u64, regime: Option<Regime>, unclassified: bool) -> Result<Self> {
+    /// A town with the usual survey from the air, or as `regime` has it, and with what is `missing` in it.
+    pub(crate) fn simulated(preset: Preset, seed: u64, regime: Option<Regime>, missing: Missing) -> Result<Self> {
         let usual = preset.params(EXTENT, seed);
         let params = regime.map_or_else(|| usual.clone(), |regime| regime.town(usual.clone()));
         let scene = regime.unwrap_or(Regime::Air).scene(&params);
@@ -53,9 +75,13 @@ impl Place {
             Some(regime) => surveyed(&regime.scan(&scene, &params, PULSES_PER_M2))?,
             None => flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, PULSES_PER_M2) })?,
         };
-        if unclassified && let Some(classes) = &mut cloud.attributes.classification {
+        if missing.vegetation
+            && let Some(classes) = &mut cloud.attributes.classification
+        {
             classes.iter_mut().filter(|class| (3..=5).contains(*class)).for_each(|class| *class = 1);
         }
+        let (cloud, scanner) =
+            if missing.water { without_returns_from_water(&cloud, &scanner) } else { (cloud, scanner) };
         let truth = Truth::new(&scene);
         let mut place = Self {
             bounds: cloud.bounds().unwrap_or_default(),

@@ -2,16 +2,17 @@
 
 use super::bounds::{Kind, KindBounds, RadiusBounds, kinds};
 use super::carve::{CarveReport, carve};
-use super::cells::lowest_near;
+use super::cells::{highest, lowest_near};
 use super::close_range::{CloseRangeBalls, CloseRangeParams};
 use super::crowns::{self, CrownParams, Crowns, Trees};
+use super::data_voids::{DataVoidParams, DataVoids};
 use super::prune::{PruneParams, prune_in_blocks_of};
 use super::relief::{Relief, ReliefParams};
 use super::roof_edges::{RoofEdgeParams, RoofEdges};
 use super::roof_tops::RoofTops;
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 use super::slender::{Slender, SlenderParams};
-use super::spacing::pulse_spacing;
+use super::spacing::{pulse_counts, pulse_spacing};
 use super::thin_surfaces::{ThinSurfaceParams, on_thin_surfaces, on_thin_surfaces_of_part};
 use super::vegetation::{VegetationParams, tell_vegetation};
 use super::whole_survey::{SurveyPart, WholeSurvey};
@@ -57,6 +58,8 @@ pub struct CarvedParams {
     pub relief: Option<ReliefParams>,
     /// Cuts balls below the edges of roofs, where walls stand that no pulse reached, and where they reach above the roof.
     pub roof_edges: Option<RoofEdgeParams>,
+    /// Cuts balls where they reach over places without returns.
+    pub data_voids: Option<DataVoidParams>,
     /// Sizes for scanners on the ground, which replace those above and leave none of these rules. `None` treats all scanners as
     /// if they flew.
     pub close_range: Option<CloseRangeParams>,
@@ -77,6 +80,7 @@ impl Default for CarvedParams {
             thin_surfaces: Some(ThinSurfaceParams::default()),
             relief: Some(ReliefParams::default()),
             roof_edges: Some(RoofEdgeParams::default()),
+            data_voids: Some(DataVoidParams::default()),
             close_range: Some(CloseRangeParams::default()),
         }
     }
@@ -99,13 +103,15 @@ pub enum Rule {
     Relief,
     /// [`CarvedParams::roof_edges`].
     RoofEdges,
+    /// [`CarvedParams::data_voids`].
+    DataVoids,
     /// [`CarvedParams::pruning`].
     Pruning,
 }
 
 impl Rule {
     /// Every rule.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Smoothing,
         Self::Vegetation,
         Self::Crowns,
@@ -113,6 +119,7 @@ impl Rule {
         Self::ThinSurfaces,
         Self::Relief,
         Self::RoofEdges,
+        Self::DataVoids,
         Self::Pruning,
     ];
 
@@ -127,6 +134,7 @@ impl Rule {
             Self::ThinSurfaces => "thin-surfaces",
             Self::Relief => "relief",
             Self::RoofEdges => "roof-edges",
+            Self::DataVoids => "data-voids",
             Self::Pruning => "pruning",
         }
     }
@@ -151,6 +159,7 @@ impl CarvedParams {
             Rule::ThinSurfaces => self.thin_surfaces = None,
             Rule::Relief => self.relief = None,
             Rule::RoofEdges => self.roof_edges = None,
+            Rule::DataVoids => self.data_voids = None,
             Rule::Pruning => self.pruning = None,
         }
         self
@@ -225,6 +234,9 @@ pub struct CarvedReport {
     /// Balls cut below the edges of roofs, and where they reached above a roof.
     #[serde(rename = "balls_cut_at_roof_edges")]
     pub cut_at_edges: usize,
+    /// Balls cut where they reached over places without returns.
+    #[serde(rename = "balls_cut_at_data_voids")]
+    pub cut_at_voids: usize,
     /// Balls that close floors below tripods.
     #[serde(rename = "balls_below_tripods")]
     pub below_tripods: usize,
@@ -299,7 +311,8 @@ pub(crate) fn carve_survey(
             tell_vegetation(&mut kinds, oriented, index, attributes, vegetation, farthest, control)
         })?;
     }
-    let spacing = pulse_spacing(positions, attributes);
+    let counts = pulse_counts(positions, attributes);
+    let spacing = pulse_spacing(positions, &counts);
     let mut bounds = RadiusBounds::by_kind(&kinds, attributes, &spacing, &params.kind_bounds);
     let lowest = lowest_near(positions);
     let through = match (&params.crowns, pulses) {
@@ -352,11 +365,17 @@ pub(crate) fn carve_survey(
         (report.centred, whole.crown_spacing) = control
             .stage("centring balls in crowns", 0, || crowns.centre(&mut balls, index, needles, given, control))?;
     }
+    let highest = highest(positions);
     if let Some(params) = &params.roof_edges {
         report.cut_at_edges = control.stage("cutting at roof edges", 0, || {
             let edges = RoofEdges::find(oriented, &kinds, index, (&lowest, &spacing), params, control)?;
             let at_edges = edges.cut(&mut balls, oriented, params, control)?;
-            Ok(at_edges + RoofTops::find(oriented).cut(&mut balls, oriented, params, control)?)
+            Ok(at_edges + RoofTops::find(oriented, &highest).cut(&mut balls, oriented, params, control)?)
+        })?;
+    }
+    if let Some(params) = &params.data_voids {
+        report.cut_at_voids = control.stage("cutting at data voids", 0, || {
+            DataVoids::find(&highest, &lowest, &counts, needles).cut(&mut balls, oriented, params, control)
         })?;
     }
     if let Some(pruning) = &params.pruning {

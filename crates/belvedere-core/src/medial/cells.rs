@@ -37,6 +37,11 @@ impl<V: Copy + Send + Sync> Cells<V> {
         Self { cells: entries }
     }
 
+    /// The occupied cells.
+    pub(super) fn cells(&self) -> impl Iterator<Item = Cell> {
+        self.cells.iter().map(|entry| entry.0)
+    }
+
     /// The value of a cell, `None` where it is empty.
     pub(super) fn get(&self, cell: Cell) -> Option<V> {
         let place = self.cells.binary_search_by_key(&cell, |entry| entry.0).ok()?;
@@ -50,6 +55,19 @@ impl<V: Copy + Send + Sync> Cells<V> {
             self.cells.iter().skip(start).take_while(move |entry| entry.0 <= (row, high.1)).map(|entry| entry.1)
         };
         (low.0..=high.0).flat_map(of_row).reduce(merge)
+    }
+
+    /// Calls `visit` with each empty cell from the one with the least row and column to the one with the greatest.
+    pub(super) fn empty_in_rectangle(&self, low: Cell, high: Cell, mut visit: impl FnMut(Cell)) {
+        for row in low.0..=high.0 {
+            let start = self.cells.partition_point(|entry| entry.0 < (row, low.1));
+            let mut held = self.cells.iter().skip(start).map(|entry| entry.0).peekable();
+            for cell in (low.1..=high.1).map(|column| (row, column)) {
+                if held.next_if_eq(&cell).is_none() {
+                    visit(cell);
+                }
+            }
+        }
     }
 
     /// All values merged, `None` without any.
@@ -77,4 +95,9 @@ impl<V: Copy + Send + Sync> Cells<V> {
 /// roofs.
 pub(super) fn lowest_near(positions: &[[f32; 3]]) -> Cells<f32> {
     Cells::new(positions.par_iter().map(|&p| (cell(p), p[2])).collect(), f32::min).with_neighbors(f32::min)
+}
+
+/// The highest of `positions`, (N, 3) local metres, in each cell.
+pub(super) fn highest(positions: &[[f32; 3]]) -> Cells<f32> {
+    Cells::new(positions.par_iter().map(|&p| (cell(p), p[2])).collect(), f32::max)
 }

@@ -12,26 +12,21 @@ use belvedere_data::control::{Control, Stop};
 use rayon::prelude::*;
 
 /// Heights of the highest points in cells of the map.
-pub(super) struct RoofTops {
+pub(super) struct RoofTops<'a> {
     /// Of all points.
-    all: Cells<f32>,
+    all: &'a Cells<f32>,
     /// Of all points in a cell and those about it.
     near: Cells<f32>,
     /// Of points on roofs and on level ground.
     level: Cells<f32>,
 }
 
-impl RoofTops {
-    /// Those of `oriented`.
-    pub(super) fn find(oriented: &OrientedCloud) -> Self {
-        let (positions, normals) = (oriented.positions(), oriented.normals());
-        let highest = |is_wanted: &(dyn Fn(usize) -> bool + Sync)| {
-            let rows = (0..positions.len()).into_par_iter().filter(|&row| is_wanted(row));
-            Cells::new(rows.map(|row| (cell(positions[row]), positions[row][2])).collect(), f32::max)
-        };
-        let all = highest(&|_| true);
-        let near = all.with_neighbors(f32::max);
-        Self { all, near, level: highest(&|row| normals[row][2] >= LEAST_UP) }
+impl<'a> RoofTops<'a> {
+    /// Those of `oriented`, of which `all` are the heights that [`super::cells::highest`] gives.
+    pub(super) fn find(oriented: &OrientedCloud, all: &'a Cells<f32>) -> Self {
+        let points = oriented.positions().par_iter().zip(oriented.normals());
+        let level = points.filter(|(_, normal)| normal[2] >= LEAST_UP).map(|(&p, _)| (cell(p), p[2]));
+        Self { all, near: all.with_neighbors(f32::max), level: Cells::new(level.collect(), f32::max) }
     }
 
     /// Cuts `balls`, row i of which is the interior ball of point i of `oriented`, where they reach above every point over their whole
@@ -83,6 +78,7 @@ impl RoofTops {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::medial::cells::highest;
 
     /// A wall from the ground to a height of 9 m, and points 0.25 m apart on the roof behind it from `from` metres behind it on.
     fn building(from: f32) -> OrientedCloud {
@@ -112,7 +108,8 @@ mod tests {
     }
 
     fn cut(oriented: &OrientedCloud, balls: &mut MedialBalls) -> usize {
-        RoofTops::find(oriented).cut(balls, oriented, &RoofEdgeParams::default(), &Control::none()).unwrap()
+        let all = highest(oriented.positions());
+        RoofTops::find(oriented, &all).cut(balls, oriented, &RoofEdgeParams::default(), &Control::none()).unwrap()
     }
 
     #[test]

@@ -1,0 +1,305 @@
+//! Data voids: places on the map that pulses reached and did not return from, above all water.
+//!
+//! A ball grows from its point to the next one that it meets. Beside a canal it meets none for many metres, and reaches as far over the
+//! water as the first pulse that passes. Nothing stands there: the pulses that were sent there met neither a crown nor a roof.
+
+use super::cells::{Cell, Cells, cell};
+use super::roof_edges::shrink;
+use super::spacing::spacing_of;
+use crate::normals::OrientedCloud;
+use crate::pulses::Needles;
+use belvedere_data::Result;
+use belvedere_data::balls::{MedialBalls, NO_TOUCH};
+use belvedere_data::control::{Control, Stop};
+use rayon::prelude::*;
+
+/// Side of the smallest void, metres: a cell of the map and those beside it.
+const LEAST_SIDE: f32 = 3.0;
+/// Smaller balls reach no middle of an empty cell, which lies half a metre or more from every point.
+const LEAST_RADIUS: f32 = 0.25;
+/// How far around a void its lowest point is looked for, and around a point its voids, in cells: as far as a ball of 5 m reaches.
+const FARTHEST: i32 = 10;
+/// How many cells from its nearest pulse on those lie that are taken to come from where the scanner saw the void.
+const RIM_WIDTH: i32 = 3;
+/// Steps towards a scanner, metres on the map: half a cell; and how many are made at most.
+const STEP_M: f32 = 0.5;
+const MOST_STEPS: u16 = 4096;
+/// Least sine of the angle between a pulse and the vertical. Pulses that are assumed to fall straight down do not tell what lies in the shadow
+/// of something.
+const LEAST_LEAN: f32 = 1e-4;
+
+/// How balls are cut at data voids.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DataVoidParams {
+    /// Greatest spacing of pulses around a void, in sides of the smallest void, above 0. Default 0.25: the lidar base specification of the US Geological
+    /// Survey calls an area without first returns a void from four spacings squared on.
+    pub most_spacing: f32,
+    /// Height above the lowest point around a void from which on balls do not reach into it, metres, 0 or more. Default 0.5.
+    pub least_height: f32,
+}
+
+impl Default for DataVoidParams {
+    fn default() -> Self {
+        Self { most_spacing: 0.25, least_height: 0.5 }
+    }
+}
+
+/// What tells voids from places in the shadow of something.
+pub(super) struct DataVoids<'a> {
+    /// Heights of the highest points in cells.
+    highest: &'a Cells<f32>,
+    /// Cells that hold a point, and those beside them.
+    covered: Cells<()>,
+    /// Heights of the lowest points in cells and those about them.
+    lowest: &'a Cells<f32>,
+    /// How many pulses end in cells and those about them.
+    counts: &'a Cells<u32>,
+    /// Unit vectors towards the scanner of the steepest pulses that end in cells.
+    ways: Cells<[f32; 3]>,
+    /// Height of the highest point.
+    top: f32,
+}
+
+impl<'a> DataVoids<'a> {
+    /// Those between points whose heights are those of [`super::cells::highest`] and [`super::cells::lowest_near`], and whose pulses have the counts
+    /// of [`super::spacing::pulse_counts`].
+    pub(super) fn find(
+        highest: &'a Cells<f32>,
+        lowest: &'a Cells<f32>,
+        counts: &'a Cells<u32>,
+        needles: &Needles,
+    ) -> Self {
+        let way = |number: usize| {
+            let (start, towards, _) = needles.segment(number)?;
+            (towards[2] > 0.0 && towards[0].hypot(towards[1]) > LEAST_LEAN).then(|| (cell(start), towards))
+        };
+        let steeper = |a: [f32; 3], b: [f32; 3]| if (a[2], a[0], a[1]) > (b[2], b[0], b[1]) { a } else { b };
+        Self {
+            covered: Cells::new(highest.cells().flat_map(about).map(|cell| (cell, ())).collect(), |(), ()| ()),
+            lowest,
+            counts,
+            ways: Cells::new((0..needles.len()).into_par_iter().filter_map(way).collect(), steeper),
+            top: highest.all(f32::max).unwrap_or(f32::NEG_INFINITY),
+            highest,
+        }
+    }
+
+    /// Cuts `balls`, row i of which is the interior ball of point i of `oriented`, where they reach over the middle of a cell in a void;
+    /// returns how many. The result depends on neither the order of points nor the number of threads.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub(super) fn cut(
+        &self,
+        balls: &mut MedialBalls,
+        oriented: &OrientedCloud,
+        params: &DataVoidParams,
+        control: &Control<'_>,
+    ) -> Result<usize> {
+        let stop = Stop::new(control);
+        let (positions, normals) = (oriented.positions(), oriented.normals());
+        let empty_cells = |row: usize| {
+            let mut cells = Vec::new();
+            if balls.touch[row] != NO_TOUCH && balls.radii[row] > LEAST_RADIUS && !stop.is_set() {
+                self.empty_cells(positions[row], normals[row], balls.radii[row], &mut cells);
+            }
+            cells.into_iter().map(move |cell| (row, cell))
+        };
+        let empty: Vec<(usize, Cell)> = (0..balls.len()).into_par_iter().flat_map_iter(empty_cells).collect();
+        // a void is made of squares of 3 × 3 empty cells
+        let middles = unique(empty.par_iter().map(|&(_, cell)| cell).collect()).into_par_iter().flat_map_iter(about);
+        let middles = unique(middles.filter(|&cell| self.covered.get(cell).is_none()).collect());
+        let floor = |middle| Some((middle, self.floor(middle, params).filter(|_| !stop.is_set())?));
+        let floors = Cells::new(middles.into_par_iter().filter_map(floor).collect(), f32::min);
+        let reaches_into_void = |&(ball, (row, column)): &(usize, Cell)| {
+            let top = balls.centers[ball][2] + balls.radii[ball];
+            let floor = floors.in_rectangle((row - 1, column - 1), (row + 1, column + 1), f32::min);
+            floor.is_some_and(|floor| floor + params.least_height < top)
+        };
+        let cut: Vec<(usize, Cell)> = empty.into_par_iter().filter(reaches_into_void).collect();
+        let mut radii = balls.radii.clone();
+        for (row, cell) in cut {
+            radii[row] = radii[row].min(touching(positions[row], normals[row], cell));
+        }
+        stop.check()?;
+        Ok(shrink(balls, oriented, &radii))
+    }
+
+    /// The cells without points whose middle lies below or above the ball of this radius at a point with this outward normal.
+    fn empty_cells(&self, point: [f32; 3], normal: [f32; 3], radius: f32, cells: &mut Vec<Cell>) {
+        let corner = |off: f32| cell(std::array::from_fn(|axis| point[axis] - radius * normal[axis] + off));
+        let ((south, west), (north, east)) = (corner(-radius), corner(radius));
+        let (row, column) = cell(point);
+        let low = (south.max(row - FARTHEST), west.max(column - FARTHEST));
+        let high = (north.min(row + FARTHEST), east.min(column + FARTHEST));
+        self.highest.empty_in_rectangle(low, high, |cell| {
+            if touching(point, normal, cell) < radius {
+                cells.push(cell);
+            }
+        });
+    }
+
+    /// Height down to which pulses passed through a cell without points: that of the lowest point around it, if nothing stands
+    /// between there and the scanner of any pulse that ended beside the void.
+    fn floor(&self, cell: Cell, params: &DataVoidParams) -> Option<f32> {
+        let (mut floor, mut count) = (f32::INFINITY, 0);
+        let (mut ways, mut rim) = (Vec::new(), FARTHEST);
+        for distance in 1..=FARTHEST {
+            for beside in ring(cell, distance) {
+                floor = floor.min(self.lowest.get(beside).unwrap_or(f32::INFINITY));
+                count = count.max(self.counts.get(beside).unwrap_or(0));
+                if let Some(way) = self.ways.get(beside).filter(|_| distance < rim.saturating_add(RIM_WIDTH)) {
+                    rim = rim.min(distance);
+                    ways.push(way);
+                }
+            }
+        }
+        let is_reached = spacing_of(count) <= params.most_spacing * LEAST_SIDE && !ways.is_empty();
+        (is_reached && !ways.into_iter().any(|way| self.is_shaded(cell, floor, way))).then_some(floor)
+    }
+
+    /// Whether a point lies above the line from the middle of a cell at this height towards a scanner.
+    fn is_shaded(&self, (row, column): Cell, height: f32, way: [f32; 3]) -> bool {
+        let lean = way[0].hypot(way[1]);
+        let from = [column as f32 + 0.5, row as f32 + 0.5, height];
+        let along = (0..MOST_STEPS).map(|step| f32::from(step) * STEP_M / lean);
+        let places = along.map(|t| -> [f32; 3] { std::array::from_fn(|axis| from[axis] + t * way[axis]) });
+        let is_below = |place: [f32; 3]| self.highest.get(cell(place)).is_some_and(|highest| highest > place[2]);
+        places.take_while(|place| place[2] < self.top).any(is_below)
+    }
+}
+
+/// Radius from which on the balls of a point with this outward normal reach below or above the middle of a cell.
+fn touching(point: [f32; 3], normal: [f32; 3], (row, column): Cell) -> f32 {
+    let [x, y] = [(column, point[0]), (row, point[1])].map(|(number, from)| number as f32 + 0.5 - from);
+    // with d from the point to that place on the map: |d|² + 2 r d·n = r² (1 - n·n)
+    let (square, outward) = (x * x + y * y, x * normal[0] + y * normal[1]);
+    let up = (1.0 - normal[0] * normal[0] - normal[1] * normal[1]).max(0.0);
+    // in this form level normals, for which nothing is left to divide by, need no case of their own
+    square / ((outward * outward + up * square).sqrt() - outward).max(0.0)
+}
+
+/// The same cells, sorted and each once.
+fn unique(mut cells: Vec<Cell>) -> Vec<Cell> {
+    cells.par_sort_unstable();
+    cells.dedup();
+    cells
+}
+
+/// A cell and those beside it.
+fn about((row, column): Cell) -> impl Iterator<Item = Cell> {
+    (row - 1..=row + 1).flat_map(move |row| (column - 1..=column + 1).map(move |column| (row, column)))
+}
+
+/// The cells that lie this many rows or columns from a cell, whichever are more.
+fn ring((row, column): Cell, distance: i32) -> impl Iterator<Item = Cell> {
+    let ends = (-distance..=distance).flat_map(move |off| [(-distance, off), (distance, off)]);
+    let sides = (1 - distance..distance).flat_map(move |off| [(off, -distance), (off, distance)]);
+    ends.chain(sides).map(move |(up, right)| (row + up, column + right))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::medial::cells::{highest, lowest_near};
+    use crate::medial::spacing::pulse_counts;
+    use crate::pulses::NeedleParams;
+    use belvedere_data::Attributes;
+    use belvedere_data::random::uniform;
+
+    const RADIUS: f32 = 4.0;
+    /// Direction to a scanner in the west, 27° from straight up.
+    const WEST: [f32; 3] = [-0.5, 0.0, 1.0];
+    const STRAIGHT_UP: [f32; 3] = [0.0, 0.0, 1.0];
+
+    /// Points of a survey of 20 m, 0.25 m apart, at the heights that `height` gives, where it gives one; before them one point 3 m above the
+    /// origin, whose inside lies to the east.
+    fn survey(height: impl Fn(f32, f32) -> Option<f32>) -> OrientedCloud {
+        let (mut positions, mut normals) = (vec![[0.0, 0.0, 3.0]], vec![[-1.0, 0.0, 0.0]]);
+        for i in 0_u8..80 {
+            for k in 0_u8..80 {
+                let [x, y] = [i, k].map(|number| f32::from(number) * 0.25 - 9.9);
+                if let Some(z) = height(x, y) {
+                    positions.push([x, y, z]);
+                    normals.push([0.0, 0.0, 1.0]);
+                }
+            }
+        }
+        OrientedCloud::with_known_normals(positions, normals).unwrap()
+    }
+
+    /// What is left of the radius of a ball of [`RADIUS`] at point `row`, for scanners towards `way`.
+    fn cut(oriented: &OrientedCloud, row: usize, way: [f32; 3]) -> f32 {
+        let positions = oriented.positions();
+        let scanner: Vec<[f32; 3]> =
+            positions.iter().map(|p| std::array::from_fn(|axis| p[axis] + 400.0 * way[axis])).collect();
+        let (needles, _) = Needles::new(positions, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
+        let (highest, lowest) = (highest(positions), lowest_near(positions));
+        let counts = pulse_counts(positions, &Attributes::default());
+        let mut balls = MedialBalls::default();
+        for (row, (p, n)) in positions.iter().zip(oriented.normals()).enumerate() {
+            balls.push(row, std::array::from_fn(|axis| p[axis] - RADIUS * n[axis]), RADIUS, 7);
+        }
+        let voids = DataVoids::find(&highest, &lowest, &counts, &needles);
+        voids.cut(&mut balls, oriented, &DataVoidParams::default(), &Control::none()).unwrap();
+        balls.radii[row]
+    }
+
+    /// A canal from the origin to 8 m east of it.
+    fn canal(x: f32, _: f32) -> Option<f32> {
+        (!(0.0..8.0).contains(&x)).then_some(0.0)
+    }
+
+    #[test]
+    fn a_ball_reaches_no_farther_over_water_than_the_middle_of_a_cell() {
+        // the middles of the nearest cells lie 0.5 m east and 0.5 m to both sides: |d|² / 2 d·m with d = (0.5, 0.5)
+        assert!((cut(&survey(canal), 0, WEST) - 0.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_lies_in_a_shadow_is_no_void() {
+        let towered = |x: f32, y: f32| if (-4.0..-1.0).contains(&x) { Some(30.0) } else { canal(x, y) };
+        assert_eq!(cut(&survey(towered), 0, WEST), RADIUS);
+        // a scanner on the other side looks below it
+        assert!(cut(&survey(towered), 0, [0.5, 0.0, 1.0]) < 1.0);
+    }
+
+    #[test]
+    fn assumed_pulses_tell_of_no_void() {
+        assert_eq!(cut(&survey(canal), 0, STRAIGHT_UP), RADIUS);
+    }
+
+    #[test]
+    fn a_few_empty_cells_are_no_void() {
+        let puddle = |x: f32, y: f32| (!(0.0..2.0).contains(&x) || y.abs() > 3.0).then_some(0.0);
+        assert_eq!(cut(&survey(puddle), 0, WEST), RADIUS);
+    }
+
+    #[test]
+    fn balls_below_the_lowest_point_around_a_void_stay() {
+        let oriented = survey(canal);
+        let quay = (1..oriented.len()).find(|&row| (-0.5..0.0).contains(&oriented.positions()[row][0])).unwrap();
+        assert_eq!(cut(&oriented, quay, WEST), RADIUS);
+    }
+
+    #[test]
+    #[expect(clippy::cast_possible_truncation, reason = "places within a few metres")]
+    fn touching_is_where_the_ball_reaches_the_middle() {
+        for number in 0..2000 {
+            let random = |k: u64| uniform(k, number) as f32 * 2.0 - 1.0;
+            let normal = [random(1), random(2), random(3)];
+            let length = normal.iter().map(|v| v * v).sum::<f32>().sqrt();
+            let normal = normal.map(|v| v / length);
+            let (point, cell) =
+                ([random(4), random(5), random(6)], ((random(7) * 9.0) as i32, (random(8) * 9.0) as i32));
+            let found = touching(point, normal, cell);
+            let is_over = |radius: f32| {
+                let off = [(cell.1, 0), (cell.0, 1)]
+                    .map(|(number, axis)| number as f32 + 0.5 - (point[axis] - radius * normal[axis]));
+                off[0].hypot(off[1]) < radius
+            };
+            // rounding moves the place by parts of 1e-7 of some metres
+            assert!(found > 1e3 || (!is_over(found * 0.999) && is_over(found * 1.001)), "{normal:?} {found}");
+        }
+    }
+}
