@@ -37,9 +37,9 @@ impl<V: Copy + Send + Sync> Cells<V> {
         Self { cells: entries }
     }
 
-    /// The occupied cells.
-    pub(super) fn cells(&self) -> impl Iterator<Item = Cell> {
-        self.cells.iter().map(|entry| entry.0)
+    /// The occupied cells and their values.
+    pub(super) fn iter(&self) -> impl Iterator<Item = (Cell, V)> {
+        self.cells.iter().copied()
     }
 
     /// The value of a cell, `None` where it is empty.

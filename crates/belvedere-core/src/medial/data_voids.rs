@@ -12,6 +12,7 @@ use belvedere_data::Result;
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
 use belvedere_data::control::{Control, Stop};
 use rayon::prelude::*;
+use std::collections::HashMap;
 
 /// Side of the smallest void, metres: a cell of the map and those beside it.
 const LEAST_SIDE: f32 = 3.0;
@@ -21,6 +22,8 @@ const LEAST_RADIUS: f32 = 0.25;
 const FARTHEST: i32 = 10;
 /// How many cells from its nearest pulse on those lie that are taken to come from where the scanner saw the void.
 const RIM_WIDTH: i32 = 3;
+/// Balls that are looked at together: their empty cells take up to a few hundred megabytes where points are sparse.
+const BLOCK: usize = 1 << 16;
 /// Steps towards a scanner, metres on the map: half a cell; and how many are made at most.
 const STEP_M: f32 = 0.5;
 const MOST_STEPS: u16 = 4096;
@@ -48,8 +51,6 @@ impl Default for DataVoidParams {
 pub(super) struct DataVoids<'a> {
     /// Heights of the highest points in cells.
     highest: &'a Cells<f32>,
-    /// Cells that hold a point, and those beside them.
-    covered: Cells<()>,
     /// Heights of the lowest points in cells and those about them.
     lowest: &'a Cells<f32>,
     /// How many pulses end in cells and those about them.
@@ -75,7 +76,6 @@ impl<'a> DataVoids<'a> {
         };
         let steeper = |a: [f32; 3], b: [f32; 3]| if (a[2], a[0], a[1]) > (b[2], b[0], b[1]) { a } else { b };
         Self {
-            covered: Cells::new(highest.cells().flat_map(about).map(|cell| (cell, ())).collect(), |(), ()| ()),
             lowest,
             counts,
             ways: Cells::new((0..needles.len()).into_par_iter().filter_map(way).collect(), steeper),
@@ -98,40 +98,60 @@ impl<'a> DataVoids<'a> {
     ) -> Result<usize> {
         let stop = Stop::new(control);
         let (positions, normals) = (oriented.positions(), oriented.normals());
+        let dense = self.dense_areas(params);
         let empty_cells = |row: usize| {
             let mut cells = Vec::new();
-            if balls.touch[row] != NO_TOUCH && balls.radii[row] > LEAST_RADIUS && !stop.is_set() {
+            let may_reach = balls.touch[row] != NO_TOUCH && balls.radii[row] > LEAST_RADIUS;
+            if may_reach && dense.get(area(cell(positions[row]))).is_some() && !stop.is_set() {
                 self.empty_cells(positions[row], normals[row], balls.radii[row], &mut cells);
             }
             cells.into_iter().map(move |cell| (row, cell))
         };
-        let empty: Vec<(usize, Cell)> = (0..balls.len()).into_par_iter().flat_map_iter(empty_cells).collect();
-        // a void is made of squares of 3 × 3 empty cells
-        let middles = unique(empty.par_iter().map(|&(_, cell)| cell).collect()).into_par_iter().flat_map_iter(about);
-        let middles = unique(middles.filter(|&cell| self.covered.get(cell).is_none()).collect());
-        let floor = |middle| Some((middle, self.floor(middle, params).filter(|_| !stop.is_set())?));
-        let floors = Cells::new(middles.into_par_iter().filter_map(floor).collect(), f32::min);
-        let reaches_into_void = |&(ball, (row, column)): &(usize, Cell)| {
-            let top = balls.centers[ball][2] + balls.radii[ball];
-            let floor = floors.in_rectangle((row - 1, column - 1), (row + 1, column + 1), f32::min);
-            floor.is_some_and(|floor| floor + params.least_height < top)
-        };
-        let cut: Vec<(usize, Cell)> = empty.into_par_iter().filter(reaches_into_void).collect();
+        let mut floors: HashMap<Cell, Option<f32>> = HashMap::new();
         let mut radii = balls.radii.clone();
-        for (row, cell) in cut {
-            radii[row] = radii[row].min(touching(positions[row], normals[row], cell));
+        for start in (0..balls.len()).step_by(BLOCK) {
+            let rows = start..balls.len().min(start + BLOCK);
+            let empty: Vec<(usize, Cell)> = rows.into_par_iter().flat_map_iter(empty_cells).collect();
+            // a void is made of squares of 3 × 3 empty cells
+            let middles =
+                unique(empty.par_iter().map(|&(_, cell)| cell).collect()).into_par_iter().flat_map_iter(about);
+            let is_new = |middle: &Cell| !floors.contains_key(middle) && self.is_empty_around(*middle);
+            let middles = unique(middles.filter(is_new).collect());
+            let floor = |middle| (middle, self.floor(middle, params).filter(|_| !stop.is_set()));
+            floors.par_extend(middles.into_par_iter().map(floor));
+            for (row, cell) in empty {
+                let top = balls.centers[row][2] + balls.radii[row];
+                let is_below =
+                    |middle| matches!(floors.get(&middle), Some(Some(floor)) if floor + params.least_height < top);
+                if about(cell).any(is_below) {
+                    radii[row] = radii[row].min(touching(positions[row], normals[row], cell));
+                }
+            }
+            stop.check()?;
         }
-        stop.check()?;
         Ok(shrink(balls, oriented, &radii))
+    }
+
+    /// Whether neither a cell nor one beside it holds a point.
+    fn is_empty_around(&self, cell: Cell) -> bool {
+        let (low, high) = square(cell, 1);
+        self.highest.in_rectangle(low, high, f32::max).is_none()
+    }
+
+    /// The areas from which a void between dense pulses may be reached.
+    fn dense_areas(&self, params: &DataVoidParams) -> Cells<()> {
+        let is_dense = |&(_, count): &(Cell, u32)| spacing_of(count) <= params.most_spacing * LEAST_SIDE;
+        let mut dense: Vec<Cell> = self.counts.iter().filter(is_dense).map(|(cell, _)| area(cell)).collect();
+        dense.dedup();
+        Cells::new(dense.into_iter().flat_map(about).map(|area| (area, ())).collect(), |(), ()| ())
     }
 
     /// The cells without points whose middle lies below or above the ball of this radius at a point with this outward normal.
     fn empty_cells(&self, point: [f32; 3], normal: [f32; 3], radius: f32, cells: &mut Vec<Cell>) {
         let corner = |off: f32| cell(std::array::from_fn(|axis| point[axis] - radius * normal[axis] + off));
         let ((south, west), (north, east)) = (corner(-radius), corner(radius));
-        let (row, column) = cell(point);
-        let low = (south.max(row - FARTHEST), west.max(column - FARTHEST));
-        let high = (north.min(row + FARTHEST), east.min(column + FARTHEST));
+        let (low, high) = square(cell(point), FARTHEST);
+        let (low, high) = ((south.max(low.0), west.max(low.1)), (north.min(high.0), east.min(high.1)));
         self.highest.empty_in_rectangle(low, high, |cell| {
             if touching(point, normal, cell) < radius {
                 cells.push(cell);
@@ -142,20 +162,23 @@ impl<'a> DataVoids<'a> {
     /// Height down to which pulses passed through a cell without points: that of the lowest point around it, if nothing stands
     /// between there and the scanner of any pulse that ended beside the void.
     fn floor(&self, cell: Cell, params: &DataVoidParams) -> Option<f32> {
-        let (mut floor, mut count) = (f32::INFINITY, 0);
+        let (low, high) = square(cell, FARTHEST);
+        let count = self.counts.in_rectangle(low, high, u32::max)?;
+        if spacing_of(count) > params.most_spacing * LEAST_SIDE {
+            return None;
+        }
         let (mut ways, mut rim) = (Vec::new(), FARTHEST);
         for distance in 1..=FARTHEST {
-            for beside in ring(cell, distance) {
-                floor = floor.min(self.lowest.get(beside).unwrap_or(f32::INFINITY));
-                count = count.max(self.counts.get(beside).unwrap_or(0));
-                if let Some(way) = self.ways.get(beside).filter(|_| distance < rim.saturating_add(RIM_WIDTH)) {
-                    rim = rim.min(distance);
-                    ways.push(way);
-                }
+            if distance >= rim + RIM_WIDTH {
+                break;
+            }
+            for way in ring(cell, distance).filter_map(|beside| self.ways.get(beside)) {
+                rim = rim.min(distance);
+                ways.push(way);
             }
         }
-        let is_reached = spacing_of(count) <= params.most_spacing * LEAST_SIDE && !ways.is_empty();
-        (is_reached && !ways.into_iter().any(|way| self.is_shaded(cell, floor, way))).then_some(floor)
+        let floor = self.lowest.in_rectangle(low, high, f32::min)?;
+        (!ways.is_empty() && !ways.into_iter().any(|way| self.is_shaded(cell, floor, way))).then_some(floor)
     }
 
     /// Whether a point lies above the line from the middle of a cell at this height towards a scanner.
@@ -184,6 +207,16 @@ fn unique(mut cells: Vec<Cell>) -> Vec<Cell> {
     cells.par_sort_unstable();
     cells.dedup();
     cells
+}
+
+/// The cells of least and of greatest row and column of the square that reaches this many cells from its middle.
+fn square((row, column): Cell, reach: i32) -> (Cell, Cell) {
+    ((row - reach, column - reach), (row + reach, column + reach))
+}
+
+/// The area of 32 by 32 cells that a cell lies in: voids and the pulses around them lie within 20 cells of a point.
+fn area((row, column): Cell) -> Cell {
+    (row.div_euclid(32), column.div_euclid(32))
 }
 
 /// A cell and those beside it.
@@ -273,6 +306,14 @@ mod tests {
     fn a_few_empty_cells_are_no_void() {
         let puddle = |x: f32, y: f32| (!(0.0..2.0).contains(&x) || y.abs() > 3.0).then_some(0.0);
         assert_eq!(cut(&survey(puddle), 0, WEST), RADIUS);
+    }
+
+    #[test]
+    fn between_sparse_pulses_there_are_no_voids() {
+        // one point of each square metre
+        let is_kept = |v: f32| (v + 9.9).rem_euclid(1.0) < 0.1;
+        let sparse = |x: f32, y: f32| canal(x, y).filter(|_| is_kept(x) && is_kept(y));
+        assert_eq!(cut(&survey(sparse), 0, WEST), RADIUS);
     }
 
     #[test]
