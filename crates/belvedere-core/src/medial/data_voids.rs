@@ -14,13 +14,11 @@ use belvedere_data::control::{Control, Stop};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Side of the smallest void, metres: a cell of the map and those beside it.
-const LEAST_SIDE: f32 = 3.0;
 /// Smaller balls reach no middle of an empty cell, which lies half a metre or more from every point.
 const LEAST_RADIUS: f32 = 0.25;
 /// How far around a void its lowest point is looked for, and around a point its voids, in cells: as far as a ball of 5 m reaches.
 const FARTHEST: i32 = 10;
-/// How many cells from its nearest pulse on those lie that are taken to come from where the scanner saw the void.
+/// Rings of cells about a void, from the nearest one with a pulse on, whose pulses tell where the scanner was.
 const RIM_WIDTH: i32 = 3;
 /// Balls that are looked at together: their empty cells take up to a few hundred megabytes where points are sparse.
 const BLOCK: usize = 1 << 16;
@@ -34,8 +32,8 @@ const LEAST_LEAN: f32 = 1e-4;
 /// How balls are cut at data voids.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DataVoidParams {
-    /// Greatest spacing of pulses around a void, in sides of the smallest void, above 0. Default 0.25: the lidar base specification of the US Geological
-    /// Survey calls an area without first returns a void from four spacings squared on.
+    /// Greatest spacing of pulses around a void, metres, above 0. Default 0.75, a quarter of the side of the smallest void, 3 m: the lidar base
+    /// specification of the US Geological Survey calls an area without first returns a void from four spacings squared on.
     pub most_spacing: f32,
     /// Height above the lowest point around a void from which on balls do not reach into it, metres, 0 or more. Default 0.5.
     pub least_height: f32,
@@ -43,7 +41,7 @@ pub struct DataVoidParams {
 
 impl Default for DataVoidParams {
     fn default() -> Self {
-        Self { most_spacing: 0.25, least_height: 0.5 }
+        Self { most_spacing: 0.75, least_height: 0.5 }
     }
 }
 
@@ -140,7 +138,7 @@ impl<'a> DataVoids<'a> {
 
     /// The areas from which a void between dense pulses may be reached.
     fn dense_areas(&self, params: &DataVoidParams) -> Cells<()> {
-        let is_dense = |&(_, count): &(Cell, u32)| spacing_of(count) <= params.most_spacing * LEAST_SIDE;
+        let is_dense = |&(_, count): &(Cell, u32)| spacing_of(count) <= params.most_spacing;
         let mut dense: Vec<Cell> = self.counts.iter().filter(is_dense).map(|(cell, _)| area(cell)).collect();
         dense.dedup();
         Cells::new(dense.into_iter().flat_map(about).map(|area| (area, ())).collect(), |(), ()| ())
@@ -164,7 +162,7 @@ impl<'a> DataVoids<'a> {
     fn floor(&self, cell: Cell, params: &DataVoidParams) -> Option<f32> {
         let (low, high) = square(cell, FARTHEST);
         let count = self.counts.in_rectangle(low, high, u32::max)?;
-        if spacing_of(count) > params.most_spacing * LEAST_SIDE {
+        if spacing_of(count) > params.most_spacing {
             return None;
         }
         let (mut ways, mut rim) = (Vec::new(), FARTHEST);
