@@ -1,5 +1,7 @@
 //! A simulated town with its survey, and questions with exact answers.
 
+#[path = "../../tests/all/common/canals.rs"]
+mod canals;
 #[path = "../../tests/all/common/flown.rs"]
 mod flown;
 
@@ -11,6 +13,7 @@ use belvedere::{PointCloud, Result};
 use belvedere_baselines::Survey;
 use belvedere_baselines::medial::MedialBaseline;
 use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Regime, Scene, Truth};
+use canals::without_returns_from_water;
 use flown::{flown, surveyed};
 use std::collections::BTreeMap;
 
@@ -50,19 +53,6 @@ pub(crate) struct Missing {
     pub(crate) vegetation: bool,
     /// Returns from the ground in strips, as if these were canals.
     pub(crate) water: bool,
-}
-
-/// Canals run north: how far it is from one to the next and how wide each is, metres.
-const CANALS_EACH: f32 = 36.0;
-const CANAL_WIDTH: f32 = 12.0;
-
-/// What a survey would be if the ground were water in canals: pulses that end there do not return.
-fn without_returns_from_water(cloud: &PointCloud, scanner: &[[f32; 3]]) -> (PointCloud, Vec<[f32; 3]>) {
-    let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
-    let is_water =
-        |row: usize| classes.get(row) == Some(&2) && cloud.positions[row][0].rem_euclid(CANALS_EACH) < CANAL_WIDTH;
-    let (rows, scanner): (Vec<u32>, Vec<_>) = (0..).zip(scanner).filter(|(row, _)| !is_water(*row as usize)).unzip();
-    (cloud.select(&rows), scanner)
 }
 
 impl Place {

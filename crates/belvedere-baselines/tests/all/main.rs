@@ -14,4 +14,5 @@ mod reconstructed;
 mod sun_and_sky_truth;
 mod surfaces;
 mod viewshed_truth;
+mod water;
 mod wrong_scanner;

@@ -1,10 +1,7 @@
 //! What it costs carved balls that the scanner is known badly, or not at all, and that normals come with the wrong sign: on a
 //! simulated town, against its exact mesh.
 
-use crate::common::flown::flown;
-use belvedere::Bounds;
-use belvedere::PointCloud;
-use belvedere::cloud::to_local;
+use crate::common::place::Place;
 use belvedere::control::Control;
 use belvedere::medial::{CarvedInput, CarvedParams, OrientByCarvingParams, carved_balls, orient_by_carving};
 use belvedere::neighbors::NeighborIndex;
@@ -12,39 +9,11 @@ use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, OrientedCloud, orient};
 use belvedere::pulses::{NeedleParams, Needles, VerticalParams, vertical_pulses};
 use belvedere::query::{BlockRule, MedialScene, Viewer, Visibility};
-use belvedere::view::to_sun;
 use belvedere_baselines::agreement::{Counts, Rate};
 use belvedere_baselines::medial::DEPTH_BIAS;
-use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Truth, town};
-
-/// A town, its scan, where the scanner was, and places in its streets with what is known of their light.
-struct Place {
-    cloud: PointCloud,
-    scanner: Vec<[f32; 3]>,
-    targets: Vec<[f32; 3]>,
-    /// Directions to suns, and whether each target sees them.
-    suns: Vec<([f64; 3], Vec<bool>)>,
-}
+use belvedere_scenes::Preset;
 
 impl Place {
-    fn new() -> Self {
-        let scene = town(&Preset::Town.params(80.0, 5));
-        let (cloud, scanner) = flown(&scene, &AirborneParams::covering(&scene, 8.0)).unwrap();
-        let origin = cloud.frame.origin;
-        let truth = Truth::new(&scene);
-        let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
-        let Bounds { low, high } = cloud.bounds().unwrap();
-        let site = QuerySite { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
-        let exact = site.targets(QuerySet::Pedestrians, 10_000, 5).positions;
-        let suns = [[110.0_f64, 20.0_f64], [180.0, 65.0], [240.0, 35.0]].map(|[azimuth, elevation]| {
-            let direction = to_sun(azimuth.to_radians(), elevation.to_radians());
-            let hidden = truth.occluded_towards_each(&exact, direction);
-            (direction, hidden.into_iter().map(|hidden| !hidden).collect())
-        });
-        let targets = exact.into_iter().map(|p| to_local(p, origin)).collect();
-        Self { cloud, scanner, targets, suns: suns.into() }
-    }
-
     /// Percent of answers that are right, balanced over lit and shaded places, mean over the suns, for a scanner at `scanner` and
     /// normals that `turn` has had its way with after pulses gave them their signs.
     fn score(
@@ -87,7 +56,7 @@ fn all_flipped(oriented: &OrientedCloud) -> OrientedCloud {
 
 #[test]
 fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
-    let place = Place::new();
+    let place = Place::new(Preset::Town);
     let same = |normal: [f32; 3]| normal;
     let exact = place.score(&place.scanner, same, as_it_is);
     // lateral error at an angle to the flight, and height
@@ -114,7 +83,7 @@ fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
 
 #[test]
 fn pulses_that_are_merely_assumed_to_be_vertical_are_worth_carving_with() {
-    let place = Place::new();
+    let place = Place::new(Preset::Town);
     let same = |normal: [f32; 3]| normal;
     let exact = place.score(&place.scanner, same, as_it_is);
     let assumed = vertical_pulses(&place.cloud.positions, &VerticalParams::default(), &Control::none()).unwrap();

@@ -1,6 +1,8 @@
 //! A small town, scanned, and the tests' own arithmetic.
 
+pub(crate) mod canals;
 pub(crate) mod flown;
+pub(crate) mod place;
 
 use belvedere::Bounds;
 use belvedere::query::{Answer, Viewer, Visibility};
