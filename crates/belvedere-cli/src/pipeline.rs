@@ -73,12 +73,15 @@ pub(crate) fn warn_of_missing(report: &ReadReport, summary: &mut Summary) {
     }
 }
 
-/// The error of building a model, with the flags that help.
-pub(crate) fn advised(error: Error) -> anyhow::Error {
+/// The error of building a model of these clouds, with their names where they have too few points, and with the flags that help.
+pub(crate) fn advised(input: &CloudInput, error: Error) -> anyhow::Error {
+    let names = || input.clouds.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");
     match error {
         Error::NoPoints { what } => {
-            Error::NoPoints { what: format!("{what}; see --keep-noise, --keep-isolated") }.into()
+            let what = format!("{what}; see --keep-noise, --keep-isolated");
+            anyhow::Error::from(Error::NoPoints { what }).context(names())
         }
+        Error::NoSurface { .. } => anyhow::Error::from(error).context(names()),
         other => other.into(),
     }
 }
@@ -157,7 +160,7 @@ fn present_scene(arguments: &SceneInput, points: Points, stages: &mut Stages, su
             SceneModel::build_owned(given, &params, &stages.control())
         }
     };
-    let (model, report) = built.map_err(advised)?;
+    let (model, report) = built.map_err(|error| advised(&arguments.input, error))?;
     summary.add_report(&report);
     Ok(Scene { model, cloud, left_out })
 }

@@ -1,7 +1,7 @@
 //! `belvedere balls`.
 
 use super::{check_output, check_parent, extension, is_folder, is_written_back};
-use crate::arguments::{Balls, Cleaning, Global, MethodChoice, SideChoice, Usage};
+use crate::arguments::{Balls, Cleaning, CloudInput, Global, MethodChoice, SideChoice, Usage};
 use crate::pipeline::{self, params};
 use crate::progress::Stages;
 use crate::summary::{Summary, percent};
@@ -50,8 +50,8 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
         (true, _) => write_folder(arguments, global, &cloud, &params, &mut stages, &mut summary)?,
         (false, side) => {
             let model = match side {
-                SideChoice::Interior => interior(cloud, &params, &stages, &mut summary)?,
-                SideChoice::Exterior => exterior(&cloud, &params, &stages, &mut summary)?,
+                SideChoice::Interior => interior(&arguments.input, cloud, &params, &stages, &mut summary)?,
+                SideChoice::Exterior => exterior(&arguments.input, &cloud, &params, &stages, &mut summary)?,
             };
             let inputs: Vec<String> = arguments.input.clouds.iter().map(|p| p.display().to_string()).collect();
             let program = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
@@ -68,15 +68,29 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
 }
 
 /// The scene model, as it is saved.
-fn interior(cloud: PointCloud, params: &ModelParams, stages: &Stages, summary: &mut Summary) -> Result<ModelParts> {
-    let (model, report) = SceneModel::build_owned(cloud, params, &stages.control()).map_err(pipeline::advised)?;
+fn interior(
+    input: &CloudInput,
+    cloud: PointCloud,
+    params: &ModelParams,
+    stages: &Stages,
+    summary: &mut Summary,
+) -> Result<ModelParts> {
+    let built = SceneModel::build_owned(cloud, params, &stages.control());
+    let (model, report) = built.map_err(|error| pipeline::advised(input, error))?;
     summary.add_report(&report);
     Ok(model.into_parts())
 }
 
 /// Balls in free space, which are for looking at and for other programs: no scene is made of them.
-fn exterior(cloud: &PointCloud, params: &ModelParams, stages: &Stages, summary: &mut Summary) -> Result<ModelParts> {
-    let (survey, report) = OrientedSurvey::prepare(cloud, params, &stages.control()).map_err(pipeline::advised)?;
+fn exterior(
+    input: &CloudInput,
+    cloud: &PointCloud,
+    params: &ModelParams,
+    stages: &Stages,
+    summary: &mut Summary,
+) -> Result<ModelParts> {
+    let prepared = OrientedSurvey::prepare(cloud, params, &stages.control());
+    let (survey, report) = prepared.map_err(|error| pipeline::advised(input, error))?;
     summary.add_report(&report);
     let (parts, report) = survey.exterior_parts(cloud.frame.clone(), params, &stages.control())?;
     summary.add("exterior_balls", Summary::of(&report));
@@ -91,7 +105,8 @@ fn write_folder(
     stages: &mut Stages,
     summary: &mut Summary,
 ) -> Result<()> {
-    let (survey, report) = OrientedSurvey::prepare(cloud, params, &stages.control()).map_err(pipeline::advised)?;
+    let prepared = OrientedSurvey::prepare(cloud, params, &stages.control());
+    let (survey, report) = prepared.map_err(|error| pipeline::advised(&arguments.input, error))?;
     summary.add_report(&report);
     let mut made = |name, side| -> Result<MedialBalls> {
         let (balls, report) = survey.shrink(side, params.balls.shrinking(), &stages.control())?;

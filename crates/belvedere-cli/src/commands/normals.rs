@@ -34,7 +34,8 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
     let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
     let balls = BallParams::Shrunk(ShrinkParams::tau());
     let params = params::model(cleaning, &arguments.orienting, balls, &cloud.frame.crs, &mut stages)?;
-    let (survey, report) = OrientedSurvey::prepare(&cloud, &params, &stages.control()).map_err(pipeline::advised)?;
+    let prepared = OrientedSurvey::prepare(&cloud, &params, &stages.control());
+    let (survey, report) = prepared.map_err(|error| pipeline::advised(&arguments.input, error))?;
     summary.add_report(&report);
     let oriented = &survey.oriented;
     let report = stages.run("writing", 0, |_| -> Result<WriteReport> {

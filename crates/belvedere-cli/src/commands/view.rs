@@ -268,7 +268,7 @@ fn load(
         let crs = &cloud.frame.crs;
         let params = params::model(&arguments.cleaning, &arguments.orienting, params, crs, stages)?;
         let built = SceneModel::build(&cloud, &params, &stages.control());
-        let model = built.map_err(pipeline::advised)?.0;
+        let model = built.map_err(|error| pipeline::advised(&input.input, error))?.0;
         return Ok((Some(cloud), pipeline::planned(model, &arguments.plan, stages, summary)?));
     };
     input.input.clouds = vec![balls.clone()];

@@ -18,8 +18,8 @@ fn too_few_points_for_a_surface_are_refused_by_every_command() {
     {
         for method in ["", "--method tau"] {
             let flags = format!("{command} --keep-isolated {method}");
-            place.refusal(1, &format!("{flags} three.xyz"), &["3 points", "surface"]);
-            place.refusal(1, &format!("{flags} line.xyz"), &["50 points", "on one line"]);
+            place.refusal(1, &format!("{flags} three.xyz"), &["three.xyz: 3 points", "surface"]);
+            place.refusal(1, &format!("{flags} line.xyz"), &["line.xyz: 50 points", "on one line"]);
         }
     }
     // what is in the file is still told

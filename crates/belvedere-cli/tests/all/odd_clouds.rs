@@ -70,7 +70,7 @@ fn points_in_one_place_or_on_a_line_are_no_reason_to_crash() {
 fn a_cloud_that_cleaning_empties_names_the_flags_that_keep_it() {
     let place = Workplace::new();
     place.write("noise.csv", "x,y,z,classification\n1,1,1,7\n2,2,2,7\n3,3,3,18\n4,4,4,7\n");
-    place.refusal(1, "balls noise.csv -o out.npz", &["no points are left", "4 were read", "--keep-noise"]);
+    place.refusal(1, "balls noise.csv -o out.npz", &["noise.csv: no points are left", "4 were read", "--keep-noise"]);
     assert_eq!(place.names(), ["noise.csv"]);
 }
 
