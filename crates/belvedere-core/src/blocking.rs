@@ -17,7 +17,7 @@ use belvedere_data::vector::{dot, length, sub};
 use belvedere_data::{Error, Result};
 
 /// The largest part of its radius by which a ball gives way to a target: a wire must not vanish.
-const SHELL_SHARE: f64 = 0.5;
+pub const SHELL_SHARE: f64 = 0.5;
 /// How far a point of an airborne scan may lie from the surface of the balls around it, metres: 0.05 of noise, and as much
 /// by which the default balls stand out over points.
 pub(crate) const SURFACE_DEVIATION: f64 = 0.1;

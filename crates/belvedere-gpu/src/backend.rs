@@ -2,9 +2,9 @@
 
 use crate::depth::{Painter, Work};
 use crate::device::{Device, DeviceInfo, DeviceKind, devices};
-use crate::drawing::Drawing;
+use crate::drawing::{self, Drawing};
 use crate::lines::{Liner, Loaded, Words};
-use belvedere_core::depth::DepthBounds;
+use belvedere_core::depth::{BoundsParams, DepthBounds};
 use belvedere_core::query::cpu::PreparedBalls;
 use belvedere_core::query::{Backend, BallTree, Drawable, Prepared, Profile, Settled, Viewers};
 use belvedere_data::balls::MedialBalls;
@@ -17,7 +17,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 const WORTH_A_DEVICE: usize = 1 << 24;
 /// Lines of sight from which on a device that is ready is asked: a question to it takes the time of some thousands on the CPU.
 const WORTH_ASKING: usize = 1 << 14;
-/// Balls and pixels from which on a device is asked for a depth map.
+/// Balls and pixels from which on a device is asked for a picture.
 const WORTH_DRAWING: usize = 1 << 12;
 
 /// Which device is used.
@@ -201,6 +201,13 @@ impl Shared {
         }
     }
 
+    /// The device for a picture of so many balls and pixels.
+    pub(crate) fn ready_to_draw(&self, ball_count: usize, pixel_count: usize) -> Option<Arc<Ready>> {
+        // from which size on a picture pays to make a device ready for was not measured: it has to be asked for
+        let is_worth_it = self.choice != Choice::Automatic && ball_count.saturating_add(pixel_count) >= WORTH_DRAWING;
+        is_worth_it.then(|| self.ready(0)).flatten()
+    }
+
     fn open(&self) -> Result<Option<Ready>> {
         let of_kind = |kind| move |info: &DeviceInfo| info.kind == kind;
         let found = devices();
@@ -229,11 +236,7 @@ impl Backend for Gpu {
         pixel_count: usize,
         control: &Control<'_>,
     ) -> Result<Option<Box<dyn Drawable + 'b>>> {
-        // from which size on a picture pays to make a device ready for was not measured: it has to be asked for
-        if self.shared.choice == Choice::Automatic || balls.len().saturating_add(pixel_count) < WORTH_DRAWING {
-            return Ok(None);
-        }
-        let Some(ready) = self.shared.ready(0) else { return Ok(None) };
+        let Some(ready) = self.shared.ready_to_draw(balls.len(), pixel_count) else { return Ok(None) };
         let drawing = Drawing::new(Arc::clone(&self.shared), ready, balls, control)?;
         Ok(drawing.map(|drawing| Box::new(drawing) as Box<dyn Drawable + 'b>))
     }
@@ -267,7 +270,11 @@ struct Memory {
 
 impl Prepared for OnDevice {
     fn depth(&self, view: &View, start: f64, control: &Control<'_>) -> Result<DepthBounds> {
-        self.cpu.depth(view, start, control)
+        let params = BoundsParams { shell: self.tree.rule().shell, start };
+        match drawing::bounds(&self.shared, self.tree.balls(), view, &params, control)? {
+            Some(bounds) => Ok(bounds),
+            None => self.cpu.depth(view, start, control),
+        }
     }
 
     fn settle(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], control: &Control<'_>) -> Result<Settled> {

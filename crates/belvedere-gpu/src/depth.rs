@@ -1,12 +1,12 @@
-//! Depth maps of balls drawn on a device: balls and views as words, the stages, and the words that come back. The arithmetic is in the shaders below `depth`.
+//! Depth maps of balls, and bounds of depth, drawn on a device: balls and views as words, the stages, and the words that come back. The arithmetic is in the shaders below `depth`.
 
 #[cfg(test)]
 mod floats;
 mod stages;
 
 use crate::device::{Device, DeviceKind};
-use belvedere_core::depth::ItemBuffer;
-use belvedere_data::balls::{MedialBalls, NO_TOUCH};
+use belvedere_core::blocking::SHELL_SHARE;
+use belvedere_core::depth::{BoundsParams, ItemBuffer};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, length};
 use belvedere_data::view::{Projection, View};
@@ -49,7 +49,7 @@ const OTHER_TILES: usize = 1 << 12;
 #[derive(Debug)]
 pub(crate) struct Painter {
     device: Arc<Device>,
-    stages: Mutex<HashMap<(Kind, ItemBuffer), Arc<Stages>>>,
+    stages: Mutex<HashMap<(Kind, Shows), Arc<Stages>>>,
     /// One picture at a time: together they could need more memory than there is.
     turn: Mutex<()>,
     is_counted: bool,
@@ -63,10 +63,57 @@ pub(crate) struct Canvas {
     ball_count: usize,
 }
 
+/// What pixels show, as the shaders number it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Shows {
+    /// Depths at their centres.
+    Depths,
+    /// The row of the ball of each as well.
+    Balls,
+    /// Bounds of the depth over all of a pixel.
+    Bounds,
+}
+
+/// A picture to draw.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Picture<'v> {
+    view: &'v View,
+    shows: Shows,
+    /// Of depth.
+    limits: [f64; 2],
+    /// Of bounds.
+    starts: [f64; 2],
+    shell: f64,
+}
+
+impl<'v> Picture<'v> {
+    /// A depth map.
+    pub(crate) fn depths(view: &'v View, items: ItemBuffer) -> Self {
+        let shows = if items == ItemBuffer::With { Shows::Balls } else { Shows::Depths };
+        Self { view, shows, limits: view.limits(), starts: [0.0; 2], shell: 0.0 }
+    }
+
+    /// Bounds of depth. What limits lines of sight is said by the start of `params`, not by the limits of the view.
+    pub(crate) fn bounds(view: &'v View, params: &BoundsParams) -> Self {
+        let near = if view.is_central() { 0.0 } else { -ENDLESS };
+        let starts = params.starts(view);
+        Self { view, shows: Shows::Bounds, limits: [near, ENDLESS], starts, shell: params.shell }
+    }
+
+    /// Whether a device may be asked for it: places near enough for single precision.
+    pub(crate) fn can_be_drawn(&self) -> bool {
+        let scale = scale_of(self.view);
+        let is_near = self.view.frame.eye.iter().all(|v| v.abs() <= FARTHEST);
+        is_near && self.limits[0] <= FARTHEST && (1e-6..=1e9).contains(&scale)
+    }
+}
+
 /// What a device has drawn.
 #[derive(Debug)]
 pub(crate) struct Drawn {
+    /// Depths, or upper bounds.
     pub(crate) depth: Vec<f32>,
+    /// Rows of balls, or bits of lower bounds.
     pub(crate) rows: Option<Vec<u32>>,
     pub(crate) around_eye_count: usize,
     /// Rows of the balls that it left to the CPU, ascending; `None` if there are too many to list.
@@ -104,36 +151,27 @@ impl Painter {
         Self { device, stages: Mutex::default(), turn: Mutex::default(), is_counted }
     }
 
-    /// Whether a device may be asked for a view: places near enough for single precision.
-    pub(crate) fn can_draw(view: &View) -> bool {
-        let near = view.limits()[0];
-        let scale = scale_of(view);
-        view.frame.eye.iter().all(|v| v.abs() <= FARTHEST) && near <= FARTHEST && (1e-6..=1e9).contains(&scale)
-    }
-
-    /// Makes balls ready, and brings them to the device if they fit as a whole.
+    /// Makes balls ready, and brings them to the device if they fit as a whole. `ball` gives the centre and radius of each row; the radius is 0 if it is left out.
     ///
     /// # Errors
     /// [`Error::Device`] where they do not fit, [`Error::Cancelled`].
-    pub(crate) fn canvas(&self, balls: &MedialBalls, control: &Control<'_>) -> Result<Canvas> {
+    pub(crate) fn canvas(
+        &self,
+        count: usize,
+        ball: impl Fn(usize) -> [f32; 4],
+        control: &Control<'_>,
+    ) -> Result<Canvas> {
         let most = match self.device.info.kind {
             // what a bench counts is the work of a graphics card
             DeviceKind::Software if !self.is_counted => SOFTWARE_BALLS,
             _ => MOST_GROUPS * GROUP,
         };
         let most = (self.device.limit() / (4 * MOST_TILES)).clamp(1, most);
-        let count = balls.len();
         let of_part = count.div_ceil(count.div_ceil(most).max(1)).max(1);
         let mut parts = Vec::new();
         for first in (0..count).step_by(of_part) {
             control.check()?;
-            let words = (first..count.min(first + of_part)).map(|i| {
-                let [x, y, z] = balls.centers[i];
-                // what is left out has no radius
-                let is_ball = balls.touch[i] != NO_TOUCH && balls.radii[i].is_finite();
-                [x, y, z, if is_ball { balls.radii[i] } else { 0.0 }]
-            });
-            parts.push(words.collect());
+            parts.push((first..count.min(first + of_part)).map(&ball).collect());
         }
         let mut canvas = Canvas { parts, only: None, ball_count: count };
         if let [part] = &mut canvas.parts[..] {
@@ -147,39 +185,38 @@ impl Painter {
 
     /// # Errors
     /// [`Error::Device`] where the device cannot run the shaders.
-    fn stages(&self, kind: Kind, items: ItemBuffer) -> Result<Arc<Stages>> {
+    fn stages(&self, kind: Kind, shows: Shows) -> Result<Arc<Stages>> {
         let mut made = self.stages.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(stages) = made.get(&(kind, items)) {
+        if let Some(stages) = made.get(&(kind, shows)) {
             return Ok(Arc::clone(stages));
         }
-        let stages = Arc::new(Stages::new(&self.device.device, kind, items, self.is_counted));
+        let stages = Arc::new(Stages::new(&self.device.device, kind, shows, self.is_counted));
         self.device.trouble.check()?;
-        made.insert((kind, items), Arc::clone(&stages));
+        made.insert((kind, shows), Arc::clone(&stages));
         Ok(stages)
     }
 
-    /// Draws a view, part of the picture after part. For tests it fails after `fails_after` parts.
+    /// Draws a picture, part after part. For tests it fails after `fails_after` parts.
     ///
     /// # Errors
     /// [`Error::Cancelled`], and [`Error::Device`] where the device fails.
     pub(crate) fn draw(
         &self,
         canvas: &Canvas,
-        view: &View,
-        items: ItemBuffer,
+        picture: &Picture<'_>,
         fails_after: Option<usize>,
         control: &Control<'_>,
     ) -> Result<Drawn> {
-        let [width, height] = view.size_px;
+        let [width, height] = picture.view.size_px;
         let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
-        let stages = self.stages(Kind::of(view), items)?;
+        let stages = self.stages(Kind::of(picture.view), picture.shows)?;
         let of_band = self.rows_of_band(width, height)?;
         let most_balls = canvas.ball_count.div_ceil(canvas.parts.len().max(1));
-        let buffers = Buffers::new(&self.device.device, most_balls, [width, of_band], items);
+        let buffers = Buffers::new(&self.device.device, most_balls, [width, of_band], picture.shows);
         self.device.trouble.check()?;
         let mut drawn = Drawn {
             depth: Vec::with_capacity(width * height),
-            rows: (items == ItemBuffer::With).then(|| Vec::with_capacity(width * height)),
+            rows: (picture.shows != Shows::Depths).then(|| Vec::with_capacity(width * height)),
             around_eye_count: 0,
             left: Some(Vec::new()),
             work: Work::default(),
@@ -189,7 +226,7 @@ impl Painter {
                 return Err(Error::Device { what: "the device was lost: a test".to_owned() });
             }
             let band = [top, of_band.min(height - top)];
-            self.draw_band(&stages, &buffers, canvas, view, band, control)?;
+            self.draw_band(&stages, &buffers, canvas, picture, band, control)?;
             self.read_back(&buffers, width * band[1], top == 0, &mut drawn)?;
         }
         if let Some(left) = &mut drawn.left {
@@ -221,11 +258,11 @@ impl Painter {
         stages: &Stages,
         buffers: &Buffers,
         canvas: &Canvas,
-        view: &View,
+        picture: &Picture<'_>,
         band: Band,
         control: &Control<'_>,
     ) -> Result<()> {
-        let device = &self.device.device;
+        let (device, view) = (&self.device.device, picture.view);
         let [columns, rows] = [view.size_px[0].div_ceil(TILE), band[1].div_ceil(TILE)];
         let offsets = self.device.filled_buffer(&offset_bytes(view, band));
         let list_count = tiles_before([view.size_px[0], band[1]])[LEVELS as usize] * STEPS;
@@ -242,7 +279,7 @@ impl Painter {
                     (&brought, part.len())
                 }
             };
-            let words = self.device.filled_buffer(&view_bytes(view, band, [first_ball, count]));
+            let words = self.device.filled_buffer(&view_bytes(picture, band, [first_ball, count]));
             let bound = stages.bind(device, buffers, [&words, balls, &offsets]);
             self.device.trouble.check()?;
             for buffer in [&buffers.counters, &buffers.before, &buffers.depths] {
@@ -336,10 +373,14 @@ fn scale_of(view: &View) -> f64 {
     }
 }
 
-/// `View` of the shaders, for a band of the picture and some balls: the first, and how many.
-fn view_bytes(view: &View, [top, rows]: Band, [first_ball, ball_count]: [usize; 2]) -> Vec<u8> {
+/// `View` of the shaders, for a band of a picture and some balls: the first, and how many.
+fn view_bytes(picture: &Picture<'_>, [top, rows]: Band, [first_ball, ball_count]: [usize; 2]) -> Vec<u8> {
+    let view = picture.view;
     let scale = scale_of(view);
-    let [near, far] = view.limits();
+    let [near, far] = picture.limits;
+    let start = picture.starts.map(|start| single(start.clamp(-ENDLESS, ENDLESS)));
+    let of_bounds =
+        [start[0].next_down(), start[1].next_up(), single(picture.shell.min(ENDLESS)).next_up(), single(SHELL_SHARE)];
     let middle = view.middle();
     let [width, _] = view.size_px;
     let before = tiles_before([width, rows]);
@@ -356,6 +397,7 @@ fn view_bytes(view: &View, [top, rows]: Band, [first_ball, ball_count]: [usize; 
         .chain([0; 4])
         .chain(middle.into_iter().flat_map(f32::to_le_bytes))
         .chain(tiles.chain([first_ball]).map(whole).flat_map(u32::to_le_bytes))
+        .chain(of_bounds.into_iter().flat_map(f32::to_le_bytes))
         .collect()
 }
 

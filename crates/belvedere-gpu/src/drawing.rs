@@ -1,10 +1,10 @@
-//! Depth maps of a backend: what the device draws, joined with what it left to the CPU.
+//! Depth maps and bounds of depth of a backend: what the device draws, joined with what it left to the CPU.
 
 use crate::backend::{Ready, Shared};
-use crate::depth::{Canvas, Drawn, Painter};
-use belvedere_core::depth::{DepthMap, ItemBuffer, Profile, depth_map};
-use belvedere_core::query::Drawable;
-use belvedere_data::balls::MedialBalls;
+use crate::depth::{Canvas, Drawn, Picture};
+use belvedere_core::depth::{BoundsParams, DepthBounds, DepthMap, ItemBuffer, Profile, depth_bounds, depth_map};
+use belvedere_core::query::{Ball, Drawable};
+use belvedere_data::balls::{MedialBalls, NO_TOUCH};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::view::View;
@@ -34,7 +34,11 @@ impl<'b> Drawing<'b> {
         if balls.is_empty() || u32::try_from(balls.len()).is_err() || balls.validate().is_err() {
             return Ok(None);
         }
-        match ready.painter.canvas(balls, control) {
+        let ball = |row: usize| {
+            let [x, y, z] = balls.centers[row];
+            [x, y, z, if balls.touch[row] == NO_TOUCH { 0.0 } else { balls.radii[row] }]
+        };
+        match ready.painter.canvas(balls.len(), ball, control) {
             Ok(canvas) => Ok(Some(Self { shared, ready, balls, canvas })),
             Err(Error::Device { what }) => {
                 shared.give_up(&ready.device, &what);
@@ -51,10 +55,11 @@ impl<'b> Drawing<'b> {
 
 impl Drawable for Drawing<'_> {
     fn depth_map(&self, view: &View, items: ItemBuffer, control: &Control<'_>) -> Result<DepthMap> {
-        if !Painter::can_draw(view) {
+        let picture = Picture::depths(view, items);
+        if !picture.can_be_drawn() {
             return self.on_cpu(view, items, control);
         }
-        let drawn = match self.ready.painter.draw(&self.canvas, view, items, self.shared.fails_after, control) {
+        let drawn = match self.ready.painter.draw(&self.canvas, &picture, self.shared.fails_after, control) {
             Ok(drawn) => drawn,
             Err(Error::Device { what }) => {
                 self.shared.give_up(&self.ready.device, &what);
@@ -81,6 +86,52 @@ impl Drawable for Drawing<'_> {
         }
         Ok(map)
     }
+}
+
+/// Bounds of depth as [`depth_bounds`] defines them, a little wider; `None` where the device is not asked, or fails.
+///
+/// # Errors
+/// Those of [`depth_bounds`].
+pub(crate) fn bounds(
+    shared: &Shared,
+    balls: &[Ball],
+    view: &View,
+    params: &BoundsParams,
+    control: &Control<'_>,
+) -> Result<Option<DepthBounds>> {
+    let [width, height] = view.size_px;
+    let picture = Picture::bounds(view, params);
+    if balls.is_empty() || u32::try_from(balls.len()).is_err() || !picture.can_be_drawn() {
+        return Ok(None);
+    }
+    let Some(ready) = shared.ready_to_draw(balls.len(), width * height) else { return Ok(None) };
+    let ball = |row: usize| {
+        let Ball { center: [x, y, z], radius } = balls[row];
+        [x, y, z, radius]
+    };
+    let canvas = ready.painter.canvas(balls.len(), ball, control);
+    let drawn = canvas.and_then(|canvas| ready.painter.draw(&canvas, &picture, shared.fails_after, control));
+    let Drawn { depth: upper, rows: Some(lower), left: Some(left), .. } = (match drawn {
+        Ok(drawn) => drawn,
+        Err(Error::Device { what }) => {
+            shared.give_up(&ready.device, &what);
+            return Ok(None);
+        }
+        Err(other) => return Err(other),
+    }) else {
+        return Ok(None);
+    };
+    shared.set_used(&ready.device);
+    let drawn = lower.into_iter().zip(upper).map(|(lower, upper)| [f32::from_bits(lower), upper]);
+    let mut bounds = Raster::from_values(width, height, drawn.collect())?;
+    if !left.is_empty() {
+        let rest: Vec<Ball> = left.iter().filter_map(|&row| balls.get(row as usize).copied()).collect();
+        let rest = depth_bounds(&rest, view, params, control)?;
+        for (bounds, rest) in bounds.values_mut().iter_mut().zip(rest.bounds.values()) {
+            *bounds = [bounds[0].min(rest[0]), bounds[1].min(rest[1])];
+        }
+    }
+    Ok(Some(DepthBounds { view: *view, bounds }))
 }
 
 /// The balls of some rows.

@@ -34,6 +34,19 @@ impl Default for BoundsParams {
     }
 }
 
+impl BoundsParams {
+    /// Where lines of sight of `view` end on the viewer's side, the nearest and the farthest of them: depths in a parallel view, ranges in
+    /// all others, metres.
+    #[must_use]
+    pub fn starts(&self, view: &View) -> [f64; 2] {
+        let most_range_per_depth = match view.projection {
+            Projection::Perspective { .. } => 1.0 / view.direction([0.0; 2])[2],
+            _ => 1.0,
+        };
+        [self.start, if self.start > 0.0 { self.start * most_range_per_depth } else { self.start }]
+    }
+}
+
 /// For each pixel of a view, between which depths the first surface lies that any line of sight through the pixel meets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthBounds {
@@ -67,14 +80,10 @@ pub fn depth_bounds(balls: &[Ball], view: &View, params: &BoundsParams, control:
     let ball = |i: usize| balls.get(i).copied().filter(|ball| ball.radius > 0.0 && ball.radius.is_finite());
     // what limits lines of sight is said by `start`
     let unlimited = view.with_limits(0.0, f64::INFINITY)?;
-    let most_range_per_depth = match view.projection {
-        Projection::Perspective { .. } => 1.0 / view.direction([0.0; 2])[2],
-        _ => 1.0,
-    };
-    let farthest_start = if params.start > 0.0 { params.start * most_range_per_depth } else { params.start };
+    let start = params.starts(view);
     let draw = |side: BoundSide| {
         let rule = BlockRule { shell: params.shell, ..BlockRule::default() };
-        let bound = BallBound { side, rule, start: [params.start, farthest_start] };
+        let bound = BallBound { side, rule, start };
         let drawn = match view.projection {
             Projection::Orthographic { pixels_per_metre } => {
                 let surface = parallel::Bound::new(bound, pixels_per_metre);

@@ -1,12 +1,13 @@
 //! Depth maps of the same balls: how long each takes, how much work it is, and how far that is from what a data-centre card can do.
 
 use belvedere::control::Control;
-use belvedere::depth::{DepthMap, ItemBuffer, Profile, depth_map};
+use belvedere::depth::{BoundsParams, DepthBounds, ItemBuffer, Profile, depth_bounds, depth_map};
 use belvedere::medial::MedialBalls;
-use belvedere::query::Backend;
+use belvedere::query::{Backend, BallTree, BlockRule};
 use belvedere::view::View;
 use belvedere_data::Result;
 use belvedere_gpu::{DeviceInfo, Gpu, Work};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Instructions and bytes that the memory of the device moves: those of the shaders in SPIR-V, both sides of each branch and each turn of a loop.
@@ -21,7 +22,7 @@ const OF_A_PIXEL: [f64; 2] = [450.0, 8.0];
 /// A data-centre card: instructions on whole numbers a second (an H100: 132 groups of 64 at 1.7 GHz), and bytes of memory a second.
 const CARD: [f64; 2] = [1.4e13, 3e12];
 
-fn best_of(times: usize, mut work: impl FnMut() -> Result<DepthMap>) -> Result<(DepthMap, f64)> {
+fn best_of<T>(times: usize, mut work: impl FnMut() -> Result<T>) -> Result<(T, f64)> {
     let (mut best, mut last) = (f64::INFINITY, work()?);
     for _ in 0..times {
         let start = Instant::now();
@@ -29,6 +30,12 @@ fn best_of(times: usize, mut work: impl FnMut() -> Result<DepthMap>) -> Result<(
         best = best.min(start.elapsed().as_secs_f64());
     }
     Ok((last, best))
+}
+
+/// Percent of pixels that some ball certainly covers.
+fn percent_bounded(bounds: &DepthBounds) -> f64 {
+    let pixels = bounds.bounds.values();
+    100.0 * pixels.iter().filter(|[_, upper]| upper.is_finite()).count() as f64 / pixels.len() as f64
 }
 
 /// Views of a place of so many metres, in pictures of so many pixels on a side.
@@ -66,6 +73,8 @@ pub(crate) fn measure(
         say(format!("the device draws nothing: {:?}", gpu.notes()));
         return Ok(());
     };
+    let tree = Arc::new(BallTree::new(balls, &BlockRule { shell: 0.0, ..BlockRule::default() })?);
+    let prepared = gpu.prepare(&tree)?;
     let mut work_before = Work::default();
     for (name, view) in views(side, pixels)? {
         let [width, height] = view.size_px;
@@ -81,6 +90,17 @@ pub(crate) fn measure(
                 1e3 * on_cpu
             ));
         }
+        let start = Instant::now();
+        let of_cpu = depth_bounds(tree.balls(), &view, &BoundsParams::default(), &control)?;
+        let on_cpu = start.elapsed().as_secs_f64();
+        let (of_device, on_device) = best_of(1, || prepared.depth(&view, 0.0, &control))?;
+        say(format!(
+            "{name}, bounds of certified maps: {:.1} ms with the balls on their way there, CPU {:.1} ms; {:.2} % of pixels have an upper bound, {:.2} % by the CPU",
+            1e3 * on_device,
+            1e3 * on_cpu,
+            percent_bounded(&of_device),
+            percent_bounded(&of_cpu)
+        ));
         if let Some(drawable) = counting.drawable(balls, pixels * pixels, &control)? {
             drawable.depth_map(&view, ItemBuffer::Without, &control)?;
         }

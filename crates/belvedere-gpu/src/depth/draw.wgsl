@@ -1,4 +1,5 @@
-// The nearest ball at each pixel: the twin of `depths` and `least_depth` in belvedere-core/src/depth/parallel.rs and central.rs, and of the tiles in tiles.rs.
+// The nearest ball at each pixel: the twin of `depths` and `least_depth` in belvedere-core/src/depth/parallel.rs and central.rs, and of the tiles in tiles.rs. Or bounds of
+// the depth over each pixel: the twin of both `Bound` there, and of bounds.rs. They need not have the same bits, so that they are computed with room only.
 //
 // A group of threads draws a tile of four blocks of 8 x 8 pixels, a thread for each pixel. Each pixel finds, with room for what f32 rounds, a depth that the nearest ball
 // does not exceed, and keeps the balls that may come as near. Then these are computed exactly, in whole numbers. A second turn finds those of pixels that could not keep
@@ -10,13 +11,12 @@ struct Piece {
 }
 
 @group(0) @binding(1) var<uniform> piece: Piece;
-// bits of depths, which ascend as these do
+// bits of depths, or of upper bounds
 @group(0) @binding(8) var<storage, read_write> pixels: array<u32>;
+// which ball each pixel shows, or bits of lower bounds
 @group(0) @binding(9) var<storage, read_write> rows: array<u32>;
 // what a pixel's direction is made of: doubles for each column, then for each row
 @group(0) @binding(13) var<storage, read> offsets: array<vec2<u32>>;
-
-override WITH_ROWS: bool;
 
 const NO_BALL: u32 = 0xffffffffu;
 // Instead of infinity, which devices need not know.
@@ -35,10 +35,15 @@ const BLOCKS: u32 = 4u;
 const NONE: f32 = 3.2e38;
 // A cone around a block beyond this cosine is as good as everything.
 const WIDEST: f32 = 0.75;
+// A cone around a pixel beyond this sine, too.
+const WIDEST_SINE: f32 = 0.999;
+// Of a pixel, in pixels, and a little more.
+const HALF_DIAGONAL: f32 = 0.7072;
+const HALF_SIDE: f32 = 0.50001;
 
 // What a pixel shows.
 struct Shown {
-    // bits
+    // bits; for bounds those of the upper and of the lower one
     depth: u32,
     row: u32,
 }
@@ -66,8 +71,8 @@ var<workgroup> chosen_count: array<atomic<u32>, 4>;
 var<workgroup> spans: array<vec2<u32>, 224>;
 // where steps begin among all entries of the tile, and the end
 var<workgroup> step_begins: array<u32, 33>;
-// the depth that no pixel of a block exceeds, as bits, and of the tile
-var<workgroup> farthest_bits: array<atomic<u32>, 4>;
+// the rank of the depth that no pixel of a block exceeds, and of the tile
+var<workgroup> farthest_ranks: array<atomic<u32>, 4>;
 var<workgroup> farthest_of_all: u32;
 var<workgroup> is_again: atomic<u32>;
 var<workgroup> is_again_shared: u32;
@@ -117,7 +122,8 @@ fn cone_of(corner: vec2<f32>) -> Cone {
         let at = direction(corner + side * vec2<f32>(f32(i & 1u), f32(i >> 1u)));
         cosine = min(cosine, dot(found.middle, at));
         sine = max(sine, length(cross(found.middle, at)));
-        if KIND == PERSPECTIVE {
+        // bounds are ranges
+        if KIND == PERSPECTIVE && SHOWS != BOUNDS {
             found.least_depth_per_range = min(found.least_depth_per_range, 0.999 * at.z);
         }
     }
@@ -126,19 +132,26 @@ fn cone_of(corner: vec2<f32>) -> Cone {
     return found;
 }
 
-// At most the depth of a ball anywhere in a block, above all limits where it is beside the block.
-fn least_depth(splat: vec4<f32>, corner: vec2<f32>, block: u32) -> f32 {
-    let radius = splat.w;
-    if KIND == PARALLEL {
-        let beside = max(max(corner + 0.5 - splat.xy, splat.xy - corner - (f32(SIDE) - 0.5)), vec2<f32>(0.0));
-        let offset = beside * view.metres_per_pixel;
-        let square = radius * radius * (1.0 + SQUARE_ROOM) - dot(offset, offset) + LEAST_SQUARE;
-        let room = DEPTH_ROOM * (abs(splat.z) + radius) + LEAST_ROOM;
-        return select(NONE, max(splat.z - sqrt(max(square, 0.0)) - room, 0.0), square > 0.0);
-    }
+// At most the depth of a ball at any place of a rectangle in a parallel view, above all limits where it is beside the rectangle.
+fn nearest_parallel(splat: vec4<f32>, low: vec2<f32>, high: vec2<f32>) -> f32 {
+    let radius = abs(splat.w);
+    let beside = max(max(low - splat.xy, splat.xy - high) - misplaced(splat.xy), vec2<f32>(0.0));
+    let offset = beside * view.metres_per_pixel;
+    let square = radius * radius * (1.0 + SQUARE_ROOM) - dot(offset, offset) + LEAST_SQUARE;
+    let room = DEPTH_ROOM * (abs(splat.z) + radius) + LEAST_ROOM;
+    return select(NONE, max(splat.z - sqrt(max(square, 0.0)) - room, view.near), square > 0.0);
+}
+
+// Pixels by which f32 may misplace a ball of a parallel view. Depths are computed where the CPU places it; bounds hold for its true place.
+fn misplaced(at: vec2<f32>) -> f32 {
+    return select(0.0, PARALLEL_ROOM * (abs(at.x) + abs(at.y)), SHOWS == BOUNDS);
+}
+
+// At most the depth of a ball in any direction of a cone, above all limits where it is beside the cone.
+fn nearest_central(splat: vec4<f32>, cone: Cone) -> f32 {
+    let radius = abs(splat.w);
     let distance = length(splat.xyz);
     let room = CENTRAL_ROOM * (distance + radius) + LEAST_ROOM;
-    let cone = cones[block];
     let middle_along = dot(splat.xyz, cone.middle);
     let middle_beside = length(cross(splat.xyz, cone.middle));
     let beside = middle_beside * cone.cosine - middle_along * cone.sine - room;
@@ -151,6 +164,68 @@ fn least_depth(splat: vec4<f32>, corner: vec2<f32>, block: u32) -> f32 {
         return NONE;
     }
     return max((along - half_chord - 2.0 * room) * cone.least_depth_per_range, view.near);
+}
+
+// At most the depth of a ball anywhere in a block.
+fn least_depth(splat: vec4<f32>, corner: vec2<f32>, block: u32) -> f32 {
+    if KIND == PARALLEL {
+        // bounds are those of whole pixels, depths those of their centres
+        let inward = select(0.5, 0.0, SHOWS == BOUNDS);
+        return nearest_parallel(splat, corner + inward, corner + f32(SIDE) - inward);
+    }
+    return nearest_central(splat, cones[block]);
+}
+
+// The cone around the directions of a pixel: the twin of `angle_per_pixel` in central.rs.
+fn cone_of_pixel(place: vec2<f32>) -> Cone {
+    let off_middle = max(length(place - view.middle) - HALF_DIAGONAL, 0.0) / view.pixels;
+    let square = 1.0 + off_middle * off_middle;
+    let steepness = select(2.0 / square, 1.0 / sqrt(square), KIND == PERSPECTIVE);
+    var found: Cone;
+    found.middle = direction(place);
+    // the angle itself: more than its sine, so that the cone is wider than the pixel
+    found.sine = 1.001 * HALF_DIAGONAL * steepness / view.pixels;
+    found.cosine = select(sqrt(max(1.0 - found.sine * found.sine, 0.0)), 0.0, found.sine > WIDEST_SINE);
+    found.least_depth_per_range = 1.0;
+    return found;
+}
+
+// At least the depth of a ball of a parallel view at every place of a pixel, however far it gives way; without end where it does not cover the pixel.
+fn farthest_parallel(splat: vec4<f32>, low: vec2<f32>, high: vec2<f32>) -> f32 {
+    let offset = (max(abs(low - splat.xy), abs(high - splat.xy)) + misplaced(splat.xy)) * view.metres_per_pixel;
+    let beside = dot(offset, offset) + LEAST_SQUARE;
+    let radius = splat.w;
+    if radius <= 0.0 || beside >= radius * radius * (1.0 - SQUARE_ROOM) {
+        return ENDLESS_DEPTH;
+    }
+    let room = DEPTH_ROOM * (abs(splat.z) + radius) + LEAST_ROOM;
+    let left = least_radius(radius);
+    let square = left * left * (1.0 - SQUARE_ROOM) - beside;
+    let whole = splat.z + radius + view.shell + 2.0 * room;
+    return select(whole, min(whole, splat.z - sqrt(max(square, 0.0)) + room), square > 0.0);
+}
+
+// The same in all directions of a cone.
+fn farthest_central(splat: vec4<f32>, cone: Cone) -> f32 {
+    let radius = splat.w;
+    let distance = length(splat.xyz);
+    let room = CENTRAL_ROOM * (distance + radius) + LEAST_ROOM;
+    let middle_along = dot(splat.xyz, cone.middle);
+    let middle_beside = length(cross(splat.xyz, cone.middle));
+    let beside = middle_beside * cone.cosine + middle_along * cone.sine + room;
+    let along = middle_along * cone.cosine - middle_beside * cone.sine;
+    if radius <= 0.0 || cone.cosine == 0.0 || along <= room || beside >= radius - room {
+        return ENDLESS_DEPTH;
+    }
+    let left = least_radius(radius) - room;
+    let whole = distance + radius + view.shell + room;
+    let half_chord = sqrt(max((left - beside) * (left + beside), 0.0));
+    return select(whole, min(whole, along - half_chord + 2.0 * room), beside < left);
+}
+
+// The radius that is left of a ball for any target, however near to its surface: the twin of `BlockRule::least_radius`.
+fn least_radius(radius: f32) -> f32 {
+    return radius - min(view.shell, view.shell_share * radius);
 }
 
 // A depth that a ball at a pixel exceeds, if it is there, and one that it does not exceed, if it certainly is; both without end else.
@@ -190,6 +265,21 @@ fn bounds(splat: vec4<f32>, place: vec2<f32>, sight: Sight) -> vec2<f32> {
     let upper = max((along - least + room) * sight.depth_per_range, view.near);
     let is_hit = square > square_room && back > view.near && upper <= view.far;
     return vec2<f32>(lower, select(ENDLESS_DEPTH, upper, is_hit));
+}
+
+// A lower and an upper bound of the depth of a ball over a whole pixel.
+fn bounds_over_pixel(splat: vec4<f32>, place: vec2<f32>, cone: Cone) -> vec2<f32> {
+    if KIND == PARALLEL {
+        let low = place - HALF_SIDE;
+        let high = place + HALF_SIDE;
+        return vec2<f32>(nearest_parallel(splat, low, high), farthest_parallel(splat, low, high));
+    }
+    return vec2<f32>(nearest_central(splat, cone), farthest_central(splat, cone));
+}
+
+// The bits of a depth, those of infinity where it is without end.
+fn bits_of(depth: f32) -> u32 {
+    return select(bitcast<u32>(depth), INFINITE_SINGLE, depth >= ENDLESS_DEPTH);
 }
 
 // The bits of the depth of a ball at a pixel, as the CPU computes it.
@@ -267,22 +357,32 @@ fn step_of(entry: u32) -> u32 {
     return step;
 }
 
+// A whole number that ascends as f32 does, and the number that it stands for.
+fn rank(v: f32) -> u32 {
+    let bits = bitcast<u32>(v);
+    return select(bits | SIGN, ~bits, (bits & SIGN) != 0u);
+}
+
+fn of_rank(rank: u32) -> f32 {
+    return bitcast<f32>(select(~rank, rank & ~SIGN, (rank & SIGN) != 0u));
+}
+
 // Shares the depths that no pixel of each block exceeds, and returns that of the tile.
 fn farthest(lane: u32, upper: f32) -> f32 {
     if lane < BLOCKS {
-        atomicStore(&farthest_bits[lane], 0u);
+        atomicStore(&farthest_ranks[lane], 0u);
     }
     workgroupBarrier();
-    atomicMax(&farthest_bits[lane / 64u], bitcast<u32>(upper));
+    atomicMax(&farthest_ranks[lane / 64u], rank(upper));
     workgroupBarrier();
     if lane == 0u {
         var most = 0u;
         for (var block = 0u; block < BLOCKS; block++) {
-            most = max(most, atomicLoad(&farthest_bits[block]));
+            most = max(most, atomicLoad(&farthest_ranks[block]));
         }
         farthest_of_all = most;
     }
-    return bitcast<f32>(workgroupUniformLoad(&farthest_of_all));
+    return of_rank(workgroupUniformLoad(&farthest_of_all));
 }
 
 // What a pixel shows, a ball more considered; of equally near ones the ball with the lowest row.
@@ -303,7 +403,7 @@ fn nearer(shown: Shown, splat: vec4<u32>, ball: u32, place: vec2<f32>, sight: Si
 
 fn store(pixel: u32, shown: Shown) {
     pixels[pixel] = shown.depth;
-    if WITH_ROWS {
+    if SHOWS == BALLS || SHOWS == BOUNDS {
         rows[pixel] = shown.row;
     }
 }
@@ -325,7 +425,7 @@ fn choose(lane: u32, entry_of_tile: u32, corner: vec2<f32>) {
     chunk_balls[lane] = ball;
     for (var block = 0u; block < BLOCKS; block++) {
         let of_block = corner + vec2<f32>(f32((block & 1u) * SIDE), f32((block >> 1u) * SIDE));
-        let limit = bitcast<f32>(atomicLoad(&farthest_bits[block]));
+        let limit = of_rank(atomicLoad(&farthest_ranks[block]));
         // a depth equal to the limit may be that of a lower row
         if least_depth(bitcast<vec4<f32>>(splat), of_block, block) <= limit {
             chosen[block * 256u + atomicAdd(&chosen_count[block], 1u)] = lane;
@@ -360,10 +460,10 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let pixel = row * view.width + column;
     let place = vec2<f32>(f32(column) + 0.5, f32(row + view.top) + 0.5);
     // pixels beside the picture are full
-    var shown = Shown(select(0u, INFINITE_SINGLE, is_inside), NO_BALL);
+    var shown = Shown(select(0u, INFINITE_SINGLE, is_inside), select(NO_BALL, INFINITE_SINGLE, SHOWS == BOUNDS));
     if is_inside && view.first_ball > 0u {
         shown.depth = pixels[pixel];
-        if WITH_ROWS {
+        if SHOWS == BALLS || SHOWS == BOUNDS {
             shown.row = rows[pixel];
         }
     }
@@ -376,16 +476,21 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     }
     var sight = Sight(vec3<f32>(0.0), 1.0);
     let corner = vec2<f32>(f32(tile.x * TILE), f32(tile.y * TILE + view.top));
+    var of_pixel: Cone;
+    let of_part = vec2<f32>(0.0, f32(view.top));
     if KIND != PARALLEL {
-        if is_inside {
+        if SHOWS == BOUNDS {
+            of_pixel = cone_of_pixel(place - of_part);
+        } else if is_inside {
             sight = exact_sight(column, row);
         }
         if lane < BLOCKS {
             let of_block = vec2<f32>(f32((lane & 1u) * SIDE), f32((lane >> 1u) * SIDE));
-            cones[lane] = cone_of(corner + of_block - vec2<f32>(0.0, f32(view.top)));
+            cones[lane] = cone_of(corner + of_block - of_part);
         }
     }
     var upper = select(bitcast<f32>(shown.depth), ENDLESS_DEPTH, shown.depth == INFINITE_SINGLE);
+    var lower = select(bitcast<f32>(shown.row), ENDLESS_DEPTH, shown.row == INFINITE_SINGLE);
     var limit = farthest(lane, upper);
     var computed = 0u;
     // up to three balls, and bounds of their depths; the least of those that found no room
@@ -406,7 +511,8 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
             }
         }
         for (var first = 0u; first < total; first += 256u) {
-            if bitcast<f32>(steps[RANGES + step_of(first)]) > limit {
+            // steps begin at 0, but parallel views have bounds before that
+            if bitcast<f32>(steps[RANGES + step_of(first)]) > max(limit, 0.0) {
                 break;
             }
             if lane < BLOCKS {
@@ -425,6 +531,12 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
             for (var i = 0u; i < count; i++) {
                 let at = chosen[block * 256u + i];
                 let splat = chunk[at];
+                if SHOWS == BOUNDS {
+                    let found = bounds_over_pixel(bitcast<vec4<f32>>(splat), place, of_pixel);
+                    lower = min(lower, found.x);
+                    upper = min(upper, found.y);
+                    continue;
+                }
                 let depths = bounds(bitcast<vec4<f32>>(splat), place, sight);
                 if !is_inside || depths.x > upper || depths.x >= ENDLESS_DEPTH {
                     continue;
@@ -468,6 +580,9 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     }
     if IS_COUNTED {
         atomicAdd(&left_out[4], computed);
+    }
+    if SHOWS == BOUNDS {
+        shown = Shown(bits_of(upper), bits_of(lower));
     }
     if is_inside {
         store(pixel, shown);

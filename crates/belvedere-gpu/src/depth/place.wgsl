@@ -32,18 +32,28 @@ struct View {
     tiles_before: array<u32, 7>,
     // of balls among those of the scene
     first_ball: u32,
+    // for bounds: where lines of sight end on the viewer's side, the nearest and the farthest of them
+    start: vec2<f32>,
+    // for bounds: how far a ball may give way to a target, metres, and as a share of its radius
+    shell: f32,
+    shell_share: f32,
 }
 
 override KIND: u32;
+// What pixels show: depths at their centres, the ball of each as well, or bounds of the depth over all of a pixel.
+override SHOWS: u32;
 // Whether work is counted: entries looked at, balls that all pixels of a block are tested with, exact depths, and all entries.
 override IS_COUNTED: bool;
 const PARALLEL: u32 = 0u;
 const PERSPECTIVE: u32 = 1u;
+const BALLS: u32 = 1u;
+const BOUNDS: u32 = 2u;
 
 @group(0) @binding(0) var<storage, read> view: View;
 // centre and radius, local metres; a ball that is left out has radius 0
 @group(0) @binding(2) var<storage, read> balls: array<vec4<u32>>;
-// centre and radius as the CPU has them: along right, down and forward; pixels, pixels and metres in a parallel view
+// centre and radius as the CPU has them: along right, down and forward; pixels, pixels and metres in a parallel view. For bounds a radius below zero is that of a ball
+// that sets no upper one.
 @group(0) @binding(3) var<storage, read_write> splats: array<vec4<u32>>;
 // which tiles a ball touches, and at most its least depth
 @group(0) @binding(4) var<storage, read_write> touched: array<vec2<u32>>;
@@ -156,6 +166,15 @@ fn tiles_of(rectangle: vec4<f32>) -> u32 {
     return first.x | (first.y << 12u) | (more.x << 24u) | (more.y << 26u) | (level << 28u);
 }
 
+// The radius of a ball for bounds: below zero where lines of sight may end before all of its front, so that it sets no upper bound; zero where they end behind all of it, so
+// that it blocks nothing. The twin of `BallBound::radius` in bounds.rs.
+fn radius_for_bounds(radius: f32, nearest: f32, farthest: f32, room: f32) -> f32 {
+    if farthest + room <= view.start.x {
+        return 0.0;
+    }
+    return select(-radius, radius, nearest - room > view.start.y);
+}
+
 fn put(ball: u32, splat: vec4<u32>, rectangle: vec4<f32>, least_depth: f32) {
     let tiles = tiles_of(rectangle);
     if tiles == NO_TILES {
@@ -172,10 +191,10 @@ fn put(ball: u32, splat: vec4<u32>, rectangle: vec4<f32>, least_depth: f32) {
 fn place_parallel(ball: u32, center: array<vec2<u32>, 3>, radius_bits: u32) {
     // where f64 says that it ends before the picture plane
     let end = add_double(center[2], double_of(radius_bits));
-    if (end.y & SIGN) != 0u && !is_zero_double(end) {
+    if SHOWS != BOUNDS && (end.y & SIGN) != 0u && !is_zero_double(end) {
         return;
     }
-    let splat = vec4<u32>(
+    var splat = vec4<u32>(
         single_of(multiply_double(center[0], view.scale)),
         single_of(multiply_double(center[1], view.scale)),
         single_of(center[2]),
@@ -198,11 +217,19 @@ fn place_parallel(ball: u32, center: array<vec2<u32>, 3>, radius_bits: u32) {
         leave(ball);
         return;
     }
-    put(ball, splat, rectangle, max(depth - radius - PARALLEL_ROOM * (abs(depth) + radius) - LEAST_ROOM, 0.0));
+    let room = PARALLEL_ROOM * (abs(depth) + radius) + LEAST_ROOM;
+    if SHOWS == BOUNDS {
+        // the front is deepest at the rim
+        splat.w = bitcast<u32>(radius_for_bounds(radius, depth - radius, depth, room));
+        if splat.w == 0u {
+            return;
+        }
+    }
+    put(ball, splat, rectangle, max(depth - radius - room, 0.0));
 }
 
 fn place_central(ball: u32, exact: array<vec2<u32>, 3>, radius_bits: u32) {
-    let splat = vec4<u32>(single_of(exact[0]), single_of(exact[1]), single_of(exact[2]), radius_bits);
+    var splat = vec4<u32>(single_of(exact[0]), single_of(exact[1]), single_of(exact[2]), radius_bits);
     let center = bitcast<vec3<f32>>(splat.xyz);
     let radius = bitcast<f32>(radius_bits);
     if is_far(splat) || max(max(abs(center.x), abs(center.y)), abs(center.z)) < NEAREST {
@@ -228,7 +255,17 @@ fn place_central(ball: u32, exact: array<vec2<u32>, 3>, radius_bits: u32) {
         return;
     }
     let rectangle = outline(center, distance, radius) + view.middle.xxyy;
-    put(ball, splat, rectangle, max(middle - radius - room, view.near));
+    var least = middle - radius - room;
+    if SHOWS == BOUNDS {
+        // bounds are ranges; the front is farthest where a line of sight grazes the ball
+        least = distance - radius - room;
+        let silhouette = sqrt(max((distance - radius + room) * (distance + radius + room), 0.0));
+        splat.w = bitcast<u32>(radius_for_bounds(radius, distance - radius, silhouette, room));
+        if splat.w == 0u {
+            return;
+        }
+    }
+    put(ball, splat, rectangle, max(least, view.near));
 }
 
 @compute @workgroup_size(256)

@@ -1,7 +1,6 @@
 //! The stages of a depth map as pipelines, the buffers between them, and which stage uses which buffer.
 
-use super::{BLOCK, HEAD, LEVELS, MOST_LEFT, MOST_TILES, RANGES, STEPS, tiles_before, whole};
-use belvedere_core::depth::ItemBuffer;
+use super::{BLOCK, HEAD, LEVELS, MOST_LEFT, MOST_TILES, RANGES, STEPS, Shows, tiles_before, whole};
 use belvedere_data::view::{Projection, View};
 
 /// All shaders together: each uses what stands before it.
@@ -67,12 +66,7 @@ pub(super) struct Buffers {
 
 impl Buffers {
     /// Those for so many balls, and for pictures of a width and height.
-    pub(super) fn new(
-        device: &wgpu::Device,
-        ball_count: usize,
-        [width, height]: [usize; 2],
-        items: ItemBuffer,
-    ) -> Self {
+    pub(super) fn new(device: &wgpu::Device, ball_count: usize, [width, height]: [usize; 2], shows: Shows) -> Self {
         let with_usage = |bytes: usize, usage| {
             let size = bytes.max(16) as u64;
             device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
@@ -80,7 +74,7 @@ impl Buffers {
         let copied = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         let of = |bytes: usize| with_usage(bytes, wgpu::BufferUsages::STORAGE | copied);
         let lists = (tiles_before([width, height])[LEVELS as usize] * STEPS).next_multiple_of(BLOCK);
-        let row_count = if items == ItemBuffer::With { width * height } else { 0 };
+        let row_count = if shows == Shows::Depths { 0 } else { width * height };
         Self {
             piece: with_usage(16, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST),
             splats: of(16 * ball_count),
@@ -98,14 +92,14 @@ impl Buffers {
 }
 
 impl Stages {
-    pub(super) fn new(device: &wgpu::Device, kind: Kind, items: ItemBuffer, is_counted: bool) -> Self {
+    pub(super) fn new(device: &wgpu::Device, kind: Kind, shows: Shows, is_counted: bool) -> Self {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("depth maps"),
             source: wgpu::ShaderSource::Wgsl(SHADERS.into()),
         });
-        let (kind, with_rows) = (f64::from(kind as u8), f64::from(u8::from(items == ItemBuffer::With)));
+        let (kind, shows) = (f64::from(kind as u8), f64::from(shows as u8));
         let counted = f64::from(u8::from(is_counted));
-        let constants = [("KIND", kind), ("WITH_ROWS", with_rows), ("IS_COUNTED", counted)];
+        let constants = [("KIND", kind), ("SHOWS", shows), ("IS_COUNTED", counted)];
         let stage = |name: &str, bindings| Stage {
             pipeline: device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(name),

@@ -13,7 +13,7 @@ use std::sync::Arc;
 const SIZE: [f64; 3] = [60.0, 60.0, 15.0];
 
 /// Views of every kind of a scene of [`SIZE`].
-fn views() -> Vec<(&'static str, View)> {
+pub(crate) fn views() -> Vec<(&'static str, View)> {
     let box_of = |half: f64| [[-half, -half, -8.0], [half, half, 8.0]];
     let [low, high] = box_of(31.0);
     let parallel = |forward, pixel| View::parallel(forward, low, high, pixel).unwrap();
@@ -71,7 +71,7 @@ fn assert_equal_on(gpu: &Gpu, balls: &MedialBalls, view: &View, all_items: &[Ite
     shown
 }
 
-fn on(device: &DeviceInfo) -> Gpu {
+pub(crate) fn on(device: &DeviceInfo) -> Gpu {
     Gpu::new(Choice::Number(device.number)).unwrap()
 }
 
@@ -93,7 +93,7 @@ fn depth_maps_of_random_balls_are_those_of_the_cpu() {
 }
 
 /// Sets of balls at the edges of what numbers can say.
-fn hostile() -> Vec<(&'static str, MedialBalls)> {
+pub(crate) fn hostile() -> Vec<(&'static str, MedialBalls)> {
     let plain: Vec<_> = random_balls(800, SIZE, 2.0).collect();
     let with = |others: &[([f64; 3], f64)]| balls_of(plain.iter().chain(others).copied());
     let mut unlimited = with(&[([0.0; 3], 20.0)]);

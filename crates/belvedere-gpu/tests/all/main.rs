@@ -4,6 +4,9 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![allow(clippy::cast_possible_truncation, reason = "the numbers of tests are small, or made to be f32")]
 
+#[path = "../../../belvedere/tests/all/bounded_views.rs"]
+mod bounded_views;
+mod depth_bounds;
 mod depth_maps;
 mod lines;
 

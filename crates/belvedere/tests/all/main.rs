@@ -9,6 +9,7 @@ mod ball_files;
 mod beams;
 mod between_returns;
 mod blocking;
+mod bounded_views;
 mod camera_coverage;
 mod camera_placement;
 mod carving;
