@@ -6,19 +6,20 @@
 //! ```
 //!
 //! prints the table of docs/methods/carving.md. With a scanner of `belvedere compare --regimes`, such as `leaves` or `bare`, the town and its survey are those
-//! of the comparison, and `unclassified` takes away the classes of vegetation. With `water` pulses do not return from the ground in strips of 12 m. With `blame` it says which surfaces hide what is called visible, and at which
-//! surfaces the balls sit that hide what is visible. `-- figures FOLDER` draws its pictures.
+//! of the comparison, and `unclassified` takes away the classes of vegetation. With `water` pulses do not return from the ground in strips of 12 m. With `blame` it says which surfaces hide what is called visible, at which
+//! surfaces the balls sit that hide what is visible, and what share of these errors lies at edges or in space that no pulse came near. `-- figures FOLDER` draws its pictures.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 mod figures;
 mod place;
 
+use belvedere::control::Control;
 use belvedere::medial::{CarvedParams, CrownParams, Rule, Trees};
 use belvedere::model::BallParams;
-use belvedere::query::{Answer, BlockRule, Viewer, Visibility};
+use belvedere::query::{Answer, BlockRule, UnprovenAs, Viewer, Visibility};
 use belvedere::{Error, Result};
 use belvedere_baselines::agreement::{Counts, Rate};
-use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
+use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward, scene_model};
 use belvedere_scenes::{Preset, Regime};
 use place::{Missing, Place, Question};
 use std::collections::BTreeMap;
@@ -96,7 +97,9 @@ fn main() -> Result<()> {
                 let scores = judge(&place, &model, seconds)?;
                 println!("{}-{seed} {name}: {scores}", preset.name());
                 if blames {
-                    place.blame(&model)?;
+                    let with_pulses = scene_model(&place.survey(), Outward::Survey, &params)?;
+                    let with_pulses = with_pulses.scene(&params.blocking, UnprovenAs::Reported, &Control::none())?;
+                    place.blame(&model, &with_pulses)?;
                 }
                 sums.entry(number).or_default().push(scores);
             }

@@ -7,7 +7,8 @@ mod flown;
 
 use belvedere::Bounds;
 use belvedere::cloud::to_local;
-use belvedere::query::{Answer, Viewer, Visibility};
+use belvedere::query::{Answer, MedialScene, Viewer, Visibility};
+use belvedere::vector::{cross, unit};
 use belvedere::view::to_sun;
 use belvedere::{PointCloud, Result};
 use belvedere_baselines::Survey;
@@ -25,6 +26,9 @@ const STREET_OBSERVERS: usize = 40;
 /// Targets that each of them looks at.
 const STREET_TARGETS: usize = 4000;
 const SUNS_DEG: [[f64; 2]; 3] = [[110.0, 20.0], [180.0, 65.0], [240.0, 35.0]];
+
+/// How far targets may lie inside a surface, metres: see [`belvedere::query::BlockRule::shell`].
+const SURFACE_TOLERANCE: f64 = 0.2;
 
 /// What one viewer asks of one set of targets.
 pub(crate) struct Question {
@@ -53,6 +57,33 @@ pub(crate) struct Missing {
     pub(crate) vegetation: bool,
     /// Returns from the ground in strips, as if these were canals.
     pub(crate) water: bool,
+}
+
+/// Where lines of sight lie that are alike in truth, the wrongly answered ones and all: how many, how many at edges, along unproven lines, and at either.
+#[derive(Clone, Copy, Default)]
+struct Tally {
+    wrong: [usize; 4],
+    all: [usize; 4],
+}
+
+impl Tally {
+    fn add(&mut self, [is_at_edge, is_unproven]: [bool; 2], is_wrong: bool) {
+        let counts = [true, is_at_edge, is_unproven, is_at_edge || is_unproven];
+        for (k, is_counted) in counts.into_iter().enumerate() {
+            self.all[k] += usize::from(is_counted);
+            self.wrong[k] += usize::from(is_counted && is_wrong);
+        }
+    }
+}
+
+impl std::fmt::Display for Tally {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let shares = |counts: [usize; 4]| {
+            let percent = |k: usize| 100.0 * counts[k] as f64 / counts[0].max(1) as f64;
+            format!("{:.1} % at edges, {:.1} % unproven, {:.1} % at either", percent(1), percent(2), percent(3))
+        };
+        write!(f, "of these {}; of all {}", shares(self.wrong), shares(self.all))
+    }
 }
 
 impl Place {
@@ -161,8 +192,26 @@ impl Place {
         Survey { cloud: &self.cloud, scanner: &self.scanner, models: &[] }
     }
 
-    /// Prints by surface what hides what a model calls visible, and at what its balls sit that hide what is visible.
-    pub(crate) fn blame(&self, model: &MedialBaseline) -> Result<()> {
+    /// Whether a line of sight half a spacing of pulses beside this one, on any side, is blocked in truth where this one is free, or free where it is blocked. What is nearer to
+    /// the target than the surface tolerance does not count.
+    fn is_at_edge(&self, target: [f32; 3], towards: [f64; 3], range: f64, is_free: bool) -> bool {
+        let across = unit(cross(towards, [0.0, 0.0, 1.0])).unwrap_or([1.0, 0.0, 0.0]);
+        let up = cross(across, towards);
+        let half_spacing = 0.5 / PULSES_PER_M2.sqrt();
+        let target = self.absolute(target);
+        (0..8_u32).any(|eighth| {
+            let (sin, cos) = (f64::from(eighth) * std::f64::consts::FRAC_PI_4).sin_cos();
+            let beside: [f64; 3] = std::array::from_fn(|i| {
+                target[i] + SURFACE_TOLERANCE * towards[i] + half_spacing * (cos * across[i] + sin * up[i])
+            });
+            let is_hit = || self.truth.first_hit(beside, towards, range - SURFACE_TOLERANCE).is_some();
+            (self.site().is_inside(beside) || is_hit()) == is_free
+        })
+    }
+
+    /// Prints by surface what hides what a model calls visible, and at what its balls sit that hide what is visible; and what share of both lies at edges or along lines that
+    /// the pulses of `with_pulses` do not prove.
+    pub(crate) fn blame(&self, model: &MedialBaseline, with_pulses: &MedialScene) -> Result<()> {
         let absolute = |p| self.absolute(p);
         let site = self.site();
         let kind = |triangle: u32| self.scene.materials.get(triangle as usize).map_or("?", |m| m.name());
@@ -170,6 +219,8 @@ impl Place {
             for set in ["PED", "AIR", "ROOF", "FACADE", "STREET"] {
                 let (mut missed, mut blocking) = (BTreeMap::<&str, usize>::new(), BTreeMap::<String, usize>::new());
                 let (mut visible_count, mut blocked_count) = (0, 0);
+                // those that are blocked in truth, and those that are visible
+                let mut tallies = [Tally::default(); 2];
                 for question in self.questions.iter().filter(|q| q.set == set && q.views == views) {
                     let targets = &self.targets[set];
                     let answers = model.visible(question.viewer, targets)?;
@@ -177,6 +228,11 @@ impl Place {
                         let Some((towards, range)) = super::towards(question.viewer, target) else { continue };
                         visible_count += usize::from(visible);
                         blocked_count += usize::from(!visible);
+                        let place = [
+                            self.is_at_edge(target, towards, range, visible),
+                            with_pulses.is_unproven(target.map(f64::from), towards, range),
+                        ];
+                        tallies[usize::from(visible)].add(place, visible == (answer == Answer::Blocked));
                         if !visible && answer == Answer::Visible {
                             let hit = self.truth.first_hit(absolute(target), towards, range);
                             *missed.entry(hit.map_or("?", |hit| kind(hit.triangle))).or_default() += 1;
@@ -206,8 +262,8 @@ impl Place {
                 let missed = missed.into_iter().map(|(k, v)| (k.to_owned(), share(v, blocked_count))).collect();
                 let blocking = blocking.into_iter().map(|(k, v)| (k, share(v, visible_count))).collect();
                 if visible_count > 0 {
-                    println!("  {views} {set}: false-visible by {}", list(missed));
-                    println!("  {views} {set}: false-blocked by {}", list(blocking));
+                    println!("  {views} {set}: false-visible by {}; {}", list(missed), tallies[0]);
+                    println!("  {views} {set}: false-blocked by {}; {}", list(blocking), tallies[1]);
                 }
             }
         }
