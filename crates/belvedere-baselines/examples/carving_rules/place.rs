@@ -30,6 +30,11 @@ const SUNS_DEG: [[f64; 2]; 3] = [[110.0, 20.0], [180.0, 65.0], [240.0, 35.0]];
 /// How far targets may lie inside a surface, metres: see [`belvedere::query::BlockRule::shell`].
 const SURFACE_TOLERANCE: f64 = 0.2;
 
+/// How much of a solid is thin, metres.
+const THIN: [f64; 2] = [0.2, 0.5];
+/// From one side of a surface to the other, metres.
+const SKIN: f64 = 1e-3;
+
 /// What one viewer asks of one set of targets.
 pub(crate) struct Question {
     pub(crate) set: &'static str,
@@ -221,6 +226,7 @@ impl Place {
                 let (mut visible_count, mut blocked_count) = (0, 0);
                 // those that are blocked in truth, and those that are visible
                 let mut tallies = [Tally::default(); 2];
+                let mut thin = [0; 2];
                 for question in self.questions.iter().filter(|q| q.set == set && q.views == views) {
                     let targets = &self.targets[set];
                     let answers = model.visible(question.viewer, targets)?;
@@ -236,6 +242,12 @@ impl Place {
                         if !visible && answer == Answer::Visible {
                             let hit = self.truth.first_hit(absolute(target), towards, range);
                             *missed.entry(hit.map_or("?", |hit| kind(hit.triangle))).or_default() += 1;
+                            let enters = hit.map_or(0.0, |hit| hit.range) + SKIN;
+                            let inside = std::array::from_fn(|i| absolute(target)[i] + enters * towards[i]);
+                            let solid = self.truth.first_hit(inside, towards, f64::INFINITY).map(|hit| hit.range);
+                            for (count, most) in thin.iter_mut().zip(THIN) {
+                                *count += usize::from(solid.is_some_and(|solid| solid < most));
+                            }
                         }
                         if visible && answer == Answer::Blocked {
                             let block = model.scene().first_block(target.map(f64::from), towards, range);
@@ -259,10 +271,15 @@ impl Place {
                     items.sort_by(|a, b| b.1.total_cmp(&a.1));
                     items.iter().take(9).map(|(name, v)| format!("{name} {v:.2}")).collect::<Vec<_>>().join(", ")
                 };
+                let all_missed = missed.values().sum();
                 let missed = missed.into_iter().map(|(k, v)| (k.to_owned(), share(v, blocked_count))).collect();
                 let blocking = blocking.into_iter().map(|(k, v)| (k, share(v, visible_count))).collect();
                 if visible_count > 0 {
                     println!("  {views} {set}: false-visible by {}; {}", list(missed), tallies[0]);
+                    let [narrow, half] = thin.map(|count| share(count, all_missed));
+                    println!(
+                        "  {views} {set}: of these {narrow:.1} and {half:.1} % through less than 0.2 and 0.5 m of the first solid"
+                    );
                     println!("  {views} {set}: false-blocked by {}; {}", list(blocking), tallies[1]);
                 }
             }
