@@ -13,7 +13,7 @@ use super::roof_tops::RoofTops;
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 use super::slender::{Slender, SlenderParams};
 use super::spacing::{pulse_counts, pulse_spacing};
-use super::thin_surfaces::{ThinSurfaceParams, on_thin_surfaces, on_thin_surfaces_of_part};
+use super::thin_surfaces::{self, ThinSurfaceParams, on_thin_surfaces, on_thin_surfaces_of_part};
 use super::vegetation::{VegetationParams, tell_vegetation};
 use super::whole_survey::{SurveyPart, WholeSurvey};
 use crate::neighbors::NeighborIndex;
@@ -225,6 +225,9 @@ pub struct CarvedReport {
     /// Points found on thin surfaces.
     #[serde(rename = "points_on_thin_surfaces")]
     pub thin: usize,
+    /// Balls midway between them.
+    #[serde(rename = "balls_in_thin_surfaces")]
+    pub thin_fills: usize,
     /// Points of thin relief.
     #[serde(rename = "points_on_thin_relief")]
     pub relief: usize,
@@ -404,6 +407,10 @@ pub(crate) fn carve_survey(
         }
         if let Some(relief) = &relief {
             report.relief_fills = relief.fill(&mut balls, needles, control)?;
+        }
+        if let Some(params) = &params.thin_surfaces {
+            let at = (&thin[..], &spacing[..]);
+            report.thin_fills = thin_surfaces::fill(&mut balls, positions, at, needles, params, control)?;
         }
         if let Some(slender) = &slender {
             report.slender_fills = slender.fill(&mut balls, needles, control)?;

@@ -3,7 +3,7 @@
 use crate::pulses::Needles;
 
 /// Least radius of a ball worth keeping, as a share of the most.
-const LEAST_SHARE: f32 = 0.25;
+pub(super) const LEAST_SHARE: f32 = 0.25;
 /// Most balls below each other, so that odd parameters cannot fill the memory.
 const MOST_BELOW: usize = 64;
 

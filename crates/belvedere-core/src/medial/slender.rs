@@ -5,13 +5,13 @@
 use super::bounds::{Kind, RadiusBounds};
 use super::cells::{Cells, cell};
 use super::chains::Chain;
+use super::midway::{apart, neighbors_after, one_in_each_cell};
 use crate::neighbors::{NeighborIndex, Tangent};
 use crate::pulses::Needles;
 use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Attributes, Result};
 use rayon::prelude::*;
-use std::cmp::Ordering;
 use std::f32::consts::FRAC_1_SQRT_2;
 
 /// How slender things are told and represented.
@@ -128,7 +128,8 @@ impl<'a> Slender<'a> {
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &Needles, control: &Control<'_>) -> Result<usize> {
-        let rows = self.standing_places();
+        let standing = (0..self.heights.len()).filter(|&row| self.stands(row)).collect();
+        let rows = one_in_each_cell(self.positions, standing, self.params.spacing / 2.0);
         let places: Vec<[f32; 3]> = rows.iter().map(|&row| self.positions[row]).collect();
         let index = NeighborIndex::new(&places, control)?;
         let stop = Stop::new(control);
@@ -152,24 +153,6 @@ impl<'a> Slender<'a> {
         Ok(found.len())
     }
 
-    /// Points of what stands, one in each cell of half the spacing of balls, whatever the order of the points: dense clouds have thousands
-    /// within reach of each other, and balls closer than that fill nothing more.
-    fn standing_places(&self) -> Vec<usize> {
-        let side = self.params.spacing / 2.0;
-        #[expect(clippy::cast_possible_truncation, reason = "cells of half a decimetre over any cloud; `as` saturates")]
-        let cell = |row: usize| self.positions[row].map(|v| (v / side).floor() as i32);
-        let mut rows: Vec<usize> = (0..self.heights.len()).filter(|&row| self.stands(row)).collect();
-        let first = |a: usize, b: usize| {
-            let by_axis = self.positions[a].iter().zip(&self.positions[b]).map(|(a, b)| a.total_cmp(b));
-            by_axis.fold(Ordering::Equal, Ordering::then)
-        };
-        rows.par_sort_unstable_by(|&a, &b| cell(a).cmp(&cell(b)).then(first(a, b)).then(a.cmp(&b)));
-        rows.dedup_by_key(|row| cell(*row));
-        // as the points were, so that balls of neighbours stay together
-        rows.sort_unstable();
-        rows
-    }
-
     /// Whether point `row` is part of what [`Slender::fill`] fills.
     pub(super) fn stands(&self, row: usize) -> bool {
         self.heights[row] <= self.params.standing_height
@@ -178,25 +161,16 @@ impl<'a> Slender<'a> {
     /// The balls that fill at a place and between it and those next to it.
     fn fills(&self, place: &Place, near: &[Place], needles: &Needles) -> Vec<([f32; 3], f32)> {
         let p = place.position;
-        let apart = |a: [f32; 3], b: [f32; 3]| (a[0] - b[0]).hypot(a[1] - b[1]);
-        let beside = near.iter().map(|other| other.position).filter(|q| apart(p, *q) < TOP_REACH_M);
-        let top = beside.fold(p[2], |top, q| top.max(q[2]));
+        let beside: Vec<_> = near.iter().map(|other| other.position).collect();
+        let close_by = beside.iter().filter(|q| apart(p, **q) < TOP_REACH_M);
+        let top = close_by.fold(p[2], |top, q| top.max(q[2]));
         let ground = p[2] - place.height;
         let chain = Chain { radius: self.params.standing_spacings * place.spacing, spacing: self.params.spacing };
         let mut balls: Vec<_> = chain.below([p[0], p[1], top], ground, needles).collect();
-        for (number, other) in near.iter().enumerate() {
-            let q = other.position;
+        for number in neighbors_after(p, &beside, self.params.spacing, 1.0) {
+            let q = beside[number];
             let middle = [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, p[2].max(q[2])];
-            let gap = apart(p, q);
-            // one of the two makes the balls between them, whatever the order of the points
-            let is_first = p.iter().zip(&q).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).is_some_and(|o| o.is_lt());
-            let has_third = || {
-                let mut others = near.iter().enumerate().filter(|(third, _)| *third != number);
-                others.any(|(_, third)| apart(third.position, middle) < gap / 2.0)
-            };
-            if is_first && gap > self.params.spacing && !has_third() {
-                balls.extend(chain.below(middle, ground.min(q[2] - other.height), needles));
-            }
+            balls.extend(chain.below(middle, ground.min(q[2] - near[number].height), needles));
         }
         balls
     }

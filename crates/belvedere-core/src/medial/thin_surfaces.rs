@@ -1,11 +1,14 @@
 //! Surfaces with open space close below them, told by the pulses that run there: decks, canopies, balconies, bridges.
 
 use super::bounds::Kind;
+use super::chains::LEAST_SHARE;
 use super::layers::{CELL, CellsFrom, Layers};
+use super::midway::{neighbors_after, one_in_each_cell};
 use super::whole_survey::BLOCK;
 use crate::neighbors::NeighborIndex;
 use crate::pulses::Needles;
 use belvedere_data::Result;
+use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
 use belvedere_data::control::{Control, Stop};
 use rayon::prelude::*;
 use std::f32::consts::TAU;
@@ -22,7 +25,16 @@ const SAME_SURFACE: f32 = 0.6;
 const WIDEST_OF_ALL: f32 = 3.2;
 /// How far below a voxel a point no longer belongs to its surface, metres: more than a voxel is high.
 const OF_THE_SURFACE: f32 = 0.5;
-/// Needles handed to a thread at once.
+/// Farthest neighbours that a surface goes on between, in spacings of pulses: hardly any of a surface are farther apart.
+const FARTHEST_APART_SPACINGS: f32 = 3.0;
+/// Share of the gap between neighbours, about its middle, that is clear of others. Of a surface with points at random places 1.8 % stay uncovered at 0.75, with 3.4 balls more for each point,
+/// and 7.7 % at 1, with 1.9; 5 % did with balls at points only, half as large again.
+const CLEAR_SHARE: f32 = 0.75;
+/// Nearest neighbours that anything is filled between, metres: above noise.
+const LEAST_APART: f32 = 0.05;
+/// Most difference in height of neighbours on a surface, metres.
+const SAME_LEVEL: f32 = 0.3;
+/// Needles, or points, handed to a thread at once.
 const CHUNK: usize = 1024;
 /// Needles between two looks at whether to go on.
 const CHECK_EACH: usize = 64;
@@ -33,7 +45,8 @@ const CHECK_EACH: usize = 64;
 /// seeds 1 to 3 at 10, where small stalls were missed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinSurfaceParams {
-    /// Most radius at a point of a thin surface, in spacings of pulses, above 0. Default 0.95.
+    /// Most radius of balls at points of a thin surface, and midway between neighbours among them, in spacings of pulses, above 0. Default 0.6. With balls
+    /// at points only it took 0.95 to close the surface, which made it half as thick again.
     pub radius_spacings: f32,
     /// Least and most depth below a surface at which a pulse proves it thin, metres. Default 1 to 5: nearer is noise and relief,
     /// farther the arcade of a house, whose roof is not thin.
@@ -59,7 +72,7 @@ pub struct ThinSurfaceParams {
 impl Default for ThinSurfaceParams {
     fn default() -> Self {
         Self {
-            radius_spacings: 0.95,
+            radius_spacings: 0.6,
             depths: [1.0, 5.0],
             around: 0.75,
             widest_gap: 2.7,
@@ -144,6 +157,50 @@ fn find(
         .into_par_iter()
         .map(|row| solid(row) && layers.voxel_of(in_layers[row]).is_some_and(|voxel| thin[voxel]))
         .collect())
+}
+
+/// Adds balls midway between neighbouring points of thin surfaces, where no other comes close to the middle, as large as the pulses leave them, and says how many. `thin` tells
+/// the points, as [`on_thin_surfaces`] does, about which pulses are `spacing` apart, metres.
+///
+/// # Errors
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+pub(super) fn fill(
+    balls: &mut MedialBalls,
+    positions: &[[f32; 3]],
+    (thin, spacing): (&[bool], &[f32]),
+    needles: &Needles,
+    params: &ThinSurfaceParams,
+    control: &Control<'_>,
+) -> Result<usize> {
+    let stop = Stop::new(control);
+    let rows = one_in_each_cell(positions, (0..thin.len()).filter(|&row| thin[row]).collect(), LEAST_APART);
+    let places: Vec<[f32; 3]> = rows.iter().map(|&row| positions[row]).collect();
+    let index = NeighborIndex::new(&places, control)?;
+    let fills = |number: usize| {
+        let (p, row) = (places[number], rows[number]);
+        let radius = params.radius_spacings * spacing[row];
+        let mut near = Vec::new();
+        index.within_radius(p, FARTHEST_APART_SPACINGS * spacing[row], |found| {
+            let q = places[found.index as usize];
+            if q != p && (q[2] - p[2]).abs() < SAME_LEVEL {
+                near.push(q);
+            }
+        });
+        let of_neighbor = |other: usize| {
+            let q: [f32; 3] = near[other];
+            let center = [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, (p[2] + q[2]) / 2.0 - radius];
+            (row, center, needles.clearance(center, radius))
+        };
+        let found = neighbors_after(p, &near, LEAST_APART, CLEAR_SHARE).map(of_neighbor);
+        found.filter(|&(.., left)| left >= LEAST_SHARE * radius).collect::<Vec<_>>()
+    };
+    let numbers = (0..rows.len()).into_par_iter().with_min_len(CHUNK);
+    let found: Vec<_> = numbers.filter(|_| !stop.is_set()).flat_map_iter(fills).collect();
+    stop.check()?;
+    for &(row, center, radius) in &found {
+        balls.push(row, center, radius, PULSE_TOUCH);
+    }
+    Ok(found.len())
 }
 
 /// Which voxels a needle runs below at these `depths`, where `is_roof` says that points lie around the place straight
