@@ -88,7 +88,7 @@ impl Drawable for Drawing<'_> {
     }
 }
 
-/// Bounds of depth as [`depth_bounds`] defines them, a little wider; `None` where the device is not asked, or fails.
+/// Bounds of depth as [`depth_bounds`] defines them, though not with the same bits; `None` where the device is not asked, or fails.
 ///
 /// # Errors
 /// Those of [`depth_bounds`].

@@ -111,7 +111,7 @@ fn a_canopy_hides_the_sky_and_leaves_room_below_it() {
         let visible = places.filter(|&place| scene.answer(place, towards, f64::INFINITY) == Answer::Visible);
         visible.count() as f64 / 4000.0
     };
-    // 0.32 m between pulses, at random; 0.027 measured, and a twentieth with balls of 0.95 of that at points only
+    // 0.32 m between pulses, at random; 0.027 measured; circles of 0.95 of that at points only leave a twentieth of a plane open
     let through = share(1.5, [0.0, 0.0, 1.0]);
     assert!(through < 0.04, "{through} of lines see through the canopy");
     // balls of 0.95 spacings reach 0.6 m down
