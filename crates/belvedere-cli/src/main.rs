@@ -8,6 +8,7 @@ mod interrupt;
 mod memory;
 mod pipeline;
 mod progress;
+mod run;
 mod scene_config;
 mod simulated;
 mod summary;

@@ -10,7 +10,7 @@ use crate::arguments::{
     ViewChoice,
 };
 use crate::device::with_device;
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::depth::Profile;
@@ -30,13 +30,13 @@ pub(crate) fn flagged<T>(flag: &str, result: belvedere::Result<T>) -> Result<T> 
 }
 
 /// Reads the cloud and reports on it.
-pub(crate) fn read(input: &CloudInput, stages: &mut Stages, summary: &mut Summary) -> Result<PointCloud> {
-    Ok(read_counted(input, stages, summary)?.0)
+pub(crate) fn read(input: &CloudInput, run: &mut Run) -> Result<PointCloud> {
+    Ok(read_counted(input, run)?.0)
 }
 
 /// Reads the cloud for results whose rows belong to the rows of the file, which a point left out would shift.
-pub(crate) fn read_every_row(input: &CloudInput, stages: &mut Stages, summary: &mut Summary) -> Result<PointCloud> {
-    let (cloud, report) = read_counted(input, stages, summary)?;
+pub(crate) fn read_every_row(input: &CloudInput, run: &mut Run) -> Result<PointCloud> {
+    let (cloud, report) = read_counted(input, run)?;
     check_every_row(&report)?;
     Ok(cloud)
 }
@@ -54,14 +54,14 @@ pub(crate) fn check_every_row(report: &ReadReport) -> Result<()> {
     )
 }
 
-fn read_counted(input: &CloudInput, stages: &mut Stages, summary: &mut Summary) -> Result<(PointCloud, ReadReport)> {
+fn read_counted(input: &CloudInput, run: &mut Run) -> Result<(PointCloud, ReadReport)> {
     let mut options = ReadOptions::new();
     options.crs = input.crs.clone();
     options.up = input.up.into();
-    let (cloud, report) = stages.run("reading", 0, |control| read_cloud(&input.clouds, &options, control))?;
-    summary.add("points", cloud.len());
-    summary.add("reading", Summary::of(&report));
-    warn_of_missing(&report, summary);
+    let (cloud, report) = run.stage("reading", 0, |control| read_cloud(&input.clouds, &options, control))?;
+    run.summary.add("points", cloud.len());
+    run.summary.add("reading", Summary::of(&report));
+    warn_of_missing(&report, &mut run.summary);
     Ok((cloud, report))
 }
 
@@ -110,18 +110,13 @@ pub(crate) enum Points {
 }
 
 /// The scene of a ball file, or of a cloud, as it will be with what is planned.
-pub(crate) fn scene(
-    arguments: &SceneInput,
-    points: Points,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<Scene> {
+pub(crate) fn scene(arguments: &SceneInput, points: Points, run: &mut Run) -> Result<Scene> {
     let clears = !arguments.plan.clear.is_empty();
-    let mut scene = present_scene(arguments, if clears { Points::Keep } else { points }, stages, summary)?;
+    let mut scene = present_scene(arguments, if clears { Points::Keep } else { points }, run)?;
     if clears {
-        plan::clear(&mut scene, &arguments.plan, stages, summary)?;
+        plan::clear(&mut scene, &arguments.plan, run)?;
     }
-    scene.model = with_device(planned(scene.model, &arguments.plan, stages, summary)?);
+    scene.model = with_device(planned(scene.model, &arguments.plan, run)?);
     Ok(scene)
 }
 
@@ -131,37 +126,37 @@ pub(crate) fn is_file(path: &Path) -> bool {
 }
 
 /// The scene of a ball file, or of a cloud, as it is.
-fn present_scene(arguments: &SceneInput, points: Points, stages: &mut Stages, summary: &mut Summary) -> Result<Scene> {
+fn present_scene(arguments: &SceneInput, points: Points, run: &mut Run) -> Result<Scene> {
     if let [path] = &arguments.input.clouds[..]
         && is_file(path)
         && is_ball_file(path)?
     {
         refuse_flags_of_clouds(arguments, path)?;
-        let parts = stages.run("reading balls", 0, |_| read_balls(path))?;
+        let parts = run.stage("reading balls", 0, |_| read_balls(path))?;
         if parts.provenance.get("side").is_some_and(|side| side == "exterior") {
             bail!(
                 "{}: these are exterior balls (--side exterior), which block nothing; use interior balls",
                 path.display()
             );
         }
-        summary.add("balls_read", parts.balls.len());
+        run.summary.add("balls_read", parts.balls.len());
         let model = SceneModel::from_parts(parts)?;
         let cloud = PointCloud::in_frame(model.frame().clone());
         return Ok(Scene { model, cloud, left_out: ReadReport::default() });
     }
     let balls = arguments.shrinking.params(MethodChoice::Carved)?;
-    let (mut cloud, left_out) = read_counted(&arguments.input, stages, summary)?;
+    let (mut cloud, left_out) = read_counted(&arguments.input, run)?;
     let frame = cloud.frame.clone();
-    let params = params::model(&arguments.cleaning, &arguments.orienting, balls, &frame.crs, stages)?;
+    let params = params::model(&arguments.cleaning, &arguments.orienting, balls, &frame.crs, run)?;
     let built = match points {
-        Points::Keep => SceneModel::build(&cloud, &params, &stages.control()),
+        Points::Keep => SceneModel::build(&cloud, &params, &run.control()),
         Points::LetGo => {
             let given = std::mem::replace(&mut cloud, PointCloud::in_frame(frame));
-            SceneModel::build_owned(given, &params, &stages.control())
+            SceneModel::build_owned(given, &params, &run.control())
         }
     };
     let (model, report) = built.map_err(|error| advised(&arguments.input, error))?;
-    summary.add_report(&report);
+    run.summary.add_report(&report);
     Ok(Scene { model, cloud, left_out })
 }
 

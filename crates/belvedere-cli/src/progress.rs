@@ -3,7 +3,7 @@
 use crate::arguments::{Global, ProgressChoice};
 use crate::interrupt;
 use crate::summary::{note, rounded};
-use belvedere::control::{Control, Watcher};
+use belvedere::control::{Control, StageEnd, Watcher};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -13,15 +13,15 @@ const BETWEEN_LINES: Duration = Duration::from_millis(200);
 
 /// The stages of a command, one after the other: what the library reports to, and where it learns of Ctrl-C.
 pub(crate) struct Stages {
-    run: Run,
+    progress: Progress,
 }
 
 /// The watcher of a whole run.
-struct Run {
+struct Progress {
     shown: bool,
     json: bool,
     verbose: bool,
-    /// What else is told of all this.
+    /// Another watcher of the same stages.
     also: Option<Box<dyn Watcher + Send>>,
     state: Mutex<State>,
 }
@@ -47,8 +47,8 @@ struct Open {
 }
 
 impl Open {
-    /// A line of JSON: how far this stage is.
-    fn line(&mut self, is_finished: bool) {
+    /// A line of JSON: how far this stage is, and the stage that it is a part of.
+    fn line(&mut self, within: Option<&'static str>, is_finished: bool) {
         self.last_line = Instant::now();
         let seconds = rounded(self.start.elapsed().saturating_sub(self.within).as_secs_f64(), 3);
         // a stage that does not count is done when it ends
@@ -56,13 +56,15 @@ impl Open {
         let done = if is_finished { total } else { self.done };
         let total = (total > 0).then_some(total);
         note(
-            &serde_json::json!({ "stage": self.name, "done": done, "total": total, "seconds": seconds, "finished": is_finished })
-                .to_string(),
+            &serde_json::json!({
+                "stage": self.name, "within": within, "done": done, "total": total, "seconds": seconds, "finished": is_finished
+            })
+            .to_string(),
         );
     }
 }
 
-impl Run {
+impl Progress {
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -73,7 +75,7 @@ impl Run {
     }
 }
 
-impl Watcher for Run {
+impl Watcher for Progress {
     fn begin(&self, stage: &'static str, total: usize) {
         if let Some(also) = &self.also {
             also.begin(stage, total);
@@ -93,7 +95,7 @@ impl Watcher for Run {
         let start = Instant::now();
         let mut open = Open { name: stage, start, within: Duration::ZERO, total, done: 0, bar, last_line: start };
         if self.json {
-            open.line(false);
+            open.line(state.open.last().map(|outer| outer.name), false);
         }
         state.open.push(open);
     }
@@ -102,24 +104,24 @@ impl Watcher for Run {
         if let Some(also) = &self.also {
             also.advance(count);
         }
-        if let Some(open) = self.state().open.last_mut() {
-            open.done += count;
-            open.bar.inc(count as u64);
-            if self.json && open.last_line.elapsed() >= BETWEEN_LINES {
-                open.line(false);
-            }
+        let mut state = self.state();
+        let Some((open, outer)) = state.open.split_last_mut() else { return };
+        open.done += count;
+        open.bar.inc(count as u64);
+        if self.json && open.last_line.elapsed() >= BETWEEN_LINES {
+            open.line(outer.last().map(|outer| outer.name), false);
         }
     }
 
-    fn end(&self, stage: &'static str) {
+    fn end(&self, stage: &'static str, end: StageEnd) {
         if let Some(also) = &self.also {
-            also.end(stage);
+            also.end(stage, end);
         }
         let mut state = self.state();
         let Some(place) = state.open.iter().rposition(|open| open.name == stage) else { return };
         let mut open = state.open.remove(place);
         if self.json {
-            open.line(true);
+            open.line(state.open.last().map(|outer| outer.name), end == StageEnd::Finished);
         }
         open.bar.finish_and_clear();
         let whole = open.start.elapsed();
@@ -148,31 +150,37 @@ impl Stages {
     pub(crate) fn new(global: &Global) -> Self {
         let json = global.progress == ProgressChoice::Json;
         let shown = global.progress == ProgressChoice::Bar && !global.quiet;
-        Self { run: Run { shown, verbose: global.verbose, json, also: None, state: Mutex::default() } }
+        Self { progress: Progress { shown, verbose: global.verbose, json, also: None, state: Mutex::default() } }
     }
 
-    /// The same, of which `also` is told too.
+    /// The same, which `watcher` follows too.
     #[cfg(feature = "view")]
-    pub(crate) fn told_also(mut self, also: impl Watcher + Send + 'static) -> Self {
-        self.run.also = Some(Box::new(also));
+    pub(crate) fn watched(mut self, watcher: impl Watcher + Send + 'static) -> Self {
+        self.progress.also = Some(Box::new(watcher));
         self
     }
 
     /// What functions of the library report their stages to.
     pub(crate) fn control(&self) -> Control<'_> {
-        Control::new(&self.run)
+        Control::new(&self.progress)
     }
 
-    /// Runs one stage over `count` items (0: unknown).
-    pub(crate) fn run<T>(&mut self, name: &'static str, count: usize, work: impl FnOnce(&Control<'_>) -> T) -> T {
-        self.run.begin(name, count);
+    /// Runs one stage over `count` items (0: unknown), which finished if `is_finished` says so of its result.
+    pub(crate) fn run<T>(
+        &self,
+        name: &'static str,
+        count: usize,
+        work: impl FnOnce(&Control<'_>) -> T,
+        is_finished: impl FnOnce(&T) -> bool,
+    ) -> T {
+        self.progress.begin(name, count);
         let result = work(&self.control());
-        self.run.end(name);
+        self.progress.end(name, if is_finished(&result) { StageEnd::Finished } else { StageEnd::Stopped });
         result
     }
 
     /// Seconds that each stage took, stages of one name together.
     pub(crate) fn into_seconds(self) -> Vec<(&'static str, f64)> {
-        self.run.state.into_inner().unwrap_or_else(PoisonError::into_inner).seconds
+        self.progress.state.into_inner().unwrap_or_else(PoisonError::into_inner).seconds
     }
 }

@@ -3,15 +3,27 @@
 use crate::{Error, Result};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// How a stage ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StageEnd {
+    /// Its work is done.
+    Finished,
+    /// It was cancelled, or failed.
+    Stopped,
+}
+
 /// What the owner of long work provides: a progress bar, a notebook, a page, a signal handler. Every method may be called from any
 /// thread and should return at once.
+///
+/// Stages nest: a stage that begins while another is open is a part of it, and the outer one goes on when it ends. Finished items belong to
+/// the innermost open stage. [`OpenStages`] keeps account of this.
 pub trait Watcher: Sync {
-    /// A stage begins that has `total` items; 0 where the number is not known. Stages do not nest.
+    /// A stage begins that has `total` items; 0 where the number is not known.
     fn begin(&self, _stage: &'static str, _total: usize) {}
-    /// `count` more items of the current stage are finished.
+    /// `count` more items of the innermost open stage are finished.
     fn advance(&self, _count: usize) {}
-    /// The stage is over, finished or not.
-    fn end(&self, _stage: &'static str) {}
+    /// The stage is over.
+    fn end(&self, _stage: &'static str, _end: StageEnd) {}
     /// Whether the work should stop. It is asked often, and should return at once.
     fn is_cancelled(&self) -> bool {
         false
@@ -44,11 +56,11 @@ impl<'a> Control<'a> {
         let Some(watcher) = self.0 else { return work() };
         watcher.begin(name, total);
         let result = work();
-        watcher.end(name);
+        watcher.end(name, if result.is_ok() { StageEnd::Finished } else { StageEnd::Stopped });
         result
     }
 
-    /// Reports that `count` more items of the current stage are finished.
+    /// Reports that `count` more items of the innermost open stage are finished.
     pub fn advance(&self, count: usize) {
         if let Some(watcher) = self.0 {
             watcher.advance(count);
@@ -67,6 +79,56 @@ impl<'a> Control<'a> {
     /// [`Error::Cancelled`].
     pub fn check(&self) -> Result<()> {
         if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
+    }
+}
+
+/// A stage that has begun.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OpenStage {
+    /// Its name.
+    pub name: &'static str,
+    /// Number of its items; 0 where it is not known.
+    pub total: usize,
+    /// Items that are finished.
+    pub done: usize,
+}
+
+/// The stages that are open, the innermost last: what a watcher that shows one stage at a time keeps.
+#[derive(Clone, Debug, Default)]
+pub struct OpenStages {
+    open: Vec<OpenStage>,
+    /// The outermost stage that finished last.
+    finished: Option<OpenStage>,
+}
+
+impl OpenStages {
+    /// A stage begins.
+    pub fn begin(&mut self, name: &'static str, total: usize) {
+        self.open.push(OpenStage { name, total, done: 0 });
+    }
+
+    /// More items of the innermost open stage are finished.
+    pub fn advance(&mut self, count: usize) {
+        if let Some(stage) = self.open.last_mut() {
+            stage.done += count;
+        }
+    }
+
+    /// A stage ends, with the stages in it that are still open.
+    pub fn end(&mut self, name: &'static str, end: StageEnd) {
+        let Some(place) = self.open.iter().rposition(|stage| stage.name == name) else { return };
+        let stage = self.open[place];
+        self.open.truncate(place);
+        if self.open.is_empty() && end == StageEnd::Finished {
+            // items that had nothing to do are done too
+            self.finished = Some(OpenStage { done: stage.done.max(stage.total), ..stage });
+        }
+    }
+
+    /// The innermost open stage; the last that finished where none is open.
+    #[must_use]
+    pub fn current(&self) -> Option<OpenStage> {
+        self.open.last().copied().or(self.finished)
     }
 }
 
@@ -126,6 +188,7 @@ mod tests {
         begun: AtomicUsize,
         done: AtomicUsize,
         ended: AtomicUsize,
+        finished: AtomicUsize,
         cancelled: AtomicBool,
     }
 
@@ -136,8 +199,9 @@ mod tests {
         fn advance(&self, count: usize) {
             self.done.fetch_add(count, Ordering::Relaxed);
         }
-        fn end(&self, _stage: &'static str) {
+        fn end(&self, _stage: &'static str, end: StageEnd) {
             self.ended.fetch_add(1, Ordering::Relaxed);
+            self.finished.fetch_add(usize::from(end == StageEnd::Finished), Ordering::Relaxed);
         }
         fn is_cancelled(&self) -> bool {
             self.cancelled.load(Ordering::Relaxed)
@@ -155,8 +219,24 @@ mod tests {
         };
         assert!(matches!(control.stage("counting points", 5, work), Err(Error::Cancelled)));
         assert!(matches!(control.stage("never run", 7, || Ok(())), Err(Error::Cancelled)));
-        let counts = [&watcher.begun, &watcher.done, &watcher.ended].map(|count| count.load(Ordering::Relaxed));
-        assert_eq!(counts, [5, 3, 1]);
+        let counts = [&watcher.begun, &watcher.done, &watcher.ended, &watcher.finished];
+        assert_eq!(counts.map(|count| count.load(Ordering::Relaxed)), [5, 3, 1, 0]);
         assert!(Control::none().check().is_ok());
+    }
+
+    #[test]
+    fn a_stage_goes_on_when_the_one_within_it_ends() {
+        let mut stages = OpenStages::default();
+        stages.begin("finding the surface", 0);
+        stages.begin("computing top surface", 8);
+        stages.advance(3);
+        assert_eq!(stages.current(), Some(OpenStage { name: "computing top surface", total: 8, done: 3 }));
+        stages.end("computing top surface", StageEnd::Finished);
+        assert_eq!(stages.current().map(|stage| stage.name), Some("finding the surface"));
+        stages.end("finding the surface", StageEnd::Stopped);
+        assert_eq!(stages.current(), None);
+        stages.begin("testing sun", 5);
+        stages.end("testing sun", StageEnd::Finished);
+        assert_eq!(stages.current(), Some(OpenStage { name: "testing sun", total: 5, done: 5 }));
     }
 }

@@ -1,12 +1,12 @@
 //! Long work: without the interpreter, with progress, and stopped by Ctrl-C.
 
 use crate::errors::exception;
-use belvedere::control::{Control, Watcher};
+use belvedere::control::{Control, OpenStages, StageEnd, Watcher};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// How often signals are looked for and progress is reported.
@@ -17,19 +17,19 @@ const PATIENCE: Duration = Duration::from_millis(100);
 
 #[derive(Default)]
 struct Watch {
-    /// Name and number of items of the current stage.
-    stage: Mutex<(&'static str, usize)>,
-    done: AtomicUsize,
+    stages: Mutex<OpenStages>,
     is_cancelled: AtomicBool,
 }
 
 impl Watcher for Watch {
     fn begin(&self, stage: &'static str, total: usize) {
-        *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = (stage, total);
-        self.done.store(0, Ordering::Relaxed);
+        self.stages().begin(stage, total);
     }
     fn advance(&self, count: usize) {
-        self.done.fetch_add(count, Ordering::Relaxed);
+        self.stages().advance(count);
+    }
+    fn end(&self, stage: &'static str, end: StageEnd) {
+        self.stages().end(stage, end);
     }
     fn is_cancelled(&self) -> bool {
         self.is_cancelled.load(Ordering::Relaxed)
@@ -37,18 +37,16 @@ impl Watcher for Watch {
 }
 
 impl Watch {
-    /// The work is over: items that had nothing to do are done too.
-    fn finish(&self) {
-        let (_, total) = *self.stage.lock().unwrap_or_else(PoisonError::into_inner);
-        self.done.fetch_max(total, Ordering::Relaxed);
+    fn stages(&self) -> MutexGuard<'_, OpenStages> {
+        self.stages.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Hands stage, items done and items in all to `progress`, if there is one; what it raises cancels the work.
     fn report(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
         let Some(progress) = progress else { return Ok(()) };
-        let (stage, total) = *self.stage.lock().unwrap_or_else(PoisonError::into_inner);
-        if !stage.is_empty() {
-            progress.call1(py, (stage, self.done.load(Ordering::Relaxed), total))?;
+        let current = self.stages().current();
+        if let Some(stage) = current {
+            progress.call1(py, (stage.name, stage.done, stage.total))?;
         }
         Ok(())
     }
@@ -78,7 +76,6 @@ pub(crate) fn run<T: Send + 'static>(
         match py.detach(|| wait(POLL)) {
             Ok(result) => {
                 let value = result.map_err(exception)?;
-                watch.finish();
                 watch.report(py, progress.as_ref())?;
                 return Ok(value);
             }

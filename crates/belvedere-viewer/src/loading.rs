@@ -3,7 +3,7 @@
 use crate::results::{PointsOf, ResultFile};
 use crate::scene::{Scene, Shown};
 use belvedere::cloud::to_local;
-use belvedere::control::{Control, Watcher};
+use belvedere::control::{Control, OpenStages, StageEnd, Watcher};
 use belvedere::io::{GeojsonFeature, PlacedRaster, PointResults};
 use belvedere::model::SceneModel;
 use belvedere::{Bounds, Frame, Mesh, PointCloud, Result};
@@ -17,8 +17,7 @@ pub struct Loading(Arc<Mutex<State>>);
 /// What there is so far.
 #[derive(Clone, Default)]
 pub(crate) struct State {
-    /// Name of the stage under way, its items and how many of them are done.
-    pub(crate) stage: (&'static str, usize, usize),
+    pub(crate) stages: OpenStages,
     pub(crate) shown: Option<Arc<Shown>>,
     pub(crate) scene: Option<Arc<Scene>>,
     /// Corners of the triangles of meshes, local metres, nine f32 each, little endian.
@@ -126,9 +125,12 @@ impl Loading {
 
 impl Watcher for Loading {
     fn begin(&self, stage: &'static str, total: usize) {
-        self.state().stage = (stage, total, 0);
+        self.state().stages.begin(stage, total);
     }
     fn advance(&self, count: usize) {
-        self.state().stage.2 += count;
+        self.state().stages.advance(count);
+    }
+    fn end(&self, stage: &'static str, end: StageEnd) {
+        self.state().stages.end(stage, end);
     }
 }

@@ -101,10 +101,12 @@ fn file(path: &str) -> Response {
 
 async fn state(State(shared): State<Arc<Shared>>) -> Json<Value> {
     let now = shared.loading.read();
-    let (stage, total, done) = now.stage;
+    let stage = now.stages.current();
     Json(json!({
         "title": shared.title,
-        "stage": stage, "total": total, "done": done,
+        "stage": stage.map_or("", |stage| stage.name),
+        "total": stage.map_or(0, |stage| stage.total),
+        "done": stage.map_or(0, |stage| stage.done),
         "failure": now.failure,
         "mesh_count": now.meshes.len(),
         "results": now.results.iter().map(|file| file.describe()).collect::<Vec<_>>(),

@@ -1,6 +1,6 @@
 //! A model of a cloud, held against the exact town.
 
-use belvedere::control::{Control, Watcher};
+use belvedere::control::{Control, StageEnd, Watcher};
 use belvedere::medial::CarvedParams;
 use belvedere::model::{BallParams, BallsReport, BuildReport, ModelParams, OrientBy, SceneModel};
 use belvedere::query::{Answer, MedialScene, UnprovenAs, Viewer, Visibility};
@@ -173,7 +173,7 @@ impl Watcher for Clock {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
     }
 
-    fn end(&self, stage: &'static str) {
+    fn end(&self, stage: &'static str, _end: StageEnd) {
         if let Some(start) = *self.0.lock().unwrap_or_else(PoisonError::into_inner) {
             eprintln!("    {:6.2} s {stage}", start.elapsed().as_secs_f64());
         }

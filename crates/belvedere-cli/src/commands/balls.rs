@@ -3,7 +3,7 @@
 use super::{check_output, check_parent, extension, is_folder, is_written_back};
 use crate::arguments::{Balls, Cleaning, CloudInput, Global, MethodChoice, SideChoice, Usage};
 use crate::pipeline::{self, params};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::PointCloud;
@@ -36,64 +36,50 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
             "--method carved builds interior balls in a ball file; a folder and --side exterior need tau or angles";
         return Err(Usage(what.to_owned()).into());
     }
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
+    let mut run = Run::new(global);
     let cloud = if is_folder {
-        pipeline::read_every_row(&arguments.input, &mut stages, &mut summary)?
+        pipeline::read_every_row(&arguments.input, &mut run)?
     } else {
-        pipeline::read(&arguments.input, &mut stages, &mut summary)?
+        pipeline::read(&arguments.input, &mut run)?
     };
     let nothing = Cleaning::nothing();
     let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
-    let params = params::model(cleaning, &arguments.orienting, balls, &cloud.frame.crs, &mut stages)?;
+    let params = params::model(cleaning, &arguments.orienting, balls, &cloud.frame.crs, &mut run)?;
     match (is_folder, arguments.side) {
-        (true, _) => write_folder(arguments, global, &cloud, &params, &mut stages, &mut summary)?,
+        (true, _) => write_folder(arguments, global, &cloud, &params, &mut run)?,
         (false, side) => {
             let model = match side {
-                SideChoice::Interior => interior(&arguments.input, cloud, &params, &stages, &mut summary)?,
-                SideChoice::Exterior => exterior(&arguments.input, &cloud, &params, &stages, &mut summary)?,
+                SideChoice::Interior => interior(&arguments.input, cloud, &params, &mut run)?,
+                SideChoice::Exterior => exterior(&arguments.input, &cloud, &params, &mut run)?,
             };
             let inputs: Vec<String> = arguments.input.clouds.iter().map(|p| p.display().to_string()).collect();
             let program = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
             let model = model.with_provenance("program", program).with_provenance("input", inputs.join(" "));
             if model.pulses.is_some() && extension(&arguments.output) != "npz" {
-                summary.add("not_written", "pulses: only .npz keeps them, which unproven answers need");
+                run.summary.add("not_written", "pulses: only .npz keeps them, which unproven answers need");
             }
-            stages.run("writing", 0, |_| write_balls(&arguments.output, &model))?;
+            run.stage("writing", 0, |_| write_balls(&arguments.output, &model))?;
         }
     }
-    summary.add("written", arguments.output.display().to_string());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("written", arguments.output.display().to_string());
+    Ok(run.finish())
 }
 
 /// The scene model, as it is saved.
-fn interior(
-    input: &CloudInput,
-    cloud: PointCloud,
-    params: &ModelParams,
-    stages: &Stages,
-    summary: &mut Summary,
-) -> Result<ModelParts> {
-    let built = SceneModel::build_owned(cloud, params, &stages.control());
+fn interior(input: &CloudInput, cloud: PointCloud, params: &ModelParams, run: &mut Run) -> Result<ModelParts> {
+    let built = SceneModel::build_owned(cloud, params, &run.control());
     let (model, report) = built.map_err(|error| pipeline::advised(input, error))?;
-    summary.add_report(&report);
+    run.summary.add_report(&report);
     Ok(model.into_parts())
 }
 
 /// Balls in free space, which are for looking at and for other programs: no scene is made of them.
-fn exterior(
-    input: &CloudInput,
-    cloud: &PointCloud,
-    params: &ModelParams,
-    stages: &Stages,
-    summary: &mut Summary,
-) -> Result<ModelParts> {
-    let prepared = OrientedSurvey::prepare(cloud, params, &stages.control());
+fn exterior(input: &CloudInput, cloud: &PointCloud, params: &ModelParams, run: &mut Run) -> Result<ModelParts> {
+    let prepared = OrientedSurvey::prepare(cloud, params, &run.control());
     let (survey, report) = prepared.map_err(|error| pipeline::advised(input, error))?;
-    summary.add_report(&report);
-    let (parts, report) = survey.exterior_parts(cloud.frame.clone(), params, &stages.control())?;
-    summary.add("exterior_balls", Summary::of(&report));
+    run.summary.add_report(&report);
+    let (parts, report) = survey.exterior_parts(cloud.frame.clone(), params, &run.control())?;
+    run.summary.add("exterior_balls", Summary::of(&report));
     Ok(parts)
 }
 
@@ -102,15 +88,14 @@ fn write_folder(
     global: &Global,
     cloud: &PointCloud,
     params: &ModelParams,
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<()> {
-    let prepared = OrientedSurvey::prepare(cloud, params, &stages.control());
+    let prepared = OrientedSurvey::prepare(cloud, params, &run.control());
     let (survey, report) = prepared.map_err(|error| pipeline::advised(&arguments.input, error))?;
-    summary.add_report(&report);
+    run.summary.add_report(&report);
     let mut made = |name, side| -> Result<MedialBalls> {
-        let (balls, report) = survey.shrink(side, params.balls.shrinking(), &stages.control())?;
-        summary.add(name, Summary::of(&report));
+        let (balls, report) = survey.shrink(side, params.balls.shrinking(), &run.control())?;
+        run.summary.add(name, Summary::of(&report));
         Ok(balls)
     };
     let interior = made("interior_balls", Side::Interior)?;
@@ -137,7 +122,7 @@ fn write_folder(
     folder.ma_qidx_out = Some(&outer_touch);
     let (sizes, keep);
     if let Some(spacing) = arguments.simplify {
-        sizes = stages.run("feature size", 0, |control| {
+        sizes = run.stage("feature size", 0, |control| {
             local_feature_size(&cloud.positions, &[&interior, &exterior], &FeatureSizeParams::default(), control)
         })?;
         let params =
@@ -147,10 +132,10 @@ fn write_folder(
             .map(u8::from)
             .collect::<Vec<u8>>();
         let kept = keep.iter().filter(|&&k| k == 1).count();
-        summary.add("thinning_kept_percent", percent(kept, keep.len()));
+        run.summary.add("thinning_kept_percent", percent(kept, keep.len()));
         folder.lfs = Some(&sizes);
         folder.decimate_lfs = Some(&keep);
     }
-    stages.run("writing", 0, |_| write_masbcpp(&arguments.output, &folder))?;
+    run.stage("writing", 0, |_| write_masbcpp(&arguments.output, &folder))?;
     Ok(())
 }

@@ -8,7 +8,7 @@ use super::sights::{ground, ground_cloud, proving_blockers};
 use super::{check_output, warn_of_geojson};
 use crate::arguments::{Cameras, Global, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::cameras::{
@@ -28,40 +28,39 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     let zone = flagged("--fresnel-percent", zone)?;
     let lens = places::lens(&arguments.lens)?;
     let mounting = places::mounting(&arguments.lens, lens);
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
-    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
+    let mut run = Run::new(global);
+    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut run)?;
     let written: Vec<PathBuf> =
         arguments.output.iter().chain(&arguments.curve).chain(&arguments.footprints).cloned().collect();
-    warn_of_geojson(&written, &scene.cloud.frame.crs, &mut summary);
+    warn_of_geojson(&written, &scene.cloud.frame.crs, &mut run.summary);
     let north = arguments.north.of_scene(&scene);
-    north.report(&mut summary);
+    north.report(&mut run.summary);
     let bounds = scene.model.bounds().on_map();
     let cell = arguments.targets.cell.unwrap_or_else(|| observer_cell_for(bounds.0, bounds.1));
     let grid = flagged("--cell", map_grid(&scene, cell))?;
-    let (cloud, ground_points) = ground_cloud(&arguments.targets.ground, &mut scene, &mut stages)?;
-    let ground = ground(&cloud, ground_points, grid, &mut stages, &mut summary)?;
+    let (cloud, ground_points) = ground_cloud(&arguments.targets.ground, &mut scene, &mut run)?;
+    let ground = ground(&cloud, ground_points, grid, &mut run)?;
     let profile = arguments.scene.profile.into();
-    let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
+    let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
     let site = what::Site { scene: &scene, cloud: &cloud, ground: &ground };
-    let targets = what::targets(&arguments.targets, &site, global.seed, &mut stages, &mut summary)?;
+    let targets = what::targets(&arguments.targets, &site, &mut run)?;
 
     let standing = places::Standing { site: &site, blockers: &blockers, mounting: &mounting, north: north.of_grid };
     let existing = match &arguments.existing {
-        Some(path) => standing.existing(path, arguments.camera_height, &mut stages, &mut summary)?,
+        Some(path) => standing.existing(path, arguments.camera_height, &mut run)?,
         None => Vec::new(),
     };
-    let mut candidates = standing.candidates(arguments, ground_points, &mut stages, &mut summary)?;
+    let mut candidates = standing.candidates(arguments, ground_points, &mut run)?;
     let given = candidates.len();
     if let Some(path) = &arguments.lens.private {
-        let private = what::private(path, &arguments.targets, &site, &mut summary)?;
-        stages.run("testing private places", given, |control| {
+        let private = what::private(path, &arguments.targets, &site, &mut run.summary)?;
+        run.stage("testing private places", given, |control| {
             leave_out_private(&blockers, &mut candidates, &private, &earth, control)
         })?;
     }
     let mut section = Summary::default();
     section.add("count", given).add("see_private_places", given - candidates.len()).add("existing", existing.len());
-    summary.add("cameras_to_choose_from", section);
+    run.summary.add("cameras_to_choose_from", section);
     if given == 0 {
         bail!("there is no place for a camera: all lie inside obstacles, below the ground or outside the cloud");
     }
@@ -75,12 +74,12 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
         flagged("--density, --max-distance", lens.required_density(arguments.lens.density.map(|density| density.0)))?;
     let params =
         CoverageParams::default().with_density(density).with_earth(earth).with_unproven(unproven).with_zone(zone);
-    let (table, report) = stages.run("testing lines of sight", cameras.len(), |control| {
+    let (table, report) = run.stage("testing lines of sight", cameras.len(), |control| {
         coverage(&blockers, &cameras, &targets, &params, control)
     })?;
     let mut section = Summary::default();
     section.add("pixels_per_m", rounded(density, 3)).add_report(&report).add("covered_pairs", table.pair_count());
-    summary.add("pictures", section);
+    run.summary.add("pictures", section);
 
     let goal = match (arguments.goal.count, arguments.goal.coverage) {
         (_, Some(percent)) => Goal::Coverage(percent / 100.0),
@@ -91,22 +90,21 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
         .with_required(u32::try_from(arguments.required)?)
         .with_search_limit(arguments.search_limit);
     let weights = counted_weights(&targets);
-    let placed = stages.run("choosing cameras", 0, |control| place_cameras(&table, &weights, &params, control));
+    let placed = run.stage("choosing cameras", 0, |control| place_cameras(&table, &weights, &params, control));
     let placed = flagged("--coverage", placed)?;
-    add_placement(&mut summary, &placed, &weights, arguments.required);
+    add_placement(&mut run.summary, &placed, &weights, arguments.required);
     let found = Found::new(&poses, existing.len(), &table, &placed, &targets, north.of_grid);
     for output in &arguments.output {
-        stages.run("writing", 0, |_| found.write(output, &cloud))?;
+        run.stage("writing", 0, |_| found.write(output, &cloud))?;
     }
     if let Some(output) = &arguments.curve {
-        stages.run("writing", 0, |_| found.write_curve(output))?;
+        run.stage("writing", 0, |_| found.write_curve(output))?;
     }
     if let Some(output) = &arguments.footprints {
-        stages.run("writing", 0, |_| found.write_footprints(output))?;
+        run.stage("writing", 0, |_| found.write_footprints(output))?;
     }
-    summary.add("written", written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("written", written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    Ok(run.finish())
 }
 
 fn check(arguments: &Cameras) -> Result<()> {

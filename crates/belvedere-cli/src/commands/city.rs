@@ -5,7 +5,7 @@ mod questions;
 use super::{check_folder, check_output};
 use crate::arguments::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, Usage};
 use crate::pipeline::{areas, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::Error;
@@ -31,8 +31,7 @@ pub(crate) fn run(arguments: &City, global: &Global) -> Result<Summary> {
 fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
     questions::check(arguments)?;
     check_folder(&arguments.output)?;
-    let stages = Stages::new(global);
-    let mut summary = Summary::default();
+    let mut run = Run::new(global);
     let params = PlanParams {
         clouds: arguments.clouds.clone(),
         crs: arguments.crs.clone(),
@@ -42,7 +41,7 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         memory: arguments.memory.map(|memory| memory.0),
         program: concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned(),
     };
-    let plan = Plan::make(&params, &stages.control()).map_err(|error| match error {
+    let plan = Plan::make(&params, &run.control()).map_err(|error| match error {
         Error::InvalidParameter { name: "cell", .. } => Usage(format!("--cell: {error}")).into(),
         Error::InvalidParameter { name: "cell of some results", .. } => Usage(format!("--cell-for: {error}")).into(),
         Error::InvalidParameter { name: "observer", .. } => Usage(format!("--observer: {error}")).into(),
@@ -51,20 +50,20 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         other => anyhow::Error::from(other),
     })?;
     let plan = planned(plan, arguments)?;
-    let questions = questions::questions(arguments, &plan, &stages.control(), &mut summary)?;
-    let plan = plan.with_questions(questions, &stages.control()).map_err(|error| match error {
+    let questions = questions::questions(arguments, &plan, &mut run)?;
+    let plan = plan.with_questions(questions, &run.control()).map_err(|error| match error {
         Error::InvalidParameter { name: "elevation of the sun", .. } => {
             Usage(format!("--sun or --time: {error}")).into()
         }
         Error::InvalidParameter { name: "questions", .. } => Usage(error.to_string()).into(),
         other => anyhow::Error::from(other),
     })?;
-    if !arguments.clear.is_empty() && !plan.clears_anything(&stages.control())? {
-        summary.warn("--clear: nothing stands there");
+    if !arguments.clear.is_empty() && !plan.clears_anything(&run.control())? {
+        run.summary.warn("--clear: nothing stands there");
     }
     plan.write(&arguments.output)?;
     let estimate = plan.estimate();
-    summary
+    run.summary
         .add("files", plan.inputs.len())
         .add("tiles", plan.tiles.len())
         .add("tile_size_m", plan.tile_size)
@@ -76,8 +75,7 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         .add("estimated_memory_gb", rounded(estimate.memory_bytes as f64 / 1e9, 2))
         .add("estimated_disk_gb", rounded(estimate.disk_bytes as f64 / 1e9, 2))
         .add("written", arguments.output.display().to_string());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    Ok(run.finish())
 }
 
 /// The plan with what will be built, and with light through trees.
@@ -104,13 +102,12 @@ fn planned(plan: Plan, arguments: &CityPlan) -> Result<Plan> {
 
 fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
     let plan = Plan::read(&arguments.run)?;
-    let stages = Stages::new(global);
-    let mut summary = Summary::default();
+    let mut run = Run::new(global);
     let start = Instant::now();
     let shard = arguments.shard.map_or_else(Shard::default, |share| Shard { number: share.number, of: share.of });
     let steps = if arguments.balls_only { Steps::Balls } else { Steps::All };
     let params = RunParams { shard, steps, most_balls: None, seconds: &|| start.elapsed().as_secs_f64() };
-    let report = flagged("--shard", run_tiles(&plan, &arguments.run, &params, &stages.control()))?;
+    let report = flagged("--shard", run_tiles(&plan, &arguments.run, &params, &run.control()))?;
     if let Some((first, _)) = report.failed.split_first() {
         let listed = report.failed.iter().take(MOST_LISTED).map(|why| format!("\n  {why}")).collect::<String>();
         let more = report.failed.len().saturating_sub(MOST_LISTED);
@@ -123,22 +120,21 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
             report.failed.len()
         );
     }
-    summary.add_report(&report);
+    run.summary.add_report(&report);
     for damage in report.damaged.iter().take(MOST_LISTED) {
-        summary.warn(format!("{damage}; it was computed again"));
+        run.summary.warn(format!("{damage}; it was computed again"));
     }
     if report.unproven_cells > 0 {
-        summary.warn(format!(
+        run.summary.warn(format!(
             "{} cells are unproven because tiles that may block them are missing",
             report.unproven_cells
         ));
     }
     if report.skipped_observers > 0 {
-        summary.warn(format!("{} observers are inside obstacles and see nothing", report.skipped_observers));
+        run.summary.warn(format!("{} observers are inside obstacles and see nothing", report.skipped_observers));
     }
-    summary.add("written", arguments.run.display().to_string());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("written", arguments.run.display().to_string());
+    Ok(run.finish())
 }
 
 fn status(arguments: &CityStatus) -> Result<Summary> {
@@ -166,12 +162,10 @@ fn merge_tiles(arguments: &CityMerge, global: &Global) -> Result<Summary> {
             .find(|question| question.name() == name)
             .ok_or_else(|| Usage(format!("--result {name}: the results are {}", names())))?,
     };
-    let mut stages = Stages::new(global);
+    let mut run = Run::new(global);
     let merged =
-        stages.run("merging", 0, |control| merge(&plan, &arguments.run, question, &arguments.output, control))?;
-    let mut summary = Summary::default();
-    summary.add("tiles", merged.tiles).add("tiles_without_result", merged.without_result);
-    summary.add("written", arguments.output.display().to_string());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+        run.stage("merging", 0, |control| merge(&plan, &arguments.run, question, &arguments.output, control))?;
+    run.summary.add("tiles", merged.tiles).add("tiles_without_result", merged.without_result);
+    run.summary.add("written", arguments.output.display().to_string());
+    Ok(run.finish())
 }

@@ -8,7 +8,7 @@ use super::targets::{leave_out_outside, report_edge};
 use super::windows::{FaceChoice, windows};
 use crate::arguments::{Comfort, Global, PatchesChoice, Usage};
 use crate::pipeline::{self, Points, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::apps::exposure::{Exposure, ShadeAtEachSun, scene_exposure};
@@ -37,11 +37,10 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
         Some(PatchesChoice::Reinhart) => SkyDirections::patches(2)?,
         None => flagged("--directions", SkyDirections::even(arguments.directions.unwrap_or(SKY_DIRECTIONS)))?,
     };
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
+    let mut run = Run::new(global);
     let points = if arguments.places.route.is_some() { Points::Keep } else { Points::LetGo };
-    let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
-    let site = arguments.place.site(&scene, &mut summary)?;
+    let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;
+    let site = arguments.place.site(&scene, &mut run.summary)?;
     let zone = arguments.place.zone(&site, &arguments.when.times())?;
     let params = arguments.when.params(&arguments.place)?;
     let Some(period) = arguments.when.period(&arguments.place, &site, &zone)? else {
@@ -58,31 +57,31 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
         .add("suns", schedule.days.iter().map(|day| day.steps.len()).sum::<usize>())
         .add("directions", schedule.directions.len())
         .add("possible_hours_per_day", rounded(schedule.possible_hours() / schedule.days.len().max(1) as f64, 3));
-    summary.add("period", section);
+    run.summary.add("period", section);
     let north = arguments.north.of_scene(&scene);
     if arguments.places.windows.is_some() || arguments.times.is_some() {
-        north.report(&mut summary);
+        north.report(&mut run.summary);
     }
     let mut places = match (&arguments.places.route, &arguments.places.windows) {
-        (Some(route), _) => routes(arguments, route, &mut scene, &mut stages, &mut summary)?,
+        (Some(route), _) => routes(arguments, route, &mut scene, &mut run)?,
         (None, Some(path)) => {
             let choice = FaceChoice { spacing: arguments.spacing, objects: &[] };
-            windows(path, &choice, (&scene, north.of_grid), global.seed, &mut stages, &mut summary)?.into()
+            windows(path, &choice, (&scene, north.of_grid), &mut run)?.into()
         }
         (None, None) => return Err(Usage("targets are missing: give --route or --windows".to_owned()).into()),
     };
-    leave_out_outside(&mut places.targets, &scene, &mut summary);
+    leave_out_outside(&mut places.targets, &scene, &mut run.summary);
     let directions = [sky.directions.as_slice(), &schedule.directions].concat();
-    report_edge(&places.targets, &scene, &directions, &mut stages, &mut summary)?;
+    report_edge(&places.targets, &scene, &directions, &mut run)?;
     let mut section = Summary::default();
     let profile = arguments.scene.profile.into();
     let (blockers, _) =
-        blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut stages, &mut section)?;
+        blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut run, &mut section)?;
     section.add("sky_directions", sky.directions.len());
-    summary.add("lines_of_sight", section);
+    run.summary.add("lines_of_sight", section);
     let targets = &places.targets;
     let shade = if arguments.times.is_some() { ShadeAtEachSun::Kept } else { ShadeAtEachSun::NotKept };
-    let found = stages.run("testing sky and sun", 2 * targets.len(), |control| {
+    let found = run.stage("testing sky and sun", 2 * targets.len(), |control| {
         scene_exposure(&blockers, targets, &sky, &schedule, shade, control)
     })?;
     write_rows(&arguments.output, &places, &found)?;
@@ -91,7 +90,7 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     for (measure, mean) in found.means(targets) {
         section.add(&format!("mean_{}", measure.name), rounded(mean, digits(measure)));
     }
-    summary.add("exposure", section);
+    run.summary.add("exposure", section);
     if let Some(output) = &arguments.routes {
         write_groups(output, &places, &found)?;
     }
@@ -100,9 +99,8 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     }
     let written = [Some(&arguments.output), arguments.routes.as_ref(), arguments.times.as_ref()];
     let written: Vec<String> = written.into_iter().flatten().map(|path| path.display().to_string()).collect();
-    summary.add("written", written);
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("written", written);
+    Ok(run.finish())
 }
 
 fn digits(measure: &Measure) -> i32 {

@@ -2,9 +2,9 @@
 
 use crate::arguments::{CloudInput, Demo, Global, UpChoice};
 use crate::pipeline;
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::simulated::{cloud_of, write_text};
-use crate::summary::{Summary, percent, rounded};
+use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::cloud::{PointCloud, to_local};
@@ -36,28 +36,27 @@ const PEDESTRIAN: f64 = 1.5;
 
 pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     let folder = &arguments.output;
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
+    let mut run = Run::new(global);
     atomic::make_folder(folder)?;
 
     let params = TownParams { extent: arguments.extent, seed: global.seed, ..TownParams::default() };
-    let scene = stages.run("building town", 0, |_| town(&params));
-    let scan = stages.run("scanning town", 0, |_| {
+    let scene = run.compute("building town", || town(&params));
+    let scan = run.compute("scanning town", || {
         scan_airborne(&scene, &AirborneParams { seed: global.seed, ..AirborneParams::default() })
     });
-    summary.add("town", town_section(&scene, &scan));
-    stages.run("writing town", 0, |_| write_town(folder, &scene, &scan))?;
+    run.summary.add("town", town_section(&scene, &scan));
+    run.stage("writing town", 0, |_| write_town(folder, &scene, &scan))?;
 
     // from here on only what a survey would deliver: the LAZ file and the trajectory
     let input = CloudInput { clouds: vec![folder.join("town.laz")], crs: None, up: UpChoice::Z };
-    let cloud = pipeline::read(&input, &mut stages, &mut summary)?;
+    let cloud = pipeline::read(&input, &mut run)?;
     let path = folder.join("trajectory.csv");
-    let (trajectory, _) = stages.run("reading trajectory", 0, |_| read_trajectory(&path, &cloud.frame.crs))?;
+    let (trajectory, _) = run.stage("reading trajectory", 0, |_| read_trajectory(&path, &cloud.frame.crs))?;
     let params = ModelParams::default()
         .with_orient(OrientBy::Trajectory(trajectory))
         .with_balls(BallParams::Carved(CarvedParams::default()));
-    let (model, report) = SceneModel::build(&cloud, &params, &stages.control())?;
-    summary.add_report(&report);
+    let (model, report) = SceneModel::build(&cloud, &params, &run.control())?;
+    run.summary.add_report(&report);
     let model = model.with_provenance("program", concat!("belvedere ", env!("CARGO_PKG_VERSION"), " demo"));
     let balls = model.balls();
 
@@ -66,20 +65,20 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     let bounds = pipeline::bounds_of(&cloud)?;
     let (low, high) = bounds.corners();
     let view = View::parallel(sun.map(|v| -v), low, high, default_pixel_size(low, high))?;
-    let map = stages.run("drawing depth map", 0, |control| {
+    let map = run.stage("drawing depth map", 0, |control| {
         depth_map(balls, &view, Profile::Sphere, ItemBuffer::Without, control)
     })?;
-    let blockers = model.scene(&model.rule(), UnprovenAs::Visible, &stages.control())?;
-    let answers = stages.run("querying", 0, |_| blockers.visible(Viewer::Direction(sun), &cloud.positions))?;
+    let blockers = model.scene(&model.rule(), UnprovenAs::Visible, &run.control())?;
+    let answers = run.stage("querying", 0, |_| blockers.visible(Viewer::Direction(sun), &cloud.positions))?;
     let shadowed = answers.iter().filter(|&&a| a == Answer::Blocked).count();
-    summary.add("points_in_shadow_percent", percent(shadowed, answers.len()));
+    run.summary.add("points_in_shadow_percent", percent(shadowed, answers.len()));
 
-    let agreement = stages.run("comparing with the mesh", 0, |_| agreement(&scene, &scan, &cloud, &blockers, sun))?;
-    summary.add("sun_azimuth_elevation_deg", SUN_DEG.to_vec());
-    summary.add("errors_by_ground_truth", agreement);
+    let agreement = run.stage("comparing with the mesh", 0, |_| agreement(&scene, &scan, &cloud, &blockers, sun))?;
+    run.summary.add("sun_azimuth_elevation_deg", SUN_DEG.to_vec());
+    run.summary.add("errors_by_ground_truth", agreement);
 
-    stages.run("writing pictures", 0, |_| write_pictures(folder, &cloud, balls, &map, &answers, (low, high)))?;
-    stages.run("writing results", 0, |_| -> Result<()> {
+    run.stage("writing pictures", 0, |_| write_pictures(folder, &cloud, balls, &map, &answers, (low, high)))?;
+    run.stage("writing results", 0, |_| -> Result<()> {
         let codes: Vec<u8> = answers.iter().map(|&answer| answer as u8).collect();
         let column = ExtraColumn {
             name: "answer",
@@ -97,15 +96,12 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
         write_balls(&folder.join("balls.npz"), model.parts())?;
         Ok(())
     })?;
-    let seconds = stages.into_seconds();
-    let total: f64 = seconds.iter().map(|(_, s)| s).sum();
-    summary.add_seconds(seconds);
+    let mut summary = run.finish();
     let report = serde_json::Value::from(summary.clone());
     atomic::write(&folder.join("numbers.json"), |file| {
         writeln!(file, "{report:#}").map_err(belvedere::Error::io(&folder.join("numbers.json")))
     })?;
     summary.add("open", folder.join("shadows.png").display().to_string());
-    summary.add("total_seconds", rounded(total, 2));
     Ok(summary)
 }
 

@@ -3,7 +3,7 @@
 use super::{check_output, extension};
 use crate::arguments::{DepthMap, Global, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::PointCloud;
@@ -28,35 +28,33 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
         return Err(Usage("--add: depth maps show only balls; use `belvedere query`".to_owned()).into());
     }
     arguments.view.check()?;
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
-    let scene = pipeline::scene(&arguments.scene, Points::LetGo, &mut stages, &mut summary)?;
-    let views = arguments.view.views(&scene, &mut summary)?;
+    let mut run = Run::new(global);
+    let scene = pipeline::scene(&arguments.scene, Points::LetGo, &mut run)?;
+    let views = arguments.view.views(&scene, &mut run.summary)?;
     let items = if arguments.balls_id.is_some() { ItemBuffer::With } else { ItemBuffer::Without };
-    let map = stages.run("drawing depth map", 0, |control| draw(arguments, &scene, &views, items, control))?;
+    let map = run.stage("drawing depth map", 0, |control| draw(arguments, &scene, &views, items, control))?;
     let hit = map.depth.values().iter().filter(|d| d.is_finite()).count();
-    summary.add("pixels_hit_percent", percent(hit, map.depth.values().len()));
+    run.summary.add("pixels_hit_percent", percent(hit, map.depth.values().len()));
     if views.iter().any(View::is_central) {
-        summary.add("balls_around_eye_ignored", map.around_eye_count);
+        run.summary.add("balls_around_eye_ignored", map.around_eye_count);
     }
     let place = views.first().and_then(|view| georeference(&scene.cloud, view));
     for output in &arguments.output {
-        stages.run("writing", 0, |_| match extension(output).as_str() {
+        run.stage("writing", 0, |_| match extension(output).as_str() {
             "npy" => write_npy_f32_2d(output, &map.depth),
             "png" => write_png(output, &map.picture()),
             _ => write_tif_f32(output, &map.depth, place.as_ref(), Some(NOTHING_HIT), Some(map.description())),
         })?;
     }
-    summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     if let (Some(path), Some(balls)) = (&arguments.balls_id, &map.balls) {
-        stages.run("writing", 0, |_| match extension(path).as_str() {
+        run.stage("writing", 0, |_| match extension(path).as_str() {
             "npy" => write_npy_u32_2d(path, balls),
             _ => write_tif_u32(path, balls, place.as_ref(), Some(NO_BALL), Some("row of the ball seen")),
         })?;
-        summary.add("balls_written", path.display().to_string());
+        run.summary.add("balls_written", path.display().to_string());
     }
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    Ok(run.finish())
 }
 
 /// What was drawn.

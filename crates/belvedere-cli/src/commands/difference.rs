@@ -2,7 +2,7 @@
 
 use super::{check_output, extension};
 use crate::arguments::{Difference, Global};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::apps::difference::{clear_unproven, difference};
@@ -19,17 +19,16 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
     for output in &arguments.output {
         check_output("-o", output, &["tif", "tiff", "png", "csv"])?;
     }
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
-    let read = |path: &Path, stages: &mut Stages| stages.run("reading", 0, |_| read_tif(path));
-    let mut before = read(&arguments.before, &mut stages)?;
-    let mut after = read(&arguments.after, &mut stages)?;
+    let mut run = Run::new(global);
+    let read = |path: &Path, run: &mut Run| run.stage("reading", 0, |_| read_tif(path));
+    let mut before = read(&arguments.before, &mut run)?;
+    let mut after = read(&arguments.after, &mut run)?;
     check_same_cells(&before, &after, arguments)?;
     if let (Some(first), Some(second)) = (&before.description, &after.description)
         && first != second
     {
         let files = [&arguments.before, &arguments.after].map(|path| path.display());
-        summary.warn(format!(
+        run.summary.warn(format!(
             "{} holds \"{first}\" and {} \"{second}\"; a difference of different quantities means nothing",
             files[0], files[1]
         ));
@@ -37,7 +36,7 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
     for (path, raster) in [(&arguments.before, &mut before), (&arguments.after, &mut after)] {
         let unproven = clear_unproven(raster.values.values_mut(), raster.description.as_deref());
         if unproven > 0 {
-            summary.warn(format!("{}: unproven cells count as cells without a value ({unproven})", path.display()));
+            run.summary.warn(format!("{}: unproven cells count as cells without a value ({unproven})", path.display()));
         }
     }
     let place = before.place.as_ref();
@@ -46,12 +45,12 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
     let cell_area = (column[0] * row[1] - column[1] * row[0]).abs() * unit * unit;
     let change = difference(before.values.values(), after.values.values(), cell_area)?;
     let values = Raster::from_values(before.values.width(), before.values.height(), change.values)?;
-    summary.add("difference", Summary::of(&change.report));
+    run.summary.add("difference", Summary::of(&change.report));
     let name = |path: &Path| path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let title = || format!("Change from {} to {}", name(&arguments.before), name(&arguments.after));
     let title = arguments.title.clone().unwrap_or_else(title);
     for output in &arguments.output {
-        stages.run("writing", 0, |_| match extension(output).as_str() {
+        run.stage("writing", 0, |_| match extension(output).as_str() {
             "csv" => {
                 let figures = change.report.figures();
                 let cells: Vec<[f64; 1]> = figures.iter().map(|(_, value)| [*value]).collect();
@@ -67,9 +66,8 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
             _ => write_tif_f32(output, &values, place, Some(NO_VALUE), Some("after less before")),
         })?;
     }
-    summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    Ok(run.finish())
 }
 
 /// Refuses rasters whose cells are not the same.

@@ -7,7 +7,7 @@ use super::shapes::{TypedAre, shapes, wrong_shape};
 use super::sights::{Proving, blockers, ground, ground_cloud};
 use crate::arguments::{Corners, Envelope, Global, Usage};
 use crate::pipeline::{self, Points, Scene, flagged, is_file};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
 use belvedere::PointCloud;
@@ -35,43 +35,42 @@ const MOST_BINDING: usize = 3;
 
 pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
     check_outputs(arguments)?;
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
-    let mut scene = scene(arguments, &mut stages, &mut summary)?;
-    let suns = Suns::new(arguments, &scene, &mut summary)?;
+    let mut run = Run::new(global);
+    let mut scene = scene(arguments, &mut run)?;
+    let suns = Suns::new(arguments, &scene, &mut run.summary)?;
     let parcel = parcel(arguments, &scene.cloud)?;
-    let mut land = Land::read(arguments, &scene, global.seed, &mut stages, &mut summary)?;
+    let mut land = Land::read(arguments, &scene, &mut run)?;
     let (wide, narrow) = grids(&parcel, &land, arguments.cell.unwrap_or(CELL), &scene.cloud)?;
-    let (cloud, points) = ground_cloud(&arguments.ground, &mut scene, &mut stages)?;
-    let around = ground(&cloud, points, wide, &mut stages, &mut Summary::default())?;
-    let below = ground(&cloud, points, narrow, &mut stages, &mut summary)?;
-    land.place(arguments, &around, &mut summary)?;
+    let (cloud, points) = ground_cloud(&arguments.ground, &mut scene, &mut run)?;
+    let around = run.aside(|run| ground(&cloud, points, wide, run)).0?;
+    let below = ground(&cloud, points, narrow, &mut run)?;
+    land.place(arguments, &around, &mut run.summary)?;
     let free = match arguments.credit_shade {
         false => None,
         true => {
             let mut section = Summary::default();
             let profile = arguments.scene.profile.into();
             let (blockers, _) =
-                blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut stages, &mut section)?;
-            summary.add("lines_of_sight", section);
-            let found = stages.run("testing existing shadow", land.pieces.len(), |control| {
+                blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut run, &mut section)?;
+            run.summary.add("lines_of_sight", section);
+            let found = run.stage("testing existing shadow", land.pieces.len(), |control| {
                 existing_shade(&blockers, &land.pieces, &suns.directions, control)
             });
             Some(flagged("--spacing, --step", found)?)
         }
     };
     let params = EnvelopeParams::default().with_ceiling(arguments.ceiling);
-    let found = stages.run("computing envelope", suns.directions.len(), |control| {
+    let found = run.stage("computing envelope", suns.directions.len(), |control| {
         solar_envelope(&parcel, &below, &land.pieces, &suns.directions, free.as_ref(), &params, control)
     });
     let found = flagged("--spacing, --time-step-min, --max-height", found)?;
-    summary.add("envelope", told(&found, &land, &suns, arguments));
+    run.summary.add("envelope", told(&found, &land, &suns, arguments));
     for output in &arguments.output {
-        stages.run("writing", 0, |_| write_one(output, &found, &below, &cloud))?;
+        run.stage("writing", 0, |_| write_one(output, &found, &below, &cloud))?;
     }
     if let Some(output) = &arguments.tops {
         let what = "height of the solar envelope";
-        stages.run("writing", 0, |_| {
+        run.stage("writing", 0, |_| {
             let scale = cloud.frame.crs.metres_per_unit_xyz()[2];
             let mut tops = found.tops(cloud.frame.origin[2]);
             tops.values_mut().iter_mut().for_each(|top| *top = in_unit(*top, scale));
@@ -79,9 +78,8 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
         })?;
     }
     let written = arguments.output.iter().chain(&arguments.tops).map(|path| path.display().to_string());
-    summary.add("written", written.collect::<Vec<_>>());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("written", written.collect::<Vec<_>>());
+    Ok(run.finish())
 }
 
 /// Heights of a cloud are in the unit of its file.
@@ -109,12 +107,12 @@ fn check_outputs(arguments: &Envelope) -> Result<()> {
 }
 
 /// The scene, with balls only where these are asked.
-fn scene(arguments: &Envelope, stages: &mut Stages, summary: &mut Summary) -> Result<Scene> {
+fn scene(arguments: &Envelope, run: &mut Run) -> Result<Scene> {
     let is_balls = matches!(&arguments.scene.input.clouds[..], [path] if is_file(path) && is_ball_file(path)?);
     if arguments.credit_shade || is_balls {
-        return pipeline::scene(&arguments.scene, Points::Keep, stages, summary);
+        return pipeline::scene(&arguments.scene, Points::Keep, run);
     }
-    let cloud = pipeline::read(&arguments.scene.input, stages, summary)?;
+    let cloud = pipeline::read(&arguments.scene.input, run)?;
     let bounds = pipeline::bounds_of(&cloud)?;
     let parts = ModelParts { frame: cloud.frame.clone(), bounds, ..ModelParts::default() };
     Ok(Scene { model: SceneModel::from_parts(parts)?, cloud, left_out: ReadReport::default() })
@@ -195,13 +193,7 @@ struct Land {
 }
 
 impl Land {
-    fn read(
-        arguments: &Envelope,
-        scene: &Scene,
-        seed: u64,
-        stages: &mut Stages,
-        summary: &mut Summary,
-    ) -> Result<Self> {
+    fn read(arguments: &Envelope, scene: &Scene, run: &mut Run) -> Result<Self> {
         let mut land = Self { shapes: Vec::new(), pieces: Vec::new(), names: Vec::new() };
         for protect in &arguments.protect {
             if let Corners::File(path) = protect
@@ -209,7 +201,7 @@ impl Land {
                 && is_mesh(path)
                 && !is_geojson(path)
             {
-                land.add_mesh(path, arguments, scene, seed, stages, summary)?;
+                land.add_mesh(path, arguments, scene, run)?;
                 continue;
             }
             for named in shapes("--protect", protect, TypedAre::Line, &scene.cloud)? {
@@ -225,18 +217,10 @@ impl Land {
         u32::try_from(self.names.len() - 1).unwrap_or(u32::MAX)
     }
 
-    fn add_mesh(
-        &mut self,
-        path: &Path,
-        arguments: &Envelope,
-        scene: &Scene,
-        seed: u64,
-        stages: &mut Stages,
-        summary: &mut Summary,
-    ) -> Result<()> {
-        let mesh = mesh_of(path, scene, stages, summary)?;
+    fn add_mesh(&mut self, path: &Path, arguments: &Envelope, scene: &Scene, run: &mut Run) -> Result<()> {
+        let mesh = mesh_of(path, scene, run)?;
         let spacing = arguments.spacing.unwrap_or(CELL);
-        let surface = flagged("--spacing", SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, seed))?;
+        let surface = flagged("--spacing", SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, run.seed))?;
         let first = self.source(path.display().to_string());
         let objects = u32::try_from(mesh.object_names.len()).unwrap_or(0);
         mesh.object_names.iter().for_each(|name| {

@@ -2,7 +2,7 @@
 
 use crate::arguments::{FarTerrain, North};
 use crate::pipeline::{Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::io::{read_horizon, read_terrain};
@@ -17,17 +17,17 @@ impl FarTerrain {
     }
 
     /// Puts the scene before the far terrain that was given.
-    pub(crate) fn set(&self, scene: &mut Scene, stages: &mut Stages, summary: &mut Summary) -> Result<()> {
+    pub(crate) fn set(&self, scene: &mut Scene, run: &mut Run) -> Result<()> {
         if let Some(path) = &self.terrain {
-            set_terrain(path, scene, stages, summary)?;
+            set_terrain(path, scene, run)?;
         }
         if let Some(path) = &self.horizon {
-            let horizon = stages.run("reading horizon", 0, |_| read_horizon(path))?;
+            let horizon = run.stage("reading horizon", 0, |_| read_horizon(path))?;
             let north = North { grid_north: false }.of_scene(scene);
             let highest = horizon.rows().iter().map(|row| row[1]).fold(f64::NEG_INFINITY, f64::max);
             let mut section = Summary::default();
             section.add("azimuths", horizon.rows().len()).add("max_elevation_deg", rounded(highest.to_degrees(), 3));
-            summary.add("far_horizon", section);
+            run.summary.add("far_horizon", section);
             scene.model = std::mem::take(&mut scene.model).with_horizon(horizon.turned(-north.of_grid));
         }
         Ok(())
@@ -35,13 +35,13 @@ impl FarTerrain {
 }
 
 /// Puts the scene before the terrain of an elevation raster.
-pub(super) fn set_terrain(path: &Path, scene: &mut Scene, stages: &mut Stages, summary: &mut Summary) -> Result<()> {
+pub(super) fn set_terrain(path: &Path, scene: &mut Scene, run: &mut Run) -> Result<()> {
     let model = std::mem::take(&mut scene.model);
     let frame = model.frame().clone();
-    let terrain = stages.run("reading terrain", 0, |_| read_terrain(path, &frame))?;
+    let terrain = run.stage("reading terrain", 0, |_| read_terrain(path, &frame))?;
     let report = TerrainReport::of(&terrain, model.bounds(), &frame);
     let name = path.display().to_string();
-    scene.model = flagged("--terrain", stages.run("ordering terrain", 0, |_| model.with_terrain(terrain, &name)))?;
-    summary.add("terrain", Summary::of(&report));
+    scene.model = flagged("--terrain", run.stage("ordering terrain", 0, |_| model.with_terrain(terrain, &name)))?;
+    run.summary.add("terrain", Summary::of(&report));
     Ok(())
 }

@@ -5,7 +5,7 @@ use super::surroundings::{check_eyes, eyes, least_count, needs_ground};
 use super::{check_output, extension};
 use crate::arguments::{BelowChoice, GivingWay, Global, Horizon, Usage};
 use crate::pipeline::{self, Points, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::apps::edge::horizon_share_near_edge;
@@ -27,27 +27,26 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
         None => usual.azimuth_count,
     };
     check_formats(arguments, least_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
+    let mut run = Run::new(global);
     let points = if needs_ground(&arguments.eyes) { Points::Keep } else { Points::LetGo };
-    let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
-    arguments.far.set(&mut scene, &mut stages, &mut summary)?;
-    let mut places = eyes(&arguments.eyes, &mut scene, &mut stages, &mut summary)?;
+    let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;
+    arguments.far.set(&mut scene, &mut run)?;
+    let mut places = eyes(&arguments.eyes, &mut scene, &mut run)?;
     check_formats(arguments, places.len())?;
     let north = match places.first() {
         Some(eye) => arguments.north.at(&scene, [eye[0], eye[1]]),
         None => arguments.north.of_scene(&scene),
     };
-    north.report(&mut summary);
+    north.report(&mut run.summary);
     let mut section = Summary::default();
     let giving_way = GivingWay { shell: None, unproven: None };
     let (blockers, _) =
-        blockers(&scene, arguments.scene.profile.into(), &giving_way, Proving::Never, &mut stages, &mut section)?;
-    summary.add("lines_of_sight", section);
-    check_eyes(&blockers, &scene.cloud.frame, &mut places, &mut stages, &mut summary)?;
+        blockers(&scene, arguments.scene.profile.into(), &giving_way, Proving::Never, &mut run, &mut section)?;
+    run.summary.add("lines_of_sight", section);
+    check_eyes(&blockers, &scene.cloud.frame, &mut places, &mut run)?;
     let params = HorizonParams::default().with_azimuth_count(azimuth_count).with_turn(north.of_grid).with_earth(earth);
     let found =
-        stages.run("computing ranges", places.len(), |control| horizons(&blockers, &places, &params, control))?;
+        run.stage("computing ranges", places.len(), |control| horizons(&blockers, &places, &params, control))?;
     let least = if arguments.below == BelowChoice::Zero { 0.0 } else { -90.0 };
     let elevations: Vec<Vec<f64>> = found
         .iter()
@@ -62,17 +61,16 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
         let mean = known().map(share).sum::<f64>() / known().count().max(1) as f64;
         section.add("azimuths_near_edge_percent", rounded(100.0 * mean, 2));
     }
-    summary.add("horizons", section);
+    run.summary.add("horizons", section);
     for output in &arguments.output {
-        stages.run("writing", 0, |_| match (extension(output).as_str(), elevations.first()) {
+        run.stage("writing", 0, |_| match (extension(output).as_str(), elevations.first()) {
             ("png", Some(one)) => write_png(output, &horizon_picture(one, "Horizon elevation, degrees")),
             ("txt", Some(one)) => write_lines(output, one.iter().map(|v| format!("{v:.2}"))),
             _ => write_columns(output, &elevations, azimuth_count),
         })?;
     }
-    summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    Ok(run.finish())
 }
 
 /// Refuses formats that hold one observer where there are more.

@@ -2,7 +2,7 @@
 
 use crate::arguments::{Global, Info};
 use crate::pipeline::{self, is_file};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded, sections, whole};
 use anyhow::Result;
 use belvedere::io::{ReadOptions, is_ball_file, read_balls, read_cloud};
@@ -12,18 +12,18 @@ use belvedere::summary::{CloudSummary, FacadeSummary, SurveyKind};
 use belvedere::{Error, PointCloud};
 
 pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
-    let mut stages = Stages::new(global);
+    let run = Run::new(global);
     if let [path] = &arguments.input.clouds[..]
         && is_file(path)
         && is_ball_file(path)?
     {
-        return Ok(of_balls(&stages.run("reading balls", 0, |_| read_balls(path))?));
+        return Ok(of_balls(&run.stage("reading balls", 0, |_| read_balls(path))?));
     }
     let mut summary = Summary::default();
     let mut options = ReadOptions::new();
     options.crs = arguments.input.crs.clone();
     options.up = arguments.input.up.into();
-    let (cloud, report) = stages.run("reading", 0, |control| read_cloud(&arguments.input.clouds, &options, control))?;
+    let (cloud, report) = run.stage("reading", 0, |control| read_cloud(&arguments.input.clouds, &options, control))?;
     pipeline::warn_of_missing(&report, &mut summary);
     let files = report.files.iter().map(|file| {
         let mut section = Summary::default();
@@ -38,8 +38,8 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     });
     summary.add("file", files.collect::<Vec<_>>());
     summary.add("points", cloud.len());
-    let facts = stages.run("counting points", 0, |control| CloudSummary::of(&cloud, control))?;
-    let (positions, scanner) = match stages.run("estimating scanner positions", 0, |control| {
+    let facts = run.stage("counting points", 0, |control| CloudSummary::of(&cloud, control))?;
+    let (positions, scanner) = match run.stage("estimating scanner positions", 0, |control| {
         locate(&cloud, &Means::Automatic, &LocateParams::default(), control)
     }) {
         Ok(found) => found,
@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     summary.add("crs", cloud.frame.crs.definition());
     summary.add("covered_ground_m2", rounded(facts.occupied_area, 1));
     summary.add("points_per_m2_of_covered_ground", rounded(facts.density, 2));
-    if let Some(facades) = stages.run("measuring facades", 0, |control| FacadeSummary::of(&cloud, control))? {
+    if let Some(facades) = run.stage("measuring facades", 0, |control| FacadeSummary::of(&cloud, control))? {
         let mut section = Summary::default();
         section.add("steep_points", facades.steep_point_count).add("building_points", facades.building_point_count);
         match facades.walls {

@@ -5,7 +5,7 @@ use super::surroundings::{check_eyes, eyes, least_count, needs_ground, rows_as_g
 use super::{check_output, extension};
 use crate::arguments::{GivingWay, Global, Isovist, Usage};
 use crate::pipeline::{self, Points, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::PointCloud;
@@ -20,27 +20,26 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
     for output in &arguments.output {
         check_output("-o", output, &["csv", "json", "png"])?;
     }
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
+    let mut run = Run::new(global);
     check_pictures(arguments, least_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
     let points = if needs_ground(&arguments.eyes) { Points::Keep } else { Points::LetGo };
-    let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
-    let places = eyes(&arguments.eyes, &mut scene, &mut stages, &mut summary)?;
+    let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;
+    let places = eyes(&arguments.eyes, &mut scene, &mut run)?;
     check_pictures(arguments, places.len())?;
     let north = arguments.north.of_scene(&scene);
-    north.report(&mut summary);
+    north.report(&mut run.summary);
     let mut section = Summary::default();
     let giving_way = GivingWay { shell: None, unproven: None };
     let (blockers, _) =
-        blockers(&scene, arguments.scene.profile.into(), &giving_way, Proving::Never, &mut stages, &mut section)?;
+        blockers(&scene, arguments.scene.profile.into(), &giving_way, Proving::Never, &mut run, &mut section)?;
     let usual = IsovistParams::default();
     let params = IsovistParams::default()
         .with_step(arguments.step.map_or(usual.step, f64::to_radians))
         .with_max_range(arguments.max_distance.unwrap_or(usual.max_range))
         .with_jump(arguments.jump.unwrap_or(usual.jump));
     let mut fit = places.clone();
-    check_eyes(&blockers, &scene.cloud.frame, &mut fit, &mut stages, &mut summary)?;
-    let isovists = stages.run("computing ranges", places.len(), |progress| {
+    check_eyes(&blockers, &scene.cloud.frame, &mut fit, &mut run)?;
+    let isovists = run.stage("computing ranges", places.len(), |progress| {
         let look = |&eye: &[f64; 3]| {
             let isovist = isovist::isovist(&blockers, eye, &params, progress);
             progress.advance(1);
@@ -56,11 +55,11 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
         for &(name, value, decimals) in row {
             section.add(name, rounded(value, i32::try_from(decimals).unwrap_or(4)));
         }
-        summary.add("isovist", section);
+        run.summary.add("isovist", section);
     }
     let given = rows_as_given(arguments.eyes.eyes.as_deref())?;
     for output in &arguments.output {
-        stages.run("writing", 0, |_| match extension(output).as_str() {
+        run.stage("writing", 0, |_| match extension(output).as_str() {
             "json" => write_json(output, &rows, &isovists, north.of_grid),
             "png" => {
                 let Some(Some(isovist)) = isovists.first() else { return Ok(()) };
@@ -69,9 +68,8 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
             _ => write_rows(output, &rows, &given),
         })?;
     }
-    summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    Ok(run.finish())
 }
 
 /// Refuses pictures of several observers.

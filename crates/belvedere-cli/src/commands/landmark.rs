@@ -8,7 +8,7 @@ use super::surroundings::rows_as_given;
 use super::{check_output, extension};
 use crate::arguments::{Global, Landmark, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::PointCloud;
@@ -22,17 +22,16 @@ use belvedere::query::{BackFaces, MeshTargetParams};
 pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     check_outputs(arguments)?;
     let earth = arguments.earth.params()?;
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
-    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
-    let (surface, middle) = what::surface(&arguments.shape, &scene, global.seed, &mut stages, &mut summary)?;
+    let mut run = Run::new(global);
+    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut run)?;
+    let (surface, middle) = what::surface(&arguments.shape, &scene, &mut run)?;
 
     let grid = grid(arguments, &scene)?;
     let rows = rows(arguments, &scene.cloud)?;
-    let (cloud, points) = ground_cloud(&arguments.ground, &mut scene, &mut stages)?;
-    let ground = sights::ground(&cloud, points, grid, &mut stages, &mut summary)?;
+    let (cloud, points) = ground_cloud(&arguments.ground, &mut scene, &mut run)?;
+    let ground = sights::ground(&cloud, points, grid, &mut run)?;
     let profile = arguments.scene.profile.into();
-    let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
+    let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
 
     let height = arguments.observer_height.unwrap_or(OBSERVER_HEIGHT);
     let places: Vec<[f64; 3]>;
@@ -41,12 +40,12 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
             places = standing(rows, height, &ground);
             let mut eyes = places.clone();
             let who = ("observer", &cloud.frame);
-            let report = skip_unfit(&blockers, Some(&ground), who, &mut eyes, &mut stages, &mut summary)?;
-            summary.add("observers_given", Summary::of(&report));
+            let report = skip_unfit(&blockers, Some(&ground), who, &mut eyes, &mut run)?;
+            run.summary.add("observers_given", Summary::of(&report));
             (eyes, report.skipped_inside_obstacle)
         }
         None => {
-            let (eyes, inside) = stages.run("testing observers", 0, |control| {
+            let (eyes, inside) = run.stage("testing observers", 0, |control| {
                 let cells = CellParams::default().with_height(height).with_covered(CoveredCells::Kept);
                 let (mut targets, _) = Targets::of_cells(&cloud, ground.clone(), &cells, control)?;
                 let inside = targets.leave_out_enclosed(&blockers, control)?;
@@ -66,13 +65,14 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
         .with_unproven(unproven)
         .with_earth(earth)
         .with_max_range(arguments.max_distance.unwrap_or(f64::INFINITY));
-    let views = stages
-        .run("testing landmark", eyes.len(), |progress| landmark_views(&blockers, &surface, &eyes, &params, progress));
+    let views = run.stage("testing landmark", eyes.len(), |progress| {
+        landmark_views(&blockers, &surface, &eyes, &params, progress)
+    });
     let views = flagged("--max-distance", views)?;
-    summary.add("observers", Summary::of(&LandmarkReport::new(&views, &eyes, inside)));
+    run.summary.add("observers", Summary::of(&LandmarkReport::new(&views, &eyes, inside)));
     let given = rows_as_given(arguments.observers.as_deref())?;
     for output in &arguments.output {
-        stages.run("writing", 0, |_| match extension(output).as_str() {
+        run.stage("writing", 0, |_| match extension(output).as_str() {
             "csv" => results::write_rows(output, &views, &places, &given, &cloud),
             "png" => results::write_map(output, &views, &ground, &cloud, middle),
             _ => results::write_share(output, &views, &ground, &cloud),
@@ -80,11 +80,10 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     }
     let mut written: Vec<String> = arguments.output.iter().map(|path| path.display().to_string()).collect();
     if let Some(folder) = &arguments.measures {
-        written.extend(stages.run("writing", 0, |_| results::write_measures(folder, &views, &ground, &cloud))?);
+        written.extend(run.stage("writing", 0, |_| results::write_measures(folder, &views, &ground, &cloud))?);
     }
-    summary.add("written", written);
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("written", written);
+    Ok(run.finish())
 }
 
 fn check_outputs(arguments: &Landmark) -> Result<()> {

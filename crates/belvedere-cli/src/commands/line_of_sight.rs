@@ -5,7 +5,7 @@ use super::sights::{Proving, blockers, enclosure_note, ground, ground_cloud};
 use super::{check_output, extension};
 use crate::arguments::{Global, GroundChoice, LineOfSight, Place, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::eyes::skip_unfit_eyes;
@@ -38,32 +38,31 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
                     Test the line of sight with --terrain, and the zone within the cloud without it";
         return Err(Usage(what.to_owned()).into());
     }
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
+    let mut run = Run::new(global);
     // ends may need the ground
     let points = if arguments.lines.random.is_some() { Points::LetGo } else { Points::Keep };
-    let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
+    let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;
     if let Some(path) = &arguments.terrain {
-        set_terrain(path, &mut scene, &mut stages, &mut summary)?;
+        set_terrain(path, &mut scene, &mut run)?;
     }
-    let (mut pairs, rows) = pairs(arguments, &scene, global.seed, &mut stages)?;
-    set_ends_on_ground(&mut pairs, arguments, &mut scene, &mut stages, &mut summary)?;
+    let (mut pairs, rows) = pairs(arguments, &scene, &mut run)?;
+    set_ends_on_ground(&mut pairs, arguments, &mut scene, &mut run)?;
     let mut section = Summary::default();
     let (blockers, unproven_as) = blockers(
         &scene,
         arguments.scene.profile.into(),
         &arguments.giving_way,
         Proving::IfItDecides,
-        &mut stages,
+        &mut run,
         &mut section,
     )?;
     if blockers.proof().is_none() {
         // nothing then says how much of a line no pulse came near to
         scene.model = scene.model.without_pulses();
     }
-    let sights = stages.run("answering queries", 0, |control| blockers.lines_of_sight(&pairs, &earth, control))?;
+    let sights = run.stage("answering queries", 0, |control| blockers.lines_of_sight(&pairs, &earth, control))?;
     let fresnel = match wave {
-        Some(wave) => Some(stages.run("testing Fresnel zones", pairs.len(), |control| {
+        Some(wave) => Some(run.stage("testing Fresnel zones", pairs.len(), |control| {
             blockers.fresnel_clearances(&pairs, &sights, wave, &earth, control)
         })?),
         None => None,
@@ -73,13 +72,12 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     };
     let answers: Vec<Answer> = sights.iter().map(settled).collect();
     let mut observers: Vec<[f64; 3]> = pairs.iter().map(|[observer, _]| *observer).collect();
-    let fit =
-        stages.run("testing observers", 0, |control| skip_unfit_eyes(&blockers, None, &mut observers, control))?;
+    let fit = run.stage("testing observers", 0, |control| skip_unfit_eyes(&blockers, None, &mut observers, control))?;
     section.add("observers_inside_obstacle", fit.skipped_inside_obstacle);
-    summary.add("lines_of_sight", counted(&answers, unproven_as, section));
+    run.summary.add("lines_of_sight", counted(&answers, unproven_as, section));
     let outside = AnswerCounts::of(&answers).outside_cloud;
     let is_outside = if arguments.terrain.is_some() { OUTSIDE_BOTH } else { OUTSIDE_LINE };
-    summary.warn_of_share(outside, answers.len(), "lines of sight", is_outside);
+    run.summary.warn_of_share(outside, answers.len(), "lines of sight", is_outside);
     if let ([[observer, _]], [sight]) = (&pairs[..], &sights[..]) {
         let mut one = Summary::default();
         if let Some(sight) = sight {
@@ -108,36 +106,30 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
             one.add("fresnel_free_percent", rounded(100.0 * free, 1));
         }
         one.add("note", enclosure_note(&blockers, *observer, "the observer").into_iter().collect::<Vec<_>>());
-        summary.add("line", one);
+        run.summary.add("line", one);
     }
     if let Some(output) = &arguments.output {
-        stages.run("writing", 0, |_| {
+        run.stage("writing", 0, |_| {
             let found = Found { sights: &sights, answers: &answers, fresnel: fresnel.as_deref() };
             write(output, (&scene, &blockers), &pairs, &rows, &found)
         })?;
-        summary.add("written", output.display().to_string());
+        run.summary.add("written", output.display().to_string());
     }
     if let (Some(output), [pair]) = (&arguments.profile_out, &pairs[..]) {
-        write_profile(output, arguments, &mut scene, &blockers, *pair, &earth, &mut stages, &mut summary)?;
+        write_profile(output, arguments, &mut scene, &blockers, *pair, &earth, &mut run)?;
     }
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    Ok(run.finish())
 }
 
 /// Observer and target of each line, local metres, and the rows of the table they are from.
-fn pairs(
-    arguments: &LineOfSight,
-    scene: &Scene,
-    seed: u64,
-    stages: &mut Stages,
-) -> Result<(Vec<[[f64; 3]; 2]>, TextRows)> {
+fn pairs(arguments: &LineOfSight, scene: &Scene, run: &mut Run) -> Result<(Vec<[[f64; 3]; 2]>, TextRows)> {
     let lines = &arguments.lines;
     if let (Some(from), Some(to)) = (&lines.from, &lines.to) {
         let local = |&Place([x, y], z): &Place| scene.cloud.frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]);
         return Ok((vec![[local(from), local(to)]], TextRows::default()));
     }
     if let Some(count) = lines.random {
-        let pairs = random_pairs(scene.model.bounds().low, scene.model.bounds().high, count, seed);
+        let pairs = random_pairs(scene.model.bounds().low, scene.model.bounds().high, count, run.seed);
         return Ok((pairs, TextRows::default()));
     }
     let Some(path) = &lines.pairs else {
@@ -146,10 +138,10 @@ fn pairs(
         );
     };
     if ["geojson", "json"].contains(&extension(path).as_str()) {
-        let features = stages.run("reading pairs", 0, |_| read_geojson(path, &scene.cloud.frame.crs))?;
+        let features = run.stage("reading pairs", 0, |_| read_geojson(path, &scene.cloud.frame.crs))?;
         return Ok((ends_of_lines(path, &features, scene.cloud.frame.origin)?, TextRows::default()));
     }
-    let table = stages.run("reading pairs", 0, |_| read_table(path))?;
+    let table = run.stage("reading pairs", 0, |_| read_table(path))?;
     let mut columns: [&[f64]; 6] = [&[]; 6];
     for (column, name) in columns.iter_mut().zip(ENDS) {
         let is_height = name.ends_with('z');
@@ -184,8 +176,7 @@ fn set_ends_on_ground(
     pairs: &mut [[[f64; 3]; 2]],
     arguments: &LineOfSight,
     scene: &mut Scene,
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<()> {
     let coverage = scene.model.coverage();
     // ground is made where there are points: one end far away would make its cells large for all
@@ -194,8 +185,8 @@ fn set_ends_on_ground(
     let heights = [heights.observer_height.unwrap_or(OBSERVER_HEIGHT), heights.target_height.unwrap_or(TARGET_HEIGHT)];
     let grid = grid_around(pairs.iter().flatten().copied().filter(over), scene.cloud.frame.origin);
     if let Some(grid) = flagged("--pairs", grid)? {
-        let (cloud, points) = ground_cloud(&arguments.ground, scene, stages)?;
-        let ground = ground(&cloud, points, grid, stages, summary)?;
+        let (cloud, points) = ground_cloud(&arguments.ground, scene, run)?;
+        let ground = ground(&cloud, points, grid, run)?;
         if matches!(arguments.ground, GroundChoice::OfScene(_)) {
             // a profile needs it again
             scene.cloud = cloud;
@@ -204,7 +195,7 @@ fn set_ends_on_ground(
     }
     set_on_terrain(pairs.iter_mut().flat_map(|pair| pair.iter_mut().zip(heights)), &scene.model);
     let unknown = pairs.iter().flatten().filter(|end| end[2].is_nan()).count();
-    summary.warn_of_share(unknown, 2 * pairs.len(), "ends of lines", "have no height and no known ground below");
+    run.summary.warn_of_share(unknown, 2 * pairs.len(), "ends of lines", "have no height and no known ground below");
     Ok(())
 }
 
@@ -284,11 +275,10 @@ fn write_profile(
     blockers: &MedialScene,
     pair: [[f64; 3]; 2],
     earth: &EarthParams,
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<()> {
-    let ground = profile_ground(arguments, scene, stages, summary)?;
-    let made = stages.run("computing profile", 0, |control| {
+    let ground = profile_ground(arguments, scene, run)?;
+    let made = run.stage("computing profile", 0, |control| {
         sight_profile(blockers, ground.as_ref(), pair, earth, arguments.profile_step, control)
     });
     let profile = flagged("--profile-out", made)?;
@@ -311,7 +301,7 @@ fn write_profile(
             blocked_at: profile.blocked_at,
             title: &title,
         });
-        stages.run("writing", 0, |_| write_png(output, &picture))?;
+        run.stage("writing", 0, |_| write_png(output, &picture))?;
     } else {
         let blocked: Vec<Option<u64>> = profile.blocked.iter().map(|&blocked| Some(u64::from(blocked))).collect();
         let blocks: Vec<String> = profile
@@ -324,7 +314,7 @@ fn write_profile(
             })
             .collect();
         let blocks: Vec<&str> = blocks.iter().map(String::as_str).collect();
-        stages.run("writing", 0, |_| {
+        run.stage("writing", 0, |_| {
             write_table(
                 output,
                 &[
@@ -337,7 +327,7 @@ fn write_profile(
             )
         })?;
     }
-    summary.add("profile_written", output.display().to_string());
+    run.summary.add("profile_written", output.display().to_string());
     Ok(())
 }
 
@@ -346,20 +336,15 @@ fn span(profile: &SightProfile) -> f64 {
 }
 
 /// The ground below a profile; none for a ball file without a cloud beside it.
-fn profile_ground(
-    arguments: &LineOfSight,
-    scene: &mut Scene,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<Option<Ground>> {
+fn profile_ground(arguments: &LineOfSight, scene: &mut Scene, run: &mut Run) -> Result<Option<Ground>> {
     if scene.cloud.is_empty() && matches!(arguments.ground, GroundChoice::OfScene(_)) {
         return Ok(None);
     }
     let (low, high) = scene.model.bounds().on_map();
     let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     let grid = MapGrid::covering(low, high, belvedere::apps::viewshed::cell_for(low, high), origin)?;
-    let (cloud, points) = ground_cloud(&arguments.ground, scene, stages)?;
-    Ok(Some(ground(&cloud, points, grid, stages, summary)?))
+    let (cloud, points) = ground_cloud(&arguments.ground, scene, run)?;
+    Ok(Some(ground(&cloud, points, grid, run)?))
 }
 
 fn counted(answers: &[Answer], unproven_as: UnprovenAs, how: Summary) -> Summary {

@@ -3,7 +3,7 @@
 use super::{check_output, extension, sights};
 use crate::arguments::{GivingWay, Global, MeshTargets, Query, Usage};
 use crate::pipeline::{self, Points, Scene, mesh_in};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::Mesh;
@@ -48,8 +48,8 @@ pub(super) fn refuse_flags(flags: &MeshTargets) -> Result<()> {
 }
 
 /// Reads a mesh in the coordinates of a scene, as metres.
-pub(super) fn mesh_of(path: &Path, scene: &Scene, stages: &mut Stages, summary: &mut Summary) -> Result<Mesh> {
-    mesh_in(path, &scene.cloud.frame.crs, stages, summary)
+pub(super) fn mesh_of(path: &Path, scene: &Scene, run: &mut Run) -> Result<Mesh> {
+    mesh_in(path, &scene.cloud.frame.crs, run)
 }
 
 pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Summary> {
@@ -58,21 +58,20 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     if arguments.bias.is_some() {
         return Err(Usage("--bias applies only to point targets; for a mesh use --shell".to_owned()).into());
     }
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
-    let scene = pipeline::scene(&arguments.scene, Points::LetGo, &mut stages, &mut summary)?;
-    let mesh = mesh_of(path, &scene, &mut stages, &mut summary)?;
-    let views = arguments.view.views(&scene, &mut summary)?;
+    let mut run = Run::new(global);
+    let scene = pipeline::scene(&arguments.scene, Points::LetGo, &mut run)?;
+    let mesh = mesh_of(path, &scene, &mut run)?;
+    let views = arguments.view.views(&scene, &mut run.summary)?;
     let giving_way = GivingWay { shell: arguments.shell, unproven: arguments.unproven };
     let profile = arguments.scene.profile.into();
-    let (blockers, unproven) = sights::proving_blockers(&scene, profile, &giving_way, &mut stages, &mut summary)?;
+    let (blockers, unproven) = sights::proving_blockers(&scene, profile, &giving_way, &mut run)?;
     if let Some(view) = views.first().filter(|view| view.is_central()) {
         let note = sights::enclosure_note(&blockers, view.frame.eye, "the eye");
-        summary.add("notes", note.into_iter().collect::<Vec<_>>());
+        run.summary.add("notes", note.into_iter().collect::<Vec<_>>());
     }
     let spacing = arguments.mesh.spacing.unwrap_or(SPACING);
-    let surface = stages
-        .run("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, global.seed));
+    let surface = run
+        .stage("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, global.seed));
     let surface = pipeline::flagged("--spacing", surface)?;
     let Some(view) = views.first() else { bail!("there is no view") };
     let viewer = match view.is_central() {
@@ -84,7 +83,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     let usual = MeshTargetParams::default();
     let back_faces = arguments.mesh.back_faces.map_or(usual.back_faces, BackFaces::from);
     let params = MeshTargetParams { back_faces, ..usual };
-    let faces = stages.run("querying", 0, |control| {
+    let faces = run.stage("querying", 0, |control| {
         seen_faces(&surface, viewer, &params, |places| {
             // as for points, a view that fits the scene has no plane that a target could lie before
             let moved = |view: &View| if has_picture { *view } else { view.moved_before(places) };
@@ -93,11 +92,11 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
             Ok(answers.into_iter().map(|answer| unproven.settle(answer)).collect())
         })
     })?;
-    summary.add("faces", told(&faces, &surface, spacing));
+    run.summary.add("faces", told(&faces, &surface, spacing));
     let places: Vec<[f32; 3]> = surface.pieces.iter().map(|piece| piece.place).collect();
     let outside = scene.model.coverage().map_or(0, |coverage| coverage.outside_count(&places));
-    summary.warn_of_share(outside, places.len(), "sample points of the mesh", sights::OUTSIDE_CLOUD);
-    stages.run("writing", 0, |_| match extension(output).as_str() {
+    run.summary.warn_of_share(outside, places.len(), "sample points of the mesh", sights::OUTSIDE_CLOUD);
+    run.stage("writing", 0, |_| match extension(output).as_str() {
         "ply" => {
             let shares: Vec<f64> = faces.iter().map(SeenArea::visible_share).collect();
             let unit = scene.cloud.frame.crs.metres_per_unit_xyz();
@@ -105,9 +104,8 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
         }
         _ => FaceRows::of_seen(&mesh, &faces).write(output),
     })?;
-    summary.add("written", output.display().to_string());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("written", output.display().to_string());
+    Ok(run.finish())
 }
 
 fn told(faces: &[SeenArea], surface: &SurfacePieces, spacing: f64) -> Summary {

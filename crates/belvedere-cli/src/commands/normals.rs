@@ -3,7 +3,7 @@
 use super::{NormalColumns, check_output, check_parent, is_folder, is_written_back};
 use crate::arguments::{Cleaning, Global, Normals, OrientChoice};
 use crate::pipeline::{self, params};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::io::{ExtraColumn, ExtraValues, MasbcppFolder, WriteReport, write_cloud, write_masbcpp};
@@ -18,12 +18,11 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
     } else {
         check_output("-o", output, &["laz", "las", "ply", "csv", "xyz", "txt"])?;
     }
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
+    let mut run = Run::new(global);
     let mut cloud = if is_folder {
-        pipeline::read_every_row(&arguments.input, &mut stages, &mut summary)?
+        pipeline::read_every_row(&arguments.input, &mut run)?
     } else {
-        pipeline::read(&arguments.input, &mut stages, &mut summary)?
+        pipeline::read(&arguments.input, &mut run)?
     };
     if matches!(arguments.orienting.orient, OrientChoice::Auto) {
         // normals are asked for, so those of an earlier run do not stand in the way
@@ -33,12 +32,12 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
     // the rows of a folder belong to the rows of its coords.npy
     let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
     let balls = BallParams::Shrunk(ShrinkParams::tau());
-    let params = params::model(cleaning, &arguments.orienting, balls, &cloud.frame.crs, &mut stages)?;
-    let prepared = OrientedSurvey::prepare(&cloud, &params, &stages.control());
+    let params = params::model(cleaning, &arguments.orienting, balls, &cloud.frame.crs, &mut run)?;
+    let prepared = OrientedSurvey::prepare(&cloud, &params, &run.control());
     let (survey, report) = prepared.map_err(|error| pipeline::advised(&arguments.input, error))?;
-    summary.add_report(&report);
+    run.summary.add_report(&report);
     let oriented = &survey.oriented;
-    let report = stages.run("writing", 0, |_| -> Result<WriteReport> {
+    let report = run.stage("writing", 0, |_| -> Result<WriteReport> {
         if is_folder {
             let coords = (!is_written_back(&arguments.input.clouds, output))
                 .then(|| pipeline::file_coordinates(&cloud, &cloud.positions));
@@ -64,8 +63,7 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
         ];
         Ok(write_cloud(output, &kept, &columns)?)
     })?;
-    summary.add_writing(&report);
-    summary.add("written", output.display().to_string());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add_writing(&report);
+    run.summary.add("written", output.display().to_string());
+    Ok(run.finish())
 }

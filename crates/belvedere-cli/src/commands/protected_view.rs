@@ -7,7 +7,7 @@ use super::surroundings::{check_eyes, eyes};
 use super::{check_output, extension};
 use crate::arguments::{Global, ProtectedView, UnprovenChoice};
 use crate::pipeline::{self, Points, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded, sections};
 use anyhow::Result;
 use belvedere::PointCloud;
@@ -32,24 +32,23 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
     if let Some(output) = &arguments.tops {
         check_output("--tops", output, &["tif", "tiff", "npy"])?;
     }
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
-    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
-    let (object, _) = what::surface(&arguments.shape, &scene, global.seed, &mut stages, &mut summary)?;
-    let mut places = eyes(&arguments.eyes, &mut scene, &mut stages, &mut Summary::default())?;
+    let mut run = Run::new(global);
+    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut run)?;
+    let (object, _) = what::surface(&arguments.shape, &scene, &mut run)?;
+    let mut places = run.aside(|run| eyes(&arguments.eyes, &mut scene, run)).0?;
     let (low, high) = scene.model.bounds().on_map();
     let cell = arguments.cell.unwrap_or_else(|| cell_for(low, high));
     let [x, y, _] = scene.cloud.frame.origin;
     let grid = flagged("--cell", MapGrid::covering(low, high, cell, [x, y]))?;
-    let (cloud, points) = ground_cloud(&arguments.eyes.ground, &mut scene, &mut stages)?;
-    let ground = sights::ground(&cloud, points, grid, &mut stages, &mut summary)?;
+    let (cloud, points) = ground_cloud(&arguments.eyes.ground, &mut scene, &mut run)?;
+    let ground = sights::ground(&cloud, points, grid, &mut run)?;
     let profile = arguments.scene.profile.into();
-    let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
-    check_eyes(&blockers, &cloud.frame, &mut places, &mut stages, &mut summary)?;
+    let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
+    check_eyes(&blockers, &cloud.frame, &mut places, &mut run)?;
     let params = LandmarkParams::default()
         .with_unproven(unproven)
         .with_max_range(arguments.max_distance.unwrap_or(f64::INFINITY));
-    let found = stages.run("computing limits", places.len(), |control| {
+    let found = run.stage("computing limits", places.len(), |control| {
         protected_view::protected_view(&blockers, &object, &places, &ground.grid, &params, control)
     });
     let found = flagged("--max-distance", found)?;
@@ -74,12 +73,12 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
     if found.viewpoints.len() <= MOST_LISTED {
         section.add("viewpoint", sections(&found.viewpoints));
     }
-    summary.add("protected_view", section);
+    run.summary.add("protected_view", section);
     if lines_protected == 0 {
-        summary.warn("no observer sees any part of the landmark today: nothing is protected");
+        run.summary.warn("no observer sees any part of the landmark today: nothing is protected");
     }
     for output in &arguments.output {
-        stages.run("writing", 0, |_| match extension(output).as_str() {
+        run.stage("writing", 0, |_| match extension(output).as_str() {
             "png" => write_map(output, &above, &ground, &cloud, &places),
             _ => write_heights(output, &above, (&ground.grid, &cloud.frame), "maximum height above the ground"),
         })?;
@@ -91,12 +90,11 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
             let of_file = cloud.frame.file_from_local([0.0, 0.0, f64::from(*top)])[2] as f32;
             *top = of_file;
         }
-        stages.run("writing", 0, |_| write_heights(output, &tops, (&ground.grid, &cloud.frame), "maximum height"))?;
+        run.stage("writing", 0, |_| write_heights(output, &tops, (&ground.grid, &cloud.frame), "maximum height"))?;
     }
     let written = arguments.output.iter().chain(&arguments.tops).map(|path| path.display().to_string());
-    summary.add("written", written.collect::<Vec<_>>());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("written", written.collect::<Vec<_>>());
+    Ok(run.finish())
 }
 
 fn write_map(

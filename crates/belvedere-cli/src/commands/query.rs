@@ -3,7 +3,7 @@
 use super::{NormalColumns, check_output, extension, is_las, mesh_targets, sights};
 use crate::arguments::{Global, Query, Usage};
 use crate::pipeline::{self, Points, Scene};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::depth::{ItemBuffer, Profile};
@@ -31,10 +31,9 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     if is_central && Profile::from(arguments.scene.profile) != Profile::Sphere {
         return Err(Usage("--ball-profile: the paper's cone is for parallel views only".to_owned()).into());
     }
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
+    let mut run = Run::new(global);
     let points = if arguments.targets.own { Points::Keep } else { Points::LetGo };
-    let scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
+    let scene = pipeline::scene(&arguments.scene, points, &mut run)?;
     if arguments.unproven.is_some() && scene.model.pulses().is_none() {
         let what = "--unproven needs pulses: a cloud with known scanner positions (see `belvedere info`), or an .npz file from such a cloud";
         return Err(Usage(what.to_owned()).into());
@@ -42,28 +41,28 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     if arguments.shell.is_some() && !scene.model.is_carved() {
         return Err(Usage("--shell applies only to carved balls, and these are not carved".to_owned()).into());
     }
-    let mut views = arguments.view.views(&scene, &mut summary)?;
+    let mut views = arguments.view.views(&scene, &mut run.summary)?;
     if arguments.targets.own && extension(output) == "npy" {
         pipeline::check_every_row(&scene.left_out)?;
     }
-    let rows = rows_as_given(arguments, &scene, &mut summary)?;
+    let rows = rows_as_given(arguments, &scene, &mut run.summary)?;
     let Scene { model, cloud, .. } = scene;
-    let mut targets = targets(arguments, cloud, model.bounds(), global.seed, &mut stages, &mut summary)?;
+    let mut targets = targets(arguments, cloud, model.bounds(), &mut run)?;
     if arguments.view.kind.viewport.is_none() {
         // a view that fits the scene has no plane of its own that a target could lie before
         views = views.iter().map(|view| view.moved_before(&targets.positions)).collect();
     }
     let mut section = Summary::default();
     let answers = if model.is_carved() || is_central {
-        by_lines_of_sight(arguments, &model, &views, &targets.positions, &mut stages, &mut section)?
+        by_lines_of_sight(arguments, &model, &views, &targets.positions, &mut run, &mut section)?
     } else {
         let Some(view) = views.first() else { bail!("there is no view") };
-        let map = stages.run("drawing depth map", 0, |control| {
+        let map = run.stage("drawing depth map", 0, |control| {
             model.depth_map(view, arguments.scene.profile.into(), ItemBuffer::Without, control)
         })?;
         let bias = arguments.bias.unwrap_or_else(|| map.default_depth_bias());
         section.add("method", "depth map").add("depth_bias_m", rounded(f64::from(bias), 4));
-        let mut answers = stages.run("querying", 0, |_| query_points(&map, &targets.positions, bias));
+        let mut answers = run.compute("querying", || query_points(&map, &targets.positions, bias));
         if let Some(coverage) = model.coverage() {
             let viewer = Viewer::Direction(view.frame.forward.map(|v| -v));
             coverage.mark_outside(viewer, &targets.positions, &mut answers);
@@ -71,11 +70,11 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         answers
     };
     let outside = AnswerCounts::of(&answers).outside_cloud;
-    summary.warn_of_share(outside, answers.len(), "targets", sights::OUTSIDE_CLOUD);
+    run.summary.warn_of_share(outside, answers.len(), "targets", sights::OUTSIDE_CLOUD);
     let unproven_as = arguments.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
     let codes: Vec<u8> = answers.iter().map(|&answer| unproven_as.settle(answer) as u8).collect();
-    summary.add("answers", counted(&answers, unproven_as, section));
-    let report = stages.run("writing", 0, |_| {
+    run.summary.add("answers", counted(&answers, unproven_as, section));
+    let report = run.stage("writing", 0, |_| {
         if extension(output) == "npy" {
             return write_npy_u8(output, &codes).map(|()| WriteReport::default());
         }
@@ -96,10 +95,9 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         }
         write_cloud(output, &targets, &[column])
     })?;
-    summary.add_writing(&report);
-    summary.add("written", output.display().to_string());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add_writing(&report);
+    run.summary.add("written", output.display().to_string());
+    Ok(run.finish())
 }
 
 /// The rows of the targets as they were given, where they go from a table to a table.
@@ -137,7 +135,7 @@ fn by_lines_of_sight(
     model: &SceneModel,
     views: &[View],
     targets: &[[f32; 3]],
-    stages: &mut Stages,
+    run: &mut Run,
     section: &mut Summary,
 ) -> Result<Vec<Answer>> {
     let usual = model.rule();
@@ -145,7 +143,7 @@ fn by_lines_of_sight(
     let shell = arguments.shell.map_or(usual.shell, f64::from);
     let rule = BlockRule { profile: arguments.scene.profile.into(), bias: depth_bias, shell };
     let unproven_as = arguments.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
-    let scene = model.scene(&rule, unproven_as, &stages.control())?;
+    let scene = model.scene(&rule, unproven_as, &run.control())?;
     section.add("depth_bias_m", rounded(depth_bias, 4)).add("shell_m", rounded(shell, 4));
     if let Some(view) = views.iter().find(|view| view.is_central()) {
         section.add("balls_around_eye_ignored", scene.around_eye_count(view.frame.eye));
@@ -155,7 +153,7 @@ fn by_lines_of_sight(
     let has_picture = arguments.view.kind.viewport.is_some() || arguments.view.kind.eye.is_some();
     let scope = if has_picture { Scope::View } else { Scope::Viewer };
     let (answers, report) =
-        stages.run("querying", 0, |control| scene.visible_in_views(views, scope, targets, control))?;
+        run.stage("querying", 0, |control| scene.visible_in_views(views, scope, targets, control))?;
     match report {
         None => section.add("method", "lines of sight"),
         Some(CertifiedReport { target_count, settled_count }) => section
@@ -192,16 +190,14 @@ fn targets(
     arguments: &Query,
     scene: PointCloud,
     belvedere::Bounds { low, high }: belvedere::Bounds,
-    seed: u64,
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<PointCloud> {
     let frame = |positions| PointCloud { positions, ..PointCloud::in_frame(scene.frame.clone()) };
     if let Some(count) = arguments.targets.random {
-        return Ok(frame(stages.run("choosing random targets", 0, |_| random_targets(low, high, count, seed))));
+        return Ok(frame(run.compute("choosing random targets", || random_targets(low, high, count, run.seed))));
     }
     if let Some(path) = &arguments.targets.targets {
-        return points_of_file(path, arguments.scene.input.crs.clone(), &scene.frame, stages, summary);
+        return points_of_file(path, arguments.scene.input.crs.clone(), &scene.frame, run);
     }
     if scene.is_empty() {
         return Err(Usage("--self needs a cloud; a ball file has no points".to_owned()).into());
@@ -210,19 +206,13 @@ fn targets(
 }
 
 /// The points of a file as a cloud in the frame of the scene, which is in `crs` where the file says nothing.
-pub(super) fn points_of_file(
-    path: &Path,
-    crs: Option<String>,
-    frame: &Frame,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<PointCloud> {
+pub(super) fn points_of_file(path: &Path, crs: Option<String>, frame: &Frame, run: &mut Run) -> Result<PointCloud> {
     let mut options = ReadOptions::new();
     options.crs = crs;
     let (cloud, report) =
-        stages.run("reading targets", 0, |control| read_cloud(&[path.to_owned()], &options, control))?;
+        run.stage("reading targets", 0, |control| read_cloud(&[path.to_owned()], &options, control))?;
     pipeline::check_every_row(&report)?;
-    summary.add("reading_targets", Summary::of(&report));
+    run.summary.add("reading_targets", Summary::of(&report));
     cloud.frame.crs.check_for(&frame.crs, "cloud of targets", path)?;
     Ok(cloud.moved_to(frame))
 }

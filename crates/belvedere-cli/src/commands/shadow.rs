@@ -5,7 +5,7 @@ use super::targets::{Asked, Relief};
 use super::{check_output, extension};
 use crate::arguments::{Global, Shadow, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::apps::rows::Obstacles;
@@ -26,14 +26,13 @@ const MOST_TOLD: usize = 5;
 
 pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     check(arguments)?;
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
+    let mut run = Run::new(global);
     let points = if arguments.places.needs_points() { Points::Keep } else { Points::LetGo };
-    let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
-    arguments.places.far.set(&mut scene, &mut stages, &mut summary)?;
-    let mut suns = suns(arguments, &scene, &mut summary)?;
+    let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;
+    arguments.places.far.set(&mut scene, &mut run)?;
+    let mut suns = suns(arguments, &scene, &mut run.summary)?;
     suns.iter_mut().for_each(|sun| sun.title = arguments.places.far.titled(&sun.title));
-    let asked = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
+    let asked = arguments.places.targets(&mut scene, &mut run)?;
     let edges = if arguments.suns.soft { Edges::Soft } else { Edges::Hard };
     // pulses are asked about one sun that is a point: of many it would take long
     let proving = if suns.len() == 1 && edges == Edges::Hard { Proving::IfItDecides } else { Proving::Never };
@@ -42,20 +41,20 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     }
     let mut section = Summary::default();
     let profile = arguments.scene.profile.into();
-    let (blockers, unproven) = blockers(&scene, profile, &arguments.giving_way, proving, &mut stages, &mut section)?;
+    let (blockers, unproven) = blockers(&scene, profile, &arguments.giving_way, proving, &mut run, &mut section)?;
     let kinds: Vec<ShadowSun> = suns.iter().map(|sun| sun.sun).collect();
     let to_suns: Vec<[f64; 3]> = kinds.iter().map(|sun| sun.to_sun).collect();
-    asked.report_edge(&arguments.places, &scene, &to_suns, &mut stages, &mut summary)?;
+    asked.report_edge(&arguments.places, &scene, &to_suns, &mut run)?;
     section.add("directions", kinds.iter().map(|sun| sun_directions(sun.to_sun, edges).len()).sum::<usize>());
-    summary.add("lines_of_sight", section);
-    let trees = arguments.trees.of(&scene, blockers.params(), &mut summary)?;
+    run.summary.add("lines_of_sight", section);
+    let trees = arguments.trees.of(&scene, blockers.params(), &mut run.summary)?;
     let obstacles = Obstacles { scene: &blockers, trees: trees.as_ref() };
     let looks = asked.targets.len() * obstacles.matrix_count();
     let lit =
-        stages.run("testing sun", looks, |control| scene_shadow(obstacles, &asked.targets, &kinds, edges, control))?;
+        run.stage("testing sun", looks, |control| scene_shadow(obstacles, &asked.targets, &kinds, edges, control))?;
     let doubts = match (&kinds[..], &lit[..]) {
         ([sun], [lit]) if unproven != UnprovenAs::Visible && blockers.proof().is_some() => {
-            stages.run("testing pulses", 0, |control| unproven_light(&blockers, &asked.targets, *sun, lit, control))?
+            run.stage("testing pulses", 0, |control| unproven_light(&blockers, &asked.targets, *sun, lit, control))?
         }
         _ => None,
     };
@@ -69,22 +68,21 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
         let measure = Measure::new("unproven", doubts.clone()).with_description("1: lit, but unproven");
         measures.push(measure.with_decimals(0).with_range(Some([0.0, 1.0])));
     }
-    summary.add("shadow", asked.statistics(&measures[..measures.len().min(MOST_TOLD)]));
+    run.summary.add("shadow", asked.statistics(&measures[..measures.len().min(MOST_TOLD)]));
     let has_parts = lit.iter().flatten().any(|&share| share > 0.0 && share < 1.0);
     let legend = if has_parts { Legend::WithParts } else { Legend::WithoutParts };
     let picture = |number: usize, relief: &Relief| {
         frame(&suns[number], &lit[number], doubts.as_deref().filter(|_| number == 0), legend, relief)
     };
     let pictured = |relief: &Relief| picture(0, relief);
-    asked.write_with(&arguments.outputs, &measures, &pictured, &mut stages, &mut summary)?;
+    asked.write_with(&arguments.outputs, &measures, &pictured, &mut run)?;
     let map = arguments.outputs.output.iter().find(|output| extension(output) == "png" && asked.relief().is_some());
     if let (Some(map), 2.., None, None) = (map, suns.len(), &arguments.film, &arguments.frames) {
         let (map, count) = (map.display(), suns.len());
-        summary.warn(format!("{map}: the map shows only the first of {count} suns; --film OUT shows them all"));
+        run.summary.warn(format!("{map}: the map shows only the first of {count} suns; --film OUT shows them all"));
     }
-    films(arguments, &asked, &suns, &picture, &mut stages)?;
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    films(arguments, &asked, &suns, &picture, &mut run)?;
+    Ok(run.finish())
 }
 
 fn check(arguments: &Shadow) -> Result<()> {
@@ -253,18 +251,18 @@ fn frame(
 type Drawing<'a> = dyn Fn(usize, &Relief) -> belvedere::Result<Picture> + 'a;
 
 /// Writes a picture of each sun, after each other or apart.
-fn films(arguments: &Shadow, asked: &Asked, suns: &[Sun], picture: &Drawing<'_>, stages: &mut Stages) -> Result<()> {
+fn films(arguments: &Shadow, asked: &Asked, suns: &[Sun], picture: &Drawing<'_>, run: &mut Run) -> Result<()> {
     let Some(relief) = asked.relief() else { return Ok(()) };
     if let Some(folder) = &arguments.frames {
         atomic::make_folder(folder)?;
         for (number, sun) in suns.iter().enumerate() {
             let picture = picture(number, &relief)?;
-            stages.run("writing", 0, |_| write_png(&folder.join(format!("{}.png", sun.column)), &picture))?;
+            run.stage("writing", 0, |_| write_png(&folder.join(format!("{}.png", sun.column)), &picture))?;
         }
     }
     if let Some(film) = &arguments.film {
         let frames: belvedere::Result<Vec<Picture>> = (0..suns.len()).map(|number| picture(number, &relief)).collect();
-        stages.run("writing film", 0, |_| write_apng(film, &frames?, arguments.seconds))?;
+        run.stage("writing film", 0, |_| write_apng(film, &frames?, arguments.seconds))?;
     }
     Ok(())
 }

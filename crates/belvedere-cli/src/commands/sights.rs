@@ -2,7 +2,7 @@
 
 use crate::arguments::{Earth, GivingWay, GroundChoice, Usage};
 use crate::pipeline::{Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::eyes::{EyeFault, EyesReport, SkippedEye, skip_unfit_eyes, skip_unfit_far_eyes};
@@ -38,7 +38,7 @@ pub(crate) fn blockers(
     profile: Profile,
     flags: &GivingWay,
     proving: Proving,
-    stages: &mut Stages,
+    run: &mut Run,
     section: &mut Summary,
 ) -> Result<(MedialScene, UnprovenAs)> {
     if flags.unproven.is_some() && scene.model.pulses().is_none() {
@@ -51,7 +51,7 @@ pub(crate) fn blockers(
     let params = scene_params(scene, profile, flags);
     let unproven_as = flags.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
     let asked = if proving == Proving::IfItDecides { unproven_as } else { UnprovenAs::Visible };
-    let blockers = scene.model.scene(&params, asked, &stages.control())?;
+    let blockers = scene.model.scene(&params, asked, &run.control())?;
     section
         .add("balls", blockers.ball_count())
         .add("depth_bias_m", rounded(params.bias, 4))
@@ -65,12 +65,11 @@ pub(crate) fn proving_blockers(
     scene: &Scene,
     profile: Profile,
     flags: &GivingWay,
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<(MedialScene, UnprovenAs)> {
     let mut section = Summary::default();
-    let found = blockers(scene, profile, flags, Proving::IfItDecides, stages, &mut section)?;
-    summary.add("lines_of_sight", section);
+    let found = blockers(scene, profile, flags, Proving::IfItDecides, run, &mut section)?;
+    run.summary.add("lines_of_sight", section);
     Ok(found)
 }
 
@@ -98,7 +97,7 @@ impl Earth {
 pub(crate) fn ground_cloud(
     choice: &GroundChoice,
     scene: &mut Scene,
-    stages: &mut Stages,
+    run: &mut Run,
 ) -> Result<(PointCloud, GroundPoints)> {
     match choice {
         GroundChoice::OfScene(points) => {
@@ -111,7 +110,7 @@ pub(crate) fn ground_cloud(
             Ok((std::mem::replace(&mut scene.cloud, frame), *points))
         }
         GroundChoice::Cloud(path) => {
-            let (cloud, _) = stages.run("reading ground", 0, |control| {
+            let (cloud, _) = run.stage("reading ground", 0, |control| {
                 read_cloud(std::slice::from_ref(path), &ReadOptions::default(), control)
             })?;
             let frame = &scene.cloud.frame;
@@ -128,16 +127,10 @@ pub(crate) fn ground_cloud(
 }
 
 /// The ground of a cloud on a grid, reported.
-pub(crate) fn ground(
-    cloud: &PointCloud,
-    points: GroundPoints,
-    grid: MapGrid,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<Ground> {
+pub(crate) fn ground(cloud: &PointCloud, points: GroundPoints, grid: MapGrid, run: &mut Run) -> Result<Ground> {
     let params = GroundParams { points, ..GroundParams::default() };
     let (ground, report) =
-        stages.run("computing ground", 0, |control| Ground::of_cloud(cloud, grid, &params, control))?;
+        run.stage("computing ground", 0, |control| Ground::of_cloud(cloud, grid, &params, control))?;
     let mut section = Summary::default();
     let from = match report.from {
         GroundPoints::Found => "detected points (no class 2)",
@@ -150,7 +143,7 @@ pub(crate) fn ground(
         .add("grid_rows", grid.height)
         .add("cell_m", rounded(grid.cell, 4))
         .add("cells_without_ground", grid.len() - report.cell_count);
-    summary.add("ground", section);
+    run.summary.add("ground", section);
     Ok(ground)
 }
 
@@ -160,11 +153,10 @@ pub(crate) fn skip_unfit(
     ground: Option<&Ground>,
     (who, frame): (&str, &Frame),
     eyes: &mut [[f64; 3]],
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<EyesReport> {
-    let report = stages.run("testing observers", 0, |control| skip_unfit_eyes(blockers, ground, eyes, control))?;
-    warn_of_skipped(report, (who, frame), summary)
+    let report = run.stage("testing observers", 0, |control| skip_unfit_eyes(blockers, ground, eyes, control))?;
+    warn_of_skipped(report, (who, frame), &mut run.summary)
 }
 
 /// The same for observers that may stand on far terrain.
@@ -173,11 +165,10 @@ pub(crate) fn skip_unfit_far(
     ground: Option<&Ground>,
     who: (&str, &Frame),
     eyes: &mut [[f64; 3]],
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<EyesReport> {
-    let report = stages.run("testing observers", 0, |control| skip_unfit_far_eyes(blockers, ground, eyes, control))?;
-    warn_of_skipped(report, who, summary)
+    let report = run.stage("testing observers", 0, |control| skip_unfit_far_eyes(blockers, ground, eyes, control))?;
+    warn_of_skipped(report, who, &mut run.summary)
 }
 
 fn warn_of_skipped(report: EyesReport, (who, frame): (&str, &Frame), summary: &mut Summary) -> Result<EyesReport> {

@@ -1,7 +1,7 @@
 //! `belvedere simulate`: a town, a survey of it, and what is true about both.
 
 use crate::arguments::{Global, PatternChoice, ScannerChoice, Simulate, Usage};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::simulated::{EPSG, SUNS_DEG, cloud_of, crs, write_text};
 use crate::summary::{Summary, percent, rounded, whole};
 use anyhow::{Result, bail};
@@ -22,21 +22,20 @@ pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
     check_flags(arguments)?;
     check_pulses(arguments)?;
     let folder = &arguments.output;
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
+    let mut run = Run::new(global);
 
     let town_params = arguments.scene.params(arguments.extent, global.seed);
-    let scene = stages.run("building town", 0, |_| town(&town_params));
+    let scene = run.compute("building town", || town(&town_params));
     let scan = match arguments.scanner {
         ScannerChoice::Airborne => {
             let params = airborne(arguments, &scene, global.seed);
-            summary.add("survey", airborne_section(&params));
-            stages.run("scanning", 0, |_| scan_airborne(&scene, &params))
+            run.summary.add("survey", airborne_section(&params));
+            run.compute("scanning", || scan_airborne(&scene, &params))
         }
         ScannerChoice::Terrestrial => {
             let params = terrestrial(arguments, global.seed);
-            let scan = stages.run("scanning", 0, |_| scan_terrestrial(&scene, &params));
-            summary.add("survey", terrestrial_section(&params, &scan));
+            let scan = run.compute("scanning", || scan_terrestrial(&scene, &params));
+            run.summary.add("survey", terrestrial_section(&params, &scan));
             scan
         }
     };
@@ -44,7 +43,7 @@ pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
         bail!("no pulse returned from the town; use a lower --dropout, more --stations or a larger --max-range");
     }
     atomic::make_folder(folder)?;
-    let lit = stages.run("testing shadow", 0, |_| {
+    let lit = run.compute("testing shadow", || {
         let truth = Truth::new(&scene);
         SUNS_DEG.map(|sun| {
             let [azimuth, elevation] = sun.map(f64::to_radians);
@@ -52,22 +51,21 @@ pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
             lit.into_iter().map(u8::from).collect::<Vec<u8>>()
         })
     });
-    stages.run("writing cloud", 0, |_| write_lit_cloud(&folder.join("cloud.laz"), &scan, &lit))?;
+    run.stage("writing cloud", 0, |_| write_lit_cloud(&folder.join("cloud.laz"), &scan, &lit))?;
     let mut files = vec!["cloud.laz"];
-    files.extend(stages.run("writing trajectory", 0, |_| write_paths(folder, &scan))?);
-    files.extend(stages.run("writing meshes", 0, |_| write_meshes(folder, &scene))?);
+    files.extend(run.stage("writing trajectory", 0, |_| write_paths(folder, &scan))?);
+    files.extend(run.stage("writing meshes", 0, |_| write_meshes(folder, &scene))?);
 
-    summary.add("scene", arguments.scene.name());
-    summary.add("objects", scene.object_names.len());
-    summary.add("ground_truth_triangles", scene.triangles.len());
-    summary.add("points", scan.len());
-    summary.add("pulses", pulses_section(&scan));
+    run.summary.add("scene", arguments.scene.name());
+    run.summary.add("objects", scene.object_names.len());
+    run.summary.add("ground_truth_triangles", scene.triangles.len());
+    run.summary.add("points", scan.len());
+    run.summary.add("pulses", pulses_section(&scan));
     for (name, lit) in SUN_NAMES.iter().zip(&lit) {
-        summary.add(&format!("{name}_percent"), percent(lit.iter().filter(|&&v| v == 1).count(), lit.len()));
+        run.summary.add(&format!("{name}_percent"), percent(lit.iter().filter(|&&v| v == 1).count(), lit.len()));
     }
-    summary.add("files", files.iter().map(|name| folder.join(name).display().to_string()).collect::<Vec<_>>());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("files", files.iter().map(|name| folder.join(name).display().to_string()).collect::<Vec<_>>());
+    Ok(run.finish())
 }
 
 /// Refuses flags of the scanner that is not used.

@@ -4,7 +4,7 @@ use super::check_output;
 use super::sights::{Proving, blockers, scene_params};
 use crate::arguments::{Global, SunHours, Usage};
 use crate::pipeline::{self, Points, Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::rows::{Obstacles, RowBlock, fold_rows};
@@ -43,21 +43,20 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
         (None, Some(0.0)) => Suns::Of(Binning::Exact),
         (None, Some(degrees)) => Suns::Of(Binning::Within(degrees.to_radians())),
     };
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
+    let mut run = Run::new(global);
     let points = if arguments.places.needs_points() { Points::Keep } else { Points::LetGo };
-    let mut scene = pipeline::scene(&arguments.scene, points, &mut stages, &mut summary)?;
-    arguments.places.far.set(&mut scene, &mut stages, &mut summary)?;
-    let site = arguments.sun.site(&scene, &mut summary)?;
-    let (plan, zone) = plan(arguments, &site, rules, &params, &suns, &mut summary)?;
-    let asked = arguments.places.targets(&mut scene, global.seed, &mut stages, &mut summary)?;
-    asked.report_edge(&arguments.places, &scene, plan.directions(), &mut stages, &mut summary)?;
+    let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;
+    arguments.places.far.set(&mut scene, &mut run)?;
+    let site = arguments.sun.site(&scene, &mut run.summary)?;
+    let (plan, zone) = plan(arguments, &site, rules, &params, &suns, &mut run.summary)?;
+    let asked = arguments.places.targets(&mut scene, &mut run)?;
+    asked.report_edge(&arguments.places, &scene, plan.directions(), &mut run)?;
     let targets = &asked.targets;
-    let trees = arguments.trees.of(&scene, &matrix_params(&scene, arguments), &mut summary)?;
+    let trees = arguments.trees.of(&scene, &matrix_params(&scene, arguments), &mut run.summary)?;
     let sums = match &kept {
         Some((path, head)) => {
             check_kept(head, targets, matrix_scene(&scene, arguments))?;
-            stages.run("reading matrix", targets.len(), |control| {
+            run.stage("reading matrix", targets.len(), |control| {
                 let mut sums = SunSums::default();
                 let mut first = 0;
                 read_matrix_rows(path.as_path(), head, |words| {
@@ -79,19 +78,18 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
                 Ok::<_, belvedere::Error>(sums)
             })?
         }
-        None => look(arguments, &scene, &plan, targets, (trees.as_ref(), &site), &mut stages, &mut summary)?,
+        None => look(arguments, &scene, &plan, targets, (trees.as_ref(), &site), &mut run)?,
     };
     let measures = sums.into_measures(&plan, targets);
-    summary.add("sun", asked.statistics(&measures));
+    run.summary.add("sun", asked.statistics(&measures));
     let days = days_in_words(plan.period(), &zone);
     let title = match plan.rules().first().filter(|_| !arguments.when.is_given()) {
         Some(first) => format!("Sun hours on the days of the rule {}, {days}", first.rule.name),
         None => format!("Sun hours, {days}"),
     };
     let title = arguments.places.far.titled(&title);
-    asked.write(&arguments.outputs, &measures, &title, &mut stages, &mut summary)?;
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    asked.write(&arguments.outputs, &measures, &title, &mut run)?;
+    Ok(run.finish())
 }
 
 /// The sun at each target; what it sees of the directions is kept where that is asked for.
@@ -101,19 +99,18 @@ fn look(
     plan: &SunPlan,
     targets: &Targets,
     (trees, site): (Option<&TreeLight>, &Site),
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<SunSums> {
     let mut section = Summary::default();
     let profile = arguments.scene.profile.into();
-    let (blockers, _) = blockers(scene, profile, &arguments.shell.giving_way(), Proving::Never, stages, &mut section)?;
+    let (blockers, _) = blockers(scene, profile, &arguments.shell.giving_way(), Proving::Never, run, &mut section)?;
     section.add("directions", plan.directions().len());
-    summary.add("lines_of_sight", section);
+    run.summary.add("lines_of_sight", section);
     let obstacles = Obstacles { scene: &blockers, trees };
     let looks = targets.len() * obstacles.matrix_count();
     let Some(keep) = &arguments.keep else {
         let sums =
-            stages.run("testing sun", looks, |control| scene_sun_hours(obstacles, targets, plan, Some(site), control));
+            run.stage("testing sun", looks, |control| scene_sun_hours(obstacles, targets, plan, Some(site), control));
         return Ok(sums?);
     };
     let head = MatrixHead {
@@ -123,7 +120,7 @@ fn look(
         scene: matrix_scene(scene, arguments),
     };
     let mut sums = SunSums::default();
-    stages.run("testing sun", looks, |control| {
+    run.stage("testing sun", looks, |control| {
         write_matrix_rows(keep, &head, |sink| {
             fold_rows(obstacles.into(), &targets.positions, plan.directions(), control, |block| {
                 (0..block.matrix.target_count()).try_for_each(|row| sink(block.matrix.row(row)))?;
@@ -131,7 +128,7 @@ fn look(
             })
         })
     })?;
-    summary.add("matrix_written", keep.display().to_string());
+    run.summary.add("matrix_written", keep.display().to_string());
     Ok(sums)
 }
 

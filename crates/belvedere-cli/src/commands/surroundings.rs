@@ -3,7 +3,7 @@
 use super::{extension, sights};
 use crate::arguments::{Eyes, GroundChoice};
 use crate::pipeline::{Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
@@ -17,12 +17,7 @@ use std::path::Path;
 const MOST_NOTES: usize = 5;
 
 /// The eyes that were typed or are in the file named, local metres.
-pub(super) fn eyes(
-    arguments: &Eyes,
-    scene: &mut Scene,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<Vec<[f64; 3]>> {
+pub(super) fn eyes(arguments: &Eyes, scene: &mut Scene, run: &mut Run) -> Result<Vec<[f64; 3]>> {
     let usual = arguments.height.unwrap_or(OBSERVER_HEIGHT);
     let mut rows: Vec<([f64; 3], f64)> = Vec::new();
     for place in &arguments.eye {
@@ -41,8 +36,8 @@ pub(super) fn eyes(
     let over = |place: &[f64; 3]| coverage.is_none_or(|coverage| coverage.holds_on_map(*place));
     let grid = grid_around(rows.iter().map(|row| row.0).filter(over), scene.cloud.frame.origin);
     if let Some(grid) = flagged("--observer", grid)? {
-        let (cloud, points) = sights::ground_cloud(&arguments.ground, scene, stages)?;
-        let ground = sights::ground(&cloud, points, grid, stages, summary)?;
+        let (cloud, points) = sights::ground_cloud(&arguments.ground, scene, run)?;
+        let ground = sights::ground(&cloud, points, grid, run)?;
         set_on_ground(rows.iter_mut().map(|(place, height)| (place, *height)), &ground);
         if matches!(arguments.ground, GroundChoice::OfScene(_)) {
             // a map needs it again
@@ -66,16 +61,10 @@ pub(super) fn rows_as_given(observers: Option<&Path>) -> Result<TextRows> {
 }
 
 /// Skips eyes that cannot look, by making them NaN, and reports on those just inside the surface of an obstacle.
-pub(super) fn check_eyes(
-    blockers: &MedialScene,
-    frame: &Frame,
-    eyes: &mut [[f64; 3]],
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<()> {
-    let report = sights::skip_unfit(blockers, None, ("observer", frame), eyes, stages, summary)?;
-    summary.add("observers", Summary::of(&report));
-    note_enclosed(blockers, eyes, summary);
+pub(super) fn check_eyes(blockers: &MedialScene, frame: &Frame, eyes: &mut [[f64; 3]], run: &mut Run) -> Result<()> {
+    let report = sights::skip_unfit(blockers, None, ("observer", frame), eyes, run)?;
+    run.summary.add("observers", Summary::of(&report));
+    note_enclosed(blockers, eyes, &mut run.summary);
     Ok(())
 }
 

@@ -6,7 +6,7 @@ use super::sights::{OUTSIDE_CLOUD, ground, ground_cloud};
 use super::{check_output, extension};
 use crate::arguments::{FacingChoice, SkyOutputs, SkyPlaces, Usage};
 use crate::pipeline::{Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::edge::{EdgeReport, near_edge};
@@ -95,27 +95,21 @@ impl SkyPlaces {
     }
 
     /// The targets that were typed. Takes the points of the scene with it where it needs them.
-    pub(crate) fn targets(
-        &self,
-        scene: &mut Scene,
-        seed: u64,
-        stages: &mut Stages,
-        summary: &mut Summary,
-    ) -> Result<Asked> {
-        let mut asked = self.typed(scene, seed, stages, summary)?;
+    pub(crate) fn targets(&self, scene: &mut Scene, run: &mut Run) -> Result<Asked> {
+        let mut asked = self.typed(scene, run)?;
         // cells are those of the cloud
         if !self.is_grid() {
-            leave_out_outside(&mut asked.targets, scene, summary);
+            leave_out_outside(&mut asked.targets, scene, &mut run.summary);
         }
         Ok(asked)
     }
 
-    fn typed(&self, scene: &mut Scene, seed: u64, stages: &mut Stages, summary: &mut Summary) -> Result<Asked> {
+    fn typed(&self, scene: &mut Scene, run: &mut Run) -> Result<Asked> {
         if let Some(path) = &self.places.targets {
             if mesh_targets::is_mesh(path) {
-                return self.of_mesh(path, scene, seed, stages, summary);
+                return self.of_mesh(path, scene, run);
             }
-            let cloud = points_of_file(path, None, &scene.cloud.frame, stages, summary)?;
+            let cloud = points_of_file(path, None, &scene.cloud.frame, run)?;
             let normals = cloud.attributes.normals.clone();
             return self.of_points(cloud, normals, Some(path));
         }
@@ -135,8 +129,8 @@ impl SkyPlaces {
         let cell = self.cell.unwrap_or_else(|| cell_for(low, high));
         let [x, y, _] = scene.cloud.frame.origin;
         let grid = flagged("--cell", MapGrid::covering(low, high, cell, [x, y]))?;
-        let (cloud, points) = ground_cloud(&self.ground, scene, stages)?;
-        let ground = ground(&cloud, points, grid, stages, summary)?;
+        let (cloud, points) = ground_cloud(&self.ground, scene, run)?;
+        let ground = ground(&cloud, points, grid, run)?;
         let mut params = CellParams::default();
         if self.places.surface {
             params = params.with_level(CellLevel::Surface);
@@ -146,12 +140,12 @@ impl SkyPlaces {
         }
         let name = if self.places.surface { "finding the surface" } else { "finding hidden ground" };
         let (mut targets, mut report) =
-            stages.run(name, 0, |control| Targets::of_cells(&cloud, ground, &params, control))?;
+            run.stage(name, 0, |control| Targets::of_cells(&cloud, ground, &params, control))?;
         if let Some(added) = scene.model.added() {
             report.cells_below_objects_excluded += targets.set_on_added(added, &params);
         }
         if !self.places.surface {
-            summary.add_report(&report);
+            run.summary.add_report(&report);
         }
         Ok(Asked { targets, from: Source::Cells(Box::new(cloud), scene.model.added().cloned()) })
     }
@@ -170,21 +164,14 @@ impl SkyPlaces {
         })
     }
 
-    fn of_mesh(
-        &self,
-        path: &Path,
-        scene: &Scene,
-        seed: u64,
-        stages: &mut Stages,
-        summary: &mut Summary,
-    ) -> Result<Asked> {
-        let mesh = mesh_of(path, scene, stages, summary)?;
+    fn of_mesh(&self, path: &Path, scene: &Scene, run: &mut Run) -> Result<Asked> {
+        let mesh = mesh_of(path, scene, run)?;
         let facing = if self.facing == Some(FacingChoice::Level) { Facing::Level } else { Facing::Normals };
-        let mut params = MeshParams::default().with_seed(seed).with_facing(facing);
+        let mut params = MeshParams::default().with_seed(run.seed).with_facing(facing);
         if let Some(spacing) = self.spacing {
             params = params.with_spacing(spacing);
         }
-        let targets = stages.run("sampling mesh", 0, |_| Targets::of_mesh(&mesh, &scene.cloud.frame, &params));
+        let targets = run.stage("sampling mesh", 0, |_| Targets::of_mesh(&mesh, &scene.cloud.frame, &params));
         Ok(Asked { targets: flagged("--spacing", targets)?, from: Source::Mesh(Box::new(mesh)) })
     }
 }
@@ -194,17 +181,16 @@ pub(super) fn report_edge(
     targets: &Targets,
     scene: &Scene,
     directions: &[[f64; 3]],
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<Vec<Option<bool>>> {
     let Some(coverage) = scene.model.coverage() else { return Ok(vec![None; targets.len()]) };
-    let flags = stages.run("testing the edge of the cloud", targets.len(), |control| {
+    let flags = run.stage("testing the edge of the cloud", targets.len(), |control| {
         near_edge(&coverage, &targets.positions, directions, control)
     })?;
     let report = EdgeReport::of(&flags);
-    summary.add_report(&report);
+    run.summary.add_report(&report);
     if report.targets_near_edge_percent >= EDGE_WARNING_PERCENT {
-        summary.warn_of_share(report.targets_near_edge, targets.asked_count(), "targets", NEAR_EDGE);
+        run.summary.warn_of_share(report.targets_near_edge, targets.asked_count(), "targets", NEAR_EDGE);
     }
     Ok(flags)
 }
@@ -233,32 +219,24 @@ impl Asked {
         places: &SkyPlaces,
         scene: &Scene,
         directions: &[[f64; 3]],
-        stages: &mut Stages,
-        summary: &mut Summary,
+        run: &mut Run,
     ) -> Result<()> {
-        let flags = report_edge(&self.targets, scene, directions, stages, summary)?;
+        let flags = report_edge(&self.targets, scene, directions, run)?;
         if let (Some(path), Some(ground)) = (&places.edge_mask, self.targets.ground()) {
             let values = flags.iter().map(|flag| flag.map_or(NO_FLAG, u8::from)).collect();
             let raster = Raster::from_values(ground.grid.width, ground.grid.height, values)?;
             let place = georeference(&ground.grid, &self.targets.frame);
             let what = "1 near the edge of the cloud, 0 not, 255 nodata";
-            stages.run("writing", 0, |_| write_tif_u8(path, &raster, Some(&place), Some(NO_FLAG), Some(what)))?;
-            summary.add("edge_mask_written", path.display().to_string());
+            run.stage("writing", 0, |_| write_tif_u8(path, &raster, Some(&place), Some(NO_FLAG), Some(what)))?;
+            run.summary.add("edge_mask_written", path.display().to_string());
         }
         Ok(())
     }
 
     /// Writes all measures to each of the outputs; maps show the first.
-    pub(crate) fn write(
-        &self,
-        outputs: &SkyOutputs,
-        measures: &[Measure],
-        title: &str,
-        stages: &mut Stages,
-        summary: &mut Summary,
-    ) -> Result<()> {
+    pub(crate) fn write(&self, outputs: &SkyOutputs, measures: &[Measure], title: &str, run: &mut Run) -> Result<()> {
         let map = |relief: &Relief| measure_map(&measures[0], &relief.heights, relief.cell, &relief.place, title);
-        self.write_with(outputs, measures, &map, stages, summary)
+        self.write_with(outputs, measures, &map, run)
     }
 
     /// The same with maps of one's own.
@@ -267,12 +245,13 @@ impl Asked {
         outputs: &SkyOutputs,
         measures: &[Measure],
         map: &dyn Fn(&Relief) -> belvedere::Result<Picture>,
-        stages: &mut Stages,
-        summary: &mut Summary,
+        run: &mut Run,
     ) -> Result<()> {
         let mut written: Vec<String> = Vec::new();
         for output in &outputs.output {
-            stages.run("writing", 0, |_| self.write_one(output, measures, map, summary))?;
+            let mut section = Summary::default();
+            run.stage("writing", 0, |_| self.write_one(output, measures, map, &mut section))?;
+            run.summary.add_all(section);
             written.push(output.display().to_string());
         }
         if let (Some(folder), Source::Cells(..)) = (&outputs.measures, &self.from) {
@@ -283,7 +262,7 @@ impl Asked {
                 written.push(path.display().to_string());
             }
         }
-        summary.add("written", written);
+        run.summary.add("written", written);
         Ok(())
     }
 

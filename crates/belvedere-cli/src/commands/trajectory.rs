@@ -3,7 +3,7 @@
 use super::check_output;
 use crate::arguments::{Global, Trajectory, Usage};
 use crate::pipeline;
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, sections};
 use anyhow::Result;
 use belvedere::io::write_found_trajectory;
@@ -18,18 +18,16 @@ pub(crate) fn run(arguments: &Trajectory, global: &Global) -> Result<Summary> {
         ))
         .into());
     }
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
-    let cloud = pipeline::read(&arguments.input, &mut stages, &mut summary)?;
-    let (_, report) = stages.run("estimating scanner positions", 0, |control| {
+    let mut run = Run::new(global);
+    let cloud = pipeline::read(&arguments.input, &mut run)?;
+    let (_, report) = run.stage("estimating scanner positions", 0, |control| {
         locate(&cloud, &Means::Pulses, &LocateParams::default(), control)
     })?;
-    summary.add("scanner", Summary::of(&report));
-    summary.add("scanner_by_line", sections(&report.lines()));
+    run.summary.add("scanner", Summary::of(&report));
+    run.summary.add("scanner_by_line", sections(&report.lines()));
     let samples = path_samples(&report.paths, cloud.frame.origin, arguments.step)?;
-    summary.add("positions", samples.len());
-    stages.run("writing", 0, |_| write_found_trajectory(&arguments.output, &samples, &cloud.frame.crs))?;
-    summary.add("written", arguments.output.display().to_string());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("positions", samples.len());
+    run.stage("writing", 0, |_| write_found_trajectory(&arguments.output, &samples, &cloud.frame.crs))?;
+    run.summary.add("written", arguments.output.display().to_string());
+    Ok(run.finish())
 }

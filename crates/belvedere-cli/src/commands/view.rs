@@ -6,7 +6,7 @@ use crate::arguments::{Global, MethodChoice, Place, SceneInput, Usage, ViewPage}
 use crate::interrupt;
 use crate::memory::available_bytes;
 use crate::pipeline::{self, Points, flagged, is_file, params};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, note};
 use crate::written_files::check_input;
 use anyhow::{Context, Result, anyhow};
@@ -49,15 +49,14 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
         note(&format!("the browser cannot be opened ({error}): open the address above"));
     }
     let loading = viewer.loading();
-    let mut summary = Summary::default();
-    let mut stages = Stages::new(global).told_also(loading.clone());
-    match load(&arguments.scene, &files, &loading, &|_, _| Ok(()), &mut stages, &mut summary) {
+    let mut run = Run::watched(global, loading.clone());
+    match load(&arguments.scene, &files, &loading, &|_, _| Ok(()), &mut run) {
         Ok((_, model)) => {
-            summary.note_warnings(global);
+            run.summary.note_warnings(global);
             loading.finish(model);
         }
         Err(error) if error.is::<TooManyPoints>() => {
-            summary.warn(format!("only the points are shown: {error}")).note_warnings(global);
+            run.summary.warn(format!("only the points are shown: {error}")).note_warnings(global);
             loading.fail(format!("Only the points are shown: {error}."));
         }
         Err(error) => {
@@ -137,7 +136,7 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
     let date = arguments.date.as_deref().map(|date| flagged("--date", Date::parse(date))).transpose()?;
     let zone = arguments.zone.as_deref().map(|zone| flagged("--zone", Zone::parse(zone))).transpose()?;
     let loading = Loading::default();
-    let (mut stages, mut summary) = (Stages::new(global), Summary::default());
+    let mut run = Run::new(global);
     let day = |frame: &Frame, bounds: &Bounds| -> Result<Option<(Date, Zone)>> {
         Ok(match (date, &zone) {
             (None, _) => None,
@@ -155,7 +154,7 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
         })
     };
     let check = |frame: &Frame, bounds: &Bounds| day(frame, bounds).map(|_| ());
-    let (cloud, model) = load(&arguments.scene, files, &loading, &check, &mut stages, &mut summary)?;
+    let (cloud, model) = load(&arguments.scene, files, &loading, &check, &mut run)?;
     let Some(cloud) = cloud else {
         return Err(Usage("--export needs a cloud; a ball file has no points".to_owned()).into());
     };
@@ -166,17 +165,16 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
         day,
         viewpoints: arguments.observer.iter().map(|&Place([x, y], z)| [x, y, z.unwrap_or(f64::NAN)]).collect(),
     };
-    let exported = stages.run("making the page", 0, |control| export(&cloud, model, &params, control));
+    let exported = run.stage("making the page", 0, |control| export(&cloud, model, &params, control));
     let (page, report) = exported.map_err(|error| match error {
         Error::InvalidParameter { name: "the viewpoint", .. } => Usage(format!("--observer: {error}")).into(),
         other => anyhow::Error::from(other),
     })?;
-    stages.run("writing", 0, |_| {
+    run.stage("writing", 0, |_| {
         atomic::write(output, |file| file.write_all(page.as_bytes()).map_err(Error::io(output)))
     })?;
-    summary.add_report(&report).add("written", output.display().to_string());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add_report(&report).add("written", output.display().to_string());
+    Ok(run.finish())
 }
 
 /// The files that were typed, by what they hold.
@@ -248,8 +246,7 @@ fn load(
     files: &Files,
     loading: &Loading,
     check: &Check<'_>,
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<(Option<Arc<PointCloud>>, SceneModel)> {
     if !arguments.plan.clear.is_empty() {
         return Err(Usage("--clear: the page shows the cloud as it is; use the commands for maps".to_owned()).into());
@@ -258,28 +255,28 @@ fn load(
     input.input.clouds.clone_from(&files.clouds);
     let Some(balls) = &files.balls else {
         let params = arguments.shrinking.params(MethodChoice::Carved)?;
-        let cloud = Arc::new(pipeline::read(&input.input, stages, summary)?);
+        let cloud = Arc::new(pipeline::read(&input.input, run)?);
         loading.show(&cloud);
         let bounds = cloud.bounds().unwrap_or_default();
         check(&cloud.frame, &bounds)?;
-        show_meshes(files, &arguments.plan.add, (&cloud.frame, &bounds), loading, stages, summary)?;
-        show_results(files, &cloud.frame, &bounds, loading, stages)?;
+        show_meshes(files, &arguments.plan.add, (&cloud.frame, &bounds), loading, run)?;
+        show_results(files, &cloud.frame, &bounds, loading, run)?;
         TooManyPoints::check(cloud.len(), available_bytes())?;
         let crs = &cloud.frame.crs;
-        let params = params::model(&arguments.cleaning, &arguments.orienting, params, crs, stages)?;
-        let built = SceneModel::build(&cloud, &params, &stages.control());
+        let params = params::model(&arguments.cleaning, &arguments.orienting, params, crs, run)?;
+        let built = SceneModel::build(&cloud, &params, &run.control());
         let model = built.map_err(|error| pipeline::advised(&input.input, error))?.0;
-        return Ok((Some(cloud), pipeline::planned(model, &arguments.plan, stages, summary)?));
+        return Ok((Some(cloud), pipeline::planned(model, &arguments.plan, run)?));
     };
     input.input.clouds = vec![balls.clone()];
-    let scene = pipeline::scene(&input, Points::Keep, stages, summary)?;
+    let scene = pipeline::scene(&input, Points::Keep, run)?;
     let bounds = scene.model.bounds();
-    show_meshes(files, &arguments.plan.add, (scene.model.frame(), &bounds), loading, stages, summary)?;
-    show_results(files, scene.model.frame(), &bounds, loading, stages)?;
+    show_meshes(files, &arguments.plan.add, (scene.model.frame(), &bounds), loading, run)?;
+    show_results(files, scene.model.frame(), &bounds, loading, run)?;
     let mut shown = None;
     if !files.clouds.is_empty() {
         input.input.clouds.clone_from(&files.clouds);
-        let cloud = pipeline::read(&input.input, stages, summary)?;
+        let cloud = pipeline::read(&input.input, run)?;
         let frame = scene.model.frame();
         cloud.frame.crs.check_for(&frame.crs, "cloud", &files.clouds[0])?;
         let cloud = Arc::new(cloud.moved_to(frame));
@@ -294,26 +291,25 @@ fn show_meshes(
     planned: &[PathBuf],
     (frame, bounds): (&Frame, &Bounds),
     loading: &Loading,
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<()> {
     for path in files.meshes.iter().chain(planned) {
-        let mesh = pipeline::mesh_in(path, &frame.crs, stages, summary)?;
+        let mesh = pipeline::mesh_in(path, &frame.crs, run)?;
         // one that is planned is refused with the scene
         let beside = (!planned.contains(path)).then(|| {
             AddedMeshes::new(&mesh, &path.display().to_string(), frame.origin, Coverage::of(*bounds).as_ref(), None)
         });
         if let Some(Err(error)) = beside {
-            summary.warn(error.to_string());
+            run.summary.warn(error.to_string());
         }
         loading.show_mesh(&mesh, frame);
     }
     Ok(())
 }
 
-fn show_results(files: &Files, frame: &Frame, bounds: &Bounds, loading: &Loading, stages: &mut Stages) -> Result<()> {
+fn show_results(files: &Files, frame: &Frame, bounds: &Bounds, loading: &Loading, run: &mut Run) -> Result<()> {
     for path in &files.results {
-        stages.run("reading results", 0, |_| {
+        run.stage("reading results", 0, |_| {
             if has_extension(path, &["tif", "tiff"]) {
                 loading.show_raster(path, read_tif(path)?, frame, bounds)
             } else if has_extension(path, &["geojson"]) {
@@ -324,19 +320,20 @@ fn show_results(files: &Files, frame: &Frame, bounds: &Bounds, loading: &Loading
         })?;
     }
     let on_map = |corner: [f32; 3]| [0, 1].map(|i| f64::from(corner[i]) + frame.origin[i]);
-    for run in &files.runs {
-        let plan = Plan::read(run)?;
+    for folder in &files.runs {
+        let plan = Plan::read(folder)?;
         for question in &plan.questions {
             let area = (on_map(bounds.low), on_map(bounds.high));
-            let raster = stages.run("reading results", 0, |control| merged_within(&plan, run, question, area, control));
-            loading.show_raster(&run.join(question.name()), raster?, frame, bounds)?;
+            let raster =
+                run.stage("reading results", 0, |control| merged_within(&plan, folder, question, area, control));
+            loading.show_raster(&folder.join(question.name()), raster?, frame, bounds)?;
         }
     }
     // the columns of the cloud itself come last
     let own =
         files.clouds.first().filter(|path| is_file(path) && is_las(path) && has_point_results(*path).unwrap_or(false));
     if let Some(path) = own {
-        stages.run("reading results", 0, |_| {
+        run.stage("reading results", 0, |_| {
             loading.show_point_results(path, (read_point_results(path)?, PointsOf::Cloud), frame, bounds)
         })?;
     }

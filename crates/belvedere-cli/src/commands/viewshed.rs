@@ -9,7 +9,7 @@ use super::sights::{OUTSIDE_CLOUD, enclosure_note, ground, ground_cloud, proving
 use super::{check_output, warn_of_geojson};
 use crate::arguments::{Global, Usage, Viewshed};
 use crate::pipeline::{self, Points, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::eyes::{EyesReport, fault_of_target};
@@ -35,22 +35,21 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     check_outputs(arguments)?;
     who::check(arguments)?;
     let earth = arguments.earth.params()?;
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
-    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
+    let mut run = Run::new(global);
+    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut run)?;
     if let Some(path) = &arguments.terrain {
-        set_terrain(path, &mut scene, &mut stages, &mut summary)?;
+        set_terrain(path, &mut scene, &mut run)?;
     }
     let areas: Vec<PathBuf> = arguments.output.iter().chain(&arguments.far_output).cloned().collect();
-    warn_of_geojson(&areas, &scene.cloud.frame.crs, &mut summary);
+    warn_of_geojson(&areas, &scene.cloud.frame.crs, &mut run.summary);
     let north = arguments.looking.north.of_scene(&scene);
     let rows = who::rows(arguments, &scene.cloud, north.of_grid)?;
     if rows.iter().any(|row| row.limits.azimuth.is_some()) {
-        north.report(&mut summary);
+        north.report(&mut run.summary);
     }
     let grid = grid(arguments, &scene, &rows)?;
-    let (cloud, ground_points) = ground_cloud(&arguments.ground, &mut scene, &mut stages)?;
-    let ground = ground(&cloud, ground_points, grid, &mut stages, &mut summary)?;
+    let (cloud, ground_points) = ground_cloud(&arguments.ground, &mut scene, &mut run)?;
+    let ground = ground(&cloud, ground_points, grid, &mut run)?;
     let mut observers = who::observers(&rows, &ground, &scene.model);
     let is_reverse = arguments.who.target.is_some();
     let target_height = match is_reverse {
@@ -58,75 +57,74 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
         false => arguments.looking.target_height.unwrap_or(TARGET_HEIGHT),
     };
     let profile = arguments.scene.profile.into();
-    let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
+    let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
     let who = if is_reverse { "target" } else { "observer" };
-    let report = skip_observers(&mut observers, &blockers, &ground, (who, &cloud), &mut stages, &mut summary)?;
+    let report = skip_observers(&mut observers, &blockers, &ground, (who, &cloud), &mut run)?;
     if arguments.terrain.is_some() {
-        check_far_observers(arguments, &blockers, &observers, who, &mut summary)?;
+        check_far_observers(arguments, &blockers, &observers, who, &mut run.summary)?;
     }
     let terrain = far_cells(arguments, &blockers, &observers)?;
     let key = if is_reverse { "target" } else { "observers" };
-    summary.add(key, told(&observers, report, &ground, &blockers, &cloud));
+    run.summary.add(key, told(&observers, report, &ground, &blockers, &cloud));
 
     let masks = if arguments.masks.is_some() { Masks::Kept } else { Masks::NotKept };
     let params = ViewshedParams::default().with_earth(earth).with_unproven(unproven).with_masks(masks);
     let is_of_points = |path: &Path| OF_POINTS.contains(&super::extension(path).as_str());
     if arguments.masks.is_some() || arguments.output.iter().any(|path| !is_of_points(path)) {
         let cells = CellParams::default().with_height(tested_height(target_height)).with_covered(CoveredCells::Kept);
-        let seen = stages.run("testing cells", observers.len(), |control| {
+        let seen = run.stage("testing cells", observers.len(), |control| {
             let (targets, _) = Targets::of_cells(&cloud, ground.clone(), &cells, control)?;
             viewshed(&blockers, &observers, &targets.positions, &params, control)
         })?;
-        summary.add("cells", counted(&seen.answers, unproven, Some([grid.cell; 2])));
-        warn_of_blind(&observers, &seen, who, &mut summary);
+        run.summary.add("cells", counted(&seen.answers, unproven, Some([grid.cell; 2])));
+        warn_of_blind(&observers, &seen, who, &mut run.summary);
         let eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
         let cells =
             SeenCells { seen: &seen, eyes: &eyes, frame: &cloud.frame, on: Field::Ground(&ground, &cloud), is_reverse };
         for output in arguments.output.iter().filter(|path| !is_of_points(path)) {
-            stages.run("writing", 0, |_| cells.write(output))?;
+            run.stage("writing", 0, |_| cells.write(output))?;
         }
         if let Some(output) = &arguments.masks {
-            stages.run("writing", 0, |_| write_masks(output, &seen, &ground, &cloud))?;
+            run.stage("writing", 0, |_| write_masks(output, &seen, &ground, &cloud))?;
         }
     }
     if arguments.output.iter().any(|path| is_of_points(path)) {
         let params = params.with_masks(Masks::NotKept);
-        let seen = stages.run("testing points", observers.len(), |progress| {
+        let seen = run.stage("testing points", observers.len(), |progress| {
             viewshed(&blockers, &observers, &cloud.positions, &params, progress)
         })?;
-        summary.add("cloud_points", counted(&seen.answers, unproven, None));
+        run.summary.add("cloud_points", counted(&seen.answers, unproven, None));
         let outside = AnswerCounts::of(&seen.answers).outside_cloud;
-        summary.warn_of_share(outside, seen.answers.len(), "points", OUTSIDE_CLOUD);
+        run.summary.warn_of_share(outside, seen.answers.len(), "points", OUTSIDE_CLOUD);
         for output in arguments.output.iter().filter(|path| is_of_points(path)) {
-            let report = stages.run("writing", 0, |_| on_points(output, &seen, &cloud))?;
-            summary.add_writing(&report);
+            let report = run.stage("writing", 0, |_| on_points(output, &seen, &cloud))?;
+            run.summary.add_writing(&report);
         }
     }
     if let Some(terrain) = &terrain {
         let params = params.with_masks(Masks::NotKept);
-        let seen = stages.run("testing terrain", terrain.heights().height(), |control| {
+        let seen = run.stage("testing terrain", terrain.heights().height(), |control| {
             far_viewshed(&blockers, &observers, terrain, target_height, &params, control)
         })?;
         let asked: Vec<Answer> = seen.answers.iter().copied().filter(|&a| a != Answer::OutsideCloud).collect();
-        summary.add("far_cells", counted(&asked, unproven, Some(terrain.cell())));
+        run.summary.add("far_cells", counted(&asked, unproven, Some(terrain.cell())));
         let eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
         let cells =
             SeenCells { seen: &seen, eyes: &eyes, frame: &cloud.frame, on: Field::Terrain(terrain), is_reverse };
         for output in &arguments.far_output {
-            stages.run("writing", 0, |_| cells.write(output))?;
+            run.stage("writing", 0, |_| cells.write(output))?;
         }
     }
     if let Some(output) = &arguments.heights {
-        let heights = stages.run("computing visible heights", observers.len(), |progress| {
+        let heights = run.stage("computing visible heights", observers.len(), |progress| {
             least_visible_heights(&blockers, &observers, &ground, arguments.ceiling, &earth, progress)
         })?;
-        stages.run("writing", 0, |_| write_heights(output, &heights, (&ground.grid, &cloud.frame), LEAST_HEIGHTS))?;
+        run.stage("writing", 0, |_| write_heights(output, &heights, (&ground.grid, &cloud.frame), LEAST_HEIGHTS))?;
     }
     let written =
         arguments.output.iter().chain(&arguments.far_output).chain(&arguments.heights).chain(&arguments.masks);
-    summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
+    Ok(run.finish())
 }
 
 fn check_outputs(arguments: &Viewshed) -> Result<()> {
@@ -197,13 +195,12 @@ fn skip_observers(
     blockers: &MedialScene,
     ground: &Ground,
     (who, cloud): (&str, &PointCloud),
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<EyesReport> {
     let mut eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
     let report = match (who, &eyes[..]) {
         ("target", &[eye]) if fault_of_target(blockers, eye).is_none() => EyesReport::none_skipped(1),
-        _ => skip_unfit_far(blockers, Some(ground), (who, &cloud.frame), &mut eyes, stages, summary)?,
+        _ => skip_unfit_far(blockers, Some(ground), (who, &cloud.frame), &mut eyes, run)?,
     };
     observers.iter_mut().zip(eyes).for_each(|(observer, eye)| observer.eye = eye);
     Ok(report)

@@ -8,7 +8,7 @@ use super::windows::{FaceChoice, Windows, windows};
 use super::{check_output, extension, mesh_targets, warn_of_geojson};
 use crate::arguments::{Global, UnprovenChoice, Usage, WindowViews};
 use crate::pipeline::{self, Points, Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::PointCloud;
@@ -25,55 +25,53 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     check(arguments)?;
     let directions = view_directions(arguments.directions.unwrap_or(VIEW_DIRECTIONS));
     let directions = flagged("--directions", directions)?;
-    let mut stages = Stages::new(global);
-    let mut summary = Summary::default();
-    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut stages, &mut summary)?;
-    arguments.far.set(&mut scene, &mut stages, &mut summary)?;
-    warn_of_geojson(&arguments.output, &scene.cloud.frame.crs, &mut summary);
+    let mut run = Run::new(global);
+    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut run)?;
+    arguments.far.set(&mut scene, &mut run)?;
+    warn_of_geojson(&arguments.output, &scene.cloud.frame.crs, &mut run.summary);
     let north = arguments.north.of_scene(&scene);
-    north.report(&mut summary);
+    north.report(&mut run.summary);
     let is_mesh = mesh_targets::is_mesh(&arguments.windows);
     let spacing = arguments.spacing.or(is_mesh.then_some(VIEW_SPACING));
     let choice = FaceChoice { spacing, objects: &arguments.object };
-    let mut asked =
-        windows(&arguments.windows, &choice, (&scene, north.of_grid), global.seed, &mut stages, &mut summary)?;
+    let mut asked = windows(&arguments.windows, &choice, (&scene, north.of_grid), &mut run)?;
     let names = names(arguments, &asked)?;
     let mut section = Summary::default();
     section.add("windows", asked.windows.len()).add("targets", asked.targets.len());
     if is_mesh {
         section.add("targets_on_roofs_and_floors", leave_out_level(&mut asked.targets));
     }
-    summary.add("windows", section);
-    leave_out_outside(&mut asked.targets, &scene, &mut summary);
+    run.summary.add("windows", section);
+    leave_out_outside(&mut asked.targets, &scene, &mut run.summary);
     let upper = &directions[..directions.len() / 2];
-    report_edge(&asked.targets, &scene, upper, &mut stages, &mut summary)?;
+    report_edge(&asked.targets, &scene, upper, &mut run)?;
 
-    let cloud = cloud_of_classes(arguments, &mut scene, &mut stages)?;
+    let cloud = cloud_of_classes(arguments, &mut scene, &mut run)?;
     let meanings = arguments.classes.iter().fold(ClassMeanings::default(), |all, one| all.with(one.0, one.1));
     let classes = cloud.attributes.classification.as_deref();
     if classes.is_none() {
         let advice =
             if arguments.scene.input.clouds.len() == 1 && cloud.is_empty() { "; give --classes-of" } else { "" };
-        summary.warn(format!("the classes of points are unknown: only vegetation is known, from pulses{advice}"));
+        run.summary.warn(format!("the classes of points are unknown: only vegetation is known, from pulses{advice}"));
     }
     let kinds = balls_seen(scene.model.balls(), classes, scene.model.vegetation(), &meanings)?;
     let profile = arguments.scene.profile.into();
-    let (blockers, _) = proving_blockers(&scene, profile, &arguments.giving_way, &mut stages, &mut summary)?;
+    let (blockers, _) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
     let count = asked.targets.asked_count();
     let inside =
-        stages.run("testing targets", 0, |control| leave_out_walled_up(&mut asked.targets, &blockers, control))?;
+        run.stage("testing targets", 0, |control| leave_out_walled_up(&mut asked.targets, &blockers, control))?;
     if asked.targets.asked_count() == 0 {
         bail!(
             "{}: no window is left: all are outside the cloud, inside obstacles, or faces of roofs and floors. Are they in the coordinates of the cloud?",
             arguments.windows.display()
         );
     }
-    summary.add("targets_inside_obstacle", inside);
+    run.summary.add("targets_inside_obstacle", inside);
     // walls between houses are faces of a mesh, and nothing to warn of
     if !is_mesh {
-        summary.warn_of_share(inside, count, "targets", "are inside an obstacle and have no view");
+        run.summary.warn_of_share(inside, count, "targets", "are inside an obstacle and have no view");
     }
-    let views = stages.run("testing views", asked.targets.len(), |control| {
+    let views = run.stage("testing views", asked.targets.len(), |control| {
         let kinds = Kinds { balls: &kinds, meshes: &[] };
         window_views(&blockers, &asked.targets, kinds, &directions, control)
     })?;
@@ -84,24 +82,26 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     for measure in &measures {
         section.add(&measure.name, Summary::of(&measure.rounded_statistics()));
     }
-    summary.add("views", section);
-    warn_of_other(&views, &mut summary);
+    run.summary.add("views", section);
+    warn_of_other(&views, &mut run.summary);
     let shown = arguments.map_of.unwrap_or(Seen::Vegetation);
     let title = arguments.far.titled(&format!("View from windows: {}", shown.name()));
     let found = Found { windows: &asked, views: &views, measures: &measures, names: &names };
     for output in &arguments.output {
         match extension(output).as_str() {
-            "png" => found.write_map(output, &title, shown, (&scene, &cloud), &mut stages, &mut summary)?,
-            _ => summary.add_writing(&stages.run("writing", 0, |_| found.write(output, &cloud))?),
-        };
+            "png" => found.write_map(output, &title, shown, (&scene, &cloud), &mut run)?,
+            _ => {
+                let report = run.stage("writing", 0, |_| found.write(output, &cloud))?;
+                run.summary.add_writing(&report);
+            }
+        }
     }
     if let Some(output) = &arguments.buildings {
-        stages.run("writing", 0, |_| found.write_buildings(output))?;
+        run.stage("writing", 0, |_| found.write_buildings(output))?;
     }
     let written = arguments.output.iter().chain(&arguments.buildings);
-    summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
-    summary.add_seconds(stages.into_seconds());
-    Ok(summary)
+    run.summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
+    Ok(run.finish())
 }
 
 fn check(arguments: &WindowViews) -> Result<()> {
@@ -136,7 +136,7 @@ fn names(arguments: &WindowViews, asked: &Windows) -> Result<Vec<String>> {
 }
 
 /// The cloud whose rows the balls were made at, in the frame of the scene: its own, or the one that was named; empty for a ball file alone.
-fn cloud_of_classes(arguments: &WindowViews, scene: &mut Scene, stages: &mut Stages) -> Result<PointCloud> {
+fn cloud_of_classes(arguments: &WindowViews, scene: &mut Scene, run: &mut Run) -> Result<PointCloud> {
     let Some(path) = &arguments.classes_of else {
         let frame = PointCloud::in_frame(scene.cloud.frame.clone());
         return Ok(std::mem::replace(&mut scene.cloud, frame));
@@ -146,9 +146,8 @@ fn cloud_of_classes(arguments: &WindowViews, scene: &mut Scene, stages: &mut Sta
             Usage("--classes-of is for ball files; the cloud of this scene has its own classes".to_owned()).into()
         );
     }
-    let mut reading = Summary::default();
     let frame = &scene.cloud.frame;
-    let cloud = super::query::points_of_file(path, None, frame, stages, &mut reading)?;
+    let cloud = run.aside(|run| super::query::points_of_file(path, None, frame, run)).0?;
     if !are_made_from(scene.model.balls(), &cloud.positions) {
         bail!("--classes-of {}: the balls were not built from this cloud", path.display());
     }

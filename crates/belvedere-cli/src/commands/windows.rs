@@ -4,8 +4,7 @@ use super::landmark::what::objects_of;
 use super::mesh_targets::{is_mesh, mesh_of};
 use crate::arguments::Usage;
 use crate::pipeline::{Scene, flagged};
-use crate::progress::Stages;
-use crate::summary::Summary;
+use crate::run::Run;
 use anyhow::{Result, bail};
 use belvedere::Frame;
 use belvedere::apps::targets::{Targets, Window, objects_of_windows};
@@ -42,12 +41,10 @@ pub(crate) fn windows(
     path: &Path,
     choice: &FaceChoice<'_>,
     (scene, grid_north): (&Scene, f64),
-    seed: u64,
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<Windows> {
     if is_mesh(path) {
-        return faces(path, choice, (scene, grid_north), seed, stages, summary);
+        return faces(path, choice, (scene, grid_north), run);
     }
     for (flag, is_given) in [("--spacing", choice.spacing.is_some()), ("--object", !choice.objects.is_empty())] {
         if is_given {
@@ -92,17 +89,11 @@ pub(crate) fn windows(
     Ok(Windows { targets, windows, columns, names: Vec::new(), given: table.into_text() })
 }
 
-fn faces(
-    path: &Path,
-    choice: &FaceChoice<'_>,
-    (scene, grid_north): (&Scene, f64),
-    seed: u64,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<Windows> {
-    let mesh = objects_of(mesh_of(path, scene, stages, summary)?, choice.objects, path)?;
+fn faces(path: &Path, choice: &FaceChoice<'_>, (scene, grid_north): (&Scene, f64), run: &mut Run) -> Result<Windows> {
+    let mesh = objects_of(mesh_of(path, scene, run)?, choice.objects, path)?;
     let spacing = choice.spacing.unwrap_or(CELL);
-    let (targets, windows) = flagged("--spacing", Targets::of_window_faces(&mesh, &scene.cloud.frame, spacing, seed))?;
+    let (targets, windows) =
+        flagged("--spacing", Targets::of_window_faces(&mesh, &scene.cloud.frame, spacing, run.seed))?;
     let centers: Vec<[f64; 3]> = windows.iter().map(|window| window.center).collect();
     let column = |of: &dyn Fn(&Window) -> f64| -> Vec<f64> { windows.iter().map(of).collect() };
     let mut columns = vec![("face", column(&|window| window.face.map_or(f64::NAN, f64::from)), 0)];

@@ -2,7 +2,7 @@
 
 use super::flagged;
 use crate::arguments::{Cleaning, MethodChoice, NeighborChoice, OrientChoice, Orienting, Shrinking, Usage};
-use crate::progress::Stages;
+use crate::run::Run;
 use anyhow::Result;
 use belvedere::Error;
 use belvedere::clean::CleanParams;
@@ -18,7 +18,7 @@ pub(crate) fn model(
     orienting: &Orienting,
     balls: BallParams,
     crs: &Crs,
-    stages: &mut Stages,
+    run: &mut Run,
 ) -> Result<ModelParams> {
     let neighborhood = match orienting.neighbors {
         NeighborChoice::Fixed(k) => Neighborhood::Fixed { k },
@@ -33,14 +33,14 @@ pub(crate) fn model(
         OrientChoice::ScannerAt(position) => OrientBy::ScannerAt(*position),
         OrientChoice::Pulses => OrientBy::Pulses,
         OrientChoice::Stations(path) => {
-            OrientBy::Stations(stages.run("reading stations", 0, |_| read_stations(path, crs))?)
+            OrientBy::Stations(run.stage("reading stations", 0, |_| read_stations(path, crs))?)
         }
         OrientChoice::Trajectory(path) => {
-            let (trajectory, _) = stages.run("reading trajectory", 0, |_| read_trajectory(path, crs))?;
+            let (trajectory, _) = run.stage("reading trajectory", 0, |_| read_trajectory(path, crs))?;
             OrientBy::Trajectory(trajectory)
         }
         OrientChoice::Mesh(path) => {
-            let (mesh, _) = stages.run("reading mesh", 0, |_| read_mesh(path))?;
+            let (mesh, _) = run.stage("reading mesh", 0, |_| read_mesh(path))?;
             // like every position that is typed or read, in the unit of the cloud's file
             OrientBy::Mesh(mesh.scaled_to_metres(crs))
         }

@@ -2,7 +2,7 @@
 
 use super::Scene;
 use crate::arguments::{AreaChoice, Plan};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::crs::Crs;
@@ -12,7 +12,7 @@ use belvedere::{Frame, Mesh};
 use std::path::Path;
 
 /// Clears areas of a scene that has its points.
-pub(super) fn clear(scene: &mut Scene, plan: &Plan, stages: &mut Stages, summary: &mut Summary) -> Result<()> {
+pub(super) fn clear(scene: &mut Scene, plan: &Plan, run: &mut Run) -> Result<()> {
     if scene.cloud.is_empty() {
         bail!("--clear needs points, and a ball file has none: give the cloud that it was made from");
     }
@@ -20,7 +20,7 @@ pub(super) fn clear(scene: &mut Scene, plan: &Plan, stages: &mut Stages, summary
     for area in plan.clear.iter().map(|choice| areas(choice, scene.model.frame())).collect::<Result<Vec<_>>>()?.concat()
     {
         let model = std::mem::take(&mut scene.model);
-        let cleared = stages.run("clearing", 0, |control| model.without(&area, &scene.cloud, control));
+        let cleared = run.stage("clearing", 0, |control| model.without(&area, &scene.cloud, control));
         let report;
         (scene.model, scene.cloud, report) = super::flagged("--clear", cleared)?;
         sum.points_cleared += report.points_cleared;
@@ -29,9 +29,9 @@ pub(super) fn clear(scene: &mut Scene, plan: &Plan, stages: &mut Stages, summary
         sum.ground_balls_added += report.ground_balls_added;
     }
     if sum.points_cleared == 0 {
-        summary.warn("--clear: nothing stands there");
+        run.summary.warn("--clear: nothing stands there");
     }
-    summary.add("cleared", Summary::of(&sum));
+    run.summary.add("cleared", Summary::of(&sum));
     Ok(())
 }
 
@@ -62,35 +62,30 @@ pub(crate) fn areas(choice: &AreaChoice, frame: &Frame) -> Result<Vec<ClearedAre
 }
 
 /// The model of a scene as it will be.
-pub(crate) fn planned(
-    mut model: SceneModel,
-    plan: &Plan,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<SceneModel> {
+pub(crate) fn planned(mut model: SceneModel, plan: &Plan, run: &mut Run) -> Result<SceneModel> {
     if plan.add.is_empty() {
         return Ok(model);
     }
     let mut triangle_count = 0;
     for path in &plan.add {
-        let mesh = mesh_in(path, &model.frame().crs, stages, &mut Summary::default())?;
+        let mesh = run.aside(|run| mesh_in(path, &model.frame().crs, run)).0?;
         triangle_count += mesh.triangles.len();
         model = super::flagged("--add", model.with_added(&mesh, &path.display().to_string()))?;
     }
     let mut section = Summary::default();
     section.add("meshes_added", plan.add.len()).add("triangles", triangle_count);
-    summary.add("plan", section);
+    run.summary.add("plan", section);
     Ok(model)
 }
 
 /// Reads a mesh in the coordinates of a reference system, as metres.
-pub(crate) fn mesh_in(path: &Path, crs: &Crs, stages: &mut Stages, summary: &mut Summary) -> Result<Mesh> {
-    let (mesh, report) = stages.run("reading mesh", 0, |_| read_mesh_in(path, crs))?;
+pub(crate) fn mesh_in(path: &Path, crs: &Crs, run: &mut Run) -> Result<Mesh> {
+    let (mesh, report) = run.stage("reading mesh", 0, |_| read_mesh_in(path, crs))?;
     let mut section = Summary::default();
     section
         .add("triangles", mesh.triangles.len())
         .add("objects", mesh.object_names.len())
         .add("triangles_without_area", report.degenerate_triangle_count);
-    summary.add("mesh", section);
+    run.summary.add("mesh", section);
     Ok(mesh)
 }

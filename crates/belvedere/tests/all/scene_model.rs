@@ -1,7 +1,7 @@
 //! The scene model: what each way of building decides, what is saved, and that every stage can be stopped.
 
 use crate::common::simulated::cloud_of;
-use belvedere::control::{Control, Watcher};
+use belvedere::control::{Control, StageEnd, Watcher};
 use belvedere::io::{read_balls, write_balls};
 use belvedere::medial::{CarvedInput, CarvedParams, ShrinkParams, Side, carved_balls, shrink};
 use belvedere::model::{BallParams, BallsReport, BuildReport, ModelParams, OrientBy, SceneModel};
@@ -245,9 +245,13 @@ impl Watcher for Impatient {
     fn advance(&self, count: usize) {
         self.done.fetch_add(count, Ordering::Relaxed);
     }
-    fn end(&self, stage: &'static str) {
+    fn end(&self, stage: &'static str, end: StageEnd) {
         let (total, done) = (self.total.load(Ordering::Relaxed), self.done.load(Ordering::Relaxed));
         assert!(total == 0 || done <= total, "{stage}: {done} of {total}");
+        assert!(
+            end == StageEnd::Finished || self.asked.load(Ordering::Relaxed) >= self.patience,
+            "{stage} was stopped by nobody"
+        );
         self.ended.lock().unwrap().push((stage, done));
     }
     fn is_cancelled(&self) -> bool {

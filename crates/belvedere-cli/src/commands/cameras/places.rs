@@ -4,7 +4,7 @@ use super::what::Site;
 use crate::arguments::{CameraLens, Cameras};
 use crate::commands::sights::{ground, skip_unfit};
 use crate::pipeline::flagged;
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::cameras::{
@@ -65,19 +65,17 @@ impl Standing<'_> {
         &self,
         arguments: &Cameras,
         ground_points: GroundPoints,
-        stages: &mut Stages,
-        summary: &mut Summary,
+        run: &mut Run,
     ) -> Result<Vec<Pose>> {
         let mut mounts = match (&arguments.candidates.file, arguments.candidates.on_roofs) {
             (Some(path), _) => self.of_file(path, arguments.step.unwrap_or(STEP), arguments.camera_height)?,
             (None, roofs) => {
                 let cell = roofs.or(arguments.candidates.on_ground).unwrap_or(STEP);
                 let grid = flagged("--on-ground, --on-roofs", super::map_grid(self.site.scene, cell))?;
-                let mut of_places = Summary::default();
                 let cloud = self.site.cloud;
-                let ground = ground(cloud, ground_points, grid, stages, &mut of_places)?;
+                let ground = run.aside(|run| ground(cloud, ground_points, grid, run)).0?;
                 let height = arguments.camera_height;
-                let places = stages.run("finding places for cameras", 0, |control| match roofs {
+                let places = run.stage("finding places for cameras", 0, |control| match roofs {
                     Some(_) => roof_places(cloud, ground, height.unwrap_or(ROOF_CAMERA_HEIGHT), control),
                     None => ground_places(cloud, ground, height.unwrap_or(CAMERA_HEIGHT), control),
                 })?;
@@ -85,7 +83,7 @@ impl Standing<'_> {
             }
         };
         let warn = if arguments.candidates.file.is_some() { Warn::OfEach } else { Warn::Never };
-        self.skip_unfit(&mut mounts, ("candidate", warn), stages, summary)?;
+        self.skip_unfit(&mut mounts, ("candidate", warn), run)?;
         let mut poses = Vec::new();
         for mount in mounts.iter().filter(|mount| mount.eye[0].is_finite()) {
             poses.extend(flagged("--candidates, --tilt, --headings or --max-distance", self.mounting.poses_at(mount))?);
@@ -94,15 +92,9 @@ impl Standing<'_> {
     }
 
     /// The cameras that stay.
-    pub(super) fn existing(
-        &self,
-        path: &Path,
-        height: Option<f64>,
-        stages: &mut Stages,
-        summary: &mut Summary,
-    ) -> Result<Vec<Pose>> {
+    pub(super) fn existing(&self, path: &Path, height: Option<f64>, run: &mut Run) -> Result<Vec<Pose>> {
         let mut mounts = self.of_file(path, f64::INFINITY, height)?;
-        self.skip_unfit(&mut mounts, ("existing camera", Warn::OfEach), stages, summary)?;
+        self.skip_unfit(&mut mounts, ("existing camera", Warn::OfEach), run)?;
         // one that cannot look keeps its number
         let pose = |mount: &Mount| flagged(&path.display().to_string(), self.mounting.existing_at(mount));
         mounts.iter().map(pose).collect()
@@ -138,24 +130,18 @@ impl Standing<'_> {
     }
 
     /// Makes the eyes of cameras that cannot look NaN.
-    fn skip_unfit(
-        &self,
-        mounts: &mut [Mount],
-        (who, warn): (&str, Warn),
-        stages: &mut Stages,
-        summary: &mut Summary,
-    ) -> Result<()> {
+    fn skip_unfit(&self, mounts: &mut [Mount], (who, warn): (&str, Warn), run: &mut Run) -> Result<()> {
         let mut eyes: Vec<[f64; 3]> = mounts.iter().map(|mount| mount.eye).collect();
         let ground = Some(self.site.ground);
         let report = match warn {
             Warn::OfEach => {
                 let named = (who, &self.site.cloud.frame);
-                skip_unfit(self.blockers, ground, named, &mut eyes, stages, summary)?
+                skip_unfit(self.blockers, ground, named, &mut eyes, run)?
             }
-            Warn::Never => stages
-                .run("testing candidates", 0, |control| skip_unfit_eyes(self.blockers, ground, &mut eyes, control))?,
+            Warn::Never => run
+                .stage("testing candidates", 0, |control| skip_unfit_eyes(self.blockers, ground, &mut eyes, control))?,
         };
-        summary.add(&format!("{}_places", who.replace(' ', "_")), Summary::of(&report));
+        run.summary.add(&format!("{}_places", who.replace(' ', "_")), Summary::of(&report));
         mounts.iter_mut().zip(eyes).for_each(|(mount, eye)| mount.eye = eye);
         Ok(())
     }

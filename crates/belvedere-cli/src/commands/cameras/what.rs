@@ -6,7 +6,7 @@ use crate::commands::mesh_targets::{is_mesh, mesh_of};
 use crate::commands::query::points_of_file;
 use crate::commands::targets::leave_out_outside;
 use crate::pipeline::{Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::PointCloud;
@@ -61,13 +61,7 @@ pub(super) fn check(flags: &CameraTargets, are_cells: bool) -> Result<()> {
 }
 
 /// The targets of the flags.
-pub(super) fn targets(
-    flags: &CameraTargets,
-    site: &Site<'_>,
-    seed: u64,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<Targets> {
+pub(super) fn targets(flags: &CameraTargets, site: &Site<'_>, run: &mut Run) -> Result<Targets> {
     let frame = &site.scene.cloud.frame;
     let mut targets = match flags.targets.as_deref().map(|path| (path, kind(path))) {
         None => cells(flags, site)?,
@@ -78,21 +72,21 @@ pub(super) fn targets(
         }
         Some((path, Kind::Places)) => places(path, flags, site)?,
         Some((path, Kind::Mesh)) => {
-            let mesh = mesh_of(path, site.scene, stages, summary)?;
-            let usual = MeshParams::default().with_seed(seed);
+            let mesh = mesh_of(path, site.scene, run)?;
+            let usual = MeshParams::default().with_seed(run.seed);
             let params = flags.spacing.map_or(usual, |spacing| usual.with_spacing(spacing));
             flagged("--spacing", Targets::of_mesh(&mesh, frame, &params))?
         }
         Some((path, Kind::Cloud)) => {
-            let cloud = points_of_file(path, None, frame, stages, summary)?;
+            let cloud = points_of_file(path, None, frame, run)?;
             Targets::of_points(&cloud, cloud.attributes.normals.clone())
         }
     };
-    leave_out_outside(&mut targets, site.scene, summary);
+    leave_out_outside(&mut targets, site.scene, &mut run.summary);
     if targets.asked_count() == 0 {
         bail!("no target is left: are --targets in the coordinates of the cloud, on known ground?");
     }
-    summary.add("targets", targets.asked_count());
+    run.summary.add("targets", targets.asked_count());
     Ok(targets)
 }
 

@@ -5,7 +5,7 @@ use crate::commands::irradiance::radiation;
 use crate::commands::shadow::moment;
 use crate::commands::sun_hours::rules;
 use crate::pipeline::flagged;
-use crate::summary::Summary;
+use crate::run::Run;
 use anyhow::Result;
 use belvedere::Error;
 use belvedere::apps::irradiance::PARTS;
@@ -13,7 +13,6 @@ use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sun::{Binning, Period, sun_position_with};
 use belvedere::apps::tree_light::Season;
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
-use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{read_geojson, read_horizon, read_mesh, read_tif, read_weather};
 use belvedere_tiles::{CellSizes, Plan, Question, Radiation, SideFile, SunQuestion, Topic};
@@ -95,12 +94,7 @@ pub(super) fn cells(arguments: &CityPlan) -> Result<CellSizes> {
 }
 
 /// What was typed as questions. Azimuths count from the north, and the sun is that, at the middle of the survey.
-pub(super) fn questions(
-    arguments: &CityPlan,
-    plan: &Plan,
-    control: &Control<'_>,
-    summary: &mut Summary,
-) -> Result<Vec<Question>> {
+pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut Run) -> Result<Vec<Question>> {
     let (frame, bounds) = (plan.frame()?, plan.bounds());
     let (low, high) = bounds.on_map();
     let north = arguments.north.of_frame(&frame, [0, 1].map(|axis| f64::midpoint(low[axis], high[axis])));
@@ -111,7 +105,7 @@ pub(super) fn questions(
     };
     let mut questions: Vec<Question> = arguments.suns.iter().map(sun).collect();
     if !arguments.times.is_empty() || arguments.sun_hours || !arguments.rule.is_empty() {
-        let site = arguments.sun.site_of(&frame, &bounds, summary)?;
+        let site = arguments.sun.site_of(&frame, &bounds, &mut run.summary)?;
         let mut times: Vec<&str> = arguments.times.iter().map(String::as_str).collect();
         times.extend(arguments.when.times());
         let zone = arguments.sun.zone(&site, &times)?;
@@ -137,7 +131,7 @@ pub(super) fn questions(
         }
     }
     if arguments.irradiance {
-        let site = arguments.sun.site_of(&frame, &bounds, summary)?;
+        let site = arguments.sun.site_of(&frame, &bounds, &mut run.summary)?;
         let params = radiation::params(&arguments.model)?;
         let radiation = match &arguments.weather {
             Some(file) => {
@@ -157,7 +151,7 @@ pub(super) fn questions(
         let place = |&Place([x, y], z): &Place| frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]);
         let mut eyes: Vec<[f64; 3]> = arguments.observers.iter().map(place).collect();
         let height = arguments.observer_height.unwrap_or(OBSERVER_HEIGHT);
-        flagged("--observer", plan.set_on_ground(&mut eyes, height, control))?;
+        flagged("--observer", plan.set_on_ground(&mut eyes, height, &run.control()))?;
         questions.push(Question::Viewshed { eyes, max_distance: arguments.max_distance });
     }
     Ok(questions)

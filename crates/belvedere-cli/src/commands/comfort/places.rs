@@ -5,8 +5,7 @@ use crate::commands::shapes::{TypedAre, shapes, wrong_shape};
 use crate::commands::sights::{ground, ground_cloud};
 use crate::commands::windows::{Column, Windows, coordinates};
 use crate::pipeline::{Scene, flagged};
-use crate::progress::Stages;
-use crate::summary::Summary;
+use crate::run::Run;
 use anyhow::{Result, bail};
 use belvedere::apps::exposure::{ROUTE_STEP, WALKER_HEIGHT};
 use belvedere::apps::targets::{Route, Targets, grid_around, set_on_ground};
@@ -31,13 +30,7 @@ pub(super) struct Places {
 }
 
 /// Places along routes.
-pub(super) fn routes(
-    arguments: &Comfort,
-    route: &Corners,
-    scene: &mut Scene,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<Places> {
+pub(super) fn routes(arguments: &Comfort, route: &Corners, scene: &mut Scene, run: &mut Run) -> Result<Places> {
     let step = arguments.route_step.unwrap_or(ROUTE_STEP);
     let height = arguments.height.map_or(WALKER_HEIGHT, f64::from);
     let (mut routes, mut names) = (Vec::new(), Vec::new());
@@ -54,8 +47,8 @@ pub(super) fn routes(
     let places = || routes.iter().flat_map(|route| route.places.iter().copied());
     let count = places().count();
     if let Some(grid) = flagged("--route", grid_around(places(), scene.cloud.frame.origin))? {
-        let (cloud, points) = ground_cloud(&arguments.ground, scene, stages)?;
-        let ground = ground(&cloud, points, grid, stages, summary)?;
+        let (cloud, points) = ground_cloud(&arguments.ground, scene, run)?;
+        let ground = ground(&cloud, points, grid, run)?;
         let all = routes.iter_mut().flat_map(|route| &mut route.places).map(|place| (place, height));
         let unknown = set_on_ground(all, &ground).len();
         if unknown == count {
@@ -63,7 +56,7 @@ pub(super) fn routes(
         }
         if unknown > 0 {
             let note = format!("{unknown} targets on routes have no known ground below them, and no values");
-            summary.add("notes", vec![note]);
+            run.summary.add("notes", vec![note]);
         }
     }
     let places: Vec<[f64; 3]> = routes.iter().flat_map(|route| route.places.iter().copied()).collect();

@@ -4,8 +4,7 @@ use super::place::{Place, file_name, state_of};
 use super::results::{HeldOutResult, keep, kept};
 use crate::arguments::{Compare, Global};
 use crate::pipeline::warn_of_missing;
-use crate::progress::Stages;
-use crate::summary::Summary;
+use crate::run::Run;
 use anyhow::{Context, Result};
 use belvedere::io::{ReadOptions, read_cloud, read_trajectory};
 use belvedere::pulses::{SensorEstimateParams, SensorPositions, group};
@@ -19,14 +18,14 @@ pub(super) fn judge_all(
     path: &Path,
     arguments: &Compare,
     global: &Global,
-    (stages, summary): (&mut Stages, &mut Summary),
+    run: &mut Run,
 ) -> Result<Vec<HeldOutResult>> {
     let (cloud, report) =
-        stages.run("reading", 0, |control| read_cloud(&[path.to_owned()], &ReadOptions::default(), control))?;
-    warn_of_missing(&report, summary);
+        run.stage("reading", 0, |control| read_cloud(&[path.to_owned()], &ReadOptions::default(), control))?;
+    warn_of_missing(&report, &mut run.summary);
     let named = || path.display().to_string();
-    let (pulses, _) = group(&cloud, &stages.control()).with_context(named)?;
-    let (scanner, report) = stages.run("estimating scanner positions", 0, |control| match &arguments.trajectory {
+    let (pulses, _) = group(&cloud, &run.control()).with_context(named)?;
+    let (scanner, report) = run.stage("estimating scanner positions", 0, |control| match &arguments.trajectory {
         Some(file) => {
             let (trajectory, _) = read_trajectory(file, &cloud.frame.crs)?;
             SensorPositions::from_trajectory(&cloud, &pulses, &trajectory)
@@ -64,8 +63,8 @@ pub(super) fn judge_all(
             results.push(result);
             continue;
         }
-        let answered = stages
-            .run("testing held-out pulses", 0, |_| method.build().and_then(|built| score(built.as_ref(), &held_out)));
+        let answered = run
+            .stage("testing held-out pulses", 0, |_| method.build().and_then(|built| score(built.as_ref(), &held_out)));
         let mut result = HeldOutResult {
             made_from: made_from.clone(),
             cloud: name.clone(),

@@ -11,7 +11,7 @@ mod scanners;
 mod table;
 
 use crate::arguments::{Compare, Global, Usage};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::io::atomic;
@@ -47,24 +47,25 @@ pub(crate) fn run(arguments: &Compare, global: &Global) -> Result<Summary> {
     compared
 }
 
-fn compare_all(arguments: &Compare, global: &Global, mut summary: Summary) -> Result<Summary> {
+fn compare_all(arguments: &Compare, global: &Global, summary: Summary) -> Result<Summary> {
     let folder = &arguments.output;
-    let mut stages = Stages::new(global);
+    let mut run = Run::new(global);
+    run.summary = summary;
     let mut found = report::Found::default();
     for place in Place::all(arguments) {
-        compare_on(&place, arguments, global, (&mut stages, &mut summary), &mut found)?;
+        compare_on(&place, arguments, global, &mut run, &mut found)?;
     }
     for cloud in &arguments.held_out {
-        found.held_out.extend(held_out::judge_all(cloud, arguments, global, (&mut stages, &mut summary))?);
+        found.held_out.extend(held_out::judge_all(cloud, arguments, global, &mut run)?);
     }
     found.write(folder, arguments.page.as_deref())?;
     if global.json {
-        summary.add("results", found.to_json()?);
+        run.summary.add("results", found.to_json()?);
     } else if !global.quiet {
         super::print_raw(found.essence().as_bytes())?;
     }
-    summary.add("open", folder.join("report.html").display().to_string());
-    Ok(summary)
+    run.summary.add("open", folder.join("report.html").display().to_string());
+    Ok(run.summary)
 }
 
 /// Judges every method on a place, taking over what an earlier run has found.
@@ -72,7 +73,7 @@ fn compare_on(
     place: &Place,
     arguments: &Compare,
     global: &Global,
-    (stages, summary): (&mut Stages, &mut Summary),
+    run: &mut Run,
     found: &mut report::Found,
 ) -> Result<()> {
     let name = place.name();
@@ -102,8 +103,10 @@ fn compare_on(
         }
     }
 
-    let ingredients = stages.run("building place", 0, |_| place.make(summary))?;
-    let case = stages.run("testing lines of sight", 0, |_| Case::new(ingredients, arguments.targets, global.seed))?;
+    let mut made = Summary::default();
+    let ingredients = run.stage("building place", 0, |_| place.make(&mut made))?;
+    run.summary.add_all(made);
+    let case = run.stage("testing lines of sight", 0, |_| Case::new(ingredients, arguments.targets, global.seed))?;
     let survey = case.survey();
     let methods = methods(&survey);
     arguments.check_methods(&methods.iter().map(|method| method.key.clone()).collect::<Vec<_>>())?;
@@ -111,7 +114,7 @@ fn compare_on(
         Some(listed) => listed,
         None => {
             let described =
-                stages.run("auditing balls", 0, |_| describe(&case, &name, &made_from, &methods, global.seed))?;
+                run.stage("auditing balls", 0, |_| describe(&case, &name, &made_from, &methods, global.seed))?;
             keep(&place_file, &described)?;
             described
         }
@@ -123,7 +126,7 @@ fn compare_on(
             found.methods.push(result);
             continue;
         }
-        let (result, shown) = stages.run("comparing methods", 0, |_| {
+        let (result, shown) = run.compute("comparing methods", || {
             judge::judge(&case, method, (&name, made_from.clone(), place.scanner()), global.seed)
         });
         if global.verbose {

@@ -5,7 +5,7 @@ use super::super::{check_output, check_parent, extension};
 use crate::arguments::{GroundChoice, Irradiance};
 use crate::commands::horizon::write_lines;
 use crate::pipeline::{Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::PointCloud;
@@ -41,12 +41,7 @@ pub(super) fn check(arguments: &Irradiance) -> Result<()> {
 }
 
 /// The planes of the scene's roofs, where they are wanted.
-pub(super) fn find(
-    arguments: &Irradiance,
-    scene: &mut Scene,
-    stages: &mut Stages,
-    summary: &mut Summary,
-) -> Result<Option<Roofs>> {
+pub(super) fn find(arguments: &Irradiance, scene: &mut Scene, run: &mut Run) -> Result<Option<Roofs>> {
     if arguments.planes.is_empty() {
         return Ok(None);
     }
@@ -57,13 +52,12 @@ pub(super) fn find(
     let (low, high) = scene.model.bounds().on_map();
     let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
     let grid = MapGrid::covering(low, high, GROUND_CELL, origin)?;
-    let (cloud, points) = ground_cloud(&arguments.places.ground, scene, stages)?;
-    let mut section = Summary::default();
-    let ground = ground(&cloud, points, grid, stages, &mut section)?;
+    let (cloud, points) = ground_cloud(&arguments.places.ground, scene, run)?;
+    let ground = run.aside(|run| ground(&cloud, points, grid, run)).0?;
     let frame = PointCloud::in_frame(cloud.frame.clone());
     let (rows, from) = roof_points(&cloud, &ground)?;
     let places: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
-    let planes = stages.run("detecting roof planes", 0, |control| roof_planes(&places, &params, control));
+    let planes = run.stage("detecting roof planes", 0, |control| roof_planes(&places, &params, control));
     let planes = flagged("--panel, --min-area", planes)?;
     let mut section = Summary::default();
     let from = match from {
@@ -76,7 +70,7 @@ pub(super) fn find(
         .add("points_on_planes", planes.iter().map(|plane| plane.points.len()).sum::<usize>())
         .add("planes", planes.len())
         .add("area_m2", rounded(planes.iter().map(|plane| plane.area).sum(), 1));
-    summary.add("roofs", section);
+    run.summary.add("roofs", section);
     // the cloud goes back to where it came from: cells and points may be asked about, too
     if matches!(arguments.places.ground, GroundChoice::OfScene(_)) {
         scene.cloud = cloud;
@@ -91,24 +85,24 @@ pub(super) fn measure(
     obstacles: Obstacles<'_>,
     seasons: &[SeasonRadiation],
     site: &Site,
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<()> {
-    let rows = stages.run("computing horizons", roofs.planes.len(), |control| {
+    let rows = run.stage("computing horizons", roofs.planes.len(), |control| {
         roof_irradiation(obstacles, &roofs.planes, seasons, control)
     })?;
-    summary.add("planes", Summary::of(&RoofsReport::new(&roofs.planes, &rows)));
+    run.summary.add("planes", Summary::of(&RoofsReport::new(&roofs.planes, &rows)));
     for output in &arguments.planes {
-        stages.run("writing", 0, |_| match extension(output).as_str() {
+        run.stage("writing", 0, |_| match extension(output).as_str() {
             "csv" => write_rows(output, roofs, &rows, site),
             _ => write_outlines(output, roofs, &rows, site),
         })?;
     }
-    summary.add("planes_written", arguments.planes.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary
+        .add("planes_written", arguments.planes.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     if let Some(folder) = &arguments.horizons {
-        let enclosed = write_horizons(folder, roofs, obstacles.scene, site, stages)?;
-        summary.add("horizons_written", folder.display().to_string());
-        summary.add("horizons_inside_obstacles", enclosed);
+        let enclosed = write_horizons(folder, roofs, obstacles.scene, site, run)?;
+        run.summary.add("horizons_written", folder.display().to_string());
+        run.summary.add("horizons_inside_obstacles", enclosed);
     }
     Ok(())
 }
@@ -158,13 +152,13 @@ fn write_horizons(
     roofs: &Roofs,
     blockers: &MedialScene,
     site: &Site,
-    stages: &mut Stages,
+    run: &mut Run,
 ) -> Result<usize> {
     atomic::make_folder(folder)?;
     let places = horizon_places(&roofs.planes, blockers);
     let eyes: Vec<[f64; 3]> = places.iter().map(|(place, _)| place.map(f64::from)).collect();
     let params = HorizonParams::default().with_azimuth_count(AZIMUTHS).with_turn(site.convergence);
-    let found = stages.run("computing ranges", eyes.len(), |control| horizons(blockers, &eyes, &params, control))?;
+    let found = run.stage("computing ranges", eyes.len(), |control| horizons(blockers, &eyes, &params, control))?;
     for (number, skyline) in found.iter().enumerate() {
         let path = folder.join(format!("plane_{}.txt", number + 1));
         write_lines(&path, skyline.iter().map(|point| format!("{:.2}", point.elevation.to_degrees().max(0.0))))?;

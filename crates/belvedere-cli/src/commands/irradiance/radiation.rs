@@ -2,7 +2,7 @@
 
 use crate::arguments::{ClearSkyChoice, Irradiance, RadiationModel, Usage};
 use crate::pipeline::{Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Context, Result};
 use belvedere::apps::irradiance::{
@@ -50,10 +50,10 @@ pub(in crate::commands) fn check_linke(choice: Option<ClearSkyChoice>, model: &R
     Ok(())
 }
 
-pub(super) fn weather(arguments: &Irradiance, stages: &mut Stages) -> Result<Option<Weather>> {
+pub(super) fn weather(arguments: &Irradiance, run: &mut Run) -> Result<Option<Weather>> {
     check_linke(arguments.radiation.clear_sky, &arguments.model)?;
     match &arguments.radiation.weather {
-        Some(path) => Ok(Some(stages.run("reading weather", 0, |_| read_weather(path))?)),
+        Some(path) => Ok(Some(run.stage("reading weather", 0, |_| read_weather(path))?)),
         None => Ok(None),
     }
 }
@@ -97,8 +97,7 @@ pub(super) fn gather(
     site: &Site,
     weather: Option<&Weather>,
     crowns: Option<Crowns>,
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<Vec<SeasonRadiation>> {
     let mut section = Summary::default();
     let source = match weather {
@@ -108,7 +107,7 @@ pub(super) fn gather(
                 section.add("weather_rows_without_radiation", weather.left_out_count);
             }
             if let Some(remark) = weather.period_remark() {
-                summary.warn(remark);
+                run.summary.warn(remark);
             }
             section.add("weather_hours", rounded(weather.hours(), 2)).add("notes", weather.notes.clone());
             RadiationSource::Weather { weather, parts: arguments.model.parts.unwrap_or(PARTS) }
@@ -120,7 +119,7 @@ pub(super) fn gather(
             RadiationSource::ClearSky { clear_sky, year }
         }
     };
-    let found = stages.run("computing radiation", 0, |control| period_seasons(&source, site, crowns, params, control));
+    let found = run.stage("computing radiation", 0, |control| period_seasons(&source, site, crowns, params, control));
     let (seasons, report) = flagged("--parts-per-row, --linke, --year, --patch-division", found)?;
     section
         .add("global_kwh_m2", rounded(report.ghi, 1))
@@ -133,7 +132,7 @@ pub(super) fn gather(
             if params.surroundings == Surroundings::Dark { "nothing" } else { "like the ground" },
         );
     if report.night_hours > 0.0 {
-        summary.warn(format!(
+        run.summary.warn(format!(
             "the weather has radiation in {:.1} hours of the night, with the sun more than 12 degrees below the horizon: are its location and time zone correct?",
             report.night_hours
         ));
@@ -143,8 +142,8 @@ pub(super) fn gather(
             "{:.0} kWh/m² of direct radiation have the sun below the horizon and are ignored: are the location and the time zone of the weather correct?",
             report.dni_without_sun
         );
-        summary.warn(what);
+        run.summary.warn(what);
     }
-    summary.add("radiation", section);
+    run.summary.add("radiation", section);
     Ok(seasons)
 }

@@ -4,7 +4,7 @@ use crate::arguments::{LandmarkShape, Usage};
 use crate::commands::extension;
 use crate::commands::mesh_targets::mesh_of;
 use crate::pipeline::{Scene, flagged};
-use crate::progress::Stages;
+use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::Mesh;
@@ -17,17 +17,15 @@ use std::path::Path;
 pub(in crate::commands) fn surface(
     arguments: &LandmarkShape,
     scene: &Scene,
-    seed: u64,
-    stages: &mut Stages,
-    summary: &mut Summary,
+    run: &mut Run,
 ) -> Result<(SurfacePieces, [f64; 2])> {
     let mut section = Summary::default();
     let surface = if let Some(path) = &arguments.what.target {
-        let mesh = objects_of(mesh_of(path, scene, stages, summary)?, &arguments.object, path)?;
+        let mesh = objects_of(mesh_of(path, scene, run)?, &arguments.object, path)?;
         let spacing = arguments.spacing.unwrap_or_else(|| spacing_for(mesh.area()));
         section.add("triangles", mesh.triangles.len()).add("spacing_m", rounded(spacing, 3));
-        let surface =
-            stages.run("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, seed));
+        let surface = run
+            .stage("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, run.seed));
         flagged("--spacing", surface)?
     } else {
         if scene.cloud.is_empty() {
@@ -48,12 +46,12 @@ pub(in crate::commands) fn surface(
                 .into());
             }
         };
-        let (rows, surface) = stages.run("selecting landmark", 0, |_| landmark_points(&scene.cloud, &which))?;
+        let (rows, surface) = run.stage("selecting landmark", 0, |_| landmark_points(&scene.cloud, &which))?;
         section.add("points", rows.len());
         surface
     };
     section.add("sample_points", surface.pieces.len()).add("area_m2", rounded(surface.area(), 2));
-    summary.add("landmark", section);
+    run.summary.add("landmark", section);
     let middle = surface.middle_on_map();
     Ok((surface, middle))
 }

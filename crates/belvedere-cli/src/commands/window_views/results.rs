@@ -4,8 +4,7 @@ use crate::commands::extension;
 use crate::commands::sights::ground;
 use crate::commands::windows::Windows;
 use crate::pipeline::Scene;
-use crate::progress::Stages;
-use crate::summary::Summary;
+use crate::run::Run;
 use anyhow::{Result, bail};
 use belvedere::PointCloud;
 use belvedere::apps::targets::{Measure, Targets};
@@ -105,22 +104,21 @@ impl Found<'_> {
     }
 
     /// The share of one kind as dots on a map.
-    pub(super) fn write_map<'s>(
+    pub(super) fn write_map(
         &self,
         output: &Path,
         title: &str,
         shown: Seen,
         (scene, cloud): (&Scene, &PointCloud),
-        stages: &mut Stages,
-        summary: &'s mut Summary,
-    ) -> Result<&'s mut Summary> {
+        run: &mut Run,
+    ) -> Result<()> {
         if cloud.is_empty() {
             bail!("{}: a map needs points, and a ball file has none; give --classes-of", output.display());
         }
         let (low, high) = scene.model.bounds().on_map();
         let origin = [cloud.frame.origin[0], cloud.frame.origin[1]];
         let grid = MapGrid::covering(low, high, cell_for(low, high), origin)?;
-        let ground = ground(cloud, GroundPoints::Auto, grid, stages, summary)?;
+        let ground = ground(cloud, GroundPoints::Auto, grid, run)?;
         let relief = highest_points(&cloud.positions, &ground);
         let mut sums = vec![(0.0, 0.0); grid.len()];
         let radius = (DOT * grid.width.max(grid.height) as f64).max(1.0);
@@ -143,8 +141,7 @@ impl Found<'_> {
         let legend =
             MapLegend::Ramp("percent of the view", [0.0, 100.0 * most], &[(NO_WINDOW_COLOR, "no window with a view")]);
         let map = MapPicture::of_colors(&relief, grid.cell, Some(&place), &colors, title, legend);
-        stages.run("writing", 0, |_| write_png(output, &map_picture(&map)?))?;
-        Ok(summary)
+        Ok(run.stage("writing", 0, |_| write_png(output, &map_picture(&map)?))?)
     }
 }
 
