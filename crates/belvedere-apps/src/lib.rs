@@ -1,5 +1,6 @@
 //! What users ask of a scene: each application puts questions to [`belvedere_core::query`] and sums up the answers.
 
+pub mod ask;
 pub mod cameras;
 pub mod difference;
 pub mod edge;

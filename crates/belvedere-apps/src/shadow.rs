@@ -8,6 +8,7 @@ use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, dot, unit};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Angular radius of the sun's disc at its mean distance, radians: 959.63 arc seconds.
@@ -25,7 +26,8 @@ const CHUNK: usize = 1024;
 const PROOF_CHUNK: usize = 512;
 
 /// What edges of shadows are like.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Edges {
     /// The sun is a point: a place is lit or not.
     #[default]

@@ -10,6 +10,7 @@ use belvedere_core::query::{BlockRule, MedialScene};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// First and last day of the year that deciduous trees of the northern hemisphere are in leaf.
 const IN_LEAF: [u32; 2] = [97, 300];
@@ -161,7 +162,7 @@ impl Crowns {
 /// A scene without its vegetation, and what share of the light its vegetation lets through.
 pub struct TreeLight {
     /// The balls that are not vegetation.
-    pub opaque: MedialScene,
+    pub opaque: Arc<MedialScene>,
     /// What the vegetation lets through.
     pub crowns: Crowns,
 }
@@ -178,7 +179,7 @@ impl TreeLight {
         leaves: Leaves,
         control: &Control<'_>,
     ) -> Result<Self> {
-        let opaque = model.scene_without_vegetation(rule, control)?;
+        let opaque = Arc::new(model.scene_without_vegetation(rule, control)?);
         Ok(Self { opaque, crowns: Crowns { transmissivity, leaves } })
     }
 }

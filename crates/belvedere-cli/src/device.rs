@@ -65,7 +65,7 @@ pub(crate) fn report(summary: &mut Summary) {
             summary.add("device", device.name.clone());
         }
         for note in gpu.notes() {
-            summary.warn(note);
+            summary.warn("device", note);
         }
     }
     #[cfg(not(feature = "gpu"))]

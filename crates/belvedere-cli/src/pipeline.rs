@@ -6,20 +6,23 @@ mod plan;
 pub(crate) use plan::{areas, mesh_in, planned};
 
 use crate::arguments::{
-    CloudInput, MethodChoice, OrientChoice, ProfileChoice, SceneInput, SizeChoice, UnprovenChoice, UpChoice, Usage,
-    ViewChoice,
+    CloudInput, GroundChoice, MethodChoice, OrientChoice, ProfileChoice, SceneInput, SizeChoice, SkyPlaces,
+    UnprovenChoice, UpChoice, Usage, ViewChoice,
 };
 use crate::device::with_device;
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
+use belvedere::apps::ask;
+use belvedere::crs::CrsKind;
 use belvedere::depth::Profile;
 use belvedere::io::{ReadOptions, ReadReport, UpAxis, is_ball_file, read_balls, read_cloud, web_address};
 use belvedere::model::SceneModel;
-use belvedere::query::UnprovenAs;
+use belvedere::query::{BlockRule, UnprovenAs};
 use belvedere::view::{CAMERA_FOV, CAMERA_SIZE, PANORAMA_WIDTH, View, default_pixel_size, to_sun};
 use belvedere::{Bounds, Error, PointCloud};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Makes a parameter out of range an error about the flag that gave it, which is wrong usage.
 pub(crate) fn flagged<T>(flag: &str, result: belvedere::Result<T>) -> Result<T> {
@@ -69,7 +72,10 @@ fn read_counted(input: &CloudInput, run: &mut Run) -> Result<(PointCloud, ReadRe
 pub(crate) fn warn_of_missing(report: &ReadReport, summary: &mut Summary) {
     for file in report.files.iter().filter(|file| file.missing_points > 0) {
         let (path, count) = (file.path.display(), file.missing_points);
-        summary.warn(format!("{path}: the file is cut off: {count} points of its header are missing; copy it again"));
+        summary.warn(
+            "file-cut-off",
+            format!("{path}: the file is cut off: {count} points of its header are missing; copy it again"),
+        );
     }
 }
 
@@ -100,6 +106,44 @@ impl Scene {
     pub(crate) fn local_from_file(&self, place: [f64; 3]) -> [f64; 3] {
         self.model.frame().local_from_file(place)
     }
+}
+
+impl Scene {
+    /// The scene that questions are put to, with the ground and the shell of the flags.
+    pub(crate) fn into_asked(self, ground: Option<&GroundChoice>, shell: Option<f32>, run: &Run) -> Result<ask::Scene> {
+        if shell.is_some() && !self.model.is_carved() {
+            return Err(Usage("--shell applies only to carved balls, and these are not carved".to_owned()).into());
+        }
+        let usual = self.model.rule();
+        let rule = BlockRule { shell: shell.map_or(usual.shell, f64::from), ..usual };
+        let frame = self.cloud.frame.clone();
+        let scene = ask::Scene::new(self.model, Arc::new(self.cloud)).with_rule(rule);
+        let Some(GroundChoice::Cloud(path)) = ground else { return Ok(scene) };
+        let (cloud, _) = run.stage("reading ground", 0, |control| {
+            read_cloud(std::slice::from_ref(path), &ReadOptions::default(), control)
+        })?;
+        cloud.frame.crs.check_for(&frame.crs, "ground", path)?;
+        // a scene that knows no system takes that of its ground
+        let own = Some(cloud.frame.crs.clone()).filter(|crs| crs.kind != CrsKind::Unknown);
+        let mut cloud = cloud.moved_to(&frame);
+        if let Some(crs) = own {
+            cloud.frame.crs = crs;
+        }
+        Ok(scene.with_ground_of(Arc::new(cloud)))
+    }
+}
+
+/// The scene of questions about sun and sky, before the far terrain of the flags.
+pub(crate) fn scene_of_places(
+    input: &SceneInput,
+    places: &SkyPlaces,
+    shell: Option<f32>,
+    run: &mut Run,
+) -> Result<ask::Scene> {
+    let points = if places.needs_points() { Points::Keep } else { Points::LetGo };
+    let mut scene = scene(input, points, run)?;
+    places.far.set(&mut scene, run)?;
+    scene.into_asked(Some(&places.ground), shell, run)
 }
 
 /// Whether a scene keeps the points that its balls were made from.
@@ -244,7 +288,10 @@ impl ViewChoice {
             view.is_central() && coverage.is_some_and(|coverage| !coverage.holds(view.frame.eye))
         };
         if views.first().is_some_and(outside) {
-            summary.warn("the eye is outside the cloud: what stands around it and before it is unknown");
+            summary.warn(
+                "eye-outside-cloud",
+                "the eye is outside the cloud: what stands around it and before it is unknown",
+            );
         }
         let mut section = Summary::default();
         if let [view] = &views[..] {

@@ -3,6 +3,7 @@
 use crate::arguments::Global;
 use crate::progress::Stages;
 use crate::summary::Summary;
+use belvedere::apps::ask::Answers;
 use belvedere::control::{Control, Watcher};
 
 /// What every command has beside its arguments.
@@ -41,6 +42,13 @@ impl Run {
     /// Runs one stage that cannot fail.
     pub(crate) fn compute<T>(&self, name: &'static str, work: impl FnOnce() -> T) -> T {
         self.stages.run(name, 0, |_| work(), |_| true)
+    }
+
+    /// Reports on answers: the answer itself, all figures, and what a user must know beside them.
+    pub(crate) fn answered<F>(&mut self, answers: &Answers<F>) {
+        self.summary.add_report(&answers.report);
+        answers.headline.iter().for_each(|line| self.summary.headline(line));
+        answers.remarks.iter().for_each(|remark| self.summary.remark(remark));
     }
 
     /// Works with a summary of its own, which is handed back beside the result.

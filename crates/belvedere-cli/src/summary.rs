@@ -1,6 +1,7 @@
 //! What a command found, for people and as JSON.
 
 use crate::arguments::Global;
+use belvedere::apps::ask::Remark;
 use belvedere::io::WriteReport;
 use belvedere::report;
 use serde::Serialize;
@@ -8,8 +9,9 @@ use serde_json::{Map, Value};
 use std::io::Write;
 use std::process::ExitCode;
 
-/// Key of the warnings.
-const WARNINGS: &str = "warnings";
+/// Key of the remarks, and of the answer in a few lines.
+const REMARKS: &str = "remarks";
+const ANSWER: &str = "answer";
 
 /// Named figures and sections, in order.
 #[derive(Clone, Default)]
@@ -24,7 +26,14 @@ impl Summary {
 
     /// Adds all figures of `other`.
     pub(crate) fn add_all(&mut self, other: Self) -> &mut Self {
-        self.0.extend(other.0);
+        for (name, value) in other.0 {
+            match (self.0.get_mut(&name), value) {
+                (Some(Value::Array(own)), Value::Array(more)) if [REMARKS, ANSWER].contains(&name.as_str()) => {
+                    own.extend(more);
+                }
+                (_, value) => drop(self.0.insert(name, value)),
+            }
+        }
         self
     }
 
@@ -42,20 +51,38 @@ impl Summary {
         }
     }
 
-    /// Adds a warning: what the user must know to read the results rightly. Warnings go to standard error unless the summary is JSON.
-    pub(crate) fn warn(&mut self, text: impl Into<String>) -> &mut Self {
-        let warnings = self.0.entry(WARNINGS).or_insert_with(|| Value::Array(Vec::new()));
-        if let Value::Array(warnings) = warnings {
-            warnings.push(text.into().into());
+    /// Adds a line of the answer: a figure that matters, in words.
+    pub(crate) fn headline(&mut self, line: &str) {
+        self.push(ANSWER, line.into());
+    }
+
+    /// Adds what the user must know to read the results rightly, or a note. They go to standard error unless the summary is JSON.
+    pub(crate) fn remark(&mut self, remark: &Remark) {
+        self.push(REMARKS, Self::of(remark).into());
+    }
+
+    fn push(&mut self, key: &str, value: Value) {
+        let list = self.0.entry(key).or_insert_with(|| Value::Array(Vec::new()));
+        if let Value::Array(list) = list {
+            list.push(value);
         }
+    }
+
+    /// Adds a warning of the program itself.
+    pub(crate) fn warn(&mut self, key: &'static str, text: impl Into<String>) -> &mut Self {
+        self.remark(&Remark::warning(key, text));
         self
     }
 
     /// Adds a warning that `part` of `whole` targets are so, with the share, unless none is.
-    pub(crate) fn warn_of_share(&mut self, part: usize, whole: usize, what: &str, so: &str) -> &mut Self {
-        if part > 0 {
-            self.warn(format!("{part} of {whole} {what} ({} %) {so}", report::percent(part, whole)));
-        }
+    pub(crate) fn warn_of_share(
+        &mut self,
+        key: &'static str,
+        (part, whole): (usize, usize),
+        what: &str,
+        so: &str,
+    ) -> &mut Self {
+        Remark::of_share(key, part, whole, what, so).iter().for_each(|remark| self.remark(remark));
         self
     }
 
@@ -81,10 +108,11 @@ impl Summary {
         self
     }
 
-    /// Prints the warnings on standard error.
-    pub(crate) fn note_warnings(&self, global: &Global) {
-        if let (Some(Value::Array(warnings)), false) = (self.0.get(WARNINGS), global.quiet) {
-            warnings.iter().for_each(|warning| note(&format!("warning: {}", plain(warning))));
+    /// Prints the remarks on standard error.
+    pub(crate) fn print_remarks(&self, global: &Global) {
+        let Some(Value::Array(remarks)) = self.0.get(REMARKS).filter(|_| !global.quiet) else { return };
+        for remark in remarks {
+            note(&format!("{}: {}", plain(&remark["severity"]), plain(&remark["text"])));
         }
     }
 
@@ -96,8 +124,8 @@ impl Summary {
         }
         let mut entries = self.0.clone();
         if !global.json {
-            self.note_warnings(global);
-            entries.remove(WARNINGS);
+            self.print_remarks(global);
+            entries.remove(REMARKS);
         }
         let mut text = String::new();
         if global.json {

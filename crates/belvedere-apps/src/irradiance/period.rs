@@ -19,6 +19,7 @@ const MOST_SUN_DIRECTIONS: f64 = 200_000.0;
 
 /// How the radiation of a period is gathered and falls on planes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 #[non_exhaustive]
 pub struct IrradianceParams {
     /// Model of the sky's diffuse radiation.

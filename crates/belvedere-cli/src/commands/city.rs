@@ -59,7 +59,7 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         other => anyhow::Error::from(other),
     })?;
     if !arguments.clear.is_empty() && !plan.clears_anything(&run.control())? {
-        run.summary.warn("--clear: nothing stands there");
+        run.summary.warn("nothing-cleared", "--clear: nothing stands there");
     }
     plan.write(&arguments.output)?;
     let estimate = plan.estimate();
@@ -122,16 +122,19 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
     }
     run.summary.add_report(&report);
     for damage in report.damaged.iter().take(MOST_LISTED) {
-        run.summary.warn(format!("{damage}; it was computed again"));
+        run.summary.warn("result-damaged", format!("{damage}; it was computed again"));
     }
     if report.unproven_cells > 0 {
-        run.summary.warn(format!(
-            "{} cells are unproven because tiles that may block them are missing",
-            report.unproven_cells
-        ));
+        run.summary.warn(
+            "cells-unproven",
+            format!("{} cells are unproven because tiles that may block them are missing", report.unproven_cells),
+        );
     }
     if report.skipped_observers > 0 {
-        run.summary.warn(format!("{} observers are inside obstacles and see nothing", report.skipped_observers));
+        run.summary.warn(
+            "observers-skipped",
+            format!("{} observers are inside obstacles and see nothing", report.skipped_observers),
+        );
     }
     run.summary.add("written", arguments.run.display().to_string());
     Ok(run.finish())

@@ -4,7 +4,7 @@ mod places;
 
 use super::check_output;
 use super::sights::{Proving, blockers};
-use super::targets::{leave_out_outside, report_edge};
+use super::sights::{leave_out_outside, report_edge};
 use super::windows::{FaceChoice, windows};
 use crate::arguments::{Comfort, Global, PatchesChoice, Usage};
 use crate::pipeline::{self, Points, flagged};

@@ -28,15 +28,21 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
         && first != second
     {
         let files = [&arguments.before, &arguments.after].map(|path| path.display());
-        run.summary.warn(format!(
-            "{} holds \"{first}\" and {} \"{second}\"; a difference of different quantities means nothing",
-            files[0], files[1]
-        ));
+        run.summary.warn(
+            "different-quantities",
+            format!(
+                "{} holds \"{first}\" and {} \"{second}\"; a difference of different quantities means nothing",
+                files[0], files[1]
+            ),
+        );
     }
     for (path, raster) in [(&arguments.before, &mut before), (&arguments.after, &mut after)] {
         let unproven = clear_unproven(raster.values.values_mut(), raster.description.as_deref());
         if unproven > 0 {
-            run.summary.warn(format!("{}: unproven cells count as cells without a value ({unproven})", path.display()));
+            run.summary.warn(
+                "unproven-cells-left-out",
+                format!("{}: unproven cells count as cells without a value ({unproven})", path.display()),
+            );
         }
     }
     let place = before.place.as_ref();

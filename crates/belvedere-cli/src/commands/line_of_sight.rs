@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     run.summary.add("lines_of_sight", counted(&answers, unproven_as, section));
     let outside = AnswerCounts::of(&answers).outside_cloud;
     let is_outside = if arguments.terrain.is_some() { OUTSIDE_BOTH } else { OUTSIDE_LINE };
-    run.summary.warn_of_share(outside, answers.len(), "lines of sight", is_outside);
+    run.summary.warn_of_share("lines-outside-cloud", (outside, answers.len()), "lines of sight", is_outside);
     if let ([[observer, _]], [sight]) = (&pairs[..], &sights[..]) {
         let mut one = Summary::default();
         if let Some(sight) = sight {
@@ -195,7 +195,12 @@ fn set_ends_on_ground(
     }
     set_on_terrain(pairs.iter_mut().flat_map(|pair| pair.iter_mut().zip(heights)), &scene.model);
     let unknown = pairs.iter().flatten().filter(|end| end[2].is_nan()).count();
-    run.summary.warn_of_share(unknown, 2 * pairs.len(), "ends of lines", "have no height and no known ground below");
+    run.summary.warn_of_share(
+        "ends-without-ground",
+        (unknown, 2 * pairs.len()),
+        "ends of lines",
+        "have no height and no known ground below",
+    );
     Ok(())
 }
 

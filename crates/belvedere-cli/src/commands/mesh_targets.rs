@@ -95,7 +95,12 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     run.summary.add("faces", told(&faces, &surface, spacing));
     let places: Vec<[f32; 3]> = surface.pieces.iter().map(|piece| piece.place).collect();
     let outside = scene.model.coverage().map_or(0, |coverage| coverage.outside_count(&places));
-    run.summary.warn_of_share(outside, places.len(), "sample points of the mesh", sights::OUTSIDE_CLOUD);
+    run.summary.warn_of_share(
+        "targets-outside-cloud",
+        (outside, places.len()),
+        "sample points of the mesh",
+        sights::OUTSIDE_CLOUD,
+    );
     run.stage("writing", 0, |_| match extension(output).as_str() {
         "ply" => {
             let shares: Vec<f64> = faces.iter().map(SeenArea::visible_share).collect();

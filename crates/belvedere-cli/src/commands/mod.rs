@@ -162,6 +162,7 @@ fn warn_of_geojson(outputs: &[PathBuf], crs: &Crs, summary: &mut Summary) {
         return;
     }
     summary.warn(
+        "geojson-without-reference-system",
         "GeoJSON has the coordinates of the cloud, not longitude and latitude: the reference system of the scene is unknown. Other \
                    programs will misplace it; give --crs EPSG:CODE where the balls are built",
     );

@@ -4,6 +4,7 @@ use crate::arguments::North;
 use crate::pipeline::Scene;
 use crate::summary::{Summary, rounded};
 use belvedere::Frame;
+use belvedere::apps::ask;
 use belvedere::apps::horizon::convergence;
 
 /// The north of the azimuths of a command.
@@ -16,6 +17,11 @@ pub(crate) struct AzimuthNorth {
 }
 
 impl North {
+    /// What was typed.
+    pub(crate) fn choice(&self) -> ask::North {
+        if self.grid_north { ask::North::Grid } else { ask::North::True }
+    }
+
     /// The north at the middle of the scene.
     pub(crate) fn of_scene(&self, scene: &Scene) -> AzimuthNorth {
         let (low, high) = scene.model.bounds().corners();

@@ -75,7 +75,7 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
     }
     run.summary.add("protected_view", section);
     if lines_protected == 0 {
-        run.summary.warn("no observer sees any part of the landmark today: nothing is protected");
+        run.summary.warn("nothing-protected", "no observer sees any part of the landmark today: nothing is protected");
     }
     for output in &arguments.output {
         run.stage("writing", 0, |_| match extension(output).as_str() {

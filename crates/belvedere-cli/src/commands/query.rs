@@ -70,7 +70,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         answers
     };
     let outside = AnswerCounts::of(&answers).outside_cloud;
-    run.summary.warn_of_share(outside, answers.len(), "targets", sights::OUTSIDE_CLOUD);
+    run.summary.warn_of_share("targets-outside-cloud", (outside, answers.len()), "targets", sights::OUTSIDE_CLOUD);
     let unproven_as = arguments.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
     let codes: Vec<u8> = answers.iter().map(|&answer| unproven_as.settle(answer) as u8).collect();
     run.summary.add("answers", counted(&answers, unproven_as, section));

@@ -5,7 +5,9 @@ use crate::pipeline::{Scene, flagged};
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
+use belvedere::apps::edge::{EdgeReport, near_edge};
 use belvedere::apps::eyes::{EyeFault, EyesReport, SkippedEye, skip_unfit_eyes, skip_unfit_far_eyes};
+use belvedere::apps::targets::Targets;
 use belvedere::depth::Profile;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
 use belvedere::io::{ReadOptions, read_cloud};
@@ -16,6 +18,10 @@ use belvedere::{Frame, PointCloud};
 pub(crate) const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
 /// Most eyes that are skipped by name.
 const MOST_NAMED: usize = 5;
+
+/// Share of targets near the edge that is warned of, percent.
+const EDGE_WARNING_PERCENT: f64 = 1.0;
+const NEAR_EDGE: &str = "are near the edge of the cloud: objects beyond it, as high as its highest point, could take some of their sun or sky";
 
 /// Whether pulses are asked about lines of sight that nothing blocks.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -192,10 +198,10 @@ fn warn_of_skipped(report: EyesReport, (who, frame): (&str, &Frame), summary: &m
         bail!("no {who} is left: {}{more}{advice}", listed.join("; "));
     }
     for (name, fault) in report.faults.iter().take(MOST_NAMED).map(named) {
-        summary.warn(format!("{name} is skipped: {fault}"));
+        summary.warn("observer-skipped", format!("{name} is skipped: {fault}"));
     }
     if report.skipped > MOST_NAMED {
-        summary.warn(format!("{} of {} {who}s are skipped", report.skipped, report.count));
+        summary.warn("observers-skipped", format!("{} of {} {who}s are skipped", report.skipped, report.count));
     }
     Ok(report)
 }
@@ -209,4 +215,36 @@ pub(crate) fn enclosure_note(blockers: &MedialScene, eye: [f64; 3], who: &str) -
             enclosure.ball_count, enclosure.depth
         )
     })
+}
+
+/// Reports how many targets are so near the edge of the cloud that objects beyond it could change their result, warns of many, and gives a flag for each.
+pub(super) fn report_edge(
+    targets: &Targets,
+    scene: &Scene,
+    directions: &[[f64; 3]],
+    run: &mut Run,
+) -> Result<Vec<Option<bool>>> {
+    let Some(coverage) = scene.model.coverage() else { return Ok(vec![None; targets.len()]) };
+    let flags = run.stage("testing the edge of the cloud", targets.len(), |control| {
+        near_edge(&coverage, &targets.positions, directions, control)
+    })?;
+    let report = EdgeReport::of(&flags);
+    run.summary.add_report(&report);
+    if report.targets_near_edge_percent >= EDGE_WARNING_PERCENT {
+        let share = (report.targets_near_edge, targets.asked_count());
+        run.summary.warn_of_share("targets-near-edge", share, "targets", NEAR_EDGE);
+    }
+    Ok(flags)
+}
+
+/// Leaves out targets beside or below the cloud, and warns of them.
+pub(super) fn leave_out_outside(targets: &mut Targets, scene: &Scene, summary: &mut Summary) {
+    let count = targets.asked_count();
+    let outside = scene.model.coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));
+    summary.add("targets_outside_cloud", outside).warn_of_share(
+        "targets-outside-cloud",
+        (outside, count),
+        "targets",
+        OUTSIDE_CLOUD,
+    );
 }

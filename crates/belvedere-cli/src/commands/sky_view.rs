@@ -1,40 +1,34 @@
 //! `belvedere sky-view`.
 
-use super::sights::{Proving, blockers};
+use super::targets::Shown;
 use crate::arguments::{Global, PatchesChoice, SkyView};
-use crate::pipeline::{self, Points, flagged};
+use crate::pipeline;
 use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::rows::Obstacles;
-use belvedere::apps::sky_view::{SKY_DIRECTIONS, SkyDirections, scene_sky_view};
+use belvedere::apps::ask::{self, Ask, SkyParts};
 
 pub(crate) fn run(arguments: &SkyView, global: &Global) -> Result<Summary> {
     arguments.places.check(&arguments.outputs)?;
-    let sky = match arguments.patches {
-        Some(PatchesChoice::Tregenza) => SkyDirections::patches(1)?,
-        Some(PatchesChoice::Reinhart) => SkyDirections::patches(2)?,
-        None => flagged("--directions", SkyDirections::even(arguments.directions.unwrap_or(SKY_DIRECTIONS)))?,
-    };
+    let sky = sky_parts(arguments.patches, arguments.directions);
+    let question = ask::SkyView { sky, trees: arguments.trees.choice()? };
+    question.check()?;
     let mut run = Run::new(global);
-    let points = if arguments.places.needs_points() { Points::Keep } else { Points::LetGo };
-    let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;
-    arguments.places.far.set(&mut scene, &mut run)?;
-    let asked = arguments.places.targets(&mut scene, &mut run)?;
-    asked.report_edge(&arguments.places, &scene, &sky.directions, &mut run)?;
-    let mut section = Summary::default();
-    let profile = arguments.scene.profile.into();
-    let (blockers, _) =
-        blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut run, &mut section)?;
-    section.add("directions", sky.directions.len());
-    run.summary.add("lines_of_sight", section);
-    let trees = arguments.trees.of(&scene, blockers.params(), &mut run.summary)?;
-    let obstacles = Obstacles { scene: &blockers, trees: trees.as_ref() };
-    let looks = asked.targets.len() * obstacles.matrix_count();
-    let seen = run.stage("testing sky", looks, |control| scene_sky_view(obstacles, &asked.targets, &sky, control))?;
-    let measures = seen.into_measures();
-    run.summary.add("sky", asked.statistics(&measures));
-    let title = arguments.places.far.titled("Sky view");
-    asked.write(&arguments.outputs, &measures, &title, &mut run)?;
+    let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.shell.shell, &mut run)?;
+    let (places, source) = arguments.places.places(&scene, &mut run)?;
+    let answers = ask::ask(&scene, &question, &places, &run.control())?;
+    run.answered(&answers);
+    let shown = Shown::new(&answers.found, source, &scene);
+    shown.write(&arguments.outputs, &answers.measures, &mut run)?;
+    shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;
     Ok(run.finish())
+}
+
+/// How the sky is parted.
+pub(super) fn sky_parts(patches: Option<PatchesChoice>, directions: Option<usize>) -> SkyParts {
+    match patches {
+        Some(PatchesChoice::Tregenza) => SkyParts::Tregenza,
+        Some(PatchesChoice::Reinhart) => SkyParts::Reinhart,
+        None => directions.map_or_else(SkyParts::default, SkyParts::Even),
+    }
 }

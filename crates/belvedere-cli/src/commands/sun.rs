@@ -1,9 +1,10 @@
 //! Where on earth a scene lies, how clocks run there, and which days were typed.
 
-use crate::arguments::{ElevationChoice, SunPeriod, SunPlace, Usage};
+use crate::arguments::{ElevationChoice, North, SunPeriod, SunPlace, Usage};
 use crate::pipeline::{Scene, flagged};
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, anyhow};
+use belvedere::apps::ask;
 use belvedere::apps::sun::{
     Date, DayParams, Period, Refraction, Site, Zone, parse_instant, sun_position_with, zone_of_instant,
 };
@@ -11,6 +12,21 @@ use belvedere::apps::sun_hours::RuleDays;
 use belvedere::{Bounds, Error, Frame};
 
 impl SunPlace {
+    /// What was typed, with the north of azimuths.
+    pub(crate) fn place(&self, north: &North) -> Result<ask::SunPlace> {
+        Ok(ask::SunPlace {
+            location: self.location.as_ref().map(|location| location.0),
+            zone: self.zone.clone(),
+            refraction: self.refraction()?,
+            north: north.choice(),
+        })
+    }
+
+    /// What was typed, where no azimuth is.
+    pub(crate) fn place_from_true_north(&self) -> Result<ask::SunPlace> {
+        self.place(&North { grid_north: false })
+    }
+
     /// Where the middle of the scene lies on earth.
     pub(crate) fn site(&self, scene: &Scene, summary: &mut Summary) -> Result<Site> {
         self.site_of(&scene.cloud.frame, &scene.model.bounds(), summary)
@@ -69,6 +85,17 @@ impl SunPlace {
 }
 
 impl SunPeriod {
+    /// The days that were typed.
+    pub(crate) fn days(&self) -> ask::Days {
+        ask::Days {
+            dates: self.date.clone(),
+            between: self.from.clone().zip(self.to.clone()).map(|(from, to)| [from, to]),
+            year: Some(self.year),
+            time_step_min: self.step,
+            min_sun_elevation_deg: self.least_elevation,
+        }
+    }
+
     /// Refuses what cannot be anywhere on earth, before hours of work go into a scene.
     pub(crate) fn check(&self, place: &SunPlace) -> Result<()> {
         self.params(place)?.validate().map_err(|error| match (error, self.step) {

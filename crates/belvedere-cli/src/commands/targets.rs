@@ -1,36 +1,42 @@
-//! Targets of the sun and the sky: from flags and files to targets, and from measures to files.
+//! Targets of the sun and the sky: from flags and files to places, and from measures to files.
 
-use super::mesh_targets::{self, mesh_of};
+use super::mesh_targets;
 use super::query::{points_of_file, text_rows_for};
-use super::sights::{OUTSIDE_CLOUD, ground, ground_cloud};
 use super::{check_output, extension};
-use crate::arguments::{FacingChoice, SkyOutputs, SkyPlaces, Usage};
-use crate::pipeline::{Scene, flagged};
+use crate::arguments::{FacingChoice, GroundChoice, SkyOutputs, SkyPlaces, Usage};
+use crate::pipeline::mesh_in;
 use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::edge::{EdgeReport, near_edge};
-use belvedere::apps::targets::{CellLevel, CellParams, Facing, Measure, MeshParams, Targets};
-use belvedere::apps::viewshed::cell_for;
+use belvedere::apps::ask::{Cells, OnTargets, Places, Scene, Turned};
+use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
 use belvedere::figures::{Picture, write_png};
-use belvedere::ground::{MapGrid, highest_points};
+use belvedere::ground::{GroundPoints, highest_points};
 use belvedere::io::{Georeference, atomic, write_tif_u8};
-use belvedere::query::AddedMeshes;
 use belvedere::raster::Raster;
 use belvedere::results::{TakenFrom, georeference, measure_map, write_measures, write_raster};
 use belvedere::{Mesh, PointCloud};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// Share of targets near the edge that is warned of, percent.
-const EDGE_WARNING_PERCENT: f64 = 1.0;
-const NEAR_EDGE: &str = "are near the edge of the cloud: objects beyond it, as high as its highest point, could take some of their sun or sky";
 /// No flag of the edge.
 const NO_FLAG: u8 = 255;
 
-/// Targets and what they were taken from.
-pub(crate) struct Asked {
-    pub(crate) targets: Targets,
-    from: Source,
+/// What targets were taken from.
+pub(crate) enum Source {
+    Cells,
+    /// The points of the scene.
+    Own,
+    /// Points with their attributes, and the file they were read from.
+    File(Arc<PointCloud>, PathBuf),
+    Mesh(Arc<Mesh>),
+}
+
+/// Targets of which something was found, to be shown.
+pub(crate) struct Shown<'a> {
+    on: &'a OnTargets,
+    source: Source,
+    scene: &'a Scene,
 }
 
 /// Heights of the highest points of cells, and where these lie.
@@ -41,13 +47,14 @@ pub(crate) struct Relief {
     pub(crate) place: Georeference,
 }
 
-enum Source {
-    /// The cloud that the ground below cells, and the relief of maps, come from.
-    /// The meshes that were added are part of the relief.
-    Cells(Box<PointCloud>, Option<AddedMeshes>),
-    /// Points with their attributes, and the file they were read from unless they are those of the scene.
-    Points(Box<PointCloud>, Option<PathBuf>),
-    Mesh(Box<Mesh>),
+impl GroundChoice {
+    /// Which points of the cloud are ground.
+    pub(crate) fn points(&self) -> GroundPoints {
+        match self {
+            Self::OfScene(points) => *points,
+            Self::Cloud(_) => GroundPoints::Auto,
+        }
+    }
 }
 
 impl SkyPlaces {
@@ -94,152 +101,77 @@ impl SkyPlaces {
         self.places.targets.is_none()
     }
 
-    /// The targets that were typed. Takes the points of the scene with it where it needs them.
-    pub(crate) fn targets(&self, scene: &mut Scene, run: &mut Run) -> Result<Asked> {
-        let mut asked = self.typed(scene, run)?;
-        // cells are those of the cloud
-        if !self.is_grid() {
-            leave_out_outside(&mut asked.targets, scene, &mut run.summary);
-        }
-        Ok(asked)
-    }
-
-    fn typed(&self, scene: &mut Scene, run: &mut Run) -> Result<Asked> {
-        if let Some(path) = &self.places.targets {
-            if mesh_targets::is_mesh(path) {
-                return self.of_mesh(path, scene, run);
+    /// The places that were typed, and what they are taken from.
+    pub(crate) fn places(&self, scene: &Scene, run: &mut Run) -> Result<(Places, Source)> {
+        let Some(path) = &self.places.targets else {
+            if self.places.own {
+                let is_turned = self.facing == Some(FacingChoice::Normals);
+                return Ok((Places::Own(if is_turned { Turned::Normals } else { Turned::Level }), Source::Own));
             }
-            let cloud = points_of_file(path, None, &scene.cloud.frame, run)?;
-            let normals = cloud.attributes.normals.clone();
-            return self.of_points(cloud, normals, Some(path));
+            let cells = Cells {
+                cell: self.cell,
+                level: if self.places.surface { CellLevel::Surface } else { CellLevel::Ground },
+                height: self.height.map(f64::from),
+                ground: self.ground.points(),
+                ..Cells::default()
+            };
+            return Ok((Places::Cells(cells), Source::Cells));
+        };
+        if mesh_targets::is_mesh(path) {
+            let mesh = Arc::new(mesh_in(path, &scene.frame().crs, run)?);
+            let facing = if self.facing == Some(FacingChoice::Level) { Facing::Level } else { Facing::Normals };
+            let usual = MeshParams::default().with_seed(run.seed).with_facing(facing);
+            let params = self.spacing.map_or(usual, |spacing| usual.with_spacing(spacing));
+            return Ok((Places::Mesh(Arc::clone(&mesh), params), Source::Mesh(mesh)));
         }
-        if self.places.own {
-            if scene.cloud.is_empty() {
-                return Err(Usage("--self needs a cloud; a ball file has no points".to_owned()).into());
-            }
-            let frame = scene.cloud.frame.clone();
-            let normals = scene.model.take_normals();
-            return self.of_points(
-                std::mem::replace(&mut scene.cloud, PointCloud { frame, ..PointCloud::default() }),
-                normals,
-                None,
-            );
-        }
-        let (low, high) = scene.model.bounds().on_map();
-        let cell = self.cell.unwrap_or_else(|| cell_for(low, high));
-        let [x, y, _] = scene.cloud.frame.origin;
-        let grid = flagged("--cell", MapGrid::covering(low, high, cell, [x, y]))?;
-        let (cloud, points) = ground_cloud(&self.ground, scene, run)?;
-        let ground = ground(&cloud, points, grid, run)?;
-        let mut params = CellParams::default();
-        if self.places.surface {
-            params = params.with_level(CellLevel::Surface);
-        }
-        if let Some(height) = self.height {
-            params = params.with_height(f64::from(height));
-        }
-        let name = if self.places.surface { "finding the surface" } else { "finding hidden ground" };
-        let (mut targets, mut report) =
-            run.stage(name, 0, |control| Targets::of_cells(&cloud, ground, &params, control))?;
-        if let Some(added) = scene.model.added() {
-            report.cells_below_objects_excluded += targets.set_on_added(added, &params);
-        }
-        if !self.places.surface {
-            run.summary.add_report(&report);
-        }
-        Ok(Asked { targets, from: Source::Cells(Box::new(cloud), scene.model.added().cloned()) })
-    }
-
-    fn of_points(&self, cloud: PointCloud, normals: Option<Vec<[f32; 3]>>, file: Option<&Path>) -> Result<Asked> {
-        let normals = match self.facing {
-            Some(FacingChoice::Normals) => {
+        let cloud = Arc::new(points_of_file(path, None, scene.frame(), run)?);
+        let normals = match (self.facing, &cloud.attributes.normals) {
+            (Some(FacingChoice::Normals), None) => {
                 let what = "--facing normals: the points have none; `belvedere normals` estimates them";
-                Some(normals.ok_or_else(|| Usage(what.to_owned()))?)
+                return Err(Usage(what.to_owned()).into());
             }
+            (Some(FacingChoice::Normals), Some(normals)) => Some(normals.clone()),
             _ => None,
         };
-        Ok(Asked {
-            targets: Targets::of_points(&cloud, normals),
-            from: Source::Points(Box::new(cloud), file.map(Path::to_owned)),
-        })
-    }
-
-    fn of_mesh(&self, path: &Path, scene: &Scene, run: &mut Run) -> Result<Asked> {
-        let mesh = mesh_of(path, scene, run)?;
-        let facing = if self.facing == Some(FacingChoice::Level) { Facing::Level } else { Facing::Normals };
-        let mut params = MeshParams::default().with_seed(run.seed).with_facing(facing);
-        if let Some(spacing) = self.spacing {
-            params = params.with_spacing(spacing);
-        }
-        let targets = run.stage("sampling mesh", 0, |_| Targets::of_mesh(&mesh, &scene.cloud.frame, &params));
-        Ok(Asked { targets: flagged("--spacing", targets)?, from: Source::Mesh(Box::new(mesh)) })
+        Ok((Places::Cloud(Arc::clone(&cloud), normals), Source::File(cloud, path.clone())))
     }
 }
 
-/// Reports how many targets are so near the edge of the cloud that objects beyond it could change their result, warns of many, and gives a flag for each.
-pub(super) fn report_edge(
-    targets: &Targets,
-    scene: &Scene,
-    directions: &[[f64; 3]],
-    run: &mut Run,
-) -> Result<Vec<Option<bool>>> {
-    let Some(coverage) = scene.model.coverage() else { return Ok(vec![None; targets.len()]) };
-    let flags = run.stage("testing the edge of the cloud", targets.len(), |control| {
-        near_edge(&coverage, &targets.positions, directions, control)
-    })?;
-    let report = EdgeReport::of(&flags);
-    run.summary.add_report(&report);
-    if report.targets_near_edge_percent >= EDGE_WARNING_PERCENT {
-        run.summary.warn_of_share(report.targets_near_edge, targets.asked_count(), "targets", NEAR_EDGE);
+impl<'a> Shown<'a> {
+    pub(crate) fn new(on: &'a OnTargets, source: Source, scene: &'a Scene) -> Self {
+        Self { on, source, scene }
     }
-    Ok(flags)
-}
 
-/// Leaves out targets beside or below the cloud, and warns of them.
-pub(super) fn leave_out_outside(targets: &mut Targets, scene: &Scene, summary: &mut Summary) {
-    let count = targets.asked_count();
-    let outside = scene.model.coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));
-    summary.add("targets_outside_cloud", outside).warn_of_share(outside, count, "targets", OUTSIDE_CLOUD);
-}
-
-impl Asked {
     /// What maps are drawn on; `None` where targets are no cells.
     pub(crate) fn relief(&self) -> Option<Relief> {
-        let (Source::Cells(cloud, added), Some(ground)) = (&self.from, self.targets.ground()) else { return None };
+        let (ground, cloud) = (self.on.targets.ground()?, self.scene.ground_cloud().ok()?);
         let mut heights = highest_points(&cloud.positions, ground);
-        if let Some(added) = added {
+        if let Some(added) = self.scene.model().added() {
             added.raise(&mut heights, &ground.grid);
         }
-        Some(Relief { heights, cell: ground.grid.cell, place: georeference(&ground.grid, &self.targets.frame) })
+        Some(Relief { heights, cell: ground.grid.cell, place: georeference(&ground.grid, &self.on.targets.frame) })
     }
 
-    /// [`report_edge`] of these targets, with a mask of their cells where it is wanted.
-    pub(crate) fn report_edge(
-        &self,
-        places: &SkyPlaces,
-        scene: &Scene,
-        directions: &[[f64; 3]],
-        run: &mut Run,
-    ) -> Result<()> {
-        let flags = report_edge(&self.targets, scene, directions, run)?;
-        if let (Some(path), Some(ground)) = (&places.edge_mask, self.targets.ground()) {
-            let values = flags.iter().map(|flag| flag.map_or(NO_FLAG, u8::from)).collect();
-            let raster = Raster::from_values(ground.grid.width, ground.grid.height, values)?;
-            let place = georeference(&ground.grid, &self.targets.frame);
-            let what = "1 near the edge of the cloud, 0 not, 255 nodata";
-            run.stage("writing", 0, |_| write_tif_u8(path, &raster, Some(&place), Some(NO_FLAG), Some(what)))?;
-            run.summary.add("edge_mask_written", path.display().to_string());
-        }
+    /// Writes which cells are near the edge of the cloud.
+    pub(crate) fn write_edge_mask(&self, path: Option<&Path>, run: &mut Run) -> Result<()> {
+        let (Some(path), Some(ground)) = (path, self.on.targets.ground()) else { return Ok(()) };
+        let values = self.on.near_edge.iter().map(|flag| flag.map_or(NO_FLAG, u8::from)).collect();
+        let raster = Raster::from_values(ground.grid.width, ground.grid.height, values)?;
+        let place = georeference(&ground.grid, &self.on.targets.frame);
+        let what = "1 near the edge of the cloud, 0 not, 255 nodata";
+        run.stage("writing", 0, |_| write_tif_u8(path, &raster, Some(&place), Some(NO_FLAG), Some(what)))?;
+        run.summary.add("edge_mask_written", path.display().to_string());
         Ok(())
     }
 
     /// Writes all measures to each of the outputs; maps show the first.
-    pub(crate) fn write(&self, outputs: &SkyOutputs, measures: &[Measure], title: &str, run: &mut Run) -> Result<()> {
-        let map = |relief: &Relief| measure_map(&measures[0], &relief.heights, relief.cell, &relief.place, title);
+    pub(crate) fn write(&self, outputs: &SkyOutputs, measures: &[Measure], run: &mut Run) -> Result<()> {
+        let map =
+            |relief: &Relief| measure_map(&measures[0], &relief.heights, relief.cell, &relief.place, &self.on.title);
         self.write_with(outputs, measures, &map, run)
     }
 
-    /// The same with maps of one's own.
+    /// Writes all measures to each of the outputs, with maps of one's own.
     pub(crate) fn write_with(
         &self,
         outputs: &SkyOutputs,
@@ -254,11 +186,11 @@ impl Asked {
             run.summary.add_all(section);
             written.push(output.display().to_string());
         }
-        if let (Some(folder), Source::Cells(..)) = (&outputs.measures, &self.from) {
+        if let (Some(folder), Source::Cells) = (&outputs.measures, &self.source) {
             atomic::make_folder(folder)?;
             for measure in measures {
                 let path = folder.join(format!("{}.tif", measure.name));
-                write_raster(&path, &self.targets, measure)?;
+                write_raster(&path, &self.on.targets, measure)?;
                 written.push(path.display().to_string());
             }
         }
@@ -276,26 +208,17 @@ impl Asked {
         if let (Some(relief), "png") = (self.relief(), extension(output).as_str()) {
             return Ok(write_png(output, &map(&relief)?)?);
         }
-        let rows = match &self.from {
-            Source::Points(_, Some(file)) => text_rows_for(file, output, summary)?,
+        let rows = match &self.source {
+            Source::File(_, file) => text_rows_for(file, output, summary)?,
             _ => None,
         };
-        let from = match &self.from {
-            Source::Cells(..) => TakenFrom::Nothing,
-            Source::Points(cloud, _) => rows.as_ref().map_or(TakenFrom::Cloud(cloud), TakenFrom::Rows),
+        let from = match &self.source {
+            Source::Cells => TakenFrom::Nothing,
+            Source::Own => TakenFrom::Cloud(self.scene.cloud()),
+            Source::File(cloud, _) => rows.as_ref().map_or(TakenFrom::Cloud(cloud), TakenFrom::Rows),
             Source::Mesh(mesh) => TakenFrom::Mesh(mesh),
         };
-        summary.add_writing(&write_measures(output, &self.targets, from, measures)?);
+        summary.add_writing(&write_measures(output, &self.on.targets, from, measures)?);
         Ok(())
-    }
-
-    /// How measures are spread, for people.
-    pub(crate) fn statistics(&self, measures: &[Measure]) -> Summary {
-        let mut section = Summary::default();
-        section.add("targets", self.targets.asked_count());
-        for measure in measures {
-            section.add(&measure.name, Summary::of(&measure.rounded_statistics()));
-        }
-        section
     }
 }

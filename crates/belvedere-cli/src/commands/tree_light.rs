@@ -4,11 +4,30 @@ use crate::arguments::{LeavesChoice, ThroughTrees, ThroughTreesChoice, Usage};
 use crate::pipeline::Scene;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
+use belvedere::apps::ask;
 use belvedere::apps::tree_light::{Leaves, Transmissivity, TreeLight};
 use belvedere::control::Control;
 use belvedere::query::BlockRule;
 
 impl ThroughTrees {
+    /// What was typed.
+    pub(crate) fn choice(&self) -> Result<ask::ThroughTrees> {
+        if self.leaves.is_some() && self.through_trees != ThroughTreesChoice::Seasons {
+            return Err(Usage("--leaves needs --through-trees seasons".to_owned()).into());
+        }
+        let leaves = match self.leaves {
+            None | Some(LeavesChoice::Auto) => Leaves::ByDate,
+            Some(LeavesChoice::On) => Leaves::On,
+            Some(LeavesChoice::Off) => Leaves::Off,
+        };
+        Ok(match self.through_trees {
+            ThroughTreesChoice::None => ask::ThroughTrees::Opaque,
+            ThroughTreesChoice::Seasons => ask::ThroughTrees::Seasons(leaves),
+            ThroughTreesChoice::Share(share) => ask::ThroughTrees::Share(share),
+            ThroughTreesChoice::Pulses => ask::ThroughTrees::Pulses,
+        })
+    }
+
     /// What was typed, with what pulses `measured` where that is asked for; `None` where trees are opaque.
     pub(crate) fn chosen(
         &self,

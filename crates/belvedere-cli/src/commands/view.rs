@@ -52,11 +52,11 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
     let mut run = Run::watched(global, loading.clone());
     match load(&arguments.scene, &files, &loading, &|_, _| Ok(()), &mut run) {
         Ok((_, model)) => {
-            run.summary.note_warnings(global);
+            run.summary.print_remarks(global);
             loading.finish(model);
         }
         Err(error) if error.is::<TooManyPoints>() => {
-            run.summary.warn(format!("only the points are shown: {error}")).note_warnings(global);
+            run.summary.warn("balls-not-built", format!("only the points are shown: {error}")).print_remarks(global);
             loading.fail(format!("Only the points are shown: {error}."));
         }
         Err(error) => {
@@ -300,7 +300,7 @@ fn show_meshes(
             AddedMeshes::new(&mesh, &path.display().to_string(), frame.origin, Coverage::of(*bounds).as_ref(), None)
         });
         if let Some(Err(error)) = beside {
-            run.summary.warn(error.to_string());
+            run.summary.warn("mesh-beside-cloud", error.to_string());
         }
         loading.show_mesh(&mesh, frame);
     }

@@ -95,7 +95,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
         })?;
         run.summary.add("cloud_points", counted(&seen.answers, unproven, None));
         let outside = AnswerCounts::of(&seen.answers).outside_cloud;
-        run.summary.warn_of_share(outside, seen.answers.len(), "points", OUTSIDE_CLOUD);
+        run.summary.warn_of_share("targets-outside-cloud", (outside, seen.answers.len()), "points", OUTSIDE_CLOUD);
         for output in arguments.output.iter().filter(|path| is_of_points(path)) {
             let report = run.stage("writing", 0, |_| on_points(output, &seen, &cloud))?;
             run.summary.add_writing(&report);
@@ -182,9 +182,12 @@ fn check_far_observers(
         return Err(Usage(what).into());
     }
     if far.is_none() && arguments.far_output.is_empty() {
-        summary.warn(format!(
-            "--terrain changes nothing: no {who} is on the terrain beyond the cloud, and there is no --far-output"
-        ));
+        summary.warn(
+            "terrain-changes-nothing",
+            format!(
+                "--terrain changes nothing: no {who} is on the terrain beyond the cloud, and there is no --far-output"
+            ),
+        );
     }
     Ok(())
 }
@@ -210,15 +213,18 @@ fn skip_observers(
 fn warn_of_blind(observers: &[Observer], seen: &Seen, who: &str, summary: &mut Summary) {
     let seeing = seen.answers.iter().any(|answer| matches!(answer, Answer::Visible | Answer::Unproven));
     if observers.len() == 1 && !seeing {
-        summary.warn(match who {
-            "target" => "no cell sees the target: is it below or inside an obstacle?",
-            _ => "the observer sees no cell: does it stand below a tree or between obstacles?",
-        });
+        summary.warn(
+            "nothing-seen",
+            match who {
+                "target" => "no cell sees the target: is it below or inside an obstacle?",
+                _ => "the observer sees no cell: does it stand below a tree or between obstacles?",
+            },
+        );
     }
     let blind = |(observer, count): &(&Observer, &usize)| **count == 0 && observer.eye[0].is_finite();
     let blind = observers.iter().zip(&seen.seen_counts).filter(blind).count();
     if observers.len() > 1 {
-        summary.warn_of_share(blind, observers.len(), "observers", "see no cell");
+        summary.warn_of_share("observers-see-nothing", (blind, observers.len()), "observers", "see no cell");
     }
 }
 

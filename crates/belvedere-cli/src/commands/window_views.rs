@@ -3,7 +3,7 @@
 mod results;
 
 use super::sights::proving_blockers;
-use super::targets::{leave_out_outside, report_edge};
+use super::sights::{leave_out_outside, report_edge};
 use super::windows::{FaceChoice, Windows, windows};
 use super::{check_output, extension, mesh_targets, warn_of_geojson};
 use crate::arguments::{Global, UnprovenChoice, Usage, WindowViews};
@@ -52,7 +52,10 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     if classes.is_none() {
         let advice =
             if arguments.scene.input.clouds.len() == 1 && cloud.is_empty() { "; give --classes-of" } else { "" };
-        run.summary.warn(format!("the classes of points are unknown: only vegetation is known, from pulses{advice}"));
+        run.summary.warn(
+            "classes-unknown",
+            format!("the classes of points are unknown: only vegetation is known, from pulses{advice}"),
+        );
     }
     let kinds = balls_seen(scene.model.balls(), classes, scene.model.vegetation(), &meanings)?;
     let profile = arguments.scene.profile.into();
@@ -69,7 +72,12 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     run.summary.add("targets_inside_obstacle", inside);
     // walls between houses are faces of a mesh, and nothing to warn of
     if !is_mesh {
-        run.summary.warn_of_share(inside, count, "targets", "are inside an obstacle and have no view");
+        run.summary.warn_of_share(
+            "targets-inside-obstacle",
+            (inside, count),
+            "targets",
+            "are inside an obstacle and have no view",
+        );
     }
     let views = run.stage("testing views", asked.targets.len(), |control| {
         let kinds = Kinds { balls: &kinds, meshes: &[] };
@@ -162,6 +170,9 @@ fn warn_of_other(views: &[belvedere::apps::window_views::WindowView], summary: &
     let other = 100.0 * of(Seen::Other) / things;
     if other >= OTHER_WARNING_PERCENT {
         let other = rounded(other, 1);
-        summary.warn(format!("{other} % of the things seen are other; see --class if the classes of the cloud differ"));
+        summary.warn(
+            "seen-things-of-no-kind",
+            format!("{other} % of the things seen are other; see --class if the classes of the cloud differ"),
+        );
     }
 }

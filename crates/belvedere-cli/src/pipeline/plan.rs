@@ -29,7 +29,7 @@ pub(super) fn clear(scene: &mut Scene, plan: &Plan, run: &mut Run) -> Result<()>
         sum.ground_balls_added += report.ground_balls_added;
     }
     if sum.points_cleared == 0 {
-        run.summary.warn("--clear: nothing stands there");
+        run.summary.warn("nothing-cleared", "--clear: nothing stands there");
     }
     run.summary.add("cleared", Summary::of(&sum));
     Ok(())

@@ -4,6 +4,7 @@ use crate::blocking::Profile;
 use crate::depth::DepthMap;
 use belvedere_data::random;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// Whether a target can be seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +24,8 @@ pub enum Answer {
 }
 
 /// What to make of [`Answer::Unproven`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum UnprovenAs {
     /// An answer of its own.
     Reported,

@@ -4,7 +4,7 @@ use crate::arguments::{CameraTargets, Usage};
 use crate::commands::extension;
 use crate::commands::mesh_targets::{is_mesh, mesh_of};
 use crate::commands::query::points_of_file;
-use crate::commands::targets::leave_out_outside;
+use crate::commands::sights::leave_out_outside;
 use crate::pipeline::{Scene, flagged};
 use crate::run::Run;
 use crate::summary::Summary;

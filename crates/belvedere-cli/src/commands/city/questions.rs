@@ -2,12 +2,11 @@
 
 use crate::arguments::{AreaChoice, CellFor, CityPlan, Numbers, Place, Usage};
 use crate::commands::irradiance::radiation;
-use crate::commands::shadow::moment;
-use crate::commands::sun_hours::rules;
 use crate::pipeline::flagged;
 use crate::run::Run;
 use anyhow::Result;
 use belvedere::Error;
+use belvedere::apps::ask::{rules, sun::moment};
 use belvedere::apps::irradiance::PARTS;
 use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sun::{Binning, Period, sun_position_with};
@@ -63,7 +62,7 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
     if let Some(horizon) = &arguments.far_terrain.horizon {
         read_horizon(horizon)?;
     }
-    radiation::params(&arguments.model)?;
+    radiation::params(&arguments.model).validate()?;
     radiation::check_linke(arguments.clear_sky, &arguments.model)
 }
 
@@ -132,7 +131,7 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut Run) -> Res
     }
     if arguments.irradiance {
         let site = arguments.sun.site_of(&frame, &bounds, &mut run.summary)?;
-        let params = radiation::params(&arguments.model)?;
+        let params = radiation::params(&arguments.model);
         let radiation = match &arguments.weather {
             Some(file) => {
                 Radiation::Weather { file: SideFile::new(file)?, parts: arguments.model.parts.unwrap_or(PARTS) }

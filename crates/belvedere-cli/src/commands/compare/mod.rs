@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &Compare, global: &Global) -> Result<Summary> {
     folders.iter().try_for_each(|folder| atomic::make_folder(folder))?;
     let mut summary = Summary::default();
     if let Some(warning) = about_density {
-        summary.warn(warning);
+        summary.warn("method-missing", warning);
     }
     let compared = compare_all(arguments, global, summary);
     if compared.is_err() {

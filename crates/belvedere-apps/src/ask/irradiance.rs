@@ -1,0 +1,330 @@
+//! Irradiance: the energy that sun and sky send to places, and to the planes of roofs.
+
+use super::light::{Light, OnTargets};
+use super::report::{LinesSection, MeasuresSection, PlacesReport, RadiationSection, RoofsSection};
+use super::sun::SunPlace;
+use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
+use crate::irradiance::{
+    CLEAR_SKY_YEAR, ClearSky, IrradianceParams, PARTS, RadiationSource, RoofIrradiation, RoofsReport, SeasonRadiation,
+    Surroundings, irradiation_measures, look_count, period_seasons, roof_irradiation, season_irradiation,
+};
+use crate::roof_planes::{GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
+use crate::rows::Obstacles;
+use crate::sun::Site;
+use crate::tree_light::{Crowns, TreeLight};
+use belvedere_core::ground::{GroundPoints, MapGrid};
+use belvedere_core::query::{MedialScene, UnprovenAs};
+use belvedere_data::control::Control;
+use belvedere_data::report::rounded;
+use belvedere_data::weather::Weather;
+use belvedere_data::{Error, Result};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Distance from which on a weather file counts as that of another place, metres.
+const FAR: f64 = 50_000.0;
+
+/// How much energy sun and sky send to places and roofs over a period.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Irradiance {
+    /// Where the radiation comes from.
+    pub radiation: Radiation,
+    /// How it is gathered.
+    #[serde(default)]
+    pub params: IrradianceParams,
+    /// Where on earth.
+    #[serde(default)]
+    pub place: SunPlace,
+    /// What gets through trees.
+    #[serde(default)]
+    pub trees: ThroughTrees,
+    /// The planes of roofs that are asked for beside places.
+    #[serde(default)]
+    pub roofs: Option<Roofs>,
+}
+
+/// Where radiation comes from.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Radiation {
+    /// Rows of weather, each cut into parts.
+    Weather {
+        /// Name of the file that they are from.
+        file: String,
+        /// The rows; whoever reads a question from text reads them from the file.
+        #[serde(skip)]
+        weather: Option<Arc<Weather>>,
+        /// Parts of each row; 4 is usual.
+        parts: usize,
+    },
+    /// A year without clouds.
+    ClearSky {
+        /// What it sends.
+        clear_sky: ClearSky,
+        /// The year.
+        year: i16,
+    },
+}
+
+impl PartialEq for Radiation {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Weather { file, parts, .. }, Self::Weather { file: of_other, parts: other_parts, .. }) => {
+                (file, parts) == (of_other, other_parts)
+            }
+            (Self::ClearSky { clear_sky, year }, Self::ClearSky { clear_sky: of_other, year: other_year }) => {
+                (clear_sky, year) == (of_other, other_year)
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Planes of roofs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Roofs {
+    /// Smallest area of a plane, square metres; `None` for the default of [`RoofPlaneParams`].
+    pub min_area: Option<f64>,
+    /// Side of a panel, metres; `None` for the default of [`RoofPlaneParams`].
+    pub panel: Option<f64>,
+    /// Which points are ground.
+    #[serde(skip)]
+    pub ground: GroundPoints,
+}
+
+impl Default for Roofs {
+    fn default() -> Self {
+        Self { min_area: None, panel: None, ground: GroundPoints::Auto }
+    }
+}
+
+/// What was found of places and roofs.
+pub struct IrradianceFound {
+    /// The places; `None` where only roofs are asked for.
+    pub on: Option<OnTargets>,
+    /// The roofs; `None` where they are not asked for.
+    pub roofs: Option<RoofsFound>,
+    /// Where on earth the scene lies.
+    pub site: Site,
+    /// What blocks.
+    pub blockers: Arc<MedialScene>,
+}
+
+/// The planes of roofs with their energy.
+pub struct RoofsFound {
+    /// The planes.
+    pub planes: Vec<RoofPlane>,
+    /// The energy of each.
+    pub energies: Vec<RoofIrradiation>,
+    /// Sums of them.
+    pub report: RoofsReport,
+}
+
+impl Radiation {
+    /// Rows of weather in their usual number of parts.
+    #[must_use]
+    pub fn of_weather(file: String, weather: Weather) -> Self {
+        Self::Weather { file, weather: Some(Arc::new(weather)), parts: PARTS }
+    }
+
+    /// A clear sky in its usual year.
+    #[must_use]
+    pub fn of_clear_sky(clear_sky: ClearSky) -> Self {
+        Self::ClearSky { clear_sky, year: CLEAR_SKY_YEAR }
+    }
+
+    fn source(&self) -> Result<RadiationSource<'_>> {
+        match self {
+            Self::Weather { weather: Some(weather), parts, .. } => {
+                Ok(RadiationSource::Weather { weather, parts: *parts })
+            }
+            Self::Weather { file, .. } => Err(Error::InvalidParameter {
+                name: "weather",
+                value: file.clone(),
+                expected: "read before the question is put",
+            }),
+            Self::ClearSky { clear_sky, year } => Ok(RadiationSource::ClearSky { clear_sky: *clear_sky, year: *year }),
+        }
+    }
+
+    fn weather(&self) -> Option<&Weather> {
+        match self {
+            Self::Weather { weather, .. } => weather.as_deref(),
+            Self::ClearSky { .. } => None,
+        }
+    }
+}
+
+impl Irradiance {
+    /// What a period sends to a site, in parts by what crowns let through, with what is known of it.
+    fn gather(
+        &self,
+        site: &Site,
+        crowns: Option<Crowns>,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Vec<SeasonRadiation>> {
+        let source = self.radiation.source()?;
+        let (seasons, report) =
+            control.stage("computing radiation", 0, || period_seasons(&source, site, crowns, &self.params, control))?;
+        let mut section = RadiationSection {
+            global_kwh_m2: rounded(report.ghi, 1),
+            direct_normal_kwh_m2: rounded(report.dni, 1),
+            diffuse_kwh_m2: rounded(report.dhi, 1),
+            sun_directions: report.sun_direction_count,
+            diffuse_model: self.params.sky.to_string(),
+            obstacle_reflection: match self.params.surroundings {
+                Surroundings::Dark => "nothing",
+                Surroundings::LikeGround => "like the ground",
+            },
+            ..RadiationSection::default()
+        };
+        match &self.radiation {
+            Radiation::ClearSky { clear_sky, year } => {
+                section.source = clear_sky.to_string();
+                section.year = Some(*year);
+            }
+            Radiation::Weather { .. } => {}
+        }
+        if let Some(weather) = self.radiation.weather() {
+            section.source = weather.format.to_owned();
+            section.weather_rows = Some(weather.steps.len());
+            section.weather_hours = Some(rounded(weather.hours(), 2));
+            remark_on(weather, site, context);
+        }
+        context.report.radiation = Some(section);
+        if report.night_hours > 0.0 {
+            let text = format!(
+                "the weather has radiation in {:.1} hours of the night, with the sun more than 12 degrees below the horizon: are its location and time zone correct?",
+                report.night_hours
+            );
+            context.add(Some(Remark::warning("weather-at-night", text).with("hours", report.night_hours)));
+        }
+        if report.is_doubtful() {
+            let lost = report.dni_without_sun;
+            let text = format!(
+                "{lost:.0} kWh/m² of direct radiation have the sun below the horizon and are ignored: are the location and the time zone of the weather correct?"
+            );
+            context.add(Some(Remark::warning("weather-below-horizon", text).with("kwh_m2", lost)));
+        }
+        Ok(seasons)
+    }
+}
+
+/// What a user must know of weather.
+fn remark_on(weather: &Weather, site: &Site, context: &mut Context) {
+    let rows = weather.left_out_count + weather.steps.len();
+    let so = "of the weather have no radiation and are left out";
+    context.add(Remark::of_share("weather-rows-left-out", weather.left_out_count, rows, "rows", so));
+    let period = weather.period_remark();
+    context.add(period.map(|text| Remark::warning("weather-period", text).with("hours", weather.hours())));
+    let distance = site.distance_to([weather.latitude, weather.longitude]);
+    if distance > FAR {
+        let text = format!("the weather is for a location {:.0} km away", distance / 1000.0);
+        context.add(Some(Remark::warning("weather-far-away", text).with("distance_km", rounded(distance / 1000.0, 1))));
+    }
+    for note in &weather.notes {
+        context.add(Some(Remark::note("weather-note", note.clone())));
+    }
+}
+
+impl Roofs {
+    fn params(&self) -> RoofPlaneParams {
+        let usual = RoofPlaneParams::default();
+        usual.with_least_area(self.min_area.unwrap_or(usual.least_area)).with_cell(self.panel.unwrap_or(usual.cell))
+    }
+
+    /// The planes of a scene.
+    fn find(&self, scene: &Scene, context: &mut Context, control: &Control<'_>) -> Result<Vec<RoofPlane>> {
+        let (low, high) = scene.model().bounds().on_map();
+        let [x, y, _] = scene.frame().origin;
+        let known = scene.ground(MapGrid::covering(low, high, GROUND_CELL, [x, y])?, self.ground, control)?;
+        let cloud = scene.ground_cloud()?;
+        let (rows, from) = roof_points(cloud, &known.ground)?;
+        let places: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
+        let planes = control.stage("detecting roof planes", 0, || roof_planes(&places, &self.params(), control))?;
+        context.report.roofs = Some(RoofsSection {
+            source: match from {
+                RoofsFrom::Class => "class 6",
+                RoofsFrom::Height => "height above the ground (no class 6)",
+            },
+            points: places.len(),
+            points_on_planes: planes.iter().map(|plane| plane.points.len()).sum(),
+            planes: planes.len(),
+            area_m2: rounded(planes.iter().map(|plane| plane.area).sum(), 1),
+        });
+        Ok(planes)
+    }
+}
+
+impl Ask for Irradiance {
+    type Found = IrradianceFound;
+
+    fn check(&self) -> Result<()> {
+        self.params.validate()?;
+        self.place.check().map(|_| ())
+    }
+
+    fn answer(
+        &self,
+        scene: &Scene,
+        places: &Places,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Answers<IrradianceFound>> {
+        let station = self.radiation.weather().map(|weather| [weather.latitude, weather.longitude]);
+        let site = self.place.site(scene, context, station)?;
+        let trees = self.trees.of(scene, context, control)?;
+        let crowns = trees.as_ref().map(|trees| trees.crowns);
+        let seasons = self.gather(&site, crowns, context, control)?;
+        let planes = self.roofs.as_ref().map(|roofs| roofs.find(scene, context, control)).transpose()?;
+        let blockers = scene.blockers(UnprovenAs::Visible, control)?;
+        let mut measures = Vec::new();
+        let on = match places {
+            Places::Scene => {
+                let directions = seasons.iter().map(|season| season.radiation.directions().len()).sum();
+                context.report.lines_of_sight = Some(LinesSection::of(&blockers, Some(directions)));
+                None
+            }
+            _ => {
+                let directions: Vec<[f64; 3]> =
+                    seasons.iter().flat_map(|season| season.radiation.directions()).collect();
+                let light =
+                    Light::on(places, &directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
+                let looks = light.targets.len() * look_count(&light.obstacles(), &seasons);
+                let sums = control.stage("testing sun and sky", looks, || {
+                    season_irradiation(light.obstacles(), &light.targets, &seasons, control)
+                })?;
+                measures = irradiation_measures(&sums, seasons.first().map_or(1, |s| s.radiation.group_count()));
+                context.report.measures = Some(MeasuresSection::of(&light.targets, &measures));
+                if let Some(first) = measures.first() {
+                    let spread = spread(&first.values, 0, "kWh/m²");
+                    context.headline(format!("energy on {}: {spread}", PlacesReport::in_words(&light.targets)));
+                }
+                Some(light.titled(format!("Energy of sun and sky, kWh/m²{}", scene.far_in_words())))
+            }
+        };
+        let roofs = match planes {
+            Some(planes) => Some(roofs_found(planes, (&blockers, trees.as_ref()), &seasons, context, control)?),
+            None => None,
+        };
+        Ok(Answers::new(IrradianceFound { on, roofs, site, blockers }, measures))
+    }
+}
+
+fn roofs_found(
+    planes: Vec<RoofPlane>,
+    (scene, trees): (&MedialScene, Option<&TreeLight>),
+    seasons: &[SeasonRadiation],
+    context: &mut Context,
+    control: &Control<'_>,
+) -> Result<RoofsFound> {
+    let obstacles = Obstacles { scene, trees };
+    let energies = control
+        .stage("testing sun and sky", planes.len(), || roof_irradiation(obstacles, &planes, seasons, control))?;
+    let report = RoofsReport::new(&planes, &energies);
+    let area: f64 = planes.iter().map(|plane| plane.area).sum();
+    context.headline(format!("{} roof planes, {area:.0} m²", planes.len()));
+    Ok(RoofsFound { planes, energies, report })
+}

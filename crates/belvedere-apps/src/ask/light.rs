@@ -1,0 +1,65 @@
+//! What questions about sun and sky share: targets, what blocks, and light through trees.
+
+use super::places::test_edge;
+use super::report::LinesSection;
+use super::scene::Scene;
+use super::trees::ThroughTrees;
+use super::{Context, Places};
+use crate::rows::Obstacles;
+use crate::targets::Targets;
+use crate::tree_light::TreeLight;
+use belvedere_core::query::{MedialScene, UnprovenAs};
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use std::sync::Arc;
+
+/// Targets, what blocks their light, and what of it trees let through.
+pub(super) struct Light {
+    pub(super) targets: Arc<Targets>,
+    pub(super) near_edge: Vec<Option<bool>>,
+    pub(super) blockers: Arc<MedialScene>,
+    pub(super) trees: Option<TreeLight>,
+}
+
+/// Targets of which a question found something.
+#[derive(Clone, Debug)]
+pub struct OnTargets {
+    /// The targets.
+    pub targets: Arc<Targets>,
+    /// Whether each is near the edge of the cloud; `None` where that is not known.
+    pub near_edge: Vec<Option<bool>>,
+    /// What the answer is, for the title of a map.
+    pub title: String,
+}
+
+impl Light {
+    /// What light from `directions` meets on its way to places. Pulses prove unless `unproven` makes no difference.
+    pub(super) fn on(
+        places: &Places,
+        directions: &[[f64; 3]],
+        (trees, unproven): (&ThroughTrees, UnprovenAs),
+        scene: &Scene,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        let targets = places.targets(scene, context, control)?;
+        let near_edge = test_edge(scene, &targets, directions, context, control)?;
+        let blockers = scene.blockers(unproven, control)?;
+        context.report.lines_of_sight = Some(LinesSection::of(&blockers, Some(directions.len())));
+        let trees = trees.of(scene, context, control)?;
+        Ok(Self { targets, near_edge, blockers, trees })
+    }
+
+    pub(super) fn obstacles(&self) -> Obstacles<'_> {
+        Obstacles { scene: &self.blockers, trees: self.trees.as_ref() }
+    }
+
+    /// Number of steps of the progress: targets, once or twice each.
+    pub(super) fn steps(&self) -> usize {
+        self.targets.len() * self.obstacles().matrix_count()
+    }
+
+    pub(super) fn titled(self, title: String) -> OnTargets {
+        OnTargets { targets: self.targets, near_edge: self.near_edge, title }
+    }
+}

@@ -1,0 +1,215 @@
+//! Questions: the one way from what a user wants to know to an answer, for the command line, Python, the page and cities.
+//!
+//! A face parses what its user gave into a [`Question`] and [`Places`], puts it to a [`Scene`] with [`ask`], and shows the [`Answers`].
+//! Defaults, checks, warnings and the third state of an answer are made here, so that no face has its own.
+//!
+//! | step | module |
+//! |---|---|
+//! | what can be asked for | [`Question`], a module for each |
+//! | places, and those without an answer | [`places`] |
+//! | suns, days, clocks, north | [`sun`], [`north`] |
+//! | the scene, and what questions share | [`scene`] |
+//! | warnings and notes | [`remark`] |
+//! | figures beside the answer | [`report`] |
+
+mod irradiance;
+mod light;
+pub mod north;
+pub mod places;
+pub mod remark;
+pub mod report;
+pub mod scene;
+mod shadow;
+mod sky_view;
+pub mod sun;
+mod sun_hours;
+mod sun_position;
+mod trees;
+
+pub use irradiance::{Irradiance, IrradianceFound, Radiation, Roofs, RoofsFound};
+pub use light::OnTargets;
+pub use north::North;
+pub use places::{Cells, Places, Turned};
+pub use remark::{Remark, Severity};
+pub use report::Report;
+pub use scene::Scene;
+pub use shadow::{Shadow, ShadowFound, UNPROVEN};
+pub use sky_view::{SkyParts, SkyView};
+pub use sun::{Days, NamedSun, SunPlace, Suns};
+pub use sun_hours::{Prepared, SunHours, rules};
+pub use sun_position::{SunPosition, SunStands};
+pub use trees::ThroughTrees;
+
+use crate::targets::Measure;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use belvedere_data::report::rounded;
+use north::AzimuthNorth;
+use serde::{Deserialize, Serialize};
+
+/// All that can be asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Question {
+    /// Which places the sun reaches.
+    Shadow(Shadow),
+    /// How long the sun reaches places.
+    SunHours(SunHours),
+    /// How much of the sky places see.
+    SkyView(SkyView),
+    /// How much energy sun and sky send.
+    Irradiance(Irradiance),
+    /// Where the sun stands.
+    SunPosition(SunPosition),
+}
+
+/// What was found, of any question.
+#[non_exhaustive]
+pub enum Found {
+    /// Of [`Question::Shadow`].
+    Shadow(ShadowFound),
+    /// Of [`Question::SunHours`] and [`Question::SkyView`].
+    OnTargets(OnTargets),
+    /// Of [`Question::Irradiance`].
+    Irradiance(IrradianceFound),
+    /// Of [`Question::SunPosition`].
+    SunPosition(Vec<SunStands>),
+}
+
+/// The answers to a question.
+#[derive(Clone, Debug)]
+pub struct Answers<F = Found> {
+    /// What was found beside measures.
+    pub found: F,
+    /// A value for each target, of each thing that was measured.
+    pub measures: Vec<Measure>,
+    /// The answer in a few lines: what was computed, and the figures that matter.
+    pub headline: Vec<String>,
+    /// Warnings and notes.
+    pub remarks: Vec<Remark>,
+    /// All figures.
+    pub report: Report,
+}
+
+/// What is gathered on the way to an answer.
+#[derive(Clone, Debug, Default)]
+pub struct Context {
+    /// All figures.
+    pub report: Report,
+    headline: Vec<String>,
+    remarks: Vec<Remark>,
+}
+
+/// Something that can be asked for.
+pub trait Ask {
+    /// What is found beside measures.
+    type Found;
+
+    /// Checks all that does not depend on a scene: hours of work may go into one.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`](belvedere_data::Error::InvalidParameter) for what cannot be.
+    fn check(&self) -> Result<()>;
+
+    /// Finds the answers; what is worth knowing beside them goes into `context`. Call [`ask`].
+    ///
+    /// # Errors
+    /// Those of the question.
+    fn answer(
+        &self,
+        scene: &Scene,
+        places: &Places,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Answers<Self::Found>>;
+}
+
+/// Puts a question about places to a scene.
+///
+/// # Errors
+/// Those of the question: [`InvalidParameter`](belvedere_data::Error::InvalidParameter) for what cannot be, and
+/// [`Cancelled`](belvedere_data::Error::Cancelled).
+pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Control<'_>) -> Result<Answers<Q::Found>> {
+    question.check()?;
+    let mut context = Context::default();
+    let answers = question.answer(scene, places, &mut context, control)?;
+    Ok(answers.with(context))
+}
+
+impl<F> Answers<F> {
+    /// What was found, without what [`Context`] gathered.
+    fn new(found: F, measures: Vec<Measure>) -> Self {
+        Self { found, measures, headline: Vec::new(), remarks: Vec::new(), report: Report::default() }
+    }
+
+    /// This with what was gathered on the way.
+    #[must_use]
+    pub fn with(self, context: Context) -> Self {
+        let Context { report, headline, remarks } = context;
+        Self { report, headline, remarks, ..self }
+    }
+
+    fn map<G>(self, map: impl FnOnce(F) -> G) -> Answers<G> {
+        let Self { found, measures, headline, remarks, report } = self;
+        Answers { found: map(found), measures, headline, remarks, report }
+    }
+}
+
+impl Context {
+    /// Adds a remark, if there is one.
+    pub fn add(&mut self, remark: Option<Remark>) {
+        self.remarks.extend(remark);
+    }
+
+    /// Adds a line of the answer.
+    pub fn headline(&mut self, line: String) {
+        self.headline.push(line);
+    }
+
+    fn north(&mut self, north: &AzimuthNorth) {
+        self.report.north = Some(north.report());
+        self.add(north.remark());
+    }
+}
+
+impl Ask for Question {
+    type Found = Found;
+
+    fn check(&self) -> Result<()> {
+        match self {
+            Self::Shadow(question) => question.check(),
+            Self::SunHours(question) => question.check(),
+            Self::SkyView(question) => question.check(),
+            Self::Irradiance(question) => question.check(),
+            Self::SunPosition(question) => question.check(),
+        }
+    }
+
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Result<Answers> {
+        Ok(match self {
+            Self::Shadow(question) => question.answer(scene, places, context, control)?.map(Found::Shadow),
+            Self::SunHours(question) => question.answer(scene, places, context, control)?.map(Found::OnTargets),
+            Self::SkyView(question) => question.answer(scene, places, context, control)?.map(Found::OnTargets),
+            Self::Irradiance(question) => question.answer(scene, places, context, control)?.map(Found::Irradiance),
+            Self::SunPosition(question) => question.answer(scene, places, context, control)?.map(Found::SunPosition),
+        })
+    }
+}
+
+/// How values are spread, in words, such as "mean 5.3 hours (0 to 11.2)"; those that are not finite do not count.
+fn spread(values: &[f32], digits: i32, unit: &str) -> String {
+    let known = || values.iter().filter(|value| value.is_finite()).map(|&value| f64::from(value));
+    let count = known().count();
+    if count == 0 {
+        return "no target has an answer".to_owned();
+    }
+    let figures = [
+        known().sum::<f64>() / count as f64,
+        known().fold(f64::INFINITY, f64::min),
+        known().fold(f64::NEG_INFINITY, f64::max),
+    ];
+    let [mean, low, high] = figures.map(|value| rounded(value, digits));
+    let space = if unit.is_empty() || unit == "%" { "" } else { " " };
+    format!("mean {mean}{space}{unit} ({low} to {high})")
+}

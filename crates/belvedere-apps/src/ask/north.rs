@@ -1,0 +1,90 @@
+//! From which north azimuths count: true north, or grid north where that is wanted or true north is unknown.
+
+use super::Remark;
+use super::scene::Scene;
+use belvedere_data::report::rounded;
+use serde::{Deserialize, Serialize};
+
+/// Which north azimuths count from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum North {
+    /// True north; grid north where the scene has no usable reference system. Default.
+    #[default]
+    True,
+    /// The north of the grid.
+    Grid,
+}
+
+/// The north of a scene that azimuths count from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AzimuthNorth {
+    /// Azimuth of grid north from there, clockwise, radians: subtract it from a given azimuth, add it to one of the grid.
+    pub of_grid: f64,
+    counted_from: CountedFrom,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum CountedFrom {
+    TrueNorth,
+    GridNorth,
+    /// True north was wanted.
+    GridNorthForWantOfBetter,
+}
+
+/// The north of a scene, for reports.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct NorthReport {
+    azimuths_from: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    meridian_convergence_deg: Option<f64>,
+}
+
+const UNKNOWN: &str =
+    "grid north, because true north is unknown: the scene has no usable reference system (EPSG code or WKT)";
+
+impl North {
+    /// The north at a local place of a scene.
+    #[must_use]
+    pub fn at(self, scene: &Scene, place: [f64; 2]) -> AzimuthNorth {
+        self.of(scene.convergence_at(place))
+    }
+
+    /// The north at the middle of a scene.
+    #[must_use]
+    pub fn of_scene(self, scene: &Scene) -> AzimuthNorth {
+        self.at(scene, scene.middle())
+    }
+
+    /// The north where grid north has this azimuth from true north, radians, if that is known.
+    #[must_use]
+    pub fn of(self, convergence: Option<f64>) -> AzimuthNorth {
+        match (self, convergence) {
+            (Self::Grid, _) => AzimuthNorth { of_grid: 0.0, counted_from: CountedFrom::GridNorth },
+            (Self::True, Some(of_grid)) => AzimuthNorth { of_grid, counted_from: CountedFrom::TrueNorth },
+            (Self::True, None) => AzimuthNorth { of_grid: 0.0, counted_from: CountedFrom::GridNorthForWantOfBetter },
+        }
+    }
+}
+
+impl AzimuthNorth {
+    /// For reports.
+    #[must_use]
+    pub fn report(&self) -> NorthReport {
+        let degrees = rounded(self.of_grid.to_degrees(), 4);
+        let meridian_convergence_deg = (self.of_grid != 0.0).then_some(degrees);
+        let azimuths_from = match self.counted_from {
+            CountedFrom::TrueNorth => "true north",
+            CountedFrom::GridNorth => "grid north",
+            CountedFrom::GridNorthForWantOfBetter => UNKNOWN,
+        };
+        NorthReport { azimuths_from, meridian_convergence_deg }
+    }
+
+    /// A note where true north was wanted and is unknown.
+    #[must_use]
+    pub fn remark(&self) -> Option<Remark> {
+        (self.counted_from == CountedFrom::GridNorthForWantOfBetter)
+            .then(|| Remark::note("true-north-unknown", format!("azimuths count from {UNKNOWN}")))
+    }
+}

@@ -1,0 +1,218 @@
+//! The places that questions are about: from what a user gives to targets, with what has no answer and why.
+
+use super::report::{GroundSection, PlacesReport};
+use super::scene::Scene;
+use super::{Context, Remark};
+use crate::edge::{EdgeReport, near_edge};
+use crate::targets::{CellLevel, CellParams, Layout, MeshParams, Targets};
+use crate::viewshed::cell_for;
+use belvedere_core::ground::{GroundPoints, MapGrid};
+use belvedere_data::control::Control;
+use belvedere_data::polygon::is_inside;
+use belvedere_data::{Error, Mesh, PointCloud, Result};
+use std::sync::Arc;
+
+/// Share of targets near the edge of the cloud from which on it is warned of, percent.
+const EDGE_WARNING_PERCENT: f64 = 1.0;
+const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
+const NEAR_EDGE: &str = "are near the edge of the cloud: objects beyond it, as high as its highest point, could take some of their sun or sky";
+
+/// What a question is about.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Places {
+    /// Nothing but the scene as a whole.
+    Scene,
+    /// The cells of a grid.
+    Cells(Cells),
+    /// The points of the scene itself, in their order.
+    Own(Turned),
+    /// Points in local metres, with the unit normals that they are turned to, (N, 3) each.
+    Points(Vec<[f32; 3]>, Option<Vec<[f32; 3]>>),
+    /// The points of a cloud, with the unit normals that they are turned to.
+    Cloud(Arc<PointCloud>, Option<Vec<[f32; 3]>>),
+    /// The faces of a mesh in metres.
+    Mesh(Arc<Mesh>, MeshParams),
+    /// Targets that were made before.
+    Targets(Arc<Targets>),
+}
+
+/// What points are turned to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Turned {
+    /// The zenith. Default.
+    #[default]
+    Level,
+    /// Their normals.
+    Normals,
+}
+
+/// Cells of a grid over the scene.
+#[derive(Clone, Debug, Default)]
+pub struct Cells {
+    /// Side, metres; `None` for 0.5 m, doubled until there are at most 4 million cells.
+    pub cell: Option<f64>,
+    /// What they stand on.
+    pub level: CellLevel,
+    /// Height of the target above that, metres; `None` for the default of [`CellParams`].
+    pub height: Option<f64>,
+    /// Which points are ground.
+    pub ground: GroundPoints,
+    /// Rings of an area on the map, local metres: cells whose middle lies beside it are not asked for. Empty for all cells.
+    pub within: Vec<Vec<[f64; 2]>>,
+}
+
+impl Places {
+    /// The targets of a scene, without those outside its cloud.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for parameters out of range, places of another reference system, and a ball file without points where points
+    /// are needed; those of computing the ground.
+    pub fn targets(&self, scene: &Scene, context: &mut Context, control: &Control<'_>) -> Result<Arc<Targets>> {
+        let frame = || scene.frame().clone();
+        let of_points = |positions: Vec<[f32; 3]>, normals| {
+            Targets::of_points(&PointCloud { positions, ..PointCloud::in_frame(frame()) }, normals)
+        };
+        let mut targets = match self {
+            Self::Scene => of_points(Vec::new(), None),
+            Self::Targets(targets) => return Ok(Arc::clone(targets)),
+            Self::Cells(cells) => return Ok(Arc::new(cells.targets(scene, context, control)?)),
+            Self::Own(turned) => own_points(scene, *turned)?,
+            Self::Points(positions, normals) => of_points(positions.clone(), normals.clone()),
+            Self::Cloud(cloud, normals) => of_points(moved(cloud, scene)?, normals.clone()),
+            Self::Mesh(mesh, params) => {
+                control.stage("sampling mesh", 0, || Targets::of_mesh(mesh, scene.frame(), params))?
+            }
+        };
+        let count = targets.asked_count();
+        let outside = scene.model().coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));
+        context.report.places.targets_outside_cloud = Some(outside);
+        context.add(Remark::of_share("targets-outside-cloud", outside, count, "targets", OUTSIDE_CLOUD));
+        Ok(Arc::new(targets))
+    }
+}
+
+fn own_points(scene: &Scene, turned: Turned) -> Result<Targets> {
+    let cloud = scene.cloud();
+    let invalid =
+        |value: &str, expected| Err(Error::InvalidParameter { name: "targets", value: value.to_owned(), expected });
+    if cloud.is_empty() {
+        return invalid("the points of a ball file", "points: a ball file has none; give its cloud");
+    }
+    let normals = match turned {
+        Turned::Level => None,
+        Turned::Normals => match scene.model().normals() {
+            Some(normals) if normals.len() == cloud.len() => Some(normals.to_vec()),
+            _ => return invalid("points without normals", "points with normals, which `belvedere normals` estimates"),
+        },
+    };
+    Ok(Targets::of_points(cloud, normals))
+}
+
+/// Positions of a cloud in the frame of a scene.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a cloud in another reference system.
+pub fn moved(cloud: &PointCloud, scene: &Scene) -> Result<Vec<[f32; 3]>> {
+    let frame = scene.frame();
+    if cloud.frame.crs.contradicts(&frame.crs) {
+        return Err(Error::InvalidParameter {
+            name: "reference system of the targets",
+            value: cloud.frame.crs.describe(),
+            expected: "that of the scene; convert one of them",
+        });
+    }
+    if cloud.frame == *frame {
+        return Ok(cloud.positions.clone());
+    }
+    let bare = PointCloud { positions: cloud.positions.clone(), ..PointCloud::in_frame(cloud.frame.clone()) };
+    Ok(bare.moved_to(frame).positions)
+}
+
+impl Cells {
+    /// The grid of these cells over all of a scene.
+    ///
+    /// # Errors
+    /// Those of [`MapGrid::covering`].
+    pub fn grid(&self, scene: &Scene) -> Result<MapGrid> {
+        self.grid_over(scene, scene.model().bounds().on_map())
+    }
+
+    /// The grid of these cells over the box from `low` to `high`, local metres.
+    ///
+    /// # Errors
+    /// Those of [`MapGrid::covering`].
+    pub fn grid_over(&self, scene: &Scene, (low, high): ([f64; 2], [f64; 2])) -> Result<MapGrid> {
+        let [x, y, _] = scene.frame().origin;
+        MapGrid::covering(low, high, self.cell.unwrap_or_else(|| cell_for(low, high)), [x, y])
+    }
+
+    fn targets(&self, scene: &Scene, context: &mut Context, control: &Control<'_>) -> Result<Targets> {
+        let known = scene.ground(self.grid(scene)?, self.ground, control)?;
+        context.report.ground = Some(GroundSection::of(&known));
+        let mut params = CellParams::default().with_level(self.level);
+        if let Some(height) = self.height {
+            params = params.with_height(height);
+        }
+        let name = if self.level == CellLevel::Surface { "finding the surface" } else { "finding hidden ground" };
+        let cloud = scene.ground_cloud()?;
+        let (mut targets, report) =
+            control.stage(name, 0, || Targets::of_cells(cloud, known.ground.clone(), &params, control))?;
+        let mut under_cover = report.cells_below_objects_excluded;
+        if let Some(added) = scene.model().added() {
+            under_cover += targets.set_on_added(added, &params);
+        }
+        if self.level == CellLevel::Ground {
+            context.report.places.cells_under_cover_left_out = Some(under_cover);
+        }
+        self.keep_within(&mut targets);
+        Ok(targets)
+    }
+
+    /// Leaves out cells beside the area.
+    fn keep_within(&self, targets: &mut Targets) {
+        let Layout::Cells(ground) = &targets.layout else { return };
+        if self.within.is_empty() {
+            return;
+        }
+        let (grid, width) = (ground.grid, ground.grid.width.max(1));
+        for (cell, position) in targets.positions.iter_mut().enumerate() {
+            if !is_inside(&self.within, grid.center(cell % width, cell / width)) {
+                *position = [f32::NAN; 3];
+            }
+        }
+    }
+}
+
+/// Whether each target is near the edge of the cloud for light from `directions`, which is reported, and warned of where many are.
+pub(super) fn test_edge(
+    scene: &Scene,
+    targets: &Targets,
+    directions: &[[f64; 3]],
+    context: &mut Context,
+    control: &Control<'_>,
+) -> Result<Vec<Option<bool>>> {
+    let Some(coverage) = scene.model().coverage() else { return Ok(vec![None; targets.len()]) };
+    let flags = control.stage("testing the edge of the cloud", targets.len(), || {
+        near_edge(&coverage, &targets.positions, directions, control)
+    })?;
+    let report = EdgeReport::of(&flags);
+    context.report.places.edge = Some(report);
+    if report.targets_near_edge_percent >= EDGE_WARNING_PERCENT {
+        let count = targets.asked_count();
+        context.add(Remark::of_share("targets-near-edge", report.targets_near_edge, count, "targets", NEAR_EDGE));
+    }
+    Ok(flags)
+}
+
+impl PlacesReport {
+    /// Targets in words, such as "14400 cells of 1 m".
+    pub(super) fn in_words(targets: &Targets) -> String {
+        let count = targets.asked_count();
+        match &targets.layout {
+            Layout::Cells(ground) => format!("{count} cells of {} m", ground.grid.cell),
+            Layout::Points => format!("{count} points"),
+            Layout::Surface(_) => format!("{} faces", targets.groups.len()),
+        }
+    }
+}

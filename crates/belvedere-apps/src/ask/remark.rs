@@ -1,0 +1,85 @@
+//! What a user must know to read an answer rightly, and what is worth knowing beside it.
+
+use belvedere_data::report::percent;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+/// How much a remark matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// Worth knowing.
+    Note,
+    /// Results mislead a user who does not know it.
+    Warning,
+}
+
+/// A warning or note on an answer. Each is made in one place, so that every face says the same.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Remark {
+    /// Its name, which stays the same from version to version: lower case, words joined by hyphens.
+    pub key: &'static str,
+    /// How much it matters.
+    pub severity: Severity,
+    /// Its numbers by name.
+    #[serde(serialize_with = "as_map", skip_serializing_if = "Vec::is_empty")]
+    pub numbers: Vec<(&'static str, f64)>,
+    /// A plain sentence, without a full stop.
+    pub text: String,
+}
+
+fn as_map<S: Serializer>(numbers: &[(&'static str, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(numbers.len()))?;
+    for (name, number) in numbers {
+        map.serialize_entry(name, number)?;
+    }
+    map.end()
+}
+
+impl Remark {
+    /// A warning.
+    #[must_use]
+    pub fn warning(key: &'static str, text: impl Into<String>) -> Self {
+        Self { key, severity: Severity::Warning, numbers: Vec::new(), text: text.into() }
+    }
+
+    /// A note.
+    #[must_use]
+    pub fn note(key: &'static str, text: impl Into<String>) -> Self {
+        Self { severity: Severity::Note, ..Self::warning(key, text) }
+    }
+
+    /// This as a note.
+    #[must_use]
+    pub fn into_note(self) -> Self {
+        Self { severity: Severity::Note, ..self }
+    }
+
+    /// This with a number.
+    #[must_use]
+    pub fn with(mut self, name: &'static str, number: f64) -> Self {
+        self.numbers.push((name, number));
+        self
+    }
+
+    /// A warning that `part` of `whole` things are so, such as "3 of 40 targets (7.5 %) are outside the cloud"; `None` where none is.
+    #[must_use]
+    pub fn of_share(key: &'static str, part: usize, whole: usize, things: &str, are_so: &str) -> Option<Self> {
+        let share = percent(part, whole);
+        let remark = || Self::warning(key, format!("{part} of {whole} {things} ({share} %) {are_so}"));
+        (part > 0).then(|| remark().with("count", part as f64).with("of", whole as f64).with("percent", share))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_has_its_numbers_as_fields_and_in_words() {
+        let remark = Remark::of_share("targets-outside-cloud", 3, 40, "targets", "are outside the cloud").unwrap();
+        assert_eq!(remark.text, "3 of 40 targets (7.5 %) are outside the cloud");
+        assert_eq!(remark.numbers, [("count", 3.0), ("of", 40.0), ("percent", 7.5)]);
+        assert_eq!(Remark::of_share("targets-outside-cloud", 0, 40, "targets", ""), None);
+    }
+}

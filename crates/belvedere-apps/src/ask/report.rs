@@ -1,0 +1,273 @@
+//! What is known of how answers came about. Sections that a question does not have are left out.
+
+use super::north::NorthReport;
+use super::scene::KnownGround;
+use crate::edge::EdgeReport;
+use crate::sun::{Site, SiteFrom};
+use crate::targets::{Measure, MeasureStatistics, Targets};
+use crate::tree_light::Transmissivity;
+use belvedere_core::ground::GroundPoints;
+use belvedere_core::query::MedialScene;
+use belvedere_data::report::rounded;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+/// The sections of all questions.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Report {
+    /// Where on earth the scene lies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub location: Option<LocationSection>,
+    /// From which north azimuths count.
+    #[serde(flatten)]
+    pub north: Option<NorthReport>,
+    /// The days.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub period: Option<PeriodSection>,
+    /// The suns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sun: Option<SunSection>,
+    /// What sun and sky send.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radiation: Option<RadiationSection>,
+    /// The ground that cells stand on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ground: Option<GroundSection>,
+    /// Roofs that were found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub roofs: Option<RoofsSection>,
+    /// What became of the places.
+    #[serde(flatten)]
+    pub places: PlacesReport,
+    /// What blocks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lines_of_sight: Option<LinesSection>,
+    /// What trees let through.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trees: Option<TreesSection>,
+    /// How measures are spread.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measures: Option<MeasuresSection>,
+}
+
+/// Values by name, in order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named<T>(pub Vec<(String, T)>);
+
+impl<T> Default for Named<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<T: Serialize> Serialize for Named<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, value) in &self.0 {
+            map.serialize_entry(name, value)?;
+        }
+        map.end()
+    }
+}
+
+/// What became of the places that a question is about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PlacesReport {
+    /// Cells on the ground under a cover, which have no answer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cells_under_cover_left_out: Option<usize>,
+    /// Targets outside the cloud, which have no answer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub targets_outside_cloud: Option<usize>,
+    /// Targets near its edge.
+    #[serde(flatten)]
+    pub edge: Option<EdgeReport>,
+}
+
+/// Where on earth a scene lies.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LocationSection {
+    latitude_deg: f64,
+    longitude_deg: f64,
+    meridian_convergence_deg: f64,
+    source: SiteFrom,
+}
+
+impl LocationSection {
+    pub(super) fn of((site, source): &(Site, SiteFrom)) -> Self {
+        Self {
+            latitude_deg: rounded(site.latitude.to_degrees(), 5),
+            longitude_deg: rounded(site.longitude.to_degrees(), 5),
+            meridian_convergence_deg: rounded(site.convergence.to_degrees(), 4),
+            source: *source,
+        }
+    }
+}
+
+/// Days of suns.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PeriodSection {
+    pub(super) first_day: String,
+    pub(super) last_day: String,
+    pub(super) days: usize,
+    pub(super) time_zone: String,
+    pub(super) time_step_min: f64,
+    pub(super) suns: usize,
+    pub(super) directions: usize,
+    pub(super) possible_hours_per_day: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) max_direction_error_deg: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) rms_direction_error_deg: Option<f64>,
+    /// What each rule says.
+    #[serde(flatten)]
+    pub(super) rules: Named<String>,
+}
+
+/// Single suns.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SunSection {
+    /// Where the sun stands at each instant, of a few.
+    #[serde(flatten)]
+    pub(super) instants: Named<SunAt>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) time_zone: Option<String>,
+    pub(super) suns: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) suns_below_horizon: Option<usize>,
+}
+
+/// Where the sun stands.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SunAt {
+    pub(super) azimuth_deg: f64,
+    pub(super) elevation_deg: f64,
+}
+
+/// What sun and sky send over a period.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct RadiationSection {
+    pub(super) source: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) year: Option<i16>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) weather_rows: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) weather_hours: Option<f64>,
+    pub(super) global_kwh_m2: f64,
+    pub(super) direct_normal_kwh_m2: f64,
+    pub(super) diffuse_kwh_m2: f64,
+    pub(super) sun_directions: usize,
+    pub(super) diffuse_model: String,
+    pub(super) obstacle_reflection: &'static str,
+}
+
+/// The ground on a grid.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GroundSection {
+    source: &'static str,
+    points: usize,
+    grid_columns: usize,
+    grid_rows: usize,
+    cell_m: f64,
+    cells_without_ground: usize,
+}
+
+impl GroundSection {
+    pub(super) fn of(known: &KnownGround) -> Self {
+        let grid = known.ground.grid;
+        let source = match known.report.from {
+            GroundPoints::Found => "detected points (no class 2)",
+            _ => "class 2",
+        };
+        Self {
+            source,
+            points: known.report.point_count,
+            grid_columns: grid.width,
+            grid_rows: grid.height,
+            cell_m: rounded(grid.cell, 4),
+            cells_without_ground: grid.len() - known.report.cell_count,
+        }
+    }
+}
+
+/// Roofs that were found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RoofsSection {
+    pub(super) source: &'static str,
+    pub(super) points: usize,
+    pub(super) points_on_planes: usize,
+    pub(super) planes: usize,
+    pub(super) area_m2: f64,
+}
+
+/// What lines of sight meet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LinesSection {
+    balls: usize,
+    depth_bias_m: f64,
+    shell_m: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    proof_distance_m: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    max_unproven_length_m: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    directions: Option<usize>,
+}
+
+impl LinesSection {
+    pub(super) fn of(blockers: &MedialScene, directions: Option<usize>) -> Self {
+        let (rule, proof) = (blockers.params(), blockers.proof());
+        Self {
+            balls: blockers.ball_count(),
+            depth_bias_m: rounded(rule.bias, 4),
+            shell_m: rounded(rule.shell, 4),
+            proof_distance_m: proof.map(|proof| rounded(proof.nearness(), 3)),
+            max_unproven_length_m: proof.map(|proof| rounded(proof.tolerance(), 3)),
+            directions,
+        }
+    }
+}
+
+/// What trees let through.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TreesSection {
+    vegetation_balls: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    transmissivity: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    transmissivity_in_leaf: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    transmissivity_without_leaves: Option<f64>,
+}
+
+impl TreesSection {
+    pub(super) fn of(transmissivity: &Transmissivity, vegetation: &[bool]) -> Self {
+        let Transmissivity { in_leaf, bare } = *transmissivity;
+        let is_constant = in_leaf == bare;
+        let digits = |share: f64| rounded(share, 4);
+        Self {
+            vegetation_balls: vegetation.iter().filter(|&&is| is).count(),
+            transmissivity: is_constant.then(|| digits(in_leaf)),
+            transmissivity_in_leaf: (!is_constant).then(|| digits(in_leaf)),
+            transmissivity_without_leaves: (!is_constant).then(|| digits(bare)),
+        }
+    }
+}
+
+/// How measures are spread over targets.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MeasuresSection {
+    /// Targets with an answer.
+    pub targets: usize,
+    /// The spread of each measure.
+    #[serde(flatten)]
+    pub spread: Named<Option<MeasureStatistics>>,
+}
+
+impl MeasuresSection {
+    pub(super) fn of<'a>(targets: &Targets, measures: impl IntoIterator<Item = &'a Measure>) -> Self {
+        let spread = measures.into_iter().map(|measure| (measure.name.clone(), measure.rounded_statistics()));
+        Self { targets: targets.asked_count(), spread: Named(spread.collect()) }
+    }
+}

@@ -1,0 +1,209 @@
+//! The scene that questions are put to: a model with its cloud, and what takes long to make and several questions need.
+
+use crate::horizon::convergence;
+use belvedere_core::ground::{Ground, GroundParams, GroundPoints, GroundReport, MapGrid};
+use belvedere_core::model::SceneModel;
+use belvedere_core::query::{BlockRule, MedialScene, Proof, UnprovenAs};
+use belvedere_data::control::Control;
+use belvedere_data::crs::CrsKind;
+use belvedere_data::frame::Frame;
+use belvedere_data::{Error, PointCloud, Result};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// A model with the points that it was made from, and what questions share: made when first needed, and kept.
+pub struct Scene {
+    model: SceneModel,
+    /// In the frame of the model; without points for a ball file alone.
+    cloud: Arc<PointCloud>,
+    /// The points that show the ground.
+    ground_cloud: Arc<PointCloud>,
+    rule: BlockRule,
+    /// Pulses of another scene, indexed already.
+    proof: Option<Proof>,
+    proving: Kept<MedialScene>,
+    plain: Kept<MedialScene>,
+    without_vegetation: Kept<MedialScene>,
+    ground: Mutex<Option<(MapGrid, GroundPoints, Arc<KnownGround>)>>,
+}
+
+/// The ground on a grid, and where it came from.
+pub struct KnownGround {
+    /// Its heights.
+    pub ground: Ground,
+    /// The points that show it.
+    pub report: GroundReport,
+}
+
+/// Something that is made when first needed, and can fail.
+struct Kept<T>(Mutex<Option<Arc<T>>>);
+
+impl<T> Default for Kept<T> {
+    fn default() -> Self {
+        Self(Mutex::new(None))
+    }
+}
+
+impl<T> Kept<T> {
+    fn get(&self, make: impl FnOnce() -> Result<T>) -> Result<Arc<T>> {
+        let mut kept = locked(&self.0);
+        if let Some(made) = &*kept {
+            return Ok(Arc::clone(made));
+        }
+        let made = Arc::new(make()?);
+        *kept = Some(Arc::clone(&made));
+        Ok(made)
+    }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Scene {
+    /// A model, and its cloud in the same frame; a cloud without points for a ball file alone. Balls block by the rule of the model.
+    #[must_use]
+    pub fn new(model: SceneModel, cloud: Arc<PointCloud>) -> Self {
+        Self {
+            rule: model.rule(),
+            ground_cloud: Arc::clone(&cloud),
+            model,
+            cloud,
+            proof: None,
+            proving: Kept::default(),
+            plain: Kept::default(),
+            without_vegetation: Kept::default(),
+            ground: Mutex::new(None),
+        }
+    }
+
+    /// This, with the ground of another cloud in the same frame.
+    #[must_use]
+    pub fn with_ground_of(self, ground_cloud: Arc<PointCloud>) -> Self {
+        Self { ground_cloud, ground: Mutex::new(None), ..self }
+    }
+
+    /// This, with balls that block by another rule.
+    #[must_use]
+    pub fn with_rule(self, rule: BlockRule) -> Self {
+        let (proving, plain, without_vegetation) = (Kept::default(), Kept::default(), Kept::default());
+        Self { rule, proving, plain, without_vegetation, ..self }
+    }
+
+    /// This, with pulses that another scene has indexed already.
+    #[must_use]
+    pub fn with_proof(self, proof: Option<Proof>) -> Self {
+        Self { proof, proving: Kept::default(), ..self }
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn model(&self) -> &SceneModel {
+        &self.model
+    }
+
+    /// The cloud; without points for a ball file alone.
+    #[must_use]
+    pub fn cloud(&self) -> &Arc<PointCloud> {
+        &self.cloud
+    }
+
+    /// The points that show the ground.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where there are none.
+    pub fn ground_cloud(&self) -> Result<&Arc<PointCloud>> {
+        if self.ground_cloud.is_empty() {
+            return Err(Error::InvalidParameter {
+                name: "ground",
+                value: "unknown".to_owned(),
+                expected: "shown by points, and a ball file has none: give its cloud",
+            });
+        }
+        Ok(&self.ground_cloud)
+    }
+
+    /// Where local coordinates lie. A scene that knows no reference system takes that of the cloud that shows its ground.
+    #[must_use]
+    pub fn frame(&self) -> &Frame {
+        let frame = self.model.frame();
+        if frame.crs.kind == CrsKind::Unknown { &self.ground_cloud.frame } else { frame }
+    }
+
+    /// How balls block.
+    #[must_use]
+    pub fn rule(&self) -> &BlockRule {
+        &self.rule
+    }
+
+    /// What blocks lines of sight. Pulses are left out where nothing depends on them.
+    ///
+    /// # Errors
+    /// Those of [`SceneModel::scene`].
+    pub fn blockers(&self, unproven: UnprovenAs, control: &Control<'_>) -> Result<Arc<MedialScene>> {
+        let proves = unproven != UnprovenAs::Visible;
+        let kept = if proves { &self.proving } else { &self.plain };
+        kept.get(|| match &self.proof {
+            Some(proof) if proves => {
+                Ok(self.model.scene(&self.rule, UnprovenAs::Visible, control)?.with_pulses(proof.clone()))
+            }
+            _ => self.model.scene(&self.rule, unproven, control),
+        })
+    }
+
+    /// What blocks lines of sight beside vegetation.
+    ///
+    /// # Errors
+    /// Those of [`SceneModel::scene_without_vegetation`].
+    pub fn without_vegetation(&self, control: &Control<'_>) -> Result<Arc<MedialScene>> {
+        self.without_vegetation.get(|| self.model.scene_without_vegetation(&self.rule, control))
+    }
+
+    /// The ground on a grid; the last one is kept.
+    ///
+    /// # Errors
+    /// Those of [`Scene::ground_cloud`] and [`Ground::of_cloud`].
+    pub fn ground(&self, grid: MapGrid, points: GroundPoints, control: &Control<'_>) -> Result<Arc<KnownGround>> {
+        let mut kept = locked(&self.ground);
+        if let Some((_, _, known)) = kept.as_ref().filter(|(of, from, _)| *of == grid && *from == points) {
+            return Ok(Arc::clone(known));
+        }
+        let cloud = self.ground_cloud()?;
+        let params = GroundParams { points, ..GroundParams::default() };
+        let (ground, report) =
+            control.stage("computing ground", 0, || Ground::of_cloud(cloud, grid, &params, control))?;
+        let known = Arc::new(KnownGround { ground, report });
+        *kept = Some((grid, points, Arc::clone(&known)));
+        Ok(known)
+    }
+
+    /// Refuses scenes whose pulses are unknown, where somebody wants to say what unproven answers count as.
+    pub(super) fn check_proof(&self) -> Result<()> {
+        if self.model.pulses().is_some() {
+            return Ok(());
+        }
+        Err(Error::InvalidParameter {
+            name: "unproven",
+            value: "given".to_owned(),
+            expected: "left out: it needs pulses, from a cloud with known scanner positions or an .npz ball file of such a cloud",
+        })
+    }
+
+    /// What titles say where far terrain counts.
+    pub(super) fn far_in_words(&self) -> &'static str {
+        if self.model.far_terrain().is_empty() { "" } else { ", with far terrain" }
+    }
+
+    /// The middle of the scene on the map, local metres.
+    #[must_use]
+    pub fn middle(&self) -> [f64; 2] {
+        let (low, high) = self.model.bounds().corners();
+        [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]))
+    }
+
+    /// Azimuth of grid north from true north at a local place, clockwise, radians; `None` where true north is unknown.
+    #[must_use]
+    pub fn convergence_at(&self, place: [f64; 2]) -> Option<f64> {
+        let frame = self.frame();
+        convergence(&frame.crs, [0, 1].map(|axis| frame.origin[axis] + place[axis])).ok()
+    }
+}

@@ -1,0 +1,149 @@
+//! Shadow: what of one or more suns reaches places.
+
+use super::light::{Light, OnTargets};
+use super::report::{MeasuresSection, PlacesReport};
+use super::sun::{MAX_LISTED_SUNS, NamedSun, SunPlace, Suns};
+use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
+use crate::shadow::{Edges, LIT, ShadowSun, scene_shadow, sun_directions, unproven_light};
+use crate::targets::Measure;
+use belvedere_core::query::UnprovenAs;
+use belvedere_data::control::Control;
+use belvedere_data::report::percent;
+use belvedere_data::{Error, Result};
+use serde::{Deserialize, Serialize};
+
+/// Which places the sun reaches.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shadow {
+    /// The suns.
+    pub suns: Suns,
+    /// Where on earth, and how clocks run.
+    #[serde(default)]
+    pub place: SunPlace,
+    /// Whether the sun is a point, or a disc of which places see a share.
+    #[serde(default)]
+    pub edges: Edges,
+    /// What gets through trees.
+    #[serde(default)]
+    pub trees: ThroughTrees,
+    /// What to make of light that pulses do not prove; `None` to report it where one sun with hard edges allows that.
+    #[serde(default)]
+    pub unproven: Option<UnprovenAs>,
+}
+
+/// The suns of an answer.
+#[derive(Clone, Debug)]
+pub struct ShadowFound {
+    /// The targets.
+    pub on: OnTargets,
+    /// The suns; the first measures are theirs, one each.
+    pub suns: Vec<NamedSun>,
+}
+
+/// Name of the measure that says which light is unproven.
+pub const UNPROVEN: &str = "unproven";
+
+impl Shadow {
+    /// Whether pulses are tested: of one sun that is a point; of many it would take long.
+    fn proof(&self, suns: usize) -> Result<UnprovenAs> {
+        let is_possible = suns == 1 && self.edges == Edges::Hard;
+        match self.unproven {
+            Some(_) if !is_possible => Err(Error::InvalidParameter {
+                name: "unproven",
+                value: "given".to_owned(),
+                expected: "left out: pulses are tested only for one sun with hard edges",
+            }),
+            Some(unproven) => Ok(unproven),
+            None if is_possible => Ok(UnprovenAs::Reported),
+            None => Ok(UnprovenAs::Visible),
+        }
+    }
+}
+
+impl Ask for Shadow {
+    type Found = ShadowFound;
+
+    fn check(&self) -> Result<()> {
+        self.suns.check(&self.place)
+    }
+
+    fn answer(
+        &self,
+        scene: &Scene,
+        places: &Places,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Answers<ShadowFound>> {
+        let suns = self.suns.of_scene(&self.place, scene, context)?;
+        let kinds: Vec<ShadowSun> = suns.iter().map(|sun| sun.sun).collect();
+        let directions: Vec<[f64; 3]> = kinds.iter().flat_map(|sun| sun_directions(sun.to_sun, self.edges)).collect();
+        let unproven = self.proof(suns.len())?;
+        if self.unproven.is_some() {
+            scene.check_proof()?;
+        }
+        let light = Light::on(places, &directions, (&self.trees, unproven), scene, context, control)?;
+        let mut lit = control.stage("testing sun", light.steps(), || {
+            scene_shadow(light.obstacles(), &light.targets, &kinds, self.edges, control)
+        })?;
+        let doubts = match (&kinds[..], &mut lit[..]) {
+            ([sun], [lit]) if light.blockers.proof().is_some() => {
+                let tested = control.stage("testing pulses", 0, || {
+                    unproven_light(&light.blockers, &light.targets, *sun, lit, control)
+                })?;
+                settled(lit, tested, unproven)
+            }
+            _ => None,
+        };
+        let decimals = if self.edges == Edges::Soft { 4 } else { 2 };
+        let of_sun = |(sun, values): (&NamedSun, Vec<f32>)| {
+            let measure = Measure::new(&sun.column, values).with_description(LIT);
+            measure.with_decimals(decimals).with_range(Some([0.0, 1.0]))
+        };
+        let mut measures: Vec<Measure> = suns.iter().zip(lit).map(of_sun).collect();
+        measures.extend(doubts.map(|doubts| {
+            let measure = Measure::new(UNPROVEN, doubts).with_description("1: lit, but unproven");
+            measure.with_decimals(0).with_range(Some([0.0, 1.0]))
+        }));
+        let targets = &light.targets;
+        let listed = &measures[..measures.len().min(MAX_LISTED_SUNS)];
+        context.report.measures = Some(MeasuresSection::of(targets, listed));
+        summarise(&suns, &measures, &PlacesReport::in_words(targets), context);
+        let title = suns.first().map(|sun| sun.title.clone()).unwrap_or_default();
+        Ok(Answers::new(ShadowFound { on: light.titled(title), suns }, measures))
+    }
+}
+
+/// Takes unproven light for what it is to be, and returns it where it is to be reported.
+fn settled(lit: &mut [f32], doubts: Option<Vec<f32>>, unproven: UnprovenAs) -> Option<Vec<f32>> {
+    let doubts = doubts?;
+    match unproven {
+        UnprovenAs::Visible => None,
+        UnprovenAs::Reported => Some(doubts),
+        UnprovenAs::Blocked => {
+            let lit = lit.iter_mut().zip(&doubts).filter(|(_, doubt)| **doubt > 0.0);
+            lit.for_each(|(lit, _)| *lit = 0.0);
+            None
+        }
+    }
+}
+
+fn summarise(suns: &[NamedSun], measures: &[Measure], places: &str, context: &mut Context) {
+    let share = |measure: &Measure| measure.statistics().map_or(f64::NAN, |found| 100.0 * found.mean);
+    match (suns, measures) {
+        ([sun], [lit, rest @ ..]) => {
+            context.headline(format!("{}: {:.1} % lit of {places}", sun.title, share(lit)));
+            if let [doubts] = rest {
+                let count = |measure: &Measure| measure.values.iter().filter(|&&value| value > 0.0).count();
+                let (unproven, lit) = (count(doubts), count(lit));
+                context.headline(format!("unproven: {} % of what is lit", percent(unproven, lit)));
+                let so = "are lit as far as the points show, but no pulse proves their way to the sun free";
+                context
+                    .add(Remark::of_share("light-unproven", unproven, lit, "lit targets", so).map(Remark::into_note));
+            }
+        }
+        _ => {
+            let shares: Vec<f32> = measures.iter().map(|measure| share(measure) as f32).collect();
+            context.headline(format!("{} suns on {places}: lit {}", suns.len(), spread(&shares, 1, "%")));
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Sky view: how much of the sky places see.
+
+use super::light::{Light, OnTargets};
+use super::report::{MeasuresSection, PlacesReport};
+use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
+use crate::sky_view::{SKY_DIRECTIONS, SkyDirections, scene_sky_view};
+use belvedere_core::query::UnprovenAs;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use serde::{Deserialize, Serialize};
+
+/// How much of the sky places see.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SkyView {
+    /// The directions of the sky.
+    pub sky: SkyParts,
+    /// What gets through trees.
+    pub trees: ThroughTrees,
+}
+
+/// How the sky is parted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SkyParts {
+    /// So many directions, evenly spread, 1 to 100 000. Default 577.
+    Even(usize),
+    /// The middles of 145 patches (Tregenza 1987).
+    Tregenza,
+    /// The middles of 577 patches (Reinhart 2001).
+    Reinhart,
+}
+
+impl Default for SkyParts {
+    fn default() -> Self {
+        Self::Even(SKY_DIRECTIONS)
+    }
+}
+
+impl SkyParts {
+    /// The directions.
+    ///
+    /// # Errors
+    /// Those of [`SkyDirections::even`].
+    pub fn directions(self) -> Result<SkyDirections> {
+        match self {
+            Self::Even(count) => SkyDirections::even(count),
+            Self::Tregenza => SkyDirections::patches(1),
+            Self::Reinhart => SkyDirections::patches(2),
+        }
+    }
+}
+
+impl Ask for SkyView {
+    type Found = OnTargets;
+
+    fn check(&self) -> Result<()> {
+        self.sky.directions().map(|_| ())
+    }
+
+    fn answer(
+        &self,
+        scene: &Scene,
+        places: &Places,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Answers<OnTargets>> {
+        let sky = self.sky.directions()?;
+        let light = Light::on(places, &sky.directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
+        let seen = control
+            .stage("testing sky", light.steps(), || scene_sky_view(light.obstacles(), &light.targets, &sky, control))?;
+        let measures = seen.into_measures();
+        context.report.measures = Some(MeasuresSection::of(&light.targets, &measures));
+        context.headline(format!("sky seen from {}", PlacesReport::in_words(&light.targets)));
+        for measure in &measures {
+            context.headline(format!("{}: {}", measure.name.replace('_', " "), spread(&measure.values, 2, "")));
+        }
+        Ok(Answers::new(light.titled(format!("Sky view{}", scene.far_in_words())), measures))
+    }
+}

@@ -1,0 +1,325 @@
+//! Where on earth a scene lies, how clocks run there, and which suns and days a user chooses.
+
+use super::north::North;
+use super::report::{LocationSection, SunAt, SunSection};
+use super::scene::Scene;
+use super::{Context, Remark};
+use crate::shadow::ShadowSun;
+use crate::sun::{
+    Date, DayParams, Period, Refraction, Site, SiteFrom, Zone, parse_instant, sun_days, sun_position_with,
+    zone_of_instant,
+};
+use crate::sun_hours::RuleDays;
+use crate::tree_light::Season;
+use belvedere_data::frame::{Bounds, Frame};
+use belvedere_data::report::rounded;
+use belvedere_data::{Error, Result};
+use serde::{Deserialize, Serialize};
+
+/// Most suns of which the report says where they stand.
+pub const MAX_LISTED_SUNS: usize = 5;
+
+/// A place on earth, its clocks and its air.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SunPlace {
+    /// Latitude and longitude, degrees, north and east positive; `None` for what the reference system says.
+    pub location: Option<[f64; 2]>,
+    /// Zone of times and days, such as Europe/Amsterdam or +02:00; `None` for that of a given time, else mean solar time.
+    pub zone: Option<String>,
+    /// By how much the air lifts the sun.
+    pub refraction: Refraction,
+    /// Which north azimuths count from.
+    pub north: North,
+}
+
+/// Suns, one by one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Suns {
+    /// Azimuths, clockwise from north, and elevations, degrees.
+    Directions(Vec<[f64; 2]>),
+    /// Instants, ISO 8601, with an offset unless the zone says how clocks run.
+    Times(Vec<String>),
+    /// The middles of the steps of days during which the sun is up.
+    Days(Days),
+}
+
+/// Days of the sun.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Days {
+    /// Days such as 2026-06-21, or longest-day, shortest-day and equinox of the year.
+    pub dates: Vec<String>,
+    /// First and last day, or two instants, in place of dates.
+    pub between: Option<[String; 2]>,
+    /// Year of days that are given without one.
+    pub year: Option<i16>,
+    /// Minutes between two suns, 1/6 to 60; `None` for 10.
+    pub time_step_min: Option<f64>,
+    /// Lower suns do not count, degrees; `None` for 0, or what a rule says.
+    pub min_sun_elevation_deg: Option<f64>,
+}
+
+/// A sun with its names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedSun {
+    /// Where it stands, and when.
+    pub sun: ShadowSun,
+    /// Name of its column, such as `lit_20260621_1500`.
+    pub column: String,
+    /// Its shadow in words.
+    pub title: String,
+}
+
+fn refused<T>(name: &'static str, value: impl Into<String>, expected: &'static str) -> Result<T> {
+    Err(Error::InvalidParameter { name, value: value.into(), expected })
+}
+
+impl SunPlace {
+    /// Checks what does not depend on a scene.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a location, a zone or an air that cannot be.
+    pub fn check(&self) -> Result<Site> {
+        let [latitude, longitude] = self.location.map_or([0.0; 2], |given| given.map(f64::to_radians));
+        let anywhere = Site { latitude, longitude, height: 0.0, convergence: 0.0 }.validate()?;
+        sun_position_with(&anywhere, 0.0, self.refraction)?;
+        self.given_zone()?;
+        Ok(anywhere)
+    }
+
+    /// Where the middle of a scene lies on earth: as given, else as its reference system says, else `elsewhere`.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where nothing says it, and those of [`Site::of_scene`].
+    pub fn site_of(&self, frame: &Frame, bounds: &Bounds, elsewhere: Option<[f64; 2]>) -> Result<(Site, SiteFrom)> {
+        let given = self.location.map(|location| location.map(f64::to_radians));
+        Site::of_scene(frame, bounds, given, elsewhere).or_else(|error| match error {
+            Error::MissingAttribute { .. } => refused(
+                "location",
+                "unknown",
+                "given as latitude and longitude, or follow from a reference system of the scene (EPSG:CODE)",
+            ),
+            other => Err(other),
+        })
+    }
+
+    pub(super) fn site(&self, scene: &Scene, context: &mut Context, elsewhere: Option<[f64; 2]>) -> Result<Site> {
+        let found = self.site_of(scene.frame(), &scene.model().bounds(), elsewhere)?;
+        context.report.location = Some(LocationSection::of(&found));
+        Ok(found.0)
+    }
+
+    fn given_zone(&self) -> Result<Option<Zone>> {
+        self.zone.as_deref().map(Zone::parse).transpose()
+    }
+
+    /// How clocks run at a site: as given, else as in the first of the `times` that says so, else by the sun.
+    ///
+    /// # Errors
+    /// Those of [`Zone::parse`].
+    pub fn zone_at<'a>(&self, site: &Site, times: impl IntoIterator<Item = &'a String>) -> Result<Zone> {
+        let of_times = || times.into_iter().find_map(|time| zone_of_instant(time));
+        Ok(self.given_zone()?.or_else(of_times).unwrap_or_else(|| Zone::mean_solar(site)))
+    }
+
+    /// An instant, seconds of UTC since 1970.
+    ///
+    /// # Errors
+    /// Those of [`parse_instant`].
+    pub fn instant(&self, text: &str) -> Result<f64> {
+        parse_instant(text, self.given_zone()?.as_ref())
+    }
+}
+
+impl Days {
+    /// Whether there is no day.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.dates.is_empty() && self.between.is_none()
+    }
+
+    /// The times among them, which can say how clocks run.
+    pub fn times(&self) -> impl Iterator<Item = &String> {
+        self.between.iter().flatten()
+    }
+
+    /// How days are parted.
+    #[must_use]
+    pub fn params(&self, place: &SunPlace) -> DayParams {
+        let usual = DayParams::default();
+        usual
+            .with_step(self.time_step_min.map_or(usual.step, |minutes| minutes * 60.0))
+            .with_least_elevation(self.min_sun_elevation_deg.map_or(usual.least_elevation, f64::to_radians))
+            .with_refraction(place.refraction)
+    }
+
+    /// Checks what does not depend on a scene.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for days, times, steps and elevations that cannot be.
+    pub fn check(&self, place: &SunPlace) -> Result<()> {
+        let anywhere = place.check()?;
+        self.params(place).validate()?;
+        let zone = place.zone_at(&anywhere, self.times())?;
+        self.period(place, &anywhere, &zone).map(|_| ())
+    }
+
+    /// Dates of days that a rule or a name says.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] without a year, and those of [`RuleDays::dates`].
+    pub fn dates_of(&self, days: RuleDays, site: &Site, zone: &Zone) -> Result<Vec<Date>> {
+        match self.year {
+            Some(year) => days.dates(year, site, zone),
+            None => refused("year", "missing", "given for days that have none"),
+        }
+    }
+
+    /// The period; `None` where there are no days.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for days and times that cannot be read, and a last day before the first.
+    pub fn period(&self, place: &SunPlace, site: &Site, zone: &Zone) -> Result<Option<Period>> {
+        if let Some([from, to]) = &self.between {
+            return Ok(Some(match (Date::parse(from), Date::parse(to)) {
+                (Ok(first), Ok(last)) if last < first => {
+                    return refused("last day", last.to_string(), "the first day or a later one");
+                }
+                (Ok(first), Ok(last)) => Period::Days(first.to(last).collect()),
+                (Err(_), Err(_)) => Period::Between([place.instant(from)?, place.instant(to)?]),
+                _ => return refused("period", format!("{from} to {to}"), "two days, or two times"),
+            }));
+        }
+        let mut dates = Vec::new();
+        for text in &self.dates {
+            match RuleDays::parse(text) {
+                Some(days) => dates.extend(self.dates_of(days, site, zone)?),
+                None => dates.push(Date::parse(text)?),
+            }
+        }
+        Ok((!dates.is_empty()).then_some(Period::Days(dates)))
+    }
+
+    /// The middles of the steps during which the sun is up.
+    fn instants(&self, place: &SunPlace, site: &Site, zone: &Zone) -> Result<Vec<f64>> {
+        let Some(period) = self.period(place, site, zone)? else {
+            return refused("period", "missing", "given as days or as two times");
+        };
+        let params = self.params(place);
+        let days = sun_days(site, zone, &period, &params)?;
+        let steps: Vec<f64> =
+            days.iter().flat_map(|day| &day.steps).map(|step| f64::midpoint(step.start, step.end)).collect();
+        if !steps.is_empty() {
+            return Ok(steps);
+        }
+        let from_horizon = sun_days(site, zone, &period, &params.with_least_elevation(0.0))?;
+        if from_horizon.iter().any(|day| !day.steps.is_empty()) {
+            let lowest = format!("{} degrees", params.least_elevation.to_degrees());
+            return refused("minimum sun elevation", lowest, "lower: the sun stays below it there in this period");
+        }
+        refused("period", "without sun", "one in which the sun rises there")
+    }
+}
+
+impl Suns {
+    /// Checks what does not depend on a scene.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for directions, times and days that cannot be, and without any.
+    pub fn check(&self, place: &SunPlace) -> Result<()> {
+        place.check()?;
+        match self {
+            Self::Directions(directions) => directions.iter().try_for_each(|&[azimuth, elevation]| {
+                if azimuth.is_finite() && (-90.0..=90.0).contains(&elevation) {
+                    return Ok(());
+                }
+                refused(
+                    "sun",
+                    format!("{azimuth},{elevation}"),
+                    "azimuth and elevation in degrees, the elevation from -90 to 90",
+                )
+            }),
+            Self::Times(times) => times.iter().try_for_each(|time| place.instant(time).map(|_| ())),
+            Self::Days(days) => days.check(place),
+        }
+    }
+
+    /// The suns over a scene, in their order.
+    pub(super) fn of_scene(&self, place: &SunPlace, scene: &Scene, context: &mut Context) -> Result<Vec<NamedSun>> {
+        let mut section = SunSection::default();
+        let mut below = 0;
+        let far = scene.far_in_words();
+        let suns = match self {
+            Self::Directions(directions) => {
+                let north = place.north.of_scene(scene);
+                context.north(&north);
+                let named = |(number, &[azimuth, elevation]): (usize, &[f64; 2])| {
+                    below += usize::from(elevation <= 0.0);
+                    let is_one = directions.len() == 1;
+                    NamedSun {
+                        sun: ShadowSun::at(azimuth.to_radians() - north.of_grid, elevation.to_radians()),
+                        column: if is_one { "lit".to_owned() } else { format!("lit_{number}") },
+                        title: format!("Shadow, sun at azimuth {azimuth}, elevation {elevation} degrees{far}"),
+                    }
+                };
+                (1..).zip(directions).map(named).collect::<Vec<_>>()
+            }
+            Self::Times(_) | Self::Days(_) => {
+                let site = place.site(scene, context, None)?;
+                let zone = place.zone_at(&site, self.times())?;
+                let instants = match self {
+                    Self::Days(days) => days.instants(place, &site, &zone)?,
+                    _ => self.times().map(|time| place.instant(time)).collect::<Result<_>>()?,
+                };
+                let mut suns = Vec::with_capacity(instants.len());
+                for &instant in &instants {
+                    let position = sun_position_with(&site, instant, place.refraction)?;
+                    below += usize::from(position.elevation <= 0.0);
+                    if instants.len() <= MAX_LISTED_SUNS {
+                        let [azimuth_deg, elevation_deg] =
+                            [position.azimuth, position.elevation].map(|angle| rounded(angle.to_degrees(), 4));
+                        section.instants.0.push((zone.display(instant), SunAt { azimuth_deg, elevation_deg }));
+                    }
+                    let season = zone.date_at(instant).ok().map(|date| Season::on(date, &site));
+                    let is_one = instants.len() == 1;
+                    suns.push(NamedSun {
+                        sun: ShadowSun { to_sun: position.to_sun(&site), season },
+                        column: if is_one { "lit".to_owned() } else { format!("lit_{}", moment(&zone, instant)) },
+                        title: format!("Shadow, {}{far}", zone.display(instant)),
+                    });
+                }
+                section.time_zone = Some(zone.name().to_owned());
+                suns
+            }
+        };
+        section.suns = suns.len();
+        section.suns_below_horizon = (below > 0).then_some(below);
+        context.report.sun = Some(section);
+        context.add(Remark::of_share(
+            "suns-below-horizon",
+            below,
+            suns.len(),
+            "suns",
+            "are below the horizon: nothing is lit",
+        ));
+        Ok(suns)
+    }
+
+    fn times(&self) -> impl Iterator<Item = &String> {
+        let (times, days) = match self {
+            Self::Directions(_) => (None, None),
+            Self::Times(times) => (Some(times), None),
+            Self::Days(days) => (None, Some(days)),
+        };
+        times.into_iter().flatten().chain(days.into_iter().flat_map(Days::times))
+    }
+}
+
+/// An instant in names: its date and time by the clocks of the zone, such as `20260621_1500`.
+#[must_use]
+pub fn moment(zone: &Zone, instant: f64) -> String {
+    let text: String = zone.display(instant).chars().filter(|c| c.is_ascii_digit() || matches!(c, 'T' | ' ')).collect();
+    text.replace(['T', ' '], "_").chars().take(15).collect()
+}

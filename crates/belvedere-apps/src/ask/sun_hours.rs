@@ -1,0 +1,247 @@
+//! Sun hours: how long the sun reaches places on days, and whether rules of daylight are met.
+
+use super::light::{Light, OnTargets};
+use super::report::{MeasuresSection, Named, PeriodSection, PlacesReport};
+use super::sun::{Days, SunPlace};
+use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
+use crate::rows::Obstacles;
+use crate::sun::{Binning, DayParams, Period, Site, SunSchedule, Zone, sun_days};
+use crate::sun_hours::{SunPlan, SunRule, SunSums, scene_sun_hours};
+use crate::targets::Targets;
+use belvedere_core::query::UnprovenAs;
+use belvedere_data::control::Control;
+use belvedere_data::report::rounded;
+use belvedere_data::{Error, Result};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Names of the columns of rules of one's own, in the order given.
+const OWN_RULES: [&str; 8] = ["rule_1", "rule_2", "rule_3", "rule_4", "rule_5", "rule_6", "rule_7", "rule_8"];
+
+/// How long the sun reaches places.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SunHours {
+    /// The days; none for those of the first rule.
+    pub days: Days,
+    /// Rules of daylight, by name or as HOURS@DAYS.
+    pub rules: Vec<String>,
+    /// Where on earth, and how clocks run.
+    pub place: SunPlace,
+    /// Greatest angle between a sun and the direction that is tested for it, degrees, 0 to 5; `None` for 0 up to 2000 suns, else 1.
+    pub sun_tolerance_deg: Option<f64>,
+    /// What gets through trees.
+    pub trees: ThroughTrees,
+}
+
+/// What is known before the sun is tested. [`Prepared::answers`] makes answers of what it lit.
+pub struct Prepared {
+    /// The suns.
+    pub plan: SunPlan,
+    /// Where on earth the scene lies.
+    pub site: Site,
+    light: Light,
+    title: String,
+}
+
+/// The rules, each with the name of its column.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a rule that cannot be read, is given twice, and for more than eight of one's own.
+pub fn rules(texts: &[String]) -> Result<Vec<(&'static str, SunRule)>> {
+    let refused = |value: &str, expected| {
+        Err(Error::InvalidParameter { name: "rule of sunlight", value: value.to_owned(), expected })
+    };
+    let mut own = OWN_RULES.into_iter();
+    let mut rules: Vec<(&'static str, SunRule)> = Vec::new();
+    for text in texts {
+        let rule = SunRule::parse(text)?;
+        let known = SunRule::columns().find(|(name, _)| *name == rule.name).map(|(_, column)| column);
+        let Some(column) = known.or_else(|| own.next()) else {
+            return refused(text, "one of at most 8 rules of your own");
+        };
+        if rules.iter().any(|(_, other)| other.name == rule.name) {
+            return refused(text, "given once");
+        }
+        rules.push((column, rule));
+    }
+    Ok(rules)
+}
+
+impl SunHours {
+    fn binning(&self) -> Binning {
+        match self.sun_tolerance_deg {
+            None => Binning::Auto,
+            Some(0.0) => Binning::Exact,
+            Some(degrees) => Binning::Within(degrees.to_radians()),
+        }
+    }
+
+    /// The suns of the days and of the rules at a site, and how clocks run there. Directions are those of `among` where given, each for suns within
+    /// the tolerance, 1 degree by default.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] without days, and for what cannot be.
+    pub fn plan(&self, site: &Site, among: Option<&[[f64; 3]]>) -> Result<(SunPlan, Zone)> {
+        let zone = self.place.zone_at(site, self.days.times())?;
+        let params = self.days.params(&self.place);
+        let schedule = |period: &Period, params: &DayParams| {
+            let days = sun_days(site, &zone, period, params)?;
+            match among {
+                None => SunSchedule::new(&days, self.binning()),
+                Some(directions) => {
+                    SunSchedule::among(&days, directions, self.sun_tolerance_deg.unwrap_or(1.0).to_radians())
+                }
+            }
+        };
+        let mut of_rules = Vec::new();
+        for (column, rule) in rules(&self.rules)? {
+            let dates = self.days.dates_of(rule.days, site, &zone)?;
+            let least_elevation = self.days.min_sun_elevation_deg.map_or(rule.least_elevation, f64::to_radians);
+            let schedule = schedule(&Period::Days(dates), &params.with_least_elevation(least_elevation))?;
+            of_rules.push((column.to_owned(), rule, schedule));
+        }
+        let main = match (self.days.period(&self.place, site, &zone)?, of_rules.first()) {
+            (Some(period), _) => schedule(&period, &params)?,
+            (None, Some((.., first))) => first.clone(),
+            (None, None) => return missing_period(),
+        };
+        Ok((SunPlan::new(main, of_rules), zone))
+    }
+
+    /// All that is known before the sun is tested.
+    ///
+    /// # Errors
+    /// Those of [`SunHours::plan`], of finding the targets, and of building what blocks.
+    pub fn prepare(
+        &self,
+        scene: &Scene,
+        places: &Places,
+        among: Option<&[[f64; 3]]>,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Prepared> {
+        let site = self.place.site(scene, context, None)?;
+        let (plan, zone) = self.plan(&site, among)?;
+        context.report.period = Some(section(&plan, &zone, &self.days.params(&self.place)));
+        let light = Light::on(places, plan.directions(), (&self.trees, UnprovenAs::Visible), scene, context, control)?;
+        let days = days_in_words(plan.period(), &zone);
+        let of_rule = plan.rules().first().filter(|_| self.days.is_empty());
+        let what = match of_rule {
+            Some(first) => format!("Sun hours on the days of the rule {}", first.rule.name),
+            None => "Sun hours".to_owned(),
+        };
+        let title = format!("{what}, {days}{}", scene.far_in_words());
+        Ok(Prepared { plan, site, light, title })
+    }
+}
+
+fn missing_period<T>() -> Result<T> {
+    Err(Error::InvalidParameter {
+        name: "period",
+        value: "missing".to_owned(),
+        expected: "given as days, as two times, or by a rule",
+    })
+}
+
+impl Prepared {
+    /// The targets.
+    #[must_use]
+    pub fn targets(&self) -> &Arc<Targets> {
+        &self.light.targets
+    }
+
+    /// What the light meets.
+    #[must_use]
+    pub fn obstacles(&self) -> Obstacles<'_> {
+        self.light.obstacles()
+    }
+
+    /// Tests the sun.
+    ///
+    /// # Errors
+    /// Those of [`scene_sun_hours`].
+    pub fn test(&self, control: &Control<'_>) -> Result<SunSums> {
+        control.stage("testing sun", self.light.steps(), || {
+            scene_sun_hours(self.obstacles(), self.targets(), &self.plan, Some(&self.site), control)
+        })
+    }
+
+    /// The answers, from what the sun lit.
+    #[must_use]
+    pub fn answers(self, sums: SunSums, context: &mut Context) -> Answers<OnTargets> {
+        let targets = &self.light.targets;
+        let measures = sums.into_measures(&self.plan, targets);
+        context.report.measures = Some(MeasuresSection::of(targets, &measures));
+        context.headline(format!("{}: {}", self.title, PlacesReport::in_words(targets)));
+        let schedule = self.plan.period();
+        let possible = schedule.possible_hours() / schedule.days.len().max(1) as f64;
+        if let Some(hours) = measures.first() {
+            let spread = spread(&hours.values, 2, "hours a day");
+            context.headline(format!("sun hours: {spread}, of {possible:.2} possible"));
+        }
+        for (planned, measure) in self.plan.rules().iter().zip(&measures[measures.len() - self.plan.rules().len()..]) {
+            let share = measure.statistics().map_or(f64::NAN, |found| 100.0 * found.mean);
+            context.headline(format!("rule {}: met by {share:.1} %", planned.rule.name));
+        }
+        Answers::new(self.light.titled(self.title), measures)
+    }
+}
+
+impl Ask for SunHours {
+    type Found = OnTargets;
+
+    fn check(&self) -> Result<()> {
+        if rules(&self.rules)?.is_empty() && self.days.is_empty() {
+            return missing_period();
+        }
+        self.days.check(&self.place)
+    }
+
+    fn answer(
+        &self,
+        scene: &Scene,
+        places: &Places,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Answers<OnTargets>> {
+        let prepared = self.prepare(scene, places, None, context, control)?;
+        let sums = prepared.test(control)?;
+        Ok(prepared.answers(sums, context))
+    }
+}
+
+/// The days of a schedule in a few words.
+fn days_in_words(schedule: &SunSchedule, zone: &Zone) -> String {
+    let [first, last] = ends(schedule);
+    let days = if first == last { first } else { format!("{first} to {last}, mean of days") };
+    format!("{days} ({})", zone.name())
+}
+
+/// First and last day.
+fn ends(schedule: &SunSchedule) -> [String; 2] {
+    [schedule.days.first(), schedule.days.last()].map(|day| day.map(|day| day.date.to_string()).unwrap_or_default())
+}
+
+fn section(plan: &SunPlan, zone: &Zone, params: &DayParams) -> PeriodSection {
+    let main = plan.period();
+    let [first_day, last_day] = ends(main);
+    let error = |radians: f64| (main.greatest_error > 0.0).then(|| rounded(radians.to_degrees(), 3));
+    let rule = |planned: &crate::sun_hours::PlannedRule| {
+        let text = format!("{} on {} days", planned.rule.description, planned.schedule.days.len());
+        (planned.column.clone(), text)
+    };
+    PeriodSection {
+        first_day,
+        last_day,
+        days: main.days.len(),
+        time_zone: zone.name().to_owned(),
+        time_step_min: rounded(params.step / 60.0, 3),
+        suns: main.days.iter().map(|day| day.steps.len()).sum(),
+        directions: main.directions.len(),
+        possible_hours_per_day: rounded(main.possible_hours() / main.days.len().max(1) as f64, 3),
+        max_direction_error_deg: error(main.greatest_error),
+        rms_direction_error_deg: error(main.rms_error),
+        rules: Named(plan.rules().iter().map(rule).collect()),
+    }
+}
