@@ -4,7 +4,7 @@ use super::sights::{Proving, blockers};
 use super::targets::{Asked, Relief};
 use super::{check_output, extension};
 use crate::arguments::{Global, Shadow, Usage};
-use crate::pipeline::{self, Points, Scene, flagged};
+use crate::pipeline::{self, Points, Scene};
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
@@ -149,7 +149,7 @@ fn suns(arguments: &Shadow, scene: &Scene, summary: &mut Summary) -> Result<Vec<
         let refraction = arguments.sun.refraction()?;
         let instants = instants(arguments, &site, &zone)?;
         for &instant in &instants {
-            let position = flagged("--time", sun_position_with(&site, instant, refraction))?;
+            let position = sun_position_with(&site, instant, refraction)?;
             let column = if instants.len() == 1 { "lit".to_owned() } else { format!("lit_{}", moment(&zone, instant)) };
             below += usize::from(position.elevation <= 0.0);
             if instants.len() <= MOST_TOLD {
@@ -178,7 +178,7 @@ fn instants(arguments: &Shadow, site: &Site, zone: &Zone) -> Result<Vec<f64>> {
         return Err(Usage("suns are missing: give --time, --date, --from and --to, or --sun".to_owned()).into());
     };
     let params = arguments.when.params(&arguments.sun)?;
-    let days = flagged("--time-step-min, --min-sun-elevation or --from", sun_days(site, zone, &period, &params))?;
+    let days = sun_days(site, zone, &period, &params)?;
     let steps: Vec<f64> =
         days.iter().flat_map(|day| &day.steps).map(|step| f64::midpoint(step.start, step.end)).collect();
     if steps.is_empty() {

@@ -2,7 +2,7 @@
 
 use super::sights::{Proving, blockers};
 use crate::arguments::{Global, PatchesChoice, SkyView};
-use crate::pipeline::{self, Points, flagged};
+use crate::pipeline::{self, Points};
 use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -14,7 +14,7 @@ pub(crate) fn run(arguments: &SkyView, global: &Global) -> Result<Summary> {
     let sky = match arguments.patches {
         Some(PatchesChoice::Tregenza) => SkyDirections::patches(1)?,
         Some(PatchesChoice::Reinhart) => SkyDirections::patches(2)?,
-        None => flagged("--directions", SkyDirections::even(arguments.directions.unwrap_or(SKY_DIRECTIONS)))?,
+        None => SkyDirections::even(arguments.directions.unwrap_or(SKY_DIRECTIONS))?,
     };
     let mut run = Run::new(global);
     let points = if arguments.places.needs_points() { Points::Keep } else { Points::LetGo };

@@ -3,7 +3,7 @@
 use super::check_output;
 use super::sights::{Proving, blockers, scene_params};
 use crate::arguments::{Global, SunHours, Usage};
-use crate::pipeline::{self, Points, Scene, flagged};
+use crate::pipeline::{self, Points, Scene};
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
@@ -179,7 +179,7 @@ pub(super) fn rules(typed: &[String]) -> Result<Vec<(&'static str, SunRule)>> {
     let mut own = OWN_RULES.into_iter();
     let mut rules: Vec<(&'static str, SunRule)> = Vec::new();
     for text in typed {
-        let rule = flagged("--rule", SunRule::parse(text))?;
+        let rule = SunRule::parse(text)?;
         let column = match SunRule::columns().find(|(name, _)| *name == rule.name) {
             Some((_, column)) => Some(column),
             None => own.next(),
@@ -207,18 +207,15 @@ fn plan(
     let when = &arguments.when;
     let zone = arguments.sun.zone(site, &when.times())?;
     let schedule = |period: &Period, params: &DayParams| {
-        let days = flagged("--time-step-min, --min-sun-elevation or --from", sun_days(site, &zone, period, params))?;
-        flagged(
-            "--sun-tolerance-deg",
-            match suns {
-                Suns::Of(binning) => SunSchedule::new(&days, *binning),
-                Suns::Among(directions, angle) => SunSchedule::among(&days, directions, *angle),
-            },
-        )
+        let days = sun_days(site, &zone, period, params)?;
+        match suns {
+            Suns::Of(binning) => SunSchedule::new(&days, *binning),
+            Suns::Among(directions, angle) => SunSchedule::among(&days, directions, *angle),
+        }
     };
     let mut of_rules = Vec::new();
     for (column, rule) in rules {
-        let dates = flagged("--year", rule.days.dates(when.year, site, &zone))?;
+        let dates = rule.days.dates(when.year, site, &zone)?;
         let least_elevation = when.least_elevation.map_or(rule.least_elevation, f64::to_radians);
         let schedule = schedule(&Period::Days(dates), &params.with_least_elevation(least_elevation))?;
         of_rules.push((column.to_owned(), rule, schedule));

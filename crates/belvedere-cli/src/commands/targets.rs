@@ -5,7 +5,7 @@ use super::query::{points_of_file, text_rows_for};
 use super::sights::{OUTSIDE_CLOUD, ground, ground_cloud};
 use super::{check_output, extension};
 use crate::arguments::{FacingChoice, SkyOutputs, SkyPlaces, Usage};
-use crate::pipeline::{Scene, flagged};
+use crate::pipeline::Scene;
 use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -128,7 +128,7 @@ impl SkyPlaces {
         let (low, high) = scene.model.bounds().on_map();
         let cell = self.cell.unwrap_or_else(|| cell_for(low, high));
         let [x, y, _] = scene.cloud.frame.origin;
-        let grid = flagged("--cell", MapGrid::covering(low, high, cell, [x, y]))?;
+        let grid = MapGrid::covering(low, high, cell, [x, y])?;
         let (cloud, points) = ground_cloud(&self.ground, scene, run)?;
         let ground = ground(&cloud, points, grid, run)?;
         let mut params = CellParams::default();
@@ -172,7 +172,7 @@ impl SkyPlaces {
             params = params.with_spacing(spacing);
         }
         let targets = run.stage("sampling mesh", 0, |_| Targets::of_mesh(&mesh, &scene.cloud.frame, &params));
-        Ok(Asked { targets: flagged("--spacing", targets)?, from: Source::Mesh(Box::new(mesh)) })
+        Ok(Asked { targets: targets?, from: Source::Mesh(Box::new(mesh)) })
     }
 }
 

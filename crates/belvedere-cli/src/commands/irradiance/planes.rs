@@ -4,7 +4,7 @@ use super::super::sights::{ground, ground_cloud};
 use super::super::{check_output, check_parent, extension};
 use crate::arguments::{GroundChoice, Irradiance};
 use crate::commands::horizon::write_lines;
-use crate::pipeline::{Scene, flagged};
+use crate::pipeline::Scene;
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
@@ -58,7 +58,7 @@ pub(super) fn find(arguments: &Irradiance, scene: &mut Scene, run: &mut Run) -> 
     let (rows, from) = roof_points(&cloud, &ground)?;
     let places: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
     let planes = run.stage("detecting roof planes", 0, |control| roof_planes(&places, &params, control));
-    let planes = flagged("--panel, --min-area", planes)?;
+    let planes = planes?;
     let mut section = Summary::default();
     let from = match from {
         RoofsFrom::Class => "class 6",

@@ -1,7 +1,7 @@
 //! From flags and weather files to what a period sends.
 
 use crate::arguments::{ClearSkyChoice, Irradiance, RadiationModel, Usage};
-use crate::pipeline::{Scene, flagged};
+use crate::pipeline::Scene;
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Context, Result};
@@ -25,7 +25,7 @@ pub(in crate::commands) fn params(model: &RadiationModel) -> Result<IrradiancePa
         .with_sun_cell(model.sun_cell.map_or(usual.sun_cell, f64::to_radians))
         .with_albedo(model.albedo.unwrap_or(usual.albedo))
         .with_surroundings(model.surroundings.map_or(usual.surroundings, Into::into));
-    flagged("--albedo, --sun-cell-deg", params.validate())?;
+    params.validate()?;
     Ok(params)
 }
 
@@ -69,7 +69,7 @@ pub(super) fn site(
     let station = weather.map(|weather| [weather.latitude, weather.longitude]);
     let found = Site::of_scene(&scene.cloud.frame, &scene.model.bounds(), given, station);
     let (site, from) = match given {
-        Some(_) => flagged("--location", found)?,
+        Some(_) => found?,
         None => found.context("the location of the scene is unknown: give --crs EPSG:CODE or --location LAT,LON")?,
     };
     let from = match from {
@@ -120,7 +120,7 @@ pub(super) fn gather(
         }
     };
     let found = run.stage("computing radiation", 0, |control| period_seasons(&source, site, crowns, params, control));
-    let (seasons, report) = flagged("--parts-per-row, --linke, --year, --patch-division", found)?;
+    let (seasons, report) = found?;
     section
         .add("global_kwh_m2", rounded(report.ghi, 1))
         .add("direct_normal_kwh_m2", rounded(report.dni, 1))
