@@ -3,7 +3,7 @@
 use belvedere_core::query::{EarthParams, MedialScene, SkylinePoint};
 use belvedere_data::control::Control;
 use belvedere_data::crs::Crs;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use std::f64::consts::{PI, TAU};
 
 /// How horizons are made.
@@ -46,14 +46,14 @@ pub fn horizons(
     params.earth.validate()?;
     if !(1..=1_000_000).contains(&params.azimuth_count) {
         return Err(Error::InvalidParameter {
-            name: "number of azimuths",
+            parameter: Parameter::DirectionCount,
             value: params.azimuth_count.to_string(),
             expected: "1 to 1000000",
         });
     }
     if !params.turn.is_finite() {
         return Err(Error::InvalidParameter {
-            name: "turn of north",
+            parameter: Parameter::North,
             value: params.turn.to_string(),
             expected: "finite",
         });
@@ -76,7 +76,7 @@ pub fn azimuth_count(step: f64) -> Result<usize> {
     let count = TAU / step;
     if !(1.0 - 1e-9..=1e6).contains(&count) || (count - count.round()).abs() > 1e-6 * count {
         return Err(Error::InvalidParameter {
-            name: "step of azimuths",
+            parameter: Parameter::AngleStep,
             value: format!("{}", step.to_degrees()),
             expected: "a divisor of 360 degrees, such as 1, 2.5 or 7.5",
         });

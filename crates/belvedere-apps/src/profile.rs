@@ -3,7 +3,7 @@
 use belvedere_core::ground::Ground;
 use belvedere_core::query::{Curvature, EarthParams, MedialScene, merged_crossings};
 use belvedere_data::control::Control;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// How far above and below the line and the ground balls are looked for, metres: higher than any building.
@@ -48,13 +48,13 @@ pub fn sight_profile(
     if !(span.is_finite() && span > 0.0 && observer[2].is_finite() && target[2].is_finite()) {
         let value = format!("{observer:?} to {target:?}");
         let expected = "finite, and at different positions on the map";
-        return Err(Error::InvalidParameter { name: "line of a profile", value, expected });
+        return Err(Error::InvalidParameter { parameter: Parameter::ProfileLine, value, expected });
     }
     let step = step.unwrap_or((span / 1000.0).max(0.1));
     if !(step > 0.0 && span / step <= MOST_ROWS) {
         let value = format!("{step} m on {span} m");
         let expected = "above zero, and large enough for a million rows";
-        return Err(Error::InvalidParameter { name: "step of a profile", value, expected });
+        return Err(Error::InvalidParameter { parameter: Parameter::ProfileStep, value, expected });
     }
     let is_far = |place: [f64; 3]| scene.is_on_far_terrain(place);
     let is_over_terrain = is_far(observer) || is_far(target);

@@ -7,7 +7,7 @@ use belvedere_core::query::{Answer, BackFaces, MedialScene, Piece, Sides, Surfac
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{dot, length, sub};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -81,7 +81,11 @@ pub fn protected_view(
 ) -> Result<ProtectedView> {
     if !(params.max_range > 0.0) {
         let value = params.max_range.to_string();
-        return Err(Error::InvalidParameter { name: "greatest range", value, expected: "above zero metres" });
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::MaxDistance,
+            value,
+            expected: "above zero metres",
+        });
     }
     let mut limits = vec![f64::INFINITY; grid.len()];
     let mut viewpoints = Vec::with_capacity(eyes.len());

@@ -7,7 +7,7 @@
 use crate::tree_light::{Crowns, TreeLight};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use std::ops::Range;
 
 /// Bits of all rows that are held at a time: 64 MiB. Fewer would sweep the scene more often, more would not be faster.
@@ -150,7 +150,7 @@ pub fn fold_blocks(
 ) -> Result<()> {
     if block == 0 {
         let value = "0".to_owned();
-        return Err(Error::InvalidParameter { name: "number of targets in a block", value, expected: "1 or more" });
+        return Err(Error::InvalidParameter { parameter: Parameter::TargetCount, value, expected: "1 or more" });
     }
     for (number, of_block) in targets.chunks(block).enumerate() {
         control.check()?;

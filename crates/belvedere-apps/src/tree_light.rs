@@ -8,7 +8,7 @@ use belvedere_core::medial::MedialBalls;
 use belvedere_core::model::SceneModel;
 use belvedere_core::query::{BlockRule, MedialScene};
 use belvedere_data::control::Control;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -70,7 +70,7 @@ impl Transmissivity {
     pub fn constant(share: f64) -> Result<Self> {
         if !(0.0..=1.0).contains(&share) {
             return Err(Error::InvalidParameter {
-                name: "transmissivity",
+                parameter: Parameter::Transmissivity,
                 value: share.to_string(),
                 expected: "0 (opaque) to 1",
             });

@@ -9,7 +9,7 @@ use belvedere::query::{Sight, Viewer, Visibility};
 use belvedere::raster::Raster;
 use belvedere::ray_index::Ray;
 use belvedere::view::MAX_PIXEL_COUNT;
-use belvedere::{Error, Mesh, Result};
+use belvedere::{Error, Mesh, Parameter, Result};
 use grid::HeightGrid;
 use rayon::prelude::*;
 
@@ -153,7 +153,7 @@ fn layout(low: [f64; 2], high: [f64; 2], params: &DsmParams) -> Result<([f64; 2]
     let size = [0, 1].map(|axis| ((high[axis] - corner[axis]) / params.cell).floor() + 1.0);
     if !(size[0] * size[1] <= MAX_PIXEL_COUNT as f64) {
         return Err(Error::InvalidParameter {
-            name: "size of the raster",
+            parameter: Parameter::Raster,
             value: format!("{} x {} cells", size[0], size[1]),
             expected: "at most 268435456 cells; take larger cells",
         });

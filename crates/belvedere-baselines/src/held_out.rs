@@ -8,7 +8,7 @@
 use belvedere::pulses::{Pulses, SensorPositions};
 use belvedere::query::{Answer, UnprovenAs, Viewer, Visibility};
 use belvedere::vector::{length, sub, unit};
-use belvedere::{Error, PointCloud, Result};
+use belvedere::{Error, Parameter, PointCloud, Result};
 
 /// What is held out and where is asked.
 #[derive(Clone, Debug, PartialEq)]
@@ -256,7 +256,10 @@ fn surface(cloud: &PointCloud, row: u32) -> Surface {
 
 impl HeldOutParams {
     fn validate(&self) -> Result<()> {
-        let wrong = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let wrong = |name: &str, value: String, expected| {
+            let value = format!("{value} for the {name}");
+            Err(Error::InvalidParameter { parameter: Parameter::MethodSetting, value, expected })
+        };
         if !(self.share > 0.0 && self.share < 1.0) {
             return wrong("share of the pulses held out", self.share.to_string(), "between 0 and 1");
         }

@@ -2,7 +2,7 @@
 
 use belvedere::query::{Answer, Sight, Viewer};
 use belvedere::ray_index::Ray;
-use belvedere::{Error, Result};
+use belvedere::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// Least targets handed to a thread at once: enough to make handing over cheap, few enough to share slow ones out.
@@ -42,7 +42,11 @@ pub(crate) fn check_least(name: &'static str, value: f64, least: f64, expected: 
     if value.is_finite() && value >= least {
         return Ok(());
     }
-    Err(Error::InvalidParameter { name, value: value.to_string(), expected })
+    Err(Error::InvalidParameter {
+        parameter: Parameter::MethodSetting,
+        value: format!("{value} for the {name}"),
+        expected,
+    })
 }
 
 /// Checks that a parameter is finite and above zero.

@@ -1,7 +1,7 @@
 //! How densely a cloud samples the surface around each of its points.
 
 use belvedere::neighbors::NeighborIndex;
-use belvedere::{Error, Result};
+use belvedere::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// Points handed to a thread at once; their searches share the cache.
@@ -56,5 +56,9 @@ pub(crate) fn check_neighbor(name: &'static str, k: usize) -> Result<()> {
     if (1..=256).contains(&k) {
         return Ok(());
     }
-    Err(Error::InvalidParameter { name, value: k.to_string(), expected: "1 to 256" })
+    Err(Error::InvalidParameter {
+        parameter: Parameter::MethodSetting,
+        value: format!("{k} for the {name}"),
+        expected: "1 to 256",
+    })
 }

@@ -6,7 +6,7 @@ use belvedere::query::{Answer, Sight, Viewer, Visibility};
 use belvedere::ray_index::Ray;
 use belvedere::vector::{cross, dot, sub, unit};
 use belvedere::view::View;
-use belvedere::{Error, Mesh, Result};
+use belvedere::{Error, Mesh, Parameter, Result};
 use rayon::prelude::*;
 
 /// How a [`ShadowMap`] is drawn and looked up.
@@ -56,8 +56,8 @@ impl ShadowMap {
         check_least("maximum slope bias", params.max_slope_bias, 0.0, "finite and not negative, metres")?;
         if !(1..=16_384).contains(&params.face_px) {
             return Err(Error::InvalidParameter {
-                name: "pixels along a face",
-                value: params.face_px.to_string(),
+                parameter: Parameter::MethodSetting,
+                value: format!("{} for the pixels along a face", params.face_px),
                 expected: "1 to 16384",
             });
         }

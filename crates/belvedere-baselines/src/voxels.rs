@@ -3,7 +3,7 @@
 use crate::lines_of_sight::{check_clearance, check_positive, sight};
 use belvedere::query::{Sight, Viewer, Visibility};
 use belvedere::ray_index::Ray;
-use belvedere::{Error, Result};
+use belvedere::{Error, Parameter, Result};
 use std::collections::HashMap;
 
 /// How [`Voxels`] are filled and traced.
@@ -53,8 +53,8 @@ impl Voxels {
         check_clearance(params.clearance)?;
         if params.min_points == 0 {
             return Err(Error::InvalidParameter {
-                name: "points per voxel",
-                value: "0".to_owned(),
+                parameter: Parameter::MethodSetting,
+                value: "0 for the points per voxel".to_owned(),
                 expected: "1 or more",
             });
         }
@@ -63,7 +63,7 @@ impl Voxels {
             let scaled = position.map(|v| f64::from(v) / params.size);
             if !scaled.iter().all(|v| v.abs() < MAX_INDEX) {
                 return Err(Error::InvalidParameter {
-                    name: "position in voxels",
+                    parameter: Parameter::Position,
                     value: format!("{scaled:?}"),
                     expected: "within 1e9 voxels of the origin; take larger voxels",
                 });

@@ -22,7 +22,7 @@ pub(crate) fn choose(global: &Global) -> Result<()> {
         DeviceChoice::Gpu => Choice::Gpu,
         DeviceChoice::Number(number) => Choice::Number(number),
     };
-    let gpu = crate::pipeline::flagged("--device", Gpu::new(choice))?;
+    let gpu = Gpu::new(choice)?;
     CHOSEN.get_or_init(|| Arc::new(gpu));
     Ok(())
 }

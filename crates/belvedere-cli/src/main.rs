@@ -6,6 +6,7 @@ mod device;
 mod help;
 mod interrupt;
 mod memory;
+mod parameter_flags;
 mod pipeline;
 mod progress;
 mod run;
@@ -30,7 +31,7 @@ fn main() -> ExitCode {
     };
     match written_files::check(&program, &matches).and_then(|()| commands::run(&cli)) {
         Ok(summary) => summary.print(&cli.global),
-        Err(error) => failure(&error),
+        Err(error) => failure(&parameter_flags::with_flag(error, &program, &matches)),
     }
 }
 

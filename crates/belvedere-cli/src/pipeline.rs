@@ -24,14 +24,6 @@ use belvedere::{Bounds, Error, PointCloud};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Makes a parameter out of range an error about the flag that gave it, which is wrong usage.
-pub(crate) fn flagged<T>(flag: &str, result: belvedere::Result<T>) -> Result<T> {
-    result.map_err(|error| match error {
-        Error::InvalidParameter { .. } => Usage(format!("{flag}: {error}")).into(),
-        other => other.into(),
-    })
-}
-
 /// Reads the cloud and reports on it.
 pub(crate) fn read(input: &CloudInput, run: &mut Run) -> Result<PointCloud> {
     Ok(read_counted(input, run)?.0)
@@ -279,7 +271,7 @@ impl ViewChoice {
         let views = match self.kind.panorama {
             Some(eye) => {
                 let eye = scene.local_from_file(eye.0);
-                flagged("--panorama, --size", View::panorama(eye, self.panorama_width()?))?.to_vec()
+                View::panorama(eye, self.panorama_width()?)?.to_vec()
             }
             None => vec![self.view(scene, summary)?],
         };
@@ -314,17 +306,17 @@ impl ViewChoice {
     pub(crate) fn check(&self) -> Result<()> {
         let kind = &self.kind;
         if let Some(eye) = kind.panorama {
-            flagged("--panorama, --size", View::panorama(eye.0, self.panorama_width()?))?;
+            View::panorama(eye.0, self.panorama_width()?)?;
         } else if let Some(eye) = kind.eye {
             self.camera(eye.0, |place| place)?;
         } else if let Some(direction) = kind.direction {
-            flagged("--direction, --pixel", View::parallel(direction.0, [0.0; 3], [1.0; 3], 1.0))?;
+            View::parallel(direction.0, [0.0; 3], [1.0; 3], 1.0)?;
         } else if let Some(sun) = kind.sun.filter(|sun| !(0.0..=90.0).contains(&sun.0[1])) {
             let elevation = sun.0[1];
             return Err(Usage(format!("--sun: the elevation is {elevation}, but must be 0 to 90 degrees")).into());
         } else if let Some(viewport) = &kind.viewport {
             let (vx, vy) = (viewport.vx, viewport.vy);
-            flagged("--viewport", View::from_viewport(viewport.p0, vx, vy, viewport.pixels_per_unit))?;
+            View::from_viewport(viewport.p0, vx, vy, viewport.pixels_per_unit)?;
         }
         Ok(())
     }
@@ -358,7 +350,7 @@ impl ViewChoice {
         let fov = self.fov.map_or(CAMERA_FOV, f64::to_radians);
         let (near, far) = (self.near.map_or(0.0, f64::from), self.far.unwrap_or(f64::INFINITY));
         let [eye, look_at] = [eye, look_at.0].map(to_local);
-        flagged("--eye, --look-at, --fov, --size, --near, --far", View::perspective(eye, look_at, fov, size, near, far))
+        Ok(View::perspective(eye, look_at, fov, size, near, far)?)
     }
 
     fn view(&self, scene: &Scene, summary: &mut Summary) -> Result<View> {
@@ -369,9 +361,9 @@ impl ViewChoice {
             let north = self.north.of_scene(scene);
             north.report(summary);
             let sun = to_sun(azimuth - north.of_grid, elevation);
-            flagged("--sun, --pixel", View::parallel(sun.map(|v| -v), low, high, pixel))?
+            View::parallel(sun.map(|v| -v), low, high, pixel)?
         } else if let Some(direction) = &self.kind.direction {
-            flagged("--direction, --pixel", View::parallel(direction.0, low, high, pixel))?
+            View::parallel(direction.0, low, high, pixel)?
         } else if let Some(viewport) = &self.kind.viewport {
             let scale = scene.model.frame().crs.metres_per_unit_xyz();
             let metres = |v: [f64; 3]| std::array::from_fn(|i| v[i] * scale[i]);
@@ -381,7 +373,7 @@ impl ViewChoice {
                 metres(viewport.vy),
                 viewport.pixels_per_unit / scale[0],
             );
-            flagged("--viewport", view)?
+            view?
         } else if let Some(eye) = &self.kind.eye {
             self.camera(eye.0, |place| scene.local_from_file(place))?
         } else {

@@ -14,7 +14,7 @@
 
 use belvedere_data::model::FARTHEST;
 use belvedere_data::vector::{dot, length, sub};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// The largest part of its radius by which a ball gives way to a target: a wire must not vanish.
 pub const SHELL_SHARE: f64 = 0.5;
@@ -79,13 +79,14 @@ impl BlockRule {
     /// # Errors
     /// [`Error::InvalidParameter`] for a bias that is not finite and for a shell below zero.
     pub fn validate(&self) -> Result<()> {
-        let invalid =
-            |name, value: f64, expected| Err(Error::InvalidParameter { name, value: value.to_string(), expected });
+        let invalid = |parameter, value: f64, expected| {
+            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
+        };
         if !self.bias.is_finite() {
-            return invalid("depth bias", self.bias, "finite");
+            return invalid(Parameter::DepthBias, self.bias, "finite");
         }
         if !(self.shell >= 0.0) {
-            return invalid("shell", self.shell, "0 metres or more");
+            return invalid(Parameter::Shell, self.shell, "0 metres or more");
         }
         Ok(())
     }

@@ -11,7 +11,7 @@ pub(crate) use walk::Visit;
 
 use crate::instructions::Instructions;
 use belvedere_data::vector::unit;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use search_tree::search_tree;
@@ -104,7 +104,7 @@ impl RayIndex {
         for corners in boxes {
             if !corners.as_flattened().iter().all(|v| v.is_finite()) {
                 return Err(Error::InvalidParameter {
-                    name: "box of an obstacle",
+                    parameter: Parameter::Obstacle,
                     value: format!("{corners:?}"),
                     expected: "finite",
                 });

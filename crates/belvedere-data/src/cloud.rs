@@ -2,7 +2,7 @@
 
 use crate::crs::Crs;
 use crate::frame::{Bounds, Frame};
-use crate::{Error, Result};
+use crate::{Error, Parameter, Result};
 
 /// A point cloud.
 ///
@@ -228,7 +228,11 @@ impl PointCloud {
             return Err(Error::LengthMismatch { what, expected, found });
         }
         if let Some(p) = self.positions.iter().find(|p| p.iter().any(|v| !v.is_finite())) {
-            return Err(Error::InvalidParameter { name: "position", value: format!("{p:?}"), expected: "finite" });
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::Position,
+                value: format!("{p:?}"),
+                expected: "finite",
+            });
         }
         Ok(())
     }

@@ -11,7 +11,7 @@ mod registry;
 pub mod text;
 mod wkt;
 
-use crate::{Error, Result};
+use crate::{Error, Parameter, Result};
 use std::path::Path;
 
 /// Metres per US survey foot, 1200/3937 exactly.
@@ -254,7 +254,7 @@ fn invalid(text: &str) -> Error {
         value.push('…');
     }
     Error::InvalidParameter {
-        name: "crs",
+        parameter: Parameter::Crs,
         value,
         expected: if cfg!(feature = "crs") {
             "a known EPSG code such as EPSG:28992, well-known text or a PROJ string"
@@ -326,7 +326,7 @@ impl Crs {
         }
         Err(match failure {
             Some(value) => Error::InvalidParameter {
-                name: "reference system",
+                parameter: Parameter::ReferenceSystem,
                 value,
                 expected: "a projected system known by EPSG code or well-known text",
             },
@@ -347,7 +347,7 @@ impl GeographicProjection {
     pub fn project(&self, latitude: f64, longitude: f64) -> Result<[f64; 2]> {
         use std::f64::consts::{FRAC_PI_2, PI};
         let invalid = |why: String| Error::InvalidParameter {
-            name: "latitude and longitude",
+            parameter: Parameter::LatitudeLongitude,
             value: format!("{latitude}, {longitude} rad{why}"),
             expected: "radians within the area of the reference system",
         };
@@ -371,7 +371,7 @@ impl GeographicProjection {
     /// [`Error::InvalidParameter`] for positions that the system cannot take back, and for systems without an inverse.
     pub fn unproject(&self, position: [f64; 2]) -> Result<[f64; 2]> {
         let invalid = |why: String| Error::InvalidParameter {
-            name: "easting and northing",
+            parameter: Parameter::Position,
             value: format!("{}, {} m{why}", position[0], position[1]),
             expected: "within the area of the reference system",
         };

@@ -1,7 +1,7 @@
 //! Heights of terrain on a grid, such as those of an elevation raster around a cloud.
 
 use crate::raster::Raster;
-use crate::{Error, Result};
+use crate::{Error, Parameter, Result};
 
 /// Heights at the nodes of a grid along the axes of a frame, and between four neighbouring nodes bilinearly.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,18 +18,22 @@ impl ElevationGrid {
     /// # Errors
     /// [`Error::InvalidParameter`] for fewer than 2 x 2 heights, none that is known, a cell that is not above zero, or a place that is not finite.
     pub fn new(mut heights: Raster<f32>, north_west: [f64; 2], cell: [f64; 2]) -> Result<Self> {
-        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         let (width, height) = (heights.width(), heights.height());
         if width < 2 || height < 2 {
-            return invalid("size of the terrain", format!("{width} x {height} cells"), "at least 2 x 2 cells");
+            return invalid(Parameter::Terrain, format!("{width} x {height} cells"), "at least 2 x 2 cells");
         }
         if !cell.iter().all(|side| side.is_finite() && *side > 0.0) || !north_west.iter().all(|v| v.is_finite()) {
-            let value = format!("{cell:?} m from {north_west:?} m on");
-            return invalid("cell of the terrain", value, "above zero, at a finite place");
+            let value = format!("cells of {cell:?} m from {north_west:?} m on");
+            return invalid(Parameter::Terrain, value, "of cells above zero, at a finite place");
         }
         heights.values_mut().iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = f32::NAN);
         if heights.values().iter().all(|v| v.is_nan()) {
-            return invalid("terrain", "without a height".to_owned(), "a raster in which some cells have values");
+            return invalid(
+                Parameter::Terrain,
+                "without a height".to_owned(),
+                "a raster in which some cells have values",
+            );
         }
         Ok(Self { heights, north_west, cell })
     }

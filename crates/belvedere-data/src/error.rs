@@ -1,5 +1,6 @@
 //! The one error type of the library.
 
+use crate::parameter::Parameter;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -76,10 +77,10 @@ pub enum Error {
         what: &'static str,
     },
     /// A parameter lies outside its range.
-    #[error("{name} is {value}, but must be {expected}")]
+    #[error("{parameter} is {value}, but must be {expected}")]
     InvalidParameter {
         /// The parameter.
-        name: &'static str,
+        parameter: Parameter,
         /// The value given.
         value: String,
         /// The range.

@@ -1,6 +1,6 @@
 //! The horizon of far terrain: below which elevation nothing is seen in each direction.
 
-use crate::{Error, Result};
+use crate::{Error, Parameter, Result};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Elevations of a horizon all around, linear between the azimuths that are given.
@@ -21,14 +21,18 @@ impl HorizonProfile {
         let is_wrong = |row: &&[f64; 2]| !(row[0].is_finite() && row[1].abs() <= FRAC_PI_2 + 1e-9);
         if let Some([azimuth, elevation]) = rows.iter().find(is_wrong) {
             return Err(Error::InvalidParameter {
-                name: "row of a horizon",
-                value: format!("azimuth {}, elevation {} degrees", azimuth.to_degrees(), elevation.to_degrees()),
+                parameter: Parameter::Horizon,
+                value: format!(
+                    "a row of azimuth {}, elevation {} degrees",
+                    azimuth.to_degrees(),
+                    elevation.to_degrees()
+                ),
                 expected: "a finite azimuth and an elevation of -90 to 90 degrees",
             });
         }
         if rows.is_empty() {
             return Err(Error::InvalidParameter {
-                name: "horizon",
+                parameter: Parameter::Horizon,
                 value: "without rows".to_owned(),
                 expected: "at least one azimuth with its elevation",
             });

@@ -3,7 +3,7 @@
 use crate::balls::MedialBalls;
 use crate::frame::{Bounds, Frame};
 use crate::needles::NeedleColumns;
-use crate::{Error, Result};
+use crate::{Error, Parameter, Result};
 use std::collections::BTreeMap;
 
 /// How far from the origin anything of a scene may lie, and how large a ball may be, metres. Beyond lies damage: readers leave out points
@@ -55,24 +55,28 @@ impl ModelParts {
         if !(found == 0 || found == expected) {
             return Err(Error::LengthMismatch { what: "transmissions of balls", expected, found });
         }
-        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if let Some(c) = self.balls.centers.iter().find(|c| !is_near(**c)) {
-            return invalid("centre of a ball", format!("{c:?}"), "within 10000 km of the origin");
+            return invalid(Parameter::Ball, format!("at {c:?}"), "within 10000 km of the origin");
         }
         if let Some(r) = self.balls.radii.iter().find(|r| !(0.0..=FARTHEST).contains(*r)) {
-            return invalid("radius of a ball", r.to_string(), "0 to 10000 km");
+            return invalid(Parameter::Ball, format!("of radius {r}"), "of radius 0 to 10000 km");
         }
         let Bounds { low, high } = self.bounds;
         if !(is_near(low) && is_near(high) && low.iter().zip(&high).all(|(low, high)| low <= high)) {
-            let corners = format!("{:?}", (low, high));
-            return invalid("bounds of balls", corners, "lowest and highest corner within 10000 km of the origin");
+            let corners = format!("one of the bounds {:?}", (low, high));
+            return invalid(
+                Parameter::Ball,
+                corners,
+                "within bounds from lowest to highest corner, within 10000 km of the origin",
+            );
         }
         // a zone before the easting gives some 60 000 km; vertical systems and units add nothing to that
         if self.frame.origin.iter().any(|v| !(v.abs() <= 1e9)) {
-            return invalid("origin of balls", format!("{:?}", self.frame.origin), "within a million km of zero");
+            return invalid(Parameter::Origin, format!("{:?}", self.frame.origin), "within a million km of zero");
         }
         if let Some(t) = self.transmission.iter().find(|t| !(t.is_nan() || (0.0..=1.0).contains(*t))) {
-            return invalid("transmission of a ball", t.to_string(), "0 to 1, or NaN");
+            return invalid(Parameter::Ball, format!("of transmission {t}"), "of transmission 0 to 1, or NaN");
         }
         self.pulses.as_ref().map_or(Ok(()), NeedleColumns::validate)
     }

@@ -1,7 +1,7 @@
 //! Pulses as columns of numbers: the pieces of lines that they prove empty.
 
 use crate::model::{FARTHEST, is_near};
-use crate::{Error, Result};
+use crate::{Error, Parameter, Result};
 
 /// Ways that a pulse may go: along three axes, to both sides.
 const WAYS: u8 = 6;
@@ -58,18 +58,18 @@ impl NeedleColumns {
                 return Err(Error::LengthMismatch { what, expected, found });
             }
         }
-        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if let Some(start) = self.starts.iter().find(|start| !is_near(**start)) {
-            return invalid("lower end of a pulse", format!("{start:?}"), "within 10000 km of the origin");
+            return invalid(Parameter::Pulse, format!("from {start:?} on"), "within 10000 km of the origin");
         }
         if let Some(way) = self.ways.iter().find(|way| **way >= WAYS) {
-            return invalid("way of a pulse", way.to_string(), "0 to 5");
+            return invalid(Parameter::Pulse, format!("of way {way}"), "of way 0 to 5");
         }
         if let Some(length) = self.lengths.iter().find(|length| !(**length > 0.0)) {
-            return invalid("length of a pulse", length.to_string(), "above zero");
+            return invalid(Parameter::Pulse, format!("of length {length}"), "of length above zero");
         }
         if !(self.top.abs() <= FARTHEST) {
-            return invalid("top of all pulses", self.top.to_string(), "within 10000 km of the origin");
+            return invalid(Parameter::Pulse, format!("up to {}", self.top), "within 10000 km of the origin");
         }
         Ok(())
     }

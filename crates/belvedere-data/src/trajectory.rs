@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::cloud::to_local;
 use crate::vector::length;
-use crate::{Error, GpsTimeKind, PointCloud, Result};
+use crate::{Error, GpsTimeKind, Parameter, PointCloud, Result};
 
 /// Longest gap between two positions that is interpolated over: recorders write at 1 Hz or faster, and in two seconds an
 /// aircraft in a turn leaves the chord by a few metres; beyond that the path is not known.
@@ -197,7 +197,7 @@ impl Trajectory {
                 format!("{least} to {} s", times.iter().copied().fold(f64::NEG_INFINITY, f64::max))
             };
             return Err(Error::InvalidParameter {
-                name: "trajectory",
+                parameter: Parameter::Trajectory,
                 value: format!("from {}, the cloud from {}", span(&self.times), span(times)),
                 expected: "to cover the GPS times of the cloud",
             });
@@ -225,7 +225,7 @@ const LEAST_BELOW: f64 = 0.1;
 
 /// Refuses scanner positions that cannot be those of points: in degrees, in another system, or at the height of the ground. Both (N, 3), local metres.
 fn check_above(positions: &[[f32; 3]], points: &[[f32; 3]]) -> Result<()> {
-    let invalid = |value, expected| Err(Error::InvalidParameter { name: "trajectory", value, expected });
+    let invalid = |value, expected| Err(Error::InvalidParameter { parameter: Parameter::Trajectory, value, expected });
     let known: Vec<(&[f32; 3], &[f32; 3])> =
         positions.iter().zip(points).filter(|(p, _)| !p.iter().any(|v| v.is_nan())).collect();
     if known.is_empty() {

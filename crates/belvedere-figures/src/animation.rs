@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::picture::Picture;
 use crate::png::write_frames;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Longest time that a frame stays, seconds: beyond it the file format, which counts milliseconds in 16 bits, has no number.
 const LONGEST: f64 = 65.535;
@@ -22,20 +22,20 @@ const LONGEST: f64 = 65.535;
 /// W3C, Portable Network Graphics (PNG) Specification, third edition, 2025, sections 4.9 and 11.3.6.
 pub fn write_apng(path: &Path, frames: &[Picture], seconds_per_frame: f64) -> Result<()> {
     let Some(first) = frames.first() else {
-        return invalid("number of frames", "0".to_owned(), "at least 1");
+        return invalid(Parameter::Frames, "none".to_owned(), "at least one");
     };
     if let Some(other) = frames.iter().find(|frame| (frame.width, frame.height) != (first.width, first.height)) {
         let value = format!("{} x {} pixels after {} x {}", other.width, other.height, first.width, first.height);
-        return invalid("size of a frame", value, "that of the first frame");
+        return invalid(Parameter::Frames, value, "of the size of the first frame");
     }
     if !(0.001..=LONGEST).contains(&seconds_per_frame) {
-        return invalid("time of a frame", format!("{seconds_per_frame} s"), "0.001 to 65.535 seconds");
+        return invalid(Parameter::FrameTime, format!("{seconds_per_frame} s"), "0.001 to 65.535 seconds");
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked to be 1 to 65535 ms")]
     let milliseconds = (seconds_per_frame * 1000.0).round() as u16;
     write_frames(path, frames, milliseconds)
 }
 
-fn invalid<T>(name: &'static str, value: String, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { name, value, expected })
+fn invalid<T>(parameter: Parameter, value: String, expected: &'static str) -> Result<T> {
+    Err(Error::InvalidParameter { parameter, value, expected })
 }

@@ -5,7 +5,7 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use crate::picture::Picture;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use belvedere_io::atomic;
 
 /// Writes `picture` with 8 bits per channel.
@@ -30,7 +30,11 @@ pub fn write_png(path: &Path, picture: &Picture) -> Result<()> {
 pub(super) fn write_frames(path: &Path, frames: &[Picture], milliseconds: u16) -> Result<()> {
     let (Some(first), Ok(count)) = (frames.first(), u32::try_from(frames.len())) else {
         let value = frames.len().to_string();
-        return Err(Error::InvalidParameter { name: "number of frames", value, expected: "1 to 4294967295" });
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::Frames,
+            value,
+            expected: "1 to 4294967295 in number",
+        });
     };
     for frame in frames {
         checked_size(frame)?;
@@ -102,7 +106,7 @@ fn checked_size(picture: &Picture) -> Result<(u32, u32)> {
             Ok((width, height))
         }
         _ => Err(Error::InvalidParameter {
-            name: "picture size",
+            parameter: Parameter::PictureSize,
             value: format!("{} x {} pixels in {} bytes", picture.width, picture.height, picture.rgb.len()),
             expected: "at least one pixel and three bytes per pixel",
         }),

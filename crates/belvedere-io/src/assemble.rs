@@ -8,7 +8,7 @@ use super::read_options::{ReadOptions, RowNumbers};
 use belvedere_data::Frame;
 use belvedere_data::cloud::{PointCloud, centre_rounded, to_local};
 use belvedere_data::crs::{Crs, CrsKind};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Points further than this from the median (or from a fixed origin) along an axis are no part of any scene, in metres.
 const FARTHEST: f64 = 1e6;
@@ -97,7 +97,7 @@ pub(super) fn assemble(mut parts: Vec<Part>, options: &ReadOptions) -> Result<(P
     }
     if u32::try_from(cloud.len()).is_err() {
         return Err(Error::InvalidParameter {
-            name: "number of points",
+            parameter: Parameter::PointCount,
             value: cloud.len().to_string(),
             expected: "at most 4294967295; read fewer files at once",
         });

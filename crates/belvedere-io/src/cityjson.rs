@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::polygons::{MeshBuilder, MeshReport};
 use super::source::Source;
-use belvedere_data::{Error, Mesh, Result};
+use belvedere_data::{Error, Mesh, Parameter, Result};
 
 /// Which of the levels of detail of each city object to read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -100,7 +100,7 @@ impl<'a> CityFile<'a> {
         let chosen = match wanted {
             LevelOfDetail::Highest => levels.iter().map(|level| level.0).fold(f64::NEG_INFINITY, f64::max),
             LevelOfDetail::Only(level) => level.trim().parse().map_err(|_| Error::InvalidParameter {
-                name: "level of detail",
+                parameter: Parameter::LevelOfDetail,
                 value: level.clone(),
                 expected: "a number such as 1, 1.3 or 2.2",
             })?,

@@ -13,7 +13,7 @@ use super::source::Source;
 use belvedere_data::cloud::PointCloud;
 use belvedere_data::control::Control;
 use belvedere_data::crs::Crs;
-use belvedere_data::{Error, Frame, Result};
+use belvedere_data::{Error, Frame, Parameter, Result};
 
 /// Some points of a source.
 #[derive(Clone, Debug)]
@@ -56,7 +56,11 @@ pub fn read_batches<'a, S: Into<Source<'a>>>(
 ) -> Result<CloudBatches<'a>> {
     if options.up != UpAxis::Z {
         let value = "y".to_owned();
-        return Err(Error::InvalidParameter { name: "axis that is up", value, expected: "z for clouds in batches" });
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::UpAxis,
+            value,
+            expected: "z for clouds in batches",
+        });
     }
     let forced = options.forced_crs()?;
     let reading = Reading { options, forced: forced.as_ref(), control };

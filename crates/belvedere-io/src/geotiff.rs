@@ -7,7 +7,7 @@ use tiff::tags::Tag;
 use crate::output::Output;
 use belvedere_data::crs::{Crs, text};
 use belvedere_data::raster::Raster;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Raw size from which files use 64-bit offsets (BigTIFF); tags and incompressible strips need some room below 4 GiB.
 const BIG_FILE_BYTES: usize = 3_900_000_000;
@@ -129,7 +129,7 @@ where
 
 pub(crate) fn invalid_size(width: usize, height: usize) -> Error {
     Error::InvalidParameter {
-        name: "raster size",
+        parameter: Parameter::Raster,
         value: format!("{width} x {height}"),
         expected: "1 to 4294967295 pixels wide and high",
     }

@@ -6,7 +6,7 @@
 use crate::geotiff::{Georeference, ascii, geo_keys, invalid_size};
 use crate::output::Output;
 use belvedere_data::raster::Raster;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
@@ -44,7 +44,7 @@ pub fn write_cog<'a>(
     if tilt != 0.0 || turn != 0.0 || !(east > 0.0 && south < 0.0) {
         let value = format!("steps {:?} and {:?}", place.column_step, place.row_step);
         return Err(Error::InvalidParameter {
-            name: "raster",
+            parameter: Parameter::Raster,
             value,
             expected: "columns to the east and rows to the south",
         });
@@ -218,7 +218,7 @@ fn file<'a>(
     let mut next = 8 + sizes.iter().sum::<usize>();
     let mut offsets: Vec<Vec<u32>> = vec![Vec::new(); levels.len()];
     let too_large = |_| Error::InvalidParameter {
-        name: "size of the raster",
+        parameter: Parameter::Raster,
         value: "more than 4 GB, compressed".to_owned(),
         expected: "a smaller raster, or larger cells",
     };

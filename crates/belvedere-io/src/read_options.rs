@@ -3,7 +3,7 @@
 use belvedere_data::cloud::{Attributes, to_local};
 use belvedere_data::control::Control;
 use belvedere_data::crs::{Crs, CrsKind};
-use belvedere_data::{Bounds, Error, Frame, Result};
+use belvedere_data::{Bounds, Error, Frame, Parameter, Result};
 
 use super::part::{Coordinates, Part};
 
@@ -114,29 +114,33 @@ impl ReadOptions {
 
     /// Checks what no file is needed for, and gives the reference system of the option.
     pub(super) fn forced_crs(&self) -> Result<Option<Crs>> {
-        let invalid = |name, value, expected| Err(Error::InvalidParameter { name, value, expected });
+        let invalid = |parameter, value, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if let Some(frame) = &self.frame
             && !frame.origin.iter().all(|v| v.is_finite())
         {
-            return invalid("origin of the frame", format!("{:?}", frame.origin), "finite");
+            return invalid(Parameter::Origin, format!("{:?}", frame.origin), "finite");
         }
         match self.within {
             Some(Within::File { low, high }) if !(0..3).all(|i| low[i] <= high[i]) => {
-                return invalid("box to read", format!("{low:?} to {high:?}"), "from the lowest to the highest corner");
+                return invalid(
+                    Parameter::ReadBox,
+                    format!("{low:?} to {high:?}"),
+                    "from the lowest to the highest corner",
+                );
             }
             Some(Within::Local(bounds)) if !(0..3).all(|i| bounds.low[i] <= bounds.high[i]) => {
                 let value = format!("{:?} to {:?}", bounds.low, bounds.high);
-                return invalid("box to read", value, "from the lowest to the highest corner");
+                return invalid(Parameter::ReadBox, value, "from the lowest to the highest corner");
             }
             Some(Within::Local(_)) if self.up == UpAxis::Y => {
                 return invalid(
-                    "box to read",
+                    Parameter::ReadBox,
                     "in local coordinates".to_owned(),
                     "in those of the file where its y is up",
                 );
             }
             Some(Within::Local(_)) if self.frame.is_none() => {
-                return invalid("box to read", "in local coordinates".to_owned(), "given together with a frame");
+                return invalid(Parameter::ReadBox, "in local coordinates".to_owned(), "given together with a frame");
             }
             _ => {}
         }

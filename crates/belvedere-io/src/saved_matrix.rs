@@ -8,7 +8,7 @@ use npyz::npz::{NpzArchive, NpzWriter};
 use crate::npz_arrays::{array, begin_array, in_blocks, open, rows, values, write_archive};
 use crate::output::Output;
 use crate::source::{Input, Reader, Source};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Bits in a word.
 const WORD: usize = 64;
@@ -40,7 +40,11 @@ impl MatrixHead {
         let is_unit = |d: &[f64; 3]| (belvedere_data::vector::length(*d) - 1.0).abs() < 1e-6;
         if let Some(bad) = self.directions.iter().find(|d| !is_unit(d)) {
             let value = format!("{bad:?}");
-            return Err(Error::InvalidParameter { name: "direction", value, expected: "a vector of length 1" });
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::Direction,
+                value,
+                expected: "a vector of length 1",
+            });
         }
         Ok(())
     }
@@ -50,8 +54,12 @@ impl MatrixHead {
         let (width, last) = (self.words_of_row(), self.directions.len() % WORD);
         let beyond = if last == 0 { 0 } else { u64::MAX << last };
         if width > 0 && words.chunks(width).any(|row| row.last().is_some_and(|word| word & beyond != 0)) {
-            let value = "1".to_owned();
-            return Err(Error::InvalidParameter { name: "bit beyond the last direction", value, expected: "0" });
+            let value = "marked beyond the last".to_owned();
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::Direction,
+                value,
+                expected: "one that there is",
+            });
         }
         Ok(())
     }

@@ -10,7 +10,7 @@ use crate::write_las;
 #[cfg(feature = "npy")]
 use crate::write_npy;
 use crate::{write_ply, write_table};
-use belvedere_data::{Error, PointCloud, Result};
+use belvedere_data::{Error, Parameter, PointCloud, Result};
 
 /// Extensions a cloud can be written to.
 pub(crate) const SUPPORTED: &str = ".las .laz .ply .csv .xyz .txt .npy";
@@ -76,9 +76,9 @@ pub fn write_cloud<'a>(
         "csv" => write_table::write(output, cloud, &columns, ','),
         "xyz" | "txt" => write_table::write(output, cloud, &columns, ' '),
         "npy" if !columns.is_empty() => Err(Error::InvalidParameter {
-            name: "output format of a cloud with result columns",
-            value: ".npy".to_owned(),
-            expected: "one of .las .laz .ply .csv .xyz .txt",
+            parameter: Parameter::ResultColumns,
+            value: "written as .npy".to_owned(),
+            expected: "written as one of .las .laz .ply .csv .xyz .txt",
         }),
         #[cfg(feature = "npy")]
         "npy" => write_npy::write_coordinates(output, cloud),
@@ -100,9 +100,9 @@ fn check_names(columns: &[Column<'_>]) -> Result<()> {
     let usable = |name: &str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c));
     match columns.iter().find(|c| !usable(&c.name)) {
         Some(c) => Err(Error::InvalidParameter {
-            name: "name of a result column",
-            value: format!("{:?}", c.name),
-            expected: "ASCII letters, digits, '_', '-' and '.'",
+            parameter: Parameter::ResultColumns,
+            value: format!("named {:?}", c.name),
+            expected: "named by ASCII letters, digits, '_', '-' and '.'",
         }),
         None => Ok(()),
     }

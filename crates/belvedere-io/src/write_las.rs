@@ -15,7 +15,7 @@ use crate::write_cloud::WriteReport;
 use belvedere_data::Bounds;
 use belvedere_data::cloud::GpsTimeKind;
 use belvedere_data::crs::text;
-use belvedere_data::{Error, PointCloud, Result};
+use belvedere_data::{Error, Parameter, PointCloud, Result};
 
 /// Points encoded at a time: many LAZ chunks of 50 000, so that all threads compress, yet little memory.
 const POINTS_PER_SLAB: usize = 1 << 20;
@@ -53,8 +53,8 @@ pub(crate) fn write(
     builder.point_format.extra_bytes = u16::try_from(extra_bytes).unwrap_or(u16::MAX);
     if usize::from(builder.point_format.extra_bytes) != extra_bytes {
         return Err(Error::InvalidParameter {
-            name: "number of result columns",
-            value: columns.len().to_string(),
+            parameter: Parameter::ResultColumns,
+            value: format!("{} in number", columns.len()),
             expected: "few enough for 65535 bytes per point",
         });
     }

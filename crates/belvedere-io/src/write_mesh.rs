@@ -3,7 +3,7 @@
 use crate::colors::ramp;
 use crate::output::Output;
 use belvedere_data::crs::text::comment_lines;
-use belvedere_data::{Error, Mesh, Result};
+use belvedere_data::{Error, Mesh, Parameter, Result};
 
 /// Colour of faces without a value.
 const NO_VALUE: [u8; 3] = [128; 3];
@@ -34,7 +34,11 @@ pub fn write_mesh_values<'a>(
     }
     if mesh.triangles.len() > 1_000_000_000 {
         let value = mesh.triangles.len().to_string();
-        return Err(Error::InvalidParameter { name: "number of triangles", value, expected: "a billion at most" });
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::Mesh,
+            value,
+            expected: "a billion triangles at most",
+        });
     }
     let faces: Vec<([[f64; 3]; 3], f64)> =
         values.iter().enumerate().filter_map(|(t, &value)| Some((mesh.corners(t)?, value))).collect();

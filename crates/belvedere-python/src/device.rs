@@ -1,7 +1,7 @@
 //! Graphics processors, where the module is built with them.
 
 use belvedere::query::{Backend, Cpu};
-use belvedere::{Error, Result};
+use belvedere::{Error, Parameter, Result};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ fn of_gpu(device: &str) -> Result<Arc<dyn Backend>> {
 
 fn unknown(device: &str) -> Error {
     Error::InvalidParameter {
-        name: "device",
+        parameter: Parameter::Device,
         value: device.to_owned(),
         expected: "auto, cpu, gpu, or the number of a device",
     }

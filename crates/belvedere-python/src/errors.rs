@@ -1,6 +1,6 @@
 //! Errors of the library as Python exceptions: one place.
 
-use belvedere::Error;
+use belvedere::{Error, Parameter};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use std::io::ErrorKind;
@@ -24,7 +24,9 @@ pub(crate) fn exception(error: Error) -> PyErr {
         }
         Error::NoPoints { what } => ("points".to_owned(), "0".to_owned(), what),
         Error::NoSurface { count, what } => (format!("points {what}"), count.to_string(), message.clone()),
-        Error::InvalidParameter { name, value, expected } => (name.to_owned(), value, format!("must be {expected}")),
+        Error::InvalidParameter { parameter, value, expected } => {
+            (keyword(parameter).to_owned(), value, format!("must be {expected}"))
+        }
         Error::LengthMismatch { what, expected, found } => {
             (what.to_owned(), found.to_string(), format!("give {expected} values"))
         }
@@ -37,6 +39,36 @@ pub(crate) fn exception(error: Error) -> PyErr {
         _ => (message.clone(), String::new(), message.clone()),
     };
     belvedere_error(&message, &what, &value, &advice)
+}
+
+/// The argument that gives a parameter, or its name where several do or none.
+fn keyword(parameter: Parameter) -> &'static str {
+    match parameter {
+        Parameter::AngleStep => "angle_step_deg",
+        Parameter::DirectionCount => "directions",
+        Parameter::FenceHeight => "fence_height",
+        Parameter::Frequency => "frequency_ghz",
+        Parameter::InitialRadius => "initial_radius",
+        Parameter::Latitude | Parameter::Longitude | Parameter::LatitudeLongitude => "location",
+        Parameter::LookAt => "look_at",
+        Parameter::MaxDistance => "max_distance",
+        Parameter::MaxHeight => "max_height",
+        Parameter::MaxRadius => "max_radius",
+        Parameter::MinJump => "min_jump",
+        Parameter::NeighborCount => "neighbors",
+        Parameter::PatchDivision => "patch_division",
+        Parameter::PictureSize => "size",
+        Parameter::PixelSize => "pixel",
+        Parameter::Refraction => "refraction",
+        Parameter::Spacing => "spacing",
+        Parameter::SunCell => "sun_cell_deg",
+        Parameter::TimeStep => "time_step_min",
+        Parameter::TimeZone => "zone",
+        Parameter::Transmissivity => "through_trees",
+        Parameter::Turbidity => "linke",
+        Parameter::WeatherParts => "parts_per_row",
+        other => other.name(),
+    }
 }
 
 /// A `BelvedereError` about an argument.

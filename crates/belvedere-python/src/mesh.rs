@@ -121,7 +121,7 @@ impl Mesh {
         let mesh = self.in_metres(inner)?;
         if let Some(missing) = objects.iter().find(|name| !mesh.object_names.contains(name)) {
             return Err(belvedere::Error::InvalidParameter {
-                name: "object",
+                parameter: belvedere::Parameter::Object,
                 value: format!("'{missing}'"),
                 expected: "the name of an object of the mesh",
             });

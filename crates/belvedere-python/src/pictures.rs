@@ -73,7 +73,7 @@ impl Scene {
                 }
                 _ => {
                     return Err(belvedere::Error::InvalidParameter {
-                        name: "view",
+                        parameter: belvedere::Parameter::View,
                         value: "nothing".to_owned(),
                         expected: "sun, direction, eye with look_at, or eye for a panorama",
                     });

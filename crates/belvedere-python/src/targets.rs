@@ -11,7 +11,7 @@ use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
 use belvedere::io::Georeference;
 use belvedere::results::{FaceRows, georeference};
-use belvedere::{Error, Frame, Mesh, PointCloud};
+use belvedere::{Error, Frame, Mesh, Parameter, PointCloud};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -135,7 +135,7 @@ impl Asked {
 pub(crate) fn moved(cloud: &PointCloud, frame: &Frame) -> belvedere::Result<Vec<[f32; 3]>> {
     if cloud.frame.crs.contradicts(&frame.crs) {
         return Err(Error::InvalidParameter {
-            name: "reference system of the targets",
+            parameter: Parameter::ReferenceSystem,
             value: cloud.frame.crs.describe(),
             expected: "that of the scene; convert one of them",
         });

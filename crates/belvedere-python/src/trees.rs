@@ -1,9 +1,9 @@
 //! Light through trees.
 
 use crate::scene::Inner;
-use belvedere::Error;
 use belvedere::apps::tree_light::{Leaves, Transmissivity, TreeLight};
 use belvedere::control::Control;
+use belvedere::{Error, Parameter};
 use pyo3::prelude::*;
 
 /// The share of light that passes through crowns, and whether they have leaves.
@@ -23,16 +23,19 @@ enum Share {
 impl Through {
     /// The trees of a scene; `None` where they are opaque.
     pub(crate) fn of(&self, inner: &Inner, control: &Control<'_>) -> belvedere::Result<Option<TreeLight>> {
-        let invalid =
-            |name, value: &str, expected| Err(Error::InvalidParameter { name, value: format!("'{value}'"), expected });
+        let invalid = |parameter, value: &str, expected| {
+            Err(Error::InvalidParameter { parameter, value: format!("'{value}'"), expected })
+        };
         let by_season = matches!(&self.share, Some(Share::Name(name)) if name == "seasons");
         let leaves = match self.leaves.as_deref() {
             None => Leaves::ByDate,
-            Some(leaves) if !by_season => return invalid("leaves", leaves, "given with through_trees='seasons' only"),
+            Some(leaves) if !by_season => {
+                return invalid(Parameter::Leaves, leaves, "given with through_trees='seasons' only");
+            }
             Some("auto") => Leaves::ByDate,
             Some("on") => Leaves::On,
             Some("off") => Leaves::Off,
-            Some(leaves) => return invalid("leaves", leaves, "'auto', 'on' or 'off'"),
+            Some(leaves) => return invalid(Parameter::Leaves, leaves, "'auto', 'on' or 'off'"),
         };
         let model = &inner.model;
         let transmissivity = match &self.share {
@@ -48,7 +51,13 @@ impl Through {
                         advice: "use a cloud with return numbers, GPS times and preferably classes",
                     })?
                 }
-                _ => return invalid("through_trees", name, "'none', 'seasons', 'pulses', or a number from 0 to 1"),
+                _ => {
+                    return invalid(
+                        Parameter::Transmissivity,
+                        name,
+                        "'none', 'seasons', 'pulses', or a number from 0 to 1",
+                    );
+                }
             },
         };
         if !model.vegetation().contains(&true) {

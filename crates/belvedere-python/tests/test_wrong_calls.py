@@ -84,10 +84,10 @@ WRONG = {
     "normals of cells": (lambda s, c, f: s.shadow(sun=(180, 30), normals=PLACES), "normals", "targets"),
     "normals of another length": (
         lambda s, c, f: s.shadow(sun=(180, 30), targets=PLACES, normals=np.ones((2, 3))), "normals", "1 rows"),
-    "share of light": (lambda s, c, f: s.shadow(sun=(180, 30), through_trees=2.0), "transmissivity", "0 (opaque)"),
+    "share of light": (lambda s, c, f: s.shadow(sun=(180, 30), through_trees=2.0), "through_trees", "0 (opaque)"),
     "leaves alone": (lambda s, c, f: s.shadow(sun=(180, 30), leaves="on"), "leaves", "seasons"),
     "location in the wrong order": (
-        lambda s, c, f: s.shadow(time="2026-06-21T15:00Z", location=(140, 52)), "latitude", "-90"),
+        lambda s, c, f: s.shadow(time="2026-06-21T15:00Z", location=(140, 52)), "location", "-90"),
     "progress": (lambda s, c, f: s.shadow(sun=(180, 30), progress="yes"), "progress", "function"),
     "cloud without points": (lambda s, c, f: belvedere.Cloud(np.empty((0, 3))), "xyz", "at least one"),
     "cloud with a hole": (lambda s, c, f: belvedere.Cloud(hole(PLACES)), "xyz", "remove"),
@@ -121,7 +121,7 @@ WRONG = {
         lambda s, c, f: s.window_views({"x": [1], "y": [1], "z": [1], "azimuth": [0]}, spacing=1),
         "spacing and objects", "mesh"),
     "frequency": (
-        lambda s, c, f: s.line_of_sight((1, 2, 3), (4, 5, 6), frequency_ghz=0), "frequency of a radio link", "1000"),
+        lambda s, c, f: s.line_of_sight((1, 2, 3), (4, 5, 6), frequency_ghz=0), "frequency_ghz", "1000"),
     "Fresnel zone without a frequency": (
         lambda s, c, f: s.cameras("roofs", count=1, fresnel_percent=60), "fresnel_percent", "frequency_ghz"),
     "radiation": (lambda s, c, f: s.irradiance(), "radiation", "weather="),

@@ -1,7 +1,7 @@
 //! Sides of the cells of results: one for all, and others where single results need finer or coarser ones.
 
 use crate::question::Question;
-use belvedere::{Error, Result};
+use belvedere::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -99,15 +99,15 @@ impl CellSizes {
     /// # Errors
     /// [`Error::InvalidParameter`] for a side out of range.
     pub(crate) fn check(&self) -> Result<()> {
-        let check = |name, side: f64| {
+        let check = |parameter, side: f64| {
             let steps = side / CELL_STEP;
             if steps >= 1.0 && steps == steps.floor() && side <= LARGEST {
                 return Ok(());
             }
             let expected = "a whole number of sixty-fourths of a metre up to 64, such as 0.25, 0.5, 1 or 2";
-            Err(Error::InvalidParameter { name, value: format!("{side} m"), expected })
+            Err(Error::InvalidParameter { parameter, value: format!("{side} m"), expected })
         };
-        check("cell", self.usual)?;
-        self.others.values().try_for_each(|&side| check("cell of some results", side))
+        check(Parameter::Cell, self.usual)?;
+        self.others.values().try_for_each(|&side| check(Parameter::CellOfResult, side))
     }
 }

@@ -10,7 +10,7 @@ use belvedere::crs::text::wkt_line;
 use belvedere::ground::MapGrid;
 use belvedere::io::{Georeference, PlacedRaster, Source, atomic};
 use belvedere::results::georeference;
-use belvedere::{Error, Result};
+use belvedere::{Error, Parameter, Result};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
@@ -144,7 +144,7 @@ fn gather(
     let (width, height) = (cells.width, cells.height);
     if width.saturating_mul(height) > MOST_CELLS {
         return Err(Error::InvalidParameter {
-            name: "size of the merged raster",
+            parameter: Parameter::Raster,
             value: format!("{width} x {height} cells"),
             expected: "at most 268 million cells; open the .vrt, or convert it with gdal_translate",
         });

@@ -16,7 +16,7 @@ use belvedere::ground::{Ground, GroundParams};
 use belvedere::io::{LasHead, atomic, cloud_files};
 use belvedere::model::{ClearedArea, ModelParams, SurveyFacts};
 use belvedere::query::Coverage;
-use belvedere::{Bounds, Error, Frame, Result};
+use belvedere::{Bounds, Error, Frame, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::io::{ErrorKind, Write};
@@ -166,7 +166,7 @@ impl Plan {
         if (0..2).any(|i| low[i] - origin[i] < -FARTHEST || high[i] - origin[i] > FARTHEST) {
             let [width, height] = [0, 1].map(|i| ((high[i] - low[i]) / 1000.0).ceil());
             return Err(Error::InvalidParameter {
-                name: "extent of the survey",
+                parameter: Parameter::Extent,
                 value: format!("{width} x {height} km"),
                 expected: "at most 32 x 32 km; make a plan for each part, with the tiles around it",
             });
@@ -376,7 +376,7 @@ impl Plan {
         let mut names = BTreeSet::from([Stage::Balls.name()]);
         if let Some(name) = questions.iter().map(Question::name).find(|name| !names.insert(name)) {
             let (value, expected) = (format!("{name} twice"), "each question once");
-            return Err(Error::InvalidParameter { name: "questions", value, expected });
+            return Err(Error::InvalidParameter { parameter: Parameter::Questions, value, expected });
         }
         questions.iter().try_for_each(|question| question.prepare(self.trees, control).map(|_| ()))?;
         Ok(Self { questions, ..self })
@@ -470,7 +470,7 @@ impl Plan {
             if self.tile_size / 2.0 < LEAST_TILE || !self.cells.divide(self.tile_size / 2.0) {
                 let megabytes = |bytes: u64| bytes as f64 / 1e6;
                 return Err(Error::InvalidParameter {
-                    name: "memory for a tile",
+                    parameter: Parameter::TileMemory,
                     value: format!(
                         "{:.0} MB, but a tile of {size} m takes about {:.0} MB, and one of {} m {:.0} MB",
                         megabytes(memory),
@@ -505,7 +505,7 @@ impl PlanFrame {
 
 fn without_ground(value: String) -> Error {
     let expected = "a place of the survey with ground, or with its height as a third coordinate";
-    Error::InvalidParameter { name: "observer", value, expected }
+    Error::InvalidParameter { parameter: Parameter::Observer, value, expected }
 }
 
 fn inputs(clouds: &[PathBuf]) -> Result<(Vec<InputFile>, Vec<LasHead>)> {
@@ -525,7 +525,7 @@ fn check_sizes(params: &PlanParams) -> Result<()> {
     let size = params.tile_size;
     if !((LEAST_TILE..=LARGEST_TILE).contains(&size) && params.cells.divide(size)) {
         let expected = "16 to 8192 m, and a whole number of cells";
-        return Err(Error::InvalidParameter { name: "tile size", value: format!("{size} m"), expected });
+        return Err(Error::InvalidParameter { parameter: Parameter::TileSize, value: format!("{size} m"), expected });
     }
     Ok(())
 }

@@ -11,7 +11,7 @@ use belvedere::apps::tree_light::{Crowns, Season};
 use belvedere::apps::viewshed::{self, Observer, SightLimits};
 use belvedere::control::Control;
 use belvedere::io::{Source, read_weather};
-use belvedere::{Error, Result};
+use belvedere::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
 /// A question that has an answer for each cell on top of what stands there.
@@ -249,14 +249,14 @@ impl Question {
     /// [`Error::InvalidParameter`] for parameters outside their range, a sun that is not above the horizon and eyes that are nowhere; those of
     /// reading weather.
     pub(crate) fn prepare(&self, crowns: Option<Crowns>, control: &Control<'_>) -> Result<Asked> {
-        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         match self {
             Self::Shadow { to_sun, season, .. } if to_sun[2] > 0.0 => {
                 Ok(Asked::Light(Light::Shadow(ShadowSun { to_sun: *to_sun, season: *season })))
             }
             Self::Shadow { to_sun, .. } => {
                 let elevation = to_sun[2].clamp(-1.0, 1.0).asin().to_degrees();
-                invalid("elevation of the sun", format!("{elevation:.3} degrees"), "above the horizon")
+                invalid(Parameter::SunElevation, format!("{elevation:.3} degrees"), "above the horizon")
             }
             Self::SkyView { directions } => Ok(Asked::Light(Light::Sky(SkyDirections::even(*directions)?))),
             Self::SunHours(days) => {
@@ -274,7 +274,7 @@ impl Question {
                 Ok(Asked::Light(Light::Irradiance { seasons, directions }))
             }
             Self::Viewshed { eyes, .. } if eyes.is_empty() || !eyes.iter().flatten().all(|v| v.is_finite()) => {
-                invalid("observers", format!("{eyes:?}"), "one or more places with a height")
+                invalid(Parameter::Observer, format!("{eyes:?}"), "one or more places with a height")
             }
             Self::Viewshed { eyes, max_distance } => {
                 let limits =

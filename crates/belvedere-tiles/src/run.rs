@@ -10,7 +10,7 @@ use crate::planned::Others;
 use crate::record::{Outcome, Record, Stage};
 use crate::report::write_report;
 use belvedere::control::Control;
-use belvedere::{Error, Result};
+use belvedere::{Error, Parameter, Result};
 use serde::Serialize;
 use std::path::Path;
 
@@ -81,7 +81,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
     let Shard { number, of } = params.shard;
     if number == 0 || number > of {
         let value = format!("{number}/{of}");
-        return Err(Error::InvalidParameter { name: "share of the tiles", value, expected: "1/N to N/N" });
+        return Err(Error::InvalidParameter { parameter: Parameter::Shard, value, expected: "1/N to N/N" });
     }
     let mut work = Work { plan, folder, params, control, report: RunReport::default() };
     let own = || plan.tiles.iter().copied().skip(number - 1).step_by(of);

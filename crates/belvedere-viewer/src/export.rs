@@ -14,7 +14,7 @@ use belvedere::control::Control;
 use belvedere::model::SceneModel;
 use belvedere::query::{Answer, AnswerCounts, UnprovenAs};
 use belvedere::report::rounded;
-use belvedere::{Error, PointCloud, Result};
+use belvedere::{Error, Parameter, PointCloud, Result};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -144,7 +144,7 @@ fn viewpoints(scene: &Scene, sent: &PointCloud, params: &ExportParams, control: 
         if let Some(fault) = fault_of(&blockers, Some(&ground), eye) {
             let value = format!("{} ({fault})", typed(place));
             let expected = "inside the cloud, above the ground and outside obstacles";
-            return Err(Error::InvalidParameter { name: "the viewpoint", value, expected });
+            return Err(Error::InvalidParameter { parameter: Parameter::Viewpoint, value, expected });
         }
         let observer = Observer { eye, limits: SightLimits::default() };
         let seen = viewshed(&blockers, &[observer], &sent.positions, &ViewshedParams::default(), control)?;

@@ -61,7 +61,7 @@ pub use belvedere_core::{
     blocking, clean, depth, ground, medial, model, neighbors, normals, pulses, query, ray_index, summary, triangle_tree,
 };
 pub use belvedere_data::{
-    Attributes, Bounds, ElevationGrid, Error, Frame, GpsTimeKind, Mesh, PointCloud, Result, cloud,
+    Attributes, Bounds, ElevationGrid, Error, Frame, GpsTimeKind, Mesh, Parameter, PointCloud, Result, cloud,
 };
 pub use belvedere_data::{
     control, crs, elevation, error, frame, horizon, mesh, polygon, random, raster, report, trajectory, vector, view,

@@ -17,7 +17,7 @@ use belvedere_core::query::{MedialScene, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use belvedere_data::weather::Weather;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -140,7 +140,7 @@ impl Radiation {
                 Ok(RadiationSource::Weather { weather, parts: *parts })
             }
             Self::Weather { file, .. } => Err(Error::InvalidParameter {
-                name: "weather",
+                parameter: Parameter::Weather,
                 value: file.clone(),
                 expected: "read before the question is put",
             }),

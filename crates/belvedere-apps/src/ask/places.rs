@@ -9,7 +9,7 @@ use crate::viewshed::cell_for;
 use belvedere_core::ground::{GroundPoints, MapGrid};
 use belvedere_data::control::Control;
 use belvedere_data::polygon::is_inside;
-use belvedere_data::{Error, Mesh, PointCloud, Result};
+use belvedere_data::{Error, Mesh, Parameter, PointCloud, Result};
 use std::sync::Arc;
 
 /// Share of targets near the edge of the cloud from which on it is warned of, percent.
@@ -94,8 +94,9 @@ impl Places {
 
 fn own_points(scene: &Scene, turned: Turned) -> Result<Targets> {
     let cloud = scene.cloud();
-    let invalid =
-        |value: &str, expected| Err(Error::InvalidParameter { name: "targets", value: value.to_owned(), expected });
+    let invalid = |value: &str, expected| {
+        Err(Error::InvalidParameter { parameter: Parameter::Targets, value: value.to_owned(), expected })
+    };
     if cloud.is_empty() {
         return invalid("the points of a ball file", "points: a ball file has none; give its cloud");
     }
@@ -117,7 +118,7 @@ pub fn moved(cloud: &PointCloud, scene: &Scene) -> Result<Vec<[f32; 3]>> {
     let frame = scene.frame();
     if cloud.frame.crs.contradicts(&frame.crs) {
         return Err(Error::InvalidParameter {
-            name: "reference system of the targets",
+            parameter: Parameter::ReferenceSystem,
             value: cloud.frame.crs.describe(),
             expected: "that of the scene; convert one of them",
         });

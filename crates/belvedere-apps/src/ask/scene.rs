@@ -7,7 +7,7 @@ use belvedere_core::query::{BlockRule, MedialScene, Proof, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
 use belvedere_data::frame::Frame;
-use belvedere_data::{Error, PointCloud, Result};
+use belvedere_data::{Error, Parameter, PointCloud, Result};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A model with the points that it was made from, and what questions share: made when first needed, and kept.
@@ -114,7 +114,7 @@ impl Scene {
     pub fn ground_cloud(&self) -> Result<&Arc<PointCloud>> {
         if self.ground_cloud.is_empty() {
             return Err(Error::InvalidParameter {
-                name: "ground",
+                parameter: Parameter::Ground,
                 value: "unknown".to_owned(),
                 expected: "shown by points, and a ball file has none: give its cloud",
             });
@@ -182,7 +182,7 @@ impl Scene {
             return Ok(());
         }
         Err(Error::InvalidParameter {
-            name: "unproven",
+            parameter: Parameter::UnprovenAs,
             value: "given".to_owned(),
             expected: "left out: it needs pulses, from a cloud with known scanner positions or an .npz ball file of such a cloud",
         })

@@ -9,7 +9,7 @@ use crate::targets::Measure;
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
 use belvedere_data::report::percent;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
 /// Which places the sun reaches.
@@ -49,7 +49,7 @@ impl Shadow {
         let is_possible = suns == 1 && self.edges == Edges::Hard;
         match self.unproven {
             Some(_) if !is_possible => Err(Error::InvalidParameter {
-                name: "unproven",
+                parameter: Parameter::UnprovenAs,
                 value: "given".to_owned(),
                 expected: "left out: pulses are tested only for one sun with hard edges",
             }),

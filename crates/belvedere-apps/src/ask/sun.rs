@@ -13,7 +13,7 @@ use crate::sun_hours::RuleDays;
 use crate::tree_light::Season;
 use belvedere_data::frame::{Bounds, Frame};
 use belvedere_data::report::rounded;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
 /// Most suns of which the report says where they stand.
@@ -72,8 +72,8 @@ pub struct NamedSun {
     pub title: String,
 }
 
-fn refused<T>(name: &'static str, value: impl Into<String>, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { name, value: value.into(), expected })
+fn refused<T>(parameter: Parameter, value: impl Into<String>, expected: &'static str) -> Result<T> {
+    Err(Error::InvalidParameter { parameter, value: value.into(), expected })
 }
 
 impl SunPlace {
@@ -97,7 +97,7 @@ impl SunPlace {
         let given = self.location.map(|location| location.map(f64::to_radians));
         Site::of_scene(frame, bounds, given, elsewhere).or_else(|error| match error {
             Error::MissingAttribute { .. } => refused(
-                "location",
+                Parameter::Location,
                 "unknown",
                 "given as latitude and longitude, or follow from a reference system of the scene (EPSG:CODE)",
             ),
@@ -173,7 +173,7 @@ impl Days {
     pub fn dates_of(&self, days: RuleDays, site: &Site, zone: &Zone) -> Result<Vec<Date>> {
         match self.year {
             Some(year) => days.dates(year, site, zone),
-            None => refused("year", "missing", "given for days that have none"),
+            None => refused(Parameter::Year, "missing", "given for days that have none"),
         }
     }
 
@@ -185,11 +185,11 @@ impl Days {
         if let Some([from, to]) = &self.between {
             return Ok(Some(match (Date::parse(from), Date::parse(to)) {
                 (Ok(first), Ok(last)) if last < first => {
-                    return refused("last day", last.to_string(), "the first day or a later one");
+                    return refused(Parameter::LastDay, last.to_string(), "the first day or a later one");
                 }
                 (Ok(first), Ok(last)) => Period::Days(first.to(last).collect()),
                 (Err(_), Err(_)) => Period::Between([place.instant(from)?, place.instant(to)?]),
-                _ => return refused("period", format!("{from} to {to}"), "two days, or two times"),
+                _ => return refused(Parameter::Period, format!("{from} to {to}"), "two days, or two times"),
             }));
         }
         let mut dates = Vec::new();
@@ -205,7 +205,7 @@ impl Days {
     /// The middles of the steps during which the sun is up.
     fn instants(&self, place: &SunPlace, site: &Site, zone: &Zone) -> Result<Vec<f64>> {
         let Some(period) = self.period(place, site, zone)? else {
-            return refused("period", "missing", "given as days or as two times");
+            return refused(Parameter::Period, "missing", "given as days or as two times");
         };
         let params = self.params(place);
         let days = sun_days(site, zone, &period, &params)?;
@@ -217,9 +217,9 @@ impl Days {
         let from_horizon = sun_days(site, zone, &period, &params.with_least_elevation(0.0))?;
         if from_horizon.iter().any(|day| !day.steps.is_empty()) {
             let lowest = format!("{} degrees", params.least_elevation.to_degrees());
-            return refused("minimum sun elevation", lowest, "lower: the sun stays below it there in this period");
+            return refused(Parameter::MinSunElevation, lowest, "lower: the sun stays below it there in this period");
         }
-        refused("period", "without sun", "one in which the sun rises there")
+        refused(Parameter::Period, "without sun", "one in which the sun rises there")
     }
 }
 
@@ -236,7 +236,7 @@ impl Suns {
                     return Ok(());
                 }
                 refused(
-                    "sun",
+                    Parameter::SunDirection,
                     format!("{azimuth},{elevation}"),
                     "azimuth and elevation in degrees, the elevation from -90 to 90",
                 )

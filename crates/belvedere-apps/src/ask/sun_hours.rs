@@ -11,7 +11,7 @@ use crate::targets::Targets;
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -50,7 +50,7 @@ pub struct Prepared {
 /// [`Error::InvalidParameter`] for a rule that cannot be read, is given twice, and for more than eight of one's own.
 pub fn rules(texts: &[String]) -> Result<Vec<(&'static str, SunRule)>> {
     let refused = |value: &str, expected| {
-        Err(Error::InvalidParameter { name: "rule of sunlight", value: value.to_owned(), expected })
+        Err(Error::InvalidParameter { parameter: Parameter::Rule, value: value.to_owned(), expected })
     };
     let mut own = OWN_RULES.into_iter();
     let mut rules: Vec<(&'static str, SunRule)> = Vec::new();
@@ -138,7 +138,7 @@ impl SunHours {
 
 fn missing_period<T>() -> Result<T> {
     Err(Error::InvalidParameter {
-        name: "period",
+        parameter: Parameter::Period,
         value: "missing".to_owned(),
         expected: "given as days, as two times, or by a rule",
     })

@@ -5,7 +5,7 @@ use super::report::TreesSection;
 use super::scene::Scene;
 use crate::tree_light::{Crowns, Leaves, Transmissivity, TreeLight};
 use belvedere_data::control::Control;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
 /// The share of light that gets through crowns.
@@ -72,5 +72,5 @@ impl ThroughTrees {
 }
 
 fn refused<T>(value: &str, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { name: "light through trees", value: value.to_owned(), expected })
+    Err(Error::InvalidParameter { parameter: Parameter::ThroughTrees, value: value.to_owned(), expected })
 }

@@ -3,7 +3,7 @@
 use crate::viewshed::SightLimits;
 use belvedere_data::report::rounded;
 use belvedere_data::vector::{dot, length, sub};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Shape of a usual picture, width over height.
@@ -81,20 +81,20 @@ impl Lens {
     /// # Errors
     /// [`Error::InvalidParameter`] for angles and pixels outside their range.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |name, value: f64, expected| {
-            Err(Error::InvalidParameter { name, value: rounded(value, 6).to_string(), expected })
+        let invalid = |parameter, value: f64, expected| {
+            Err(Error::InvalidParameter { parameter, value: rounded(value, 6).to_string(), expected })
         };
         if !(self.width > 0.0 && self.width <= TAU + 1e-9) {
-            return invalid("field of view in degrees", self.width.to_degrees(), "above 0 to 360 degrees");
+            return invalid(Parameter::FieldOfView, self.width.to_degrees(), "above 0 to 360 degrees");
         }
         if let Some(height) = self.height
             && !(height > 0.0 && height <= PI + 1e-9 && (height < PI || !self.is_flat()))
         {
             let expected = "above 0 and below 180 degrees, 180 also where the horizontal one is 180 degrees or more";
-            return invalid("vertical field of view in degrees", height.to_degrees(), expected);
+            return invalid(Parameter::VerticalFieldOfView, height.to_degrees(), expected);
         }
         if !(self.pixels > 0.0 && self.pixels.is_finite()) {
-            return invalid("pixels", self.pixels, "above zero");
+            return invalid(Parameter::CameraPixels, self.pixels, "above zero");
         }
         Ok(())
     }
@@ -123,7 +123,7 @@ impl Lens {
     /// [`Error::InvalidParameter`] for a density below 0, and for one above 0 without a flat picture.
     pub fn required_density(&self, given: Option<f64>) -> Result<f64> {
         let invalid = |density: f64, expected| {
-            Err(Error::InvalidParameter { name: "pixels per metre", value: density.to_string(), expected })
+            Err(Error::InvalidParameter { parameter: Parameter::PixelsPerMetre, value: density.to_string(), expected })
         };
         match given {
             None => Ok(if self.is_flat() { Level::Detect.pixels_per_metre() } else { 0.0 }),

@@ -7,7 +7,7 @@ use crate::viewshed::SightLimits;
 use belvedere_core::ground::{Ground, highest_points};
 use belvedere_data::control::Control;
 use belvedere_data::polygon::is_inside;
-use belvedere_data::{Error, PointCloud, Result};
+use belvedere_data::{Error, Parameter, PointCloud, Result};
 use std::f64::consts::TAU;
 
 /// Height of cameras above the ground, metres: out of reach, as on a lamp post.
@@ -112,9 +112,9 @@ impl MountingParams {
             let camera = Camera::turning(mount.eye, &lens, limits);
             return Ok(vec![Pose { camera, heading: f64::NAN, tilt: f64::NAN, width: lens.width }]);
         }
-        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if self.headings == 0 || self.headings > 360 {
-            return invalid("headings", self.headings.to_string(), "1 to 360");
+            return invalid(Parameter::Headings, self.headings.to_string(), "1 to 360");
         }
         let sees_all_around = lens.width >= TAU - 1e-9;
         let headings: Vec<f64> = match mount.heading {
@@ -127,7 +127,7 @@ impl MountingParams {
         for (&heading, &tilt) in headings.iter().flat_map(|heading| tilts.iter().map(move |tilt| (heading, tilt))) {
             if !(tilt.abs() <= TAU / 4.0 + 1e-9 && heading.is_finite()) {
                 let value = format!("{} and {}", heading.to_degrees(), tilt.to_degrees());
-                return invalid("heading and tilt in degrees", value, "a finite heading, and a tilt from -90 to 90");
+                return invalid(Parameter::HeadingAndTilt, value, "a finite heading, and a tilt from -90 to 90");
             }
             let camera = Camera::fixed(mount.eye, heading, tilt, &lens, distance);
             let heading = if sees_all_around { f64::NAN } else { heading };
@@ -144,7 +144,7 @@ impl MountingParams {
         match self.poses_at(mount)?[..] {
             [pose] => Ok(pose),
             _ => Err(Error::InvalidParameter {
-                name: "existing camera",
+                parameter: Parameter::ExistingCamera,
                 value: "without heading or tilt".to_owned(),
                 expected: "one heading and one tilt for each camera: give the columns heading and tilt",
             }),

@@ -6,7 +6,7 @@ use super::problem::{Problem, Selection, TOLERANCE};
 use super::search::{improve, search};
 use super::table::CoverageTable;
 use belvedere_data::control::Control;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Rounds of a bound before the cameras that it would choose are improved by exchanges.
 const ROUNDS: usize = 80;
@@ -113,7 +113,7 @@ pub fn place_cameras(
     let problem = Problem::new(table, weights, params.required)?;
     if let Some(bad) = params.existing.iter().find(|&&camera| camera >= table.camera_count()) {
         let expected = "the number of a camera of the table, counted from 0";
-        return Err(Error::InvalidParameter { name: "existing camera", value: bad.to_string(), expected });
+        return Err(Error::InvalidParameter { parameter: Parameter::ExistingCamera, value: bad.to_string(), expected });
     }
     let solver = Solver::new(&problem, params);
     match params.goal {
@@ -184,7 +184,8 @@ impl<'a> Solver<'a> {
 
     /// The fewest new cameras that cover `share`, as far as they are found, and a number below which none do.
     fn fewest_for(&self, share: f64, control: &Control<'_>) -> Result<Placement> {
-        let invalid = |value: String, expected| Err(Error::InvalidParameter { name: "coverage", value, expected });
+        let invalid =
+            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Coverage, value, expected });
         if !(share > 0.0 && share <= 1.0) {
             return invalid(share.to_string(), "a share above 0, and at most 1");
         }

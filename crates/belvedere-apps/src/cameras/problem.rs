@@ -1,7 +1,7 @@
 //! What is to be covered, and what a selection of cameras covers of it.
 
 use super::table::{CoverageTable, ones};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Shares of all weight that differ by less are equal: sums of a million rounded terms are this exact.
 pub(super) const TOLERANCE: f64 = 1e-9;
@@ -24,16 +24,16 @@ impl<'a> Problem<'a> {
         if expected != found {
             return Err(Error::LengthMismatch { what: "weights of targets", expected, found });
         }
-        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if required == 0 {
-            return invalid("cameras on each target", required.to_string(), "1 or more");
+            return invalid(Parameter::RequiredCameras, required.to_string(), "1 or more");
         }
         if let Some(bad) = weights.iter().find(|w| !(w.is_finite() && **w >= 0.0)) {
-            return invalid("weight of a target", bad.to_string(), "a finite number, 0 or more");
+            return invalid(Parameter::TargetWeight, bad.to_string(), "a finite number, 0 or more");
         }
         let whole: f64 = weights.iter().sum();
         if !(whole > 0.0) {
-            return invalid("weights of the targets", whole.to_string(), "at least one target with a weight above 0");
+            return invalid(Parameter::TargetWeight, whole.to_string(), "at least one target with a weight above 0");
         }
         let worth: Vec<f64> = weights.iter().map(|w| w / whole / f64::from(required)).collect();
         let mut counted = vec![0; worth.len().div_ceil(64)];

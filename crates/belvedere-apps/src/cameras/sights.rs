@@ -7,7 +7,7 @@ use crate::targets::Targets;
 use crate::viewshed::{Observer, SightLimits, ViewshedParams, viewshed};
 use belvedere_core::query::{Answer, EarthParams, MedialScene, RadioWave, UnprovenAs};
 use belvedere_data::control::Control;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -42,7 +42,7 @@ impl FresnelZone {
     pub fn new(wave: RadioWave, share: f64) -> Result<Self> {
         if !(share > 0.0 && share <= 1.0) {
             return Err(Error::InvalidParameter {
-                name: "share of the Fresnel zone that must be free",
+                parameter: Parameter::FresnelShare,
                 value: format!("{} %", 100.0 * share),
                 expected: "above 0 to 100 %",
             });

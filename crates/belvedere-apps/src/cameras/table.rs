@@ -1,6 +1,6 @@
 //! Which camera covers which target, a bit each.
 
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Most bits of a table: 8 GiB.
 const MOST_BITS: usize = 1 << 36;
@@ -26,7 +26,11 @@ impl CoverageTable {
             for &target in list {
                 if target >= target_count {
                     let expected = "the number of a target, counted from 0";
-                    return Err(Error::InvalidParameter { name: "target", value: target.to_string(), expected });
+                    return Err(Error::InvalidParameter {
+                        parameter: Parameter::Target,
+                        value: target.to_string(),
+                        expected,
+                    });
                 }
                 bits[camera * words + target / 64] |= 1 << (target % 64);
             }
@@ -75,7 +79,7 @@ pub(super) fn check_size(cameras: usize, targets: usize) -> Result<()> {
     }
     let value = format!("{cameras} x {targets}");
     let expected = "at most 69 billion pairs; use fewer candidates, or larger cells";
-    Err(Error::InvalidParameter { name: "candidates x targets", value, expected })
+    Err(Error::InvalidParameter { parameter: Parameter::TargetCount, value, expected })
 }
 
 /// Places of the bits of a word.

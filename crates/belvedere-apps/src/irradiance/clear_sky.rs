@@ -3,7 +3,7 @@
 use super::atmosphere::{absolute_air_mass, air_mass, pressure};
 use super::erbs::split_global;
 use belvedere_data::weather::Irradiance;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
 /// Which radiation a clear sky gives.
@@ -67,21 +67,21 @@ impl ClearSky {
     /// # Errors
     /// [`Error::InvalidParameter`] for a turbidity that is not 1 to 20, and for what Bird's model knows outside its range.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |name: &'static str, value: f64, expected: &'static str| {
-            Err(Error::InvalidParameter { name, value: value.to_string(), expected })
+        let invalid = |parameter: Parameter, value: f64, expected: &'static str| {
+            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
         };
         match self {
             Self::Ineichen { linke } if !(1.0..=20.0).contains(linke) => {
-                invalid("Linke turbidity", *linke, "1 to 20; 3 is usual")
+                invalid(Parameter::Turbidity, *linke, "1 to 20; 3 is usual")
             }
             Self::Bird(bird) => {
                 let amounts = [bird.aerosol_380, bird.aerosol_500, bird.water, bird.ozone];
                 if let Some(&amount) = amounts.iter().find(|v| !(0.0..=100.0).contains(*v)) {
-                    return invalid("amount in the air", amount, "0 to 100");
+                    return invalid(Parameter::AirContent, amount, "0 to 100");
                 }
                 let shares = [bird.forward_scattering, bird.albedo];
                 match shares.iter().find(|v| !(0.0..=1.0).contains(*v)) {
-                    Some(&share) => invalid("forward scattering or albedo", share, "0 to 1"),
+                    Some(&share) => invalid(Parameter::AirContent, share, "0 to 1"),
                     None => Ok(()),
                 }
             }

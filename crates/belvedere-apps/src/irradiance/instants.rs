@@ -6,7 +6,7 @@ use super::erbs::complete;
 use super::period::Instant;
 use crate::sun::{Site, SunPosition, Zone, sun_position};
 use belvedere_data::weather::{Irradiance, Weather, WeatherStep};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
@@ -29,7 +29,7 @@ pub fn weather_instants(weather: &Weather, site: &Site, parts: usize) -> Result<
     weather.validate()?;
     if !(1..=MOST_PARTS).contains(&parts) {
         let value = parts.to_string();
-        return Err(Error::InvalidParameter { name: "parts of a row of weather", value, expected: "1 to 120" });
+        return Err(Error::InvalidParameter { parameter: Parameter::WeatherParts, value, expected: "1 to 120" });
     }
     let of_steps: Vec<Vec<Instant>> =
         weather.steps.par_iter().with_min_len(64).map(|step| of_step(step, site, parts)).collect::<Result<_>>()?;
@@ -78,7 +78,7 @@ pub fn clear_instants(
     let count = ((to - from) / step).ceil();
     if !(step > 0.0 && (1.0..=MOST_INSTANTS).contains(&count)) {
         return Err(Error::InvalidParameter {
-            name: "period",
+            parameter: Parameter::Period,
             value: format!("{from} to {to} in steps of {step} s"),
             expected: "1 to 11 million steps",
         });

@@ -5,7 +5,7 @@ use super::patch_sky::patch_radiation;
 use crate::sky_view::SkyDirections;
 use belvedere_data::vector::unit;
 use belvedere_data::weather::Irradiance;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -87,15 +87,15 @@ impl IrradianceParams {
     /// # Errors
     /// [`Error::InvalidParameter`] for one outside its range.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |name: &'static str, value: f64, expected: &'static str| {
-            Err(Error::InvalidParameter { name, value: value.to_string(), expected })
+        let invalid = |parameter: Parameter, value: f64, expected: &'static str| {
+            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
         };
         if !(0.0..=1.0).contains(&self.albedo) {
-            return invalid("albedo", self.albedo, "0 to 1");
+            return invalid(Parameter::Albedo, self.albedo, "0 to 1");
         }
         let cells = 2.0 * TAU / (self.sun_cell * self.sun_cell);
         if !(self.sun_cell > 0.0 && self.sun_cell <= TAU / 10.0 && cells <= MOST_SUN_DIRECTIONS) {
-            return invalid("cell of sun directions in degrees", self.sun_cell.to_degrees(), "0.5 to 36");
+            return invalid(Parameter::SunCell, self.sun_cell.to_degrees(), "0.5 to 36");
         }
         Ok(())
     }
@@ -291,7 +291,7 @@ fn check(instant: &Instant) -> Result<()> {
         return Ok(());
     }
     Err(Error::InvalidParameter {
-        name: "instant",
+        parameter: Parameter::Instant,
         value: format!("{instant:?}"),
         expected: "finite, with radiation of 0 or more and a vector of length 1 to the sun",
     })

@@ -10,7 +10,7 @@ use belvedere_core::query::MedialScene;
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::view::to_sun;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -104,7 +104,11 @@ impl RadialStatistics {
 /// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range, and [`Error::Cancelled`].
 pub fn isovist(scene: &MedialScene, eye: [f64; 3], params: &IsovistParams, control: &Control<'_>) -> Result<Isovist> {
     if !eye.iter().all(|v| v.is_finite()) {
-        return Err(Error::InvalidParameter { name: "eye", value: format!("{eye:?}"), expected: "finite" });
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::Eye,
+            value: format!("{eye:?}"),
+            expected: "finite",
+        });
     }
     let range = |direction: [f64; 3]| scene.seen_along(eye, direction, params.max_range).map(|(_, range)| range);
     isovist_of(&range, params, control)
@@ -184,16 +188,17 @@ fn direction(column: usize, row: usize, step: f64) -> [f64; 3] {
 }
 
 fn validate(params: &IsovistParams) -> Result<()> {
-    let invalid =
-        |name, value: f64, expected| Err(Error::InvalidParameter { name, value: value.to_string(), expected });
+    let invalid = |parameter, value: f64, expected| {
+        Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
+    };
     if !(params.step >= 1e-4 * TAU && params.step <= FRAC_PI_2) {
-        return invalid("step between rays in degrees", params.step.to_degrees(), "0.036 to 90");
+        return invalid(Parameter::AngleStep, params.step.to_degrees(), "0.036 to 90");
     }
     if !(params.max_range.is_finite() && params.max_range > 0.0) {
-        return invalid("greatest range", params.max_range, "finite and above zero metres");
+        return invalid(Parameter::MaxDistance, params.max_range, "finite and above zero metres");
     }
     if !(params.jump.is_finite() && params.jump > 0.0) {
-        return invalid("least jump", params.jump, "finite and above zero metres");
+        return invalid(Parameter::MinJump, params.jump, "finite and above zero metres");
     }
     Ok(())
 }

@@ -15,7 +15,7 @@ use belvedere_core::query::{
 };
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, dot, length, sub, unit};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use extent::{Arcs, SkyBox, sky_box};
 use rayon::prelude::*;
 
@@ -196,7 +196,7 @@ pub fn landmark_views(
     params.faces.validate()?;
     if !(params.max_range > 0.0) {
         return Err(Error::InvalidParameter {
-            name: "greatest range",
+            parameter: Parameter::MaxDistance,
             value: params.max_range.to_string(),
             expected: "above zero metres",
         });

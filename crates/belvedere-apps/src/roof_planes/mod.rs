@@ -12,7 +12,7 @@ pub use points::{GROUND_CELL, RoofsFrom, roof_points};
 use belvedere_core::neighbors::NeighborIndex;
 use belvedere_core::normals::estimate::{Neighborhood, estimate};
 use belvedere_data::control::Control;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use room::Room;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -70,22 +70,22 @@ impl RoofPlaneParams {
         if let Some(bad) = lengths.iter().find(|v| !is_usable(v)) {
             let value = bad.to_string();
             return Err(Error::InvalidParameter {
-                name: "length for roof planes",
+                parameter: Parameter::RoofLength,
                 value,
                 expected: "above 0 to 1000 m",
             });
         }
         if self.cell < LEAST_CELL {
             return Err(Error::InvalidParameter {
-                name: "side of cells on roofs",
-                value: format!("{} m", self.cell),
-                expected: "0.1 m or more",
+                parameter: Parameter::RoofLength,
+                value: format!("cells of {} m", self.cell),
+                expected: "cells of 0.1 m or more",
             });
         }
         let is_angle = |v: f64| v > 0.0 && v <= FRAC_PI_2;
         if !is_angle(self.angle) || !is_angle(self.most_tilt) || !(self.least_area >= 0.0) {
             return Err(Error::InvalidParameter {
-                name: "angle or area for roof planes",
+                parameter: Parameter::RoofAngle,
                 value: format!("{} and {} rad, {} m²", self.angle, self.most_tilt, self.least_area),
                 expected: "angles above 0 to 90 degrees, an area of 0 or more",
             });

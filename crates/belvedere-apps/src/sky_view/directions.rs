@@ -1,6 +1,6 @@
 //! Directions that stand for the sky: spread evenly, or the middles of the patches of a sky model.
 
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use std::f64::consts::{PI, TAU};
 
 /// Patches of each row of Tregenza's sky, from the horizon up; one more lies around the zenith.
@@ -30,7 +30,7 @@ impl SkyDirections {
     pub fn even(count: usize) -> Result<Self> {
         if !(1..=MOST_DIRECTIONS).contains(&count) {
             return Err(Error::InvalidParameter {
-                name: "number of directions",
+                parameter: Parameter::DirectionCount,
                 value: count.to_string(),
                 expected: "1 to 100000",
             });
@@ -54,7 +54,7 @@ impl SkyDirections {
     pub fn patches(division: usize) -> Result<Self> {
         if !(1..=26).contains(&division) {
             return Err(Error::InvalidParameter {
-                name: "division of sky patches",
+                parameter: Parameter::PatchDivision,
                 value: division.to_string(),
                 expected: "1 to 26",
             });

@@ -1,7 +1,7 @@
 //! The envelope as closed solids.
 
 use super::{ConvexPolygon, EnvelopeColumn, SolarEnvelope};
-use belvedere_data::{Error, Mesh, Result};
+use belvedere_data::{Error, Mesh, Parameter, Result};
 use std::collections::HashMap;
 
 /// Columns lower than this have no room for anything, metres.
@@ -95,7 +95,7 @@ impl SolarEnvelope {
     pub fn to_mesh(&self, origin: [f64; 3]) -> Result<Mesh> {
         if let Some(count) = Some(self.unbounded_count()).filter(|count| *count > 0) {
             return Err(Error::InvalidParameter {
-                name: "envelope",
+                parameter: Parameter::Envelope,
                 value: format!("infinitely high in {count} columns, which no sun limits"),
                 expected: "limited, to be a solid; give a maximum height",
             });

@@ -1,7 +1,7 @@
 //! The suns that an envelope keeps: days and the hours between which they count.
 
 use crate::sun::{Date, DayParams, Site, Zone, sun_position_with};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Most instants: three years at 10 minutes.
 const MOST_INSTANTS: usize = 200_000;
@@ -29,17 +29,17 @@ pub fn envelope_suns(
     between: [f64; 2],
     params: &DayParams,
 ) -> Result<(Vec<EnvelopeSun>, usize)> {
-    let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+    let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
     if !(0.0 <= between[0] && between[0] <= between[1] && between[1] <= 24.0) {
-        return invalid("hours of a day", format!("{between:?}"), "from 0 to 24, the first not after the last");
+        return invalid(Parameter::HoursOfDay, format!("{between:?}"), "from 0 to 24, the first not after the last");
     }
     if !(10.0..=3600.0).contains(&params.step) {
-        return invalid("step of time", params.step.to_string(), "10 to 3600 seconds");
+        return invalid(Parameter::TimeStep, params.step.to_string(), "10 to 3600 seconds");
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "8640 at most")]
     let count = ((between[1] - between[0]) * 3600.0 / params.step - 1e-9).ceil() as usize;
     if dates.len().saturating_mul(count + 1) > MOST_INSTANTS {
-        return invalid("number of instants", format!("{} x {}", dates.len(), count + 1), "at most 200 000");
+        return invalid(Parameter::InstantCount, format!("{} x {}", dates.len(), count + 1), "at most 200 000");
     }
     let (mut suns, mut low_count) = (Vec::new(), 0);
     for &date in dates {

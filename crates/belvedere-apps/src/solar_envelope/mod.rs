@@ -21,7 +21,7 @@ use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{dot, length};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use strip::Strip;
 
@@ -188,7 +188,7 @@ fn check_pairs(pieces: usize, suns: usize) -> Result<()> {
         return Ok(());
     }
     Err(Error::InvalidParameter {
-        name: "number of pairs of a protected piece and a sun",
+        parameter: Parameter::ProtectedPairs,
         value: format!("{pieces} x {suns}"),
         expected: "at most 200 million; use longer time steps, or a larger spacing",
     })
@@ -258,16 +258,16 @@ fn check(
     free: Option<&VisibilityMatrix>,
     params: &EnvelopeParams,
 ) -> Result<()> {
-    let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+    let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
     if let Some(sun) = suns.iter().find(|sun| !((length(**sun) - 1.0).abs() < 1e-6)) {
-        return invalid("direction to the sun", format!("{sun:?}"), "a vector of length 1");
+        return invalid(Parameter::SunDirection, format!("{sun:?}"), "a vector of length 1");
     }
     let finite = |piece: &&ProtectedPiece| !piece.corners.as_flattened().iter().all(|v| v.is_finite());
     if let Some(piece) = protected.iter().find(finite) {
-        return invalid("protected place", format!("{:?}", piece.corners), "finite");
+        return invalid(Parameter::ProtectedPlace, format!("{:?}", piece.corners), "finite");
     }
     if let Some(ceiling) = params.ceiling.filter(|ceiling| !(*ceiling > 0.0 && ceiling.is_finite())) {
-        return invalid("ceiling", ceiling.to_string(), "above zero metres");
+        return invalid(Parameter::MaxHeight, ceiling.to_string(), "above zero metres");
     }
     check_pairs(protected.len(), suns.len())?;
     let Some(free) = free else { return Ok(()) };

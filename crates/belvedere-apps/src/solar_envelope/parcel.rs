@@ -2,7 +2,7 @@
 
 use super::convex::ConvexPolygon;
 use belvedere_core::ground::MapGrid;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Most corners of a parcel: more are a slipped file, and every pair of sides is tested for crossing.
 const MOST_CORNERS: usize = 10_000;
@@ -38,7 +38,8 @@ impl Parcel {
     /// [`Error::InvalidParameter`] for a corner that is not finite, a ring with less than three corners, sides that cross each other, more
     /// than 10 000 corners, and rings that enclose nothing.
     pub fn new(rings: &[Vec<[f64; 2]>]) -> Result<Self> {
-        let invalid = |value: String, expected| Err(Error::InvalidParameter { name: "parcel", value, expected });
+        let invalid =
+            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Parcel, value, expected });
         let mut kept: Vec<Vec<[f64; 2]>> = Vec::new();
         for ring in rings {
             if let Some(corner) = ring.iter().find(|corner| !corner.iter().all(|v| v.abs() < 1e7)) {

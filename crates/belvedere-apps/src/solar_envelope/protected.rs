@@ -3,7 +3,7 @@
 use crate::sky_view::SKY_TARGET_HEIGHT;
 use belvedere_core::ground::Ground;
 use belvedere_core::query::SurfacePieces;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Most pieces of lines: every sun sweeps each over the parcel.
 const MOST_PIECES: usize = 1_000_000;
@@ -44,16 +44,16 @@ pub fn protected_line(
     ground: &Ground,
     source: u32,
 ) -> Result<(Vec<ProtectedPiece>, usize)> {
-    let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+    let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
     if !(fence >= 0.0 && fence.is_finite()) {
-        return invalid("height of the fence", fence.to_string(), "0 or more metres");
+        return invalid(Parameter::FenceHeight, fence.to_string(), "0 or more metres");
     }
     if !(spacing > 0.0 && spacing.is_finite()) {
-        return invalid("spacing on protected lines", spacing.to_string(), "above zero metres");
+        return invalid(Parameter::Spacing, spacing.to_string(), "above zero metres");
     }
     let flat = |p: [f64; 3]| p[0].abs() < 1e7 && p[1].abs() < 1e7 && (p[2].is_nan() || p[2].abs() < 1e7);
     if let Some(corner) = corners.iter().find(|corner| !flat(**corner)) {
-        return invalid("corner of a protected line", format!("{corner:?}"), "finite, within 10 000 km of the scene");
+        return invalid(Parameter::ProtectedPlace, format!("{corner:?}"), "finite, within 10 000 km of the scene");
     }
     let top = |mut place: [f64; 3]| {
         if place[2].is_nan() {
@@ -68,7 +68,7 @@ pub fn protected_line(
         let &[a, b] = pair else { continue };
         let count = ((b[0] - a[0]).hypot(b[1] - a[1]) / spacing).ceil().max(1.0);
         if count + pieces.len() as f64 > MOST_PIECES as f64 {
-            return invalid("spacing on protected lines", spacing.to_string(), "enough for at most a million pieces");
+            return invalid(Parameter::Spacing, spacing.to_string(), "enough for at most a million pieces");
         }
         let at = |share: f64| [0, 1, 2].map(|i| a[i] + share * (b[i] - a[i]));
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most a million")]

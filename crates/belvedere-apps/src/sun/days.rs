@@ -2,7 +2,7 @@
 
 use super::position::transit;
 use super::{Date, Refraction, Site, Zone, sun_position_with};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -132,7 +132,8 @@ pub enum Period {
 /// # Errors
 /// [`Error::InvalidParameter`] for a period without days or that ends before it begins, and those of [`sun_day`].
 pub fn sun_days(site: &Site, zone: &Zone, period: &Period, params: &DayParams) -> Result<Vec<SunDay>> {
-    let invalid = |value: String, expected| Err(Error::InvalidParameter { name: "period", value, expected });
+    let invalid =
+        |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Period, value, expected });
     let (dates, within) = match period {
         Period::Days(dates) => (dates.clone(), None),
         Period::Between([from, to]) if to > from && to - from <= DAY * MOST_DAYS as f64 => {
@@ -159,13 +160,14 @@ impl DayParams {
     /// # Errors
     /// [`Error::InvalidParameter`] where one is not.
     pub fn validate(&self) -> Result<()> {
-        let invalid =
-            |name, value: f64, expected| Err(Error::InvalidParameter { name, value: value.to_string(), expected });
+        let invalid = |parameter, value: f64, expected| {
+            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
+        };
         if !(10.0..=3600.0).contains(&self.step) {
-            return invalid("step of time", self.step, "10 to 3600 seconds");
+            return invalid(Parameter::TimeStep, self.step, "10 to 3600 seconds");
         }
         if !(0.0..1.57).contains(&self.least_elevation) {
-            return invalid("minimum elevation of the sun", self.least_elevation.to_degrees(), "0 to below 90 degrees");
+            return invalid(Parameter::MinSunElevation, self.least_elevation.to_degrees(), "0 to below 90 degrees");
         }
         Ok(())
     }

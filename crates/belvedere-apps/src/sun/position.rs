@@ -2,7 +2,7 @@
 
 use super::Site;
 use belvedere_data::view::to_sun;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use solar_positioning::time::JulianDate;
 use solar_positioning::{Horizon, Location, RefractionCorrection, SolarEvents, SolarPositions, delta_t};
@@ -126,7 +126,7 @@ pub fn sun_times(site: &Site, from: f64, to: f64) -> Result<SunTimes> {
     let site = site.validate()?;
     if !(to >= from && to - from <= 400.0 * DAY) {
         return Err(Error::InvalidParameter {
-            name: "span of time",
+            parameter: Parameter::Period,
             value: format!("{from} to {to} s"),
             expected: "forward, at most 400 days",
         });
@@ -167,13 +167,17 @@ fn correction(site: &Site, refraction: Refraction) -> Result<Option<RefractionCo
         Refraction::Air { pressure, temperature } => [pressure, temperature],
     };
     if !(-90.0..=60.0).contains(&temperature) {
-        let value = temperature.to_string();
-        return Err(Error::InvalidParameter { name: "temperature", value, expected: "-90 to 60 degrees Celsius" });
+        let value = format!("of {temperature} degrees");
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::Air,
+            value,
+            expected: "of -90 to 60 degrees Celsius",
+        });
     }
     RefractionCorrection::new(pressure, temperature).map(Some).map_err(|_| Error::InvalidParameter {
-        name: "air pressure",
-        value: pressure.to_string(),
-        expected: "above 0, up to 2000 hPa",
+        parameter: Parameter::Air,
+        value: format!("of {pressure} hPa"),
+        expected: "of a pressure above 0, up to 2000 hPa",
     })
 }
 
@@ -181,7 +185,7 @@ fn julian(unix_s: f64) -> Result<JulianDate> {
     let year = 1970.0 + unix_s / (DAY * YEAR);
     if !YEARS.contains(&year) {
         return Err(Error::InvalidParameter {
-            name: "instant",
+            parameter: Parameter::Instant,
             value: format!("{unix_s} s from 1970, in the year {:.0}", year.floor()),
             expected: "in the years 1000 to 3000",
         });
@@ -193,7 +197,7 @@ fn julian(unix_s: f64) -> Result<JulianDate> {
 
 fn invalid_time(unix_s: f64, why: &solar_positioning::Error) -> Error {
     Error::InvalidParameter {
-        name: "instant",
+        parameter: Parameter::Instant,
         value: format!("{unix_s} s from 1970 ({why})"),
         expected: "in the years 1000 to 3000",
     }

@@ -2,7 +2,7 @@
 
 use super::{Date, SunDay, declination};
 use belvedere_data::vector::{dot, unit};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -90,7 +90,7 @@ impl SunSchedule {
     pub fn new(days: &[SunDay], binning: Binning) -> Result<Self> {
         if days.is_empty() {
             return Err(Error::InvalidParameter {
-                name: "number of days",
+                parameter: Parameter::Period,
                 value: "0".to_owned(),
                 expected: "at least one day, and the last day not before the first",
             });
@@ -257,16 +257,12 @@ fn checked(angle: f64) -> Result<f64> {
         return Ok(angle);
     }
     let value = angle.to_degrees().to_string();
-    Err(Error::InvalidParameter {
-        name: "angle between suns that share a direction",
-        value,
-        expected: "above 0 to 5 degrees",
-    })
+    Err(Error::InvalidParameter { parameter: Parameter::SunTolerance, value, expected: "above 0 to 5 degrees" })
 }
 
 fn too_far(date: Date, error: f64) -> Error {
     Error::InvalidParameter {
-        name: "angle between a sun and the next direction",
+        parameter: Parameter::SunTolerance,
         value: format!("{:.2} degrees on {date}", error.to_degrees()),
         expected: "within the given angle: choose days of the saved matrix, or a larger angle",
     }

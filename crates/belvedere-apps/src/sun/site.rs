@@ -4,7 +4,7 @@ use crate::horizon::convergence;
 use belvedere_core::query::earth::EARTH_RADIUS;
 use belvedere_data::crs::Crs;
 use belvedere_data::frame::{Bounds, Frame};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -103,19 +103,20 @@ impl Site {
     /// # Errors
     /// [`Error::InvalidParameter`] for what is out of range or not finite; longitudes of up to one more turn are taken back.
     pub fn validate(self) -> Result<Self> {
-        let invalid =
-            |name, value: f64, expected| Err(Error::InvalidParameter { name, value: value.to_string(), expected });
+        let invalid = |parameter, value: f64, expected| {
+            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
+        };
         if !(self.latitude.abs() <= FRAC_PI_2) {
-            return invalid("latitude", self.latitude.to_degrees(), "-90 to 90 degrees");
+            return invalid(Parameter::Latitude, self.latitude.to_degrees(), "-90 to 90 degrees");
         }
         if !(self.longitude.abs() <= TAU) {
-            return invalid("longitude", self.longitude.to_degrees(), "-180 to 180 degrees");
+            return invalid(Parameter::Longitude, self.longitude.to_degrees(), "-180 to 180 degrees");
         }
         if !(LOWEST..=HIGHEST).contains(&self.height) {
-            return invalid("height of the site", self.height, "-500 to 10000 m above the sea");
+            return invalid(Parameter::SiteHeight, self.height, "-500 to 10000 m above the sea");
         }
         if !(self.convergence.abs() <= TAU) {
-            return invalid("convergence", self.convergence.to_degrees(), "-180 to 180 degrees");
+            return invalid(Parameter::North, self.convergence.to_degrees(), "-180 to 180 degrees");
         }
         let turns = if self.longitude.abs() > PI { TAU.copysign(self.longitude) } else { 0.0 };
         Ok(Self { longitude: self.longitude - turns, ..self })

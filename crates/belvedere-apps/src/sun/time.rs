@@ -1,12 +1,16 @@
 //! Instants, dates and zones as people write them, by the crate `jiff` and the zones it holds: no file of the system is asked.
 
 use super::Site;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use jiff::civil::DateTime;
 use jiff::fmt::temporal::{Pieces, PiecesOffset};
 use jiff::tz::{AmbiguousOffset, Offset, TimeZone, TimeZoneDatabase};
 use jiff::{Timestamp, ToSpan};
 use std::fmt;
+use std::ops::Range;
+
+/// Years of dates and times.
+const YEARS: Range<i16> = 1000..3000;
 
 /// How clocks run at a place.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +42,7 @@ impl Zone {
         };
         let Some(zone) = zone else {
             return Err(Error::InvalidParameter {
-                name: "time zone",
+                parameter: Parameter::TimeZone,
                 value: shortened(text),
                 expected: "a name such as Europe/Amsterdam, or an offset such as +02:00",
             });
@@ -87,7 +91,7 @@ impl Zone {
     /// [`Error::InvalidParameter`] for instants that no calendar holds.
     pub fn date_at(&self, unix_s: f64) -> Result<Date> {
         let t = timestamp(unix_s).ok_or_else(|| Error::InvalidParameter {
-            name: "instant",
+            parameter: Parameter::Instant,
             value: unix_s.to_string(),
             expected: "in the years 1000 to 3000",
         })?;
@@ -102,7 +106,7 @@ impl Zone {
     /// [`Error::InvalidParameter`] for an hour that is not from −48 to 48, and at the end of the calendar.
     pub fn instant_of(&self, date: Date, hour: f64) -> Result<f64> {
         let failed = || Error::InvalidParameter {
-            name: "hour of a day",
+            parameter: Parameter::HoursOfDay,
             value: format!("{hour} on {date}"),
             expected: "-48 to 48, in the years 1000 to 3000",
         };
@@ -127,6 +131,10 @@ impl Date {
     /// # Errors
     /// [`Error::InvalidParameter`] for days that do not exist, and years outside 1000 to 3000.
     pub fn new(year: i16, month: i8, day: i8) -> Result<Self> {
+        if !YEARS.contains(&year) {
+            let value = year.to_string();
+            return Err(Error::InvalidParameter { parameter: Parameter::Year, value, expected: "1000 to 2999" });
+        }
         Self::checked(jiff::civil::Date::new(year, month, day).ok(), &format!("{year:04}-{month:02}-{day:02}"))
     }
 
@@ -142,8 +150,8 @@ impl Date {
     }
 
     fn checked(date: Option<jiff::civil::Date>, text: &str) -> Result<Self> {
-        date.filter(|date| (1000..3000).contains(&date.year())).map(Self).ok_or_else(|| Error::InvalidParameter {
-            name: "date",
+        date.filter(|date| YEARS.contains(&date.year())).map(Self).ok_or_else(|| Error::InvalidParameter {
+            parameter: Parameter::Date,
             value: shortened(text),
             expected: "a day such as 2026-06-21, in the years 1000 to 2999",
         })
@@ -200,7 +208,7 @@ impl fmt::Display for Date {
 /// contradict each other; and for times that clocks skip or show twice when summer time begins or ends: an offset tells which is meant.
 pub fn parse_instant(text: &str, zone: Option<&Zone>) -> Result<f64> {
     let text = text.trim();
-    let invalid = |expected| Error::InvalidParameter { name: "time", value: shortened(text), expected };
+    let invalid = |expected| Error::InvalidParameter { parameter: Parameter::Time, value: shortened(text), expected };
     const WRITING: &str =
         "written as 2026-06-21T12:00+02:00, with a zone as 2026-06-21T12:00[Europe/Amsterdam], or with --zone";
     let pieces = Pieces::parse(text).map_err(|_| match Date::parse(text.get(..10).unwrap_or_default()) {
@@ -208,7 +216,7 @@ pub fn parse_instant(text: &str, zone: Option<&Zone>) -> Result<f64> {
         _ => invalid(WRITING),
     })?;
     let shown = DateTime::from_parts(pieces.date(), pieces.time().ok_or_else(|| invalid(WRITING))?);
-    if !(1000..3000).contains(&shown.year()) {
+    if !YEARS.contains(&shown.year()) {
         return Err(invalid("in the years 1000 to 2999"));
     }
     let named = pieces

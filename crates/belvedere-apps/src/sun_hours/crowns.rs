@@ -5,7 +5,7 @@ use super::{CHUNK, ROUNDING, SunHours, SunHoursParams, sun_hours};
 use crate::sun::SunSchedule;
 use belvedere_core::query::VisibilityMatrix;
 use belvedere_data::vector::dot;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// As [`sun_hours`], where only vegetation stands in the way of a sun an hour counting as much as crowns let through on that day:
@@ -34,7 +34,7 @@ pub fn sun_hours_through_crowns(
     same("transmissivities of days", schedule.days.len(), transmissivities.len())?;
     if let Some(bad) = transmissivities.iter().find(|share| !(0.0..=1.0).contains(*share)) {
         return Err(Error::InvalidParameter {
-            name: "transmissivity",
+            parameter: Parameter::Transmissivity,
             value: bad.to_string(),
             expected: "0 (opaque) to 1",
         });

@@ -12,7 +12,7 @@ pub use rules::{RuleDays, SunRule};
 use crate::sun::SunSchedule;
 use belvedere_core::query::VisibilityMatrix;
 use belvedere_data::vector::dot;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use stretches::{Lit, Run, runs_of};
 
@@ -103,7 +103,7 @@ pub fn sun_hours(
     }
     if !(0.0..=24.0).contains(&params.sufficient_hours) {
         let value = params.sufficient_hours.to_string();
-        return Err(Error::InvalidParameter { name: "hours of sun", value, expected: "0 to 24" });
+        return Err(Error::InvalidParameter { parameter: Parameter::SufficientHours, value, expected: "0 to 24" });
     }
     let sufficient = params.sufficient_hours - ROUNDING;
     let day_count = schedule.days.len().max(1) as f64;

@@ -1,7 +1,7 @@
 //! Rules of sunlight as planners know them: so many hours on such days.
 
 use crate::sun::{Date, Site, Zone, declination};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Days that a rule is about; months and days of the month.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,7 +88,7 @@ impl SunRule {
             });
         }
         Self::of_text(text).ok_or_else(|| Error::InvalidParameter {
-            name: "rule",
+            parameter: Parameter::Rule,
             value: text.chars().take(80).collect(),
             expected: "nl-light, nl-strict, the-hague, bre-equinox, or your own rule such as 1.5@03-21, 1@shortest-day or 2@02-19..10-21>10",
         })

@@ -6,7 +6,7 @@ use crate::viewshed::cell_targets;
 use belvedere_core::ground::{Ground, GroundParams, MapGrid, SurfaceParams, hidden_ground, top_surface};
 use belvedere_core::query::AddedMeshes;
 use belvedere_data::control::Control;
-use belvedere_data::{Error, PointCloud, Result};
+use belvedere_data::{Error, Parameter, PointCloud, Result};
 use serde::Serialize;
 
 /// What cells stand on.
@@ -101,7 +101,7 @@ impl Targets {
         if !(params.height >= 0.0 && params.height.is_finite()) {
             let value = params.height.to_string();
             return Err(Error::InvalidParameter {
-                name: "height above the ground",
+                parameter: Parameter::HeightAboveGround,
                 value,
                 expected: "0 metres or more",
             });

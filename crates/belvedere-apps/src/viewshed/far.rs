@@ -3,7 +3,7 @@
 use super::{Observer, Viewshed, ViewshedParams, box_within_reach, check};
 use belvedere_core::query::{Answer, MedialScene};
 use belvedere_data::control::Control;
-use belvedere_data::{ElevationGrid, Error, Result};
+use belvedere_data::{ElevationGrid, Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// The part of `terrain` that is within reach of any of `observers`, and all of it where none has a limit.
@@ -14,7 +14,7 @@ pub fn terrain_within_reach(terrain: &ElevationGrid, observers: &[Observer]) -> 
     let reaches = observers.iter().filter(|observer| observer.eye.iter().all(|v| v.is_finite()));
     let reaches = reaches.map(|observer| ([observer.eye[0], observer.eye[1]], observer.limits.distance[1]));
     terrain.part(box_within_reach(terrain.on_map(), reaches)).ok_or_else(|| Error::InvalidParameter {
-        name: "maximum distance",
+        parameter: Parameter::MaxDistance,
         value: "one within which the terrain has no 2 x 2 cells with heights".to_owned(),
         expected: "more than the cells of the terrain",
     })
@@ -49,8 +49,8 @@ pub fn far_viewshed(
 ) -> Result<Viewshed> {
     check(observers, &params.earth)?;
     if !(height >= 0.0 && height.is_finite()) {
-        let (name, value) = ("height above the terrain", height.to_string());
-        return Err(Error::InvalidParameter { name, value, expected: "0 metres or more" });
+        let (parameter, value) = (Parameter::HeightAboveGround, height.to_string());
+        return Err(Error::InvalidParameter { parameter, value, expected: "0 metres or more" });
     }
     let width = terrain.heights().width();
     let mut answers = vec![Answer::OutsideCloud; terrain.heights().values().len()];

@@ -11,7 +11,7 @@ use belvedere_core::query::target_tree::TargetTree;
 use belvedere_core::query::{Answer, EarthParams, MedialScene, UnprovenAs, Viewer};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// Targets handed to a thread at once.
@@ -356,14 +356,14 @@ pub fn least_visible_heights(
     check(observers, earth)?;
     if !(ceiling >= 0.0) {
         return Err(Error::InvalidParameter {
-            name: "maximum height",
+            parameter: Parameter::MaxHeight,
             value: ceiling.to_string(),
             expected: "0 metres or more",
         });
     }
     if let Some(row) = observers.iter().position(|observer| scene.is_on_far_terrain(observer.eye)) {
         return Err(Error::InvalidParameter {
-            name: "observer of minimum visible heights",
+            parameter: Parameter::Observer,
             value: format!("number {}, on the terrain beyond the cloud", row + 1),
             expected: "observers in the cloud",
         });

@@ -1,6 +1,6 @@
 //! Who looks, and how far and where to.
 
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use std::f64::consts::TAU;
 
 /// Someone, or a camera, that looks around.
@@ -35,27 +35,27 @@ impl SightLimits {
     /// # Errors
     /// [`Error::InvalidParameter`] for limits that are not numbers or leave nothing.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |name, value: [f64; 2], expected| {
-            Err(Error::InvalidParameter { name, value: format!("{} to {}", value[0], value[1]), expected })
+        let invalid = |parameter, value: [f64; 2], expected| {
+            Err(Error::InvalidParameter { parameter, value: format!("{} to {}", value[0], value[1]), expected })
         };
         if let Some(azimuth) = self.azimuth
             && !azimuth.iter().all(|v| v.is_finite())
         {
-            return invalid("azimuth", azimuth.map(f64::to_degrees), "two finite angles");
+            return invalid(Parameter::Azimuth, azimuth.map(f64::to_degrees), "two finite angles");
         }
         let right = std::f64::consts::FRAC_PI_2 + 1e-9;
         if let Some(elevation) = self.elevation
             && !(elevation[0] < elevation[1] && elevation[0] >= -right && elevation[1] <= right)
         {
             return invalid(
-                "elevation in degrees",
+                Parameter::Elevation,
                 elevation.map(f64::to_degrees),
                 "in ascending order, from -90 to 90 degrees",
             );
         }
         let [least, most] = self.distance;
         if !(least >= 0.0 && least.is_finite() && most > least) {
-            return invalid("distance", self.distance, "in ascending order, from 0 metres");
+            return invalid(Parameter::Distance, self.distance, "in ascending order, from 0 metres");
         }
         Ok(())
     }
@@ -96,7 +96,7 @@ pub fn places_along(corners: &[[f64; 3]], step: f64) -> Result<Vec<[f64; 3]>> {
     let total: f64 = corners.windows(2).map(size).sum();
     if !(step > 0.0 && total / step <= MOST_PLACES) {
         return Err(Error::InvalidParameter {
-            name: "step along the path",
+            parameter: Parameter::PathStep,
             value: format!("{step} m on {total} m"),
             expected: "above zero, and large enough for at most a million places",
         });

@@ -17,7 +17,7 @@ use belvedere::control::Control;
 use belvedere::medial::{CarvedParams, CrownParams, Rule, Trees};
 use belvedere::model::BallParams;
 use belvedere::query::{Answer, BlockRule, UnprovenAs, Viewer, Visibility};
-use belvedere::{Error, Result};
+use belvedere::{Error, Parameter, Result};
 use belvedere_baselines::agreement::{Counts, Rate};
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward, scene_model};
 use belvedere_scenes::{Preset, Regime};
@@ -74,8 +74,8 @@ fn main() -> Result<()> {
         .iter()
         .map(|name| {
             Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or_else(|| Error::InvalidParameter {
-                name: "preset",
-                value: name.clone(),
+                parameter: Parameter::MethodSetting,
+                value: format!("{name} for the preset"),
                 expected: "village, town, old-town, towers or park",
             })
         })

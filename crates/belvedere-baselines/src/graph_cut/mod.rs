@@ -9,7 +9,7 @@ use crate::lines_of_sight::{check_clearance, check_least, check_positive};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
 use belvedere::query::{Sight, Viewer, Visibility};
 use belvedere::vector::{cross, dot, length, sub};
-use belvedere::{Error, Result};
+use belvedere::{Error, Parameter, Result};
 use std::collections::HashSet;
 
 use min_cut::{Graph, sink_side};
@@ -79,7 +79,7 @@ impl GraphCut {
         }
         if expected > MOST_POINTS {
             let value = expected.to_string();
-            return Err(Error::InvalidParameter { name: "number of points", value, expected: "at most 2^27" });
+            return Err(Error::InvalidParameter { parameter: Parameter::PointCount, value, expected: "at most 2^27" });
         }
         let kept = first_per_cell(&survey.cloud.positions, params.cell);
         let points = kept.iter().map(|&row| survey.cloud.positions[row].map(f64::from)).collect();

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::sync::OnceLock;
 
 use belvedere::query::{Answer, Sight, Viewer, Visibility};
-use belvedere::{Error, Result};
+use belvedere::{Error, Parameter, Result};
 
 use crate::Survey;
 use flip::FlippedView;
@@ -206,6 +206,6 @@ fn place(p: [f32; 3]) -> [u32; 3] {
     p.map(|v| (v + 0.0).to_bits())
 }
 
-fn invalid(name: &'static str, value: impl ToString, expected: &'static str) -> Error {
-    Error::InvalidParameter { name, value: value.to_string(), expected }
+fn invalid(what: &str, value: impl std::fmt::Display, expected: &'static str) -> Error {
+    Error::InvalidParameter { parameter: Parameter::MethodSetting, value: format!("{value} for the {what}"), expected }
 }

@@ -12,7 +12,7 @@ use belvedere::control::Control;
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::query::{Sight, Viewer, Visibility};
-use belvedere::{Error, Result};
+use belvedere::{Error, Parameter, Result};
 
 use level::{Level, Solver};
 
@@ -176,7 +176,7 @@ fn reconstruct(samples: &[Sample], neighbors: &NeighborIndex, params: &PoissonPa
     let Some(depth) = (0..MOST_LEVELS).find(|&depth| longest <= COARSEST_CELLS * cell * f64::from(1 << depth)) else {
         let value = format!("{longest} m by {cell} m");
         let expected = "points that are not a million times as far apart as neighbours: take out stray points";
-        return Err(Error::InvalidParameter { name: "extent of the cloud by its spacing", value, expected });
+        return Err(Error::InvalidParameter { parameter: Parameter::Extent, value, expected });
     };
     let coarsest = cell * f64::from(1 << depth);
     let corner = low.map(|v| v - MARGIN * coarsest);

@@ -127,10 +127,7 @@ fn write_folder(
         })?;
         let params =
             SimplifyParams { spacing, cell_size: arguments.cell_size, seed: global.seed, ..SimplifyParams::default() };
-        keep = pipeline::flagged("--simplify, --cell", simplify(&cloud.positions, &sizes, &params))?
-            .into_iter()
-            .map(u8::from)
-            .collect::<Vec<u8>>();
+        keep = simplify(&cloud.positions, &sizes, &params)?.into_iter().map(u8::from).collect::<Vec<u8>>();
         let kept = keep.iter().filter(|&&k| k == 1).count();
         run.summary.add("thinning_kept_percent", percent(kept, keep.len()));
         folder.lfs = Some(&sizes);

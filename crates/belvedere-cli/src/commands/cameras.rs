@@ -7,7 +7,7 @@ mod what;
 use super::sights::{ground, ground_cloud, proving_blockers};
 use super::{check_output, warn_of_geojson};
 use crate::arguments::{Cameras, Global, Usage};
-use crate::pipeline::{self, Points, Scene, flagged};
+use crate::pipeline::{self, Points, Scene};
 use crate::run::Run;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     let earth = arguments.earth.params()?;
     let share = arguments.fresnel_percent.map_or(FREE_FRESNEL_SHARE, |percent| percent / 100.0);
     let zone = arguments.radio.wave()?.map(|wave| FresnelZone::new(wave, share)).transpose();
-    let zone = flagged("--fresnel-percent", zone)?;
+    let zone = zone?;
     let lens = places::lens(&arguments.lens)?;
     let mounting = places::mounting(&arguments.lens, lens);
     let mut run = Run::new(global);
@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     north.report(&mut run.summary);
     let bounds = scene.model.bounds().on_map();
     let cell = arguments.targets.cell.unwrap_or_else(|| observer_cell_for(bounds.0, bounds.1));
-    let grid = flagged("--cell", map_grid(&scene, cell))?;
+    let grid = map_grid(&scene, cell)?;
     let (cloud, ground_points) = ground_cloud(&arguments.targets.ground, &mut scene, &mut run)?;
     let ground = ground(&cloud, ground_points, grid, &mut run)?;
     let profile = arguments.scene.profile.into();
@@ -70,8 +70,7 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
 
     let poses: Vec<Pose> = existing.iter().chain(&candidates).copied().collect();
     let cameras: Vec<_> = poses.iter().map(|pose| pose.camera).collect();
-    let density =
-        flagged("--density, --max-distance", lens.required_density(arguments.lens.density.map(|density| density.0)))?;
+    let density = lens.required_density(arguments.lens.density.map(|density| density.0))?;
     let params =
         CoverageParams::default().with_density(density).with_earth(earth).with_unproven(unproven).with_zone(zone);
     let (table, report) = run.stage("testing lines of sight", cameras.len(), |control| {
@@ -91,7 +90,7 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
         .with_search_limit(arguments.search_limit);
     let weights = counted_weights(&targets);
     let placed = run.stage("choosing cameras", 0, |control| place_cameras(&table, &weights, &params, control));
-    let placed = flagged("--coverage", placed)?;
+    let placed = placed?;
     add_placement(&mut run.summary, &placed, &weights, arguments.required);
     let found = Found::new(&poses, existing.len(), &table, &placed, &targets, north.of_grid);
     for output in &arguments.output {

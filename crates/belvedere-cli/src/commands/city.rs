@@ -4,12 +4,12 @@ mod questions;
 
 use super::{check_folder, check_output};
 use crate::arguments::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, Usage};
-use crate::pipeline::{areas, flagged};
+use crate::pipeline::areas;
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
-use belvedere::Error;
 use belvedere::apps::tree_light::{Crowns, Transmissivity};
+use belvedere::{Error, Parameter};
 use belvedere_tiles::{
     Plan, PlanParams, Question, RunParams, Shard, SideFile, Steps, merge, run as run_tiles, status as status_of,
 };
@@ -41,21 +41,11 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         memory: arguments.memory.map(|memory| memory.0),
         program: concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned(),
     };
-    let plan = Plan::make(&params, &run.control()).map_err(|error| match error {
-        Error::InvalidParameter { name: "cell", .. } => Usage(format!("--cell: {error}")).into(),
-        Error::InvalidParameter { name: "cell of some results", .. } => Usage(format!("--cell-for: {error}")).into(),
-        Error::InvalidParameter { name: "observer", .. } => Usage(format!("--observer: {error}")).into(),
-        Error::InvalidParameter { name: "tile size", .. } => Usage(format!("--tile-size: {error}")).into(),
-        Error::InvalidParameter { name: "memory for a tile", .. } => Usage(format!("--memory: {error}")).into(),
-        other => anyhow::Error::from(other),
-    })?;
+    let plan = Plan::make(&params, &run.control())?;
     let plan = planned(plan, arguments)?;
     let questions = questions::questions(arguments, &plan, &mut run)?;
     let plan = plan.with_questions(questions, &run.control()).map_err(|error| match error {
-        Error::InvalidParameter { name: "elevation of the sun", .. } => {
-            Usage(format!("--sun or --time: {error}")).into()
-        }
-        Error::InvalidParameter { name: "questions", .. } => Usage(error.to_string()).into(),
+        Error::InvalidParameter { parameter: Parameter::Questions, .. } => Usage(error.to_string()).into(),
         other => anyhow::Error::from(other),
     })?;
     if !arguments.clear.is_empty() && !plan.clears_anything(&run.control())? {
@@ -81,21 +71,19 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
 /// The plan with what will be built, and with light through trees.
 fn planned(plan: Plan, arguments: &CityPlan) -> Result<Plan> {
     let meshes = arguments.add.iter().map(|path| SideFile::new(path)).collect::<belvedere::Result<Vec<_>>>()?;
-    let plan = flagged("--add", plan.with_meshes(meshes))?;
+    let plan = plan.with_meshes(meshes)?;
     let frame = plan.frame()?;
     let mut cleared = Vec::new();
     for choice in &arguments.clear {
         cleared.extend(areas(choice, &frame)?);
     }
-    let plan = flagged("--clear", plan.with_cleared(cleared))?;
+    let plan = plan.with_cleared(cleared)?;
     let side = |path: &Option<PathBuf>| path.as_deref().map(SideFile::new).transpose();
     let (terrain, horizon) = (side(&arguments.far_terrain.terrain)?, side(&arguments.far_terrain.horizon)?);
-    let plan = flagged("--terrain", plan.with_far_terrain(terrain, horizon))?;
+    let plan = plan.with_far_terrain(terrain, horizon)?;
     let measured = || Transmissivity::constant(plan.share_of_pulses_through_crowns()).ok();
     match arguments.trees.chosen(measured)? {
-        Some((transmissivity, leaves)) => {
-            Ok(flagged("--through-trees", plan.with_light_through_trees(Crowns { transmissivity, leaves }))?)
-        }
+        Some((transmissivity, leaves)) => Ok(plan.with_light_through_trees(Crowns { transmissivity, leaves })?),
         None => Ok(plan),
     }
 }
@@ -107,7 +95,7 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
     let shard = arguments.shard.map_or_else(Shard::default, |share| Shard { number: share.number, of: share.of });
     let steps = if arguments.balls_only { Steps::Balls } else { Steps::All };
     let params = RunParams { shard, steps, most_balls: None, seconds: &|| start.elapsed().as_secs_f64() };
-    let report = flagged("--shard", run_tiles(&plan, &arguments.run, &params, &run.control()))?;
+    let report = run_tiles(&plan, &arguments.run, &params, &run.control())?;
     if let Some((first, _)) = report.failed.split_first() {
         let listed = report.failed.iter().take(MOST_LISTED).map(|why| format!("\n  {why}")).collect::<String>();
         let more = report.failed.len().saturating_sub(MOST_LISTED);

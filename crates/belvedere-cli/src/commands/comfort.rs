@@ -7,7 +7,7 @@ use super::sights::{Proving, blockers};
 use super::sights::{leave_out_outside, report_edge};
 use super::windows::{FaceChoice, windows};
 use crate::arguments::{Comfort, Global, PatchesChoice, Usage};
-use crate::pipeline::{self, Points, flagged};
+use crate::pipeline::{self, Points};
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     let sky = match arguments.patches {
         Some(PatchesChoice::Tregenza) => SkyDirections::patches(1)?,
         Some(PatchesChoice::Reinhart) => SkyDirections::patches(2)?,
-        None => flagged("--directions", SkyDirections::even(arguments.directions.unwrap_or(SKY_DIRECTIONS)))?,
+        None => SkyDirections::even(arguments.directions.unwrap_or(SKY_DIRECTIONS))?,
     };
     let mut run = Run::new(global);
     let points = if arguments.places.route.is_some() { Points::Keep } else { Points::LetGo };
@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     let Some(period) = arguments.when.period(&arguments.place, &site, &zone)? else {
         return Err(Usage("a period is missing: give --date DAY, or --from and --to".to_owned()).into());
     };
-    let days = flagged("--time-step-min, --min-sun-elevation or --from", sun_days(&site, &zone, &period, &params))?;
+    let days = sun_days(&site, &zone, &period, &params)?;
     // each row of --times is about a sun of its own
     let binning = if arguments.times.is_some() { Binning::Exact } else { Binning::Auto };
     let schedule = SunSchedule::new(&days, binning)?;

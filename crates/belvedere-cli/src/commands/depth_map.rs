@@ -2,7 +2,7 @@
 
 use super::{check_output, extension};
 use crate::arguments::{DepthMap, Global, Usage};
-use crate::pipeline::{self, Points, Scene, flagged};
+use crate::pipeline::{self, Points, Scene};
 use crate::run::Run;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
@@ -101,7 +101,7 @@ fn draw(
     let profile = arguments.scene.profile.into();
     if let [view] = views {
         let look = if view.is_central() { Look::Camera(*view) } else { Look::Parallel };
-        let map = flagged("--ball-profile", scene.model.depth_map(view, profile, items, control))?;
+        let map = scene.model.depth_map(view, profile, items, control)?;
         return Ok(Drawn { depth: map.depth, balls: map.balls, around_eye_count: map.around_eye_count, look });
     }
     if profile != Profile::Sphere {

@@ -6,7 +6,7 @@ use super::mesh_targets::{is_mesh, mesh_of, start_of};
 use super::shapes::{TypedAre, shapes, wrong_shape};
 use super::sights::{Proving, blockers, ground, ground_cloud};
 use crate::arguments::{Corners, Envelope, Global, Usage};
-use crate::pipeline::{self, Points, Scene, flagged, is_file};
+use crate::pipeline::{self, Points, Scene, is_file};
 use crate::run::Run;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::Result;
@@ -56,14 +56,14 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
             let found = run.stage("testing existing shadow", land.pieces.len(), |control| {
                 existing_shade(&blockers, &land.pieces, &suns.directions, control)
             });
-            Some(flagged("--spacing, --step", found)?)
+            Some(found?)
         }
     };
     let params = EnvelopeParams::default().with_ceiling(arguments.ceiling);
     let found = run.stage("computing envelope", suns.directions.len(), |control| {
         solar_envelope(&parcel, &below, &land.pieces, &suns.directions, free.as_ref(), &params, control)
     });
-    let found = flagged("--spacing, --time-step-min, --max-height", found)?;
+    let found = found?;
     run.summary.add("envelope", told(&found, &land, &suns, arguments));
     for output in &arguments.output {
         run.stage("writing", 0, |_| write_one(output, &found, &below, &cloud))?;
@@ -149,7 +149,7 @@ impl Suns {
         };
         let params = arguments.when.params(&arguments.place)?;
         let between = arguments.between.map_or([0.0, 24.0], |hours| hours.0);
-        let (suns, low) = flagged("--between, --time-step-min", envelope_suns(&site, &zone, &dates, between, &params))?;
+        let (suns, low) = envelope_suns(&site, &zone, &dates, between, &params)?;
         let mut section = Summary::default();
         section
             .add("days", dates.len())
@@ -181,7 +181,7 @@ fn parcel(arguments: &Envelope, cloud: &PointCloud) -> Result<Parcel> {
             }
         }
     }
-    flagged("--parcel", Parcel::new(&rings))
+    Ok(Parcel::new(&rings)?)
 }
 
 /// What is protected: pieces that are there already, and shapes that wait for the ground.
@@ -220,7 +220,7 @@ impl Land {
     fn add_mesh(&mut self, path: &Path, arguments: &Envelope, scene: &Scene, run: &mut Run) -> Result<()> {
         let mesh = mesh_of(path, scene, run)?;
         let spacing = arguments.spacing.unwrap_or(CELL);
-        let surface = flagged("--spacing", SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, run.seed))?;
+        let surface = SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, run.seed)?;
         let first = self.source(path.display().to_string());
         let objects = u32::try_from(mesh.object_names.len()).unwrap_or(0);
         mesh.object_names.iter().for_each(|name| {
@@ -254,10 +254,7 @@ impl Land {
                 }
             };
             for line in lines {
-                let (pieces, without) = flagged(
-                    "--protect, --fence-height, --spacing",
-                    protected_line(&line, fence, spacing, ground, source),
-                )?;
+                let (pieces, without) = protected_line(&line, fence, spacing, ground, source)?;
                 self.pieces.extend(pieces);
                 unknown += without;
             }
@@ -302,7 +299,7 @@ fn is_geojson(path: &Path) -> bool {
 fn grids(parcel: &Parcel, land: &Land, cell: f64, cloud: &PointCloud) -> Result<(MapGrid, MapGrid)> {
     let origin = [cloud.frame.origin[0], cloud.frame.origin[1]];
     let [low, high] = parcel.bounds();
-    let narrow = flagged("--cell", MapGrid::covering(low, high, cell, origin))?;
+    let narrow = MapGrid::covering(low, high, cell, origin)?;
     let protected = land.bounds();
     let wide = [0, 1].map(|axis| {
         let (low, high) = (low[axis].min(protected[0][axis]), high[axis].max(protected[1][axis]));
@@ -310,7 +307,7 @@ fn grids(parcel: &Parcel, land: &Land, cell: f64, cloud: &PointCloud) -> Result<
     });
     let (low, high) = (wide.map(|span| span[0]), wide.map(|span| span[1]));
     let coarse = belvedere::apps::viewshed::cell_for(low, high).max(cell);
-    let wide = flagged("--protect, --cell", MapGrid::covering(low, high, coarse, origin))?;
+    let wide = MapGrid::covering(low, high, coarse, origin)?;
     Ok((wide, narrow))
 }
 
@@ -363,7 +360,7 @@ fn ranked(areas: &[f64], names: &[String]) -> Vec<String> {
 fn write_one(output: &Path, found: &SolarEnvelope, ground: &Ground, cloud: &PointCloud) -> Result<()> {
     match super::extension(output).as_str() {
         "ply" | "obj" => {
-            let mut mesh = flagged("--max-height", found.to_mesh(cloud.frame.origin))?;
+            let mut mesh = found.to_mesh(cloud.frame.origin)?;
             mesh.crs = cloud.frame.crs.clone();
             Ok(write_mesh(output, &mesh, cloud.frame.crs.metres_per_unit_xyz())?)
         }

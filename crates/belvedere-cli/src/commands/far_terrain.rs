@@ -1,7 +1,7 @@
 //! Flags of what stands beyond the cloud.
 
 use crate::arguments::{FarTerrain, North};
-use crate::pipeline::{Scene, flagged};
+use crate::pipeline::Scene;
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
@@ -41,7 +41,7 @@ pub(super) fn set_terrain(path: &Path, scene: &mut Scene, run: &mut Run) -> Resu
     let terrain = run.stage("reading terrain", 0, |_| read_terrain(path, &frame))?;
     let report = TerrainReport::of(&terrain, model.bounds(), &frame);
     let name = path.display().to_string();
-    scene.model = flagged("--terrain", run.stage("ordering terrain", 0, |_| model.with_terrain(terrain, &name)))?;
+    scene.model = run.stage("ordering terrain", 0, |_| model.with_terrain(terrain, &name))?;
     run.summary.add("terrain", Summary::of(&report));
     Ok(())
 }

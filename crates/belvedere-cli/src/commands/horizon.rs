@@ -4,7 +4,7 @@ use super::sights::{Proving, blockers};
 use super::surroundings::{check_eyes, eyes, least_count, needs_ground};
 use super::{check_output, extension};
 use crate::arguments::{BelowChoice, GivingWay, Global, Horizon, Usage};
-use crate::pipeline::{self, Points, flagged};
+use crate::pipeline::{self, Points};
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
@@ -23,7 +23,7 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
     let earth = arguments.earth.params()?;
     let usual = HorizonParams::default();
     let azimuth_count = match arguments.step {
-        Some(step) => flagged("--angle-step-deg", azimuth_count(step.to_radians()))?,
+        Some(step) => azimuth_count(step.to_radians())?,
         None => usual.azimuth_count,
     };
     check_formats(arguments, least_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;

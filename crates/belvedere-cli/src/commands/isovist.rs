@@ -4,7 +4,7 @@ use super::sights::{Proving, blockers};
 use super::surroundings::{check_eyes, eyes, least_count, needs_ground, rows_as_given};
 use super::{check_output, extension};
 use crate::arguments::{GivingWay, Global, Isovist, Usage};
-use crate::pipeline::{self, Points, flagged};
+use crate::pipeline::{self, Points};
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
         // a skipped eye has a row without measures
         fit.iter().map(|eye| eye[0].is_finite().then(|| look(eye)).transpose()).collect::<belvedere::Result<Vec<_>>>()
     });
-    let isovists = flagged("--angle-step-deg, --max-distance, --min-jump", isovists)?;
+    let isovists = isovists?;
     let rows = rows(&scene.cloud, &places, &isovists, north.of_grid);
     if let [row] = &rows[..] {
         let mut section = Summary::default();

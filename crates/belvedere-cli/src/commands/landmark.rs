@@ -7,7 +7,7 @@ use super::sights::{self, ground_cloud, proving_blockers, skip_unfit};
 use super::surroundings::rows_as_given;
 use super::{check_output, extension};
 use crate::arguments::{Global, Landmark, Usage};
-use crate::pipeline::{self, Points, Scene, flagged};
+use crate::pipeline::{self, Points, Scene};
 use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     let views = run.stage("testing landmark", eyes.len(), |progress| {
         landmark_views(&blockers, &surface, &eyes, &params, progress)
     });
-    let views = flagged("--max-distance", views)?;
+    let views = views?;
     run.summary.add("observers", Summary::of(&LandmarkReport::new(&views, &eyes, inside)));
     let given = rows_as_given(arguments.observers.as_deref())?;
     for output in &arguments.output {
@@ -108,7 +108,7 @@ fn grid(arguments: &Landmark, scene: &Scene) -> Result<MapGrid> {
         None => arguments.cell.unwrap_or_else(|| observer_cell_for(low, high)),
     };
     let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
-    flagged("--cell", MapGrid::covering(low, high, cell, origin))
+    Ok(MapGrid::covering(low, high, cell, origin)?)
 }
 
 /// Place of an observer, whose height may be NaN, and its height above the ground where a file tells it.

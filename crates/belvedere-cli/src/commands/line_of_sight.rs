@@ -4,7 +4,7 @@ use super::far_terrain::set_terrain;
 use super::sights::{Proving, blockers, enclosure_note, ground, ground_cloud};
 use super::{check_output, extension};
 use crate::arguments::{Global, GroundChoice, LineOfSight, Place, Usage};
-use crate::pipeline::{self, Points, Scene, flagged};
+use crate::pipeline::{self, Points, Scene};
 use crate::run::Run;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
@@ -184,7 +184,7 @@ fn set_ends_on_ground(
     let heights = &arguments.heights;
     let heights = [heights.observer_height.unwrap_or(OBSERVER_HEIGHT), heights.target_height.unwrap_or(TARGET_HEIGHT)];
     let grid = grid_around(pairs.iter().flatten().copied().filter(over), scene.cloud.frame.origin);
-    if let Some(grid) = flagged("--pairs", grid)? {
+    if let Some(grid) = grid? {
         let (cloud, points) = ground_cloud(&arguments.ground, scene, run)?;
         let ground = ground(&cloud, points, grid, run)?;
         if matches!(arguments.ground, GroundChoice::OfScene(_)) {
@@ -286,7 +286,7 @@ fn write_profile(
     let made = run.stage("computing profile", 0, |control| {
         sight_profile(blockers, ground.as_ref(), pair, earth, arguments.profile_step, control)
     });
-    let profile = flagged("--profile-out", made)?;
+    let profile = made?;
     let up = scene.cloud.frame.crs.vertical_metres_per_unit;
     let height = |local: f64| (local + scene.cloud.frame.origin[2]) / up;
     let ground: Vec<f64> = profile.ground.iter().map(|&v| height(v)).collect();

@@ -6,7 +6,7 @@ use super::sights::{self, ground_cloud, proving_blockers};
 use super::surroundings::{check_eyes, eyes};
 use super::{check_output, extension};
 use crate::arguments::{Global, ProtectedView, UnprovenChoice};
-use crate::pipeline::{self, Points, flagged};
+use crate::pipeline::{self, Points};
 use crate::run::Run;
 use crate::summary::{Summary, rounded, sections};
 use anyhow::Result;
@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
     let (low, high) = scene.model.bounds().on_map();
     let cell = arguments.cell.unwrap_or_else(|| cell_for(low, high));
     let [x, y, _] = scene.cloud.frame.origin;
-    let grid = flagged("--cell", MapGrid::covering(low, high, cell, [x, y]))?;
+    let grid = MapGrid::covering(low, high, cell, [x, y])?;
     let (cloud, points) = ground_cloud(&arguments.eyes.ground, &mut scene, &mut run)?;
     let ground = sights::ground(&cloud, points, grid, &mut run)?;
     let profile = arguments.scene.profile.into();
@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
     let found = run.stage("computing limits", places.len(), |control| {
         protected_view::protected_view(&blockers, &object, &places, &ground.grid, &params, control)
     });
-    let found = flagged("--max-distance", found)?;
+    let found = found?;
     let above = found.above_ground(&ground)?;
     let mut section = Summary::default();
     let sum = |of: fn(&ViewpointReport) -> usize| found.viewpoints.iter().map(of).sum::<usize>();

@@ -1,7 +1,7 @@
 //! What commands that ask lines of sight have in common: the scene, the earth and the ground.
 
 use crate::arguments::{Earth, GivingWay, GroundChoice, Usage};
-use crate::pipeline::{Scene, flagged};
+use crate::pipeline::Scene;
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
@@ -94,7 +94,7 @@ impl Earth {
         let usual = EarthParams::default();
         let refraction = self.refraction.unwrap_or(usual.refraction);
         let params = EarthParams { curvature: self.curvature.into(), refraction, ..usual };
-        flagged("--refraction", params.validate())?;
+        params.validate()?;
         Ok(params)
     }
 }

@@ -1,7 +1,7 @@
 //! Where on earth a scene lies, how clocks run there, and which days were typed.
 
 use crate::arguments::{ElevationChoice, North, SunPeriod, SunPlace, Usage};
-use crate::pipeline::{Scene, flagged};
+use crate::pipeline::Scene;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, anyhow};
 use belvedere::apps::ask;
@@ -9,7 +9,7 @@ use belvedere::apps::sun::{
     Date, DayParams, Period, Refraction, Site, Zone, parse_instant, sun_position_with, zone_of_instant,
 };
 use belvedere::apps::sun_hours::RuleDays;
-use belvedere::{Bounds, Error, Frame};
+use belvedere::{Bounds, Error, Frame, Parameter};
 
 impl SunPlace {
     /// What was typed, with the north of azimuths.
@@ -37,7 +37,7 @@ impl SunPlace {
         let given = self.location.as_ref().map(|location| location.0.map(f64::to_radians));
         let found = Site::of_scene(frame, bounds, given, None);
         let (site, _) = match given {
-            Some(_) => flagged("--location", found)?,
+            Some(_) => found?,
             None => found.map_err(|error| match error {
                 Error::MissingAttribute { .. } => anyhow!(
                     "the position of the sun needs the location of the scene: give --location LAT,LON, or its reference system with --crs EPSG:CODE"
@@ -57,15 +57,15 @@ impl SunPlace {
     /// How clocks run: as told, else as in the first of the `times` that says so, else by the sun.
     pub(crate) fn zone(&self, site: &Site, times: &[&str]) -> Result<Zone> {
         match &self.zone {
-            Some(zone) => flagged("--zone", Zone::parse(zone)),
+            Some(zone) => Ok(Zone::parse(zone)?),
             None => Ok(times.iter().find_map(|time| zone_of_instant(time)).unwrap_or_else(|| Zone::mean_solar(site))),
         }
     }
 
     /// An instant that the flag `name` gave.
     pub(crate) fn instant(&self, flag: &str, text: &str) -> Result<f64> {
-        let zone = self.zone.as_deref().map(|zone| flagged("--zone", Zone::parse(zone))).transpose()?;
-        flagged(flag, parse_instant(text, zone.as_ref()))
+        let zone = self.zone.as_deref().map(Zone::parse).transpose()?;
+        parse_instant(text, zone.as_ref()).map_err(|error| Usage(format!("{flag}: {error}")).into())
     }
 
     /// By how much air lifts the sun.
@@ -99,16 +99,15 @@ impl SunPeriod {
     /// Refuses what cannot be anywhere on earth, before hours of work go into a scene.
     pub(crate) fn check(&self, place: &SunPlace) -> Result<()> {
         self.params(place)?.validate().map_err(|error| match (error, self.step) {
-            (Error::InvalidParameter { name: "step of time", .. }, Some(step)) => {
+            (Error::InvalidParameter { parameter: Parameter::TimeStep, .. }, Some(step)) => {
                 Usage(format!("--time-step-min: the step is {step} minutes, but must be 1/6 to 60 minutes")).into()
             }
-            (error @ Error::InvalidParameter { .. }, _) => Usage(format!("--min-sun-elevation: {error}")).into(),
             (error, _) => anyhow::Error::from(error),
         })?;
         let [latitude, longitude] = place.location.map_or([0.0; 2], |given| given.0.map(f64::to_radians));
         let anywhere = Site { latitude, longitude, height: 0.0, convergence: 0.0 };
-        let anywhere = flagged("--location", anywhere.validate())?;
-        flagged("--air", sun_position_with(&anywhere, 0.0, place.refraction()?))?;
+        let anywhere = anywhere.validate()?;
+        sun_position_with(&anywhere, 0.0, place.refraction()?)?;
         let zone = place.zone(&anywhere, &self.times())?;
         self.period(place, &anywhere, &zone).map(|_| ())
     }
@@ -136,7 +135,7 @@ impl SunPeriod {
     pub(crate) fn period(&self, place: &SunPlace, site: &Site, zone: &Zone) -> Result<Option<Period>> {
         if let (Some(from), Some(to)) = (&self.from, &self.to) {
             return Ok(Some(match (Date::parse(from), Date::parse(to)) {
-                (Ok(first), Ok(last)) => Period::Days(flagged("--to", days(first, last))?),
+                (Ok(first), Ok(last)) => Period::Days(days(first, last)?),
                 (Err(_), Err(_)) => Period::Between([place.instant("--from", from)?, place.instant("--to", to)?]),
                 _ => return Err(Usage("--from and --to: give two days, or two times".to_owned()).into()),
             }));
@@ -144,21 +143,17 @@ impl SunPeriod {
         let mut dates = Vec::new();
         for text in &self.date {
             match RuleDays::parse(text) {
-                Some(days) => dates.extend(flagged("--year", days.dates(self.year, site, zone))?),
-                None => dates.push(flagged("--date", Date::parse(text))?),
+                Some(days) => dates.extend(days.dates(self.year, site, zone)?),
+                None => dates.push(Date::parse(text)?),
             }
         }
         Ok((!dates.is_empty()).then_some(Period::Days(dates)))
     }
 }
 
-fn days(first: Date, last: Date) -> belvedere::Result<Vec<Date>> {
+fn days(first: Date, last: Date) -> Result<Vec<Date>> {
     if last < first {
-        return Err(Error::InvalidParameter {
-            name: "last day",
-            value: last.to_string(),
-            expected: "the first day or a later one",
-        });
+        return Err(Usage(format!("--to: last day is {last}, but must be the first day or a later one")).into());
     }
     Ok(first.to(last).collect())
 }

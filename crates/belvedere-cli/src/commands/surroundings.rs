@@ -2,7 +2,7 @@
 
 use super::{extension, sights};
 use crate::arguments::{Eyes, GroundChoice};
-use crate::pipeline::{Scene, flagged};
+use crate::pipeline::Scene;
 use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -35,7 +35,7 @@ pub(super) fn eyes(arguments: &Eyes, scene: &mut Scene, run: &mut Run) -> Result
     // ground is made where there are points: one eye far away would make its cells large for all
     let over = |place: &[f64; 3]| coverage.is_none_or(|coverage| coverage.holds_on_map(*place));
     let grid = grid_around(rows.iter().map(|row| row.0).filter(over), scene.cloud.frame.origin);
-    if let Some(grid) = flagged("--observer", grid)? {
+    if let Some(grid) = grid? {
         let (cloud, points) = sights::ground_cloud(&arguments.ground, scene, run)?;
         let ground = sights::ground(&cloud, points, grid, run)?;
         set_on_ground(rows.iter_mut().map(|(place, height)| (place, *height)), &ground);

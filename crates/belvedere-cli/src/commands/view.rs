@@ -5,7 +5,7 @@ use super::mesh_targets::is_mesh;
 use crate::arguments::{Global, MethodChoice, Place, SceneInput, Usage, ViewPage};
 use crate::interrupt;
 use crate::memory::available_bytes;
-use crate::pipeline::{self, Points, flagged, is_file, params};
+use crate::pipeline::{self, Points, is_file, params};
 use crate::run::Run;
 use crate::summary::{Summary, note};
 use crate::written_files::check_input;
@@ -133,8 +133,8 @@ fn title(files: &[PathBuf]) -> String {
 /// Writes the page as one file.
 fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Global) -> Result<Summary> {
     check_output("--export", output, &["html"])?;
-    let date = arguments.date.as_deref().map(|date| flagged("--date", Date::parse(date))).transpose()?;
-    let zone = arguments.zone.as_deref().map(|zone| flagged("--zone", Zone::parse(zone))).transpose()?;
+    let date = arguments.date.as_deref().map(Date::parse).transpose()?;
+    let zone = arguments.zone.as_deref().map(Zone::parse).transpose()?;
     let loading = Loading::default();
     let mut run = Run::new(global);
     let day = |frame: &Frame, bounds: &Bounds| -> Result<Option<(Date, Zone)>> {
@@ -166,10 +166,7 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
         viewpoints: arguments.observer.iter().map(|&Place([x, y], z)| [x, y, z.unwrap_or(f64::NAN)]).collect(),
     };
     let exported = run.stage("making the page", 0, |control| export(&cloud, model, &params, control));
-    let (page, report) = exported.map_err(|error| match error {
-        Error::InvalidParameter { name: "the viewpoint", .. } => Usage(format!("--observer: {error}")).into(),
-        other => anyhow::Error::from(other),
-    })?;
+    let (page, report) = exported?;
     run.stage("writing", 0, |_| {
         atomic::write(output, |file| file.write_all(page.as_bytes()).map_err(Error::io(output)))
     })?;

@@ -8,7 +8,7 @@ use super::heights::write_heights;
 use super::sights::{OUTSIDE_CLOUD, enclosure_note, ground, ground_cloud, proving_blockers, skip_unfit_far};
 use super::{check_output, warn_of_geojson};
 use crate::arguments::{Global, Usage, Viewshed};
-use crate::pipeline::{self, Points, flagged};
+use crate::pipeline::{self, Points};
 use crate::run::Run;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
@@ -149,7 +149,7 @@ fn grid(arguments: &Viewshed, scene: &pipeline::Scene, rows: &[who::Row]) -> Res
     let (low, high) = box_within_reach(scene.model.bounds().on_map(), reaches);
     let cell = arguments.cell.unwrap_or_else(|| cell_for(low, high));
     let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
-    flagged("--cell", MapGrid::covering(low, high, cell, origin))
+    Ok(MapGrid::covering(low, high, cell, origin)?)
 }
 
 /// The cells of the terrain beyond the cloud that observers may see, if these are asked about.
@@ -158,7 +158,7 @@ fn far_cells(arguments: &Viewshed, blockers: &MedialScene, observers: &[Observer
     if arguments.far_output.is_empty() {
         return Ok(None);
     }
-    let cells = flagged("--max-distance", terrain_within_reach(terrain, observers))?;
+    let cells = terrain_within_reach(terrain, observers)?;
     if far_targets(blockers, &cells).next().is_none() {
         bail!("--terrain {}: has no heights beyond the cloud within --max-distance", path.display());
     }

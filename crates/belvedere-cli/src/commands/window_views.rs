@@ -7,7 +7,7 @@ use super::sights::{leave_out_outside, report_edge};
 use super::windows::{FaceChoice, Windows, windows};
 use super::{check_output, extension, mesh_targets, warn_of_geojson};
 use crate::arguments::{Global, UnprovenChoice, Usage, WindowViews};
-use crate::pipeline::{self, Points, Scene, flagged};
+use crate::pipeline::{self, Points, Scene};
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
@@ -24,7 +24,7 @@ const OTHER_WARNING_PERCENT: f64 = 50.0;
 pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     check(arguments)?;
     let directions = view_directions(arguments.directions.unwrap_or(VIEW_DIRECTIONS));
-    let directions = flagged("--directions", directions)?;
+    let directions = directions?;
     let mut run = Run::new(global);
     let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut run)?;
     arguments.far.set(&mut scene, &mut run)?;

@@ -3,7 +3,7 @@
 use super::landmark::what::objects_of;
 use super::mesh_targets::{is_mesh, mesh_of};
 use crate::arguments::Usage;
-use crate::pipeline::{Scene, flagged};
+use crate::pipeline::Scene;
 use crate::run::Run;
 use anyhow::{Result, bail};
 use belvedere::Frame;
@@ -92,8 +92,7 @@ pub(crate) fn windows(
 fn faces(path: &Path, choice: &FaceChoice<'_>, (scene, grid_north): (&Scene, f64), run: &mut Run) -> Result<Windows> {
     let mesh = objects_of(mesh_of(path, scene, run)?, choice.objects, path)?;
     let spacing = choice.spacing.unwrap_or(CELL);
-    let (targets, windows) =
-        flagged("--spacing", Targets::of_window_faces(&mesh, &scene.cloud.frame, spacing, run.seed))?;
+    let (targets, windows) = Targets::of_window_faces(&mesh, &scene.cloud.frame, spacing, run.seed)?;
     let centers: Vec<[f64; 3]> = windows.iter().map(|window| window.center).collect();
     let column = |of: &dyn Fn(&Window) -> f64| -> Vec<f64> { windows.iter().map(of).collect() };
     let mut columns = vec![("face", column(&|window| window.face.map_or(f64::NAN, f64::from)), 0)];

@@ -1,10 +1,8 @@
 //! From flags to the parameters of a scene model.
 
-use super::flagged;
 use crate::arguments::{Cleaning, MethodChoice, NeighborChoice, OrientChoice, Orienting, Shrinking, Usage};
 use crate::run::Run;
 use anyhow::Result;
-use belvedere::Error;
 use belvedere::clean::CleanParams;
 use belvedere::crs::Crs;
 use belvedere::io::{read_mesh, read_stations, read_trajectory};
@@ -24,7 +22,7 @@ pub(crate) fn model(
         NeighborChoice::Fixed(k) => Neighborhood::Fixed { k },
         NeighborChoice::Adaptive => Neighborhood::adaptive(),
     };
-    flagged("--neighbors", neighborhood.check())?;
+    neighborhood.check()?;
     let orient = match &orienting.orient {
         OrientChoice::Auto => OrientBy::Auto,
         OrientChoice::Given => OrientBy::Given,
@@ -117,7 +115,7 @@ impl Shrinking {
                 *next_separation_angle = typed(self.next_angle, *next_separation_angle);
             }
         }
-        check_shrinking(&params)?;
+        params.check()?;
         Ok(params)
     }
 
@@ -129,7 +127,7 @@ impl Shrinking {
         params.penetration = self.penetration.unwrap_or(params.penetration);
         params.initial_radius = self.initial_radius.unwrap_or(params.initial_radius);
         params.max_radius = self.max_radius.unwrap_or(params.max_radius);
-        check_shrinking(&params.shrinking())?;
+        params.shrinking().check()?;
         if let Some(trees) = self.trees {
             params = params.with_trees(trees);
         }
@@ -139,19 +137,4 @@ impl Shrinking {
 
 fn angles_only() -> anyhow::Error {
     Usage("--first-angle and --next-angle need --method angles".to_owned()).into()
-}
-
-/// Makes a parameter out of range an error about its flag.
-fn check_shrinking(params: &ShrinkParams) -> Result<()> {
-    params.check().map_err(|error| match error {
-        Error::InvalidParameter { name, .. } => {
-            let flag = match name {
-                "separation angle" => "--first-angle, --next-angle".to_owned(),
-                "greatest radius" => "--max-radius".to_owned(),
-                _ => format!("--{}", name.replace(' ', "-")),
-            };
-            anyhow::Error::from(Usage(format!("{flag}: {error}")))
-        }
-        other => other.into(),
-    })
 }

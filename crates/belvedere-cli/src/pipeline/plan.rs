@@ -22,7 +22,7 @@ pub(super) fn clear(scene: &mut Scene, plan: &Plan, run: &mut Run) -> Result<()>
         let model = std::mem::take(&mut scene.model);
         let cleared = run.stage("clearing", 0, |control| model.without(&area, &scene.cloud, control));
         let report;
-        (scene.model, scene.cloud, report) = super::flagged("--clear", cleared)?;
+        (scene.model, scene.cloud, report) = cleared?;
         sum.points_cleared += report.points_cleared;
         sum.balls_cleared += report.balls_cleared;
         sum.balls_cut += report.balls_cut;
@@ -70,7 +70,7 @@ pub(crate) fn planned(mut model: SceneModel, plan: &Plan, run: &mut Run) -> Resu
     for path in &plan.add {
         let mesh = run.aside(|run| mesh_in(path, &model.frame().crs, run)).0?;
         triangle_count += mesh.triangles.len();
-        model = super::flagged("--add", model.with_added(&mesh, &path.display().to_string()))?;
+        model = model.with_added(&mesh, &path.display().to_string())?;
     }
     let mut section = Summary::default();
     section.add("meshes_added", plan.add.len()).add("triangles", triangle_count);

@@ -9,7 +9,7 @@ pub use outliers::{IsolatedPoints, IsolationRadius};
 
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
-use belvedere_data::{Error, PointCloud, Result};
+use belvedere_data::{Error, Parameter, PointCloud, Result};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
@@ -138,12 +138,12 @@ pub fn clean(cloud: &PointCloud, params: &CleanParams, control: &Control<'_>) ->
         return Err(Error::LengthMismatch { what, expected, found });
     }
     let count = u32::try_from(expected).map_err(|_| Error::InvalidParameter {
-        name: "number of points",
+        parameter: Parameter::PointCount,
         value: expected.to_string(),
         expected: "at most 4294967295; split the cloud into tiles",
     })?;
     if let Some(distance) = params.near_duplicate_distance {
-        check_length("near duplicate distance", distance)?;
+        check_length(Parameter::DuplicateDistance, distance)?;
     }
     if let Some(isolated) = &params.isolated {
         isolated.check()?;
@@ -184,11 +184,11 @@ fn keep(kept: &mut Vec<u32>, wanted: impl Fn(usize) -> bool + Sync) -> usize {
     before - kept.len()
 }
 
-fn check_length(name: &'static str, metres: f64) -> Result<()> {
+fn check_length(parameter: Parameter, metres: f64) -> Result<()> {
     if metres > 0.0 && metres <= 1000.0 {
         return Ok(());
     }
-    Err(Error::InvalidParameter { name, value: metres.to_string(), expected: "above 0 and at most 1000 metres" })
+    Err(Error::InvalidParameter { parameter, value: metres.to_string(), expected: "above 0 and at most 1000 metres" })
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use super::check_length;
 use super::duplicates::remove_sorted;
 use super::grid::{SortedGrid, squared_distance};
 use belvedere_data::control::{Control, Stop};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Points whose nearest neighbour is looked for to learn the spacing: their median is known to a few per cent.
 const SPACING_SAMPLE_COUNT: usize = 2000;
@@ -52,17 +52,13 @@ impl IsolatedPoints {
     pub(super) fn check(&self) -> Result<()> {
         if self.min_neighbors == 0 {
             let value = self.min_neighbors.to_string();
-            return Err(Error::InvalidParameter {
-                name: "minimum number of neighbours",
-                value,
-                expected: "at least 1",
-            });
+            return Err(Error::InvalidParameter { parameter: Parameter::NeighborCount, value, expected: "at least 1" });
         }
         match self.radius {
-            IsolationRadius::Metres(metres) => check_length("isolation radius", metres),
+            IsolationRadius::Metres(metres) => check_length(Parameter::IsolationRadius, metres),
             IsolationRadius::SpacingMultiple(multiple) if multiple > 0.0 && multiple <= 1e4 => Ok(()),
             IsolationRadius::SpacingMultiple(multiple) => Err(Error::InvalidParameter {
-                name: "isolation radius",
+                parameter: Parameter::IsolationRadius,
                 value: format!("{multiple} times the spacing"),
                 expected: "above 0 and at most 10000 times",
             }),

@@ -8,7 +8,7 @@ use crate::blocking::{Ball, BlockRule};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::view::{Projection, View};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Rounding of f32 as a share of the coordinates it works on: 32 units of 2⁻²³. Positions in the view, directions of pixels and
 /// products of both err by fewer than 16 of them together.
@@ -72,7 +72,7 @@ pub struct DepthBounds {
 pub fn depth_bounds(balls: &[Ball], view: &View, params: &BoundsParams, control: &Control<'_>) -> Result<DepthBounds> {
     if u32::try_from(balls.len()).is_err() {
         return Err(Error::InvalidParameter {
-            name: "number of balls",
+            parameter: Parameter::BallCount,
             value: balls.len().to_string(),
             expected: "below 2^32",
         });

@@ -8,7 +8,7 @@ use crate::medial::{MedialBalls, NO_TOUCH};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::view::{Projection, View};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// Value of the item buffer where no ball is hit.
@@ -65,7 +65,7 @@ pub fn depth_map(
     balls.validate()?;
     if u32::try_from(balls.len()).is_err() {
         return Err(Error::InvalidParameter {
-            name: "number of balls",
+            parameter: Parameter::BallCount,
             value: balls.len().to_string(),
             expected: "below 2^32",
         });
@@ -87,7 +87,7 @@ pub fn depth_map(
         (_, Profile::Sphere) => tiles::draw(&Central::new(view, central::Sphere), size, count, usable, items, control),
         (_, Profile::PaperCone) => {
             return Err(Error::InvalidParameter {
-                name: "profile",
+                parameter: Parameter::BallProfile,
                 value: "the paper's cone in a view from an eye".to_owned(),
                 expected: "the sphere; the paper defines its cone for parallel views only",
             });

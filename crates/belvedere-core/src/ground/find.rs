@@ -5,7 +5,7 @@ use super::{Ground, MapGrid};
 use belvedere_data::Bounds;
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
-use belvedere_data::{Error, PointCloud, Result};
+use belvedere_data::{Error, Parameter, PointCloud, Result};
 
 /// Classes that are never ground: noise, low and high.
 const NOISE: [u8; 2] = [7, 18];
@@ -45,30 +45,31 @@ impl Default for FinderParams {
 
 impl FinderParams {
     fn validate(&self) -> Result<()> {
-        let above_zero = [
-            ("cell of the ground detection", self.cell),
-            ("slope of the ground detection", self.slope),
-            ("window of the ground detection", self.window),
-        ];
+        let above_zero = [("cell", self.cell), ("slope", self.slope), ("window", self.window)];
         for (name, value) in above_zero {
             if !(value.is_finite() && value > 0.0) {
-                return Err(Error::InvalidParameter { name, value: value.to_string(), expected: "above zero" });
+                return Err(Error::InvalidParameter {
+                    parameter: Parameter::GroundDetection,
+                    value: format!("{name} of {value}"),
+                    expected: "above zero",
+                });
             }
         }
         if self.window / self.cell > 10_000.0 {
-            let value = format!("{} m at cells of {} m", self.window, self.cell);
+            let value = format!("a window of {} m at cells of {} m", self.window, self.cell);
             return Err(Error::InvalidParameter {
-                name: "window of the ground detection",
+                parameter: Parameter::GroundDetection,
                 value,
                 expected: "at most 10 000 cells",
             });
         }
-        for (name, value) in [
-            ("tolerance of the ground detection", self.tolerance),
-            ("slope tolerance of the ground detection", self.slope_tolerance),
-        ] {
+        for (name, value) in [("tolerance", self.tolerance), ("slope tolerance", self.slope_tolerance)] {
             if !(value.is_finite() && value >= 0.0) {
-                return Err(Error::InvalidParameter { name, value: value.to_string(), expected: "zero or more" });
+                return Err(Error::InvalidParameter {
+                    parameter: Parameter::GroundDetection,
+                    value: format!("{name} of {value}"),
+                    expected: "zero or more",
+                });
             }
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! Grids of square cells on the map.
 
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Most cells of a grid: what a few bytes each still fit into the memory of a usual machine.
 const MOST_CELLS: f64 = 1e8;
@@ -27,16 +27,16 @@ impl MapGrid {
     /// # Errors
     /// [`Error::InvalidParameter`] for a cell that is not above zero or longer than the box and than 100 m, a box that is not finite, and more than 100 million cells.
     pub fn covering(low: [f64; 2], high: [f64; 2], cell: f64, origin: [f64; 2]) -> Result<Self> {
-        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if !(cell.is_finite() && cell > 0.0) {
-            return invalid("cell", cell.to_string(), "above zero metres");
+            return invalid(Parameter::Cell, cell.to_string(), "above zero metres");
         }
         if !low.iter().chain(&high).all(|v| v.is_finite()) || low[0] > high[0] || low[1] > high[1] {
-            return invalid("box of the grid", format!("{low:?} to {high:?}"), "finite");
+            return invalid(Parameter::GridBox, format!("{low:?} to {high:?}"), "finite");
         }
         let side = (high[0] - low[0]).max(high[1] - low[1]);
         if cell > side.max(LEAST_SIDE) {
-            return invalid("cell", format!("{cell} m"), "at most as long as the area that it divides");
+            return invalid(Parameter::Cell, format!("{cell} m"), "at most as long as the area that it divides");
         }
         let west = ((low[0] + origin[0]) / cell).floor();
         let south = ((low[1] + origin[1]) / cell).floor();
@@ -48,7 +48,7 @@ impl MapGrid {
         let (columns, rows) = (east - west, north - south);
         if !(columns * rows <= MOST_CELLS) {
             return invalid(
-                "cell",
+                Parameter::Cell,
                 format!("{cell} m, which makes {columns} x {rows} cells"),
                 "large enough for at most 100 million cells",
             );

@@ -15,7 +15,7 @@ pub use surface::{SurfaceParams, top_surface};
 use crate::neighbors::NeighborIndex;
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
-use belvedere_data::{Error, PointCloud, Result};
+use belvedere_data::{Error, Parameter, PointCloud, Result};
 use rayon::prelude::*;
 
 /// ASPRS class of ground.
@@ -125,7 +125,7 @@ impl Ground {
     ) -> Result<(Self, GroundReport)> {
         if !(params.reach > 0.0) {
             return Err(Error::InvalidParameter {
-                name: "reach of the ground",
+                parameter: Parameter::GroundReach,
                 value: params.reach.to_string(),
                 expected: "above zero metres",
             });

@@ -4,7 +4,7 @@ use super::{Ground, highest_points};
 use crate::neighbors::{Neighbor, NeighborIndex};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// Greatest distance from the middle of a cell at which a point tells what covers the middle, metres: half of a cell that is larger.
@@ -50,15 +50,16 @@ impl SurfaceParams {
     /// # Errors
     /// [`Error::InvalidParameter`] for one outside its range.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let invalid =
+            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Surface, value, expected });
         if !(3..=256).contains(&self.neighbors) {
-            return invalid("neighbours of a surface", self.neighbors.to_string(), "3 to 256");
+            return invalid(format!("one of {} neighbours", self.neighbors), "one of 3 to 256");
         }
         if !(self.step > 0.0 && self.step.is_finite()) {
-            return invalid("step of a surface", self.step.to_string(), "above zero metres");
+            return invalid(format!("one in steps of {}", self.step), "one in steps above zero metres");
         }
         if !(self.roughness >= 0.0 && self.roughness.is_finite()) {
-            return invalid("roughness of a surface", self.roughness.to_string(), "0 metres or more");
+            return invalid(format!("one of roughness {}", self.roughness), "one of roughness 0 metres or more");
         }
         Ok(())
     }

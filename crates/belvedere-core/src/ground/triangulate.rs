@@ -2,7 +2,7 @@
 
 use super::MapGrid;
 use belvedere_data::raster::Raster;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use delaunator::{Point, triangulate};
 
 /// Height at the middle of each cell of `grid` on the triangulated `points`, (N, 3) local metres; NaN outside their hull, and
@@ -12,7 +12,11 @@ use delaunator::{Point, triangulate};
 /// [`Error::InvalidParameter`] for a point that is not finite.
 pub(super) fn heights(points: &[[f32; 3]], grid: &MapGrid) -> Result<Raster<f32>> {
     if let Some(p) = points.iter().find(|p| !p.iter().all(|v| v.is_finite())) {
-        return Err(Error::InvalidParameter { name: "ground point", value: format!("{p:?}"), expected: "finite" });
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::Position,
+            value: format!("{p:?}"),
+            expected: "finite",
+        });
     }
     let mut heights = Raster::filled(grid.width, grid.height, f32::NAN);
     let on_map: Vec<Point> = points.iter().map(|p| Point { x: f64::from(p[0]), y: f64::from(p[1]) }).collect();

@@ -3,7 +3,7 @@
 use crate::neighbors::NeighborIndex;
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
 use belvedere_data::control::{Control, Stop};
-use belvedere_data::{Error, Result, random};
+use belvedere_data::{Error, Parameter, Result, random};
 use rayon::prelude::*;
 
 /// Parameters of [`local_feature_size`].
@@ -42,14 +42,14 @@ pub fn local_feature_size(
     let stop = Stop::new(control);
     if !(params.most_bisector_angle > 0.0) {
         return Err(Error::InvalidParameter {
-            name: "bisector angle",
+            parameter: Parameter::BisectorAngle,
             value: params.most_bisector_angle.to_degrees().to_string(),
             expected: "above 0 degrees",
         });
     }
     if !(1..=64).contains(&params.neighbor_count) {
         return Err(Error::InvalidParameter {
-            name: "number of medial neighbours",
+            parameter: Parameter::NeighborCount,
             value: params.neighbor_count.to_string(),
             expected: "1 to 64",
         });
@@ -76,7 +76,7 @@ fn reliable_centers(
 ) -> Result<Vec<[f32; 3]>> {
     let stop = Stop::new(control);
     let missing = |i: u32| Error::InvalidParameter {
-        name: "point of a ball",
+        parameter: Parameter::Ball,
         value: i.to_string(),
         expected: "an index into the points the balls were made from",
     };
@@ -173,14 +173,14 @@ pub fn simplify(positions: &[[f32; 3]], feature_sizes: &[f32], params: &Simplify
         });
     }
     let [least, most] = params.density_limits;
-    for (name, value) in [("spacing", params.spacing), ("cell size", params.cell_size)] {
+    for (parameter, value) in [(Parameter::Spacing, params.spacing), (Parameter::Cell, params.cell_size)] {
         if !(value > 0.0 && value.is_finite()) {
-            return Err(Error::InvalidParameter { name, value: value.to_string(), expected: "above 0" });
+            return Err(Error::InvalidParameter { parameter, value: value.to_string(), expected: "above 0" });
         }
     }
     if !(least >= 0.0 && most >= least) {
         return Err(Error::InvalidParameter {
-            name: "density limits",
+            parameter: Parameter::DensityLimits,
             value: format!("{least} to {most}"),
             expected: "0 or more, in ascending order",
         });

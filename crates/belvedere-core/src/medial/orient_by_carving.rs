@@ -4,7 +4,7 @@ use crate::neighbors::{NeighborIndex, Tangent};
 use crate::normals::OrientedCloud;
 use crate::pulses::Needles;
 use belvedere_data::control::{Control, Stop};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// How [`orient_by_carving`] works.
@@ -61,14 +61,14 @@ pub fn orient_by_carving(
     if !(params.penetration > 0.0 && params.penetration < params.initial_radius && params.initial_radius <= 1e5) {
         let value = format!("{} of {}", params.penetration, params.initial_radius);
         return Err(Error::InvalidParameter {
-            name: "penetration",
+            parameter: Parameter::Penetration,
             value,
             expected: "above 0 and below the initial radius",
         });
     }
     if !(params.least_ratio >= 1.0) {
         let value = params.least_ratio.to_string();
-        return Err(Error::InvalidParameter { name: "ratio of radii", value, expected: "at least 1" });
+        return Err(Error::InvalidParameter { parameter: Parameter::RadiusRatio, value, expected: "at least 1" });
     }
     let (positions, count) = (oriented.positions(), oriented.len());
     if index.len() != count {

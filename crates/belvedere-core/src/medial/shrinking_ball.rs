@@ -5,7 +5,7 @@ use crate::normals::OrientedCloud;
 use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH, Side};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{dot, sub};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -88,29 +88,30 @@ impl ShrinkParams {
     /// # Errors
     /// [`Error::InvalidParameter`] for the first parameter out of its range.
     pub fn check(&self) -> Result<()> {
-        let invalid =
-            |name, value: f64, expected| Err(Error::InvalidParameter { name, value: value.to_string(), expected });
+        let invalid = |parameter, value: f64, expected| {
+            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
+        };
         let radius = self.initial_radius;
         if !(radius > 0.0 && radius <= 1e5) {
-            return invalid("initial radius", radius.into(), "above 0 and at most 100000 metres");
+            return invalid(Parameter::InitialRadius, radius.into(), "above 0 and at most 100000 metres");
         }
         if !(self.max_radius > 0.0) {
-            return invalid("greatest radius", self.max_radius.into(), "above 0 metres");
+            return invalid(Parameter::MaxRadius, self.max_radius.into(), "above 0 metres");
         }
         if !(self.max_spacings > 0.0) {
-            return invalid("greatest radius in point spacings", self.max_spacings.into(), "above 0");
+            return invalid(Parameter::MaxRadius, self.max_spacings.into(), "above 0");
         }
         match self.method {
             ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
                 for angle in [first_separation_angle, next_separation_angle] {
                     if !(0.0..=std::f64::consts::PI).contains(&angle) {
-                        return invalid("separation angle", angle.to_degrees(), "0 to 180 degrees");
+                        return invalid(Parameter::SeparationAngle, angle.to_degrees(), "0 to 180 degrees");
                     }
                 }
             }
             ShrinkMethod::Tau { penetration } => {
                 if !(penetration > 0.0 && penetration < radius) {
-                    return invalid("penetration", penetration.into(), "above 0 and below the initial radius");
+                    return invalid(Parameter::Penetration, penetration.into(), "above 0 and below the initial radius");
                 }
             }
         }

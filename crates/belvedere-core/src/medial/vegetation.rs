@@ -4,7 +4,7 @@ use super::bounds::Kind;
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use belvedere_data::control::{Control, Stop};
-use belvedere_data::{Attributes, Error, Result};
+use belvedere_data::{Attributes, Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// How vegetation is told in clouds without its classes (3 to 5), as those of AHN are.
@@ -46,11 +46,7 @@ pub(super) fn tell_vegetation(
     let stop = Stop::new(control);
     if !(1..=256).contains(&params.neighbors) {
         let value = params.neighbors.to_string();
-        return Err(Error::InvalidParameter {
-            name: "neighbours for the detection of vegetation",
-            value,
-            expected: "1 to 256",
-        });
+        return Err(Error::InvalidParameter { parameter: Parameter::NeighborCount, value, expected: "1 to 256" });
     }
     let class = |row: usize| attributes.classification.as_ref().and_then(|classes| classes.get(row)).copied();
     let count = |row: usize| attributes.return_count.as_ref().and_then(|counts| counts.get(row)).copied();

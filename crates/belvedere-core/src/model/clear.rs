@@ -9,7 +9,7 @@ use crate::query::FreedSpace;
 use belvedere_data::balls::LIMIT_TOUCH;
 use belvedere_data::control::Control;
 use belvedere_data::polygon::is_inside;
-use belvedere_data::{Bounds, Error, PointCloud, Result};
+use belvedere_data::{Bounds, Error, Parameter, PointCloud, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -164,7 +164,9 @@ impl ClearedArea {
     /// # Errors
     /// [`Error::InvalidParameter`] for a polygon beside `bounds`, for one that is none, and for the class of the ground.
     pub fn rectangle_on(&self, bounds: &Bounds, origin: [f64; 3]) -> Result<Option<([f64; 2], [f64; 2])>> {
-        let invalid = |value: String, expected| Err(Error::InvalidParameter { name: "area to clear", value, expected });
+        let invalid = |value: String, expected| {
+            Err(Error::InvalidParameter { parameter: Parameter::ClearedArea, value, expected })
+        };
         let rings = match self {
             Self::Class(GROUND) => return invalid("class 2".to_owned(), "a class that stands on the ground"),
             Self::Class(_) => return Ok(None),

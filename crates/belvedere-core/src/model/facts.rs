@@ -6,7 +6,7 @@ use crate::clean::{CleanParams, IsolatedPoints, IsolationRadius};
 use crate::medial::{CarvedInput, CarvedParams, WholeSurvey, carve_survey};
 use crate::pulses::{LinePath, Means, VerticalParams, locate, positions_on_paths, vertical_pulses};
 use belvedere_data::control::Control;
-use belvedere_data::{Error, PointCloud, Result};
+use belvedere_data::{Error, Parameter, PointCloud, Result};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::path::Path;
@@ -77,7 +77,7 @@ impl SurveyFacts {
         if !matches!(params.orient, OrientBy::Auto | OrientBy::Up | OrientBy::Pulses) {
             let value = "a scanner, a trajectory or a mesh that is given".to_owned();
             let expected = "auto, pulses or up where a survey is built in parts";
-            return Err(Error::InvalidParameter { name: "orientation", value, expected });
+            return Err(Error::InvalidParameter { parameter: Parameter::Orientation, value, expected });
         }
         let means = if matches!(params.orient, OrientBy::Pulses) { Means::Pulses } else { Means::Automatic };
         let (positions, report) = control.stage("estimating scanner positions", along_lines.len(), || {

@@ -32,7 +32,7 @@ use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
 use crate::pulses::NeedleColumns;
 use crate::query::{AddedMeshes, Backend, BallTree, FarTerrain, FreedSpace};
 use belvedere_data::horizon::HorizonProfile;
-use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Mesh, Result};
+use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Mesh, Parameter, Result};
 use std::sync::Arc;
 
 /// A scene that answers what is visible: balls that block lines of sight, and the pulses that prove others free.
@@ -68,7 +68,7 @@ impl SceneModel {
         parts.validate()?;
         if let Some(side) = parts.provenance.get("side").filter(|side| *side == "exterior") {
             return Err(Error::InvalidParameter {
-                name: "side of the balls",
+                parameter: Parameter::BallSide,
                 value: side.clone(),
                 expected: "interior, because exterior balls block nothing",
             });

@@ -1,7 +1,7 @@
 //! Whether an elevation raster can be the terrain around a cloud.
 
 use belvedere_data::report::{percent, rounded};
-use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Result};
+use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Parameter, Result};
 use serde::Serialize;
 
 /// How far heights of terrain may lie above or below all points of a cloud, metres: more than any error of a raster of 90 m cells, less than 30 m for which
@@ -57,7 +57,8 @@ impl TerrainReport {
 pub fn check_terrain(terrain: &ElevationGrid, name: &str, cloud: Bounds, frame: &Frame) -> Result<()> {
     let ([west, south], [east, north]) = terrain.on_map();
     let (low, high) = cloud.on_map();
-    let invalid = |value: String, expected| Err(Error::InvalidParameter { name: "terrain", value, expected });
+    let invalid =
+        |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Terrain, value, expected });
     if west > low[0] || south > low[1] || east < high[0] || north < high[1] {
         let file = |[x, y]: [f64; 2]| {
             let [x, y, _] = frame.file_from_local([x, y, 0.0]);

@@ -25,7 +25,7 @@ pub use crate::instructions::Instructions;
 pub use tangent_ball::Tangent;
 
 use belvedere_data::control::Control;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use lanes::{Block, Node};
 
 /// A point found, by its index in the array the index was built from.
@@ -66,7 +66,7 @@ impl NeighborIndex {
     pub fn with_instructions(points: &[[f32; 3]], instructions: Instructions, control: &Control<'_>) -> Result<Self> {
         if u32::try_from(points.len()).is_err() {
             return Err(Error::InvalidParameter {
-                name: "number of points",
+                parameter: Parameter::PointCount,
                 value: points.len().to_string(),
                 expected: "below 2^32; split the cloud into tiles",
             });
@@ -157,7 +157,9 @@ impl NeighborIndex {
 /// A squared distance must not overflow: (2e18)² · 3 is below the largest f32.
 fn check_positions(points: &[[f32; 3]]) -> Result<()> {
     match points.iter().find(|p| !p.iter().all(|v| v.abs() < 1e18)) {
-        Some(p) => Err(Error::InvalidParameter { name: "position", value: format!("{p:?}"), expected: "finite" }),
+        Some(p) => {
+            Err(Error::InvalidParameter { parameter: Parameter::Position, value: format!("{p:?}"), expected: "finite" })
+        }
         None => Ok(()),
     }
 }

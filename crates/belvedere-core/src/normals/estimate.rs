@@ -4,7 +4,7 @@ use super::{Normals, Scatter};
 use crate::neighbors::{Neighbor, NeighborIndex};
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::dot;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// How many neighbours describe the surface at a point.
@@ -41,12 +41,12 @@ impl Neighborhood {
 
     /// The most neighbours that are looked at.
     fn largest(self) -> Result<usize> {
-        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         match self {
             Self::Fixed { k } if (3..=256).contains(&k) => Ok(k),
-            Self::Fixed { k } => invalid("number of neighbours", k.to_string(), "3 to 256"),
+            Self::Fixed { k } => invalid(Parameter::NeighborCount, k.to_string(), "3 to 256"),
             Self::Adaptive { flatness } if flatness > 0.0 && flatness.is_finite() => Ok(ADAPTIVE_SIZES[6]),
-            Self::Adaptive { flatness } => invalid("flatness", flatness.to_string(), "above zero metres"),
+            Self::Adaptive { flatness } => invalid(Parameter::Flatness, flatness.to_string(), "above zero metres"),
         }
     }
 

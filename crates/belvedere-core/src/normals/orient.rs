@@ -11,7 +11,7 @@ use belvedere_data::control::{Control, Stop};
 use belvedere_data::report::percent;
 use belvedere_data::trajectory::{ClockOffset, Trajectory};
 use belvedere_data::vector::{dot, sub};
-use belvedere_data::{Error, Mesh, PointCloud, Result};
+use belvedere_data::{Error, Mesh, Parameter, PointCloud, Result};
 
 /// Below this |n_z| a surface counts as steep, and up says nothing: a wall with normals that are 17° wrong.
 const STEEP_NZ: f64 = 0.3;
@@ -331,7 +331,11 @@ fn by_nearest_scanner(
 fn check_finite(scanners: &[[f64; 3]]) -> Result<()> {
     if scanners.is_empty() || scanners.iter().flatten().any(|v| !v.is_finite()) {
         let value = format!("{scanners:?}");
-        return Err(Error::InvalidParameter { name: "scanner positions", value, expected: "at least one, finite" });
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::ScannerPositions,
+            value,
+            expected: "at least one, finite",
+        });
     }
     Ok(())
 }
@@ -363,7 +367,7 @@ fn by_mesh(
     control: &Control<'_>,
 ) -> Result<Vec<Option<Verdict>>> {
     let reference = ReferenceMesh::new(mesh, cloud.frame.origin, control)?.ok_or_else(|| Error::InvalidParameter {
-        name: "mesh",
+        parameter: Parameter::Mesh,
         value: format!("{} triangles without area", mesh.triangles.len()),
         expected: "at least one triangle with an area",
     })?;

@@ -1,7 +1,7 @@
 //! Points with outward normals: the only cloud that medial balls can be shrunk from.
 
 use belvedere_data::crs::Crs;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// A cloud whose normals point out of the scene.
 ///
@@ -40,7 +40,11 @@ impl OrientedCloud {
             }
         }
         if let Some(p) = positions.iter().find(|p| p.iter().any(|v| !v.is_finite())) {
-            return Err(Error::InvalidParameter { name: "position", value: format!("{p:?}"), expected: "finite" });
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::Position,
+                value: format!("{p:?}"),
+                expected: "finite",
+            });
         }
         for ((normal, quality), confidence) in normals.iter_mut().zip(&mut quality).zip(&mut confidence) {
             let unit = unit_or_zero(*normal);

@@ -1,6 +1,6 @@
 //! What parts of flight lines tell of the scanner, and when it is trusted.
 
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// How [`SensorPositions::from_returns`](super::SensorPositions::from_returns) works.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,8 +94,11 @@ impl Verdict {
 
 impl SensorEstimateParams {
     pub(super) fn validate(&self) -> Result<()> {
-        let check = |name, value: f64, range: std::ops::RangeInclusive<f64>, expected| {
-            let wrong = || Error::InvalidParameter { name, value: value.to_string(), expected };
+        let check = |what: &str, value: f64, range: std::ops::RangeInclusive<f64>, expected| {
+            let wrong = || {
+                let value = format!("{value} for the {what}");
+                Error::InvalidParameter { parameter: Parameter::ScannerEstimate, value, expected }
+            };
             range.contains(&value).then_some(()).ok_or_else(wrong)
         };
         check("part of a flight line", self.part_s, 0.5..=60.0, "0.5 to 60 s")?;

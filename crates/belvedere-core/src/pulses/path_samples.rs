@@ -2,7 +2,7 @@
 
 use super::line_path::{LinePath, Stretch};
 use belvedere_data::trajectory::{TrajectoryQuality, TrajectorySample};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Where two lines are known at the same time, the scanner cannot have been at two places that are farther apart than this,
 /// metres: several times what a path may be off.
@@ -17,7 +17,11 @@ const SAME_PLACE: f64 = 100.0;
 /// of the week from different weeks.
 pub fn path_samples(paths: &[LinePath], origin: [f64; 3], step: f64) -> Result<Vec<TrajectorySample>> {
     if !(0.01..=2.0).contains(&step) {
-        return Err(Error::InvalidParameter { name: "step", value: step.to_string(), expected: "0.01 to 2 s" });
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::TimeStep,
+            value: step.to_string(),
+            expected: "0.01 to 2 s",
+        });
     }
     let mut samples = Vec::new();
     for (own, path) in paths.iter().enumerate() {
@@ -64,7 +68,7 @@ fn has_better(paths: &[LinePath], own: usize, stretch: &Stretch, time: f64, plac
             let apart = (0..3).map(|i| (its[i] - place[i]).powi(2)).sum::<f64>().sqrt();
             if apart > SAME_PLACE {
                 return Err(Error::InvalidParameter {
-                    name: "GPS times",
+                    parameter: Parameter::Trajectory,
                     value: format!("two lines {apart:.0} m apart at {time} s"),
                     expected: "of one flight: process flight lines of different days separately",
                 });

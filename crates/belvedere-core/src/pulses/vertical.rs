@@ -1,7 +1,7 @@
 //! Pulses that are assumed to fall straight down, where nothing tells where the scanner was.
 
 use belvedere_data::control::{Control, Stop};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// How far up the assumed scanner hangs over its point, metres: as high as surveys are flown, so that it is above everything.
@@ -40,8 +40,11 @@ pub fn vertical_pulses(
     control: &Control<'_>,
 ) -> Result<Vec<[f32; 3]>> {
     let stop = Stop::new(control);
-    let check = |name, value: f32, range: std::ops::RangeInclusive<f32>, expected| {
-        let wrong = || Error::InvalidParameter { name, value: value.to_string(), expected };
+    let check = |what: &str, value: f32, range: std::ops::RangeInclusive<f32>, expected| {
+        let wrong = || {
+            let value = format!("{value} for the {what}");
+            Error::InvalidParameter { parameter: Parameter::ScannerEstimate, value, expected }
+        };
         range.contains(&value).then_some(()).ok_or_else(wrong)
     };
     check("search radius of points above", params.reach, 0.05..=10.0, "0.05 to 10 m")?;

@@ -7,7 +7,7 @@ use crate::triangle_tree::{Corners, TriangleTree};
 use belvedere_data::model::FARTHEST;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{cross, dot, sub, unit};
-use belvedere_data::{Error, Mesh, Result};
+use belvedere_data::{Error, Mesh, Parameter, Result};
 use std::sync::Arc;
 
 /// Distance from the plane of a triangle up to which an end of a line of sight lies on the triangle, metres: targets are f32, which is off by
@@ -64,7 +64,8 @@ impl AddedMeshes {
         coverage: Option<&Coverage>,
         before: Option<&Self>,
     ) -> Result<Self> {
-        let invalid = |value: String, expected| Err(Error::InvalidParameter { name: "mesh to add", value, expected });
+        let invalid =
+            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::AddedMesh, value, expected });
         let mut added: Vec<Corners> = Vec::with_capacity(mesh.triangles.len());
         for number in 0..mesh.triangles.len() {
             let Some(corners) = mesh.corners(number) else {

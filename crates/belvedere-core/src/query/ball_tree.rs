@@ -3,7 +3,7 @@
 use crate::blocking::{Ball, BlockRule};
 use crate::ray_index::{Ray, RayIndex};
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -61,8 +61,8 @@ impl BallTree {
         match (self.balls.get(part.clone()), self.rows.get(part.clone())) {
             (Some(balls), Some(rows)) => Self::ordered(balls, rows, &self.rule),
             _ => Err(Error::InvalidParameter {
-                name: "part of a tree of balls",
-                value: format!("{part:?}"),
+                parameter: Parameter::Ball,
+                value: format!("a part of a tree: {part:?}"),
                 expected: "within the balls of the tree",
             }),
         }

@@ -5,7 +5,7 @@ use crate::blocking::Profile;
 use crate::depth::DepthBounds;
 use belvedere_data::control::Control;
 use belvedere_data::view::{Projection, View};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// Targets handed to a thread at once.
@@ -80,15 +80,15 @@ impl MedialScene {
 
 /// Refuses views of no or of several viewers.
 fn check_views(views: &[View]) -> Result<()> {
-    let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+    let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
     let Some((first, others)) = views.split_first() else {
-        return invalid("number of views", "0".to_owned(), "at least 1");
+        return invalid(Parameter::View, "missing".to_owned(), "given");
     };
     match others.iter().find(|view| !(view.is_central() && first.is_central() && view.frame.eye == first.frame.eye)) {
         None => Ok(()),
         Some(other) => {
             let eyes = format!("{:?} and {:?}", first.frame.eye, other.frame.eye);
-            invalid("views", eyes, "from one eye, where there are several")
+            invalid(Parameter::View, eyes, "from one eye, where there are several")
         }
     }
 }
@@ -117,7 +117,7 @@ impl<'a> CertifiedMap<'a> {
         let params = scene.params();
         if params.profile != Profile::Sphere {
             return Err(Error::InvalidParameter {
-                name: "profile",
+                parameter: Parameter::BallProfile,
                 value: "the paper's cone".to_owned(),
                 expected: "the sphere, for certified answers",
             });

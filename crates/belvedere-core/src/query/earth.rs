@@ -1,7 +1,7 @@
 //! The curved earth below long lines of sight.
 
 use belvedere_data::vector::{length, sub};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Mean radius of the earth, metres.
 ///
@@ -62,14 +62,14 @@ impl EarthParams {
     pub fn validate(&self) -> Result<()> {
         if !(0.0..1.0).contains(&self.refraction) {
             return Err(Error::InvalidParameter {
-                name: "coefficient of refraction",
+                parameter: Parameter::Refraction,
                 value: self.refraction.to_string(),
                 expected: "from 0 to below 1 (usually 0.143)",
             });
         }
         if !(self.radius.is_finite() && self.radius > 0.0) {
             return Err(Error::InvalidParameter {
-                name: "radius of the earth",
+                parameter: Parameter::EarthRadius,
                 value: self.radius.to_string(),
                 expected: "above zero metres",
             });

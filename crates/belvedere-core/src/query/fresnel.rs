@@ -6,7 +6,7 @@ use crate::blocking::Ball;
 use crate::triangle_tree::Corners;
 use belvedere_data::control::Control;
 use belvedere_data::vector::{dot, length, sub, unit};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// Speed of light, metres a second.
@@ -36,7 +36,7 @@ impl RadioWave {
         let [least, most] = FREQUENCIES_GHZ;
         if !(least..=most).contains(&ghz) {
             return Err(Error::InvalidParameter {
-                name: "frequency of a radio link",
+                parameter: Parameter::Frequency,
                 value: format!("{ghz} GHz"),
                 expected: "from 0.001 to 1000 GHz",
             });
@@ -253,7 +253,7 @@ impl MedialScene {
         }
         if let Some(row) = pairs.iter().position(|&ends| self.leaves_cloud(ends)) {
             return Err(Error::InvalidParameter {
-                name: "frequency of a radio link",
+                parameter: Parameter::Frequency,
                 value: format!("a link over far terrain, number {}", row + 1),
                 expected: "links within the cloud: Fresnel zones are not tested over far terrain",
             });

@@ -3,7 +3,7 @@
 use super::surface::{Piece, Sides, SurfacePieces};
 use super::{Answer, Viewer};
 use belvedere_data::vector::{dot, sub};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// What to make of faces that are turned away from the viewer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,7 +42,7 @@ impl MeshTargetParams {
     pub fn validate(&self) -> Result<()> {
         if !(self.lift >= 0.0 && self.lift.is_finite()) {
             return Err(Error::InvalidParameter {
-                name: "distance of sample points from their faces",
+                parameter: Parameter::SampleOffset,
                 value: self.lift.to_string(),
                 expected: "0 metres or more",
             });

@@ -4,7 +4,7 @@ use super::lazy::Lazy;
 use super::seen_space::SeenSpace;
 use crate::pulses::{NeedleColumns, Needles, lower_ends};
 use belvedere_data::control::Control;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -114,16 +114,17 @@ impl Proof {
     }
 
     fn of_pulses(pulses: Pulses, nearness: f64, params: &ProofParams) -> Result<Self> {
-        let invalid =
-            |name, value: f64, expected| Err(Error::InvalidParameter { name, value: value.to_string(), expected });
+        let invalid = |parameter, value: f64, expected| {
+            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
+        };
         if !(nearness.is_finite() && nearness > 0.0) {
-            return invalid("nearness of pulses", nearness, "finite and above zero metres");
+            return invalid(Parameter::PulseNearness, nearness, "finite and above zero metres");
         }
         if !(params.tolerance >= 0.0) {
-            return invalid("maximum unproven length", params.tolerance, "zero metres or more");
+            return invalid(Parameter::UnprovenLength, params.tolerance, "zero metres or more");
         }
         if !(params.step.is_finite() && params.step > 0.0) {
-            return invalid("step along unproven space", params.step, "finite and above zero metres");
+            return invalid(Parameter::UnprovenStep, params.step, "finite and above zero metres");
         }
         Ok(Self { nearness, params: *params, pulses, index: Arc::new(Lazy::new()) })
     }

@@ -4,7 +4,7 @@ use crate::neighbors::NeighborIndex;
 use belvedere_data::control::Control;
 use belvedere_data::random::uniform;
 use belvedere_data::vector::{cross, dot, length, sub, unit};
-use belvedere_data::{Error, Mesh, Result};
+use belvedere_data::{Error, Mesh, Parameter, Result};
 use rayon::prelude::*;
 
 /// Most pieces of a surface: 60 bytes each still fit into the memory of a usual machine.
@@ -56,7 +56,7 @@ impl SurfacePieces {
     /// vertices that are not finite or lie 10 000 km or more from the origin.
     pub fn of_mesh(mesh: &Mesh, origin: [f64; 3], spacing: f64, seed: u64) -> Result<Self> {
         if !(spacing.is_finite() && spacing > 0.0) {
-            return invalid("spacing of samples", spacing.to_string(), "above zero metres");
+            return invalid(Parameter::Spacing, spacing.to_string(), "above zero metres");
         }
         let local: Vec<Option<[[f64; 3]; 3]>> = (0..mesh.triangles.len())
             .map(|t| mesh.corners(t).map(|corners| corners.map(|corner| sub(corner, origin))))
@@ -64,7 +64,7 @@ impl SurfacePieces {
         let mut expected = 0.0;
         for corners in local.iter().flatten() {
             if !corners.as_flattened().iter().all(|v| v.abs() < 1e7) {
-                return invalid("vertex of the mesh", format!("{:?}", corners[0]), "within 10 000 km of the scene");
+                return invalid(Parameter::MeshVertex, format!("{:?}", corners[0]), "within 10 000 km of the scene");
             }
             let [a, b, c] = *corners;
             let longest = length(sub(b, a)).max(length(sub(c, b))).max(length(sub(a, c)));
@@ -73,7 +73,7 @@ impl SurfacePieces {
         }
         if !(expected <= MOST_PIECES as f64) {
             let value = format!("{spacing} m, which makes about {expected:.0} samples");
-            return invalid("spacing of samples", value, "large enough for at most 50 million samples");
+            return invalid(Parameter::Spacing, value, "large enough for at most 50 million samples");
         }
         let of_face = |(face, corners): (usize, &Option<[[f64; 3]; 3]>)| {
             let mut pieces = Vec::new();
@@ -116,7 +116,7 @@ impl SurfacePieces {
             return Err(Error::LengthMismatch { what: "normals", expected: points.len(), found: normals.len() });
         }
         if !(most_radius.is_finite() && most_radius > 0.0) {
-            return invalid("maximum radius of a point", most_radius.to_string(), "above zero metres");
+            return invalid(Parameter::PointRadius, most_radius.to_string(), "above zero metres");
         }
         let index = NeighborIndex::new(points, control)?;
         let most_area = std::f64::consts::PI * most_radius * most_radius;
@@ -187,8 +187,8 @@ impl SurfacePieces {
     }
 }
 
-fn invalid<T>(name: &'static str, value: String, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { name, value, expected })
+fn invalid<T>(parameter: Parameter, value: String, expected: &'static str) -> Result<T> {
+    Err(Error::InvalidParameter { parameter, value, expected })
 }
 
 /// A triangle in pieces without a side longer than `spacing`, neighbours after each other: slices across its longest side, each cut

@@ -1,7 +1,7 @@
 //! What any way of answering visibility has in common.
 
 use super::Answer;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 
 /// Who looks at the targets: the other end of each line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,15 +43,15 @@ impl Viewer<'_> {
     /// # Errors
     /// [`Error::InvalidParameter`].
     pub fn validate(&self) -> Result<()> {
-        let (name, vector) = match self {
-            Self::Direction(direction) => ("direction to the viewer", direction),
-            Self::Eye(eye) => ("eye", eye),
+        let (parameter, vector) = match self {
+            Self::Direction(direction) => (Parameter::ViewDirection, direction),
+            Self::Eye(eye) => (Parameter::Eye, eye),
             Self::Each(_) => return Ok(()),
         };
         let zero = matches!(self, Self::Direction(d) if d.iter().all(|&v| v == 0.0));
         if zero || !vector.iter().all(|v| v.is_finite()) {
             return Err(Error::InvalidParameter {
-                name,
+                parameter,
                 value: format!("{vector:?}"),
                 expected: "finite, and longer than zero where it is a direction",
             });

@@ -2,7 +2,7 @@
 
 use super::{MAX_PIXEL_COUNT, MAX_SIDE, Projection, View, ViewFrame, to_sun};
 use crate::vector::{sub, unit};
-use crate::{Error, Result};
+use crate::{Error, Parameter, Result};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Widest angle of a perspective view, radians: beyond, its rim is stretched past all use, and its pixels past f32.
@@ -14,7 +14,7 @@ fn checked_eye(eye: [f64; 3]) -> Result<[f64; 3]> {
     if eye.iter().all(|v| v.is_finite()) {
         return Ok(eye);
     }
-    Err(Error::InvalidParameter { name: "eye", value: format!("{eye:?}"), expected: "finite" })
+    Err(Error::InvalidParameter { parameter: Parameter::Eye, value: format!("{eye:?}"), expected: "finite" })
 }
 
 fn checked_size(size_px: [usize; 2]) -> Result<[usize; 2]> {
@@ -22,7 +22,7 @@ fn checked_size(size_px: [usize; 2]) -> Result<[usize; 2]> {
     match size_px[0].checked_mul(size_px[1]) {
         Some(1..=MAX_PIXEL_COUNT) if is_short => Ok(size_px),
         _ => Err(Error::InvalidParameter {
-            name: "picture size",
+            parameter: Parameter::PictureSize,
             value: format!("{} x {} pixels", size_px[0], size_px[1]),
             expected: "at least one pixel, at most 65536 on a side and 268435456 pixels in all",
         }),
@@ -48,14 +48,14 @@ impl View {
     ) -> Result<Self> {
         let Some(forward) = unit(sub(look_at, checked_eye(eye)?)) else {
             return Err(Error::InvalidParameter {
-                name: "point to look at",
+                parameter: Parameter::LookAt,
                 value: format!("{look_at:?}"),
                 expected: "finite and different from the eye",
             });
         };
         if !(fov > 0.0 && fov <= WIDEST) {
             return Err(Error::InvalidParameter {
-                name: "field of view",
+                parameter: Parameter::FieldOfView,
                 value: format!("{} degrees", fov.to_degrees()),
                 expected: "above 0 and at most 175 degrees; a hemispherical view sees more",
             });
@@ -77,16 +77,16 @@ impl View {
     pub fn fisheye(eye: [f64; 3], axis: [f64; 3], half_angle: f64, size_px: usize) -> Result<Self> {
         let Some(forward) = unit(axis) else {
             return Err(Error::InvalidParameter {
-                name: "axis of the view",
+                parameter: Parameter::ViewDirection,
                 value: format!("{axis:?}"),
                 expected: "finite and longer than zero",
             });
         };
         if !(half_angle > 0.0 && half_angle <= WIDEST_HALF) {
             return Err(Error::InvalidParameter {
-                name: "half-angle of the view",
-                value: format!("{} degrees", half_angle.to_degrees()),
-                expected: "above 0 and at most 170 degrees; two maps cover all directions",
+                parameter: Parameter::FieldOfView,
+                value: format!("half of {} degrees", 2.0 * half_angle.to_degrees()),
+                expected: "half of an angle above 0 and at most 340 degrees; two maps cover all directions",
             });
         }
         let size_px = checked_size([size_px; 2])?;

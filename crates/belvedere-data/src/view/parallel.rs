@@ -2,7 +2,7 @@
 
 use super::{MAX_PIXEL_COUNT, MAX_SIDE, Projection, View, ViewFrame};
 use crate::vector::{cross, dot, unit};
-use crate::{Error, Result};
+use crate::{Error, Parameter, Result};
 
 impl View {
     /// The paper's viewport: `p0` is the upper left corner, `vx` spans the rows and `vy` the columns (their lengths give
@@ -17,28 +17,28 @@ impl View {
     /// # Source
     /// Peters, Ledoux & Biljecki 2015, section 3.2 and Figure 3.
     pub fn from_viewport(p0: [f64; 3], vx: [f64; 3], vy: [f64; 3], pixels_per_metre: f64) -> Result<Self> {
-        let invalid = |name, value: String, expected| Err(Error::InvalidParameter { name, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         let (Some(right), Some(down)) = (unit(vx), unit(vy)) else {
-            return invalid("viewport vector", format!("{vx:?}, {vy:?}"), "finite and longer than zero");
+            return invalid(Parameter::Viewport, format!("{vx:?}, {vy:?}"), "finite and longer than zero");
         };
         if !p0.iter().all(|v| v.is_finite()) {
-            return invalid("viewport corner", format!("{p0:?}"), "finite");
+            return invalid(Parameter::Viewport, format!("{p0:?}"), "finite");
         }
         if dot(right, down).abs() > 1e-3 {
-            return invalid("viewport vectors", format!("{vx:?}, {vy:?}"), "perpendicular to each other");
+            return invalid(Parameter::Viewport, format!("{vx:?}, {vy:?}"), "perpendicular to each other");
         }
         if !(pixels_per_metre.is_finite() && pixels_per_metre > 0.0) {
-            return invalid("pixels per metre", pixels_per_metre.to_string(), "finite and above zero");
+            return invalid(Parameter::PixelsPerMetre, pixels_per_metre.to_string(), "finite and above zero");
         }
         let Some(forward) = unit(cross(right, down)) else {
-            return invalid("viewport vectors", format!("{vx:?}, {vy:?}"), "perpendicular to each other");
+            return invalid(Parameter::Viewport, format!("{vx:?}, {vy:?}"), "perpendicular to each other");
         };
         let down = cross(forward, right);
         let size = |v: [f64; 3]| (dot(v, v).sqrt() * pixels_per_metre - 1e-6).ceil().max(1.0);
         let (width, height) = (size(vx), size(vy));
         if !(width * height <= MAX_PIXEL_COUNT as f64 && width.max(height) <= MAX_SIDE as f64) {
             return invalid(
-                "picture size",
+                Parameter::PictureSize,
                 format!("{width} x {height} pixels"),
                 "at most 65536 on a side and 268435456 pixels in all",
             );
@@ -61,14 +61,14 @@ impl View {
     pub fn parallel(forward: [f64; 3], low: [f64; 3], high: [f64; 3], pixel_size: f64) -> Result<Self> {
         let Some(forward) = unit(forward) else {
             return Err(Error::InvalidParameter {
-                name: "view direction",
+                parameter: Parameter::ViewDirection,
                 value: format!("{forward:?}"),
                 expected: "finite and longer than zero",
             });
         };
         if !(pixel_size.is_finite() && pixel_size > 0.0) {
             return Err(Error::InvalidParameter {
-                name: "pixel size",
+                parameter: Parameter::PixelSize,
                 value: pixel_size.to_string(),
                 expected: "above zero metres",
             });

@@ -1,6 +1,7 @@
 //! From positions to places of the picture and back.
 
 use super::{View, ViewFrame};
+use crate::Parameter;
 use crate::vector::dot;
 
 /// How space is projected onto the picture.
@@ -140,7 +141,7 @@ impl View {
     pub fn with_limits(mut self, nearest: f64, farthest: f64) -> crate::Result<Self> {
         if !(nearest >= 0.0 && nearest.is_finite() && farthest > nearest) {
             return Err(crate::Error::InvalidParameter {
-                name: "near and far limit",
+                parameter: Parameter::DepthLimits,
                 value: format!("{nearest} and {farthest} m"),
                 expected: "near 0 or more, and far above near",
             });

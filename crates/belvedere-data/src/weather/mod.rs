@@ -4,7 +4,7 @@ mod calendar;
 
 pub use calendar::{CalendarDay, day_of_year, unix_day};
 
-use crate::{Error, Result};
+use crate::{Error, Parameter, Result};
 
 /// Radiation on a level plane and towards the sun, W/m², the mean of an interval or the value of an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -99,9 +99,9 @@ impl Weather {
         let on_earth = self.latitude.abs() <= 90f64.to_radians() && self.longitude.abs() <= 360f64.to_radians();
         if !on_earth || !self.height.is_finite() {
             return Err(Error::InvalidParameter {
-                name: "place of the weather",
-                value: format!("{}, {}", self.latitude.to_degrees(), self.longitude.to_degrees()),
-                expected: "latitude -90 to 90 and longitude -360 to 360 degrees",
+                parameter: Parameter::Weather,
+                value: format!("at {}, {}", self.latitude.to_degrees(), self.longitude.to_degrees()),
+                expected: "at latitude -90 to 90 and longitude -360 to 360 degrees",
             });
         }
         let mut instants: Vec<f64> = self.steps.iter().map(|step| step.instant).collect();
@@ -109,7 +109,7 @@ impl Weather {
         let repeated = instants.windows(2).filter(|pair| pair[0] >= pair[1]).count();
         if repeated > 0 {
             return Err(Error::InvalidParameter {
-                name: "weather",
+                parameter: Parameter::Weather,
                 value: format!("{repeated} of {} rows with the time of another row", self.steps.len()),
                 expected: "one row for each time, or their energy counts twice",
             });
@@ -121,8 +121,8 @@ impl Weather {
                 || step.hours > 8784.0
             {
                 return Err(Error::InvalidParameter {
-                    name: "radiation",
-                    value: format!("{step:?}"),
+                    parameter: Parameter::Weather,
+                    value: format!("a row of {step:?}"),
                     expected: "finite, not below zero",
                 });
             }

@@ -6,7 +6,7 @@ use belvedere::pulses::{Pulses, SensorEstimateParams, SensorPositions, SensorRep
 use belvedere::random::uniform;
 use belvedere::trajectory::Trajectory;
 use belvedere::vector::{length, sub};
-use belvedere::{Attributes, Error, GpsTimeKind, PointCloud};
+use belvedere::{Attributes, Error, GpsTimeKind, Parameter, PointCloud};
 use belvedere_scenes::{AirborneParams, Scan, TownParams, scan_airborne, town};
 
 fn cloud_of(scan: &Scan) -> PointCloud {
@@ -143,7 +143,7 @@ fn a_trajectory_gives_the_simulated_path() {
     let elsewhere = Trajectory::from_records(vec![(1.0, [0.0; 3]), (2.0, [1.0; 3])]).0;
     assert!(matches!(
         SensorPositions::from_trajectory(&cloud, &pulses, &elsewhere),
-        Err(Error::InvalidParameter { name: "trajectory", .. })
+        Err(Error::InvalidParameter { parameter: Parameter::Trajectory, .. })
     ));
 }
 

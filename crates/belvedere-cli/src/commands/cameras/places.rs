@@ -1,9 +1,8 @@
 //! Where cameras stand: from flags and files to poses.
 
 use super::what::Site;
-use crate::arguments::{CameraLens, Cameras};
+use crate::arguments::{CameraLens, Cameras, Usage};
 use crate::commands::sights::{ground, skip_unfit};
-use crate::pipeline::flagged;
 use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -39,7 +38,7 @@ pub(super) fn lens(flags: &CameraLens) -> Result<Lens> {
     if let Some(pixels) = flags.pixels {
         lens = lens.with_pixels(pixels as f64);
     }
-    flagged("--fov, --vertical-fov", lens.validate())?;
+    lens.validate()?;
     Ok(lens)
 }
 
@@ -71,7 +70,8 @@ impl Standing<'_> {
             (Some(path), _) => self.of_file(path, arguments.step.unwrap_or(STEP), arguments.camera_height)?,
             (None, roofs) => {
                 let cell = roofs.or(arguments.candidates.on_ground).unwrap_or(STEP);
-                let grid = flagged("--on-ground, --on-roofs", super::map_grid(self.site.scene, cell))?;
+                let grid = super::map_grid(self.site.scene, cell)
+                    .map_err(|error| Usage(format!("--on-ground, --on-roofs: {error}")))?;
                 let cloud = self.site.cloud;
                 let ground = run.aside(|run| ground(cloud, ground_points, grid, run)).0?;
                 let height = arguments.camera_height;
@@ -86,7 +86,7 @@ impl Standing<'_> {
         self.skip_unfit(&mut mounts, ("candidate", warn), run)?;
         let mut poses = Vec::new();
         for mount in mounts.iter().filter(|mount| mount.eye[0].is_finite()) {
-            poses.extend(flagged("--candidates, --tilt, --headings or --max-distance", self.mounting.poses_at(mount))?);
+            poses.extend(self.mounting.poses_at(mount)?);
         }
         Ok(poses)
     }
@@ -96,7 +96,8 @@ impl Standing<'_> {
         let mut mounts = self.of_file(path, f64::INFINITY, height)?;
         self.skip_unfit(&mut mounts, ("existing camera", Warn::OfEach), run)?;
         // one that cannot look keeps its number
-        let pose = |mount: &Mount| flagged(&path.display().to_string(), self.mounting.existing_at(mount));
+        let at_fault = |error| Usage(format!("{}: {error}", path.display())).into();
+        let pose = |mount: &Mount| self.mounting.existing_at(mount).map_err(at_fault);
         mounts.iter().map(pose).collect()
     }
 
@@ -107,7 +108,7 @@ impl Standing<'_> {
         for row in read_observers(path, &frame.crs, RowsAre::Places)? {
             let corners: Vec<[f64; 3]> =
                 row.corners.iter().map(|c| std::array::from_fn(|i| c[i] - frame.origin[i])).collect();
-            let places = flagged("--distance-step-m", places_along(&corners, step))?;
+            let places = places_along(&corners, step)?;
             heights.extend(places.iter().map(|_| row.height.or(height).unwrap_or(CAMERA_HEIGHT)));
             mounts.extend(places.into_iter().map(|eye| self.mount(eye, &row)));
         }

@@ -5,7 +5,7 @@ use crate::commands::extension;
 use crate::commands::mesh_targets::{is_mesh, mesh_of};
 use crate::commands::query::points_of_file;
 use crate::commands::sights::leave_out_outside;
-use crate::pipeline::{Scene, flagged};
+use crate::pipeline::Scene;
 use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
@@ -75,7 +75,7 @@ pub(super) fn targets(flags: &CameraTargets, site: &Site<'_>, run: &mut Run) -> 
             let mesh = mesh_of(path, site.scene, run)?;
             let usual = MeshParams::default().with_seed(run.seed);
             let params = flags.spacing.map_or(usual, |spacing| usual.with_spacing(spacing));
-            flagged("--spacing", Targets::of_mesh(&mesh, frame, &params))?
+            Targets::of_mesh(&mesh, frame, &params)?
         }
         Some((path, Kind::Cloud)) => {
             let cloud = points_of_file(path, None, frame, run)?;
@@ -120,8 +120,7 @@ fn height(flags: &CameraTargets) -> f64 {
 fn cells(flags: &CameraTargets, site: &Site<'_>) -> Result<Targets> {
     let params = CellParams::default().with_height(height(flags));
     let control = belvedere::control::Control::none();
-    let (mut targets, _) =
-        flagged("--target-height", Targets::of_cells(site.cloud, site.ground.clone(), &params, &control))?;
+    let (mut targets, _) = Targets::of_cells(site.cloud, site.ground.clone(), &params, &control)?;
     if let Some(added) = site.scene.model.added() {
         targets.set_on_added(added, &params);
     }

@@ -2,7 +2,6 @@
 
 use crate::arguments::{AreaChoice, CellFor, CityPlan, Numbers, Place, Usage};
 use crate::commands::irradiance::radiation;
-use crate::pipeline::flagged;
 use crate::run::Run;
 use anyhow::Result;
 use belvedere::Error;
@@ -110,22 +109,22 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut Run) -> Res
         let zone = arguments.sun.zone(&site, &times)?;
         for time in &arguments.times {
             let instant = arguments.sun.instant("--time", time)?;
-            let position = flagged("--time", sun_position_with(&site, instant, arguments.sun.refraction()?))?;
+            let position = sun_position_with(&site, instant, arguments.sun.refraction()?)?;
             let name = format!("shadow_{}", moment(&zone, instant));
             let season = zone.date_at(instant).ok().map(|date| Season::on(date, &site));
             questions.push(Question::Shadow { name, to_sun: position.to_sun(&site), season });
         }
         if let Some(period) = arguments.when.period(&arguments.sun, &site, &zone)? {
             let params = arguments.when.params(&arguments.sun)?;
-            let days = flagged("--zone", SunQuestion::new(site, &zone, &period, params, Binning::Auto))?;
+            let days = SunQuestion::new(site, &zone, &period, params, Binning::Auto)?;
             questions.push(Question::SunHours(days));
         }
         for (column, rule) in rules(&arguments.rule)? {
-            let dates = flagged("--year", rule.days.dates(arguments.when.year, &site, &zone))?;
+            let dates = rule.days.dates(arguments.when.year, &site, &zone)?;
             let least_elevation = arguments.when.least_elevation.map_or(rule.least_elevation, f64::to_radians);
             let params = arguments.when.params(&arguments.sun)?.with_least_elevation(least_elevation);
             let days = SunQuestion::new(site, &zone, &Period::Days(dates), params, Binning::Auto);
-            let days = flagged("--zone", days)?;
+            let days = days?;
             questions.push(Question::SunRule { name: column.to_owned(), rule: rule.name, days });
         }
     }
@@ -150,7 +149,7 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut Run) -> Res
         let place = |&Place([x, y], z): &Place| frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]);
         let mut eyes: Vec<[f64; 3]> = arguments.observers.iter().map(place).collect();
         let height = arguments.observer_height.unwrap_or(OBSERVER_HEIGHT);
-        flagged("--observer", plan.set_on_ground(&mut eyes, height, &run.control()))?;
+        plan.set_on_ground(&mut eyes, height, &run.control())?;
         questions.push(Question::Viewshed { eyes, max_distance: arguments.max_distance });
     }
     Ok(questions)

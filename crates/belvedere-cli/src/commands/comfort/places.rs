@@ -4,7 +4,7 @@ use crate::arguments::{Comfort, Corners};
 use crate::commands::shapes::{TypedAre, shapes, wrong_shape};
 use crate::commands::sights::{ground, ground_cloud};
 use crate::commands::windows::{Column, Windows, coordinates};
-use crate::pipeline::{Scene, flagged};
+use crate::pipeline::Scene;
 use crate::run::Run;
 use anyhow::{Result, bail};
 use belvedere::apps::exposure::{ROUTE_STEP, WALKER_HEIGHT};
@@ -41,12 +41,12 @@ pub(super) fn routes(arguments: &Comfort, route: &Corners, scene: &mut Scene, ru
         if corners.len() < 2 {
             return wrong_shape("--route", route, "a route needs at least two corners");
         }
-        routes.push(Route { places: flagged("--distance-step-m", places_along(&corners, step))? });
+        routes.push(Route { places: places_along(&corners, step)? });
         names.push(named.name);
     }
     let places = || routes.iter().flat_map(|route| route.places.iter().copied());
     let count = places().count();
-    if let Some(grid) = flagged("--route", grid_around(places(), scene.cloud.frame.origin))? {
+    if let Some(grid) = grid_around(places(), scene.cloud.frame.origin)? {
         let (cloud, points) = ground_cloud(&arguments.ground, scene, run)?;
         let ground = ground(&cloud, points, grid, run)?;
         let all = routes.iter_mut().flat_map(|route| &mut route.places).map(|place| (place, height));

@@ -3,7 +3,7 @@
 use crate::arguments::{LandmarkShape, Usage};
 use crate::commands::extension;
 use crate::commands::mesh_targets::mesh_of;
-use crate::pipeline::{Scene, flagged};
+use crate::pipeline::Scene;
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
@@ -26,7 +26,7 @@ pub(in crate::commands) fn surface(
         section.add("triangles", mesh.triangles.len()).add("spacing_m", rounded(spacing, 3));
         let surface = run
             .stage("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, run.seed));
-        flagged("--spacing", surface)?
+        surface?
     } else {
         if scene.cloud.is_empty() {
             let what = "a ball file has no points for a landmark: give the cloud, or a mesh with --targets";

@@ -3,7 +3,6 @@
 use crate::arguments::{Place, Usage, Viewshed};
 use crate::commands::extension;
 use crate::commands::surroundings::least_count;
-use crate::pipeline::flagged;
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::targets::{set_on_ground, set_on_terrain};
@@ -66,7 +65,7 @@ fn limits(arguments: &Viewshed, grid_north: f64) -> Result<SightLimits> {
             looking.max_distance.unwrap_or(unlimited.distance[1]),
         ],
     };
-    flagged("--min-distance, --max-distance, --azimuth-range, --elevation-range", limits.validate())?;
+    limits.validate()?;
     if arguments.who.target.is_some() && (limits.azimuth.is_some() || limits.elevation.is_some()) {
         let what = "--azimuth-range and --elevation-range limit the view of one observer; with --target there are many";
         return Err(Usage(what.to_owned()).into());
@@ -93,10 +92,10 @@ pub(super) fn rows(arguments: &Viewshed, cloud: &PointCloud, grid_north: f64) ->
     let mut rows = Vec::new();
     for row in read_observers(path, &cloud.frame.crs, rows_are)? {
         let limits = limits_of(&row, limits, grid_north);
-        flagged(&path.display().to_string(), limits.validate())?;
+        limits.validate().map_err(|error| Usage(format!("{}: {error}", path.display())))?;
         let corners: Vec<[f64; 3]> =
             row.corners.iter().map(|c| std::array::from_fn(|i| c[i] - cloud.frame.origin[i])).collect();
-        let places = flagged("--distance-step-m", places_along(&corners, looking.step.unwrap_or(STEP)))?;
+        let places = places_along(&corners, looking.step.unwrap_or(STEP))?;
         let height = row.height.unwrap_or(height);
         rows.extend(places.into_iter().map(|place| Row { place, height, limits }));
     }

@@ -11,7 +11,7 @@ use crate::pulses::scanner_report::FoundBy;
 use belvedere_data::control::Control;
 use belvedere_data::trajectory::MAX_GAP_S;
 use belvedere_data::vector::length;
-use belvedere_data::{Error, PointCloud, Result};
+use belvedere_data::{Error, Parameter, PointCloud, Result};
 
 /// Points of a part that are used at most, evenly over its time: more only cost time.
 const MOST_POINTS: usize = 20_000;
@@ -53,8 +53,8 @@ pub(in crate::pulses) fn paths_from_angles(
     control: &Control<'_>,
 ) -> Result<(Vec<LinePath>, Vec<ScanAnglePart>)> {
     if !(0.5..=60.0).contains(&params.part_s) {
-        let value = params.part_s.to_string();
-        return Err(Error::InvalidParameter { name: "part of a flight line", value, expected: "0.5 to 60 s" });
+        let value = format!("{} for the part of a flight line", params.part_s);
+        return Err(Error::InvalidParameter { parameter: Parameter::ScannerEstimate, value, expected: "0.5 to 60 s" });
     }
     let attributes = &cloud.attributes;
     let (Some(times), Some(angles)) = (&attributes.gps_time, &attributes.scan_angle) else {

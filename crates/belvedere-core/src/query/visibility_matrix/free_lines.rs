@@ -9,7 +9,7 @@ use super::behind_added::hide_behind_added;
 use super::looking::{Sky, headings};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{length, piece_in_box};
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -66,7 +66,7 @@ impl<'a> FreeLines<'a> {
     pub fn new(targets: &[[f32; 3]], directions: &'a [[f64; 3]]) -> Result<Self> {
         if let Some(bad) = directions.iter().find(|direction| !((length(**direction) - 1.0).abs() < 1e-6)) {
             return Err(Error::InvalidParameter {
-                name: "direction",
+                parameter: Parameter::Direction,
                 value: format!("{bad:?}"),
                 expected: "a vector of length 1",
             });
@@ -132,11 +132,11 @@ impl<'a> FreeLines<'a> {
     /// [`Error::InvalidParameter`] for a column beyond the last, what the backend of the scene reports, and [`Error::Cancelled`].
     pub fn hide_behind_balls(&mut self, scene: &MedialScene, columns: &[usize], control: &Control<'_>) -> Result<()> {
         if let Some(bad) = columns.iter().find(|&&column| column >= self.directions.len()) {
-            let value = bad.to_string();
+            let value = format!("of column {bad}");
             return Err(Error::InvalidParameter {
-                name: "column",
+                parameter: Parameter::Direction,
                 value,
-                expected: "less than the number of directions",
+                expected: "of a column that there is",
             });
         }
         if scene.ball_count() == 0 || columns.is_empty() {
