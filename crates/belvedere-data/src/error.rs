@@ -76,6 +76,14 @@ pub enum Error {
         /// What they lack.
         what: &'static str,
     },
+    /// Nobody is left who can look.
+    #[error("no {who} is left: {what}")]
+    NoObserver {
+        /// Who should look, such as "observer".
+        who: &'static str,
+        /// Why each cannot.
+        what: String,
+    },
     /// A parameter lies outside its range.
     #[error("{parameter} is {value}, but must be {expected}")]
     InvalidParameter {

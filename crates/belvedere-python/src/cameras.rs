@@ -3,11 +3,12 @@
 use crate::arrays::{to_1d, to_2d};
 use crate::errors::{belvedere_error, exception, wrong};
 use crate::observers::{skip, skipped};
-use crate::scene::{Inner, Scene, unproven_as};
+use crate::scene::{Scene, unproven_as};
 use crate::sights::earth;
 use crate::sun::Place;
-use crate::targets::{Asked, Cells, Grid, Wanted, grid_of, ground_cloud, ground_points};
+use crate::targets::{Cells, Grid, Wanted, grid_of, ground_cloud, ground_points};
 use crate::work::run;
+use belvedere::apps::ask;
 use belvedere::apps::cameras::{
     CAMERA_HEIGHT, CAMERA_TARGET_HEIGHT, CoverageParams, CoverageTable, FREE_FRESNEL_SHARE, FresnelZone, Goal, Lens,
     Level, Motion, Mount, MountingParams, Placement, PlacementParams, Pose, ROOF_CAMERA_HEIGHT, counted_weights,
@@ -121,7 +122,7 @@ impl Choice {
     /// Candidates and cameras that stay, with those that cannot look left out or NaN, and what is said of these.
     fn poses(
         &self,
-        inner: &Inner,
+        inner: &ask::Scene,
         scene: &MedialScene,
         ground: &Ground,
         (mounting, north, points): (&MountingParams, f64, GroundPoints),
@@ -141,7 +142,7 @@ impl Choice {
             }
             None => {
                 let cells = Cells { side: Some(self.spacing), height: None, level: CellLevel::Ground, ground: points };
-                let grid = cells.ground_within(inner, inner.model.bounds().on_map(), control)?;
+                let grid = cells.ground_within(inner, inner.model().bounds().on_map(), control)?;
                 let cloud = ground_cloud(inner)?;
                 eyes = match self.on_roofs {
                     true => roof_places(cloud, grid, height.unwrap_or(ROOF_CAMERA_HEIGHT), control)?,
@@ -165,7 +166,7 @@ impl Choice {
         Ok(Standing { candidates, existing: existing.collect::<belvedere::Result<_>>()?, report, of_existing })
     }
 
-    fn private(&self, inner: &Inner, ground: &Ground, height: f64) -> Targets {
+    fn private(&self, inner: &ask::Scene, ground: &Ground, height: f64) -> Targets {
         let mut places: Vec<[f64; 3]> =
             self.private.iter().map(|&place| inner.frame().local_from_file(place)).collect();
         set_on_ground(places.iter_mut().map(|place| (place, height)), ground);
@@ -211,19 +212,21 @@ impl Scene {
         let north = place.grid_north_of(&inner);
         let points = ground_points(targets.ground())?;
         let target_height = targets.height().unwrap_or(CAMERA_TARGET_HEIGHT);
-        let (low, high) = inner.model.bounds().on_map();
+        let (low, high) = inner.model().bounds().on_map();
         let side = Some(targets.cell().unwrap_or_else(|| observer_cell_for(low, high)));
         let cells = Cells { side, height: Some(target_height), level: CellLevel::Ground, ground: points };
-        let asked = match targets.owned(py, &inner)? {
-            Asked::Cells(_) => Asked::Cells(cells),
+        let places = match targets.chosen(py, &inner)?.places {
+            ask::Places::Cells(usual) => {
+                ask::Places::Cells(ask::Cells { cell: side, height: Some(target_height), ..usual })
+            }
             others => others,
         };
         let of_work = Arc::clone(&inner);
         let given = choice.candidates.is_some();
         let chosen = run(py, progress, move |control| {
             let inner = of_work;
-            let mut targets = asked.targets(&inner, control)?.targets;
-            if let Some(coverage) = inner.model.coverage() {
+            let mut targets = Targets::clone(&*places.targets(&inner, &mut ask::Context::default(), control)?);
+            if let Some(coverage) = inner.model().coverage() {
                 targets.leave_out_outside(&coverage);
             }
             if let Some(weights) = &choice.weights {
@@ -264,7 +267,7 @@ impl Scene {
 }
 
 impl Chosen {
-    fn answer<'py>(&self, py: Python<'py>, inner: &Inner, given: bool, north: f64) -> PyResult<Answer<'py>> {
+    fn answer<'py>(&self, py: Python<'py>, inner: &ask::Scene, given: bool, north: f64) -> PyResult<Answer<'py>> {
         let mut sentences = skipped(inner, "existing camera", &self.standing.of_existing)?;
         if let Some(report) = &self.standing.report {
             sentences.extend(skipped(inner, "candidate", report)?);

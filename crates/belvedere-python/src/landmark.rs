@@ -4,9 +4,10 @@ use crate::arrays::to_1d;
 use crate::mesh::Mesh;
 use crate::observers::{eyes, places, skip, skipped};
 use crate::outlook::Looking;
-use crate::scene::{Inner, Scene, unproven_as};
+use crate::scene::{Scene, unproven_as};
 use crate::targets::{Cells, Column, Grid, ground_cloud, ground_points};
 use crate::work::run;
+use belvedere::apps::ask;
 use belvedere::apps::eyes::EyesReport;
 use belvedere::apps::landmark::{
     LandmarkParams, LandmarkPoints, LandmarkView, MEASURES, landmark_points, landmark_views, observer_cell_for,
@@ -34,7 +35,7 @@ pub(crate) struct Landmark {
 }
 
 /// A ring in local metres.
-pub(crate) fn local_ring(inner: &Inner, ring: &[[f64; 2]]) -> Vec<[f64; 2]> {
+pub(crate) fn local_ring(inner: &ask::Scene, ring: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let local = |&[x, y]: &[f64; 2]| {
         let [x, y, _] = inner.frame().local_from_file([x, y, 0.0]);
         [x, y]
@@ -43,7 +44,7 @@ pub(crate) fn local_ring(inner: &Inner, ring: &[[f64; 2]]) -> Vec<[f64; 2]> {
 }
 
 impl Landmark {
-    fn surface(&self, inner: &Inner) -> belvedere::Result<SurfacePieces> {
+    fn surface(&self, inner: &ask::Scene) -> belvedere::Result<SurfacePieces> {
         if let Some(mesh) = &self.mesh {
             let mesh = mesh.get().objects_in_metres(&self.objects, inner)?;
             let spacing = self.spacing.unwrap_or_else(|| spacing_for(mesh.area()));
@@ -97,14 +98,14 @@ impl Scene {
                     (stand, None, report)
                 }
                 None => {
-                    let (low, high) = inner.model.bounds().on_map();
+                    let (low, high) = inner.model().bounds().on_map();
                     let side = Some(looking.cell.unwrap_or_else(|| observer_cell_for(low, high)));
                     let cells = Cells { side, height: None, level: CellLevel::Ground, ground: points };
                     let ground = cells.ground_within(&inner, (low, high), control)?;
                     let grid = crate::targets::grid_of(&ground.grid, inner.frame());
                     let height = looking.observer_height.unwrap_or(OBSERVER_HEIGHT);
                     let cells = CellParams::default().with_height(height).with_covered(CoveredCells::Kept);
-                    let (mut targets, _) = Targets::of_cells(&inner.cloud, ground, &cells, control)?;
+                    let (mut targets, _) = Targets::of_cells(inner.cloud(), ground, &cells, control)?;
                     targets.leave_out_enclosed(&scene, control)?;
                     let stand: Vec<[f64; 3]> = targets.positions.iter().map(|eye| eye.map(f64::from)).collect();
                     let count = stand.len();
@@ -148,7 +149,7 @@ impl Scene {
             let surface = control.stage("sampling landmark", 0, || landmark.surface(&inner))?;
             let mut stand = eyes(&inner, &places, looking.observer_height, points, control)?;
             let cells = Cells { side: looking.cell, height: None, level: CellLevel::Ground, ground: points };
-            let ground = cells.ground_within(&inner, inner.model.bounds().on_map(), control)?;
+            let ground = cells.ground_within(&inner, inner.model().bounds().on_map(), control)?;
             let scene = inner.blockers(unproven, control)?;
             let report = skip(&scene, None, &mut stand, control)?;
             let found = control.stage("computing limits", stand.len(), || {

@@ -3,9 +3,9 @@
 use crate::arrays::{column, fixed_rows, to_1d, to_2d};
 use crate::cloud::Input;
 use crate::errors::{exception, wrong};
-use crate::scene::Inner;
 use crate::system::System;
 use crate::work::run;
+use belvedere::apps::ask;
 use belvedere::apps::targets::{Facing, MeshParams};
 use belvedere::io::read_mesh;
 use belvedere::results::FaceRows;
@@ -107,7 +107,7 @@ impl Mesh {
     ///
     /// # Errors
     /// [`belvedere::Error::UnusableCrs`] for another reference system than that of the scene.
-    pub(crate) fn in_metres(&self, inner: &Inner) -> belvedere::Result<belvedere::Mesh> {
+    pub(crate) fn in_metres(&self, inner: &ask::Scene) -> belvedere::Result<belvedere::Mesh> {
         let crs = &inner.frame().crs;
         self.mesh.crs.check_for(crs, "mesh", &self.name)?;
         Ok((*self.mesh).clone().scaled_to_metres(crs))
@@ -117,7 +117,11 @@ impl Mesh {
     ///
     /// # Errors
     /// Those of [`Mesh::in_metres`], and [`belvedere::Error::InvalidParameter`] for an object that the mesh does not have.
-    pub(crate) fn objects_in_metres(&self, objects: &[String], inner: &Inner) -> belvedere::Result<belvedere::Mesh> {
+    pub(crate) fn objects_in_metres(
+        &self,
+        objects: &[String],
+        inner: &ask::Scene,
+    ) -> belvedere::Result<belvedere::Mesh> {
         let mesh = self.in_metres(inner)?;
         if let Some(missing) = objects.iter().find(|name| !mesh.object_names.contains(name)) {
             return Err(belvedere::Error::InvalidParameter {
@@ -142,7 +146,7 @@ pub(crate) struct Faces {
 
 impl Faces {
     /// The mesh in the metres of a scene, and how it is sampled.
-    pub(crate) fn owned(&self, inner: &Inner) -> PyResult<(Arc<belvedere::Mesh>, MeshParams)> {
+    pub(crate) fn owned(&self, inner: &ask::Scene) -> PyResult<(Arc<belvedere::Mesh>, MeshParams)> {
         let mesh = self.mesh.get().in_metres(inner).map_err(exception)?;
         let facing = if self.is_level { Facing::Level } else { Facing::Normals };
         let params = MeshParams::default().with_seed(self.seed).with_facing(facing);

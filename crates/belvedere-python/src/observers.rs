@@ -2,9 +2,10 @@
 
 use crate::arrays::to_2d;
 use crate::errors::{belvedere_error, wrong};
-use crate::scene::{Inner, Scene};
+use crate::scene::Scene;
 use crate::targets::{ground_cloud, ground_points};
 use crate::work::run;
+use belvedere::apps::ask;
 use belvedere::apps::eyes::{EyesReport, skip_unfit_eyes};
 use belvedere::apps::targets::{grid_around, set_on_ground, set_on_terrain};
 use belvedere::apps::viewshed::{OBSERVER_HEIGHT, TARGET_HEIGHT};
@@ -26,14 +27,14 @@ pub(crate) fn places(array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<[f64; 3]
 
 /// The eyes, local metres, those without a height that far above the ground.
 pub(crate) fn eyes(
-    inner: &Inner,
+    inner: &ask::Scene,
     places: &[[f64; 3]],
     height: Option<f64>,
     points: GroundPoints,
     control: &Control<'_>,
 ) -> belvedere::Result<Vec<[f64; 3]>> {
     let mut eyes: Vec<[f64; 3]> = places.iter().map(|&place| inner.frame().local_from_file(place)).collect();
-    let coverage = inner.model.coverage();
+    let coverage = inner.model().coverage();
     let is_over = |place: &[f64; 3]| coverage.is_none_or(|coverage| coverage.holds_on_map(*place));
     if let Some(grid) = grid_around(eyes.iter().copied().filter(is_over), inner.frame().origin)? {
         let params = GroundParams { points, ..GroundParams::default() };
@@ -63,7 +64,7 @@ impl Scene {
         let inner = Arc::clone(&self.0);
         let placed = run(py, progress, move |control| {
             let mut placed = eyes(&inner, &rows, Some(height), points, control)?;
-            set_on_terrain(placed.iter_mut().map(|place| (place, height)), &inner.model);
+            set_on_terrain(placed.iter_mut().map(|place| (place, height)), inner.model());
             Ok(placed.into_iter().map(|place| inner.frame().file_from_local(place)).collect::<Vec<_>>())
         })?;
         Ok(to_2d(py, &placed)?.into_any())
@@ -84,7 +85,7 @@ pub(crate) fn skip(
 ///
 /// # Errors
 /// Where none is left.
-pub(crate) fn skipped(inner: &Inner, who: &str, report: &EyesReport) -> PyResult<Vec<String>> {
+pub(crate) fn skipped(inner: &ask::Scene, who: &str, report: &EyesReport) -> PyResult<Vec<String>> {
     let sentences: Vec<String> = report
         .faults
         .iter()

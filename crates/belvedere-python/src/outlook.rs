@@ -84,7 +84,7 @@ impl Scene {
         let limits = looking.limits(place.grid_north_of(&inner))?;
         let places = places(&observers)?;
         let points = ground_points(looking.ground.as_deref())?;
-        if looking.is_far && inner.model.far_terrain().grid().is_none() {
+        if looking.is_far && inner.model().far_terrain().grid().is_none() {
             return Err(wrong(
                 "far",
                 "True",
@@ -96,7 +96,7 @@ impl Scene {
             let inner = of_work;
             let mut eyes: Vec<[f64; 3]> = places.iter().map(|&place| inner.frame().local_from_file(place)).collect();
             let reaches = eyes.iter().map(|eye| ([eye[0], eye[1]], limits.distance[1]));
-            let area = box_within_reach(inner.model.bounds().on_map(), reaches);
+            let area = box_within_reach(inner.model().bounds().on_map(), reaches);
             let cells = Cells { side: looking.cell, height: None, level: CellLevel::Ground, ground: points };
             let ground = cells.ground_within(&inner, area, control)?;
             let mut heights =
@@ -106,7 +106,7 @@ impl Scene {
             }
             let [height, of_cells] = heights;
             set_on_ground(eyes.iter_mut().map(|eye| (eye, height)), &ground);
-            set_on_terrain(eyes.iter_mut().map(|eye| (eye, height)), &inner.model);
+            set_on_terrain(eyes.iter_mut().map(|eye| (eye, height)), inner.model());
             let scene = inner.blockers(unproven, control)?;
             let report = match &eyes[..] {
                 &[target] if looking.is_reverse && fault_of_target(&scene, target).is_none() => {
@@ -118,7 +118,7 @@ impl Scene {
             };
             let observers: Vec<Observer> = eyes.into_iter().map(|eye| Observer { eye, limits }).collect();
             let params = ViewshedParams::default().with_earth(earth).with_unproven(unproven);
-            if let Some(terrain) = inner.model.far_terrain().grid().filter(|_| looking.is_far) {
+            if let Some(terrain) = inner.model().far_terrain().grid().filter(|_| looking.is_far) {
                 let terrain = terrain_within_reach(terrain, &observers)?;
                 let size = [terrain.heights().width(), terrain.heights().height()];
                 let seen = control.stage("testing terrain", size[1], || {
@@ -129,7 +129,7 @@ impl Scene {
             let cells = CellParams::default().with_height(tested_height(of_cells)).with_covered(CoveredCells::Kept);
             let grid = grid_of(&ground.grid, inner.frame());
             let seen = control.stage("testing cells", observers.len(), || {
-                let (targets, _) = Targets::of_cells(&inner.cloud, ground, &cells, control)?;
+                let (targets, _) = Targets::of_cells(inner.cloud(), ground, &cells, control)?;
                 viewshed(&scene, &observers, &targets.positions, &params, control)
             })?;
             Ok((seen, grid, report))

@@ -49,7 +49,7 @@ impl Scene {
         let inner = Arc::clone(&self.0);
         let north = place.grid_north_of(&inner);
         let (depth, balls) = run(py, progress, move |control| {
-            let model = &inner.model;
+            let model = inner.model();
             let (low, high) = model.bounds().corners();
             let pixel = camera.pixel.unwrap_or_else(|| default_pixel_size(low, high));
             let local = |place| inner.frame().local_from_file(place);

@@ -3,13 +3,14 @@
 use crate::arrays::{to_1d, to_2d};
 use crate::errors::{exception, wrong};
 use crate::landmark::local_ring;
-use crate::scene::{Inner, Scene};
+use crate::scene::Scene;
 use crate::sky::Days;
 use crate::sun::Place;
 use crate::targets::{Column, Grid, ground_cloud, ground_points};
 use crate::windows::{WindowRow, windows_of};
 use crate::work::run;
 use belvedere::Error;
+use belvedere::apps::ask;
 use belvedere::apps::exposure::{ROUTE_STEP, ShadeAtEachSun, WALKER_HEIGHT, scene_exposure};
 use belvedere::apps::sky_view::{SKY_DIRECTIONS, SkyDirections};
 use belvedere::apps::solar_envelope::{
@@ -59,7 +60,12 @@ pub(crate) struct Build {
     ground: Option<String>,
 }
 
-fn ground_on(inner: &Inner, grid: MapGrid, points: GroundPoints, control: &Control<'_>) -> belvedere::Result<Ground> {
+fn ground_on(
+    inner: &ask::Scene,
+    grid: MapGrid,
+    points: GroundPoints,
+    control: &Control<'_>,
+) -> belvedere::Result<Ground> {
     let params = GroundParams { points, ..GroundParams::default() };
     let cloud = ground_cloud(inner)?;
     Ok(control.stage("computing ground", 0, || Ground::of_cloud(cloud, grid, &params, control))?.0)
@@ -69,7 +75,7 @@ impl Walks {
     /// The targets, and for routes the way to each of them and its place.
     fn targets(
         &self,
-        inner: &Inner,
+        inner: &ask::Scene,
         north: f64,
         points: GroundPoints,
         control: &Control<'_>,
@@ -120,7 +126,7 @@ impl Scene {
         let site = place.site(&inner)?;
         let zone = place.zone(&site, &days.times())?;
         let params = days.params(&place)?;
-        let Some(period) = days.period(&site, &zone)? else {
+        let Some(period) = days.period(&place, &site, &zone)? else {
             return Err(wrong("period", "missing", "give date or period"));
         };
         let schedule = sun_days(&site, &zone, &period, &params).and_then(|days| SunSchedule::new(&days, Binning::Auto));
@@ -130,7 +136,7 @@ impl Scene {
         let north = place.grid_north_of(&inner);
         let (found, targets, distances, places) = run(py, progress, move |control| {
             let (mut targets, distances, places) = walks.targets(&inner, north, points, control)?;
-            if let Some(coverage) = inner.model.coverage() {
+            if let Some(coverage) = inner.model().coverage() {
                 targets.leave_out_outside(&coverage);
             }
             let scene = inner.blockers(UnprovenAs::Visible, control)?;
@@ -170,7 +176,7 @@ impl Scene {
         let suns: Vec<[f64; 3]> = if build.suns.is_empty() {
             let site = place.site(&inner)?;
             let zone = place.zone(&site, &days.times())?;
-            let Some(Period::Days(dates)) = days.period(&site, &zone)? else {
+            let Some(Period::Days(dates)) = days.period(&place, &site, &zone)? else {
                 return Err(wrong("period", "missing", "give sun, date, or a period of days"));
             };
             let between = build.between.unwrap_or([0.0, 24.0]);

@@ -7,9 +7,9 @@ use crate::landmark::local_ring;
 use crate::mesh::Mesh;
 use crate::system::System;
 use crate::work::run;
+use belvedere::apps::ask;
 use belvedere::apps::horizon::convergence;
 use belvedere::clean::CleanParams;
-use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{
     Output, is_ball_file, read_balls, read_horizon, read_mesh, read_stations, read_terrain, read_trajectory,
@@ -18,47 +18,17 @@ use belvedere::io::{
 use belvedere::medial::{CarvedParams, Rule, ShrinkMethod, ShrinkParams, Trees};
 use belvedere::model::{BallParams, ClearedArea, ModelParams, OrientBy, SceneModel};
 use belvedere::normals::estimate::Neighborhood;
-use belvedere::query::{MedialScene, UnprovenAs};
+use belvedere::query::UnprovenAs;
 use belvedere::{Frame, PointCloud};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::io::Cursor;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// A scene: balls, pulses, and the cloud that they were made from.
 #[pyclass(frozen, module = "belvedere._core")]
-pub(crate) struct Scene(pub(crate) Arc<Inner>);
-
-pub(crate) struct Inner {
-    pub(crate) model: SceneModel,
-    /// In the frame of the model; without points where there is only a ball file.
-    pub(crate) cloud: Arc<PointCloud>,
-    /// The balls, with pulses and without: made when first needed.
-    proving: Mutex<Option<Arc<MedialScene>>>,
-    plain: Mutex<Option<Arc<MedialScene>>>,
-}
-
-impl Inner {
-    fn new(model: SceneModel, cloud: Arc<PointCloud>) -> Self {
-        Self { model, cloud, proving: Mutex::default(), plain: Mutex::default() }
-    }
-
-    pub(crate) fn frame(&self) -> &Frame {
-        self.model.frame()
-    }
-
-    /// What lines of sight are asked of. Pulses are left out where they make no difference.
-    pub(crate) fn blockers(&self, unproven: UnprovenAs, control: &Control<'_>) -> belvedere::Result<Arc<MedialScene>> {
-        let kept = if unproven == UnprovenAs::Visible { &self.plain } else { &self.proving };
-        if let Some(scene) = &*kept.lock().unwrap_or_else(PoisonError::into_inner) {
-            return Ok(Arc::clone(scene));
-        }
-        let made = Arc::new(self.model.scene(&self.model.rule(), unproven, control)?);
-        *kept.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&made));
-        Ok(made)
-    }
-}
+pub(crate) struct Scene(pub(crate) Arc<ask::Scene>);
 
 /// What to make of targets that nothing blocks but that are not proven visible.
 pub(crate) fn unproven_as(text: &str) -> PyResult<UnprovenAs> {
@@ -214,7 +184,7 @@ impl Scene {
         let params = py.detach(|| choices.params(&cloud.frame))?;
         let given = Arc::clone(&cloud);
         let (model, report) = run(py, progress, move |control| SceneModel::build(&given, &params, control))?;
-        Ok((Self(Arc::new(Inner::new(model, cloud))), json(&report)?))
+        Ok((Self(Arc::new(ask::Scene::new(model, cloud))), json(&report)?))
     }
 
     /// The scene of a ball file, with the cloud that shows its ground if there is one.
@@ -242,23 +212,23 @@ impl Scene {
             Some(cloud) if cloud.frame == frame => cloud,
             Some(cloud) => Arc::new(PointCloud::clone(&cloud).moved_to(&frame)),
         };
-        Ok(Self(Arc::new(Inner::new(model, cloud))))
+        Ok(Self(Arc::new(ask::Scene::new(model, cloud))))
     }
 
     /// The same scene with meshes added.
     fn with_added(&self, py: Python<'_>, meshes: Vec<Py<Mesh>>) -> PyResult<Self> {
         let inner = Arc::clone(&self.0);
         let model = run(py, None, move |_| {
-            meshes.iter().map(Py::get).try_fold(inner.model.clone(), |model, mesh| {
+            meshes.iter().map(Py::get).try_fold(inner.model().clone(), |model, mesh| {
                 model.with_added(&mesh.in_metres(&inner)?, &mesh.name.display().to_string())
             })
         })?;
-        Ok(Self(Arc::new(Inner::new(model, Arc::clone(&self.0.cloud)))))
+        Ok(Self(Arc::new(ask::Scene::new(model, Arc::clone(self.0.cloud())))))
     }
 
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let inner = Arc::clone(&self.0);
-        run(py, None, move |_| write_balls(&path, inner.model.parts()))
+        run(py, None, move |_| write_balls(&path, inner.model().parts()))
     }
 
     /// The bytes of an `.npz` ball file.
@@ -266,7 +236,7 @@ impl Scene {
         let inner = Arc::clone(&self.0);
         let bytes = run(py, None, move |_| {
             let mut bytes = Cursor::new(Vec::new());
-            write_balls(Output::writer("scene.npz", &mut bytes), inner.model.parts())?;
+            write_balls(Output::writer("scene.npz", &mut bytes), inner.model().parts())?;
             Ok(bytes.into_inner())
         })?;
         Ok(PyBytes::new(py, &bytes))
@@ -275,12 +245,12 @@ impl Scene {
     /// The cloud, if the scene has its points.
     #[getter]
     fn cloud(&self) -> Option<Cloud> {
-        (!self.0.cloud.is_empty()).then(|| Cloud(Arc::clone(&self.0.cloud)))
+        (!self.0.cloud().is_empty()).then(|| Cloud(Arc::clone(self.0.cloud())))
     }
 
     #[getter]
     fn ball_count(&self) -> usize {
-        self.0.model.balls().len()
+        self.0.model().balls().len()
     }
 
     /// The same scene without what stands in an area: rings of x and y in the coordinates of the file, or a class. With the report as JSON.
@@ -291,9 +261,9 @@ impl Scene {
                 Some(rings) => ClearedArea::Polygon(rings.iter().map(|ring| local_ring(&inner, ring)).collect()),
                 None => ClearedArea::Class(class_),
             };
-            inner.model.clone().without(&area, &inner.cloud, control)
+            inner.model().clone().without(&area, inner.cloud(), control)
         })?;
-        Ok((Self(Arc::new(Inner::new(model, Arc::new(cloud)))), json(&report)?))
+        Ok((Self(Arc::new(ask::Scene::new(model, Arc::new(cloud)))), json(&report)?))
     }
 
     /// The same scene before the terrain of an elevation raster.
@@ -301,56 +271,56 @@ impl Scene {
         let inner = Arc::clone(&self.0);
         let model = run(py, None, move |_| {
             let terrain = read_terrain(&path, inner.frame())?;
-            inner.model.clone().with_terrain(terrain, &path.display().to_string())
+            inner.model().clone().with_terrain(terrain, &path.display().to_string())
         })?;
-        Ok(Self(Arc::new(Inner::new(model, Arc::clone(&self.0.cloud)))))
+        Ok(Self(Arc::new(ask::Scene::new(model, Arc::clone(self.0.cloud())))))
     }
 
     /// The same scene before the far terrain of a file.
     fn with_horizon(&self, py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let inner = Arc::clone(&self.0);
         let model = run(py, None, move |_| {
-            let (low, high) = inner.model.bounds().corners();
+            let (low, high) = inner.model().bounds().corners();
             let frame = inner.frame();
             let middle = [0, 1].map(|i| f64::midpoint(low[i], high[i]) + frame.origin[i]);
             let of_grid = convergence(&frame.crs, middle).unwrap_or(0.0);
-            Ok(inner.model.clone().with_horizon(read_horizon(&path)?.turned(-of_grid)))
+            Ok(inner.model().clone().with_horizon(read_horizon(&path)?.turned(-of_grid)))
         })?;
-        Ok(Self(Arc::new(Inner::new(model, Arc::clone(&self.0.cloud)))))
+        Ok(Self(Arc::new(ask::Scene::new(model, Arc::clone(self.0.cloud())))))
     }
 
     /// The same scene, whose lines of sight a device decides.
     fn with_device(&self, py: Python<'_>, device: String) -> PyResult<Self> {
         let inner = Arc::clone(&self.0);
-        let model = run(py, None, move |_| Ok(inner.model.clone().with_backend(backend(&device)?)))?;
-        Ok(Self(Arc::new(Inner::new(model, Arc::clone(&self.0.cloud)))))
+        let model = run(py, None, move |_| Ok(inner.model().clone().with_backend(backend(&device)?)))?;
+        Ok(Self(Arc::new(ask::Scene::new(model, Arc::clone(self.0.cloud())))))
     }
 
     /// The name of the device that is ready to be asked, if any is.
     #[getter]
     fn device(&self) -> Option<String> {
-        self.0.model.backend().and_then(|backend| backend.device())
+        self.0.model().backend().and_then(|backend| backend.device())
     }
 
     /// What the processor had to do instead of the device, and why, a line each.
     #[getter]
     fn device_notes(&self) -> Vec<String> {
-        self.0.model.backend().map_or_else(Vec::new, |backend| backend.notes())
+        self.0.model().backend().map_or_else(Vec::new, |backend| backend.notes())
     }
 
     #[getter]
     fn pulse_count(&self) -> Option<usize> {
-        self.0.model.pulses().map(|pulses| pulses.starts.len())
+        self.0.model().pulses().map(|pulses| pulses.starts.len())
     }
 
     #[getter]
     fn is_carved(&self) -> bool {
-        self.0.model.is_carved()
+        self.0.model().is_carved()
     }
 
     #[getter]
     fn bounds(&self) -> [[f64; 3]; 2] {
-        let bounds = self.0.model.bounds();
+        let bounds = self.0.model().bounds();
         [bounds.low, bounds.high].map(|corner| self.0.frame().to_file_coordinates(corner))
     }
 
@@ -361,6 +331,6 @@ impl Scene {
 
     #[getter]
     fn provenance(&self) -> Vec<(String, String)> {
-        self.0.model.parts().provenance.iter().map(|(name, value)| (name.clone(), value.clone())).collect()
+        self.0.model().parts().provenance.iter().map(|(name, value)| (name.clone(), value.clone())).collect()
     }
 }

@@ -6,16 +6,14 @@ use crate::sun::{Place, SunChoice};
 use crate::targets::{Results, Wanted};
 use crate::trees::Through;
 use crate::work::run;
-use belvedere::apps::rows::Obstacles;
-use belvedere::apps::shadow::{Edges, LIT, scene_shadow};
-use belvedere::apps::targets::Measure;
-use belvedere::query::UnprovenAs;
+use belvedere::apps::ask;
+use belvedere::apps::shadow::Edges;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
 #[pymethods]
 impl Scene {
-    /// The share of each sun that reaches each target.
+    /// The share of each sun that reaches each target; of one sun with hard edges, also which light is unproven.
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn shadow<'py>(
         &self,
@@ -32,22 +30,25 @@ impl Scene {
             "soft" => Edges::Soft,
             _ => return Err(wrong("edges", &format!("'{edges}'"), "use 'hard' or 'soft'")),
         };
-        let inner = Arc::clone(&self.0);
-        let asked = targets.owned(py, &inner)?;
-        let suns = suns.suns(&inner, &place)?;
-        let (lit, found) = run(py, progress, move |control| {
-            let found = asked.targets(&inner, control)?;
-            let targets = &found.targets;
-            let scene = inner.blockers(UnprovenAs::Visible, control)?;
-            let trees = trees.of(&inner, control)?;
-            let obstacles = Obstacles { scene: &scene, trees: trees.as_ref() };
-            let looks = targets.len() * obstacles.matrix_count();
-            let lit =
-                control.stage("testing sun", looks, || scene_shadow(obstacles, targets, &suns, edges, control))?;
-            Ok((lit, found))
-        })?;
-        lit.into_iter()
-            .map(|values| found.results(py, vec![Measure::new("lit", values).with_description(LIT)]))
+        let question =
+            ask::Shadow { suns: suns.into(), place: place.chosen()?, edges, trees: trees.chosen()?, unproven: None };
+        let scene = Arc::clone(&self.0);
+        let chosen = targets.chosen(py, &scene)?;
+        let places = chosen.places.clone();
+        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
+        let (found, mut measures) = (answers.found, answers.measures);
+        let unproven = measures.split_off(found.suns.len().min(measures.len()));
+        let mut unproven = Some(unproven);
+        let mut remarks = Some(answers.remarks);
+        measures
+            .into_iter()
+            .map(|mut lit| {
+                lit.name = "lit".to_owned();
+                // what is said of all suns is said once
+                let remarks = remarks.take().unwrap_or_default();
+                let of_sun = std::iter::once(lit).chain(unproven.take().unwrap_or_default()).collect();
+                chosen.results(py, &found.on.targets, of_sun, &remarks)
+            })
             .collect()
     }
 }

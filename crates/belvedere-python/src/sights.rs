@@ -4,8 +4,9 @@ use crate::arrays::{Places, to_1d, to_2d};
 use crate::errors::{exception, wrong};
 use crate::mesh::{Faces, rows_of};
 use crate::scene::{Scene, unproven_as};
-use crate::targets::{Asked, Wanted};
+use crate::targets::Wanted;
 use crate::work::run;
+use belvedere::apps::ask;
 use belvedere::query::{
     Answer, Blocker, Curvature, EarthParams, MeshTargetParams, RadioWave, SurfacePieces, UnprovenAs, Viewer, seen_faces,
 };
@@ -42,12 +43,13 @@ impl Scene {
     ) -> PyResult<Bound<'py, PyAny>> {
         let unproven = unproven_as(unproven)?;
         let inner = Arc::clone(&self.0);
-        let asked = targets.owned(py, &inner)?;
+        let places = targets.chosen(py, &inner)?.places;
         let answers = run(py, progress, move |control| {
-            let positions = match asked {
-                Asked::Points { positions, .. } => positions,
-                Asked::Cloud { cloud, .. } => crate::targets::moved(&cloud, inner.frame())?,
-                _ => asked.targets(&inner, control)?.targets.positions,
+            // targets outside the cloud have an answer of their own
+            let positions = match places {
+                ask::Places::Points(positions, _) => positions,
+                ask::Places::Cloud(cloud, _) => ask::places::moved(&cloud, &inner)?,
+                other => other.targets(&inner, &mut ask::Context::default(), control)?.positions.clone(),
             };
             let scene = inner.blockers(unproven, control)?;
             let eye = Viewer::Eye(inner.frame().local_from_file(eye));
@@ -134,7 +136,7 @@ impl Scene {
             "first_block_range_m",
             to_1d(py, each().map(|i| block(i).map_or(f64::NAN, |block| block.range)).collect()),
         )?;
-        if inner.model.pulses().is_some() && unproven != UnprovenAs::Visible {
+        if inner.model().pulses().is_some() && unproven != UnprovenAs::Visible {
             let free = |i: usize| sights[i].filter(|sight| sight.first_block.is_none());
             dict.set_item(
                 "unproven_m",
@@ -150,10 +152,11 @@ impl Scene {
         let ball_of = |i: usize| block(i).and_then(|block| block.blocker.ball());
         let ball = |i: usize| ball_of(i).map_or(-1, |row| i64::try_from(row).unwrap_or(-1));
         dict.set_item("block_ball", to_1d(py, each().map(ball).collect()))?;
-        let source =
-            |i: usize| ball_of(i).and_then(|row| inner.model.balls().source.get(row)).map_or(-1, |&row| i64::from(row));
+        let source = |i: usize| {
+            ball_of(i).and_then(|row| inner.model().balls().source.get(row)).map_or(-1, |&row| i64::from(row))
+        };
         dict.set_item("block_source", to_1d(py, each().map(source).collect()))?;
-        if inner.model.far_terrain().grid().is_some() {
+        if inner.model().far_terrain().grid().is_some() {
             let is_terrain = |i: usize| block(i).is_some_and(|block| block.blocker == Blocker::Terrain);
             dict.set_item("block_terrain", to_1d(py, each().map(is_terrain).collect()))?;
         }

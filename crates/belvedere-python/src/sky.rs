@@ -1,16 +1,13 @@
 //! Hours of sun, and how much of the sky is seen.
 
 use crate::errors::{exception, wrong};
-use crate::scene::{Inner, Scene};
+use crate::scene::Scene;
 use crate::sun::Place;
 use crate::targets::{Results, Wanted};
 use crate::trees::Through;
 use crate::work::run;
-use belvedere::apps::rows::Obstacles;
-use belvedere::apps::sky_view::{SKY_DIRECTIONS, SkyDirections, scene_sky_view};
-use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, SunSchedule, Zone, parse_instant, sun_days};
-use belvedere::apps::sun_hours::{RuleDays, SunPlan, SunRule, scene_sun_hours};
-use belvedere::query::UnprovenAs;
+use belvedere::apps::ask::{self, SkyParts};
+use belvedere::apps::sun::{DayParams, Period, Site, Zone};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -31,12 +28,19 @@ pub(crate) struct Days {
 }
 
 impl Days {
+    /// What was given, as the layer of questions takes it.
+    pub(crate) fn chosen(&self) -> ask::Days {
+        ask::Days {
+            dates: self.dates.clone(),
+            between: self.between.clone(),
+            year: self.year,
+            time_step_min: self.step,
+            min_sun_elevation_deg: self.min_sun_elevation,
+        }
+    }
+
     pub(crate) fn params(&self, place: &Place) -> PyResult<DayParams> {
-        let usual = DayParams::default();
-        let params = usual
-            .with_step(self.step.map_or(usual.step, |minutes| minutes * 60.0))
-            .with_least_elevation(self.min_sun_elevation.map_or(usual.least_elevation, f64::to_radians))
-            .with_refraction(place.refraction()?);
+        let params = self.chosen().params(&place.chosen()?);
         params.validate().map_err(exception)?;
         Ok(params)
     }
@@ -46,74 +50,18 @@ impl Days {
         self.between.iter().flatten().cloned().collect()
     }
 
-    /// Dates of a day such as `longest-day` or `2026-06-21`.
-    fn dates_of(&self, text: &str, site: &Site, zone: &Zone) -> PyResult<Vec<Date>> {
-        match RuleDays::parse(text) {
-            Some(days) => self.dates_of_rule(days, site, zone),
-            None => Ok(vec![Date::parse(text).map_err(exception)?]),
-        }
+    pub(crate) fn period(&self, place: &Place, site: &Site, zone: &Zone) -> PyResult<Option<Period>> {
+        self.chosen().period(&place.chosen()?, site, zone).map_err(exception)
     }
+}
 
-    fn dates_of_rule(&self, days: RuleDays, site: &Site, zone: &Zone) -> PyResult<Vec<Date>> {
-        let Some(year) = self.year else {
-            return Err(wrong("year", "missing", "these days have no year: give year=2026"));
-        };
-        days.dates(year, site, zone).map_err(exception)
-    }
-
-    pub(crate) fn period(&self, site: &Site, zone: &Zone) -> PyResult<Option<Period>> {
-        if let Some([from, to]) = &self.between {
-            return Ok(Some(match (Date::parse(from), Date::parse(to)) {
-                (Ok(first), Ok(last)) if last < first => {
-                    return Err(wrong("last day", &last.to_string(), "give the first day or a later one"));
-                }
-                (Ok(first), Ok(last)) => Period::Days(first.to(last).collect()),
-                (Err(_), Err(_)) => {
-                    let instant = |text: &str| parse_instant(text, None).map_err(exception);
-                    Period::Between([instant(from)?, instant(to)?])
-                }
-                _ => return Err(wrong("period", &format!("{from} to {to}"), "give two days, or two times")),
-            }));
-        }
-        let mut dates = Vec::new();
-        for text in &self.dates {
-            dates.extend(self.dates_of(text, site, zone)?);
-        }
-        Ok((!dates.is_empty()).then_some(Period::Days(dates)))
-    }
-
-    fn plan(&self, inner: &Inner, place: &Place, rules: &[String]) -> PyResult<(SunPlan, Site)> {
-        let site = place.site(inner)?;
-        let zone = place.zone(&site, &self.times())?;
-        let params = self.params(place)?;
-        let binning = match self.tolerance {
-            None => Binning::Auto,
-            Some(0.0) => Binning::Exact,
-            Some(degrees) => Binning::Within(degrees.to_radians()),
-        };
-        let schedule = |period: &Period, params: &DayParams| {
-            SunSchedule::new(&sun_days(&site, &zone, period, params).map_err(exception)?, binning).map_err(exception)
-        };
-        let mut of_rules = Vec::new();
-        let mut own = 0;
-        for text in rules {
-            let rule = SunRule::parse(text).map_err(exception)?;
-            let known = SunRule::columns().find(|(name, _)| *name == rule.name).map(|(_, column)| column.to_owned());
-            let column = known.unwrap_or_else(|| {
-                own += 1;
-                format!("rule_{own}")
-            });
-            let dates = self.dates_of_rule(rule.days, &site, &zone)?;
-            let least = self.min_sun_elevation.map_or(rule.least_elevation, f64::to_radians);
-            let schedule = schedule(&Period::Days(dates), &params.with_least_elevation(least))?;
-            of_rules.push((column, rule, schedule));
-        }
-        let main = match (self.period(&site, &zone)?, of_rules.first()) {
-            (Some(period), _) => schedule(&period, &params)?,
-            (None, Some((.., first))) => first.clone(),
-            (None, None) => return Err(wrong("period", "missing", "give date, period or rule")),
-        };
-        Ok((SunPlan::new(main, of_rules), site))
+/// How the sky is parted, as Python gives it.
+pub(crate) fn sky_parts(directions: Option<usize>, patches: Option<&str>) -> PyResult<SkyParts> {
+    match patches {
+        None => Ok(directions.map_or_else(SkyParts::default, SkyParts::Even)),
+        Some("tregenza") => Ok(SkyParts::Tregenza),
+        Some("reinhart") => Ok(SkyParts::Reinhart),
+        Some(other) => Err(wrong("patches", &format!("'{other}'"), "use 'tregenza' or 'reinhart'")),
     }
 }
 
@@ -130,21 +78,18 @@ impl Scene {
         trees: Through,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Results<'py>> {
-        let inner = Arc::clone(&self.0);
-        let asked = targets.owned(py, &inner)?;
-        let (plan, site) = days.plan(&inner, &place, &rules)?;
-        let (measures, found) = run(py, progress, move |control| {
-            let found = asked.targets(&inner, control)?;
-            let targets = &found.targets;
-            let scene = inner.blockers(UnprovenAs::Visible, control)?;
-            let trees = trees.of(&inner, control)?;
-            let obstacles = Obstacles { scene: &scene, trees: trees.as_ref() };
-            let looks = targets.len() * obstacles.matrix_count();
-            let sums = control
-                .stage("testing sun", looks, || scene_sun_hours(obstacles, targets, &plan, Some(&site), control))?;
-            Ok((sums.into_measures(&plan, targets), found))
-        })?;
-        found.results(py, measures)
+        let question = ask::SunHours {
+            days: days.chosen(),
+            rules,
+            place: place.chosen()?,
+            sun_tolerance_deg: days.tolerance,
+            trees: trees.chosen()?,
+        };
+        let scene = Arc::clone(&self.0);
+        let chosen = targets.chosen(py, &scene)?;
+        let places = chosen.places.clone();
+        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
+        chosen.results(py, &answers.found.targets, answers.measures, &answers.remarks)
     }
 
     fn sky_view<'py>(
@@ -156,25 +101,11 @@ impl Scene {
         trees: Through,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Results<'py>> {
-        let sky = match patches {
-            None => SkyDirections::even(directions.unwrap_or(SKY_DIRECTIONS)),
-            Some("tregenza") => SkyDirections::patches(1),
-            Some("reinhart") => SkyDirections::patches(2),
-            Some(other) => return Err(wrong("patches", &format!("'{other}'"), "use 'tregenza' or 'reinhart'")),
-        };
-        let sky = sky.map_err(exception)?;
-        let inner = Arc::clone(&self.0);
-        let asked = targets.owned(py, &inner)?;
-        let (seen, found) = run(py, progress, move |control| {
-            let found = asked.targets(&inner, control)?;
-            let targets = &found.targets;
-            let scene = inner.blockers(UnprovenAs::Visible, control)?;
-            let trees = trees.of(&inner, control)?;
-            let obstacles = Obstacles { scene: &scene, trees: trees.as_ref() };
-            let looks = targets.len() * obstacles.matrix_count();
-            let seen = control.stage("testing sky", looks, || scene_sky_view(obstacles, targets, &sky, control))?;
-            Ok((seen, found))
-        })?;
-        found.results(py, seen.into_measures())
+        let question = ask::SkyView { sky: sky_parts(directions, patches)?, trees: trees.chosen()? };
+        let scene = Arc::clone(&self.0);
+        let chosen = targets.chosen(py, &scene)?;
+        let places = chosen.places.clone();
+        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
+        chosen.results(py, &answers.found.targets, answers.measures, &answers.remarks)
     }
 }

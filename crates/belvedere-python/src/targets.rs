@@ -4,14 +4,14 @@ use crate::arrays::{Places, fixed_rows, to_1d};
 use crate::cloud::Cloud;
 use crate::errors::wrong;
 use crate::mesh::{Faces, rows_of};
-use crate::scene::Inner;
-use belvedere::apps::targets::{CellLevel, CellParams, Measure, MeshParams, Targets};
+use belvedere::apps::ask::{self, Remark, Severity};
+use belvedere::apps::targets::{CellLevel, Measure, Targets};
 use belvedere::apps::viewshed::cell_for;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
 use belvedere::io::Georeference;
 use belvedere::results::{FaceRows, georeference};
-use belvedere::{Error, Frame, Mesh, Parameter, PointCloud};
+use belvedere::{Error, Frame, Mesh, PointCloud};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -31,17 +31,9 @@ pub(crate) struct Wanted<'py> {
     ground: Option<String>,
 }
 
-/// The same in the frame of the scene, owned, so that it can be worked on without the interpreter.
-pub(crate) enum Asked {
-    Points { positions: Vec<[f32; 3]>, normals: Option<Vec<[f32; 3]>> },
-    Cloud { cloud: Arc<PointCloud>, normals: Option<Vec<[f32; 3]>> },
-    Faces { mesh: Arc<Mesh>, params: MeshParams },
-    Cells(Cells),
-}
-
-/// Targets, and the mesh whose faces they are.
-pub(crate) struct Found {
-    pub(crate) targets: Targets,
+/// What a question is about, and the mesh whose faces that are.
+pub(crate) struct Chosen {
+    pub(crate) places: ask::Places,
     mesh: Option<Arc<Mesh>>,
 }
 
@@ -77,7 +69,7 @@ impl Wanted<'_> {
         self.ground.as_deref()
     }
 
-    pub(crate) fn owned(&self, py: Python<'_>, inner: &Inner) -> PyResult<Asked> {
+    pub(crate) fn chosen(&self, py: Python<'_>, scene: &ask::Scene) -> PyResult<Chosen> {
         let normals: Option<Vec<[f32; 3]>> = self.normals.as_ref().map(|n| fixed_rows(n, "normals")).transpose()?;
         let check = |count: usize| match &normals {
             Some(normals) if normals.len() != count => {
@@ -85,85 +77,48 @@ impl Wanted<'_> {
             }
             _ => Ok(()),
         };
+        let of = |places| Ok(Chosen { places, mesh: None });
         if let Some(places) = &self.places {
-            let positions = places.local("targets", inner.frame())?;
+            let positions = places.local("targets", scene.frame())?;
             check(positions.len())?;
-            return Ok(Asked::Points { positions, normals });
+            return of(ask::Places::Points(positions, normals));
         }
         if let Some(cloud) = &self.cloud {
             let cloud = Arc::clone(&cloud.borrow(py).0);
             check(cloud.len())?;
-            return Ok(Asked::Cloud { cloud, normals });
+            return of(ask::Places::Cloud(cloud, normals));
         }
         if let Some(faces) = &self.faces {
-            let (mesh, params) = faces.owned(inner)?;
-            return Ok(Asked::Faces { mesh, params });
+            let (mesh, params) = faces.owned(scene)?;
+            return Ok(Chosen { places: ask::Places::Mesh(Arc::clone(&mesh), params), mesh: Some(mesh) });
         }
-        let level = if self.surface { CellLevel::Surface } else { CellLevel::Ground };
-        let ground = ground_points(self.ground.as_deref())?;
-        Ok(Asked::Cells(Cells { side: self.cell, height: self.height, level, ground }))
+        of(ask::Places::Cells(ask::Cells {
+            cell: self.cell,
+            level: if self.surface { CellLevel::Surface } else { CellLevel::Ground },
+            height: self.height,
+            ground: ground_points(self.ground.as_deref())?,
+            ..ask::Cells::default()
+        }))
     }
-}
-
-impl Asked {
-    /// The targets in the frame of the scene, without those outside its cloud.
-    pub(crate) fn targets(self, inner: &Inner, control: &Control<'_>) -> belvedere::Result<Found> {
-        let frame = inner.frame();
-        let of = |positions, normals| {
-            let cloud = PointCloud { positions, ..PointCloud::in_frame(frame.clone()) };
-            Targets::of_points(&cloud, normals)
-        };
-        let mut mesh_of = None;
-        let mut targets = match self {
-            Self::Cells(cells) => return Ok(Found { targets: cells.targets(inner, control)?, mesh: None }),
-            Self::Points { positions, normals } => of(positions, normals),
-            Self::Cloud { cloud, normals } => of(moved(&cloud, frame)?, normals),
-            Self::Faces { mesh, params } => {
-                let targets = Targets::of_mesh(&mesh, frame, &params)?;
-                mesh_of = Some(mesh);
-                targets
-            }
-        };
-        if let Some(coverage) = inner.model.coverage() {
-            targets.leave_out_outside(&coverage);
-        }
-        Ok(Found { targets, mesh: mesh_of })
-    }
-}
-
-/// Positions of a cloud in another frame.
-pub(crate) fn moved(cloud: &PointCloud, frame: &Frame) -> belvedere::Result<Vec<[f32; 3]>> {
-    if cloud.frame.crs.contradicts(&frame.crs) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::ReferenceSystem,
-            value: cloud.frame.crs.describe(),
-            expected: "that of the scene; convert one of them",
-        });
-    }
-    if cloud.frame == *frame {
-        return Ok(cloud.positions.clone());
-    }
-    let bare = PointCloud { positions: cloud.positions.clone(), ..PointCloud::in_frame(cloud.frame.clone()) };
-    Ok(bare.moved_to(frame).positions)
 }
 
 /// The cloud of a scene, which must have points to show the ground.
-pub(crate) fn ground_cloud(inner: &Inner) -> belvedere::Result<&PointCloud> {
-    if inner.cloud.is_empty() {
+pub(crate) fn ground_cloud(inner: &ask::Scene) -> belvedere::Result<&PointCloud> {
+    if inner.cloud().is_empty() {
         return Err(Error::MissingAttribute {
             attribute: "ground",
             needed_for: "a grid of cells",
             advice: "a ball file has no points: give its cloud with Scene.load(path, cloud=read(...)), or give targets",
         });
     }
-    Ok(&inner.cloud)
+    Ok(inner.cloud())
 }
 
 impl Cells {
     /// The ground of the scene on a grid of these cells over the box from `low` to `high`.
     pub(crate) fn ground_within(
         &self,
-        inner: &Inner,
+        inner: &ask::Scene,
         (low, high): ([f64; 2], [f64; 2]),
         control: &Control<'_>,
     ) -> belvedere::Result<Ground> {
@@ -172,19 +127,6 @@ impl Cells {
         let grid = MapGrid::covering(low, high, self.side.unwrap_or_else(|| cell_for(low, high)), [x, y])?;
         let params = GroundParams { points: self.ground, ..GroundParams::default() };
         Ok(control.stage("computing ground", 0, || Ground::of_cloud(cloud, grid, &params, control))?.0)
-    }
-
-    fn targets(&self, inner: &Inner, control: &Control<'_>) -> belvedere::Result<Targets> {
-        let ground = self.ground_within(inner, inner.model.bounds().on_map(), control)?;
-        let mut params = CellParams::default().with_level(self.level);
-        if let Some(height) = self.height {
-            params = params.with_height(height);
-        }
-        let (mut targets, _) = Targets::of_cells(ground_cloud(inner)?, ground, &params, control)?;
-        if let Some(added) = inner.model.added() {
-            targets.set_on_added(added, &params);
-        }
-        Ok(targets)
     }
 }
 
@@ -203,18 +145,39 @@ pub(crate) fn grid_at([width, height]: [usize; 2], place: &Georeference) -> Grid
 
 /// Name, description and values of a measure.
 pub(crate) type Column<'py> = (String, &'static str, Bound<'py, PyAny>);
-/// Columns of measures; then the grid where targets are cells; or, where they are the faces of a mesh, only their rows.
-pub(crate) type Results<'py> = (Vec<Column<'py>>, Option<Grid>, Option<Bound<'py, PyDict>>);
+/// Columns of measures; then the grid where targets are cells; or, where they are the faces of a mesh, only their rows; then remarks.
+pub(crate) type Results<'py> = (Vec<Column<'py>>, Option<Grid>, Option<Bound<'py, PyDict>>, Vec<Bound<'py, PyDict>>);
 
-impl Found {
+impl Chosen {
     /// Measures of the targets as Python takes them.
-    pub(crate) fn results<'py>(&self, py: Python<'py>, measures: Vec<Measure>) -> PyResult<Results<'py>> {
-        if let (Some(mesh), Some(surface)) = (&self.mesh, self.targets.surface()) {
+    pub(crate) fn results<'py>(
+        &self,
+        py: Python<'py>,
+        targets: &Targets,
+        measures: Vec<Measure>,
+        remarks: &[Remark],
+    ) -> PyResult<Results<'py>> {
+        let remarks = remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<Vec<_>>>()?;
+        if let (Some(mesh), Some(surface)) = (&self.mesh, targets.surface()) {
             let rows = rows_of(py, FaceRows::of_measures(mesh, surface, &measures))?;
-            return Ok((Vec::new(), None, Some(rows)));
+            return Ok((Vec::new(), None, Some(rows), remarks));
         }
         let column = |measure: Measure| (measure.name, measure.description, to_1d(py, measure.values).into_any());
-        let grid = self.targets.ground().map(|ground| grid_of(&ground.grid, &self.targets.frame));
-        Ok((measures.into_iter().map(column).collect(), grid, None))
+        let grid = targets.ground().map(|ground| grid_of(&ground.grid, &targets.frame));
+        Ok((measures.into_iter().map(column).collect(), grid, None, remarks))
     }
+}
+
+/// A remark: key, severity, text and numbers.
+pub(crate) fn remark_of<'py>(py: Python<'py>, remark: &Remark) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("key", remark.key)?;
+    dict.set_item("severity", if remark.severity == Severity::Warning { "warning" } else { "note" })?;
+    dict.set_item("text", &remark.text)?;
+    let numbers = PyDict::new(py);
+    for (name, number) in &remark.numbers {
+        numbers.set_item(name, number)?;
+    }
+    dict.set_item("numbers", numbers)?;
+    Ok(dict)
 }

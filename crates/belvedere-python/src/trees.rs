@@ -1,9 +1,8 @@
 //! Light through trees.
 
-use crate::scene::Inner;
-use belvedere::apps::tree_light::{Leaves, Transmissivity, TreeLight};
-use belvedere::control::Control;
-use belvedere::{Error, Parameter};
+use crate::errors::wrong;
+use belvedere::apps::ask::ThroughTrees;
+use belvedere::apps::tree_light::Leaves;
 use pyo3::prelude::*;
 
 /// The share of light that passes through crowns, and whether they have leaves.
@@ -21,52 +20,29 @@ enum Share {
 }
 
 impl Through {
-    /// The trees of a scene; `None` where they are opaque.
-    pub(crate) fn of(&self, inner: &Inner, control: &Control<'_>) -> belvedere::Result<Option<TreeLight>> {
-        let invalid = |parameter, value: &str, expected| {
-            Err(Error::InvalidParameter { parameter, value: format!("'{value}'"), expected })
-        };
+    /// What was given, as the layer of questions takes it.
+    pub(crate) fn chosen(&self) -> PyResult<ThroughTrees> {
+        let refused = |what: &str, value: &str, advice: &str| Err(wrong(what, &format!("'{value}'"), advice));
         let by_season = matches!(&self.share, Some(Share::Name(name)) if name == "seasons");
         let leaves = match self.leaves.as_deref() {
             None => Leaves::ByDate,
             Some(leaves) if !by_season => {
-                return invalid(Parameter::Leaves, leaves, "given with through_trees='seasons' only");
+                return refused("leaves", leaves, "give it with through_trees='seasons' only");
             }
             Some("auto") => Leaves::ByDate,
             Some("on") => Leaves::On,
             Some("off") => Leaves::Off,
-            Some(leaves) => return invalid(Parameter::Leaves, leaves, "'auto', 'on' or 'off'"),
+            Some(leaves) => return refused("leaves", leaves, "use 'auto', 'on' or 'off'"),
         };
-        let model = &inner.model;
-        let transmissivity = match &self.share {
-            None => return Ok(None),
-            Some(Share::Number(share)) => Transmissivity::constant(*share)?,
+        match &self.share {
+            None => Ok(ThroughTrees::Opaque),
+            Some(Share::Number(share)) => Ok(ThroughTrees::Share(*share)),
             Some(Share::Name(name)) => match name.as_str() {
-                "none" => return Ok(None),
-                "seasons" => Transmissivity::default(),
-                "pulses" => {
-                    Transmissivity::measured(model.balls(), model.transmission()).ok_or(Error::MissingAttribute {
-                        attribute: "pulses in vegetation",
-                        needed_for: "through_trees='pulses'",
-                        advice: "use a cloud with return numbers, GPS times and preferably classes",
-                    })?
-                }
-                _ => {
-                    return invalid(
-                        Parameter::Transmissivity,
-                        name,
-                        "'none', 'seasons', 'pulses', or a number from 0 to 1",
-                    );
-                }
+                "none" => Ok(ThroughTrees::Opaque),
+                "seasons" => Ok(ThroughTrees::Seasons(leaves)),
+                "pulses" => Ok(ThroughTrees::Pulses),
+                _ => refused("through_trees", name, "use 'none', 'seasons', 'pulses', or a number from 0 to 1"),
             },
-        };
-        if !model.vegetation().contains(&true) {
-            return Err(Error::MissingAttribute {
-                attribute: "vegetation",
-                needed_for: "through_trees",
-                advice: "use a cloud with classes 3 to 5, or with return numbers and GPS times",
-            });
         }
-        TreeLight::new(model, &model.rule(), transmissivity, leaves, control).map(Some)
     }
 }

@@ -3,11 +3,12 @@
 use crate::arrays::{to_1d, to_2d};
 use crate::errors::wrong;
 use crate::mesh::Mesh;
-use crate::scene::{Inner, Scene, unproven_as};
+use crate::scene::{Scene, unproven_as};
 use crate::sun::Place;
 use crate::targets::Column;
 use crate::work::run;
 use belvedere::Frame;
+use belvedere::apps::ask;
 use belvedere::apps::targets::{Targets, Window, objects_of_windows};
 use belvedere::apps::window_views::{
     ClassMeanings, Kinds, Proving, Seen, VIEW_DIRECTIONS, VIEW_SPACING, are_made_from, balls_seen, leave_out_level,
@@ -60,7 +61,7 @@ impl Facades {
         })
     }
 
-    fn asked(&self, inner: &Inner, north: f64) -> belvedere::Result<Asked> {
+    fn asked(&self, inner: &ask::Scene, north: f64) -> belvedere::Result<Asked> {
         let frame = inner.frame();
         let Some(mesh) = &self.mesh else {
             let windows = windows_of(&self.windows, frame, north);
@@ -107,9 +108,9 @@ impl Scene {
             let mut asked = facades.asked(&inner, north)?;
             let scene = inner.blockers(unproven, control)?;
             let count = asked.targets.asked_count();
-            let outside = inner.model.coverage().map_or(0, |coverage| asked.targets.leave_out_outside(&coverage));
+            let outside = inner.model().coverage().map_or(0, |coverage| asked.targets.leave_out_outside(&coverage));
             let inside = leave_out_walled_up(&mut asked.targets, &scene, control)?;
-            let (model, cloud) = (&inner.model, &inner.cloud);
+            let (model, cloud) = (inner.model(), inner.cloud());
             let classes = cloud.attributes.classification.as_deref();
             let classes = classes.filter(|_| are_made_from(model.balls(), &cloud.positions));
             let kinds = balls_seen(model.balls(), classes, model.vegetation(), &meanings)?;

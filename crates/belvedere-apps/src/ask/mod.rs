@@ -8,6 +8,7 @@
 //! | what can be asked for | [`Question`], a module for each |
 //! | places, and those without an answer | [`places`] |
 //! | suns, days, clocks, north | [`sun`], [`north`] |
+//! | who looks, and who cannot | [`observers`] |
 //! | the scene, and what questions share | [`scene`] |
 //! | warnings and notes | [`remark`] |
 //! | figures beside the answer | [`report`] |
@@ -15,6 +16,7 @@
 mod irradiance;
 mod light;
 pub mod north;
+pub mod observers;
 pub mod places;
 pub mod remark;
 pub mod report;
@@ -29,6 +31,7 @@ mod trees;
 pub use irradiance::{Irradiance, IrradianceFound, Radiation, Roofs, RoofsFound};
 pub use light::OnTargets;
 pub use north::North;
+pub use observers::{Eyes, Standing};
 pub use places::{Cells, Places, Turned};
 pub use remark::{Remark, Severity};
 pub use report::Report;

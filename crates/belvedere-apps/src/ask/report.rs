@@ -1,6 +1,7 @@
 //! What is known of how answers came about. Sections that a question does not have are left out.
 
 use super::north::NorthReport;
+use super::observers::ObserversSection;
 use super::scene::KnownGround;
 use crate::edge::EdgeReport;
 use crate::sun::{Site, SiteFrom};
@@ -39,6 +40,9 @@ pub struct Report {
     /// What became of the places.
     #[serde(flatten)]
     pub places: PlacesReport,
+    /// Who looks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub observers: Option<ObserversSection>,
     /// What blocks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lines_of_sight: Option<LinesSection>,
