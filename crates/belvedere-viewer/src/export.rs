@@ -4,6 +4,7 @@ use crate::chunks::Chunks;
 use crate::page;
 use crate::scene::{Scene, Shown};
 use crate::scene_text::{SceneText, typed};
+use belvedere::apps::ask::ThroughTrees;
 use belvedere::apps::eyes::fault_of;
 use belvedere::apps::shadow::{Edges, ShadowSun, scene_shadow};
 use belvedere::apps::sun::{Date, Refraction, SunPosition, Zone, sun_position_with};
@@ -63,7 +64,7 @@ pub fn export(
     let chunks = Chunks::new(cloud).sample(MOST_POINTS);
     let shown = Arc::new(Shown::of(Arc::clone(cloud), chunks));
     let scene = Scene::new(model, Arc::clone(&shown));
-    let mut sent = PointCloud::in_frame(scene.model.frame().clone());
+    let mut sent = PointCloud::in_frame(scene.model().frame().clone());
     sent.positions = scene.shown.chunks.positions(&scene.shown.cloud);
     let suns = match &params.day {
         Some((date, zone)) => suns(&scene, &sent, (*date, zone), &params.scene, control)?,
@@ -121,7 +122,7 @@ fn suns(
             "time": time,
             "azimuth_deg": rounded(position.azimuth.to_degrees(), 4),
             "elevation_deg": rounded(position.elevation.to_degrees(), 4),
-            "command": text.shadow(&format!("{date}T{hour:02}:00"), zone.name()),
+            "command": text.shadow(&format!("{date}T{hour:02}:00"), zone.name(), ThroughTrees::Opaque),
             "bits": base64(&packed(lit, 1, |&share| u8::from(share > 0.0))),
         })
     };
@@ -133,15 +134,16 @@ fn viewpoints(scene: &Scene, sent: &PointCloud, params: &ExportParams, control: 
     if params.viewpoints.is_empty() {
         return Ok(Vec::new());
     }
-    let frame = scene.model.frame();
+    let frame = scene.model().frame();
     let mut eyes: Vec<[f64; 3]> = params.viewpoints.iter().map(|&place| frame.local_from_file(place)).collect();
-    let ground = scene.ground(control)?;
-    set_on_ground(eyes.iter_mut().map(|eye| (eye, OBSERVER_HEIGHT)), &ground);
+    let known = scene.ground(control)?;
+    let ground = &known.ground;
+    set_on_ground(eyes.iter_mut().map(|eye| (eye, OBSERVER_HEIGHT)), ground);
     let blockers = scene.blockers(UnprovenAs::Reported, control)?;
     let of_eye = |(&eye, place): (&[f64; 3], &[f64; 3])| {
         // without z the height follows from the ground
         let place = if place[2].is_nan() { &place[..2] } else { &place[..] };
-        if let Some(fault) = fault_of(&blockers, Some(&ground), eye) {
+        if let Some(fault) = fault_of(&blockers, Some(ground), eye) {
             let value = format!("{} ({fault})", typed(place));
             let expected = "inside the cloud, above the ground and outside obstacles";
             return Err(Error::InvalidParameter { parameter: Parameter::Viewpoint, value, expected });

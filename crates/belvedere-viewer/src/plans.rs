@@ -99,13 +99,13 @@ impl Plans {
         if !plan.clear.is_empty() && text.cloud_beside.is_some() {
             return Err(Refusal("Areas can be cleared only where the balls are built from the cloud: start the program with the cloud alone.".to_owned()));
         }
-        if !plan.clear.is_empty() && scene.model.added().is_some() {
+        if !plan.clear.is_empty() && scene.model().added().is_some() {
             return Err(Refusal(
                 "Areas are cleared before meshes are added: start the program without --add, and load the mesh here."
                     .to_owned(),
             ));
         }
-        let frame = scene.model.frame();
+        let frame = scene.model().frame();
         let areas = plan.clear.iter().map(|corners| area(corners, frame)).collect::<Result<Vec<_>, _>>()?;
         let (mut files, mut input, mut meshes) = (Vec::new(), text.input.clone(), Vec::new());
         if !areas.is_empty() {

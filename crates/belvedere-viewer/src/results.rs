@@ -2,9 +2,9 @@
 
 use crate::replies::Answer;
 use crate::scene::Scene;
+use belvedere::apps::ask::scene::KnownGround;
 use belvedere::cloud::to_local;
 use belvedere::control::Control;
-use belvedere::ground::Ground;
 use belvedere::io::{GeojsonFeature, Georeference, PlacedRaster, PointResults, Shape};
 use belvedere::{Bounds, Error, Frame, Result};
 use serde_json::{Value, json};
@@ -117,8 +117,8 @@ impl ResultFile {
 
     /// Places and values, or lines. What has no height lies on the ground of the scene.
     pub(crate) fn drawn(&self, scene: &Scene, control: &Control<'_>) -> Result<Answer> {
-        let on_ground = OnGround { ground: scene.ground(control).ok(), low: f64::from(scene.model.bounds().low[2]) };
-        let frame = scene.model.frame();
+        let on_ground = OnGround { ground: scene.ground(control).ok(), low: f64::from(scene.model().bounds().low[2]) };
+        let frame = scene.model().frame();
         match &self.results {
             Results::Points { positions, columns } => Ok(layer(positions, columns, None)),
             Results::Cells(raster) => Ok(cells(raster, frame, &on_ground)),
@@ -160,13 +160,13 @@ fn named(path: &Path) -> String {
 
 /// Heights of the ground, local metres.
 struct OnGround {
-    ground: Option<std::sync::Arc<Ground>>,
+    ground: Option<std::sync::Arc<KnownGround>>,
     low: f64,
 }
 
 impl OnGround {
     fn height(&self, [x, y]: [f64; 2]) -> f64 {
-        let height = self.ground.as_ref().and_then(|ground| ground.height_at([x, y]));
+        let height = self.ground.as_ref().and_then(|ground| ground.ground.height_at([x, y]));
         height.map_or(self.low, f64::from)
     }
 }

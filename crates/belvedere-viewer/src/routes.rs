@@ -213,7 +213,7 @@ async fn plan_mesh(
     };
     let plans = Arc::clone(&shared.plans);
     in_turn(&shared, move |scene, _| {
-        let number = plans.load(&name, &body, scene.model.frame())?;
+        let number = plans.load(&name, &body, scene.model().frame())?;
         Ok(Answer::of(json!({ "mesh": number, "name": name })))
     })
     .await

@@ -3,14 +3,14 @@
 use crate::asked_points::{AskedPoints, SAMPLE};
 use crate::chunks::Chunks;
 use crate::questions::Roofs;
+use belvedere::apps::ask::scene::KnownGround;
+use belvedere::apps::ask::{self, Cells, North, SunPlace};
 use belvedere::apps::eyes::{EyeFault, fault_of};
-use belvedere::apps::horizon::convergence;
 use belvedere::apps::sun::Site;
-use belvedere::apps::viewshed::cell_for;
 use belvedere::control::Control;
-use belvedere::ground::{Ground, GroundParams, MapGrid};
+use belvedere::ground::{Ground, GroundPoints};
 use belvedere::model::{ClearReport, ClearedArea, SceneModel};
-use belvedere::query::{MedialScene, Proof, UnprovenAs};
+use belvedere::query::{MedialScene, UnprovenAs};
 use belvedere::{Bounds, Error, Mesh, PointCloud, Result};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -24,19 +24,12 @@ pub(crate) struct Shown {
     pub(crate) description: Value,
 }
 
-/// What questions are asked of.
+/// The scene that questions are put to, with what the page shows of it.
 pub(crate) struct Scene {
-    pub(crate) model: SceneModel,
+    pub(crate) asked: ask::Scene,
     pub(crate) shown: Arc<Shown>,
-    /// The points that are there: all that are shown but those that a plan clears.
-    cloud: Arc<PointCloud>,
     /// For each point that is shown its row among those that are there; `None` where no plan clears any.
     rows_there: Option<Vec<u32>>,
-    /// The pulses of the scene without a plan, indexed once for all plans.
-    proof: Option<Proof>,
-    proving: Kept<MedialScene>,
-    plain: Kept<MedialScene>,
-    ground: Kept<Ground>,
     points: Kept<AskedPoints>,
     sample: Kept<AskedPoints>,
     roofs: Kept<Roofs>,
@@ -109,19 +102,16 @@ impl Shown {
 
 impl Scene {
     pub(crate) fn new(model: SceneModel, shown: Arc<Shown>) -> Self {
-        Self {
-            model,
-            cloud: Arc::clone(&shown.cloud),
-            shown,
-            rows_there: None,
-            proof: None,
-            proving: Kept::new(),
-            plain: Kept::new(),
-            ground: Kept::new(),
-            points: Kept::new(),
-            sample: Kept::new(),
-            roofs: Kept::new(),
-        }
+        let cloud = Arc::clone(&shown.cloud);
+        Self::of(ask::Scene::new(model, cloud), shown)
+    }
+
+    fn of(asked: ask::Scene, shown: Arc<Shown>) -> Self {
+        Self { asked, shown, rows_there: None, points: Kept::new(), sample: Kept::new(), roofs: Kept::new() }
+    }
+
+    pub(crate) fn model(&self) -> &SceneModel {
+        self.asked.model()
     }
 
     /// The scene with a plan: what stands in areas is cleared, then meshes in metres are added.
@@ -131,8 +121,9 @@ impl Scene {
         meshes: &[(String, Arc<Mesh>)],
         control: &Control<'_>,
     ) -> Result<(Self, ClearReport)> {
-        let (mut model, mut report) = (self.model.clone(), ClearReport::default());
-        let mut cloud = Arc::clone(&self.cloud);
+        let (mut model, mut report) = (self.model().clone(), ClearReport::default());
+        let own = self.asked.cloud();
+        let mut cloud = Arc::clone(own);
         for area in areas {
             let (cleared, kept, of_area) = model.without(area, &cloud, control)?;
             report.points_cleared += of_area.points_cleared;
@@ -142,13 +133,11 @@ impl Scene {
             model = model.with_added(mesh, name)?;
         }
         model.index(control)?;
-        let mut planned = Self::new(model, Arc::clone(&self.shown));
-        planned.proof = self.blockers(UnprovenAs::Reported, control)?.proof().cloned();
-        if cloud.len() < self.cloud.len() {
-            planned.rows_there = Some(rows_there(&self.cloud, &cloud));
-            planned.cloud = cloud;
-        }
-        Ok((planned, report))
+        let rows_there = (cloud.len() < own.len()).then(|| rows_there(own, &cloud));
+        // the pulses are indexed once for all plans
+        let proof = self.blockers(UnprovenAs::Reported, control)?.proof().cloned();
+        let asked = ask::Scene::new(model, cloud).with_proof(proof);
+        Ok((Self { rows_there, ..Self::of(asked, Arc::clone(&self.shown)) }, report))
     }
 
     /// A byte for each point in the order in which points are sent: 1 for one that the plan clears.
@@ -163,7 +152,7 @@ impl Scene {
     pub(crate) fn prepare(&self) {
         let control = Control::none();
         let _ = self.blockers(UnprovenAs::Visible, &control);
-        if !self.cloud.is_empty() {
+        if !self.asked.cloud().is_empty() {
             let _ = self.ground(&control);
             let _ = self.points(Points::Sample, &control);
             let _ = self.points(Points::All, &control);
@@ -175,37 +164,31 @@ impl Scene {
 
     /// What the page must know before it asks.
     pub(crate) fn describe(&self) -> Value {
-        let bounds: Bounds = self.model.bounds();
+        let bounds: Bounds = self.model().bounds();
         let site = self.site().ok();
         json!({
-            "ball_count": self.model.balls().len(),
+            "ball_count": self.model().balls().len(),
             "low": bounds.low,
             "high": bounds.high,
-            "tells_unproven": self.model.pulses().is_some(),
+            "tells_unproven": self.model().pulses().is_some(),
             "latitude_deg": site.map(|site| site.latitude.to_degrees()),
             "longitude_deg": site.map(|site| site.longitude.to_degrees()),
             "grid_north_deg": self.grid_north(None).to_degrees(),
         })
     }
 
-    /// What lines of sight are asked of. Pulses are left out where they make no difference.
+    /// What blocks lines of sight. Pulses are left out where they make no difference.
     pub(crate) fn blockers(&self, unproven: UnprovenAs, control: &Control<'_>) -> Result<Arc<MedialScene>> {
-        let kept = if unproven == UnprovenAs::Visible { &self.plain } else { &self.proving };
-        kept.get(|| match &self.proof {
-            Some(proof) if unproven != UnprovenAs::Visible => {
-                let blockers = self.model.scene(&self.model.rule(), UnprovenAs::Visible, control)?;
-                Ok(blockers.with_pulses(proof.clone()))
-            }
-            _ => self.model.scene(&self.model.rule(), unproven, control),
-        })
+        self.asked.blockers(unproven, control)
     }
 
     /// The points of the cloud, which the questions about all of it need.
     pub(crate) fn cloud(&self) -> Result<&PointCloud> {
-        if self.cloud.is_empty() {
+        let cloud = self.asked.cloud();
+        if cloud.is_empty() {
             return Err(Error::NoPoints { what: "a ball file has none; open it together with its cloud".to_owned() });
         }
-        Ok(&self.cloud)
+        Ok(cloud)
     }
 
     /// The points that a question about all of the cloud asks about.
@@ -222,21 +205,9 @@ impl Scene {
         }
     }
 
-    /// Side of the cells of the ground, metres: that of the command line.
-    pub(crate) fn cell(&self) -> f64 {
-        let (low, high) = self.model.bounds().on_map();
-        cell_for(low, high)
-    }
-
     /// The ground of the cloud on the grid that the command line takes.
-    pub(crate) fn ground(&self, control: &Control<'_>) -> Result<Arc<Ground>> {
-        let cloud = self.cloud()?;
-        let (low, high) = self.model.bounds().on_map();
-        let [x, y, _] = cloud.frame.origin;
-        self.ground.get(|| {
-            let grid = MapGrid::covering(low, high, self.cell(), [x, y])?;
-            Ok(Ground::of_cloud(cloud, grid, &GroundParams::default(), control)?.0)
-        })
+    pub(crate) fn ground(&self, control: &Control<'_>) -> Result<Arc<KnownGround>> {
+        self.asked.ground(Cells::default().grid(&self.asked)?, GroundPoints::Auto, control)
     }
 
     /// The planes of roofs.
@@ -246,16 +217,14 @@ impl Scene {
 
     /// Where the scene lies on earth.
     pub(crate) fn site(&self) -> Result<Site> {
-        Ok(Site::of_scene(self.model.frame(), &self.model.bounds(), None, None)?.0)
+        Ok(SunPlace::default().site_of(self.asked.frame(), &self.model().bounds(), None)?.0)
     }
 
     /// Azimuth of grid north from true north at a local place, or at the middle of the scene; grid north counts where true north is
     /// unknown.
     pub(crate) fn grid_north(&self, place: Option<[f64; 3]>) -> f64 {
-        let (low, high) = self.model.bounds().corners();
-        let [x, y] = place.map_or_else(|| [0, 1].map(|i| f64::midpoint(low[i], high[i])), |place| [place[0], place[1]]);
-        let frame = self.model.frame();
-        convergence(&frame.crs, [frame.origin[0] + x, frame.origin[1] + y]).unwrap_or(0.0)
+        let place = place.map_or_else(|| self.asked.middle(), |place| [place[0], place[1]]);
+        North::True.at(&self.asked, place).of_grid
     }
 
     /// Refuses an eye that cannot look, in words.

@@ -1,5 +1,7 @@
 //! The command lines that give the same answers as the page.
 
+use belvedere::apps::ask::ThroughTrees;
+
 /// The scene as it is typed on the command line.
 #[derive(Clone, Debug, Default)]
 pub struct SceneText {
@@ -24,9 +26,10 @@ impl SceneText {
     }
 
     /// The shadow on the points of the cloud, which a ball file has beside it.
-    pub(crate) fn shadow(&self, time: &str, zone: &str) -> String {
+    pub(crate) fn shadow(&self, time: &str, zone: &str, trees: ThroughTrees) -> String {
+        let trees = if trees.is_light() { " --through-trees seasons" } else { "" };
         let points = self.cloud_beside.as_ref().map_or("--self".to_owned(), |cloud| format!("--targets {cloud}"));
-        self.command("shadow", &format!("--time {time} --zone {zone} {points} -o shadow.laz"))
+        self.command("shadow", &format!("--time {time} --zone {zone} {points}{trees} -o shadow.laz"))
     }
 
     /// What an eye sees of the points of the cloud.

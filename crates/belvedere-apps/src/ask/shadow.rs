@@ -48,6 +48,7 @@ impl Shadow {
     fn proof(&self, suns: usize) -> Result<UnprovenAs> {
         let is_possible = suns == 1 && self.edges == Edges::Hard;
         match self.unproven {
+            Some(UnprovenAs::Visible) => Ok(UnprovenAs::Visible),
             Some(_) if !is_possible => Err(Error::InvalidParameter {
                 parameter: Parameter::UnprovenAs,
                 value: "given".to_owned(),
@@ -78,7 +79,7 @@ impl Ask for Shadow {
         let kinds: Vec<ShadowSun> = suns.iter().map(|sun| sun.sun).collect();
         let directions: Vec<[f64; 3]> = kinds.iter().flat_map(|sun| sun_directions(sun.to_sun, self.edges)).collect();
         let unproven = self.proof(suns.len())?;
-        if self.unproven.is_some() {
+        if self.unproven.is_some_and(|unproven| unproven != UnprovenAs::Visible) {
             scene.check_proof()?;
         }
         let light = Light::on(places, &directions, (&self.trees, unproven), scene, context, control)?;

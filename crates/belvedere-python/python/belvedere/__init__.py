@@ -16,6 +16,7 @@ from ._devices import Device, devices
 from ._errors import BelvedereError, BelvedereWarning
 from ._mesh import Mesh
 from ._raster import Raster, Rasters
+from ._remarks import Remark
 from ._scene import Scene
 from ._sights import Sight
 from ._simulate import simulate
@@ -31,6 +32,7 @@ __all__ = [
     "Placement",
     "Raster",
     "Rasters",
+    "Remark",
     "Scene",
     "Sight",
     "Table",

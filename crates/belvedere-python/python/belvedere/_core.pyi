@@ -8,7 +8,8 @@ import numpy.typing as npt
 _Progress = Callable[[str, int, int], object] | None
 _Grid = tuple[int, int, Sequence[float]]
 _Columns = list[tuple[str, str, npt.NDArray[Any]]]
-_Results = tuple[_Columns, _Grid | None, dict[str, Any] | None]
+_Remarks = list[dict[str, Any]]
+_Results = tuple[_Columns, _Grid | None, dict[str, Any] | None, _Remarks]
 _CrsState = tuple[str | None, int | None, int | None, float, float, int]
 
 __all__ = ["NO_VALUE", "Cloud", "Crs", "Mesh", "Scene", "__version__", "devices", "read", "simulate", "write_geotiff"]
@@ -230,7 +231,7 @@ class Scene:
     ) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any], npt.NDArray[np.uint32], _Grid | None, list[str]]: ...
     def irradiance(
         self, radiation: dict[str, Any], targets: dict[str, Any], trees: dict[str, Any], progress: _Progress
-    ) -> tuple[_Results, str]: ...
+    ) -> _Results: ...
     def roof_planes(
         self,
         radiation: dict[str, Any],
@@ -239,7 +240,7 @@ class Scene:
         ground: str | None,
         trees: dict[str, Any],
         progress: _Progress,
-    ) -> tuple[list[tuple[str, npt.NDArray[np.float64]]], list[int]]: ...
+    ) -> tuple[list[tuple[str, npt.NDArray[np.float64]]], list[int], _Remarks]: ...
     def depth_map(
         self, camera: dict[str, Any], place: dict[str, Any], progress: _Progress
     ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32] | None]: ...

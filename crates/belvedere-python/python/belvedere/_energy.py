@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import os
-import warnings
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._errors import BelvedereWarning
 from ._inputs import Progress, check_finite, location_pair, reporter
+from ._remarks import warned
 from ._sunlight import _cells
 from ._table import Table
 from ._targets import RastersOrTable, Targets, measures, wanted
@@ -92,7 +90,7 @@ class Energy:
         Warns
         -----
         BelvedereWarning
-            Where the times of the weather do not fit the place.
+            Where the times or the place of the weather do not fit the scene, and where rows of it are left out.
 
         References
         ----------
@@ -118,19 +116,12 @@ class Energy:
             months=months,
             location=location,
         )
-        results, text = self._core.irradiance(
+        results = self._core.irradiance(
             radiation,
             wanted(targets, normals, _cells(cell, target_height, surface, ground)),
             {"share": through_trees, "leaves": leaves},
             reporter(progress),
         )
-        report = json.loads(text)
-        if report["is_doubtful"] or report["night_hours"] > 0:
-            warnings.warn(
-                "the weather has radiation while the sun is below the horizon: are its location and time zone correct?",
-                BelvedereWarning,
-                stacklevel=2,
-            )
         return measures(results, self._core.crs, targets)
 
     def roof_planes(
@@ -207,10 +198,12 @@ class Energy:
             location=location,
         )
         trees = {"share": through_trees, "leaves": leaves}
-        columns, cells = self._core.roof_planes(radiation, min_area, panel, ground, trees, reporter(progress))
+        columns, cells, given = self._core.roof_planes(radiation, min_area, panel, ground, trees, reporter(progress))
         middle = np.column_stack([values for _, values in columns[:3]])
         found = {"cells": np.array(cells, np.int64), **dict(columns[3:])}
-        return Table(found, places=middle, crs=self._core.crs.text)
+        table = Table(found, places=middle, crs=self._core.crs.text)
+        table.remarks = warned(given, stacklevel=3)
+        return table
 
 
 def _radiation(**given: Any) -> dict[str, Any]:

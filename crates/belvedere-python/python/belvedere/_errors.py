@@ -39,11 +39,23 @@ class BelvedereError(ValueError):
 class BelvedereWarning(UserWarning):
     """Something is lost or uncertain, such as points that were left out.
 
+    Attributes
+    ----------
+    key : str
+        The name of the remark, which stays the same from version to version; empty for what is no remark on an answer.
+    numbers : dict
+        Its numbers by name.
+
     Examples
     --------
     >>> import warnings
     >>> warnings.simplefilter("error", belvedere.BelvedereWarning)  # make them errors
     """
+
+    def __init__(self, message: str, key: str = "", numbers: dict[str, float] | None = None) -> None:
+        super().__init__(message)
+        self.key = key
+        self.numbers = {} if numbers is None else numbers
 
 
 def wrong(what: str, value: object, advice: str) -> BelvedereError:

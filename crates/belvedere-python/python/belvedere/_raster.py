@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import missing, wrong
+from ._remarks import Remark
 
 if TYPE_CHECKING:
     import xarray
@@ -30,6 +31,10 @@ class Raster:
         The value where there is none; NaN for float32.
     name, description : str
         What the values are.
+    unproven : Raster or None
+        Which values pulses do not prove; None where that was not tested.
+    remarks : tuple of Remark
+        What to know of the values.
 
     Examples
     --------
@@ -55,6 +60,8 @@ class Raster:
         self.nodata = nodata
         self.name = name
         self.description = description
+        self.unproven: Raster | None = None
+        self.remarks: tuple[Remark, ...] = ()
         self._crs = crs
 
     @property

@@ -25,7 +25,9 @@ from ._inputs import (
     times,
     zone_text,
 )
-from ._targets import Cells, RastersOrTable, Results, Targets, measures, wanted, warn_of_nothing
+from ._raster import Raster
+from ._remarks import warned
+from ._targets import Cells, RastersOrTable, Results, Targets, measures, wanted
 
 _DIRECTION = "give azimuth and elevation in degrees, such as (180, 30)"
 
@@ -90,7 +92,8 @@ class Sunlight:
         -------
         Raster, or ndarray of shape (N,), float32; a list of these for several suns
             For a mesh a Table of its faces: ``object``, ``area_m2``, ``lit``. NaN for what is not tested: cells under
-            a cover or without ground, and targets outside the cloud.
+            a cover or without ground, and targets outside the cloud. The attribute `unproven` of a Raster of one sun
+            with hard edges is a Raster that is 1 where `lit` is 1 but no pulse proves it; `remarks` says what to know.
 
         Raises
         ------
@@ -129,12 +132,16 @@ class Sunlight:
 
     def _lit(self, results: Results, targets: Targets) -> Any:
         """The share of one sun."""
-        columns, grid, faces = results
+        columns, grid, faces, given = results
         if grid is None and faces is None:
-            warn_of_nothing(columns[0][2])
+            warned(given)
             return columns[0][2]
         found = measures(results, self._core.crs, targets)
-        return found["lit"] if faces is None else found
+        if faces is not None:
+            return found
+        lit: Raster = found["lit"]
+        lit.unproven = found.get("unproven")
+        return lit
 
     def sun_hours(
         self,

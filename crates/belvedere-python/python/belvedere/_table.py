@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._errors import missing, wrong
+from ._remarks import Remark
 
 if TYPE_CHECKING:
     import geopandas
@@ -29,6 +30,8 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
     panoramas : list of ndarray
         Of an isovist: ranges in metres for each observer that looks, infinite where nothing blocks. Columns run
         clockwise from south over west, north and east, rows from the zenith down.
+    remarks : tuple of Remark
+        What to know of the rows.
     objects : Table or None
         Of the faces of a mesh: the same for each of its objects, or for the whole mesh where it has none.
 
@@ -59,6 +62,7 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
         self.crs = crs
         self.panoramas = [] if panoramas is None else panoramas
         self.objects = objects
+        self.remarks: tuple[Remark, ...] = ()
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
         return self._columns[name]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from typing import Any, TypedDict, Union
 
@@ -11,10 +10,11 @@ import numpy.typing as npt
 
 from . import _core
 from ._cloud import Cloud
-from ._errors import BelvedereWarning, wrong
+from ._errors import wrong
 from ._inputs import Places, check_finite, places
 from ._mesh import Mesh
 from ._raster import Raster, Rasters
+from ._remarks import warned
 from ._table import Table
 
 #: Cells of a grid (None), places of shape (N, 3), the points of a cloud, or the faces of a mesh.
@@ -71,26 +71,31 @@ def raster(values: npt.NDArray[Any], grid: Grid, crs: _core.Crs, **named: Any) -
     return Raster(values.reshape(height, width), (a, b, c, d, e, f), crs, **named)
 
 
-#: Columns of measures, and the grid where targets are cells; for a mesh only the rows of its faces.
-Results = tuple[list[tuple[str, str, npt.NDArray[Any]]], Union[Grid, None], Union[dict[str, Any], None]]
+#: Columns of measures, and the grid where targets are cells; for a mesh only the rows of its faces; then remarks.
+Results = tuple[
+    list[tuple[str, str, npt.NDArray[Any]]], Union[Grid, None], Union[dict[str, Any], None], list[dict[str, Any]]
+]
 
 
 def measures(results: Results, crs: _core.Crs, targets: Targets) -> RastersOrTable:
     """Measures as rasters where targets are cells, and as a table elsewhere."""
-    columns, grid, faces = results
+    columns, grid, faces, given = results
+    remarks = warned(given)
     if faces is not None:
         table = face_table(faces)
-        first = next(name for name in table if name not in ("object", "area_m2"))
-        warn_of_nothing(table[first][table["area_m2"] > 0])
+        table.remarks = remarks
         return table
     if grid is not None:
         nan = float("nan")
         made = {
             name: raster(values, grid, crs, name=name, description=text, nodata=nan) for name, text, values in columns
         }
+        for one in made.values():
+            one.remarks = remarks
         return Rasters(made)
-    warn_of_nothing(columns[0][2])
-    return Table({name: values for name, _, values in columns}, places=coordinates(targets), crs=crs.text)
+    table = Table({name: values for name, _, values in columns}, places=coordinates(targets), crs=crs.text)
+    table.remarks = remarks
+    return table
 
 
 def face_table(faces: dict[str, Any]) -> Table:
@@ -100,14 +105,6 @@ def face_table(faces: dict[str, Any]) -> Table:
     columns = {"object": names, **faces["columns"]}
     objects = Table({name: values[:count] for name, values in columns.items()})
     return Table({name: values[count:] for name, values in columns.items()}, objects=objects)
-
-
-def warn_of_nothing(values: npt.NDArray[Any]) -> None:
-    """Warns of targets that have no value because they lie outside the cloud."""
-    count = int(np.isnan(values).sum())
-    if count:
-        text = f"{count} of {len(values)} targets are outside the cloud, where nothing is known, and have no value"
-        warnings.warn(text, BelvedereWarning, stacklevel=4)
 
 
 def coordinates(targets: Targets) -> npt.NDArray[np.float64] | None:

@@ -30,7 +30,7 @@ export const ANSWERS = () => {
     3: ["no answer", "#30343a"], 4: ["outside the cloud", "#30343a"], 255: ["no answer", "#30343a"],
   };
 };
-export const LIGHT = { 0: ["in shadow", "#33406f"], 1: ["lit", "#ffd36b"], 255: ["no answer", "#777777"] };
+export const LIGHT = { 0: ["in shadow", "#33406f"], 1: ["lit", "#ffd36b"], 2: ["lit, unproven", "#6ea5ff"], 255: ["no answer", "#777777"] };
 
 const named = (names, others) => {
   const table = Array.from({ length: 256 }, () => rgb(others));
@@ -65,7 +65,7 @@ export const ofAnswers = (counts, title = "From the clicked place") => {
   const codes = [1, ...(counts.tells_unproven ? [2] : []), 0];
   return { mode: 4, table: named(names, "#30343a"), legend: { title, keys: keys(names, codes) } };
 };
-export const ofLight = () => ({ mode: 4, table: named(LIGHT, "#777777"), legend: { title: "Sun", keys: keys(LIGHT, [1, 0]) } });
+export const ofLight = (answer) => ({ mode: 4, table: named(LIGHT, "#777777"), legend: { title: "Sun", keys: keys(LIGHT, [1, ...(answer?.tells_unproven ? [2] : []), 0]) } });
 export const ofHours = (low, high) => ({
   mode: 4, table: ramp(SUN), legend: { title: "Hours of sun on the day", gradient: gradient(SUN), ends: [low, high].map((v) => `${v.toFixed(1)} h`) },
 });

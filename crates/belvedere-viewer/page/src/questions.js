@@ -171,6 +171,8 @@ export async function ask(quick = false) {
 page.ask = ask;
 // A command of which no word is broken where it fits into a line.
 const words = (command) => command.split(" ").map((word) => `<span>${escape(word)}</span>`).join(" ");
+// What must be known beside an answer, in the words of all faces.
+const remarks = ({ remarks: all = [] }) => all.map(({ key, severity, text }) => `<p class="remark ${severity}" data-key="${escape(key)}">${severity === "warning" ? "⚠ " : ""}${escape(text[0].toUpperCase() + text.slice(1))}.</p>`).join("");
 function showAnswer(tool, answer, places) {
   const shown = answer.before ? changed(tool, answer, page) : tool.show(answer, page);
   const html = shown.html ?? shown;
@@ -181,7 +183,7 @@ function showAnswer(tool, answer, places) {
     ...(tool.properties && !answer.before ? ['<button data-save="geojson">Map (.geojson)</button>'] : []),
     '<button data-save="png">Picture (.png)</button>',
   ].join("");
-  card(`${html}${where}<h3>The same on the command line</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">Copy command</button>${buttons}</div>`
+  card(`${html}${remarks(answer)}${where}<h3>The same on the command line</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">Copy command</button>${buttons}</div>`
     + `<p class="note" id="took">${api.exported ? "Stored in this file." : `Answered in ${Math.round(answer.took)} ms.`}</p>`, (box) => {
     shown.after?.(box);
     box.querySelectorAll("[data-save]").forEach((button) => { button.onclick = () => saveAs(button, tool, answer, places); });

@@ -85,12 +85,12 @@ export const TOOLS = [
     ask: (_, { date, clock, zone }) => ["shadow", { time: `${date}T${clock}`, zone }],
     change: { title: "What the plan changes", names: ["in shadow before and after", "lit before and after", "lit only after", "lit only before"], gain: "gain the sun", loss: "lose the sun" },
     show(answer, page) {
-      page.answer = colors.ofLight();
+      page.answer = colors.ofLight(answer);
       page.values(new Uint8Array(answer.body));
       answer.lit_share = answer.lit / Math.max(answer.points, 1);
       const up = answer.elevation_deg > 0;
       return `<p class="verdict">${up ? `${about(answer)}${percent(answer.lit, answer.points)} is lit` : "The sun is below the horizon"}</p><p class="note">of the points of the cloud, ${escape(answer.time.replace("T", " "))}. ${answer.isFirst ? FIRST(answer) : ""}</p>`
-        + list([["Azimuth of the sun", `${answer.azimuth_deg.toFixed(1)}°`], ["Elevation of the sun", `${answer.elevation_deg.toFixed(1)}°`]]);
+        + list([...(answer.tells_unproven && up ? [["Lit, but unproven", percent(answer.unproven, answer.points)]] : []), ["Azimuth of the sun", `${answer.azimuth_deg.toFixed(1)}°`], ["Elevation of the sun", `${answer.elevation_deg.toFixed(1)}°`]]);
     },
     rows: (answer) => [["time", "azimuth_deg", "elevation_deg", "lit_share"], [answer.time, answer.azimuth_deg, answer.elevation_deg, answer.lit_share]],
   },

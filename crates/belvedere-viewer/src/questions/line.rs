@@ -39,7 +39,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "answer": name,
         "length_m": rounded(length, 3),
         "first_block": block,
-        "unproven_m": if scene.model.pulses().is_some() { number(sight.unproven_length, 3) } else { Value::Null },
+        "unproven_m": if scene.model().pulses().is_some() { number(sight.unproven_length, 3) } else { Value::Null },
         "profile": profile(asked, [observer, target], &earth),
         "command": asked.text.command_on_ground("line-of-sight", &format!("{ends} -o line.csv --profile-out profile.png")),
     });
@@ -51,10 +51,10 @@ fn profile(asked: &Asked<'_>, pair: [[f64; 3]; 2], earth: &EarthParams) -> Value
     let scene = asked.scene;
     let made = scene.blockers(UnprovenAs::Reported, asked.control).and_then(|blockers| {
         let ground = if scene.cloud().is_err() { None } else { Some(scene.ground(asked.control)?) };
-        sight_profile(&blockers, ground.as_deref(), pair, earth, None, asked.control)
+        sight_profile(&blockers, ground.as_deref().map(|known| &known.ground), pair, earth, None, asked.control)
     });
     let Ok(profile) = made else { return Value::Null };
-    let frame = scene.model.frame();
+    let frame = scene.model().frame();
     let height = |local: f64| (local + frame.origin[2]) / frame.crs.vertical_metres_per_unit;
     let heights = |values: &[f64]| values.iter().map(|&v| number(height(v), 2)).collect::<Vec<_>>();
     let solid: Vec<Value> = profile

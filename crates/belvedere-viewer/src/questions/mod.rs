@@ -51,7 +51,7 @@ fn parsed<T: DeserializeOwned>(body: &[u8]) -> Result<T, Refusal> {
 
 /// Centres and radii of the balls, local metres: four f32 each, little endian.
 pub(crate) fn balls(scene: &Scene) -> Vec<u8> {
-    let balls = scene.model.balls();
+    let balls = scene.model().balls();
     let rows = balls.centers.iter().zip(&balls.radii);
     rows.flat_map(|(&[x, y, z], &r)| [x, y, z, r]).flat_map(f32::to_le_bytes).collect()
 }

@@ -10,12 +10,12 @@ pub(super) fn local(asked: &Asked<'_>, place: [f64; 3]) -> Result<[f64; 3], Refu
     if !place.iter().all(|v| v.is_finite()) {
         return Err(Refusal("the place has a coordinate that is not a number".to_owned()));
     }
-    Ok(asked.scene.model.frame().local_from_file(place))
+    Ok(asked.scene.model().frame().local_from_file(place))
 }
 
 /// A local place in the coordinates of the file, to the millimetre.
 pub(super) fn shown(asked: &Asked<'_>, local: [f64; 3]) -> [f64; 3] {
-    asked.scene.model.frame().file_from_local(local).map(|v| rounded(v, 3))
+    asked.scene.model().frame().file_from_local(local).map(|v| rounded(v, 3))
 }
 
 pub(super) fn rounded(value: f64, decimals: i32) -> f64 {

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 pub(super) fn answer(plan: Plan, asked: &Asked<'_>) -> Result<Answer, Refusal> {
     let planned = asked.plans.make(plan, asked.scene, asked.text, asked.control)?;
     let files: Vec<Value> = planned.files.iter().map(|(name, text)| json!({ "name": name, "content": text })).collect();
-    let origin = asked.scene.model.frame().origin;
+    let origin = asked.scene.model().frame().origin;
     let corners = planned
         .added
         .iter()

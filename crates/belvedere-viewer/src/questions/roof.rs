@@ -38,7 +38,7 @@ pub(crate) struct Roofs {
 impl Roofs {
     pub(crate) fn of(scene: &Scene, control: &Control<'_>) -> Result<Self> {
         let cloud = scene.cloud()?;
-        let (low, high) = scene.model.bounds().on_map();
+        let (low, high) = scene.model().bounds().on_map();
         let grid = MapGrid::covering(low, high, GROUND_CELL, [cloud.frame.origin[0], cloud.frame.origin[1]])?;
         let (ground, _) = Ground::of_cloud(cloud, grid, &GroundParams::default(), control)?;
         let (rows, _) = roof_points(cloud, &ground)?;

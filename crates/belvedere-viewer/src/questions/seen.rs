@@ -24,7 +24,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
     let points = scene.points(question.points, control)?;
     let blockers = scene.blockers(UnprovenAs::Reported, control)?;
     let ground = scene.ground(control)?;
-    scene.check_eye(&blockers, Some(&ground), eye, Inside::Refused)?;
+    scene.check_eye(&blockers, Some(&ground.ground), eye, Inside::Refused)?;
     let observer = Observer { eye, limits: SightLimits::default() };
     let params = ViewshedParams::default();
     let seen = viewshed_among(&blockers, &[observer], &points.targets.positions, &points.tree, &params, control)?;

@@ -4,12 +4,11 @@ use super::Asked;
 use super::places::rounded;
 use crate::replies::{Answer, Refusal};
 use crate::scene::Points;
-use belvedere::apps::shadow::{Edges, ShadowSun, scene_shadow};
-use belvedere::apps::sun::{Refraction, Zone, parse_instant, sun_position_with};
-use belvedere::apps::tree_light::Season;
-use belvedere::query::UnprovenAs;
+use belvedere::apps::ask::{self, Places, SunPlace, SunPosition, Suns, ThroughTrees, UNPROVEN};
+use belvedere::apps::shadow::Edges;
 use serde::Deserialize;
 use serde_json::json;
+use std::sync::Arc;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -20,38 +19,50 @@ pub(super) struct Question {
     zone: String,
     #[serde(default)]
     points: Points,
+    /// What gets through trees.
+    #[serde(default)]
+    trees: ThroughTrees,
 }
 
-/// Value of a point in shadow, and of one that is lit, and of one without an answer.
-const CODES: [u8; 3] = [0, 1, 255];
+/// Value of a point in shadow, of one that is lit, of one that is lit as far as the points show but unproven, and of one without an answer.
+const CODES: [u8; 4] = [0, 1, 2, 255];
 
 pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {
     let (scene, control) = (asked.scene, asked.control);
     let points = scene.points(question.points, control)?;
-    let site = scene.site()?;
-    let zone = Zone::parse(&question.zone)?;
-    let instant = parse_instant(&question.time, Some(&zone))?;
-    let position = sun_position_with(&site, instant, Refraction::default())?;
-    let sun = ShadowSun {
-        to_sun: position.to_sun(&site),
-        season: zone.date_at(instant).ok().map(|date| Season::on(date, &site)),
-    };
-    let blockers = scene.blockers(UnprovenAs::Visible, control)?;
-    let lit = scene_shadow(&*blockers, &points.targets, &[sun], Edges::Hard, control)?.pop().unwrap_or_default();
+    let place = SunPlace { zone: Some(question.zone.clone()), ..SunPlace::default() };
+    let times = vec![question.time.clone()];
+    let of_sun = SunPosition { times: times.clone(), place: place.clone() };
+    let of_sun = ask::ask(&scene.asked, &of_sun, &Places::Scene, control)?.found;
+    let shadow =
+        ask::Shadow { suns: Suns::Times(times), place, edges: Edges::Hard, trees: question.trees, unproven: None };
+    let answers = ask::ask(&scene.asked, &shadow, &Places::Targets(Arc::clone(&points.targets)), control)?;
+    let measure = |name: &str| answers.measures.iter().find(|measure| measure.name == name).map(|m| &m.values[..]);
+    let (lit, unproven) = (measure("lit").unwrap_or_default(), measure(UNPROVEN));
     let lit_count = lit.iter().filter(|&&share| share > 0.0).count();
+    let unproven_count = unproven.map(|unproven| unproven.iter().filter(|&&is| is > 0.0).count());
+    let (Some(sun), Some(stands)) = (answers.found.suns.first(), of_sun.first()) else {
+        return Err(Refusal("There is no sun at this time.".to_owned()));
+    };
     let head = json!({
         "points": points.targets.len(),
         "lit": lit_count,
-        "azimuth_deg": rounded(position.azimuth.to_degrees(), 4),
-        "elevation_deg": rounded(position.elevation.to_degrees(), 4),
-        "to_sun": position.to_sun(&site),
-        "time": zone.display(instant),
-        "command": asked.text.shadow(&question.time, zone.name()),
+        "unproven": unproven_count,
+        "tells_unproven": unproven.is_some(),
+        "azimuth_deg": rounded(stands.azimuth_deg, 4),
+        "elevation_deg": rounded(stands.elevation_deg, 4),
+        "to_sun": sun.sun.to_sun,
+        "time": stands.time,
+        "remarks": answers.remarks,
+        "command": asked.text.shadow(&question.time, &question.zone, question.trees),
     });
     let code = |row: usize| match lit.get(row) {
-        Some(share) if *share > 0.0 => CODES[1],
+        Some(share) if *share > 0.0 => {
+            let is_unproven = unproven.and_then(|unproven| unproven.get(row)).is_some_and(|&is| is > 0.0);
+            CODES[if is_unproven { 2 } else { 1 }]
+        }
         Some(0.0) => CODES[0],
-        _ => CODES[2],
+        _ => CODES[3],
     };
     Ok(Answer { head, body: points.in_order(code) })
 }

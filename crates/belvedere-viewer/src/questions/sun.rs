@@ -4,15 +4,14 @@ use super::Asked;
 use super::places::{command_at, local, number, rounded};
 use crate::replies::{Answer, Refusal};
 use belvedere::PointCloud;
+use belvedere::apps::ask::{self, Answers, Days, OnTargets, Places, SunHours, SunPlace};
 use belvedere::apps::horizon::{HorizonParams, horizons};
-use belvedere::apps::sun::{
-    Binning, Date, DayParams, Period, Refraction, Site, SunSchedule, Zone, sun_days, sun_position_with,
-};
-use belvedere::apps::sun_hours::{SunPlan, scene_sun_hours};
+use belvedere::apps::sun::{Date, DayParams, Period, Refraction, Site, SunDay, Zone, sun_days, sun_position_with};
 use belvedere::apps::targets::Targets;
 use belvedere::query::{Answer as Sight, MedialScene, UnprovenAs, Viewer};
 use serde::Deserialize;
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -36,24 +35,30 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
     if blockers.is_outside_cloud(place) {
         return Err(Refusal("This place is outside the cloud, where nothing is known.".to_owned()));
     }
-    let targets = at(asked, place);
-    let day = sun_days(&site, &zone, &Period::Days(vec![date]), &DayParams::default())?;
-    let plan = SunPlan::new(SunSchedule::new(&day, Binning::Auto)?, Vec::new());
-    let sums = scene_sun_hours(&*blockers, &targets, &plan, Some(&site), control)?;
-    let possible = plan.period().possible_hours();
-    let first = |values: &[f32]| values.first().map_or(Value::Null, |&v| number(f64::from(v), 3));
-    let of_day = &sums.period;
+    let targets = Arc::new(at(asked, place));
+    let hours_on = |date: Date| {
+        let days = Days { dates: vec![date.to_string()], ..Days::default() };
+        let place = SunPlace { zone: Some(question.zone.clone()), ..SunPlace::default() };
+        let question = SunHours { days, place, ..SunHours::default() };
+        ask::ask(&scene.asked, &question, &Places::Targets(Arc::clone(&targets)), control)
+    };
+    let of_day = hours_on(date)?;
+    let first = |answers: &Answers<OnTargets>, name: &str| {
+        let measure = answers.measures.iter().find(|measure| measure.name == name);
+        measure.and_then(|measure| measure.values.first()).map_or(Value::Null, |&v| number(f64::from(v), 3))
+    };
+    let steps_on = |date: Date| sun_days(&site, &zone, &Period::Days(vec![date]), &DayParams::default());
+    let possible = |days: &[SunDay]| days.iter().map(SunDay::possible_hours).sum::<f64>();
+    let day = steps_on(date)?;
     let months: Result<Vec<Value>, Refusal> = (1..=12)
         .map(|month| {
-            let dates = vec![Date::new(date.year(), month, DAY_OF_MONTH)?];
-            let days = sun_days(&site, &zone, &Period::Days(dates), &DayParams::default())?;
-            let plan = SunPlan::new(SunSchedule::new(&days, Binning::Auto)?, Vec::new());
-            let sums = scene_sun_hours(&*blockers, &targets, &plan, Some(&site), control)?;
+            let date = Date::new(date.year(), month, DAY_OF_MONTH)?;
+            let days = steps_on(date)?;
             Ok(json!({
                 "month": month,
-                "sun_hours": first(&sums.period.hours),
-                "possible_hours": rounded(plan.period().possible_hours(), 3),
-                "path": days.iter().flat_map(|day| path(&site, &zone, day)).collect::<Vec<_>>(),
+                "sun_hours": first(&hours_on(date)?, "sun_hours"),
+                "possible_hours": rounded(possible(&days), 3),
+                "path": days.iter().flat_map(|day| path(&site, day)).collect::<Vec<_>>(),
             }))
         })
         .collect();
@@ -61,15 +66,16 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         horizons(&blockers, &[place], &HorizonParams::default().with_turn(scene.grid_north(Some(place))), control)?;
     let horizon: Vec<Value> = skyline.iter().flatten().map(|point| number(point.elevation.to_degrees(), 3)).collect();
     let lit = lit(&blockers, &targets, &day);
-    let path: Vec<Value> = day.iter().flat_map(|day| path(&site, &zone, day)).collect();
+    let path: Vec<Value> = day.iter().flat_map(|day| path(&site, day)).collect();
     let flags = format!("--date {} --zone {} -o sun.csv", question.date, zone.name());
     let head = json!({
-        "sun_hours": first(&of_day.hours),
-        "sun_share": first(&of_day.share),
-        "first_light": first(&of_day.first),
-        "last_light": first(&of_day.last),
-        "longest": first(&of_day.longest),
-        "possible_hours": rounded(possible, 3),
+        "sun_hours": first(&of_day, "sun_hours"),
+        "sun_share": first(&of_day, "sun_share"),
+        "first_light": first(&of_day, "first_light"),
+        "last_light": first(&of_day, "last_light"),
+        "longest": first(&of_day, "longest"),
+        "possible_hours": rounded(possible(&day), 3),
+        "remarks": of_day.remarks,
         "horizon_deg": horizon,
         "path": path,
         "lit": lit,
@@ -84,14 +90,13 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
 
 /// The place as the only target.
 pub(super) fn at(asked: &Asked<'_>, place: [f64; 3]) -> Targets {
-    let mut cloud = PointCloud::in_frame(asked.scene.model.frame().clone());
+    let mut cloud = PointCloud::in_frame(asked.scene.model().frame().clone());
     cloud.positions = vec![belvedere::cloud::to_local(place, [0.0; 3])];
     Targets::of_points(&cloud, None)
 }
 
 /// Time of day, azimuth and elevation of the sun halfway through each step of a day.
-fn path(site: &Site, zone: &Zone, day: &belvedere::apps::sun::SunDay) -> Vec<Value> {
-    let _ = zone;
+fn path(site: &Site, day: &SunDay) -> Vec<Value> {
     day.steps
         .iter()
         .filter_map(|step| {
@@ -107,7 +112,7 @@ fn path(site: &Site, zone: &Zone, day: &belvedere::apps::sun::SunDay) -> Vec<Val
 }
 
 /// Whether the sun of each step reaches the place.
-fn lit(blockers: &MedialScene, targets: &Targets, days: &[belvedere::apps::sun::SunDay]) -> Vec<bool> {
+fn lit(blockers: &MedialScene, targets: &Targets, days: &[SunDay]) -> Vec<bool> {
     let steps = days.iter().flat_map(|day| &day.steps);
     steps
         .map(|step| {

@@ -3,11 +3,7 @@
 use super::Asked;
 use super::places::{local, number, rounded};
 use crate::replies::{Answer, Refusal};
-use belvedere::apps::sun::{Binning, Date, DayParams, Period, SunSchedule, Zone, sun_days};
-use belvedere::apps::sun_hours::{SunPlan, scene_sun_hours};
-use belvedere::apps::targets::{CellParams, Targets};
-use belvedere::polygon::is_inside;
-use belvedere::query::UnprovenAs;
+use belvedere::apps::ask::{self, Cells, Days, Places, SunHours, SunPlace};
 use serde::Deserialize;
 use serde_json::json;
 
@@ -21,7 +17,7 @@ pub(super) struct Question {
 }
 
 pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {
-    let (scene, control) = (asked.scene, asked.control);
+    let scene = asked.scene;
     if question.corners.len() < 3 {
         return Err(Refusal("An area needs at least three corners.".to_owned()));
     }
@@ -30,55 +26,36 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         .iter()
         .map(|&[x, y]| local(asked, [x, y, 0.0]).map(|[x, y, _]| [x, y]))
         .collect::<Result<Vec<[f64; 2]>, _>>()?;
-    let outline = [corners];
-    let cloud = scene.cloud()?;
-    let site = scene.site()?;
-    let zone = Zone::parse(&question.zone)?;
-    let date = Date::parse(&question.date)?;
-    let ground = scene.ground(control)?;
-    let grid = ground.grid;
-    let cells = CellParams::default();
-    let (mut targets, _) = Targets::of_cells(cloud, (*ground).clone(), &cells, control)?;
-    if let Some(added) = scene.model.added() {
-        targets.set_on_added(added, &cells);
-    }
-    for (cell, position) in targets.positions.iter_mut().enumerate() {
-        if !is_inside(&outline, grid.center(cell % grid.width.max(1), cell / grid.width.max(1))) {
-            *position = [f32::NAN; 3];
-        }
-    }
-    let rows: Vec<usize> = (0..targets.len()).filter(|&row| targets.is_asked(row)).collect();
-    if rows.is_empty() {
+    let cells = Cells { within: vec![corners], ..Cells::default() };
+    let days = Days { dates: vec![question.date.clone()], ..Days::default() };
+    let place = SunPlace { zone: Some(question.zone.clone()), ..SunPlace::default() };
+    let hours = SunHours { days, place, ..SunHours::default() };
+    let answers = ask::ask(&scene.asked, &hours, &Places::Cells(cells), asked.control)?;
+    let targets = &answers.found.targets;
+    let known: Vec<usize> = (0..targets.len()).filter(|&row| targets.is_asked(row)).collect();
+    let (Some(measure), false) = (answers.measures.first(), known.is_empty()) else {
         return Err(Refusal(
             "There is no ground in this area: draw it on the ground, and larger than a cell.".to_owned(),
         ));
-    }
-    let days = sun_days(&site, &zone, &Period::Days(vec![date]), &DayParams::default())?;
-    let plan = SunPlan::new(SunSchedule::new(&days, Binning::Auto)?, Vec::new());
-    let blockers = scene.blockers(UnprovenAs::Visible, control)?;
-    let few = of_rows(asked, &targets, &rows);
-    let hours = scene_sun_hours(&*blockers, &few, &plan, Some(&site), control)?.period.hours;
+    };
+    let hours: Vec<f32> = known.iter().map(|&row| measure.values[row]).collect();
+    let cell = targets.ground().map_or(0.0, |ground| ground.grid.cell);
+    let possible = measure.range.map_or(0.0, |[_, most]| most);
     let mean = hours.iter().map(|&v| f64::from(v)).sum::<f64>() / hours.len().max(1) as f64;
     let least = hours.iter().copied().fold(f32::INFINITY, f32::min);
     let most = hours.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let head = json!({
-        "cells": rows.len(),
-        "cell_m": grid.cell,
-        "area_m2": rounded(rows.len() as f64 * grid.cell * grid.cell, 1),
+        "cells": known.len(),
+        "cell_m": cell,
+        "area_m2": rounded(known.len() as f64 * cell * cell, 1),
         "mean_hours": rounded(mean, 3),
         "min_hours": number(f64::from(least), 3),
         "max_hours": number(f64::from(most), 3),
-        "possible_hours": rounded(plan.period().possible_hours(), 3),
-        "command": asked.text.command_on_ground("sun-hours", &format!("--date {} --zone {} -o sun.tif", question.date, zone.name())),
+        "possible_hours": rounded(possible, 3),
+        "remarks": answers.remarks,
+        "command": asked.text.command_on_ground("sun-hours", &format!("--date {} --zone {} -o sun.tif", question.date, question.zone)),
     });
-    let body =
-        few.positions.iter().zip(&hours).flat_map(|(&[x, y, z], &hours)| [x, y, z, hours]).flat_map(f32::to_le_bytes);
+    let places = known.iter().map(|&row| targets.positions[row]);
+    let body = places.zip(&hours).flat_map(|([x, y, z], &hours)| [x, y, z, hours]).flat_map(f32::to_le_bytes);
     Ok(Answer { head, body: body.collect() })
-}
-
-/// Some of the targets as points.
-fn of_rows(asked: &Asked<'_>, targets: &Targets, rows: &[usize]) -> Targets {
-    let mut cloud = belvedere::PointCloud::in_frame(asked.scene.model.frame().clone());
-    cloud.positions = rows.iter().map(|&row| targets.positions[row]).collect();
-    Targets::of_points(&cloud, None)
 }

@@ -21,12 +21,13 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
     let (scene, control) = (asked.scene, asked.control);
     let place = local(asked, question.place)?;
     let cloud = scene.cloud()?;
-    let ground = scene.ground(control)?;
+    let known = scene.ground(control)?;
+    let ground = &known.ground;
     let blockers = scene.blockers(UnprovenAs::Reported, control)?;
     scene.check_eye(&blockers, None, place, Inside::Allowed)?;
     let grid = ground.grid;
     let cells = CellParams::default().with_height(tested_height(OBSERVER_HEIGHT)).with_covered(CoveredCells::Kept);
-    let (targets, _) = Targets::of_cells(cloud, (*ground).clone(), &cells, control)?;
+    let (targets, _) = Targets::of_cells(cloud, ground.clone(), &cells, control)?;
     let target = Observer { eye: place, limits: SightLimits::default() };
     let seen = viewshed(&blockers, &[target], &targets.positions, &ViewshedParams::default(), control)?;
     let counts = AnswerCounts::of(&seen.answers);
