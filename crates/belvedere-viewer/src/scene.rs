@@ -171,6 +171,7 @@ impl Scene {
             "low": bounds.low,
             "high": bounds.high,
             "tells_unproven": self.model().pulses().is_some(),
+            "has_vegetation": self.model().vegetation().contains(&true),
             "latitude_deg": site.map(|site| site.latitude.to_degrees()),
             "longitude_deg": site.map(|site| site.longitude.to_degrees()),
             "grid_north_deg": self.grid_north(None).to_degrees(),

@@ -27,7 +27,7 @@ impl SceneText {
 
     /// The shadow on the points of the cloud, which a ball file has beside it.
     pub(crate) fn shadow(&self, time: &str, zone: &str, trees: ThroughTrees) -> String {
-        let trees = if trees.is_light() { " --through-trees seasons" } else { "" };
+        let trees = in_words(trees);
         let points = self.cloud_beside.as_ref().map_or("--self".to_owned(), |cloud| format!("--targets {cloud}"));
         self.command("shadow", &format!("--time {time} --zone {zone} {points}{trees} -o shadow.laz"))
     }
@@ -35,6 +35,16 @@ impl SceneText {
     /// What an eye sees of the points of the cloud.
     pub(crate) fn seen(&self, eye: &[f64]) -> String {
         self.command_on_ground("viewshed", &format!("--observer {} -o seen.laz", typed(eye)))
+    }
+}
+
+/// Light through trees as it is typed.
+pub(crate) fn in_words(trees: ThroughTrees) -> String {
+    match trees {
+        ThroughTrees::Opaque => String::new(),
+        ThroughTrees::Seasons(_) => " --through-trees seasons".to_owned(),
+        ThroughTrees::Share(share) => format!(" --through-trees {share}"),
+        ThroughTrees::Pulses => " --through-trees pulses".to_owned(),
     }
 }
 

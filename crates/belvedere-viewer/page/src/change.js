@@ -9,7 +9,9 @@ const CLEARED = 254;
 // Points by what becomes of them: 0 not before and not after, 1 both, 2 gained, 3 lost.
 function ofPoints({ title, names, gain, loss }, answer, page) {
   const [before, after] = [answer.before, answer].map(({ body }) => new Uint8Array(body));
-  const codes = after.map((now, i) => (now === CLEARED ? now : now === 1 ? (before[i] === 1 ? 1 : 2) : before[i] === 1 ? 3 : 0));
+  // light that pulses do not prove is light; a view that they do not prove is none
+  const is = (code) => code === 1 || (code === 2 && answer.lit !== undefined);
+  const codes = after.map((now, i) => (now === CLEARED ? now : is(now) ? (is(before[i]) ? 1 : 2) : is(before[i]) ? 3 : 0));
   const counts = [0, 0, 0, 0];
   for (const code of codes) if (code !== CLEARED) counts[code] += 1;
   page.answer = colors.ofChange(title, names);

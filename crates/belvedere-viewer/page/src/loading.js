@@ -1,5 +1,6 @@
 // From the server to the scene: points, meshes and balls, and how far it is prepared.
 import * as api from "./api.js";
+import { recall } from "./address.js";
 import { report } from "./messages.js";
 import { loadColors, setColor } from "./paint.js";
 import { restore } from "./plan.js";
@@ -65,7 +66,8 @@ export async function watch() {
       page.ready = true;
       startTime();
       if (!state.shown.point_count) toggleBalls();
-      if (!api.exported) restore().catch(report);
+      $("trees").hidden = !state.scene.has_vegetation;
+      if (!api.exported) restore().catch(report).then(() => recall());
       if (page.pending) page.ask();
       offer(state.results).catch(report);
     }

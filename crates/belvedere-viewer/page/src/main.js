@@ -9,6 +9,7 @@ import { ask, choose, click, snapshot } from "./questions.js";
 import { save } from "./save.js";
 import { $, canvas, page, root, TOOLS } from "./state.js";
 import { ofViewpoints } from "./viewpoints.js";
+import { remember } from "./address.js";
 import { again, isPlaying, setPlaying, showClock, step } from "./time.js";
 import { cloud, draw, mover, open, placeAt, resize, showAll, shownPlace, toFile, whenDrawn } from "./view.js";
 
@@ -74,6 +75,7 @@ function listen() {
   $("play").onclick = () => setPlaying(!isPlaying());
   $("date").onchange = () => { page.time.date = $("date").value; again(); };
   $("hour").oninput = () => { page.time.minutes = Number($("hour").value); showClock(); again(); };
+  $("trees").querySelector("select").onchange = (event) => { page.time.trees = event.target.value; again(); };
   $("zone").onchange = () => { page.time.zone = $("zone").value.trim(); again(); };
   addEventListener("resize", resize);
   // panels stand below the bar and above the time, however many lines these take
@@ -141,5 +143,6 @@ function start() {
   resize();
   choose(TOOLS[0]);
   watch();
+  if (!api.exported) remember();
 }
 start();

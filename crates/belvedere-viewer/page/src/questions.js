@@ -140,7 +140,7 @@ export async function ask(quick = false) {
     return { ...after, before: await api.ask(question, values, mine.signal) };
   };
   try {
-    const [question, values] = tool.ask(places, { date, zone, clock });
+    const [question, values] = tool.ask(places, { date, zone, clock, trees: page.time.trees === "seasons" ? { seasons: "by_date" } : "opaque" });
     // of many points a sample is answered first
     if (tool.samples && page.scene.samples_first && !api.exported) {
       const answer = await answered(question, { ...values, points: "sample" });

@@ -8,5 +8,5 @@ export const canvas = $("view");
 // a page without a server answers what is stored in it
 const isStored = ({ name }) => name === "look" || (name === "shadow" && api.exported.suns.length) || (name === "seen" && api.exported.viewpoints.length);
 export const TOOLS = api.exported ? ALL.filter(isStored) : ALL;
-export const page = { scene: null, tool: TOOLS[0], places: [], marks: [], answer: null, time: { date: "", zone: "UTC", minutes: 780 }, last: null };
+export const page = { scene: null, tool: TOOLS[0], places: [], marks: [], answer: null, time: { date: "", zone: "UTC", minutes: 780, trees: "opaque" }, last: null };
 window.belvedere = page;

@@ -70,7 +70,7 @@ export const TOOLS = [
   {
     name: "sun", short: "Sun", title: "Sun here", icon: icon(SUN), height: ["Height above the clicked point", 0.1], places: 1, time: "date",
     hint: "Click a place to see when the sun reaches it.",
-    ask: ([place], { date, zone }) => ["sun", { place, date, zone }],
+    ask: ([place], { date, zone, trees }) => ["sun", { place, date, zone, trees }],
     show: (answer, page) => `<p class="verdict">${answer.sun_hours.toFixed(1)} hours of sun</p><p class="note">on ${escape(page.time.date)}, of ${answer.possible_hours.toFixed(1)} hours between sunrise and sunset.</p>`
       + `<figure>${charts.sunPaths(answer, page.time.date)}<figcaption><i class="swatch" style="background:#f5a300"></i>lit <i class="swatch" style="background:#2f3d73;margin-left:10px"></i>in shadow <i class="swatch" style="background:#5f6b78;margin-left:10px"></i>horizon; dashed: 21 June, March, December</figcaption></figure>`
       + list([["First light", hours(answer.first_light)], ["Last light", hours(answer.last_light)], ["Longest stretch", `${answer.longest.toFixed(1)} h`], ["Share of possible sun", percent(answer.sun_share ?? 0, 1)]])
@@ -82,7 +82,7 @@ export const TOOLS = [
     name: "shadow", short: "Shadow", title: "Shadow at a time", icon: icon('<circle cx="17" cy="6" r="3"/><path d="M4 20h16M9 20V10h5v10M9 20l-5-3"/>'), places: 0, time: "hour",
     hint: "Move the time, or play the day.",
     samples: true,
-    ask: (_, { date, clock, zone }) => ["shadow", { time: `${date}T${clock}`, zone }],
+    ask: (_, { date, clock, zone, trees }) => ["shadow", { time: `${date}T${clock}`, zone, trees }],
     change: { title: "What the plan changes", names: ["in shadow before and after", "lit before and after", "lit only after", "lit only before"], gain: "gain the sun", loss: "lose the sun" },
     show(answer, page) {
       page.answer = colors.ofLight(answer);
@@ -136,7 +136,7 @@ export const TOOLS = [
   {
     name: "sun_area", short: "Sun hours", title: "Sun hours of an area", change: true, icon: icon('<path d="M4 8 13 4l7 8-5 8-9-3z"/><circle cx="12.500" cy="11.500" r="2"/>'), places: Infinity, time: "date",
     hint: "Click the corners of the area.",
-    ask: (places, { date, zone }) => ["sun_area", { corners: places.map(([x, y]) => [x, y]), date, zone }],
+    ask: (places, { date, zone, trees }) => ["sun_area", { corners: places.map(([x, y]) => [x, y]), date, zone, trees }],
     show(answer, page) {
       page.hourCells(answer);
       return `<p class="verdict">${answer.mean_hours.toFixed(1)} hours of sun</p><p class="note">on average on ${escape(page.time.date)}, of ${answer.possible_hours.toFixed(1)} possible hours.</p>`

@@ -3,8 +3,9 @@
 use super::Asked;
 use super::places::{command_at, local, number, rounded};
 use crate::replies::{Answer, Refusal};
+use crate::scene_text::in_words;
 use belvedere::PointCloud;
-use belvedere::apps::ask::{self, Answers, Days, OnTargets, Places, SunHours, SunPlace};
+use belvedere::apps::ask::{self, Answers, Days, OnTargets, Places, SunHours, SunPlace, ThroughTrees};
 use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::apps::sun::{Date, DayParams, Period, Refraction, Site, SunDay, Zone, sun_days, sun_position_with};
 use belvedere::apps::targets::Targets;
@@ -20,6 +21,9 @@ pub(super) struct Question {
     /// Such as 2026-06-21.
     date: String,
     zone: String,
+    /// What gets through trees.
+    #[serde(default)]
+    trees: ThroughTrees,
 }
 
 /// Day of the months whose suns are shown: near both solstices.
@@ -39,7 +43,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
     let hours_on = |date: Date| {
         let days = Days { dates: vec![date.to_string()], ..Days::default() };
         let place = SunPlace { zone: Some(question.zone.clone()), ..SunPlace::default() };
-        let question = SunHours { days, place, ..SunHours::default() };
+        let question = SunHours { days, place, trees: question.trees, ..SunHours::default() };
         ask::ask(&scene.asked, &question, &Places::Targets(Arc::clone(&targets)), control)
     };
     let of_day = hours_on(date)?;
@@ -67,7 +71,8 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
     let horizon: Vec<Value> = skyline.iter().flatten().map(|point| number(point.elevation.to_degrees(), 3)).collect();
     let lit = lit(&blockers, &targets, &day);
     let path: Vec<Value> = day.iter().flat_map(|day| path(&site, day)).collect();
-    let flags = format!("--date {} --zone {} -o sun.csv", question.date, zone.name());
+    let trees = in_words(question.trees);
+    let flags = format!("--date {} --zone {}{trees} -o sun.csv", question.date, zone.name());
     let head = json!({
         "sun_hours": first(&of_day, "sun_hours"),
         "sun_share": first(&of_day, "sun_share"),

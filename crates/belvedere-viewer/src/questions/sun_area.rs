@@ -3,7 +3,8 @@
 use super::Asked;
 use super::places::{local, number, rounded};
 use crate::replies::{Answer, Refusal};
-use belvedere::apps::ask::{self, Cells, Days, Places, SunHours, SunPlace};
+use crate::scene_text::in_words;
+use belvedere::apps::ask::{self, Cells, Days, Places, SunHours, SunPlace, ThroughTrees};
 use serde::Deserialize;
 use serde_json::json;
 
@@ -14,6 +15,9 @@ pub(super) struct Question {
     corners: Vec<[f64; 2]>,
     date: String,
     zone: String,
+    /// What gets through trees.
+    #[serde(default)]
+    trees: ThroughTrees,
 }
 
 pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {
@@ -29,7 +33,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
     let cells = Cells { within: vec![corners], ..Cells::default() };
     let days = Days { dates: vec![question.date.clone()], ..Days::default() };
     let place = SunPlace { zone: Some(question.zone.clone()), ..SunPlace::default() };
-    let hours = SunHours { days, place, ..SunHours::default() };
+    let hours = SunHours { days, place, trees: question.trees, ..SunHours::default() };
     let answers = ask::ask(&scene.asked, &hours, &Places::Cells(cells), asked.control)?;
     let targets = &answers.found.targets;
     let known: Vec<usize> = (0..targets.len()).filter(|&row| targets.is_asked(row)).collect();
@@ -53,7 +57,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "max_hours": number(f64::from(most), 3),
         "possible_hours": rounded(possible, 3),
         "remarks": answers.remarks,
-        "command": asked.text.command_on_ground("sun-hours", &format!("--date {} --zone {} -o sun.tif", question.date, question.zone)),
+        "command": asked.text.command_on_ground("sun-hours", &format!("--date {} --zone {}{} -o sun.tif", question.date, question.zone, in_words(question.trees))),
     });
     let places = known.iter().map(|&row| targets.positions[row]);
     let body = places.zip(&hours).flat_map(|([x, y, z], &hours)| [x, y, z, hours]).flat_map(f32::to_le_bytes);
