@@ -1,0 +1,272 @@
+"""One question, four faces: the program, Python, the page and a city give equal values, equal remarks and an equal third state.
+
+Each row of the table is a question. Where a face cannot be asked, the row says why.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import time
+import urllib.request
+import warnings
+from dataclasses import dataclass
+from typing import Any, Callable
+
+import belvedere
+import numpy as np
+import pytest
+
+rasterio = pytest.importorskip("rasterio")
+laspy = pytest.importorskip("laspy")
+
+ZONE = "Europe/Amsterdam"
+DAY = "2026-03-21"
+NOON = "2026-06-21T13:00+02:00"
+NO_PAGE = "the page has no question about all cells of a grid"
+NO_CITY_GROUND = "a city answers for cells on top of what stands there"
+NO_CITY_POINTS = "a city answers for cells"
+NO_CITY_SOFT = "a city takes the sun as a point"
+NO_CITY_SUNS = "a city gives a raster for each sun"
+
+
+@dataclass
+class Row:
+    """A question in the words of each face; a text in place of words says why a face cannot be asked."""
+
+    name: str
+    program: list[Any]
+    python: Callable[[belvedere.Scene], Any]
+    city: list[Any] | str
+    page: tuple[str, dict[str, Any]] | str = NO_PAGE
+    #: band of the program's raster for each raster of Python
+    bands: tuple[str, ...] = ()
+
+
+SHADOWS = {
+    "time": (["--time", NOON], {"time": NOON}),
+    "low sun": (["--sun", "120,12"], {"sun": (120, 12)}),
+    "high sun": (["--sun", "200,55"], {"sun": (200, 55)}),
+    "winter, light through trees": (
+        ["--time", "2026-01-21T12:00Z", "--through-trees", "seasons"],
+        {"time": "2026-01-21T12:00Z", "through_trees": "seasons"},
+    ),
+    "half of the light through trees": (["--sun", "200,40", "--through-trees", 0.5], {"sun": (200, 40), "through_trees": 0.5}),
+}
+HOURS = {
+    "equinox": (["--date", DAY, "--zone", ZONE], {"date": DAY, "zone": ZONE}),
+    "half an hour": (["--date", DAY, "--zone", ZONE, "--time-step-min", 30], {"date": DAY, "zone": ZONE, "time_step_min": 30}),
+    "suns above ten degrees": (
+        ["--date", DAY, "--zone", ZONE, "--min-sun-elevation", 10],
+        {"date": DAY, "zone": ZONE, "min_sun_elevation_deg": 10},
+    ),
+    "three days": (
+        ["--from", "2026-06-01", "--to", "2026-06-03", "--time-step-min", 60],
+        {"period": ("2026-06-01", "2026-06-03"), "time_step_min": 60},
+    ),
+    "light through trees": (
+        ["--date", DAY, "--zone", ZONE, "--through-trees", "seasons"],
+        {"date": DAY, "zone": ZONE, "through_trees": "seasons"},
+    ),
+}
+SKIES = {
+    "145 directions": (["--directions", 145], {"directions": 145}),
+    "577 directions": ([], {}),
+    "light through trees": (["--directions", 145, "--through-trees", 0.3], {"directions": 145, "through_trees": 0.3}),
+}
+ENERGY = ["--clear-sky", "ineichen", "--sun-cell-deg", 12, "--patch-division", 1]
+ENERGY_OF_PYTHON = {"clear_sky": "ineichen", "sun_cell_deg": 12, "patch_division": 1}
+
+
+def rows() -> list[Row]:
+    """The questions about cells."""
+    found = []
+    for name, (flags, given) in SHADOWS.items():
+        for surface in (False, True):
+            places, of_python = (["--surface"], {"surface": True}) if surface else ([], {})
+            # a city takes a sun that is above the horizon, and light through trees for all questions
+            city = ["--sun" if flag == "--sun" else flag for flag in flags] if surface else NO_CITY_GROUND
+            found.append(
+                Row(
+                    f"shadow, {name}, {'surface' if surface else 'ground'}",
+                    ["shadow", *flags, *places, "--cell", 2],
+                    lambda scene, given=given, of_python=of_python: scene.shadow(**given, **of_python, cell=2),
+                    city,
+                )
+            )
+    found.append(
+        Row("shadow, soft", ["shadow", "--sun", "200,25", "--soft", "--cell", 2], lambda s: s.shadow(sun=(200, 25), soft=True, cell=2), NO_CITY_SOFT)
+    )
+    for name, (flags, given) in HOURS.items():
+        for surface in (False, True):
+            places, of_python = (["--surface"], {"surface": True}) if surface else ([], {})
+            found.append(
+                Row(
+                    f"sun hours, {name}, {'surface' if surface else 'ground'}",
+                    ["sun-hours", *flags, *places, "--cell", 2],
+                    lambda scene, given=given, of_python=of_python: scene.sun_hours(**given, **of_python, cell=2)["sun_hours"],
+                    ["--sun-hours", *flags] if surface else NO_CITY_GROUND,
+                )
+            )
+    for name, (flags, given) in SKIES.items():
+        for surface in (False, True):
+            places, of_python = (["--surface"], {"surface": True}) if surface else ([], {})
+            found.append(
+                Row(
+                    f"sky view, {name}, {'surface' if surface else 'ground'}",
+                    ["sky-view", *flags, *places, "--cell", 2],
+                    lambda scene, given=given, of_python=of_python: scene.sky_view(**given, **of_python, cell=2)["sky_view_factor"],
+                    ["--sky-view", *(flags or ["--directions", 577])] if surface else NO_CITY_GROUND,
+                )
+            )
+    for surface in (False, True):
+        places, of_python = (["--surface"], {"surface": True}) if surface else ([], {})
+        found.append(
+            Row(
+                f"irradiance, {'surface' if surface else 'ground'}",
+                ["irradiance", *ENERGY, *places, "--cell", 4],
+                lambda scene, of_python=of_python: scene.irradiance(**ENERGY_OF_PYTHON, **of_python, cell=4)["kwh_m2"],
+                ["--irradiance", *ENERGY] if surface else NO_CITY_GROUND,
+            )
+        )
+    return found
+
+
+@pytest.fixture(scope="session")
+def ask_program(program, folder):
+    """Runs a command of the program; returns its summary."""
+
+    def ask(*words):
+        done = subprocess.run([program, "--json", *map(str, words)], cwd=folder, capture_output=True, text=True, timeout=300)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    return ask
+
+
+@pytest.fixture(scope="session")
+def ask_page(program, folder, tile):
+    """Asks the page's server of the tile; returns the named values and the bytes of an answer."""
+    server = subprocess.Popen(
+        [program, "view", tile.name, "--no-browser"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    )
+    url = server.stdout.readline().strip()
+
+    def get(path, body=None):
+        request = urllib.request.Request(url + path, data=body, headers={"Content-Type": "application/json"})
+        with urllib.request.urlopen(request, timeout=120) as reply:
+            return reply.read()
+
+    deadline = time.monotonic() + 120
+    while json.loads(get("state"))["scene"] is None:
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+
+    def ask(question, values):
+        reply = get(f"ask/{question}", json.dumps(values).encode())
+        length = int.from_bytes(reply[:4], "little")
+        return json.loads(reply[4 : 4 + length]), reply[4 + length :]
+
+    yield ask
+    server.kill()
+    server.wait()
+
+
+def said(remarks):
+    """Key, severity and text of remarks, whichever face they come from."""
+    as_dicts = [remark if isinstance(remark, dict) else remark._asdict() for remark in remarks]
+    return sorted((one["key"], one["severity"], one["text"]) for one in as_dicts)
+
+
+def bands_of(path):
+    """Bands by name, NaN where there is no value, and where the raster lies."""
+    with rasterio.open(path) as file:
+        found = {}
+        for number, name in enumerate(file.descriptions, 1):
+            values = file.read(number).astype(np.float64)
+            values[values == file.nodata] = np.nan
+            found[name] = values
+        return found, file.transform
+
+
+def values_of(raster):
+    """The values of a raster of Python, NaN where there is none."""
+    values = np.asarray(raster.values, np.float64)
+    return np.where(values == raster.nodata, np.nan, values) if raster.nodata is not None else values
+
+
+@pytest.mark.parametrize("row", rows(), ids=lambda row: row.name)
+def test_cells_have_the_same_answers_in_the_program_and_in_python(scene, ask_program, folder, row):
+    output = folder / "face.tif"
+    summary = ask_program(*row.program[:1], "tile.laz", *row.program[1:], "-o", output.name)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", belvedere.BelvedereWarning)
+        raster = row.python(scene)
+    bands, transform = bands_of(output)
+    first = next(iter(bands.values()))
+    assert np.array_equal(first, values_of(raster), equal_nan=True)
+    assert tuple(transform)[:6] == raster.transform
+    unproven = bands.get("unproven")
+    assert (unproven is None) == (raster.unproven is None)
+    if unproven is not None:
+        assert np.array_equal(unproven, values_of(raster.unproven), equal_nan=True)
+    assert said(summary.get("remarks", [])) == said(raster.remarks)
+
+
+@pytest.mark.parametrize("row", [row for row in rows() if not isinstance(row.city, str)], ids=lambda row: row.name)
+def test_cells_have_the_same_answers_in_a_city(ask_program, folder, row):
+    cell = row.program[-1]
+    name = "".join(c if c.isalnum() else "_" for c in row.name)
+    ask_program("city", "plan", "tile.laz", *row.city, "--cell", cell, "--tile-size", 64, "-o", name)
+    of_run = ask_program("city", "run", name)
+    ask_program("city", "merge", name, "-o", f"{name}.tif")
+    summary = ask_program(*row.program[:1], "tile.laz", *row.program[1:], "-o", "whole.tif")
+    (whole, place), (tiles, of_tiles) = bands_of(folder / "whole.tif"), bands_of(folder / f"{name}.tif")
+    whole, tiles = next(iter(whole.values())), next(iter(tiles.values()))
+    # the raster of a city covers whole tiles
+    column, row_number = (round(v) for v in ~of_tiles * (place.c, place.f))
+    part = tiles[row_number : row_number + whole.shape[0], column : column + whole.shape[1]]
+    differing = (part != whole) & ~(np.isnan(part) & np.isnan(whole))
+    # balls of tiles are those of the whole but for three things that docs/scale.md lists
+    assert differing.mean() < 0.01, differing.sum()
+    keys = {remark["key"] for remark in of_run.get("remarks", [])}
+    assert keys == {remark["key"] for remark in summary.get("remarks", []) if remark["severity"] == "warning"}
+
+
+@pytest.mark.parametrize("trees", ["opaque", "seasons"])
+@pytest.mark.parametrize("clock", ["2026-06-21T13:00", "2026-12-21T12:00"])
+def test_points_have_the_same_shadow_on_the_page(scene, cloud, ask_program, ask_page, folder, clock, trees):
+    chosen = {} if trees == "opaque" else {"through_trees": "seasons"}
+    flags = [] if trees == "opaque" else ["--through-trees", "seasons"]
+    summary = ask_program("shadow", "tile.laz", "--self", "--time", clock, "--zone", ZONE, *flags, "-o", "lit.laz")
+    of_page, codes = ask_page(
+        "shadow", {"time": clock, "zone": ZONE, "trees": "opaque" if trees == "opaque" else {"seasons": "by_date"}}
+    )
+    rows = laspy.read(folder / "lit.laz")
+    lit = np.asarray(rows["lit"])
+    assert of_page["lit"] == int((lit > 0).sum())
+    assert of_page["unproven"] == int((np.asarray(rows["unproven"]) > 0).sum())
+    assert (np.frombuffer(codes, np.uint8) == 2).sum() == of_page["unproven"]
+    assert said(of_page["remarks"]) == said(summary["remarks"])
+    offset = "+02:00" if clock < "2026-10" else "+01:00"
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        of_python = scene.shadow(time=clock + offset, targets=cloud, **chosen)
+    assert np.array_equal(of_python, lit.astype(np.float32), equal_nan=True)
+    keys = [warning.message.key for warning in caught if isinstance(warning.message, belvedere.BelvedereWarning)]
+    assert sorted(keys) == sorted(one["key"] for one in summary["remarks"] if one["severity"] == "warning")
+
+
+def test_a_place_has_the_same_hours_of_sun_on_the_page(scene, ask_program, ask_page, folder, standing):
+    x, y = standing
+    z = float(scene.cloud.xyz[:, 2].min()) + 2.5
+    (folder / "place.csv").write_text(f"x,y,z\n{x},{y},{z}\n")
+    flags = ["--date", DAY, "--zone", ZONE]
+    summary = ask_program("sun-hours", "tile.laz", "--targets", "place.csv", *flags, "-o", "hours.csv")
+    of_page, _ = ask_page("sun", {"place": [x, y, z], "date": DAY, "zone": ZONE})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", belvedere.BelvedereWarning)
+        of_python = scene.sun_hours(date=DAY, zone=ZONE, targets=[(x, y, z)])
+    assert of_page["sun_hours"] == round(float(of_python["sun_hours"][0]), 3)
+    assert summary["measures"]["sun_hours"]["mean"] == pytest.approx(of_page["sun_hours"], abs=0.0011)
+    assert said(of_page["remarks"]) == said(summary["remarks"]) == said(of_python.remarks)
