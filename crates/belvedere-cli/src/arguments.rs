@@ -37,7 +37,7 @@ pub(crate) use numbers::Numbers;
 use numbers::{above_zero, at_least_one, at_most, finite, height, known_crs, length, location};
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Radio, Shell, Viewshed};
 pub(crate) use query::{DepthMap, Query, UnprovenChoice};
-pub(crate) use scene::{AreaChoice, CloudInput, Plan, ProfileChoice, SceneConfig, SceneInput, UpChoice};
+pub(crate) use scene::{AreaChoice, BallShape, CloudInput, Plan, ProfileChoice, SceneBalls, SceneConfig, SceneInput, UpChoice};
 pub(crate) use shadow::Shadow;
 pub(crate) use sky::{FacingChoice, FarTerrain, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
 pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};

@@ -1,4 +1,4 @@
-//! The command line with its long texts, one file for each command, and without the flags that only `normals` and `balls` list.
+//! The command line with its long texts, one file for each command.
 
 use crate::arguments::Cli;
 use clap::{Command, CommandFactory};
@@ -90,14 +90,5 @@ pub(crate) fn examples(text: &str) -> Vec<String> {
 
 fn described(command: Command, text: &'static str) -> Command {
     let (description, examples) = parts(text);
-    let lists_ball_flags = matches!(command.get_name(), "normals" | "balls");
-    command.long_about(description).after_help(examples).mut_args(|argument| {
-        let hidden = !lists_ball_flags && is_ball_flag(argument.get_id().as_str());
-        if hidden { argument.hide(true) } else { argument }
-    })
-}
-
-/// Whether a flag says how balls are built. Their shape in queries is not a part of that, and is listed.
-fn is_ball_flag(id: &str) -> bool {
-    id != "ball_profile" && BALL_FLAGS.contains(&id)
+    command.long_about(description).after_help(examples)
 }

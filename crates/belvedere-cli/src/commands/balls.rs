@@ -1,7 +1,7 @@
 //! `belvedere balls`.
 
 use super::{check_output, check_parent, extension, is_folder, is_written_back};
-use crate::arguments::{Balls, Cleaning, CloudInput, Global, MethodChoice, SideChoice, Usage};
+use crate::arguments::{Balls, CloudInput, Global, MethodChoice, SideChoice, Usage};
 use crate::pipeline::{self, params};
 use crate::run::Run;
 use crate::summary::{Summary, percent};
@@ -29,7 +29,8 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
         (false, SideChoice::Interior) => MethodChoice::Carved,
         (false, SideChoice::Exterior) => MethodChoice::Tau,
     };
-    let balls = arguments.shrinking.params(method)?;
+    let mut parameters = arguments.parameters()?;
+    let balls = parameters.balls(method)?;
     let is_carved = matches!(balls, BallParams::Carved(_));
     if is_carved && (is_folder || arguments.side == SideChoice::Exterior) {
         let what =
@@ -42,9 +43,10 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
     } else {
         pipeline::read(&arguments.input, &mut run)?
     };
-    let nothing = Cleaning::nothing();
-    let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
-    let params = params::model(cleaning, &arguments.orienting, balls, &cloud.frame.crs, &mut run)?;
+    if is_folder {
+        parameters = parameters.keeping_all();
+    }
+    let params = params::model(&parameters, balls, &cloud.frame.crs, &mut run)?;
     match (is_folder, arguments.side) {
         (true, _) => write_folder(arguments, global, &cloud, &params, &mut run)?,
         (false, side) => {

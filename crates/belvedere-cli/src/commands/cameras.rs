@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     let grid = flagged("--cell", map_grid(&scene, cell))?;
     let (cloud, ground_points) = ground_cloud(&arguments.targets.ground, &mut scene, &mut run)?;
     let ground = ground(&cloud, ground_points, grid, &mut run)?;
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
     let site = what::Site { scene: &scene, cloud: &cloud, ground: &ground };
     let targets = what::targets(&arguments.targets, &site, &mut run)?;

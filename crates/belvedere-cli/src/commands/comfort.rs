@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     let directions = [sky.directions.as_slice(), &schedule.directions].concat();
     report_edge(&places.targets, &scene, &directions, &mut run)?;
     let mut section = Summary::default();
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let (blockers, _) =
         blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut run, &mut section)?;
     section.add("sky_directions", sky.directions.len());

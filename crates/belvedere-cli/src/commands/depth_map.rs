@@ -98,7 +98,7 @@ fn draw(
     items: ItemBuffer,
     control: &Control<'_>,
 ) -> Result<Drawn> {
-    let profile = arguments.scene.profile.into();
+    let profile = arguments.shape.profile.map_or(scene.profile, Profile::from);
     if let [view] = views {
         let look = if view.is_central() { Look::Camera(*view) } else { Look::Parallel };
         let map = flagged("--ball-profile", scene.model.depth_map(view, profile, items, control))?;

@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
         false => None,
         true => {
             let mut section = Summary::default();
-            let profile = arguments.scene.profile.into();
+            let profile = scene.profile;
             let (blockers, _) =
                 blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut run, &mut section)?;
             run.summary.add("lines_of_sight", section);
@@ -112,10 +112,11 @@ fn scene(arguments: &Envelope, run: &mut Run) -> Result<Scene> {
     if arguments.credit_shade || is_balls {
         return pipeline::scene(&arguments.scene, Points::Keep, run);
     }
+    let profile = arguments.scene.balls.parameters()?.profile();
     let cloud = pipeline::read(&arguments.scene.input, run)?;
     let bounds = pipeline::bounds_of(&cloud)?;
     let parts = ModelParts { frame: cloud.frame.clone(), bounds, ..ModelParts::default() };
-    Ok(Scene { model: SceneModel::from_parts(parts)?, cloud, left_out: ReadReport::default() })
+    Ok(Scene { model: SceneModel::from_parts(parts)?, cloud, left_out: ReadReport::default(), profile })
 }
 
 /// Directions, and what to call each.

@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
     arguments.places.far.set(&mut scene, &mut run)?;
     warn_of_geojson(&arguments.planes, &scene.cloud.frame.crs, &mut run.summary);
     let site = radiation::site(arguments, &scene, weather.as_ref(), &mut run.summary)?;
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let blocking = scene_params(&scene, profile, &arguments.shell.giving_way());
     let trees = arguments.trees.of(&scene, &blocking, &mut run.summary)?;
     let crowns = trees.as_ref().map(|trees| trees.crowns);

@@ -30,8 +30,7 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
     north.report(&mut run.summary);
     let mut section = Summary::default();
     let giving_way = GivingWay { shell: None, unproven: None };
-    let (blockers, _) =
-        blockers(&scene, arguments.scene.profile.into(), &giving_way, Proving::Never, &mut run, &mut section)?;
+    let (blockers, _) = blockers(&scene, scene.profile, &giving_way, Proving::Never, &mut run, &mut section)?;
     let usual = IsovistParams::default();
     let params = IsovistParams::default()
         .with_step(arguments.step.map_or(usual.step, f64::to_radians))

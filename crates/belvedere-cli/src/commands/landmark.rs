@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     let rows = rows(arguments, &scene.cloud)?;
     let (cloud, points) = ground_cloud(&arguments.ground, &mut scene, &mut run)?;
     let ground = sights::ground(&cloud, points, grid, &mut run)?;
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
 
     let height = arguments.observer_height.unwrap_or(OBSERVER_HEIGHT);

@@ -48,14 +48,8 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     let (mut pairs, rows) = pairs(arguments, &scene, &mut run)?;
     set_ends_on_ground(&mut pairs, arguments, &mut scene, &mut run)?;
     let mut section = Summary::default();
-    let (blockers, unproven_as) = blockers(
-        &scene,
-        arguments.scene.profile.into(),
-        &arguments.giving_way,
-        Proving::IfItDecides,
-        &mut run,
-        &mut section,
-    )?;
+    let (blockers, unproven_as) =
+        blockers(&scene, scene.profile, &arguments.giving_way, Proving::IfItDecides, &mut run, &mut section)?;
     if blockers.proof().is_none() {
         // nothing then says how much of a line no pulse came near to
         scene.model = scene.model.without_pulses();

@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
     let grid = flagged("--cell", MapGrid::covering(low, high, cell, [x, y]))?;
     let (cloud, points) = ground_cloud(&arguments.eyes.ground, &mut scene, &mut run)?;
     let ground = sights::ground(&cloud, points, grid, &mut run)?;
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
     check_eyes(&blockers, &cloud.frame, &mut places, &mut run)?;
     let params = LandmarkParams::default()

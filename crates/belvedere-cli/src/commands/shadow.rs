@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
         return Err(Usage("--unproven applies only to one sun with hard edges".to_owned()).into());
     }
     let mut section = Summary::default();
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let (blockers, unproven) = blockers(&scene, profile, &arguments.giving_way, proving, &mut run, &mut section)?;
     let kinds: Vec<ShadowSun> = suns.iter().map(|sun| sun.sun).collect();
     let to_suns: Vec<[f64; 3]> = kinds.iter().map(|sun| sun.to_sun).collect();

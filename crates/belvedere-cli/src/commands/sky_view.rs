@@ -23,7 +23,7 @@ pub(crate) fn run(arguments: &SkyView, global: &Global) -> Result<Summary> {
     let asked = arguments.places.targets(&mut scene, &mut run)?;
     asked.report_edge(&arguments.places, &scene, &sky.directions, &mut run)?;
     let mut section = Summary::default();
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let (blockers, _) =
         blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut run, &mut section)?;
     section.add("directions", sky.directions.len());

@@ -102,7 +102,7 @@ fn look(
     run: &mut Run,
 ) -> Result<SunSums> {
     let mut section = Summary::default();
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let (blockers, _) = blockers(scene, profile, &arguments.shell.giving_way(), Proving::Never, run, &mut section)?;
     section.add("directions", plan.directions().len());
     run.summary.add("lines_of_sight", section);
@@ -134,7 +134,7 @@ fn look(
 
 /// How balls block.
 fn matrix_params(scene: &Scene, arguments: &SunHours) -> BlockRule {
-    scene_params(scene, arguments.scene.profile.into(), &arguments.shell.giving_way())
+    scene_params(scene, scene.profile, &arguments.shell.giving_way())
 }
 
 /// The number by which a matrix knows the balls that it was made of.

@@ -254,7 +254,8 @@ fn load(
     let mut input = arguments.clone();
     input.input.clouds.clone_from(&files.clouds);
     let Some(balls) = &files.balls else {
-        let params = arguments.shrinking.params(MethodChoice::Carved)?;
+        let parameters = arguments.balls.parameters()?;
+        let params = parameters.balls(MethodChoice::Carved)?;
         let cloud = Arc::new(pipeline::read(&input.input, run)?);
         loading.show(&cloud);
         let bounds = cloud.bounds().unwrap_or_default();
@@ -263,7 +264,7 @@ fn load(
         show_results(files, &cloud.frame, &bounds, loading, run)?;
         TooManyPoints::check(cloud.len(), available_bytes())?;
         let crs = &cloud.frame.crs;
-        let params = params::model(&arguments.cleaning, &arguments.orienting, params, crs, run)?;
+        let params = params::model(&parameters, params, crs, run)?;
         let built = SceneModel::build(&cloud, &params, &run.control());
         let model = built.map_err(|error| pipeline::advised(&input.input, error))?.0;
         return Ok((Some(cloud), pipeline::planned(model, &arguments.plan, run)?));

@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
         true => arguments.looking.observer_height.unwrap_or(OBSERVER_HEIGHT),
         false => arguments.looking.target_height.unwrap_or(TARGET_HEIGHT),
     };
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
     let who = if is_reverse { "target" } else { "observer" };
     let report = skip_observers(&mut observers, &blockers, &ground, (who, &cloud), &mut run)?;

@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
         run.summary.warn(format!("the classes of points are unknown: only vegetation is known, from pulses{advice}"));
     }
     let kinds = balls_seen(scene.model.balls(), classes, scene.model.vegetation(), &meanings)?;
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let (blockers, _) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
     let count = asked.targets.asked_count();
     let inside =

@@ -221,7 +221,13 @@ fn wrong_usage_names_the_flag_and_ends_with_status_2() {
         ("query house.laz --sun 180,30 --random 999999999999 -o out.csv", &["--random", "1 to"]),
         ("query house.laz --sun 180,30 --random 5 --bias inf -o out.csv", &["--bias", "finite"]),
         ("query balls.npz --sun 180,30 --self -o out.csv", &["--self", "ball file"]),
-        ("query balls.npz --sun 180,30 --random 5 --method angles -o out.csv", &["--method", "balls.npz"]),
+        (
+            "query balls.npz --sun 180,30 --random 5 --scene-config ../angles.json -o out.csv",
+            &["angles.json", "method", "balls.npz"],
+        ),
+        ("shadow house.laz --sun 180,30 --keep-noise -o out.tif", &["--keep-noise", "--scene-config", "keep_noise"]),
+        ("viewshed house.laz --observer 1,2 --method tau -o out.tif", &["--method", "'viewshed'", "belvedere balls"]),
+        ("isovist house.laz --observer 1,2 --ball-profile sphere -o out.csv", &["--scene-config", "ball_profile"]),
         ("query balls.npz --sun 180,30 --random 5 --orient up -o out.csv", &["--orient", "balls.npz"]),
         ("query balls.npz --sun 180,30 --random 5 --crs EPSG:28992 -o out.csv", &["--crs", "balls.npz", "--location"]),
     ] {
