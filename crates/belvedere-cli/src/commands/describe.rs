@@ -30,7 +30,7 @@ fn steps(of: &Command) -> Vec<Value> {
 }
 
 fn command(name_of: &str, command: &Command) -> Value {
-    let examples = help::examples(&text(command.get_after_help()));
+    let examples = help::examples(&text(command.get_after_long_help()));
     let one_of: Vec<Value> = command
         .get_groups()
         .filter(|group| (*group).clone().is_required_set())
@@ -41,6 +41,7 @@ fn command(name_of: &str, command: &Command) -> Value {
         .collect();
     json!({
         "name": name_of,
+        "group": name_of.split(' ').next().and_then(help::group),
         "summary": text(command.get_about()),
         "description": text(command.get_long_about()),
         "examples": examples,
