@@ -8,23 +8,52 @@ use serde_json::{Map, Value};
 use std::io::Write;
 use std::process::ExitCode;
 
+mod short;
+
 /// Key of the warnings.
 const WARNINGS: &str = "warnings";
 
-/// Named figures and sections, in order.
+/// Named figures and sections, in order, and those of them that are the answer.
 #[derive(Clone, Default)]
-pub(crate) struct Summary(Map<String, Value>);
+pub(crate) struct Summary {
+    entries: Map<String, Value>,
+    headlines: Vec<String>,
+    extent: Extent,
+}
+
+/// How much of a summary is printed as text.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+enum Extent {
+    /// The headlines, remarks and files; all of it with `--verbose`.
+    #[default]
+    Short,
+    /// All of it: a report is the answer.
+    Whole,
+}
 
 impl Summary {
+    /// Adds a line of the answer. `<section.name>` becomes that figure. A line, or a part in brackets, about a figure that is not there is left out.
+    pub(crate) fn headline(&mut self, text: impl AsRef<str>) -> &mut Self {
+        self.headlines.extend(short::filled(text.as_ref(), &self.entries));
+        self
+    }
+
+    /// Marks all figures as the answer.
+    pub(crate) fn is_report(&mut self) -> &mut Self {
+        self.extent = Extent::Whole;
+        self
+    }
+
     /// Adds a figure, a text, a list or a section.
     pub(crate) fn add(&mut self, name: &str, value: impl Into<Value>) -> &mut Self {
-        self.0.insert(name.to_owned(), value.into());
+        self.entries.insert(name.to_owned(), value.into());
         self
     }
 
     /// Adds all figures of `other`.
     pub(crate) fn add_all(&mut self, other: Self) -> &mut Self {
-        self.0.extend(other.0);
+        self.entries.extend(other.entries);
+        self.headlines.extend(other.headlines);
         self
     }
 
@@ -36,7 +65,7 @@ impl Summary {
     /// The entries of a report of the library.
     pub(crate) fn of(report: &impl Serialize) -> Self {
         match serde_json::to_value(report) {
-            Ok(Value::Object(entries)) => Self(entries),
+            Ok(Value::Object(entries)) => Self { entries, ..Self::default() },
             // reports are maps of numbers and texts, which JSON holds
             _ => Self::default(),
         }
@@ -44,7 +73,7 @@ impl Summary {
 
     /// Adds a warning: what the user must know to read the results rightly. Warnings go to standard error unless the summary is JSON.
     pub(crate) fn warn(&mut self, text: impl Into<String>) -> &mut Self {
-        let warnings = self.0.entry(WARNINGS).or_insert_with(|| Value::Array(Vec::new()));
+        let warnings = self.entries.entry(WARNINGS).or_insert_with(|| Value::Array(Vec::new()));
         if let Value::Array(warnings) = warnings {
             warnings.push(text.into().into());
         }
@@ -83,7 +112,7 @@ impl Summary {
 
     /// Prints the warnings on standard error.
     pub(crate) fn note_warnings(&self, global: &Global) {
-        if let (Some(Value::Array(warnings)), false) = (self.0.get(WARNINGS), global.quiet) {
+        if let (Some(Value::Array(warnings)), false) = (self.entries.get(WARNINGS), global.quiet) {
             warnings.iter().for_each(|warning| note(&format!("warning: {}", plain(warning))));
         }
     }
@@ -91,20 +120,18 @@ impl Summary {
     /// Prints the summary, as JSON where asked for.
     pub(crate) fn print(&self, global: &Global) -> ExitCode {
         // a command without a summary, such as one that prints a script
-        if self.0.is_empty() {
+        if self.entries.is_empty() {
             return ExitCode::SUCCESS;
         }
-        let mut entries = self.0.clone();
         if !global.json {
             self.note_warnings(global);
-            entries.remove(WARNINGS);
         }
-        let mut text = String::new();
-        if global.json {
-            text = format!("{:#}\n", Value::Object(entries));
-        } else if !global.quiet {
-            lines(&entries, 0, &mut text);
-        }
+        let text = match (global.json, global.quiet) {
+            (true, _) => format!("{:#}\n", Value::Object(self.of_json())),
+            (false, true) => String::new(),
+            (false, false) if global.verbose || self.extent == Extent::Whole => self.whole(),
+            (false, false) => short::text(&self.headlines, &self.entries),
+        };
         // a reader that stopped listening is not a failure
         match std::io::stdout().lock().write_all(text.as_bytes()) {
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
@@ -116,9 +143,28 @@ impl Summary {
     }
 }
 
+impl Summary {
+    fn of_json(&self) -> Map<String, Value> {
+        let mut entries = self.entries.clone();
+        if !self.headlines.is_empty() {
+            entries.insert("headline".to_owned(), self.headlines.clone().into());
+        }
+        entries
+    }
+
+    /// All figures, after the answer.
+    fn whole(&self) -> String {
+        let mut entries = self.entries.clone();
+        entries.remove(WARNINGS);
+        let mut text: String = self.headlines.iter().map(|line| format!("{line}\n")).collect();
+        lines(&entries, 0, &mut text);
+        text
+    }
+}
+
 impl From<Summary> for Value {
     fn from(summary: Summary) -> Self {
-        Self::Object(summary.0)
+        Self::Object(summary.entries)
     }
 }
 

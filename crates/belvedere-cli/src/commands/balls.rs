@@ -54,6 +54,7 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
                 SideChoice::Interior => interior(&arguments.input, cloud, &params, &mut run)?,
                 SideChoice::Exterior => exterior(&arguments.input, &cloud, &params, &mut run)?,
             };
+            run.summary.add("balls", model.balls.len());
             let inputs: Vec<String> = arguments.input.clouds.iter().map(|p| p.display().to_string()).collect();
             let program = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
             let model = model.with_provenance("program", program).with_provenance("input", inputs.join(" "));
@@ -63,6 +64,12 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
             run.stage("writing", 0, |_| write_balls(&arguments.output, &model))?;
         }
     }
+    run.summary
+        .headline("[<balls> ]balls from <points> points; normals oriented by <normals.oriented_by>")
+        .headline("scanner found by <scanner.found_by>, known for <scanner.scanner_known_percent> % of the points")
+        .headline("pulses: <pulses.pulses_used> cut <interior_balls.balls_cut_by_pulses> balls")
+        .headline("noise of the surface: <smoothing.noise_m> m")
+        .headline("thinning keeps <thinning_kept_percent> % of the points");
     run.summary.add("written", arguments.output.display().to_string());
     Ok(run.finish())
 }

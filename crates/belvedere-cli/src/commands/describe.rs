@@ -14,6 +14,7 @@ pub(crate) fn run() -> Summary {
     let program = help::command();
     let mut summary = Summary::default();
     summary
+        .is_report()
         .add("name", program.get_name())
         .add("version", env!("CARGO_PKG_VERSION"))
         .add("summary", text(program.get_about()))

@@ -67,6 +67,13 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
             _ => write_rows(output, &rows, &given),
         })?;
     }
+    run.summary
+        .headline("visible space: <isovist.volume_m3> m3; on the map <isovist.plan_area_m2> m2")
+        .headline("mean distance to what is seen: <isovist.range_mean_m> m, at most <isovist.range_max_m> m")
+        .headline("open sky: share <isovist.sky_openness>");
+    if places.len() > 1 {
+        run.summary.headline("observers: <observers.count>, of which <observers.skipped> cannot stand where they are");
+    }
     run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     Ok(run.finish())
 }

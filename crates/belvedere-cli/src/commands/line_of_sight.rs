@@ -101,6 +101,16 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
         }
         one.add("note", enclosure_note(&blockers, *observer, "the observer").into_iter().collect::<Vec<_>>());
         run.summary.add("line", one);
+        run.summary
+            .headline("answer: <line.answer>")
+            .headline("first obstacle at <line.first_block_range_m> m: <line.block_position>")
+            .headline("unproven: <line.unproven_m> m of the line")
+            .headline("free of the first Fresnel zone: <line.fresnel_free_percent> %");
+    } else {
+        run.summary
+            .headline("visible <lines_of_sight.visible_percent> % of <lines_of_sight.pairs> lines of sight")
+            .headline("blocked: <lines_of_sight.blocked>")
+            .headline("unproven: <lines_of_sight.unproven>");
     }
     if let Some(output) = &arguments.output {
         run.stage("writing", 0, |_| {

@@ -104,6 +104,9 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
         }
         _ => FaceRows::of_seen(&mesh, &faces).write(output),
     })?;
+    run.summary
+        .headline("visible <faces.visible_percent> % of <faces.area_m2> m2 on <faces.count> faces (<faces.visible_m2> m2, standard error <faces.standard_error_m2> m2)")
+        .headline("unproven: <faces.unproven_m2> m2");
     run.summary.add("written", output.display().to_string());
     Ok(run.finish())
 }

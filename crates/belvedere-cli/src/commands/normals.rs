@@ -66,6 +66,9 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
         Ok(write_cloud(output, &kept, &columns)?)
     })?;
     run.summary.add_writing(&report);
+    run.summary
+        .headline("normals of <points> points, oriented by <normals.oriented_by>")
+        .headline("uncertain sign: <normals.low_confidence_percent> % of the points");
     run.summary.add("written", output.display().to_string());
     Ok(run.finish())
 }

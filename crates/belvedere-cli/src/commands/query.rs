@@ -96,6 +96,10 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         write_cloud(output, &targets, &[column])
     })?;
     run.summary.add_writing(&report);
+    run.summary
+        .headline("visible <answers.visible_percent> % of <answers.targets> targets")
+        .headline("blocked: <answers.blocked> targets")
+        .headline("unproven: <answers.unproven> targets");
     run.summary.add("written", output.display().to_string());
     Ok(run.finish())
 }

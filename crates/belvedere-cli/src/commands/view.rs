@@ -173,7 +173,10 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
     run.stage("writing", 0, |_| {
         atomic::write(output, |file| file.write_all(page.as_bytes()).map_err(Error::io(output)))
     })?;
-    run.summary.add_report(&report).add("written", output.display().to_string());
+    run.summary
+        .add_report(&report)
+        .add("written", output.display().to_string())
+        .headline("a page with <points> points, <suns> suns and <viewpoints> viewpoints");
     Ok(run.finish())
 }
 

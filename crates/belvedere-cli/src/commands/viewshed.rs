@@ -121,6 +121,15 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
         })?;
         run.stage("writing", 0, |_| write_heights(output, &heights, (&ground.grid, &cloud.frame), LEAST_HEIGHTS))?;
     }
+    run.summary
+        .headline("visible <cells.visible_percent> % of <cells.targets> cells (<cells.visible_m2> m2)[, unproven <cells.unproven_percent> %]")
+        .headline("visible <cloud_points.visible_percent> % of <cloud_points.targets> points[, unproven <cloud_points.unproven_percent> %]")
+        .headline("beyond the cloud visible <far_cells.visible_percent> % of <far_cells.targets> cells (<far_cells.visible_m2> m2)")
+        .headline("eye <observers.above_ground_m> m above the ground")
+        .headline("target <target.above_ground_m> m above the ground");
+    if observers.len() > 1 {
+        run.summary.headline("observers: <observers.count>, of which <observers.skipped> cannot stand where they are");
+    }
     let written =
         arguments.output.iter().chain(&arguments.far_output).chain(&arguments.heights).chain(&arguments.masks);
     run.summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
@@ -265,7 +274,7 @@ fn counted(answers: &[Answer], unproven: UnprovenAs, cell: Option<[f64; 2]>) -> 
     let mut section = Summary::default();
     section.add("targets", asked).add("visible", counts.visible);
     if unproven == UnprovenAs::Reported {
-        section.add("unproven", counts.unproven);
+        section.add("unproven", counts.unproven).add("unproven_percent", percent(counts.unproven, asked));
     }
     section
         .add("blocked", counts.blocked)
