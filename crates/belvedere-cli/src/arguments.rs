@@ -37,7 +37,9 @@ pub(crate) use numbers::Numbers;
 use numbers::{above_zero, at_least_one, at_most, finite, height, known_crs, length, location};
 pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Radio, Shell, Viewshed};
 pub(crate) use query::{DepthMap, Query, UnprovenChoice};
-pub(crate) use scene::{AreaChoice, CloudInput, Plan, ProfileChoice, SceneConfig, SceneInput, UpChoice};
+pub(crate) use scene::{
+    AreaChoice, BallShape, CloudInput, Plan, ProfileChoice, SceneBalls, SceneConfig, SceneInput, UpChoice,
+};
 pub(crate) use shadow::Shadow;
 pub(crate) use sky::{FacingChoice, FarTerrain, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
 pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};
@@ -102,10 +104,10 @@ pub(crate) struct Global {
     /// How progress is shown on standard error
     #[arg(long, global = true, value_enum, value_name = "HOW", default_value_t = ProgressChoice::Bar)]
     pub(crate) progress: ProgressChoice,
-    /// Print the duration of each stage on standard error
+    /// Print all figures, and the duration of each stage on standard error
     #[arg(short, long, global = true)]
     pub(crate) verbose: bool,
-    /// Print help: a line for each flag with -h, all of it with --help
+    /// Print help: the usual flags with -h, all of them and what they mean with --help
     #[arg(short, long, global = true, action = ArgAction::Help)]
     help: Option<bool>,
     /// Print the version
@@ -155,7 +157,7 @@ pub(crate) enum ProgressChoice {
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
-    /// Simulate a small town and a laser scan of it, and run the main commands on the scan
+    /// Simulate a small town and its laser scan, and run the main commands on it
     Demo(Demo),
     /// Simulate a town and its laser scan, with the exact mesh as ground truth
     Simulate(Simulate),
@@ -198,7 +200,7 @@ pub(crate) enum Command {
     /// Compute the hours of direct sun on a day, over a period, or for a daylight rule
     #[command(name = "sun-hours")]
     SunHours(SunHours),
-    /// Compute the solar envelope of a parcel: the largest volume that casts no shadow on its neighbours
+    /// Compute the largest volume on a parcel that casts no shadow on its neighbours
     Envelope(Envelope),
     /// Measure sun, shade and sky along walking routes and at windows
     Comfort(Comfort),

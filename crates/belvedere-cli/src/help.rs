@@ -1,4 +1,4 @@
-//! The command line with its long texts, one file for each command, and without the flags that only `normals` and `balls` list.
+//! The command line with its long texts, one file for each command.
 
 use crate::arguments::Cli;
 use clap::{Command, CommandFactory};
@@ -20,6 +20,105 @@ pub(crate) const BALL_FLAGS: [&str; 14] = [
     "next_angle",
     "ball_profile",
 ];
+
+/// Commands by task, in the order of the overview.
+const GROUPS: [(&str, &[&str]); 8] = [
+    ("start", &["demo", "info", "view", "simulate"]),
+    ("sun", &["shadow", "sun-hours", "irradiance", "sky-view", "envelope", "comfort"]),
+    (
+        "sight",
+        &["line-of-sight", "viewshed", "isovist", "horizon", "landmark", "protected-view", "window-views", "cameras"],
+    ),
+    ("plan", &["difference"]),
+    ("scene", &["balls", "normals", "trajectory"]),
+    ("research", &["depth-map", "query", "compare"]),
+    ("scale", &["city"]),
+    ("other", &["describe", "completions", "man"]),
+];
+
+/// Flags that `-h` leaves out, so that it fits a screen; `--help` has all.
+const RARE: &[&str] = &[
+    "air",
+    "albedo",
+    "back-faces",
+    "ball-profile",
+    "bias",
+    "cell-for",
+    "classes-of",
+    "clear",
+    "curvature",
+    "curve",
+    "directions",
+    "edge-mask",
+    "facing",
+    "far",
+    "far-output",
+    "fence-height",
+    "first-angle",
+    "footprints",
+    "frame-duration-s",
+    "frames",
+    "frequency-ghz",
+    "fresnel-percent",
+    "grid-north",
+    "ground",
+    "headings",
+    "horizon",
+    "horizons",
+    "initial-radius",
+    "keep-duplicates",
+    "leaves",
+    "linke",
+    "load-matrix",
+    "masks",
+    "max-height",
+    "measures",
+    "memory",
+    "min-area",
+    "min-distance",
+    "min-sun-elevation",
+    "near",
+    "next-angle",
+    "orient",
+    "panel",
+    "parts-per-row",
+    "patch-division",
+    "patches",
+    "per-target",
+    "refraction",
+    "save-matrix",
+    "scene-config",
+    "search-limit",
+    "shell",
+    "simplify",
+    "sky-model",
+    "spacing",
+    "sun-cell-deg",
+    "sun-elevation",
+    "sun-tolerance-deg",
+    "surroundings",
+    "terrain",
+    "tile-size",
+    "tops",
+    "trees",
+    "unproven",
+    "up",
+    "vertical-fov",
+    "without",
+    "year",
+];
+/// The same of commands with many flags.
+const RARE_IN: &[(&str, &[&str])] = &[
+    ("shadow", &["film", "self", "target-height"]),
+    ("sun-hours", &["target-height"]),
+    ("irradiance", &["target-height"]),
+    ("cameras", &["existing", "pixels", "target-height", "tilt"]),
+    ("plan", &["clear-sky", "crs", "max-distance", "observer-height", "through-trees"]),
+];
+/// Options of all commands that `-h` shows.
+const SHOWN_OF_ALL: [&str; 3] = ["json", "verbose", "help"];
+/// Examples that `-h` shows.
+const SHORT_EXAMPLES: usize = 1;
 
 /// What a command does, its input, output, units and limits, and examples that work as printed on the files of the demo.
 const TEXTS: &[(&str, &str)] = &[
@@ -66,12 +165,39 @@ const STEPS_OF_CITY: &[(&str, &str)] = &[
 
 /// The command line as users see it.
 pub(crate) fn command() -> Command {
-    let command = Cli::command().long_about(include_str!("help/belvedere.txt").trim_end());
+    let command = Cli::command().mut_args(|argument| {
+        let is_shown = SHOWN_OF_ALL.contains(&argument.get_id().as_str());
+        argument.hide_short_help(!is_shown)
+    });
     let command =
         TEXTS.iter().fold(command, |command, (name, text)| command.mut_subcommand(name, |sub| described(sub, text)));
     let with_step =
         |city: Command, (name, text): &(&str, &'static str)| city.mut_subcommand(name, |sub| described(sub, text));
-    command.mut_subcommand("city", |city| STEPS_OF_CITY.iter().fold(city, with_step))
+    let command = command.mut_subcommand("city", |city| STEPS_OF_CITY.iter().fold(city, with_step));
+    let template = overview(&command);
+    command.help_template(template)
+}
+
+/// The task that a command belongs to.
+pub(crate) fn group(command: &str) -> Option<&'static str> {
+    GROUPS.iter().find(|(_, commands)| commands.contains(&command)).map(|(name, _)| *name)
+}
+
+/// The help of the program, which fits a screen: its commands by task.
+fn overview(program: &Command) -> String {
+    let about = include_str!("help/belvedere.txt").trim_end();
+    let mut text = format!("{about}\n\nUsage: belvedere COMMAND [OPTIONS]\n");
+    for (name, commands) in GROUPS {
+        text.push_str(&format!("\n{name}\n"));
+        for command in commands.iter().filter_map(|command| program.find_subcommand(command)) {
+            let about = command.get_about().map(ToString::to_string).unwrap_or_default();
+            text.push_str(&format!("  {:<16}{about}\n", command.get_name()));
+        }
+    }
+    let of_all: Vec<String> =
+        program.get_arguments().filter_map(|argument| Some(format!("--{}", argument.get_long()?))).collect();
+    text.push_str(&format!("\nOptions of all commands\n  {}\n", of_all.join(" ")));
+    text
 }
 
 /// A text before and after its heading of examples.
@@ -90,14 +216,43 @@ pub(crate) fn examples(text: &str) -> Vec<String> {
 
 fn described(command: Command, text: &'static str) -> Command {
     let (description, examples) = parts(text);
-    let lists_ball_flags = matches!(command.get_name(), "normals" | "balls");
-    command.long_about(description).after_help(examples).mut_args(|argument| {
-        let hidden = !lists_ball_flags && is_ball_flag(argument.get_id().as_str());
-        if hidden { argument.hide(true) } else { argument }
+    let command = command.long_about(description).after_help(first_examples(examples)).after_long_help(examples);
+    let also = RARE_IN.iter().find(|(name, _)| *name == command.get_name()).map_or(&[][..], |(_, flags)| flags);
+    command.mut_args(|argument| {
+        let is_named = argument.get_long().is_some_and(|long| RARE.contains(&long) || also.contains(&long));
+        let is_rare = is_named && !argument.is_required_set();
+        if is_rare { argument.hide_short_help(true) } else { argument }
     })
 }
 
-/// Whether a flag says how balls are built. Their shape in queries is not a part of that, and is listed.
-fn is_ball_flag(id: &str) -> bool {
-    id != "ball_profile" && BALL_FLAGS.contains(&id)
+/// The first of several examples.
+fn first_examples(examples: &str) -> String {
+    let mut count = 0;
+    let is_first = |line: &&str| {
+        count += usize::from(line.starts_with("  belvedere "));
+        count <= SHORT_EXAMPLES
+    };
+    examples.lines().take_while(is_first).collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_command_stands_in_exactly_one_group() {
+        for command in Cli::command().get_subcommands() {
+            let count = GROUPS.iter().filter(|(_, commands)| commands.contains(&command.get_name())).count();
+            assert_eq!(count, 1, "{}", command.get_name());
+        }
+    }
+
+    #[test]
+    fn each_rare_flag_exists() {
+        let program = Cli::command();
+        let steps = program.get_subcommands().flat_map(|command| command.get_subcommands().chain([command]));
+        let flags: Vec<&str> = steps.flat_map(|step| step.get_arguments().filter_map(clap::Arg::get_long)).collect();
+        let rare = RARE_IN.iter().flat_map(|(_, flags)| flags.iter()).chain(RARE);
+        rare.for_each(|rare| assert!(flags.contains(rare), "{rare}"));
+    }
 }

@@ -21,9 +21,10 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     interrupt::listen();
     let program = help::command();
-    let matches = match scene_config::matches(&program, std::env::args_os().collect()) {
+    let typed: Vec<_> = std::env::args_os().collect();
+    let matches = match program.clone().try_get_matches_from(&typed) {
         Ok(matches) => matches,
-        Err(error) => return failure(&error),
+        Err(error) => scene_config::advised(error, &program, &typed).exit(),
     };
     let cli = match arguments::Cli::from_arg_matches(&matches) {
         Ok(cli) => cli,

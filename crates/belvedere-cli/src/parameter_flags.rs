@@ -6,7 +6,7 @@ use clap::parser::ValueSource;
 use clap::{ArgMatches, Command};
 
 /// The flags that may give a parameter, those that are more often at fault first; none where it follows from files.
-fn flags_of(parameter: Parameter) -> &'static [&'static str] {
+pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
     match parameter {
         Parameter::Eye => &["--eye", "--panorama", "--observer", "--observers"],
         Parameter::LookAt => &["--look-at"],

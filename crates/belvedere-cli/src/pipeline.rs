@@ -6,11 +6,12 @@ mod plan;
 pub(crate) use plan::{areas, mesh_in, planned};
 
 use crate::arguments::{
-    CloudInput, GroundChoice, MethodChoice, OrientChoice, ProfileChoice, SceneInput, SizeChoice, SkyPlaces,
-    UnprovenChoice, UpChoice, Usage, ViewChoice,
+    CloudInput, GroundChoice, MethodChoice, ProfileChoice, SceneInput, SizeChoice, SkyPlaces, UnprovenChoice, UpChoice,
+    Usage, ViewChoice,
 };
 use crate::device::with_device;
 use crate::run::Run;
+use crate::scene_config::BallParameters;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::ask;
@@ -76,7 +77,7 @@ pub(crate) fn advised(input: &CloudInput, error: Error) -> anyhow::Error {
     let names = || input.clouds.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");
     match error {
         Error::NoPoints { what } => {
-            let what = format!("{what}; see --keep-noise, --keep-isolated");
+            let what = format!("{what}; see --keep-noise and --keep-isolated of `belvedere balls`, or --scene-config");
             anyhow::Error::from(Error::NoPoints { what }).context(names())
         }
         Error::NoSurface { .. } => anyhow::Error::from(error).context(names()),
@@ -91,6 +92,8 @@ pub(crate) struct Scene {
     pub(crate) cloud: PointCloud,
     /// Rows of the files that reading left out.
     pub(crate) left_out: ReadReport,
+    /// Shape that represents a ball.
+    pub(crate) profile: Profile,
 }
 
 impl Scene {
@@ -107,7 +110,7 @@ impl Scene {
             return Err(Usage("--shell applies only to carved balls, and these are not carved".to_owned()).into());
         }
         let usual = self.model.rule();
-        let rule = BlockRule { shell: shell.map_or(usual.shell, f64::from), ..usual };
+        let rule = BlockRule { profile: self.profile, shell: shell.map_or(usual.shell, f64::from), ..usual };
         let frame = self.cloud.frame.clone();
         let scene = ask::Scene::new(self.model, Arc::new(self.cloud)).with_rule(rule);
         let Some(GroundChoice::Cloud(path)) = ground else { return Ok(scene) };
@@ -163,11 +166,13 @@ pub(crate) fn is_file(path: &Path) -> bool {
 
 /// The scene of a ball file, or of a cloud, as it is.
 fn present_scene(arguments: &SceneInput, points: Points, run: &mut Run) -> Result<Scene> {
+    let parameters = arguments.balls.parameters()?;
+    let profile = parameters.profile();
     if let [path] = &arguments.input.clouds[..]
         && is_file(path)
         && is_ball_file(path)?
     {
-        refuse_flags_of_clouds(arguments, path)?;
+        refuse_flags_of_clouds(arguments, &parameters, path)?;
         let parts = run.stage("reading balls", 0, |_| read_balls(path))?;
         if parts.provenance.get("side").is_some_and(|side| side == "exterior") {
             bail!(
@@ -178,12 +183,12 @@ fn present_scene(arguments: &SceneInput, points: Points, run: &mut Run) -> Resul
         run.summary.add("balls_read", parts.balls.len());
         let model = SceneModel::from_parts(parts)?;
         let cloud = PointCloud::in_frame(model.frame().clone());
-        return Ok(Scene { model, cloud, left_out: ReadReport::default() });
+        return Ok(Scene { model, cloud, left_out: ReadReport::default(), profile });
     }
-    let balls = arguments.shrinking.params(MethodChoice::Carved)?;
+    let balls = parameters.balls(MethodChoice::Carved)?;
     let (mut cloud, left_out) = read_counted(&arguments.input, run)?;
     let frame = cloud.frame.clone();
-    let params = params::model(&arguments.cleaning, &arguments.orienting, balls, &frame.crs, run)?;
+    let params = params::model(&parameters, balls, &frame.crs, run)?;
     let built = match points {
         Points::Keep => SceneModel::build(&cloud, &params, &run.control()),
         Points::LetGo => {
@@ -193,27 +198,16 @@ fn present_scene(arguments: &SceneInput, points: Points, run: &mut Run) -> Resul
     };
     let (model, report) = built.map_err(|error| advised(&arguments.input, error))?;
     run.summary.add_report(&report);
-    Ok(Scene { model, cloud, left_out })
+    Ok(Scene { model, cloud, left_out, profile })
 }
 
 /// Flags that say how to make balls are of no use where they are made already.
-fn refuse_flags_of_clouds(arguments: &SceneInput, path: &Path) -> Result<()> {
-    let (cleaning, orienting, shrinking) = (&arguments.cleaning, &arguments.orienting, &arguments.shrinking);
+fn refuse_flags_of_clouds(arguments: &SceneInput, parameters: &BallParameters, path: &Path) -> Result<()> {
     let given = [
         ("--crs", arguments.input.crs.is_some()),
         ("--up", arguments.input.up != UpChoice::Z),
-        ("--keep-noise", cleaning.keep_noise),
-        ("--keep-duplicates", cleaning.keep_duplicates),
-        ("--keep-isolated", cleaning.keep_isolated),
-        ("--orient", !matches!(orienting.orient, OrientChoice::Auto)),
-        ("--method", shrinking.method.is_some()),
-        ("--trees", shrinking.trees.is_some()),
-        ("--without", !shrinking.without.is_empty()),
-        ("--initial-radius", shrinking.initial_radius.is_some()),
-        ("--max-radius", shrinking.max_radius.is_some()),
-        ("--penetration", shrinking.penetration.is_some()),
-        ("--first-angle", shrinking.first_angle.is_some()),
-        ("--next-angle", shrinking.next_angle.is_some()),
+        ("--orient", arguments.balls.orient.is_some()),
+        ("--trees", arguments.balls.trees.is_some()),
     ];
     match given.into_iter().find(|(_, given)| *given) {
         Some(("--crs", _)) => {
@@ -228,7 +222,7 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, path: &Path) -> Result<()> {
             let path = path.display();
             Err(Usage(format!("{flag} is for building balls from a cloud, but {path} is a ball file")).into())
         }
-        None => Ok(()),
+        None => parameters.refuse_file(path),
     }
 }
 

@@ -47,7 +47,7 @@ impl Run {
     /// Reports on answers: the answer itself, all figures, and what a user must know beside them.
     pub(crate) fn answered<F>(&mut self, answers: &Answers<F>) {
         self.summary.add_report(&answers.report);
-        answers.headline.iter().for_each(|line| self.summary.headline(line));
+        answers.headline.iter().for_each(|line| self.summary.answer(line));
         answers.remarks.iter().for_each(|remark| self.summary.remark(remark));
     }
 

@@ -1,65 +1,222 @@
-//! Parameters of balls from a file: `--scene-config`.
+//! How balls are made: flags, and the file of `--scene-config` that completes them.
 
-use crate::arguments::Usage;
+use crate::arguments::{
+    BallShape, Balls, Cleaning, Normals, Orienting, ProfileChoice, SceneBalls, SceneConfig, Shrinking, Usage,
+};
 use crate::help::BALL_FLAGS;
+use crate::parameter_flags::flags_of;
 use anyhow::{Context, Result};
-use clap::parser::ValueSource;
-use clap::{ArgMatches, Command};
+use belvedere::Parameter;
+use belvedere::depth::Profile;
+use clap::Command;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// What was typed, completed by the file that `--scene-config` names. A flag that was typed overrides the file.
-pub(crate) fn matches(command: &Command, typed: Vec<OsString>) -> Result<ArgMatches> {
-    let matches = command.clone().get_matches_from(&typed);
-    let Some((_, of_command)) = matches.subcommand() else { return Ok(matches) };
-    let Ok(Some(path)) = of_command.try_get_one::<PathBuf>("scene_config") else { return Ok(matches) };
-    let mut flags = Vec::new();
-    for (key, value) in &read(path)? {
-        if !BALL_FLAGS.contains(&key.as_str()) {
-            let known = BALL_FLAGS.join(", ");
-            return Err(Usage(format!("{}: unknown key {key:?}; the keys are {known}", path.display())).into());
-        }
-        let has_flag = of_command.try_contains_id(key).is_ok();
-        if has_flag && of_command.value_source(key) != Some(ValueSource::CommandLine) {
-            flags.extend(flag(key, value).map_err(|what| Usage(format!("{}: {what}", path.display())))?);
-        }
-    }
-    let mut completed = typed;
-    // behind `--` everything is a file
-    let end = completed.iter().position(|word| word == "--").unwrap_or(completed.len());
-    completed.splice(end..end, flags);
-    command.clone().try_get_matches_from(completed).map_err(|error| {
-        let message = error.to_string();
-        let first = message.lines().next().unwrap_or_default().trim_start_matches("error: ");
-        Usage(format!("{}: {first}", path.display())).into()
-    })
+/// How balls are made: what was typed, completed by the file.
+#[derive(Clone, Default)]
+pub(crate) struct BallParameters {
+    pub(crate) cleaning: Cleaning,
+    pub(crate) orienting: Orienting,
+    pub(crate) shrinking: Shrinking,
+    profile: Option<ProfileChoice>,
+    file: Option<File>,
 }
 
+/// The file, and the keys it has.
+#[derive(Clone)]
+struct File {
+    path: PathBuf,
+    keys: Vec<String>,
+}
+
+/// The only key that has no group of flags.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Shape {
+    ball_profile: Option<ProfileChoice>,
+}
+
+impl Balls {
+    /// How balls are made.
+    pub(crate) fn parameters(&self) -> Result<BallParameters> {
+        let (cleaning, orienting) = (self.cleaning.clone(), self.orienting.clone());
+        let shrinking = self.shrinking.clone();
+        BallParameters { cleaning, orienting, shrinking, ..BallParameters::default() }.completed(&self.config)
+    }
+}
+
+impl Normals {
+    /// How normals are made.
+    pub(crate) fn parameters(&self) -> Result<BallParameters> {
+        let (cleaning, orienting) = (self.cleaning.clone(), self.orienting.clone());
+        BallParameters { cleaning, orienting, ..BallParameters::default() }.completed(&self.config)
+    }
+}
+
+impl SceneBalls {
+    /// How balls are made.
+    pub(crate) fn parameters(&self) -> Result<BallParameters> {
+        let mut typed = BallParameters::default();
+        typed.orienting.orient.clone_from(&self.orient);
+        typed.shrinking.trees = self.trees;
+        typed.completed(&self.config)
+    }
+}
+
+impl BallShape {
+    /// The shape of balls: what was typed, or else what the file of a scene says.
+    pub(crate) fn of(&self, scene: &SceneBalls) -> Result<Profile> {
+        match self.profile {
+            Some(typed) => Ok(typed.into()),
+            None => Ok(scene.parameters()?.profile()),
+        }
+    }
+}
+
+impl BallParameters {
+    /// The shape of balls.
+    pub(crate) fn profile(&self) -> Profile {
+        self.profile.unwrap_or(ProfileChoice::Sphere).into()
+    }
+
+    /// The same for points of which none may go.
+    pub(crate) fn keeping_all(mut self) -> Self {
+        self.cleaning = Cleaning::nothing();
+        self
+    }
+
+    /// Refuses a file with parameters of balls that are made already, in the ball file at `path`.
+    pub(crate) fn refuse_file(&self, path: &Path) -> Result<()> {
+        let Some(file) = &self.file else { return Ok(()) };
+        let Some(key) = file.keys.iter().find(|key| *key != "ball_profile") else { return Ok(()) };
+        let (config, path) = (file.path.display(), path.display());
+        let what =
+            format!("--scene-config {config}: {key} is for building balls from a cloud, but {path} is a ball file");
+        Err(Usage(what).into())
+    }
+
+    /// Names the file and its keys in an error about flags that were not typed.
+    pub(crate) fn naming<T>(&self, result: Result<T>) -> Result<T> {
+        let Some(file) = &self.file else { return result };
+        let key_of = |parameter: Parameter| {
+            let keys = flags_of(parameter).iter().map(|flag| flag.trim_start_matches("--").replace('-', "_"));
+            keys.into_iter().find(|key| file.keys.contains(key))
+        };
+        result.map_err(|error| match error.downcast_ref() {
+            Some(&belvedere::Error::InvalidParameter { parameter, .. }) if key_of(parameter).is_some() => {
+                let key = key_of(parameter).unwrap_or_default();
+                Usage(format!("{}: {key}: {error}", file.path.display())).into()
+            }
+            None => match error.downcast_ref() {
+                Some(Usage(text)) => Usage(format!("{}: {text}", file.path.display())).into(),
+                None => error,
+            },
+            _ => error,
+        })
+    }
+
+    /// Completed by a file. What was typed goes first.
+    fn completed(self, config: &SceneConfig) -> Result<Self> {
+        let Some(path) = &config.scene_config else { return Ok(self) };
+        let keys = read(path)?;
+        let part = |error: serde_json::Error| Usage(format!("{}: {error}", path.display()));
+        let object = Value::Object(keys.clone());
+        let cleaning = Cleaning::deserialize(&object).map_err(part)?;
+        let orienting = Orienting::deserialize(&object).map_err(part)?;
+        let shrinking = Shrinking::deserialize(&object).map_err(part)?;
+        let shape = Shape::deserialize(&object).map_err(part)?;
+        Ok(Self {
+            cleaning: self.cleaning.or(&cleaning),
+            orienting: self.orienting.or(orienting),
+            shrinking: self.shrinking.or(shrinking),
+            profile: self.profile.or(shape.ball_profile),
+            file: Some(File { path: path.clone(), keys: keys.into_iter().map(|(key, _)| key).collect() }),
+        })
+    }
+}
+
+impl Cleaning {
+    fn or(&self, other: &Self) -> Self {
+        Self {
+            keep_noise: self.keep_noise || other.keep_noise,
+            keep_duplicates: self.keep_duplicates || other.keep_duplicates,
+            keep_isolated: self.keep_isolated || other.keep_isolated,
+        }
+    }
+}
+
+impl Orienting {
+    fn or(self, other: Self) -> Self {
+        Self { neighbors: self.neighbors.or(other.neighbors), orient: self.orient.or(other.orient) }
+    }
+}
+
+impl Shrinking {
+    fn or(self, other: Self) -> Self {
+        Self {
+            method: self.method.or(other.method),
+            trees: self.trees.or(other.trees),
+            without: if self.without.is_empty() { other.without } else { self.without },
+            initial_radius: self.initial_radius.or(other.initial_radius),
+            max_radius: self.max_radius.or(other.max_radius),
+            penetration: self.penetration.or(other.penetration),
+            first_angle: self.first_angle.or(other.first_angle),
+            next_angle: self.next_angle.or(other.next_angle),
+        }
+    }
+}
+
+/// The keys of a file and their values, each of the type that it needs. A key without a value is as if it was not there.
 fn read(path: &Path) -> Result<Map<String, Value>> {
     let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
-    match serde_json::from_str(&text) {
-        Ok(Value::Object(keys)) => Ok(keys),
-        Ok(_) => Err(Usage(format!("{}: expected a JSON object", path.display())).into()),
-        Err(error) => Err(Usage(format!("{}: {error}", path.display())).into()),
+    let refused = |what: String| Usage(format!("{}: {what}", path.display()));
+    let keys: Map<String, Value> = match serde_json::from_str(&text) {
+        Ok(Value::Object(keys)) => keys.into_iter().filter(|(_, value)| !value.is_null()).collect(),
+        Ok(_) => return Err(refused("expected a JSON object".to_owned()).into()),
+        Err(error) => return Err(refused(error.to_string()).into()),
+    };
+    for (key, value) in &keys {
+        if !BALL_FLAGS.contains(&key.as_str()) {
+            let known = BALL_FLAGS.join(", ");
+            return Err(refused(format!("unknown key {key:?}; the keys are {known}")).into());
+        }
+        check(key, value).map_err(|error| refused(format!("{key}: {error}")))?;
     }
+    Ok(keys)
 }
 
-/// A key and its value as they are typed; nothing for a switch that is off.
-fn flag(key: &str, value: &Value) -> Result<Option<OsString>, String> {
-    let name = key.replace('_', "-");
-    let plain = |value: &Value| match value {
-        Value::String(text) => Ok(text.clone()),
-        Value::Number(number) => Ok(number.to_string()),
-        _ => Err(format!("{key}: expected a text, a number, true, false, or a list of texts")),
+/// Whether a value alone can be used. An error of the whole object would not say which key it is about.
+fn check(key: &str, value: &Value) -> serde_json::Result<()> {
+    let alone = Value::Object(Map::from_iter([(key.to_owned(), value.clone())]));
+    Cleaning::deserialize(&alone)?;
+    Orienting::deserialize(&alone)?;
+    Shrinking::deserialize(&alone)?;
+    Shape::deserialize(&alone).map(drop)
+}
+
+fn flag(key: &str) -> String {
+    format!("--{}", key.replace('_', "-"))
+}
+
+/// Says where a flag of balls belongs, if it is the one that a command does not know.
+pub(crate) fn advised(mut error: clap::Error, program: &Command, typed: &[OsString]) -> clap::Error {
+    let has_file = |command: &Command| command.get_arguments().any(|argument| argument.get_id() == "scene_config");
+    let command = typed.iter().filter_map(|word| program.find_subcommand(word)).next();
+    let unknown = match (error.kind(), error.get(ContextKind::InvalidArg)) {
+        (ErrorKind::UnknownArgument, Some(ContextValue::String(unknown))) => unknown.clone(),
+        _ => return error,
     };
-    match value {
-        Value::Bool(true) => Ok(Some(format!("--{name}").into())),
-        Value::Bool(false) | Value::Null => Ok(None),
-        Value::Array(items) => {
-            let items = items.iter().map(plain).collect::<Result<Vec<_>, _>>()?;
-            Ok(Some(format!("--{name}={}", items.join(",")).into()))
-        }
-        other => plain(other).map(|text| Some(format!("--{name}={text}").into())),
+    let key = BALL_FLAGS.iter().find(|key| flag(key) == unknown);
+    if let (Some(key), Some(command)) = (key, command.filter(|command| has_file(command))) {
+        let name = command.get_name();
+        let tip = format!(
+            "'{name}' takes this from a file, --scene-config FILE with the key \"{key}\", or from the balls of `belvedere balls`"
+        );
+        error.remove(ContextKind::SuggestedArg);
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
     }
+    error
 }

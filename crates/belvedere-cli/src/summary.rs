@@ -9,31 +9,62 @@ use serde_json::{Map, Value};
 use std::io::Write;
 use std::process::ExitCode;
 
-/// Key of the remarks, and of the answer in a few lines.
-const REMARKS: &str = "remarks";
-const ANSWER: &str = "answer";
+mod short;
 
-/// Named figures and sections, in order.
+/// Key of the remarks.
+const REMARKS: &str = "remarks";
+
+/// Named figures and sections, in order, and those of them that are the answer.
 #[derive(Clone, Default)]
-pub(crate) struct Summary(Map<String, Value>);
+pub(crate) struct Summary {
+    entries: Map<String, Value>,
+    headlines: Vec<String>,
+    extent: Extent,
+}
+
+/// How much of a summary is printed as text.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+enum Extent {
+    /// The headlines, remarks and files; all of it with `--verbose`.
+    #[default]
+    Short,
+    /// All of it: a report is the answer.
+    Whole,
+}
 
 impl Summary {
+    /// Adds a line of the answer. `<section.name>` becomes that figure. A line, or a part in brackets, about a figure that is not there is left out.
+    pub(crate) fn headline(&mut self, text: impl AsRef<str>) -> &mut Self {
+        self.headlines.extend(short::filled(text.as_ref(), &self.entries));
+        self
+    }
+
+    /// Adds a line of the answer as it is.
+    pub(crate) fn answer(&mut self, line: &str) {
+        self.headlines.push(line.to_owned());
+    }
+
+    /// Marks all figures as the answer.
+    pub(crate) fn is_report(&mut self) -> &mut Self {
+        self.extent = Extent::Whole;
+        self
+    }
+
     /// Adds a figure, a text, a list or a section.
     pub(crate) fn add(&mut self, name: &str, value: impl Into<Value>) -> &mut Self {
-        self.0.insert(name.to_owned(), value.into());
+        self.entries.insert(name.to_owned(), value.into());
         self
     }
 
     /// Adds all figures of `other`.
     pub(crate) fn add_all(&mut self, other: Self) -> &mut Self {
-        for (name, value) in other.0 {
-            match (self.0.get_mut(&name), value) {
-                (Some(Value::Array(own)), Value::Array(more)) if [REMARKS, ANSWER].contains(&name.as_str()) => {
-                    own.extend(more);
-                }
-                (_, value) => drop(self.0.insert(name, value)),
+        for (name, value) in other.entries {
+            match (self.entries.get_mut(&name), value) {
+                (Some(Value::Array(own)), Value::Array(more)) if name == REMARKS => own.extend(more),
+                (_, value) => drop(self.entries.insert(name, value)),
             }
         }
+        self.headlines.extend(other.headlines);
         self
     }
 
@@ -45,26 +76,17 @@ impl Summary {
     /// The entries of a report of the library.
     pub(crate) fn of(report: &impl Serialize) -> Self {
         match serde_json::to_value(report) {
-            Ok(Value::Object(entries)) => Self(entries),
+            Ok(Value::Object(entries)) => Self { entries, ..Self::default() },
             // reports are maps of numbers and texts, which JSON holds
             _ => Self::default(),
         }
     }
 
-    /// Adds a line of the answer: a figure that matters, in words.
-    pub(crate) fn headline(&mut self, line: &str) {
-        self.push(ANSWER, line.into());
-    }
-
     /// Adds what the user must know to read the results rightly, or a note. They go to standard error unless the summary is JSON.
     pub(crate) fn remark(&mut self, remark: &Remark) {
-        self.push(REMARKS, Self::of(remark).into());
-    }
-
-    fn push(&mut self, key: &str, value: Value) {
-        let list = self.0.entry(key).or_insert_with(|| Value::Array(Vec::new()));
-        if let Value::Array(list) = list {
-            list.push(value);
+        let remarks = self.entries.entry(REMARKS).or_insert_with(|| Value::Array(Vec::new()));
+        if let Value::Array(remarks) = remarks {
+            remarks.push(Self::of(remark).into());
         }
     }
 
@@ -110,7 +132,7 @@ impl Summary {
 
     /// Prints the remarks on standard error.
     pub(crate) fn print_remarks(&self, global: &Global) {
-        let Some(Value::Array(remarks)) = self.0.get(REMARKS).filter(|_| !global.quiet) else { return };
+        let Some(Value::Array(remarks)) = self.entries.get(REMARKS).filter(|_| !global.quiet) else { return };
         for remark in remarks {
             note(&format!("{}: {}", plain(&remark["severity"]), plain(&remark["text"])));
         }
@@ -119,20 +141,18 @@ impl Summary {
     /// Prints the summary, as JSON where asked for.
     pub(crate) fn print(&self, global: &Global) -> ExitCode {
         // a command without a summary, such as one that prints a script
-        if self.0.is_empty() {
+        if self.entries.is_empty() {
             return ExitCode::SUCCESS;
         }
-        let mut entries = self.0.clone();
         if !global.json {
             self.print_remarks(global);
-            entries.remove(REMARKS);
         }
-        let mut text = String::new();
-        if global.json {
-            text = format!("{:#}\n", Value::Object(entries));
-        } else if !global.quiet {
-            lines(&entries, 0, &mut text);
-        }
+        let text = match (global.json, global.quiet) {
+            (true, _) => format!("{:#}\n", Value::Object(self.of_json())),
+            (false, true) => String::new(),
+            (false, false) if global.verbose || self.extent == Extent::Whole => self.whole(),
+            (false, false) => short::text(&self.headlines, &self.entries),
+        };
         // a reader that stopped listening is not a failure
         match std::io::stdout().lock().write_all(text.as_bytes()) {
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
@@ -144,9 +164,28 @@ impl Summary {
     }
 }
 
+impl Summary {
+    fn of_json(&self) -> Map<String, Value> {
+        let mut entries = self.entries.clone();
+        if !self.headlines.is_empty() {
+            entries.insert("headline".to_owned(), self.headlines.clone().into());
+        }
+        entries
+    }
+
+    /// All figures, after the answer.
+    fn whole(&self) -> String {
+        let mut entries = self.entries.clone();
+        entries.remove(REMARKS);
+        let mut text: String = self.headlines.iter().map(|line| format!("{line}\n")).collect();
+        lines(&entries, 0, &mut text);
+        text
+    }
+}
+
 impl From<Summary> for Value {
     fn from(summary: Summary) -> Self {
-        Self::Object(summary.0)
+        Self::Object(summary.entries)
     }
 }
 

@@ -1,9 +1,10 @@
-//! Flags of normals and balls. Every command that builds balls has them; only `normals` and `balls` list them in their help.
+//! Flags of `normals` and `balls`, which are also the keys of `--scene-config`. Other commands have only a few of them.
 
 use super::{CloudInput, Numbers, SceneConfig, above_zero};
 use belvedere::medial::{Rule, Trees};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
+use serde::{Deserialize, Deserializer};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -60,8 +61,9 @@ pub(crate) struct Balls {
     pub(crate) config: SceneConfig,
 }
 
-#[derive(Args, Clone)]
+#[derive(Args, Clone, Default, Deserialize)]
 #[command(next_help_heading = "Cleaning")]
+#[serde(default)]
 pub(crate) struct Cleaning {
     /// Keep noise points (classes 7 and 18) and withheld points
     #[arg(long)]
@@ -74,15 +76,16 @@ pub(crate) struct Cleaning {
     pub(crate) keep_isolated: bool,
 }
 
-#[derive(Args, Clone)]
+#[derive(Args, Clone, Default, Deserialize)]
 #[command(next_help_heading = "Normals")]
+#[serde(default)]
 pub(crate) struct Orienting {
-    /// Number of neighbours for a normal, 3 to 256, or `adaptive`
+    /// Number of neighbours for a normal, 3 to 256, or `adaptive` [default: 16]
     ///
     /// The paper uses 6; masbcpp uses 10.
-    #[arg(long, value_name = "K", default_value = "16", allow_negative_numbers = true)]
-    pub(crate) neighbors: NeighborChoice,
-    /// Orientation: auto, given, up, scanner, scanner=X,Y,Z, stations=FILE, trajectory=FILE, pulses or mesh=FILE
+    #[arg(long, value_name = "K", allow_negative_numbers = true)]
+    pub(crate) neighbors: Option<NeighborChoice>,
+    /// Orientation: auto, given, up, scanner, scanner=X,Y,Z, stations=FILE, trajectory=FILE, pulses, mesh=FILE [default: auto]
     ///
     /// auto: the normals of the file if it has them, else the scanner positions of the file, else up; `normals` always estimates new ones. For
     /// carving, auto also searches for the scanner in the data: in pulses with several returns, in scan angles, and by the grid of pulses around each
@@ -91,11 +94,12 @@ pub(crate) struct Orienting {
     /// position. stations=FILE: toward the station of each point, from a table with the columns station (the point source id), x, y and z
     /// (.csv .txt). trajectory=FILE: toward the scanner positions in a table or SBET file (.csv .txt .sbet). pulses: toward scanner positions
     /// estimated from pulses with several returns. mesh=FILE: as the nearest face of a mesh (.obj .ply .json).
-    #[arg(long, value_name = "HOW", default_value = "auto")]
-    pub(crate) orient: OrientChoice,
+    #[arg(long, value_name = "HOW")]
+    pub(crate) orient: Option<OrientChoice>,
 }
 
-fn trees() -> impl TypedValueParser<Value = Trees> {
+/// The ways to represent crowns, by their names.
+pub(super) fn trees() -> impl TypedValueParser<Value = Trees> {
     let possible = Trees::ALL.map(|trees| {
         PossibleValue::new(trees.name()).help(match trees {
             Trees::Opaque => "Solid from the highest to the lowest return, as in leaf",
@@ -115,8 +119,32 @@ fn rule(name: &str) -> Result<Rule, String> {
         .ok_or_else(|| format!("unknown rule; the rules are {}", Rule::ALL.map(Rule::name).join(", ")))
 }
 
-#[derive(Args, Clone)]
+/// The same in a file.
+fn trees_of_file<'de, D: Deserializer<'de>>(value: D) -> Result<Option<Trees>, D::Error> {
+    let name = String::deserialize(value)?;
+    let known = || Trees::ALL.map(Trees::name).join(", ");
+    let found = Trees::ALL.into_iter().find(|trees| trees.name() == name);
+    found.map(Some).ok_or_else(|| serde::de::Error::custom(format!("{name:?} is none of {}", known())))
+}
+
+/// The same in a file: a list of names, or one text with commas.
+fn rules_of_file<'de, D: Deserializer<'de>>(value: D) -> Result<Vec<Rule>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "expected a list of names of rules")]
+    enum Names {
+        One(String),
+        Several(Vec<String>),
+    }
+    let names = match Names::deserialize(value)? {
+        Names::One(text) => text.split(',').map(str::to_owned).collect(),
+        Names::Several(names) => names,
+    };
+    names.iter().map(|name| rule(name)).collect::<Result<_, _>>().map_err(serde::de::Error::custom)
+}
+
+#[derive(Args, Clone, Default, Deserialize)]
 #[command(next_help_heading = "Balls")]
+#[serde(default)]
 pub(crate) struct Shrinking {
     /// Method that limits the balls [default: carved if pulses are known, else tau; angles for a folder]
     ///
@@ -125,11 +153,13 @@ pub(crate) struct Shrinking {
     pub(crate) method: Option<MethodChoice>,
     /// How carved balls represent the crowns of trees [default: measured]
     #[arg(long, value_name = "TREES", value_parser = trees())]
+    #[serde(deserialize_with = "trees_of_file")]
     pub(crate) trees: Option<Trees>,
     /// Rules of carved balls to switch off, for research
     ///
     /// docs/methods/carving.md describes each rule.
     #[arg(long, value_name = "RULE,...", value_delimiter = ',', value_parser = rule)]
+    #[serde(deserialize_with = "rules_of_file")]
     pub(crate) without: Vec<Rule>,
     /// Initial radius of balls in metres [default: 5 for carved, 30 for tau, 200 for angles]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
@@ -156,7 +186,8 @@ pub(crate) enum SideChoice {
     Exterior,
 }
 
-#[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]
+#[derive(Clone, Copy, ValueEnum, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub(crate) enum MethodChoice {
     /// Neither points nor pulses lie deeper than --penetration inside a ball
     Carved,
@@ -166,10 +197,19 @@ pub(crate) enum MethodChoice {
     Angles,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Deserialize)]
+#[serde(try_from = "serde_json::Value")]
 pub(crate) enum NeighborChoice {
     Fixed(usize),
     Adaptive,
+}
+
+impl TryFrom<serde_json::Value> for NeighborChoice {
+    type Error = String;
+
+    fn try_from(value: serde_json::Value) -> Result<Self, String> {
+        value.as_str().map_or_else(|| value.to_string(), str::to_owned).parse()
+    }
 }
 
 impl FromStr for NeighborChoice {
@@ -183,7 +223,8 @@ impl FromStr for NeighborChoice {
     }
 }
 
-#[derive(Clone)]
+#[derive(Clone, Deserialize)]
+#[serde(try_from = "String")]
 pub(crate) enum OrientChoice {
     Auto,
     Given,
@@ -194,6 +235,14 @@ pub(crate) enum OrientChoice {
     Trajectory(PathBuf),
     Pulses,
     Mesh(PathBuf),
+}
+
+impl TryFrom<String> for OrientChoice {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
 }
 
 impl FromStr for OrientChoice {

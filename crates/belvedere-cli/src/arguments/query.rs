@@ -1,6 +1,6 @@
 //! Flags of depth maps and of targets in a view.
 
-use super::{MeshTargets, SceneInput, ViewChoice, at_most, finite, length};
+use super::{BallShape, MeshTargets, SceneInput, ViewChoice, at_most, finite, length};
 use belvedere::query::MOST_RANDOM_TARGETS;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -20,6 +20,8 @@ pub(crate) struct DepthMap {
     /// `belvedere balls` writes with the same flags.
     #[arg(long = "ball-ids", value_name = "OUT", help_heading = "Result")]
     pub(crate) balls_id: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) shape: BallShape,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }
@@ -55,6 +57,8 @@ pub(crate) struct Query {
     /// One row for each target, in the order of the input.
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) shape: BallShape,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

@@ -1,7 +1,10 @@
 //! Flags of the scene that a command works on: clouds to build balls from, or a ball file.
 
-use super::{Cleaning, Orienting, Shrinking, known_crs};
+use super::balls::trees;
+use super::{OrientChoice, known_crs};
+use belvedere::medial::Trees;
 use clap::{Args, ValueEnum};
+use serde::Deserialize;
 use std::path::PathBuf;
 
 #[derive(Args, Clone)]
@@ -38,16 +41,38 @@ pub(crate) struct SceneInput {
     #[command(flatten)]
     pub(crate) plan: Plan,
     #[command(flatten)]
+    pub(crate) balls: SceneBalls,
+}
+
+/// How the balls of a scene are made: what every command that builds them takes. The rest stands in a file.
+#[derive(Args, Clone)]
+#[command(next_help_heading = "Scene")]
+pub(crate) struct SceneBalls {
+    /// How the crowns of trees block [default: measured]
+    #[arg(long, value_name = "TREES", value_parser = trees(), hide_short_help = true)]
+    pub(crate) trees: Option<Trees>,
+    /// Orientation of normals, and the scanner: trajectory=FILE, scanner=X,Y,Z, stations=FILE, pulses and others [default: auto]
+    ///
+    /// `belvedere balls --help` explains all values.
+    #[arg(long, value_name = "HOW", hide_short_help = true)]
+    pub(crate) orient: Option<OrientChoice>,
+    #[command(flatten)]
     pub(crate) config: SceneConfig,
-    #[command(flatten)]
-    pub(crate) cleaning: Cleaning,
-    #[command(flatten)]
-    pub(crate) orienting: Orienting,
-    #[command(flatten)]
-    pub(crate) shrinking: Shrinking,
-    /// Shape that represents a ball: the sphere, or the cone of the paper
-    #[arg(long = "ball-profile", id = "ball_profile", value_name = "SHAPE", value_enum, default_value_t = ProfileChoice::Sphere, hide_short_help = true)]
-    pub(crate) profile: ProfileChoice,
+}
+
+/// The shape of balls, for the commands of the paper.
+#[derive(Args, Clone)]
+pub(crate) struct BallShape {
+    /// Shape that represents a ball: the sphere, or the cone of the paper [default: sphere]
+    #[arg(
+        long = "ball-profile",
+        id = "ball_profile",
+        value_name = "SHAPE",
+        value_enum,
+        hide_short_help = true,
+        help_heading = "Scene"
+    )]
+    pub(crate) profile: Option<ProfileChoice>,
 }
 
 /// What is planned: the scene as it will be.
@@ -100,16 +125,16 @@ impl std::str::FromStr for AreaChoice {
 /// The parameters of balls in a file.
 #[derive(Args, Clone)]
 pub(crate) struct SceneConfig {
-    /// JSON file with the parameters of balls, instead of the flags that `belvedere balls --help` lists
+    /// JSON file with the parameters of balls that `belvedere balls --help` lists
     ///
     /// Keys are the names of the flags with underscores, for example {"orient": "pulses", "max_radius": 2, "keep_noise": true}. A flag on
-    /// the command line overrides the file. These flags (--orient, --method, --trees and more) are
-    /// accepted here too. A ball file refuses them, because its balls are already built.
+    /// the command line overrides the file. A ball file refuses them, because its balls are already built.
     #[arg(long, value_name = "FILE", help_heading = "Scene")]
     pub(crate) scene_config: Option<PathBuf>,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, ValueEnum, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub(crate) enum ProfileChoice {
     /// The sphere itself
     Sphere,

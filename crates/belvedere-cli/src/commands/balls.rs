@@ -1,7 +1,7 @@
 //! `belvedere balls`.
 
 use super::{check_output, check_parent, extension, is_folder, is_written_back};
-use crate::arguments::{Balls, Cleaning, CloudInput, Global, MethodChoice, SideChoice, Usage};
+use crate::arguments::{Balls, CloudInput, Global, MethodChoice, SideChoice, Usage};
 use crate::pipeline::{self, params};
 use crate::run::Run;
 use crate::summary::{Summary, percent};
@@ -29,7 +29,8 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
         (false, SideChoice::Interior) => MethodChoice::Carved,
         (false, SideChoice::Exterior) => MethodChoice::Tau,
     };
-    let balls = arguments.shrinking.params(method)?;
+    let mut parameters = arguments.parameters()?;
+    let balls = parameters.balls(method)?;
     let is_carved = matches!(balls, BallParams::Carved(_));
     if is_carved && (is_folder || arguments.side == SideChoice::Exterior) {
         let what =
@@ -42,9 +43,10 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
     } else {
         pipeline::read(&arguments.input, &mut run)?
     };
-    let nothing = Cleaning::nothing();
-    let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
-    let params = params::model(cleaning, &arguments.orienting, balls, &cloud.frame.crs, &mut run)?;
+    if is_folder {
+        parameters = parameters.keeping_all();
+    }
+    let params = params::model(&parameters, balls, &cloud.frame.crs, &mut run)?;
     match (is_folder, arguments.side) {
         (true, _) => write_folder(arguments, global, &cloud, &params, &mut run)?,
         (false, side) => {
@@ -52,6 +54,7 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
                 SideChoice::Interior => interior(&arguments.input, cloud, &params, &mut run)?,
                 SideChoice::Exterior => exterior(&arguments.input, &cloud, &params, &mut run)?,
             };
+            run.summary.add("balls", model.balls.len());
             let inputs: Vec<String> = arguments.input.clouds.iter().map(|p| p.display().to_string()).collect();
             let program = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
             let model = model.with_provenance("program", program).with_provenance("input", inputs.join(" "));
@@ -61,6 +64,12 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
             run.stage("writing", 0, |_| write_balls(&arguments.output, &model))?;
         }
     }
+    run.summary
+        .headline("[<balls> ]balls from <points> points; normals oriented by <normals.oriented_by>")
+        .headline("scanner found by <scanner.found_by>, known for <scanner.scanner_known_percent> % of the points")
+        .headline("pulses: <pulses.pulses_used> cut <interior_balls.balls_cut_by_pulses> balls")
+        .headline("noise of the surface: <smoothing.noise_m> m")
+        .headline("thinning keeps <thinning_kept_percent> % of the points");
     run.summary.add("written", arguments.output.display().to_string());
     Ok(run.finish())
 }

@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     let grid = map_grid(&scene, cell)?;
     let (cloud, ground_points) = ground_cloud(&arguments.targets.ground, &mut scene, &mut run)?;
     let ground = ground(&cloud, ground_points, grid, &mut run)?;
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
     let site = what::Site { scene: &scene, cloud: &cloud, ground: &ground };
     let targets = what::targets(&arguments.targets, &site, &mut run)?;
@@ -102,6 +102,10 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     if let Some(output) = &arguments.footprints {
         run.stage("writing", 0, |_| found.write_footprints(output))?;
     }
+    run.summary
+        .headline("<coverage.new_cameras> new cameras cover <coverage.coverage_percent> % of the targets")
+        .headline("best possible: <coverage.best_possible_percent> %, so at most <coverage.at_most_below_best_percent> % are missing")
+        .headline("all <cameras_to_choose_from.count> candidates together: <coverage.all_candidates_percent> %");
     run.summary.add("written", written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     Ok(run.finish())
 }

@@ -64,7 +64,10 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         .add("points_of_the_largest_tile", estimate.most_points_of_a_tile)
         .add("estimated_memory_gb", rounded(estimate.memory_bytes as f64 / 1e9, 2))
         .add("estimated_disk_gb", rounded(estimate.disk_bytes as f64 / 1e9, 2))
-        .add("written", arguments.output.display().to_string());
+        .add("written", arguments.output.display().to_string())
+        .headline("<tiles> tiles of <tile_size_m> m, <points> points")
+        .headline("results: <results>")
+        .headline("estimated: <estimated_memory_gb> GB of memory, <estimated_disk_gb> GB on disk");
     Ok(run.finish())
 }
 
@@ -124,7 +127,10 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
             format!("{} observers are inside obstacles and see nothing", report.skipped_observers),
         );
     }
-    run.summary.add("written", arguments.run.display().to_string());
+    run.summary
+        .add("written", arguments.run.display().to_string())
+        .headline("balls of <balls_made> tiles made, and <answers_made> tiles of results")
+        .headline("done before: <already_done>");
     Ok(run.finish())
 }
 
@@ -133,10 +139,12 @@ fn status(arguments: &CityStatus) -> Result<Summary> {
     let found = status_of(&plan, &arguments.run);
     let mut summary = Summary::default();
     summary.add("tiles", found.tiles).add("is_complete", found.is_complete());
+    summary.headline(if found.is_complete() { "complete: <tiles> tiles" } else { "not complete: <tiles> tiles" });
     for stage in &found.stages {
         let mut section = Summary::of(stage);
         section.add("seconds", rounded(stage.seconds, 1));
         summary.add(&stage.name, section);
+        summary.headline(format!("{0}: <{0}.done> done, <{0}.left> left", stage.name));
     }
     Ok(summary)
 }
@@ -157,6 +165,7 @@ fn merge_tiles(arguments: &CityMerge, global: &Global) -> Result<Summary> {
     let merged =
         run.stage("merging", 0, |control| merge(&plan, &arguments.run, question, &arguments.output, control))?;
     run.summary.add("tiles", merged.tiles).add("tiles_without_result", merged.without_result);
+    run.summary.headline("merged <tiles> tiles, and <tiles_without_result> without a result");
     run.summary.add("written", arguments.output.display().to_string());
     Ok(run.finish())
 }

@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     let directions = [sky.directions.as_slice(), &schedule.directions].concat();
     report_edge(&places.targets, &scene, &directions, &mut run)?;
     let mut section = Summary::default();
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let (blockers, _) =
         blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut run, &mut section)?;
     section.add("sky_directions", sky.directions.len());
@@ -99,6 +99,11 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     }
     let written = [Some(&arguments.output), arguments.routes.as_ref(), arguments.times.as_ref()];
     let written: Vec<String> = written.into_iter().flatten().map(|path| path.display().to_string()).collect();
+    run.summary
+        .headline("routes: <exposure.routes>, with <exposure.targets> places")
+        .headline("windows: <exposure.windows>, with <exposure.targets> places")
+        .headline("sun: <exposure.mean_sun_hours> h a day on average, <exposure.mean_longest> h without a break")
+        .headline("sky view factor: <exposure.mean_sky_view_factor> on average");
     run.summary.add("written", written);
     Ok(run.finish())
 }

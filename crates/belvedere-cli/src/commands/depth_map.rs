@@ -38,6 +38,10 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
     if views.iter().any(View::is_central) {
         run.summary.add("balls_around_eye_ignored", map.around_eye_count);
     }
+    run.summary
+        .headline("<view.width_px> x <view.height_px> pixels, <pixels_hit_percent> % of them show a surface")
+        .headline("side of a pixel: <view.pixel_m> m")
+        .headline("side of a pixel at a distance of 100 m: <view.pixel_m_at_100_m> m");
     let place = views.first().and_then(|view| georeference(&scene.cloud, view));
     for output in &arguments.output {
         run.stage("writing", 0, |_| match extension(output).as_str() {
@@ -98,7 +102,7 @@ fn draw(
     items: ItemBuffer,
     control: &Control<'_>,
 ) -> Result<Drawn> {
-    let profile = arguments.scene.profile.into();
+    let profile = arguments.shape.profile.map_or(scene.profile, Profile::from);
     if let [view] = views {
         let look = if view.is_central() { Look::Camera(*view) } else { Look::Parallel };
         let map = scene.model.depth_map(view, profile, items, control)?;

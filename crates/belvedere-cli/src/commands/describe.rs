@@ -14,6 +14,7 @@ pub(crate) fn run() -> Summary {
     let program = help::command();
     let mut summary = Summary::default();
     summary
+        .is_report()
         .add("name", program.get_name())
         .add("version", env!("CARGO_PKG_VERSION"))
         .add("summary", text(program.get_about()))
@@ -30,7 +31,7 @@ fn steps(of: &Command) -> Vec<Value> {
 }
 
 fn command(name_of: &str, command: &Command) -> Value {
-    let examples = help::examples(&text(command.get_after_help()));
+    let examples = help::examples(&text(command.get_after_long_help()));
     let one_of: Vec<Value> = command
         .get_groups()
         .filter(|group| (*group).clone().is_required_set())
@@ -41,6 +42,7 @@ fn command(name_of: &str, command: &Command) -> Value {
         .collect();
     json!({
         "name": name_of,
+        "group": name_of.split(' ').next().and_then(help::group),
         "summary": text(command.get_about()),
         "description": text(command.get_long_about()),
         "examples": examples,

@@ -72,6 +72,12 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
             _ => write_tif_f32(output, &values, place, Some(NO_VALUE), Some("after less before")),
         })?;
     }
+    run.summary
+        .headline(
+            "gain on <difference.area_gain_m2> m2, loss on <difference.area_loss_m2> m2, of <difference.cells> cells",
+        )
+        .headline("mean <difference.mean_before> before, <difference.mean_after> after")
+        .headline("largest gain <difference.largest_gain>, largest loss <difference.largest_loss>");
     run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     Ok(run.finish())
 }

@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
         false => None,
         true => {
             let mut section = Summary::default();
-            let profile = arguments.scene.profile.into();
+            let profile = scene.profile;
             let (blockers, _) =
                 blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut run, &mut section)?;
             run.summary.add("lines_of_sight", section);
@@ -77,6 +77,11 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
             write_heights(output, &tops, (&found.grid, &cloud.frame), what)
         })?;
     }
+    run.summary
+        .headline("volume: <envelope.volume_m3> m3 on <envelope.area_m2> m2")
+        .headline("mean height <envelope.mean_height_m> m, highest <envelope.max_height_m> m")
+        .headline("without limit: <envelope.columns_unlimited> of <envelope.columns> columns")
+        .headline("no room: <envelope.columns_of_zero_height> of <envelope.columns> columns");
     let written = arguments.output.iter().chain(&arguments.tops).map(|path| path.display().to_string());
     run.summary.add("written", written.collect::<Vec<_>>());
     Ok(run.finish())
@@ -112,10 +117,11 @@ fn scene(arguments: &Envelope, run: &mut Run) -> Result<Scene> {
     if arguments.credit_shade || is_balls {
         return pipeline::scene(&arguments.scene, Points::Keep, run);
     }
+    let profile = arguments.scene.balls.parameters()?.profile();
     let cloud = pipeline::read(&arguments.scene.input, run)?;
     let bounds = pipeline::bounds_of(&cloud)?;
     let parts = ModelParts { frame: cloud.frame.clone(), bounds, ..ModelParts::default() };
-    Ok(Scene { model: SceneModel::from_parts(parts)?, cloud, left_out: ReadReport::default() })
+    Ok(Scene { model: SceneModel::from_parts(parts)?, cloud, left_out: ReadReport::default(), profile })
 }
 
 /// Directions, and what to call each.

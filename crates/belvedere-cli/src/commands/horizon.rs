@@ -40,8 +40,7 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
     north.report(&mut run.summary);
     let mut section = Summary::default();
     let giving_way = GivingWay { shell: None, unproven: None };
-    let (blockers, _) =
-        blockers(&scene, arguments.scene.profile.into(), &giving_way, Proving::Never, &mut run, &mut section)?;
+    let (blockers, _) = blockers(&scene, scene.profile, &giving_way, Proving::Never, &mut run, &mut section)?;
     run.summary.add("lines_of_sight", section);
     check_eyes(&blockers, &scene.cloud.frame, &mut places, &mut run)?;
     let params = HorizonParams::default().with_azimuth_count(azimuth_count).with_turn(north.of_grid).with_earth(earth);
@@ -69,6 +68,9 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
             _ => write_columns(output, &elevations, azimuth_count),
         })?;
     }
+    run.summary
+        .headline("mean elevation of the horizon: <horizons.mean_elevation_deg> degrees, highest <horizons.max_elevation_deg>")
+        .headline("<horizons.azimuths> azimuths[, <horizons.azimuths_near_edge_percent> % of them near the edge of the cloud]");
     run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     Ok(run.finish())
 }

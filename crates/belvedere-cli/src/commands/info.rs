@@ -20,6 +20,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
         return Ok(of_balls(&run.stage("reading balls", 0, |_| read_balls(path))?));
     }
     let mut summary = Summary::default();
+    summary.is_report();
     let mut options = ReadOptions::new();
     options.crs = arguments.input.crs.clone();
     options.up = arguments.input.up.into();

@@ -30,8 +30,7 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
     north.report(&mut run.summary);
     let mut section = Summary::default();
     let giving_way = GivingWay { shell: None, unproven: None };
-    let (blockers, _) =
-        blockers(&scene, arguments.scene.profile.into(), &giving_way, Proving::Never, &mut run, &mut section)?;
+    let (blockers, _) = blockers(&scene, scene.profile, &giving_way, Proving::Never, &mut run, &mut section)?;
     let usual = IsovistParams::default();
     let params = IsovistParams::default()
         .with_step(arguments.step.map_or(usual.step, f64::to_radians))
@@ -67,6 +66,13 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
             }
             _ => write_rows(output, &rows, &given),
         })?;
+    }
+    run.summary
+        .headline("visible space: <isovist.volume_m3> m3; on the map <isovist.plan_area_m2> m2")
+        .headline("mean distance to what is seen: <isovist.range_mean_m> m, at most <isovist.range_max_m> m")
+        .headline("open sky: share <isovist.sky_openness>");
+    if places.len() > 1 {
+        run.summary.headline("observers: <observers.count>, of which <observers.skipped> cannot stand where they are");
     }
     run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     Ok(run.finish())

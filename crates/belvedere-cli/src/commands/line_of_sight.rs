@@ -48,14 +48,8 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     let (mut pairs, rows) = pairs(arguments, &scene, &mut run)?;
     set_ends_on_ground(&mut pairs, arguments, &mut scene, &mut run)?;
     let mut section = Summary::default();
-    let (blockers, unproven_as) = blockers(
-        &scene,
-        arguments.scene.profile.into(),
-        &arguments.giving_way,
-        Proving::IfItDecides,
-        &mut run,
-        &mut section,
-    )?;
+    let (blockers, unproven_as) =
+        blockers(&scene, scene.profile, &arguments.giving_way, Proving::IfItDecides, &mut run, &mut section)?;
     if blockers.proof().is_none() {
         // nothing then says how much of a line no pulse came near to
         scene.model = scene.model.without_pulses();
@@ -107,6 +101,16 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
         }
         one.add("note", enclosure_note(&blockers, *observer, "the observer").into_iter().collect::<Vec<_>>());
         run.summary.add("line", one);
+        run.summary
+            .headline("answer: <line.answer>")
+            .headline("first obstacle at <line.first_block_range_m> m: <line.block_position>")
+            .headline("unproven: <line.unproven_m> m of the line")
+            .headline("free of the first Fresnel zone: <line.fresnel_free_percent> %");
+    } else {
+        run.summary
+            .headline("visible <lines_of_sight.visible_percent> % of <lines_of_sight.pairs> lines of sight")
+            .headline("blocked: <lines_of_sight.blocked>")
+            .headline("unproven: <lines_of_sight.unproven>");
     }
     if let Some(output) = &arguments.output {
         run.stage("writing", 0, |_| {

@@ -58,12 +58,12 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     if arguments.bias.is_some() {
         return Err(Usage("--bias applies only to point targets; for a mesh use --shell".to_owned()).into());
     }
+    let profile = arguments.shape.of(&arguments.scene.balls)?;
     let mut run = Run::new(global);
     let scene = pipeline::scene(&arguments.scene, Points::LetGo, &mut run)?;
     let mesh = mesh_of(path, &scene, &mut run)?;
     let views = arguments.view.views(&scene, &mut run.summary)?;
     let giving_way = GivingWay { shell: arguments.shell, unproven: arguments.unproven };
-    let profile = arguments.scene.profile.into();
     let (blockers, unproven) = sights::proving_blockers(&scene, profile, &giving_way, &mut run)?;
     if let Some(view) = views.first().filter(|view| view.is_central()) {
         let note = sights::enclosure_note(&blockers, view.frame.eye, "the eye");
@@ -109,6 +109,9 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
         }
         _ => FaceRows::of_seen(&mesh, &faces).write(output),
     })?;
+    run.summary
+        .headline("visible <faces.visible_percent> % of <faces.area_m2> m2 on <faces.count> faces (<faces.visible_m2> m2, standard error <faces.standard_error_m2> m2)")
+        .headline("unproven: <faces.unproven_m2> m2");
     run.summary.add("written", output.display().to_string());
     Ok(run.finish())
 }

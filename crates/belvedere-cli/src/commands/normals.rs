@@ -1,7 +1,7 @@
 //! `belvedere normals`.
 
 use super::{NormalColumns, check_output, check_parent, is_folder, is_written_back};
-use crate::arguments::{Cleaning, Global, Normals, OrientChoice};
+use crate::arguments::{Global, Normals, OrientChoice};
 use crate::pipeline::{self, params};
 use crate::run::Run;
 use crate::summary::Summary;
@@ -18,21 +18,23 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
     } else {
         check_output("-o", output, &["laz", "las", "ply", "csv", "xyz", "txt"])?;
     }
+    let mut parameters = arguments.parameters()?;
     let mut run = Run::new(global);
     let mut cloud = if is_folder {
         pipeline::read_every_row(&arguments.input, &mut run)?
     } else {
         pipeline::read(&arguments.input, &mut run)?
     };
-    if matches!(arguments.orienting.orient, OrientChoice::Auto) {
+    if matches!(parameters.orienting.orient, None | Some(OrientChoice::Auto)) {
         // normals are asked for, so those of an earlier run do not stand in the way
         cloud.attributes.normals = None;
     }
-    let nothing = Cleaning::nothing();
-    // the rows of a folder belong to the rows of its coords.npy
-    let cleaning = if is_folder { &nothing } else { &arguments.cleaning };
+    if is_folder {
+        // the rows of a folder belong to the rows of its coords.npy
+        parameters = parameters.keeping_all();
+    }
     let balls = BallParams::Shrunk(ShrinkParams::tau());
-    let params = params::model(cleaning, &arguments.orienting, balls, &cloud.frame.crs, &mut run)?;
+    let params = params::model(&parameters, balls, &cloud.frame.crs, &mut run)?;
     let prepared = OrientedSurvey::prepare(&cloud, &params, &run.control());
     let (survey, report) = prepared.map_err(|error| pipeline::advised(&arguments.input, error))?;
     run.summary.add_report(&report);
@@ -64,6 +66,9 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
         Ok(write_cloud(output, &kept, &columns)?)
     })?;
     run.summary.add_writing(&report);
+    run.summary
+        .headline("normals of <points> points, oriented by <normals.oriented_by>")
+        .headline("uncertain sign: <normals.low_confidence_percent> % of the points");
     run.summary.add("written", output.display().to_string());
     Ok(run.finish())
 }

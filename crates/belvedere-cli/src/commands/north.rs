@@ -7,6 +7,10 @@ use belvedere::Frame;
 use belvedere::apps::ask;
 use belvedere::apps::horizon::convergence;
 
+/// Where azimuths are from if the scene does not say where true north is.
+const UNKNOWN_NORTH: &str =
+    "grid north, because true north is unknown: the scene has no usable reference system (see --crs)";
+
 /// The north of the azimuths of a command.
 #[derive(Clone, Copy)]
 pub(crate) struct AzimuthNorth {
@@ -41,10 +45,7 @@ impl North {
         let [x, y] = [0, 1].map(|i| frame.origin[i] + place[i]);
         match convergence(&frame.crs, [x, y]) {
             Ok(of_grid) => AzimuthNorth { of_grid, name: "true north" },
-            Err(_) => AzimuthNorth {
-                of_grid: 0.0,
-                name: "grid north, because true north is unknown: the scene has no usable reference system (see --crs)",
-            },
+            Err(_) => AzimuthNorth { of_grid: 0.0, name: UNKNOWN_NORTH },
         }
     }
 }
@@ -53,6 +54,9 @@ impl AzimuthNorth {
     /// States the north, and how far grid north is from it.
     pub(crate) fn report(&self, summary: &mut Summary) {
         summary.add("azimuths_from", self.name);
+        if self.name == UNKNOWN_NORTH {
+            summary.add("note", format!("azimuths are from {UNKNOWN_NORTH}"));
+        }
         if self.of_grid != 0.0 {
             summary.add("meridian_convergence_deg", rounded(self.of_grid.to_degrees(), 4));
         }

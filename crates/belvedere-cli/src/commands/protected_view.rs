@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
     let grid = MapGrid::covering(low, high, cell, [x, y])?;
     let (cloud, points) = ground_cloud(&arguments.eyes.ground, &mut scene, &mut run)?;
     let ground = sights::ground(&cloud, points, grid, &mut run)?;
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
     check_eyes(&blockers, &cloud.frame, &mut places, &mut run)?;
     let params = LandmarkParams::default()
@@ -92,6 +92,14 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
         }
         run.stage("writing", 0, |_| write_heights(output, &tops, (&ground.grid, &cloud.frame), "maximum height"))?;
     }
+    run.summary
+        .headline("heights limited on <protected_view.area_limited_m2> m2 (<protected_view.cells_limited> cells)")
+        .headline(
+            "lowest limit <protected_view.lowest_limit_m> m above the ground, mean <protected_view.mean_limit_m> m",
+        )
+        .headline(
+            "lines of sight: <protected_view.lines_protected> protected, <protected_view.lines_blocked> blocked today",
+        );
     let written = arguments.output.iter().chain(&arguments.tops).map(|path| path.display().to_string());
     run.summary.add("written", written.collect::<Vec<_>>());
     Ok(run.finish())

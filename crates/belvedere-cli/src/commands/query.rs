@@ -28,7 +28,8 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     let output = &arguments.output;
     check_output("-o", output, &["csv", "txt", "xyz", "laz", "las", "ply", "npy"])?;
     let is_central = arguments.view.is_central();
-    if is_central && Profile::from(arguments.scene.profile) != Profile::Sphere {
+    let profile = arguments.shape.of(&arguments.scene.balls)?;
+    if is_central && profile != Profile::Sphere {
         return Err(Usage("--ball-profile: the paper's cone is for parallel views only".to_owned()).into());
     }
     let mut run = Run::new(global);
@@ -57,9 +58,8 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         by_lines_of_sight(arguments, &model, &views, &targets.positions, &mut run, &mut section)?
     } else {
         let Some(view) = views.first() else { bail!("there is no view") };
-        let map = run.stage("drawing depth map", 0, |control| {
-            model.depth_map(view, arguments.scene.profile.into(), ItemBuffer::Without, control)
-        })?;
+        let map =
+            run.stage("drawing depth map", 0, |control| model.depth_map(view, profile, ItemBuffer::Without, control))?;
         let bias = arguments.bias.unwrap_or_else(|| map.default_depth_bias());
         section.add("method", "depth map").add("depth_bias_m", rounded(f64::from(bias), 4));
         let mut answers = run.compute("querying", || query_points(&map, &targets.positions, bias));
@@ -96,6 +96,10 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         write_cloud(output, &targets, &[column])
     })?;
     run.summary.add_writing(&report);
+    run.summary
+        .headline("visible <answers.visible_percent> % of <answers.targets> targets")
+        .headline("blocked: <answers.blocked> targets")
+        .headline("unproven: <answers.unproven> targets");
     run.summary.add("written", output.display().to_string());
     Ok(run.finish())
 }
@@ -141,7 +145,8 @@ fn by_lines_of_sight(
     let usual = model.rule();
     let depth_bias = arguments.bias.map_or(usual.bias, f64::from);
     let shell = arguments.shell.map_or(usual.shell, f64::from);
-    let rule = BlockRule { profile: arguments.scene.profile.into(), bias: depth_bias, shell };
+    let profile = arguments.shape.of(&arguments.scene.balls)?;
+    let rule = BlockRule { profile, bias: depth_bias, shell };
     let unproven_as = arguments.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
     let scene = model.scene(&rule, unproven_as, &run.control())?;
     section.add("depth_bias_m", rounded(depth_bias, 4)).add("shell_m", rounded(shell, 4));

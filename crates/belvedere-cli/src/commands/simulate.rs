@@ -64,6 +64,9 @@ pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
     for (name, lit) in SUN_NAMES.iter().zip(&lit) {
         run.summary.add(&format!("{name}_percent"), percent(lit.iter().filter(|&&v| v == 1).count(), lit.len()));
     }
+    run.summary
+        .headline("<points> points of a simulated <scene> with <objects> objects")
+        .headline("ground truth: <ground_truth_triangles> triangles");
     run.summary.add("files", files.iter().map(|name| folder.join(name).display().to_string()).collect::<Vec<_>>());
     Ok(run.finish())
 }

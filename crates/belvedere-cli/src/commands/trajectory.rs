@@ -28,6 +28,10 @@ pub(crate) fn run(arguments: &Trajectory, global: &Global) -> Result<Summary> {
     let samples = path_samples(&report.paths, cloud.frame.origin, arguments.step)?;
     run.summary.add("positions", samples.len());
     run.stage("writing", 0, |_| write_found_trajectory(&arguments.output, &samples, &cloud.frame.crs))?;
+    run.summary
+        .headline("<positions> scanner positions, found by <scanner.found_by>")
+        .headline("scanner known for <scanner.scanner_known_percent> % of the points[, <scanner.height_above_ground_m> m above the ground]")
+        .headline("deviation of a position: <scanner.position_deviation_m> m");
     run.summary.add("written", arguments.output.display().to_string());
     Ok(run.finish())
 }

@@ -170,7 +170,10 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
     run.stage("writing", 0, |_| {
         atomic::write(output, |file| file.write_all(page.as_bytes()).map_err(Error::io(output)))
     })?;
-    run.summary.add_report(&report).add("written", output.display().to_string());
+    run.summary
+        .add_report(&report)
+        .add("written", output.display().to_string())
+        .headline("a page with <points> points, <suns> suns and <viewpoints> viewpoints");
     Ok(run.finish())
 }
 
@@ -251,7 +254,8 @@ fn load(
     let mut input = arguments.clone();
     input.input.clouds.clone_from(&files.clouds);
     let Some(balls) = &files.balls else {
-        let params = arguments.shrinking.params(MethodChoice::Carved)?;
+        let parameters = arguments.balls.parameters()?;
+        let params = parameters.balls(MethodChoice::Carved)?;
         let cloud = Arc::new(pipeline::read(&input.input, run)?);
         loading.show(&cloud);
         let bounds = cloud.bounds().unwrap_or_default();
@@ -260,7 +264,7 @@ fn load(
         show_results(files, &cloud.frame, &bounds, loading, run)?;
         TooManyPoints::check(cloud.len(), available_bytes())?;
         let crs = &cloud.frame.crs;
-        let params = params::model(&arguments.cleaning, &arguments.orienting, params, crs, run)?;
+        let params = params::model(&parameters, params, crs, run)?;
         let built = SceneModel::build(&cloud, &params, &run.control());
         let model = built.map_err(|error| pipeline::advised(&input.input, error))?.0;
         return Ok((Some(cloud), pipeline::planned(model, &arguments.plan, run)?));

@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
         true => arguments.looking.observer_height.unwrap_or(OBSERVER_HEIGHT),
         false => arguments.looking.target_height.unwrap_or(TARGET_HEIGHT),
     };
-    let profile = arguments.scene.profile.into();
+    let profile = scene.profile;
     let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
     let who = if is_reverse { "target" } else { "observer" };
     let report = skip_observers(&mut observers, &blockers, &ground, (who, &cloud), &mut run)?;
@@ -120,6 +120,15 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
             least_visible_heights(&blockers, &observers, &ground, arguments.ceiling, &earth, progress)
         })?;
         run.stage("writing", 0, |_| write_heights(output, &heights, (&ground.grid, &cloud.frame), LEAST_HEIGHTS))?;
+    }
+    run.summary
+        .headline("visible <cells.visible_percent> % of <cells.targets> cells (<cells.visible_m2> m2)[, unproven <cells.unproven_percent> %]")
+        .headline("visible <cloud_points.visible_percent> % of <cloud_points.targets> points[, unproven <cloud_points.unproven_percent> %]")
+        .headline("beyond the cloud visible <far_cells.visible_percent> % of <far_cells.targets> cells (<far_cells.visible_m2> m2)")
+        .headline("eye <observers.above_ground_m> m above the ground")
+        .headline("target <target.above_ground_m> m above the ground");
+    if observers.len() > 1 {
+        run.summary.headline("observers: <observers.count>, of which <observers.skipped> cannot stand where they are");
     }
     let written =
         arguments.output.iter().chain(&arguments.far_output).chain(&arguments.heights).chain(&arguments.masks);
@@ -271,7 +280,7 @@ fn counted(answers: &[Answer], unproven: UnprovenAs, cell: Option<[f64; 2]>) -> 
     let mut section = Summary::default();
     section.add("targets", asked).add("visible", counts.visible);
     if unproven == UnprovenAs::Reported {
-        section.add("unproven", counts.unproven);
+        section.add("unproven", counts.unproven).add("unproven_percent", percent(counts.unproven, asked));
     }
     section
         .add("blocked", counts.blocked)

@@ -1,7 +1,8 @@
 //! From flags to the parameters of a scene model.
 
-use crate::arguments::{Cleaning, MethodChoice, NeighborChoice, OrientChoice, Orienting, Shrinking, Usage};
+use crate::arguments::{Cleaning, MethodChoice, NeighborChoice, OrientChoice, Shrinking, Usage};
 use crate::run::Run;
+use crate::scene_config::BallParameters;
 use anyhow::Result;
 use belvedere::clean::CleanParams;
 use belvedere::crs::Crs;
@@ -11,19 +12,15 @@ use belvedere::model::{BallParams, ModelParams, OrientBy};
 use belvedere::normals::estimate::Neighborhood;
 
 /// Parameters of a model as typed, with the trajectory or the mesh that they name, for a cloud in `crs`.
-pub(crate) fn model(
-    cleaning: &Cleaning,
-    orienting: &Orienting,
-    balls: BallParams,
-    crs: &Crs,
-    run: &mut Run,
-) -> Result<ModelParams> {
-    let neighborhood = match orienting.neighbors {
-        NeighborChoice::Fixed(k) => Neighborhood::Fixed { k },
-        NeighborChoice::Adaptive => Neighborhood::adaptive(),
+pub(crate) fn model(parameters: &BallParameters, balls: BallParams, crs: &Crs, run: &mut Run) -> Result<ModelParams> {
+    let defaults = ModelParams::default();
+    let neighborhood = match parameters.orienting.neighbors {
+        None => defaults.neighborhood,
+        Some(NeighborChoice::Fixed(k)) => Neighborhood::Fixed { k },
+        Some(NeighborChoice::Adaptive) => Neighborhood::adaptive(),
     };
-    neighborhood.check()?;
-    let orient = match &orienting.orient {
+    parameters.naming(neighborhood.check().map_err(Into::into))?;
+    let orient = match parameters.orienting.orient.as_ref().unwrap_or(&OrientChoice::Auto) {
         OrientChoice::Auto => OrientBy::Auto,
         OrientChoice::Given => OrientBy::Given,
         OrientChoice::Up => OrientBy::Up,
@@ -43,8 +40,11 @@ pub(crate) fn model(
             OrientBy::Mesh(mesh.scaled_to_metres(crs))
         }
     };
-    let params = ModelParams::default().with_clean(cleaning.params());
-    Ok(params.with_neighborhood(neighborhood).with_orient(orient).with_balls(balls))
+    Ok(defaults
+        .with_clean(parameters.cleaning.params())
+        .with_neighborhood(neighborhood)
+        .with_orient(orient)
+        .with_balls(balls))
 }
 
 impl Cleaning {
@@ -69,9 +69,15 @@ impl Cleaning {
     }
 }
 
+impl BallParameters {
+    /// Parameters of balls; without a method those of `default`, where carving gives way to what is possible.
+    pub(crate) fn balls(&self, default: MethodChoice) -> Result<BallParams> {
+        self.naming(self.shrinking.params(default))
+    }
+}
+
 impl Shrinking {
-    /// Parameters as typed; without a method those of `default`, where carving gives way to what is possible.
-    pub(crate) fn params(&self, default: MethodChoice) -> Result<BallParams> {
+    fn params(&self, default: MethodChoice) -> Result<BallParams> {
         match (self.method, default) {
             (None, MethodChoice::Carved) => {
                 if self.first_angle.is_some() || self.next_angle.is_some() {

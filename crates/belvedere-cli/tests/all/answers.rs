@@ -2,7 +2,7 @@
 
 use crate::common::{EAST, NORTH, Workplace, at, column, house};
 
-const HOUSE: &str = "house.laz --method tau --orient given --ground found";
+const HOUSE: &str = "house.laz --scene-config ../tau.json --orient given --ground found";
 /// Three kilometres beside the house.
 const FAR: f64 = 3_000.0;
 
@@ -25,9 +25,9 @@ fn places_outside_the_cloud_have_an_answer_of_their_own_in_all_ways_of_asking() 
     let targets = "--targets targets.csv -o out.csv";
     // by a depth map, whose picture ends above the house, by lines of sight, and from a camera
     for (view, above) in [
-        ("--sun 180,60 --method tau", 3.0),
-        ("--sun 180,60 --method carved", 1.0),
-        ("--panorama 85000,446000,20 --method tau", 1.0),
+        ("--sun 180,60 --scene-config ../tau.json", 3.0),
+        ("--sun 180,60 --scene-config ../carved.json", 1.0),
+        ("--panorama 85000,446000,20 --scene-config ../tau.json", 1.0),
     ] {
         let summary = place.summary(&format!("query house.laz --orient given {targets} {view}"));
         assert_eq!(column(&place, "out.csv", "answer"), [1.0, 4.0, 4.0, above], "{view}");
@@ -36,19 +36,22 @@ fn places_outside_the_cloud_have_an_answer_of_their_own_in_all_ways_of_asking() 
         assert!(warning.contains("2 of 4 targets (50 %) are outside the cloud"), "{warning}");
     }
     let beside = format!("--panorama {},{NORTH},20", EAST + FAR);
-    let summary = place.summary(&format!("query house.laz --method tau --orient given {targets} {beside}"));
+    let summary =
+        place.summary(&format!("query house.laz --scene-config ../tau.json --orient given {targets} {beside}"));
     assert_eq!(summary["answers"]["outside_cloud"], 4);
     assert!(summary["warnings"][0].as_str().unwrap().contains("the eye is outside the cloud"));
 
     let pair = |a: [f64; 3], b: [f64; 3]| a.into_iter().chain(b).collect::<Vec<f64>>();
     let pairs = [pair(places[0], places[3]), pair(places[0], places[1]), pair(at(FAR, 0.0, 9.0), at(FAR, 9.0, 9.0))];
     place.write("pairs.csv", table("ax,ay,az,bx,by,bz", &pairs));
-    let summary = place.summary("line-of-sight house.laz --method tau --orient given --pairs pairs.csv -o sights.csv");
+    let summary = place
+        .summary("line-of-sight house.laz --scene-config ../tau.json --orient given --pairs pairs.csv -o sights.csv");
     assert_eq!(column(&place, "sights.csv", "answer"), [1.0, 4.0, 4.0]);
     assert_eq!(summary["lines_of_sight"]["outside_cloud"], 2);
 
     for command in ["shadow --sun 180,60", "sky-view"] {
-        let summary = place.summary(&format!("{command} house.laz --method tau --orient given {targets}"));
+        let summary =
+            place.summary(&format!("{command} house.laz --scene-config ../tau.json --orient given {targets}"));
         let name = if command == "sky-view" { "sky_view_factor" } else { "lit" };
         let known: Vec<bool> = column(&place, "out.csv", name).iter().map(|v| v.is_finite()).collect();
         assert_eq!(known, [true, false, false, true], "{command}");
@@ -60,7 +63,8 @@ fn places_outside_the_cloud_have_an_answer_of_their_own_in_all_ways_of_asking() 
 fn without_json_warnings_go_to_standard_error() {
     let place = place();
     place.write("targets.csv", table("x,y,z", &[at(FAR, 0.0, 2.0).to_vec()]));
-    let run = place.run("query house.laz --method tau --orient given --sun 180,60 --targets targets.csv -o out.csv");
+    let run = place
+        .run("query house.laz --scene-config ../tau.json --orient given --sun 180,60 --targets targets.csv -o out.csv");
     assert!(run.status == 0 && !run.stdout.contains("warning"), "{run:?}");
     assert!(run.stderr.starts_with("warning: 1 of 1 targets (100 %) are outside the cloud"), "{}", run.stderr);
 }
@@ -86,11 +90,15 @@ fn observers_that_cannot_look_are_named_skipped_and_counted() {
     let (_, masks) = place.npy::<u32>("m.npy");
     assert!(masks.contains(&1) && masks.iter().all(|bits| *bits <= 1));
 
-    place.summary("horizon house.laz --method tau --orient given --observers observers.csv -o horizon.csv");
+    place.summary(
+        "horizon house.laz --scene-config ../tau.json --orient given --observers observers.csv -o horizon.csv",
+    );
     let text = place.text("horizon.csv");
     let cells: Vec<&str> = text.lines().nth(1).unwrap().split(',').collect();
     assert!(cells.len() == 5 && !cells[1].is_empty() && cells[2].is_empty() && cells[4].is_empty(), "{cells:?}");
-    place.summary("isovist house.laz --method tau --orient given --observers observers.csv -o isovist.csv");
+    place.summary(
+        "isovist house.laz --scene-config ../tau.json --orient given --observers observers.csv -o isovist.csv",
+    );
     let volumes = column(&place, "isovist.csv", "volume_m3");
     assert!(volumes.len() == 4 && volumes[0] > 0.0 && volumes[1].is_nan() && volumes[3].is_nan(), "{volumes:?}");
     place.write(
@@ -109,7 +117,7 @@ fn a_run_fails_only_when_no_observer_is_left() {
     let place = place();
     let inside = format!("--observer {},{},2.25", EAST - 4.6, NORTH + 0.25);
     for command in ["viewshed -o a.tif --ground found", "isovist -o a.csv", "horizon -o a.csv"] {
-        let arguments = format!("{command} house.laz --method tau --orient given {inside}");
+        let arguments = format!("{command} house.laz --scene-config ../tau.json --orient given {inside}");
         place.refusal(1, &arguments, &["no observer is left", "observer 1", "inside an obstacle"]);
     }
     place.write("inside.csv", format!("x,y,z\n{0},{1},2.25\n{0},{1},3.25\n", EAST - 4.6, NORTH + 0.25));
@@ -149,8 +157,10 @@ fn places_near_the_edge_of_the_cloud_are_counted_and_mapped() {
         &format!("shadow {HOUSE} --sun 180,30 --self -o a.csv --edge-mask e.tif"),
         &["--edge-mask", "grid"],
     );
-    let horizon =
-        format!("horizon house.laz --method tau --orient given --observer {},{NORTH},1.7 -o h.csv", EAST - 12.0);
+    let horizon = format!(
+        "horizon house.laz --scene-config ../tau.json --orient given --observer {},{NORTH},1.7 -o h.csv",
+        EAST - 12.0
+    );
     let share = place.summary(&horizon)["horizons"]["azimuths_near_edge_percent"].as_f64().unwrap();
     // all but where the house stands before the far edge
     assert!((60.0..100.0).contains(&share), "{share}");

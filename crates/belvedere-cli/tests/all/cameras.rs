@@ -3,7 +3,7 @@
 use crate::common::{Workplace, at, column, house_in_a_field, is_hidden};
 use serde_json::Value;
 
-const HOUSE: &str = "cameras house.laz --orient given --method tau";
+const HOUSE: &str = "cameras house.laz --orient given --scene-config ../tau.json";
 
 /// A house in a field, and three posts beside it: in the west, in the east, and next to the one in the east.
 fn place() -> Workplace {

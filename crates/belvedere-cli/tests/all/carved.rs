@@ -35,7 +35,7 @@ fn carved_balls_know_light_from_shade_better_than_balls_cut_to_a_fixed_radius() 
     place.summary("simulate town -o town --extent 120 --density 8");
     let truth = truth(&place);
     let by = |flags: &str| errors(&answers(&place, flags), &truth);
-    let fixed = by("--method tau --orient trajectory=town/trajectory.csv");
+    let fixed = by("--scene-config ../tau.json --orient trajectory=town/trajectory.csv");
     let carved = by("--orient trajectory=town/trajectory.csv");
     let found = by("");
     // balanced over both kinds of error; the exact light is that of points 3 cm outside, so that neither can reach zero
@@ -55,7 +55,7 @@ fn a_carved_ball_file_answers_as_the_cloud_does_and_reports_what_was_cut() {
     assert!(cut > 1000 && made["scanner"]["scanner_known_percent"].as_f64().unwrap() > 90.0, "{made}");
     assert!(made["pulses"]["pulses_used"].as_u64().unwrap() > 10_000);
     let asked = "--sun 200,40 --random 20000";
-    let run = place.summary(&format!("query town/cloud.laz --method carved {asked} -o from_cloud.npy"));
+    let run = place.summary(&format!("query town/cloud.laz --scene-config ../carved.json {asked} -o from_cloud.npy"));
     let cloud = place.npy::<u8>("from_cloud.npy").1;
     let answers = &run["answers"];
     assert_eq!(answers["method"], "lines of sight");
@@ -92,7 +92,7 @@ fn a_carved_ball_file_answers_as_the_cloud_does_and_reports_what_was_cut() {
     place.refusal(2, &format!("query balls.ply {asked} --unproven as-blocked -o no.npy"), &["--unproven", ".npz"]);
     place.refusal(
         2,
-        &format!("query town/cloud.laz --method tau {asked} --unproven report -o no.npy"),
+        &format!("query town/cloud.laz --scene-config ../tau.json {asked} --unproven report -o no.npy"),
         &["--unproven"],
     );
 }
@@ -101,7 +101,7 @@ fn a_carved_ball_file_answers_as_the_cloud_does_and_reports_what_was_cut() {
 fn proven_light_is_right_more_often_than_unproven_light() {
     let place = Workplace::new();
     place.summary("simulate town -o town --extent 120 --density 8");
-    let answers = answers(&place, "--method carved --orient trajectory=town/trajectory.csv");
+    let answers = answers(&place, "--scene-config ../carved.json --orient trajectory=town/trajectory.csv");
     let truth = truth(&place);
     let right = |code: u8| {
         let of: Vec<bool> =
@@ -164,7 +164,7 @@ fn without_times_and_angles_carving_goes_on_with_an_assumption_that_is_stated() 
     place.summary("simulate village -o town --extent 80 --density 6");
     let truth = truth(&place);
     let by = |flags: &str| errors(&answers(&place, flags), &truth);
-    let known = by("--method carved");
+    let known = by("--scene-config ../carved.json");
     // positions alone, in the same order
     let mut reader = las::Reader::from_path(place.path("town/cloud.laz")).unwrap();
     let points = reader.read_all().unwrap();
@@ -173,7 +173,7 @@ fn without_times_and_angles_carving_goes_on_with_an_assumption_that_is_stated() 
     let made = place.summary("balls bare.csv --method carved -o balls.npz");
     assert!(made["scanner"]["found_by"].as_str().unwrap().contains("assumed"), "{made}");
     assert!(made["normals"]["oriented_by"].as_str().unwrap().starts_with("up"), "{made}");
-    place.summary("query bare.csv --method carved --sun 240,35 --self -o answers.npy");
+    place.summary("query bare.csv --scene-config ../carved.json --sun 240,35 --self -o answers.npy");
     let bytes = fs::read(place.path("answers.npy")).unwrap();
     let assumed = errors(&npyz::NpyFile::new(&bytes[..]).unwrap().into_vec::<u8>().unwrap(), &truth);
     let mean = |errors: [f64; 2]| (errors[0] + errors[1]) / 2.0;

@@ -308,6 +308,6 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     let run = place.run("difference sun_hours.tif irradiance.tif -o other.tif");
     assert!(run.status == 0 && run.stderr.contains("different quantities"), "{run:?}");
     place.write_cloud("house.laz", &house());
-    let shadow = "shadow house.laz --orient given --method tau --sun 180,25 --cell 1 -o lit.csv";
+    let shadow = "shadow house.laz --orient given --scene-config ../tau.json --sun 180,25 --cell 1 -o lit.csv";
     place.refusal(1, &format!("{shadow} --terrain irradiance.tif"), &["irradiance.tif", "energy of the period"]);
 }

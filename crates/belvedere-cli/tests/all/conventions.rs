@@ -10,7 +10,7 @@ const CONVERGENCE_DEG: f64 = -0.8042;
 fn azimuths_of_the_sun_are_from_true_north_unless_grid_north_is_wanted() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
-    let made = "--orient given --method tau --pixel 1 -o depth.npy";
+    let made = "--orient given --scene-config ../tau.json --pixel 1 -o depth.npy";
     let along = |flags: &str| {
         let run = place.summary(&format!("depth-map house.laz {made} {flags}"));
         let axis: Vec<f64> =
@@ -39,7 +39,8 @@ fn a_range_of_azimuths_turns_with_its_north() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
     let [x, y, _] = at(0.0, -14.0, 0.0);
-    let observer = format!("house.laz --orient given --method tau --ground found --observer {x},{y} --cell 0.5");
+    let observer =
+        format!("house.laz --orient given --scene-config ../tau.json --ground found --observer {x},{y} --cell 0.5");
     let seen = |flags: &str| {
         let run = place.summary(&format!("viewshed {observer} {flags} -o seen.tif"));
         run["cells"]["visible"].as_u64().unwrap()
@@ -64,20 +65,40 @@ fn a_file_of_ball_parameters_is_the_same_as_their_flags_and_flags_override_it() 
 
     let view = format!("--viewport \"{EAST},{NORTH},20 4,0,0 0,-4,0 2\" -o depth.npy");
     let viewport = view.split('"').nth(1).unwrap();
-    for (name, scene) in [
-        ("x.npy", "--scene-config balls.json"),
-        ("y.npy", "--orient given --method tau --keep-isolated --max-radius 0.8"),
-    ] {
-        place.summary_with(&format!("depth-map house.laz {scene} -o {name} --viewport"), &[viewport]);
+    for (name, scene) in [("x.npy", "house.laz --scene-config balls.json"), ("y.npy", "b.npz")] {
+        place.summary_with(&format!("depth-map {scene} -o {name} --viewport"), &[viewport]);
+    }
+    assert_eq!(place.bytes("x.npy"), place.bytes("y.npy"));
+    // the shape is of no use to `balls`, and a flag of the paper's commands
+    place.write("cone.json", r#"{"ball_profile": "paper-cone"}"#);
+    for (name, shape) in [("x.npy", "--ball-profile paper-cone"), ("y.npy", "--scene-config cone.json")] {
+        place.summary_with(&format!("depth-map b.npz {shape} -o {name} --viewport"), &[viewport]);
     }
     assert_eq!(place.bytes("x.npy"), place.bytes("y.npy"));
 
     place.write("bad.json", r#"{"orientation": "given"}"#);
     place.refusal(2, "balls house.laz --scene-config bad.json -o a.npz", &["bad.json", "orientation", "orient"]);
-    place.write("bad.json", r#"{"max_radius": "wide"}"#);
-    place.refusal(2, "balls house.laz --scene-config bad.json -o a.npz", &["bad.json", "--max-radius"]);
-    place.write("bad.json", "[1]");
-    place.refusal(2, "balls house.laz --scene-config bad.json -o a.npz", &["bad.json", "object"]);
+    for (text, words) in [
+        (r#"{"max_radius": "wide"}"#, &["bad.json: max_radius", "wide"][..]),
+        (r#"{"max_radius": -1}"#, &["bad.json: max_radius", "above 0"]),
+        (r#"{"keep_noise": "yes"}"#, &["bad.json: keep_noise", "yes"]),
+        (r#"{"neighbors": 2, "orient": "up"}"#, &["bad.json: neighbors", "3 to 256"]),
+        (r#"{"neighbors": "some"}"#, &["bad.json: neighbors", "adaptive"]),
+        (r#"{"orient": "sideways"}"#, &["bad.json: orient", "trajectory=FILE"]),
+        (r#"{"method": "best"}"#, &["bad.json: method", "carved"]),
+        (r#"{"trees": "green"}"#, &["bad.json: trees", "green", "porous"]),
+        (r#"{"without": ["crowns", "all"]}"#, &["bad.json: without", "unknown rule"]),
+        (r#"{"without": 3}"#, &["bad.json: without", "names of rules"]),
+        (r#"{"ball_profile": "cube"}"#, &["bad.json: ball_profile", "paper-cone"]),
+        (r#"{"first_angle": 30}"#, &["bad.json: first_angle", "method angles"]),
+        ("[1]", &["bad.json", "object"]),
+        ("{", &["bad.json", "line 1"]),
+    ] {
+        place.write("bad.json", text);
+        for command in ["balls house.laz -o a.npz", "shadow house.laz --sun 180,30 -o a.tif"] {
+            place.refusal(2, &format!("{command} --scene-config bad.json"), words);
+        }
+    }
     place.refusal(1, "balls house.laz --scene-config missing.json -o a.npz", &["missing.json"]);
 }
 
@@ -155,15 +176,24 @@ fn every_parameter_is_described_in_one_short_line_with_its_type() {
 }
 
 #[test]
-fn flags_of_balls_are_listed_by_balls_alone_and_named_in_one_line_elsewhere() {
+fn flags_of_balls_belong_to_balls_and_a_file_of_them_to_all_commands() {
     let place = Workplace::new();
     let of_balls = place.run("balls --help").stdout;
     for flag in ["--orient", "--keep-noise", "--method", "--penetration", "--trees"] {
         assert!(of_balls.contains(&format!("      {flag}")), "{flag}");
     }
-    let of_shadow = place.run("shadow --help").stdout;
-    for flag in ["--keep-noise", "--penetration", "--neighbors"] {
-        assert!(!of_shadow.contains(flag), "{flag}");
+    let program = place.summary("describe");
+    for command in program["commands"].as_array().unwrap() {
+        let parameters = command["parameters"].as_array().unwrap();
+        let of_balls = parameters.iter().filter(|one| one["builds_balls"] == true);
+        let flags: Vec<&str> = of_balls.map(|one| one["name"].as_str().unwrap()).collect();
+        match command["name"].as_str().unwrap() {
+            "balls" => assert_eq!(flags.len(), 13),
+            "normals" => assert_eq!(flags.len(), 5),
+            "depth-map" | "query" => assert_eq!(flags, ["--ball-profile", "--trees", "--orient"]),
+            name => assert!(flags.is_empty() || flags == ["--trees", "--orient"], "{name}: {flags:?}"),
+        }
     }
+    let of_shadow = place.run("shadow --help").stdout;
     assert!(of_shadow.contains("belvedere balls --help") && of_shadow.contains("--scene-config"));
 }

@@ -2,7 +2,7 @@
 
 use crate::common::{EAST, NORTH, Workplace, house};
 
-const HOUSE: &str = "house.laz --orient given --method tau";
+const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json";
 
 fn place() -> Workplace {
     let place = Workplace::new();

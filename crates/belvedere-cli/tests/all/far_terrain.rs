@@ -5,7 +5,7 @@ use belvedere::crs::Crs;
 use belvedere::io::{Georeference, read_tif_u8, read_tif_u16, write_tif_f32};
 use belvedere::raster::Raster;
 
-const HOUSE: &str = "house.laz --orient given --method tau";
+const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json";
 /// Cells of the raster, metres, and their number a side.
 const CELL: f64 = 20.0;
 const COUNT: usize = 200;

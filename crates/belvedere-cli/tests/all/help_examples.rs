@@ -80,6 +80,42 @@ fn every_command_shows_an_example_of_itself() {
     assert_eq!(place.run("").status, 2, "without a command the help is no result");
 }
 
+/// Lines of a screen, and characters of a line.
+const SCREEN: [usize; 2] = [60, 100];
+
+#[test]
+fn the_overview_and_every_short_help_fit_a_screen() {
+    let place = Workplace::new();
+    let steps = ["city plan", "city run", "city status", "city merge"].map(|step| format!("{step} -h"));
+    let of_commands = COMMANDS.iter().map(|command| format!("{command} -h"));
+    let mut too_long = Vec::new();
+    for arguments in ["--help", "-h", "help"].map(str::to_owned).into_iter().chain(of_commands).chain(steps) {
+        let run = place.command(&arguments).env("COLUMNS", SCREEN[1].to_string()).output().unwrap();
+        let text = String::from_utf8(run.stdout).unwrap();
+        // a usage line is as long as its command has required flags
+        let is_wide = |line: &&str| line.chars().count() > SCREEN[1] && !line.starts_with("Usage: ");
+        let wide: Vec<&str> = text.lines().filter(is_wide).collect();
+        if text.lines().count() > SCREEN[0] || !wide.is_empty() {
+            too_long.push(format!("{arguments}: {} lines, {wide:?}", text.lines().count()));
+        }
+    }
+    assert!(too_long.is_empty(), "{too_long:#?}");
+}
+
+#[test]
+fn commands_are_listed_by_task() {
+    let place = Workplace::new();
+    let overview = place.run("--help").stdout;
+    let groups = ["start", "sun", "sight", "plan", "scene", "research", "scale", "other"];
+    let headings: Vec<&str> = overview.lines().filter(|line| groups.contains(line)).collect();
+    assert_eq!(headings, groups);
+    for command in place.summary("describe")["commands"].as_array().unwrap() {
+        assert!(groups.contains(&command["group"].as_str().unwrap()), "{command}");
+    }
+    // without --json the list is text
+    assert!(place.run("describe").stdout.contains("group: sun"));
+}
+
 #[test]
 fn completions_and_manual_name_every_command() {
     let place = Workplace::new();

@@ -4,7 +4,7 @@ use crate::common::{EAST, NORTH, Workplace, house};
 use belvedere::crs::Crs;
 use std::fmt::Write;
 
-const HOUSE: &str = "house.laz --method tau --orient given";
+const HOUSE: &str = "house.laz --scene-config ../tau.json --orient given";
 
 #[test]
 fn too_few_points_for_a_surface_are_refused_by_every_command() {
@@ -16,8 +16,9 @@ fn too_few_points_for_a_surface_are_refused_by_every_command() {
     for command in
         ["balls -o a.npz", "shadow --sun 180,30 -o a.tif", "sky-view -o a.tif", "query --sun 9,9 --random 9 -o a.csv"]
     {
-        for method in ["", "--method tau"] {
-            let flags = format!("{command} --keep-isolated {method}");
+        for config in [r#"{"keep_isolated": true}"#, r#"{"keep_isolated": true, "method": "tau"}"#] {
+            place.write("balls.json", config);
+            let flags = format!("{command} --scene-config balls.json");
             place.refusal(1, &format!("{flags} three.xyz"), &["three.xyz: 3 points", "surface"]);
             place.refusal(1, &format!("{flags} line.xyz"), &["line.xyz: 50 points", "on one line"]);
         }

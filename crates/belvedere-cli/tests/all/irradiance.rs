@@ -4,7 +4,8 @@
 use crate::common::{EAST, NORTH, Workplace, house};
 
 /// The house's flags: its normals are given and no pulses are known.
-const HOUSE: &str = "house.laz --method tau --orient given --ground found --sun-cell-deg 4 --patch-division 1";
+const HOUSE: &str =
+    "house.laz --scene-config ../tau.json --orient given --ground found --sun-cell-deg 4 --patch-division 1";
 
 fn place() -> Workplace {
     let place = Workplace::new();
@@ -120,7 +121,7 @@ fn what_cannot_be_is_refused_with_advice() {
     let mut adrift = crate::common::house();
     adrift.frame.crs = belvedere::crs::Crs::default();
     place.write_cloud("adrift.ply", &adrift);
-    let flags = "--method tau --orient given --ground found --sun-cell-deg 4 --clear-sky bird --cell 4 -o out.csv";
+    let flags = "--scene-config ../tau.json --orient given --ground found --sun-cell-deg 4 --clear-sky bird --cell 4 -o out.csv";
     place.refusal(1, &format!("irradiance adrift.ply {flags}"), &["--location", "--crs"]);
     let summary = place.summary(&format!("irradiance adrift.ply {flags} --location 52,4.4"));
     assert_eq!(summary["location"]["source"], "--location");

@@ -18,13 +18,8 @@ const COMMANDS: [&str; 8] = [
 fn run_everything(place: &Workplace, name: &str) -> usize {
     let mut done = 0;
     for command in COMMANDS {
-        for flags in ["", "--keep-isolated --keep-duplicates", "--method angles"] {
-            let takes_flags = match command.split(' ').next() {
-                Some("info") => false,
-                Some("normals") => !flags.contains("--method"),
-                _ => true,
-            };
-            let arguments = format!("{command} {name} {}", if takes_flags { flags } else { "" });
+        for flags in ["", "--scene-config ../keeping.json", "--scene-config ../angles.json"] {
+            let arguments = format!("{command} {name} {}", if command.starts_with("info") { "" } else { flags });
             let run = place.run(&arguments);
             if run.status == 0 {
                 assert_eq!(run.stderr, "", "{arguments}");
@@ -105,7 +100,7 @@ fn a_cloud_with_y_up_answers_as_the_same_cloud_with_z_up() {
     place.write("z.csv", rows(|v| v));
     // up is the second, and north runs away from the viewer
     place.write("y.csv", rows(|[x, y, z]| [x, z, -y]));
-    let ask = "--method tau --orient given --sun 180,30 --random 500 -o";
+    let ask = "--scene-config ../tau.json --orient given --sun 180,30 --random 500 -o";
     place.summary(&format!("query z.csv {ask} z-answers.npy"));
     place.summary(&format!("query y.csv --up y {ask} y-answers.npy"));
     assert_eq!(place.bytes("z-answers.npy"), place.bytes("y-answers.npy"));

@@ -4,7 +4,7 @@ use crate::common::{EAST, NORTH, Workplace, at, column, house};
 use belvedere::io::write_tif_u8;
 use belvedere::raster::Raster;
 
-const HOUSE: &str = "house.laz --orient given --method tau";
+const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json";
 
 /// Corners of an upright box as an OBJ file, without a bottom.
 pub(crate) fn box_obj([x0, y0]: [f64; 2], [x1, y1]: [f64; 2], top: f64) -> String {

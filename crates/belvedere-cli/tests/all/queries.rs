@@ -112,14 +112,18 @@ fn a_low_southern_sun_lights_the_south_of_a_house_and_not_its_north() {
     let (positions, expected) = split(&targets);
     place.write_targets("targets.npy", &positions);
     for angles in ["180,30", "-180,30", "540,30"] {
-        place.summary(&format!("query house.laz --method tau --targets targets.npy -o answers.npy --sun {angles}"));
+        place.summary(&format!(
+            "query house.laz --scene-config ../tau.json --targets targets.npy -o answers.npy --sun {angles}"
+        ));
         assert_eq!(place.npy::<u8>("answers.npy").1, expected, "{angles}");
     }
     // the same sun as a direction of sight, which goes from the sun to the scene
-    place.summary("query house.laz --method tau --targets targets.npy -o answers.npy --direction 0,0.8660254,-0.5");
+    place.summary(
+        "query house.laz --scene-config ../tau.json --targets targets.npy -o answers.npy --direction 0,0.8660254,-0.5",
+    );
     assert_eq!(place.npy::<u8>("answers.npy").1, expected);
     // north and south change roles
-    place.summary("query house.laz --method tau --targets targets.npy -o answers.npy --sun 0,30");
+    place.summary("query house.laz --scene-config ../tau.json --targets targets.npy -o answers.npy --sun 0,30");
     assert_eq!(place.npy::<u8>("answers.npy").1[..2], [BLOCKED, VISIBLE]);
 }
 
@@ -131,7 +135,13 @@ fn a_ball_file_gives_the_answers_of_its_cloud() {
     cloud.positions.push([0.0, 0.0, 400.0]);
     cloud.attributes.normals.as_mut().unwrap().push([0.0, 0.0, 1.0]);
     place.write_cloud("house.laz", &cloud);
-    for flags in ["", "--method angles --initial-radius 100", "--orient up --neighbors 10 --max-radius 2"] {
+    for config in [
+        "{}",
+        r#"{"method": "angles", "initial_radius": 100}"#,
+        r#"{"orient": "up", "neighbors": 10, "max_radius": 2}"#,
+    ] {
+        place.write("balls.json", config);
+        let flags = "--scene-config balls.json";
         place.summary(&format!("query house.laz {flags} --sun 200,40 --random 5000 -o cloud.csv"));
         assert!(answers_of_csv(&place.text("cloud.csv")).contains(&BLOCKED));
         for balls in ["balls.npz", "balls.ply", "balls.laz"] {
@@ -139,13 +149,13 @@ fn a_ball_file_gives_the_answers_of_its_cloud() {
             place.summary(&format!("query {balls} --sun 200,40 --random 5000 -o balls.csv"));
             let [expected, found] = ["cloud.csv", "balls.csv"].map(|name| place.text(name));
             if balls == "balls.npz" {
-                assert!(expected == found, "{flags}: the archive keeps every bit");
+                assert!(expected == found, "{config}: the archive keeps every bit");
                 continue;
             }
             let [expected, found] = [expected, found].map(|text| answers_of_csv(&text));
             let same = expected.iter().zip(&found).filter(|(a, b)| a == b).count();
             // centres and radii are rounded to a millimetre at most: targets that near to the depth may tip over
-            assert!(same >= 4990, "{balls} {flags}: {same} of 5000");
+            assert!(same >= 4990, "{balls} {config}: {same} of 5000");
         }
     }
 }

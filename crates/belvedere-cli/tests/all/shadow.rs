@@ -2,7 +2,7 @@
 
 use crate::common::{EAST, NORTH, Workplace, at, column, house, is_hidden};
 
-const HOUSE: &str = "house.laz --orient given --method tau --ground found";
+const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json --ground found";
 
 fn place() -> Workplace {
     let place = Workplace::new();

@@ -5,7 +5,7 @@
 use crate::common::{EAST, NORTH, ROUGHNESS, Workplace, at, house};
 
 /// The house's flags: its normals are given and no pulses are known.
-const HOUSE: &str = "house.laz --method tau --orient given --ground found";
+const HOUSE: &str = "house.laz --scene-config ../tau.json --orient given --ground found";
 
 fn column(text: &str, name: &str) -> Vec<String> {
     let at = text.lines().next().unwrap().split(',').position(|own| own == name).unwrap();
@@ -35,7 +35,7 @@ fn pairs_around_a_house_are_blocked_where_its_walls_stand() {
     let rows: Vec<String> =
         pairs.iter().map(|(a, b)| a.iter().chain(b).map(f64::to_string).collect::<Vec<_>>().join(",")).collect();
     place.write("pairs.csv", format!("ax,ay,az,bx,by,bz\n{}\n", rows.join("\n")));
-    let line = "line-of-sight house.laz --method tau --orient given --pairs pairs.csv -o out.csv";
+    let line = "line-of-sight house.laz --scene-config ../tau.json --orient given --pairs pairs.csv -o out.csv";
     let summary = place.summary(&format!("{line} --frequency-ghz 5.8"));
     assert_eq!(summary["lines_of_sight"]["blocked"], 2);
     let text = place.text("out.csv");
@@ -225,15 +225,31 @@ fn what_cannot_be_is_refused_with_advice() {
         &format!("viewshed {HOUSE} --target {EAST},{NORTH} --azimuth-range 0,90 -o seen.tif"),
         &["--azimuth-range"],
     );
-    place.refusal(1, "viewshed house.laz --method tau --ground classed --observer 85000,446000 -o a.tif", &["class 2"]);
+    place.refusal(
+        1,
+        "viewshed house.laz --scene-config ../tau.json --ground classed --observer 85000,446000 -o a.tif",
+        &["class 2"],
+    );
     place.write("pairs.csv", "ax,ay,az,bx\n1,2,3,4\n");
-    place.refusal(1, "line-of-sight house.laz --method tau --pairs pairs.csv -o out.csv", &["by", "ax, ay"]);
+    place.refusal(
+        1,
+        "line-of-sight house.laz --scene-config ../tau.json --pairs pairs.csv -o out.csv",
+        &["by", "ax, ay"],
+    );
     place.write("low.csv", format!("x,y,height\n{EAST},{NORTH},-0.5\n"));
-    place.refusal(1, "viewshed house.laz --method tau --observers low.csv -o low.tif", &["low.csv", "height -0.5"]);
+    place.refusal(
+        1,
+        "viewshed house.laz --scene-config ../tau.json --observers low.csv -o low.tif",
+        &["low.csv", "height -0.5"],
+    );
     place.write("pairs.csv", "ax,ay,az,bx,by,bz\n1,2,3,4,5,six\n");
-    place.refusal(1, "line-of-sight house.laz --method tau --pairs pairs.csv -o out.csv", &["row 1", "six", "bz"]);
+    place.refusal(
+        1,
+        "line-of-sight house.laz --scene-config ../tau.json --pairs pairs.csv -o out.csv",
+        &["row 1", "six", "bz"],
+    );
     place.write("pairs.csv", "ax,ay,az,bx,by,bz\n1,2,3,4,5\n");
-    place.refusal(1, "line-of-sight house.laz --method tau --pairs pairs.csv -o out.csv", &["5 cells"]);
+    place.refusal(1, "line-of-sight house.laz --scene-config ../tau.json --pairs pairs.csv -o out.csv", &["5 cells"]);
     place.write("walk.geojson", "{\"type\":\"Feature\",\"geometry\":{\"type\":\"Blob\"}}");
     place.refusal(1, &format!("viewshed {HOUSE} --observers walk.geojson -o seen.tif"), &["Blob"]);
     place.refusal(1, &format!("viewshed {HOUSE} {observer},-0.7 --cell 2 -o seen.tif"), &["below the ground"]);

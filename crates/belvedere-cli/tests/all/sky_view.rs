@@ -3,7 +3,7 @@
 use crate::common::{EAST, NORTH, Workplace, at, column, house, is_hidden};
 use std::f64::consts::TAU;
 
-const HOUSE: &str = "house.laz --orient given --method tau --ground found";
+const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json --ground found";
 
 fn place() -> Workplace {
     let place = Workplace::new();

@@ -4,7 +4,7 @@ use crate::common::{Workplace, at, column, house, is_hidden};
 use belvedere::apps::sun::{Date, DayParams, Site, Zone, sun_day};
 use belvedere::crs::Crs;
 
-const HOUSE: &str = "house.laz --orient given --method tau";
+const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json";
 /// Places around the house: north of it, south, east, and beneath nothing far off.
 const PLACES: [[f64; 3]; 4] = [[0.0, 8.0, 0.5], [0.0, -9.0, 0.5], [9.0, 0.0, 0.5], [13.0, 13.0, 0.5]];
 
@@ -153,7 +153,7 @@ fn what_cannot_be_is_refused_with_advice() {
     let mut lost = house();
     lost.frame.crs = Crs::default();
     place.write_cloud("lost.laz", &lost);
-    let lost = "lost.laz --orient given --method tau --targets places.csv";
+    let lost = "lost.laz --orient given --scene-config ../tau.json --targets places.csv";
     place.refusal(1, &format!("sun-hours {lost} --date 2026-06-21 -o no.csv"), &["--location LAT,LON", "--crs"]);
     let run = place.summary(&format!("sun-hours {lost} --date 2026-06-21 --location -33.9,151.2 -o south.csv"));
     // the shortest day of Sydney, by the sun's own clock

@@ -25,7 +25,7 @@ fn wide_place() -> Workplace {
     place
 }
 
-const HOUSE: &str = "house.laz --orient given --method tau";
+const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json";
 
 /// Cells of a table below its header, by the names in it.
 fn rows(place: &Workplace, name: &str) -> (Vec<String>, Vec<Vec<String>>) {

@@ -4,7 +4,7 @@ use crate::common::{Workplace, at, column, house};
 use belvedere::PointCloud;
 use std::f64::consts::TAU;
 
-const TREES: &str = "trees.laz --orient given --method tau";
+const TREES: &str = "trees.laz --orient given --scene-config ../tau.json";
 /// The house, and a crown of class 5.
 fn house_and_tree(middle: [f32; 3], radius: f32) -> PointCloud {
     let mut cloud = house();
@@ -148,7 +148,9 @@ fn planes_of_roofs_get_light_through_crowns() {
     let place = place();
     let energy = |flags: &str| {
         let usual = "--clear-sky haurwitz --sun-cell-deg 6 --patch-division 1";
-        place.summary(&format!("irradiance tall.laz --orient given --method tau {usual} {flags} --planes roofs.csv"));
+        place.summary(&format!(
+            "irradiance tall.laz --orient given --scene-config ../tau.json {usual} {flags} --planes roofs.csv"
+        ));
         ["kwh_m2", "free_kwh_m2", "min_loss", "max_loss"].map(|name| column(&place, "roofs.csv", name))
     };
     let [opaque, .., opaque_loss, opaque_most] = energy("");
@@ -174,7 +176,7 @@ fn what_cannot_be_is_refused_with_advice() {
             ("--through-trees 0.5 --leaves on", TREES, "--leaves needs"),
             ("--leaves off", TREES, "--leaves needs"),
             ("--through-trees pulses", TREES, "pulses in vegetation"),
-            ("--through-trees seasons", "house.laz --orient given --method tau", "vegetation"),
+            ("--through-trees seasons", "house.laz --orient given --scene-config ../tau.json", "vegetation"),
         ] {
             let run = place.run(&format!("{command} {scene} {flags} {trees} --targets places.csv -o no.csv"));
             assert!(run.status == 2 && run.stderr.contains(words), "{command} {trees}: {run:?}");

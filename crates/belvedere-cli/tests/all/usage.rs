@@ -17,14 +17,51 @@ fn a_run_that_succeeds_speaks_on_standard_output_alone_and_leaves_only_its_outpu
     let place = with_house();
     let run = place.run("balls house.laz -o balls.npz");
     assert_eq!((run.status, run.stderr.as_str()), (0, ""));
-    for word in ["points: ", "shrunk: ", "written: balls.npz"] {
-        assert!(run.stdout.contains(word), "{}", run.stdout);
-    }
-    let at = |word: &str| run.stdout.find(word).unwrap();
-    assert!(at("points: ") < at("shrunk: ") && at("shrunk: ") < at("written: "), "in the order of the work");
+    assert!(run.stdout.ends_with("written: balls.npz\n"), "{}", run.stdout);
     // no bar and no escape sequence in a pipe
     assert!(!run.stdout.contains(['\u{1b}', '\r']), "{:?}", run.stdout);
     assert_eq!(place.names(), ["balls.npz", "house.laz"]);
+}
+
+/// Lines of a summary without `--verbose`.
+const SHORT: usize = 12;
+
+#[test]
+fn the_answer_comes_first_in_twelve_lines_and_all_figures_with_verbose() {
+    let place = with_house();
+    let outputs = |ending: &str| (0..6).map(|i| format!(" -o {i}.{ending}")).collect::<String>();
+    let (maps, tables) = (outputs("tif"), outputs("csv"));
+    for (command, answer) in [
+        ("balls house.laz -o balls.npz".to_owned(), "balls from "),
+        ("normals house.laz -o normals.laz".to_owned(), "normals of "),
+        (format!("shadow house.laz --sun 180,30 --cell 1{maps}"), "lit"),
+        (format!("viewshed house.laz --observer 85000,445988 --cell 1{maps}"), "visible "),
+        ("query house.laz --sun 180,30 --random 500 -o answers.csv".to_owned(), "visible "),
+        ("line-of-sight house.laz --observer 85000,445988,2 --target 85000,446012,2".to_owned(), "answer: blocked"),
+        (format!("sky-view house.laz --cell 4{maps}"), "sky view factor"),
+        (format!("isovist house.laz --observer 85000,445988,2{tables}"), "visible space: "),
+    ] {
+        let run = place.run(&command);
+        let lines: Vec<&str> = run.stdout.lines().collect();
+        assert_eq!(run.status, 0, "{command}: {run:?}");
+        assert!((2..=SHORT).contains(&lines.len()), "{command}: {}", run.stdout);
+        assert!(lines.iter().any(|line| line.contains(answer)), "{command}: {}", run.stdout);
+        if command.matches(" -o ").count() == 6 {
+            assert_eq!(
+                lines[lines.len() - 2..],
+                ["written: 3.".to_owned() + &command[command.len() - 3..], "and 2 more files".to_owned()]
+            );
+        }
+        let (whole, json) = (place.run(&format!("{command} -v")).stdout, place.summary(&command));
+        assert!(whole.lines().count() > SHORT && whole.contains("\nseconds\n"), "{command}: {whole}");
+        for name in json.as_object().unwrap().keys().filter(|name| !["headline", "warnings"].contains(&name.as_str())) {
+            let is_empty = json[name].as_array().is_some_and(Vec::is_empty);
+            assert!(is_empty || whole.contains(&name.replace('_', " ")), "{command}: {name} is not in {whole}");
+        }
+        if let Some(headline) = json["headline"].as_array() {
+            assert!(headline.iter().all(|line| lines.contains(&line.as_str().unwrap())), "{command}: {headline:?}");
+        }
+    }
 }
 
 #[test]
@@ -221,7 +258,13 @@ fn wrong_usage_names_the_flag_and_ends_with_status_2() {
         ("query house.laz --sun 180,30 --random 999999999999 -o out.csv", &["--random", "1 to"]),
         ("query house.laz --sun 180,30 --random 5 --bias inf -o out.csv", &["--bias", "finite"]),
         ("query balls.npz --sun 180,30 --self -o out.csv", &["--self", "ball file"]),
-        ("query balls.npz --sun 180,30 --random 5 --method angles -o out.csv", &["--method", "balls.npz"]),
+        (
+            "query balls.npz --sun 180,30 --random 5 --scene-config ../angles.json -o out.csv",
+            &["angles.json", "method", "balls.npz"],
+        ),
+        ("shadow house.laz --sun 180,30 --keep-noise -o out.tif", &["--keep-noise", "--scene-config", "keep_noise"]),
+        ("viewshed house.laz --observer 1,2 --method tau -o out.tif", &["--method", "'viewshed'", "belvedere balls"]),
+        ("isovist house.laz --observer 1,2 --ball-profile sphere -o out.csv", &["--scene-config", "ball_profile"]),
         ("query balls.npz --sun 180,30 --random 5 --orient up -o out.csv", &["--orient", "balls.npz"]),
         ("query balls.npz --sun 180,30 --random 5 --crs EPSG:28992 -o out.csv", &["--crs", "balls.npz", "--location"]),
     ] {

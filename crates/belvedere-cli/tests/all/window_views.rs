@@ -5,7 +5,7 @@ use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud};
 use serde_json::Value;
 
-const BALLS: &str = "--orient given --method tau";
+const BALLS: &str = "--orient given --scene-config ../tau.json";
 
 /// A house in a field with classes, and three windows: one that looks at the house, one that looks away from it, one inside it.
 fn place() -> Workplace {

@@ -64,6 +64,7 @@ fn compare_all(arguments: &Compare, global: &Global, summary: Summary) -> Result
     } else if !global.quiet {
         super::print_raw(found.essence().as_bytes())?;
     }
+    run.summary.headline("tables and pictures of the comparison are in the page");
     run.summary.add("open", folder.join("report.html").display().to_string());
     Ok(run.summary)
 }

@@ -14,8 +14,16 @@ use belvedere::{Attributes, Frame, PointCloud};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A folder in which the program runs, removed at the end.
+/// A folder in which the program runs, removed at the end. Beside it lie files for `--scene-config`: [`SCENE_CONFIGS`].
 pub(crate) struct Workplace(TempDir);
+
+/// Files of parameters of balls, as `../NAME`: for commands that have no flags for them.
+const SCENE_CONFIGS: [(&str, &str); 4] = [
+    ("tau.json", r#"{"method": "tau"}"#),
+    ("carved.json", r#"{"method": "carved"}"#),
+    ("angles.json", r#"{"method": "angles"}"#),
+    ("keeping.json", r#"{"keep_isolated": true, "keep_duplicates": true}"#),
+];
 
 /// What a run left behind.
 #[derive(Debug)]
@@ -27,19 +35,26 @@ pub(crate) struct Run {
 
 impl Workplace {
     pub(crate) fn new() -> Self {
-        Self(TempDir::new().unwrap())
+        let place = Self(TempDir::new().unwrap());
+        fs::create_dir(place.folder()).unwrap();
+        SCENE_CONFIGS.iter().for_each(|(name, text)| place.write(&format!("../{name}"), text));
+        place
+    }
+
+    fn folder(&self) -> PathBuf {
+        self.0.path().join("place")
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
+        self.folder().join(name)
     }
 
     /// The program with arguments parted by blanks.
     pub(crate) fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_belvedere"));
-        command.current_dir(self.0.path()).args(arguments.split_ascii_whitespace()).stdin(Stdio::null());
+        command.current_dir(self.folder()).args(arguments.split_ascii_whitespace()).stdin(Stdio::null());
         // drivers of graphics processors complain on computers that set none
-        command.env("XDG_RUNTIME_DIR", self.0.path());
+        command.env("XDG_RUNTIME_DIR", self.folder());
         command
     }
 
@@ -102,7 +117,7 @@ impl Workplace {
     /// Names in the folder, hidden ones too, in order.
     pub(crate) fn names(&self) -> Vec<String> {
         let mut names: Vec<String> =
-            fs::read_dir(self.0.path()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+            fs::read_dir(self.folder()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
         names
     }
