@@ -44,7 +44,7 @@ pub use make_balls::make_balls;
 pub use merge::{Merged, merge, merged_within, write_catalogue};
 pub use plan::{Plan, PlanFrame, PlanParams};
 pub use planned::SideFile;
-pub use question::{Question, Radiation, SunQuestion};
+pub use question::{Question, Radiation};
 pub use record::{Outcome, Record, Stage};
 pub use run::{RunParams, RunReport, Shard, Steps, run};
 pub use status::{StageStatus, Status, status};

@@ -2,11 +2,13 @@
 
 use crate::cell_sizes::Topic;
 use crate::planned::SideFile;
+use belvedere::apps::ask::scene::Whereabouts;
+use belvedere::apps::ask::{self, Context, SkyParts, SunHours};
 use belvedere::apps::irradiance::{self, ClearSky, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons};
 use belvedere::apps::shadow::{self, ShadowSun};
 use belvedere::apps::sky_view::{self, SkyDirections};
-use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, SunSchedule, Zone, sun_days};
-use belvedere::apps::sun_hours::{self, SunPlan, SunRule};
+use belvedere::apps::sun::Site;
+use belvedere::apps::sun_hours::{self, SunPlan};
 use belvedere::apps::tree_light::{Crowns, Season};
 use belvedere::apps::viewshed::{self, Observer, SightLimits};
 use belvedere::control::Control;
@@ -31,19 +33,24 @@ pub enum Question {
     },
     /// The sky view factor of cells.
     SkyView {
-        /// Number of directions that stand for the sky.
-        directions: usize,
+        /// How the sky is parted.
+        sky: SkyParts,
     },
     /// Hours of sun a day, the mean over some days.
-    SunHours(SunQuestion),
-    /// Whether a rule of sunlight is met on all of its days: 1 met, 0 not, 2 unproven.
+    SunHours {
+        /// Where the survey lies.
+        site: Site,
+        /// The days.
+        days: SunHours,
+    },
+    /// Whether a rule of sunlight is met on all of its days: 1 met, 0 not.
     SunRule {
         /// Name of the folder of its results.
         name: String,
-        /// The rule, as [`SunRule::parse`] reads it.
-        rule: String,
-        /// Its days.
-        days: SunQuestion,
+        /// Where the survey lies.
+        site: Site,
+        /// The rule with its days.
+        days: SunHours,
     },
     /// Energy of sun and sky on level cells over a period, kWh/m².
     Irradiance {
@@ -61,24 +68,6 @@ pub enum Question {
         /// How far they look on the map, metres; `None` for any distance.
         max_distance: Option<f64>,
     },
-}
-
-/// Days of the sun, as parameters that its directions follow from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SunQuestion {
-    site: Site,
-    /// Name of the zone; `None` for the mean solar time of the site.
-    zone: Option<String>,
-    days: Days,
-    params: DayParams,
-    binning: Binning,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Days {
-    On(Vec<String>),
-    Between([f64; 2]),
 }
 
 /// Where radiation comes from.
@@ -140,36 +129,6 @@ impl Light {
     }
 }
 
-impl SunQuestion {
-    /// The days of `period` at a site.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`] for a zone whose name says nothing to others.
-    pub fn new(site: Site, zone: &Zone, period: &Period, params: DayParams, binning: Binning) -> Result<Self> {
-        let is_solar = *zone == Zone::mean_solar(&site);
-        let zone = (!is_solar).then(|| zone.name().to_owned());
-        zone.as_deref().map(Zone::parse).transpose()?;
-        let days = match period {
-            Period::Days(dates) => Days::On(dates.iter().map(Date::to_string).collect()),
-            Period::Between(instants) => Days::Between(*instants),
-        };
-        Ok(Self { site, zone, days, params, binning })
-    }
-
-    /// The suns of these days.
-    pub(crate) fn schedule(&self) -> Result<SunSchedule> {
-        let zone = match &self.zone {
-            Some(name) => Zone::parse(name)?,
-            None => Zone::mean_solar(&self.site),
-        };
-        let period = match &self.days {
-            Days::On(dates) => Period::Days(dates.iter().map(|date| Date::parse(date)).collect::<Result<_>>()?),
-            Days::Between(instants) => Period::Between(*instants),
-        };
-        SunSchedule::new(&sun_days(&self.site, &zone, &period, &self.params)?, self.binning)
-    }
-}
-
 impl Radiation {
     fn seasons(
         &self,
@@ -193,6 +152,45 @@ impl Radiation {
 }
 
 impl Question {
+    /// The questions about tiles that a question about a survey comes to, one for each result; figures and remarks go into `context`.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for what cannot be, and for a question that tiles do not answer.
+    pub fn of(question: &ask::Question, whereabouts: &Whereabouts<'_>, context: &mut Context) -> Result<Vec<Self>> {
+        ask::Ask::check(question)?;
+        match question {
+            ask::Question::Shadow(shadow) => {
+                let suns = shadow.suns.over(&shadow.place, whereabouts, context)?;
+                let question = |sun: ask::NamedSun| Self::Shadow {
+                    name: format!("shadow_{}", sun.label),
+                    to_sun: sun.sun.to_sun,
+                    season: sun.sun.season,
+                };
+                Ok(suns.into_iter().map(question).collect())
+            }
+            ask::Question::SunHours(hours) => {
+                let site = hours.place.site_at(whereabouts, context, None)?;
+                let mut questions = Vec::new();
+                if !hours.days.is_empty() {
+                    let days = SunHours { rules: Vec::new(), ..hours.clone() };
+                    questions.push(Self::SunHours { site, days });
+                }
+                for (text, (column, _)) in hours.rules.iter().zip(ask::rules(&hours.rules)?) {
+                    let days = ask::Days { dates: Vec::new(), between: None, ..hours.days.clone() };
+                    let days = SunHours { days, rules: vec![text.clone()], ..hours.clone() };
+                    questions.push(Self::SunRule { name: column.to_owned(), site, days });
+                }
+                Ok(questions)
+            }
+            ask::Question::SkyView(view) => Ok(vec![Self::SkyView { sky: view.sky }]),
+            _ => Err(Error::InvalidParameter {
+                parameter: Parameter::Questions,
+                value: "another".to_owned(),
+                expected: "shadow, sun hours, rules of sunlight, sky view, irradiance or viewsheds",
+            }),
+        }
+    }
+
     /// Name of the folder of its results.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -211,7 +209,7 @@ impl Question {
         match self {
             Self::Shadow { .. } => Topic::Shadow,
             Self::SkyView { .. } => Topic::SkyView,
-            Self::SunHours(_) => Topic::SunHours,
+            Self::SunHours { .. } => Topic::SunHours,
             Self::SunRule { .. } => Topic::Rule,
             Self::Irradiance { .. } => Topic::Irradiance,
             Self::Viewshed { .. } => Topic::Viewshed,
@@ -224,7 +222,7 @@ impl Question {
         match self {
             Self::Shadow { .. } => shadow::LIT,
             Self::SkyView { .. } => sky_view::SKY_VIEW_FACTOR,
-            Self::SunHours(_) => sun_hours::SUN_HOURS,
+            Self::SunHours { .. } => sun_hours::SUN_HOURS,
             Self::SunRule { .. } => sun_hours::RULE_IS_MET,
             Self::Irradiance { .. } => irradiance::ENERGY,
             Self::Viewshed { eyes, .. } if eyes.len() == 1 => viewshed::SEEN,
@@ -258,15 +256,12 @@ impl Question {
                 let elevation = to_sun[2].clamp(-1.0, 1.0).asin().to_degrees();
                 invalid(Parameter::SunElevation, format!("{elevation:.3} degrees"), "above the horizon")
             }
-            Self::SkyView { directions } => Ok(Asked::Light(Light::Sky(SkyDirections::even(*directions)?))),
-            Self::SunHours(days) => {
-                let plan = SunPlan::new(days.schedule()?, Vec::new());
-                Ok(Asked::Light(Light::SunHours { plan: Box::new(plan), site: days.site }))
+            Self::SkyView { sky } => Ok(Asked::Light(Light::Sky(sky.directions()?))),
+            Self::SunHours { site, days } => {
+                Ok(Asked::Light(Light::SunHours { plan: Box::new(days.plan(site, None)?.0), site: *site }))
             }
-            Self::SunRule { name, rule, days } => {
-                let schedule = days.schedule()?;
-                let rules = vec![(name.clone(), SunRule::parse(rule)?, schedule.clone())];
-                Ok(Asked::Light(Light::SunRule { plan: Box::new(SunPlan::new(schedule, rules)), site: days.site }))
+            Self::SunRule { site, days, .. } => {
+                Ok(Asked::Light(Light::SunRule { plan: Box::new(days.plan(site, None)?.0), site: *site }))
             }
             Self::Irradiance { site, radiation, params } => {
                 let seasons = radiation.seasons(&site.validate()?, crowns, params, control)?;

@@ -170,6 +170,12 @@ impl Context {
         self.headline.push(line);
     }
 
+    /// What was gathered, as answers without anything else.
+    #[must_use]
+    pub fn into_answers(self) -> Answers<()> {
+        Answers::new((), Vec::new()).with(self)
+    }
+
     fn north(&mut self, north: &AzimuthNorth) {
         self.report.north = Some(north.report());
         self.add(north.remark());

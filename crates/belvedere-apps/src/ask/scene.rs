@@ -6,7 +6,7 @@ use belvedere_core::model::SceneModel;
 use belvedere_core::query::{BlockRule, MedialScene, Proof, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
-use belvedere_data::frame::Frame;
+use belvedere_data::frame::{Bounds, Frame};
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -24,6 +24,37 @@ pub struct Scene {
     plain: Kept<MedialScene>,
     without_vegetation: Kept<MedialScene>,
     ground: Mutex<Option<(MapGrid, GroundPoints, Arc<KnownGround>)>>,
+}
+
+/// Where a scene lies: all that suns and norths need to know of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Whereabouts<'a> {
+    /// Where local coordinates lie.
+    pub frame: &'a Frame,
+    /// The box around the points.
+    pub bounds: Bounds,
+    /// Whether terrain beyond the cloud counts.
+    pub has_far_terrain: bool,
+}
+
+impl Whereabouts<'_> {
+    /// The middle on the map, local metres.
+    #[must_use]
+    pub fn middle(&self) -> [f64; 2] {
+        let (low, high) = self.bounds.corners();
+        [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]))
+    }
+
+    /// Azimuth of grid north from true north at a local place, clockwise, radians; `None` where true north is unknown.
+    #[must_use]
+    pub fn convergence_at(&self, place: [f64; 2]) -> Option<f64> {
+        convergence(&self.frame.crs, [0, 1].map(|axis| self.frame.origin[axis] + place[axis])).ok()
+    }
+
+    /// What titles say where far terrain counts.
+    pub(super) fn far_in_words(&self) -> &'static str {
+        if self.has_far_terrain { ", with far terrain" } else { "" }
+    }
 }
 
 /// The ground on a grid, and where it came from.
@@ -188,22 +219,27 @@ impl Scene {
         })
     }
 
+    /// Where it lies.
+    #[must_use]
+    pub fn whereabouts(&self) -> Whereabouts<'_> {
+        let has_far_terrain = !self.model.far_terrain().is_empty();
+        Whereabouts { frame: self.frame(), bounds: self.model.bounds(), has_far_terrain }
+    }
+
     /// What titles say where far terrain counts.
     pub(super) fn far_in_words(&self) -> &'static str {
-        if self.model.far_terrain().is_empty() { "" } else { ", with far terrain" }
+        self.whereabouts().far_in_words()
     }
 
     /// The middle of the scene on the map, local metres.
     #[must_use]
     pub fn middle(&self) -> [f64; 2] {
-        let (low, high) = self.model.bounds().corners();
-        [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]))
+        self.whereabouts().middle()
     }
 
     /// Azimuth of grid north from true north at a local place, clockwise, radians; `None` where true north is unknown.
     #[must_use]
     pub fn convergence_at(&self, place: [f64; 2]) -> Option<f64> {
-        let frame = self.frame();
-        convergence(&frame.crs, [0, 1].map(|axis| frame.origin[axis] + place[axis])).ok()
+        self.whereabouts().convergence_at(place)
     }
 }

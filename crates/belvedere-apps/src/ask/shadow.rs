@@ -75,7 +75,7 @@ impl Ask for Shadow {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Answers<ShadowFound>> {
-        let suns = self.suns.of_scene(&self.place, scene, context)?;
+        let suns = self.suns.over(&self.place, &scene.whereabouts(), context)?;
         let kinds: Vec<ShadowSun> = suns.iter().map(|sun| sun.sun).collect();
         let directions: Vec<[f64; 3]> = kinds.iter().flat_map(|sun| sun_directions(sun.to_sun, self.edges)).collect();
         let unproven = self.proof(suns.len())?;

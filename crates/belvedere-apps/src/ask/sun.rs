@@ -2,7 +2,7 @@
 
 use super::north::North;
 use super::report::{LocationSection, SunAt, SunSection};
-use super::scene::Scene;
+use super::scene::{Scene, Whereabouts};
 use super::{Context, Remark};
 use crate::shadow::ShadowSun;
 use crate::sun::{
@@ -66,6 +66,8 @@ pub struct Days {
 pub struct NamedSun {
     /// Where it stands, and when.
     pub sun: ShadowSun,
+    /// What tells it from other suns in names, such as `20260621_1500`, or `235_30` for a direction.
+    pub label: String,
     /// Name of its column, such as `lit_20260621_1500`.
     pub column: String,
     /// Its shadow in words.
@@ -106,7 +108,20 @@ impl SunPlace {
     }
 
     pub(super) fn site(&self, scene: &Scene, context: &mut Context, elsewhere: Option<[f64; 2]>) -> Result<Site> {
-        let found = self.site_of(scene.frame(), &scene.model().bounds(), elsewhere)?;
+        self.site_at(&scene.whereabouts(), context, elsewhere)
+    }
+
+    /// Where on earth a scene lies, which is reported.
+    ///
+    /// # Errors
+    /// Those of [`SunPlace::site_of`].
+    pub fn site_at(
+        &self,
+        whereabouts: &Whereabouts<'_>,
+        context: &mut Context,
+        elsewhere: Option<[f64; 2]>,
+    ) -> Result<Site> {
+        let found = self.site_of(whereabouts.frame, &whereabouts.bounds, elsewhere)?;
         context.report.location = Some(LocationSection::of(&found));
         Ok(found.0)
     }
@@ -247,19 +262,28 @@ impl Suns {
     }
 
     /// The suns over a scene, in their order.
-    pub(super) fn of_scene(&self, place: &SunPlace, scene: &Scene, context: &mut Context) -> Result<Vec<NamedSun>> {
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for times and days that cannot be, and a scene that lies nowhere on earth.
+    pub fn over(
+        &self,
+        place: &SunPlace,
+        whereabouts: &Whereabouts<'_>,
+        context: &mut Context,
+    ) -> Result<Vec<NamedSun>> {
         let mut section = SunSection::default();
         let mut below = 0;
-        let far = scene.far_in_words();
+        let far = whereabouts.far_in_words();
         let suns = match self {
             Self::Directions(directions) => {
-                let north = place.north.of_scene(scene);
+                let north = place.north.of(whereabouts.convergence_at(whereabouts.middle()));
                 context.north(&north);
                 let named = |(number, &[azimuth, elevation]): (usize, &[f64; 2])| {
                     below += usize::from(elevation <= 0.0);
                     let is_one = directions.len() == 1;
                     NamedSun {
                         sun: ShadowSun::at(azimuth.to_radians() - north.of_grid, elevation.to_radians()),
+                        label: format!("{azimuth}_{elevation}"),
                         column: if is_one { "lit".to_owned() } else { format!("lit_{number}") },
                         title: format!("Shadow, sun at azimuth {azimuth}, elevation {elevation} degrees{far}"),
                     }
@@ -267,7 +291,7 @@ impl Suns {
                 (1..).zip(directions).map(named).collect::<Vec<_>>()
             }
             Self::Times(_) | Self::Days(_) => {
-                let site = place.site(scene, context, None)?;
+                let site = place.site_at(whereabouts, context, None)?;
                 let zone = place.zone_at(&site, self.times())?;
                 let instants = match self {
                     Self::Days(days) => days.instants(place, &site, &zone)?,
@@ -283,10 +307,11 @@ impl Suns {
                         section.instants.0.push((zone.display(instant), SunAt { azimuth_deg, elevation_deg }));
                     }
                     let season = zone.date_at(instant).ok().map(|date| Season::on(date, &site));
-                    let is_one = instants.len() == 1;
+                    let label = moment(&zone, instant);
                     suns.push(NamedSun {
                         sun: ShadowSun { to_sun: position.to_sun(&site), season },
-                        column: if is_one { "lit".to_owned() } else { format!("lit_{}", moment(&zone, instant)) },
+                        column: if instants.len() == 1 { "lit".to_owned() } else { format!("lit_{label}") },
+                        label,
                         title: format!("Shadow, {}{far}", zone.display(instant)),
                     });
                 }

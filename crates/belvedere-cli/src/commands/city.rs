@@ -8,7 +8,7 @@ use crate::pipeline::areas;
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
-use belvedere::apps::tree_light::{Crowns, Transmissivity};
+use belvedere::apps::tree_light::Transmissivity;
 use belvedere::{Error, Parameter};
 use belvedere_tiles::{
     Plan, PlanParams, Question, RunParams, Shard, SideFile, Steps, merge, run as run_tiles, status as status_of,
@@ -85,8 +85,8 @@ fn planned(plan: Plan, arguments: &CityPlan) -> Result<Plan> {
     let (terrain, horizon) = (side(&arguments.far_terrain.terrain)?, side(&arguments.far_terrain.horizon)?);
     let plan = plan.with_far_terrain(terrain, horizon)?;
     let measured = || Transmissivity::constant(plan.share_of_pulses_through_crowns()).ok();
-    match arguments.trees.chosen(measured)? {
-        Some((transmissivity, leaves)) => Ok(plan.with_light_through_trees(Crowns { transmissivity, leaves })?),
+    match arguments.trees.choice()?.crowns(measured)? {
+        Some(crowns) => Ok(plan.with_light_through_trees(crowns)?),
         None => Ok(plan),
     }
 }

@@ -96,22 +96,6 @@ impl SunPeriod {
         }
     }
 
-    /// Refuses what cannot be anywhere on earth, before hours of work go into a scene.
-    pub(crate) fn check(&self, place: &SunPlace) -> Result<()> {
-        self.params(place)?.validate().map_err(|error| match (error, self.step) {
-            (Error::InvalidParameter { parameter: Parameter::TimeStep, .. }, Some(step)) => {
-                Usage(format!("--time-step-min: the step is {step} minutes, but must be 1/6 to 60 minutes")).into()
-            }
-            (error, _) => anyhow::Error::from(error),
-        })?;
-        let [latitude, longitude] = place.location.map_or([0.0; 2], |given| given.0.map(f64::to_radians));
-        let anywhere = Site { latitude, longitude, height: 0.0, convergence: 0.0 };
-        let anywhere = anywhere.validate()?;
-        sun_position_with(&anywhere, 0.0, place.refraction()?)?;
-        let zone = place.zone(&anywhere, &self.times())?;
-        self.period(place, &anywhere, &zone).map(|_| ())
-    }
-
     /// Whether any day was typed.
     pub(crate) fn is_given(&self) -> bool {
         !self.date.is_empty() || self.from.is_some()

@@ -1,24 +1,28 @@
 //! Results with cells of different sizes in one plan.
 
 use crate::common::{run_all, write_town};
+use belvedere::apps::ask::{Days, SkyParts, SunHours};
 use belvedere::apps::shadow::ShadowSun;
-use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, Zone};
+use belvedere::apps::sun::Site;
 use belvedere::control::Control;
 use belvedere::io::read_tif;
-use belvedere_tiles::{CellSizes, Plan, PlanParams, Question, SunQuestion, Topic, merge, status, write_catalogue};
+use belvedere_tiles::{CellSizes, Plan, PlanParams, Question, Topic, merge, status, write_catalogue};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 fn questions() -> Vec<Question> {
     let site = Site { latitude: 0.91, longitude: 0.09, height: 10.0, convergence: 0.02 };
-    let day = Period::Days(vec![Date::new(2026, 4, 10).unwrap()]);
-    let hours = DayParams::default().with_step(3600.0).with_least_elevation(0.14);
-    let hours = SunQuestion::new(site, &Zone::mean_solar(&site), &day, hours, Binning::Auto).unwrap();
+    let days = Days {
+        dates: vec!["2026-04-10".to_owned()],
+        time_step_min: Some(60.0),
+        min_sun_elevation_deg: Some(8.0),
+        ..Days::default()
+    };
     let to_sun = ShadowSun::at(2.2, 0.4).to_sun;
     vec![
         Question::Shadow { name: "shadow".to_owned(), to_sun, season: None },
-        Question::SunHours(hours),
-        Question::SkyView { directions: 25 },
+        Question::SunHours { site, days: SunHours { days, ..SunHours::default() } },
+        Question::SkyView { sky: SkyParts::Even(25) },
     ]
 }
 

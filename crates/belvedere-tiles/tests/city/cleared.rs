@@ -2,6 +2,7 @@
 
 use crate::common::{cells, plan, run_all, run_with, suns, write_town};
 
+use belvedere::apps::ask::SkyParts;
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_balls, read_cloud, read_tif_f32, read_tif_u8};
 use belvedere::medial::{LIMIT_TOUCH, MedialBalls};
@@ -76,7 +77,7 @@ fn values(plan: &Plan, folder: &Path, question: &Question) -> BTreeMap<[i64; 2],
 fn cleared_areas_are_the_same_for_tiles_of_any_size_and_those_of_one_scene() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 140.0, 1.0);
-    let questions = [suns()[1].clone(), Question::SkyView { directions: 25 }];
+    let questions = [suns()[1].clone(), Question::SkyView { sky: SkyParts::Even(25) }];
     let plain_folder = place.path().join("plain");
     let plain = plan(&clouds, &plain_folder, 512.0, questions.to_vec());
     run_all(&plain, &plain_folder);

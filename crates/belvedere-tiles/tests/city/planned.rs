@@ -1,15 +1,16 @@
 //! Planned buildings and light through trees, tile by tile: the same as over all, and right.
 
 use crate::common::{cells, plan, run_with, suns, write_town};
+use belvedere::apps::ask::{Days, SkyParts, SunHours};
 use belvedere::apps::irradiance::{ClearSky, IrradianceParams};
 use belvedere::apps::shadow::ShadowSun;
-use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, Zone};
+use belvedere::apps::sun::Site;
 use belvedere::apps::tree_light::{Crowns, Leaves, Transmissivity};
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{Georeference, read_tif_f32, read_tif_u8, write_tif_f32};
 use belvedere::raster::Raster;
-use belvedere_tiles::{Plan, Question, Radiation, SideFile, SunQuestion, merge};
+use belvedere_tiles::{Plan, Question, Radiation, SideFile, merge};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -83,10 +84,10 @@ fn done(
 /// Two hours of sun on a day in spring, with few suns.
 fn rule() -> Question {
     let site = site();
-    let params = DayParams::default().with_step(3600.0).with_least_elevation(0.14);
-    let days = Period::Days(vec![Date::new(2026, 3, 21).unwrap()]);
-    let days = SunQuestion::new(site, &Zone::mean_solar(&site), &days, params, Binning::Auto).unwrap();
-    Question::SunRule { name: "bre_equinox".to_owned(), rule: "bre-equinox".to_owned(), days }
+    let days =
+        Days { year: Some(2026), time_step_min: Some(60.0), min_sun_elevation_deg: Some(8.0), ..Days::default() };
+    let days = SunHours { days, rules: vec!["bre-equinox".to_owned()], ..SunHours::default() };
+    Question::SunRule { name: "bre_equinox".to_owned(), site, days }
 }
 
 fn site() -> Site {
@@ -98,7 +99,7 @@ fn a_planned_building_blocks_exactly_whatever_the_tiles() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 100.0, 1.0);
     let mesh = block(place.path());
-    let questions = [suns()[1].clone(), Question::SkyView { directions: 25 }, rule()];
+    let questions = [suns()[1].clone(), Question::SkyView { sky: SkyParts::Even(25) }, rule()];
     let folders = ["plain", "whole", "tiles"].map(|name| place.path().join(name));
     let add = |plan: Plan| plan.with_meshes(vec![SideFile::new(&mesh).unwrap()]).unwrap();
     let plain = done(&clouds, &folders[0], 512.0, &questions, |plan| plan);
@@ -164,7 +165,7 @@ fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
     let params = IrradianceParams::default().with_patch_division(1).with_sun_cell(0.6);
     let site = site();
     let energy = Question::Irradiance { site, radiation, params };
-    let questions = [suns()[1].clone(), Question::SkyView { directions: 25 }, energy];
+    let questions = [suns()[1].clone(), Question::SkyView { sky: SkyParts::Even(25) }, energy];
     let through = |share: f64| {
         move |plan: Plan| {
             let transmissivity = Transmissivity::constant(share).unwrap();
@@ -238,7 +239,8 @@ fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
         season: None,
     };
     let suns = [sun(0.0, 39.0), sun(0.0, 60.0), sun(180.0, 29.0), sun(180.0, 31.0)];
-    let questions: Vec<Question> = suns.iter().cloned().chain([Question::SkyView { directions: 25 }]).collect();
+    let questions: Vec<Question> =
+        suns.iter().cloned().chain([Question::SkyView { sky: SkyParts::Even(25) }]).collect();
     let folders = ["without", "whole", "tiles"].map(|name| place.path().join(name));
     let far = |plan: Plan| {
         let [terrain, horizon] = [&terrain, &horizon].map(|path| Some(SideFile::new(path).unwrap()));

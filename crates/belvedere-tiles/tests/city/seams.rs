@@ -1,11 +1,12 @@
 //! Tiles of any size give the balls and the answers of one tile over all.
 
 use crate::common::{cells, plan, run_all, run_with, suns, write_town};
+use belvedere::apps::ask::{Days, SkyParts, SunHours};
 use belvedere::apps::irradiance::{ClearSky, IrradianceParams, clear_instants};
-use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, SunStep, Zone, sun_days};
+use belvedere::apps::sun::{Date, DayParams, Period, Site, SunStep, Zone, sun_days};
 use belvedere::control::Control;
 use belvedere::io::{read_balls, read_tif_f32, read_tif_u8, read_tif_u16};
-use belvedere_tiles::{Plan, Question, Radiation, SunQuestion, merge, status};
+use belvedere_tiles::{Plan, Question, Radiation, merge, status};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -35,7 +36,7 @@ fn site() -> Site {
 
 /// The hours of a day in spring with the sun above 8 degrees.
 fn params() -> DayParams {
-    DayParams::default().with_step(3600.0).with_least_elevation(0.14)
+    DayParams::default().with_step(3600.0).with_least_elevation(8_f64.to_radians())
 }
 
 fn day() -> Period {
@@ -44,13 +45,18 @@ fn day() -> Period {
 
 /// Shadows, sky view, sun hours, energy, and what two observers see.
 fn all_questions(eyes: [[f64; 3]; 2]) -> Vec<Question> {
-    let zone = Zone::mean_solar(&site());
+    let days = Days {
+        dates: vec!["2026-04-10".to_owned()],
+        time_step_min: Some(60.0),
+        min_sun_elevation_deg: Some(8.0),
+        ..Days::default()
+    };
     let radiation = Radiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
     let coarse = IrradianceParams::default().with_patch_division(1).with_sun_cell(0.3);
     let mut questions = suns();
     questions.extend([
-        Question::SkyView { directions: 49 },
-        Question::SunHours(SunQuestion::new(site(), &zone, &day(), params(), Binning::Auto).unwrap()),
+        Question::SkyView { sky: SkyParts::Even(49) },
+        Question::SunHours { site: site(), days: SunHours { days, ..SunHours::default() } },
         Question::Irradiance { site: site(), radiation, params: coarse },
         Question::Viewshed { eyes: eyes.to_vec(), max_distance: Some(120.0) },
     ]);

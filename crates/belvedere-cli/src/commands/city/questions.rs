@@ -1,19 +1,19 @@
 //! From flags to the questions of a plan.
 
-use crate::arguments::{AreaChoice, CellFor, CityPlan, Numbers, Place, Usage};
+use crate::arguments::{AreaChoice, CellFor, CityPlan, Place, Usage};
 use crate::commands::irradiance::radiation;
 use crate::run::Run;
 use anyhow::Result;
 use belvedere::Error;
-use belvedere::apps::ask::{rules, sun::moment};
+use belvedere::apps::ask::scene::Whereabouts;
+use belvedere::apps::ask::{self, Context, SkyParts, SunPlace, Suns, ThroughTrees};
 use belvedere::apps::irradiance::PARTS;
-use belvedere::apps::shadow::ShadowSun;
-use belvedere::apps::sun::{Binning, Period, sun_position_with};
-use belvedere::apps::tree_light::Season;
+use belvedere::apps::shadow::Edges;
+use belvedere::apps::sun::zone_of_instant;
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::crs::Crs;
 use belvedere::io::{read_geojson, read_horizon, read_mesh, read_tif, read_weather};
-use belvedere_tiles::{CellSizes, Plan, Question, Radiation, SideFile, SunQuestion, Topic};
+use belvedere_tiles::{CellSizes, Plan, Question, Radiation, SideFile, Topic};
 
 /// Refuses what cannot be asked, before the survey is read.
 pub(super) fn check(arguments: &CityPlan) -> Result<()> {
@@ -30,11 +30,7 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
         (false, true) => return usage("--date, --from and --to need --sun-hours"),
         _ => {}
     }
-    arguments.when.check(&arguments.sun)?;
-    rules(&arguments.rule)?;
-    for time in &arguments.times {
-        arguments.sun.instant("--time", time)?;
-    }
+    of_sun_and_sky(arguments)?.iter().try_for_each(ask::Ask::check)?;
     let has_radiation = arguments.weather.is_some() || arguments.clear_sky.is_some();
     if arguments.irradiance && !has_radiation {
         return usage("--irradiance needs --weather FILE or --clear-sky MODEL");
@@ -91,45 +87,46 @@ pub(super) fn cells(arguments: &CityPlan) -> Result<CellSizes> {
     Ok(cells)
 }
 
+/// Where the survey lies as far as suns are concerned: clocks run as one of the times says where no zone was typed.
+fn sun_place(arguments: &CityPlan) -> Result<SunPlace> {
+    let place = arguments.sun.place(&arguments.north)?;
+    let of_times = || arguments.times.iter().find_map(|time| zone_of_instant(time));
+    let zone = place.zone.clone().or_else(|| of_times().map(|zone| zone.name().to_owned()));
+    Ok(SunPlace { zone, ..place })
+}
+
+/// The questions that were typed about sun and sky, as one would put them to a scene.
+fn of_sun_and_sky(arguments: &CityPlan) -> Result<Vec<ask::Question>> {
+    let place = sun_place(arguments)?;
+    let shadow = |suns| {
+        let (place, edges, trees) = (place.clone(), Edges::Hard, ThroughTrees::Opaque);
+        ask::Question::Shadow(ask::Shadow { suns, place, edges, trees, unproven: None })
+    };
+    let mut questions = Vec::new();
+    if !arguments.suns.is_empty() {
+        questions.push(shadow(Suns::Directions(arguments.suns.iter().map(|sun| sun.0).collect())));
+    }
+    if !arguments.times.is_empty() {
+        questions.push(shadow(Suns::Times(arguments.times.clone())));
+    }
+    if arguments.sun_hours || !arguments.rule.is_empty() {
+        let (days, rules) = (arguments.when.days(), arguments.rule.clone());
+        questions.push(ask::Question::SunHours(ask::SunHours { days, rules, place, ..ask::SunHours::default() }));
+    }
+    Ok(questions)
+}
+
 /// What was typed as questions. Azimuths count from the north, and the sun is that, at the middle of the survey.
 pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut Run) -> Result<Vec<Question>> {
-    let (frame, bounds) = (plan.frame()?, plan.bounds());
-    let (low, high) = bounds.on_map();
-    let north = arguments.north.of_frame(&frame, [0, 1].map(|axis| f64::midpoint(low[axis], high[axis])));
-    let sun = |typed: &Numbers<2>| {
-        let [azimuth, elevation] = typed.0;
-        let to_sun = ShadowSun::at(azimuth.to_radians() - north.of_grid, elevation.to_radians()).to_sun;
-        Question::Shadow { name: format!("shadow_{azimuth}_{elevation}"), to_sun, season: None }
-    };
-    let mut questions: Vec<Question> = arguments.suns.iter().map(sun).collect();
-    if !arguments.times.is_empty() || arguments.sun_hours || !arguments.rule.is_empty() {
-        let site = arguments.sun.site_of(&frame, &bounds, &mut run.summary)?;
-        let mut times: Vec<&str> = arguments.times.iter().map(String::as_str).collect();
-        times.extend(arguments.when.times());
-        let zone = arguments.sun.zone(&site, &times)?;
-        for time in &arguments.times {
-            let instant = arguments.sun.instant("--time", time)?;
-            let position = sun_position_with(&site, instant, arguments.sun.refraction()?)?;
-            let name = format!("shadow_{}", moment(&zone, instant));
-            let season = zone.date_at(instant).ok().map(|date| Season::on(date, &site));
-            questions.push(Question::Shadow { name, to_sun: position.to_sun(&site), season });
-        }
-        if let Some(period) = arguments.when.period(&arguments.sun, &site, &zone)? {
-            let params = arguments.when.params(&arguments.sun)?;
-            let days = SunQuestion::new(site, &zone, &period, params, Binning::Auto)?;
-            questions.push(Question::SunHours(days));
-        }
-        for (column, rule) in rules(&arguments.rule)? {
-            let dates = rule.days.dates(arguments.when.year, &site, &zone)?;
-            let least_elevation = arguments.when.least_elevation.map_or(rule.least_elevation, f64::to_radians);
-            let params = arguments.when.params(&arguments.sun)?.with_least_elevation(least_elevation);
-            let days = SunQuestion::new(site, &zone, &Period::Days(dates), params, Binning::Auto);
-            let days = days?;
-            questions.push(Question::SunRule { name: column.to_owned(), rule: rule.name, days });
-        }
+    let frame = plan.frame()?;
+    let whereabouts = Whereabouts { frame: &frame, bounds: plan.bounds(), has_far_terrain: false };
+    let mut context = Context::default();
+    let mut questions = Vec::new();
+    for question in of_sun_and_sky(arguments)? {
+        questions.extend(Question::of(&question, &whereabouts, &mut context)?);
     }
     if arguments.irradiance {
-        let site = arguments.sun.site_of(&frame, &bounds, &mut run.summary)?;
+        let site = sun_place(arguments)?.site_at(&whereabouts, &mut context, None)?;
         let params = radiation::params(&arguments.model);
         let radiation = match &arguments.weather {
             Some(file) => {
@@ -143,7 +140,9 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut Run) -> Res
         questions.push(Question::Irradiance { site, radiation, params });
     }
     if arguments.sky_view {
-        questions.push(Question::SkyView { directions: arguments.direction_count });
+        let sky = SkyParts::Even(arguments.direction_count);
+        let question = ask::Question::SkyView(ask::SkyView { sky, ..ask::SkyView::default() });
+        questions.extend(Question::of(&question, &whereabouts, &mut context)?);
     }
     if !arguments.observers.is_empty() {
         let place = |&Place([x, y], z): &Place| frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]);
@@ -152,5 +151,6 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut Run) -> Res
         plan.set_on_ground(&mut eyes, height, &run.control())?;
         questions.push(Question::Viewshed { eyes, max_distance: arguments.max_distance });
     }
+    run.answered(&context.into_answers());
     Ok(questions)
 }
