@@ -124,8 +124,7 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut Run) -> Res
             let dates = rule.days.dates(arguments.when.year, &site, &zone)?;
             let least_elevation = arguments.when.least_elevation.map_or(rule.least_elevation, f64::to_radians);
             let params = arguments.when.params(&arguments.sun)?.with_least_elevation(least_elevation);
-            let days = SunQuestion::new(site, &zone, &Period::Days(dates), params, Binning::Auto);
-            let days = days?;
+            let days = SunQuestion::new(site, &zone, &Period::Days(dates), params, Binning::Auto)?;
             questions.push(Question::SunRule { name: column.to_owned(), rule: rule.name, days });
         }
     }

@@ -119,8 +119,8 @@ pub(super) fn gather(
             RadiationSource::ClearSky { clear_sky, year }
         }
     };
-    let found = run.stage("computing radiation", 0, |control| period_seasons(&source, site, crowns, params, control));
-    let (seasons, report) = found?;
+    let (seasons, report) =
+        run.stage("computing radiation", 0, |control| period_seasons(&source, site, crowns, params, control))?;
     section
         .add("global_kwh_m2", rounded(report.ghi, 1))
         .add("direct_normal_kwh_m2", rounded(report.dni, 1))
