@@ -24,8 +24,7 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     check(arguments)?;
     let earth = arguments.earth.params()?;
     let share = arguments.fresnel_percent.map_or(FREE_FRESNEL_SHARE, |percent| percent / 100.0);
-    let zone = arguments.radio.wave()?.map(|wave| FresnelZone::new(wave, share)).transpose();
-    let zone = zone?;
+    let zone = arguments.radio.wave()?.map(|wave| FresnelZone::new(wave, share)).transpose()?;
     let lens = places::lens(&arguments.lens)?;
     let mounting = places::mounting(&arguments.lens, lens);
     let mut run = Run::new(global);
@@ -89,8 +88,7 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
         .with_required(u32::try_from(arguments.required)?)
         .with_search_limit(arguments.search_limit);
     let weights = counted_weights(&targets);
-    let placed = run.stage("choosing cameras", 0, |control| place_cameras(&table, &weights, &params, control));
-    let placed = placed?;
+    let placed = run.stage("choosing cameras", 0, |control| place_cameras(&table, &weights, &params, control))?;
     add_placement(&mut run.summary, &placed, &weights, arguments.required);
     let found = Found::new(&poses, existing.len(), &table, &placed, &targets, north.of_grid);
     for output in &arguments.output {

@@ -62,8 +62,7 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
     let params = EnvelopeParams::default().with_ceiling(arguments.ceiling);
     let found = run.stage("computing envelope", suns.directions.len(), |control| {
         solar_envelope(&parcel, &below, &land.pieces, &suns.directions, free.as_ref(), &params, control)
-    });
-    let found = found?;
+    })?;
     run.summary.add("envelope", told(&found, &land, &suns, arguments));
     for output in &arguments.output {
         run.stage("writing", 0, |_| write_one(output, &found, &below, &cloud))?;

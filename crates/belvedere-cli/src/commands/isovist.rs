@@ -46,8 +46,7 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
         };
         // a skipped eye has a row without measures
         fit.iter().map(|eye| eye[0].is_finite().then(|| look(eye)).transpose()).collect::<belvedere::Result<Vec<_>>>()
-    });
-    let isovists = isovists?;
+    })?;
     let rows = rows(&scene.cloud, &places, &isovists, north.of_grid);
     if let [row] = &rows[..] {
         let mut section = Summary::default();

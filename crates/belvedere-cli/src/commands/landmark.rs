@@ -67,8 +67,7 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
         .with_max_range(arguments.max_distance.unwrap_or(f64::INFINITY));
     let views = run.stage("testing landmark", eyes.len(), |progress| {
         landmark_views(&blockers, &surface, &eyes, &params, progress)
-    });
-    let views = views?;
+    })?;
     run.summary.add("observers", Summary::of(&LandmarkReport::new(&views, &eyes, inside)));
     let given = rows_as_given(arguments.observers.as_deref())?;
     for output in &arguments.output {

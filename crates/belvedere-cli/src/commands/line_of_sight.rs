@@ -287,10 +287,9 @@ fn write_profile(
     run: &mut Run,
 ) -> Result<()> {
     let ground = profile_ground(arguments, scene, run)?;
-    let made = run.stage("computing profile", 0, |control| {
+    let profile = run.stage("computing profile", 0, |control| {
         sight_profile(blockers, ground.as_ref(), pair, earth, arguments.profile_step, control)
-    });
-    let profile = made?;
+    })?;
     let up = scene.cloud.frame.crs.vertical_metres_per_unit;
     let height = |local: f64| (local + scene.cloud.frame.origin[2]) / up;
     let ground: Vec<f64> = profile.ground.iter().map(|&v| height(v)).collect();

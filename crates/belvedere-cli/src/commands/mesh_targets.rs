@@ -71,8 +71,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     }
     let spacing = arguments.mesh.spacing.unwrap_or(SPACING);
     let surface = run
-        .stage("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, global.seed));
-    let surface = surface?;
+        .stage("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, global.seed))?;
     let Some(view) = views.first() else { bail!("there is no view") };
     let viewer = match view.is_central() {
         true => Viewer::Eye(view.frame.eye),

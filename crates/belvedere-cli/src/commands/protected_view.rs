@@ -50,8 +50,7 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
         .with_max_range(arguments.max_distance.unwrap_or(f64::INFINITY));
     let found = run.stage("computing limits", places.len(), |control| {
         protected_view::protected_view(&blockers, &object, &places, &ground.grid, &params, control)
-    });
-    let found = found?;
+    })?;
     let above = found.above_ground(&ground)?;
     let mut section = Summary::default();
     let sum = |of: fn(&ViewpointReport) -> usize| found.viewpoints.iter().map(of).sum::<usize>();

@@ -165,8 +165,7 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
         day,
         viewpoints: arguments.observer.iter().map(|&Place([x, y], z)| [x, y, z.unwrap_or(f64::NAN)]).collect(),
     };
-    let exported = run.stage("making the page", 0, |control| export(&cloud, model, &params, control));
-    let (page, report) = exported?;
+    let (page, report) = run.stage("making the page", 0, |control| export(&cloud, model, &params, control))?;
     run.stage("writing", 0, |_| {
         atomic::write(output, |file| file.write_all(page.as_bytes()).map_err(Error::io(output)))
     })?;

@@ -137,7 +137,11 @@ fn camera_plans_that_cannot_be_are_refused_with_the_reason() {
     place.refusal(2, &format!("{posts} -o a.tif"), &["--count"]);
     place.refusal(2, &format!("{HOUSE} --count 2 -o a.tif"), &["--candidates"]);
     place.refusal(2, &format!("{posts} --count 1 --targets doors.csv -o a.tif"), &["a.tif", "cells"]);
-    place.refusal(2, &format!("{posts} --count 1 --fov 360 --density identify -o a.tif"), &["--max-distance"]);
+    place.refusal(
+        2,
+        &format!("{posts} --count 1 --fov 360 --density identify -o a.tif"),
+        &["--density", "limit the distance"],
+    );
     place.refusal(2, &format!("{posts} --count 1 --fov 400 -o a.tif"), &["field of view", "360"]);
     place.refusal(2, &format!("{posts} --coverage 120 -o a.tif"), &["--coverage", "100"]);
     place.refusal(2, &format!("{posts} --count 1 --density sharp -o a.tif"), &["recognise"]);

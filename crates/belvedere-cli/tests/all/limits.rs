@@ -48,7 +48,7 @@ fn options_are_refused_before_a_cloud_is_read() {
         ("depth-map junk.laz --eye 1,1,1 --look-at 1,1,2 --size 1000000000x1 -o o.tif", ["--size", "65536 on a side"]),
         ("depth-map junk.laz --eye 1,1,1 --look-at 1,1,1 -o o.tif", ["--look-at", "point to look at"]),
         ("depth-map junk.laz --eye 1,1,1 --look-at 2,1,1 --fov 300 -o o.tif", ["--fov", "175"]),
-        ("depth-map junk.laz --eye 1,1,1 --look-at 2,1,1 --near 5 --far 3 -o o.tif", ["--near", "--far"]),
+        ("depth-map junk.laz --eye 1,1,1 --look-at 2,1,1 --near 5 --far 3 -o o.tif", ["--near", "near and far limit"]),
         ("depth-map junk.laz --sun 10,95 -o o.tif", ["--sun", "0 to 90"]),
         ("depth-map junk.laz --direction 0,0,0 -o o.tif", ["--direction", "0"]),
         ("query junk.laz --panorama 1,1,1 --size 100x100 --random 5 -o o.csv", ["--size", "twice as wide"]),

@@ -274,10 +274,30 @@ fn wrong_usage_names_the_flag_and_ends_with_status_2() {
 }
 
 #[test]
+fn errors_about_parameters_name_the_flag_that_gave_them() {
+    let place = with_house();
+    let look = "depth-map house.laz -o out.png --eye 1,1,1 --look-at 2,1,1";
+    for (arguments, message) in [
+        ("balls house.laz -o out.npz --method tau --penetration -1", "--penetration: penetration is -1, but must be"),
+        (
+            "sky-view house.laz -o out.csv --directions 100001",
+            "--directions: number of directions is 100001, but must be",
+        ),
+        ("horizon house.laz -o out.csv --observer 1,2 --angle-step-deg 7", "--angle-step-deg: step of angles"),
+        // one parameter that either of two flags gives
+        ("balls house.laz -o out.npz --method angles --first-angle 200", "--first-angle: separation angle is 200"),
+        ("balls house.laz -o out.npz --method angles --next-angle 200", "--next-angle: separation angle is 200"),
+        (&format!("{look} --near 5 --far 4"), "--near: near and far limit is"),
+    ] {
+        place.refusal(2, arguments, &[&format!("error: {message}")]);
+    }
+}
+
+#[test]
 fn sizes_beyond_reason_are_refused_before_memory_is_asked_for() {
     let place = with_house();
     for flags in ["--sun 180,30 --pixel 1e-9", "--direction 0,0,-1 --pixel 1e-300"] {
-        let words = [flags.split_once(' ').unwrap().0, "--pixel", "268435456 pixels"];
+        let words = ["error: --pixel: ", "268435456 pixels"];
         place.refusal(2, &format!("depth-map house.laz {flags} -o out.tif"), &words);
         place.refusal(2, &format!("query house.laz --self {flags} -o out.laz"), &words);
     }

@@ -60,7 +60,7 @@ fn what_makes_no_animation_is_refused_and_writes_nothing() {
     let path = folder.path().join("no.png");
     let (a, b) = (Picture::filled(2, 2, [0; 3]), Picture::filled(2, 3, [0; 3]));
     let refused = |frames: &[Picture], seconds: f64| write_apng(&path, frames, seconds).unwrap_err().to_string();
-    assert!(refused(&[], 1.0).contains("number of frames"));
+    assert!(refused(&[], 1.0).contains("frames of a film"));
     assert!(refused(&[a.clone(), b], 1.0).contains("2 x 3 pixels after 2 x 2"));
     assert!(refused(&[Picture::filled(0, 2, [0; 3])], 1.0).contains("picture size"));
     assert!(refused(&[Picture { rgb: vec![0; 3], ..a.clone() }], 1.0).contains("picture size"));

@@ -335,7 +335,7 @@ fn hostile_input_is_refused_with_what_is_wrong() {
     assert!(ask(&parcel, &[], &[[f64::NAN, 0.0, 1.0]], None).contains("direction to the sun"));
     assert!(ask(&parcel, &[ProtectedPiece::point([0.0, f64::NAN, 0.0], 0)], &[], None).contains("protected place"));
     for ceiling in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(ask(&parcel, &[], &[], Some(ceiling)).contains("ceiling"));
+        assert!(ask(&parcel, &[], &[], Some(ceiling)).contains("maximum height"));
     }
     assert!(
         ask(&rectangle([500.0, 500.0], [510.0, 510.0]), &[], &[], None).contains("ground below the parcel is unknown")
