@@ -115,7 +115,8 @@ fn scene(arguments: &Envelope, run: &mut Run) -> Result<Scene> {
     let cloud = pipeline::read(&arguments.scene.input, run)?;
     let bounds = pipeline::bounds_of(&cloud)?;
     let parts = ModelParts { frame: cloud.frame.clone(), bounds, ..ModelParts::default() };
-    Ok(Scene { model: SceneModel::from_parts(parts)?, cloud, left_out: ReadReport::default() })
+    let (model, profile) = (SceneModel::from_parts(parts)?, arguments.scene.profile.into());
+    Ok(Scene { model, cloud, left_out: ReadReport::default(), profile })
 }
 
 /// Directions, and what to call each.
