@@ -140,8 +140,8 @@ impl Scene {
         Ok((to_1d(py, answers).into_any(), to_1d(py, seen.counts).into_any(), grid, skipped))
     }
 
-    /// Elevations of the horizon, degrees, a row for each observer and a column for each azimuth, NaN rows for those skipped; the number of
-    /// azimuths; and remarks.
+    /// Elevations of the horizon, degrees, a row for each observer and a column for each azimuth, NaN for those skipped;
+    /// the number of azimuths; and remarks.
     fn horizon<'py>(
         &self,
         py: Python<'py>,

@@ -98,7 +98,8 @@ impl Scene {
         rows_of(py, FaceRows::of_seen(&mesh, &seen))
     }
 
-    /// What is known of the line of sight of each pair, where its target is, and remarks. Heights that are NaN follow from the ground.
+    /// What is known of the line of sight of each pair, where its target is, and remarks. Heights that are NaN follow from
+    /// the ground.
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn lines_of_sight<'py>(
         &self,

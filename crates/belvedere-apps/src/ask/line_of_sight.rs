@@ -32,7 +32,7 @@ pub struct LinesOfSight {
     pub ground: GroundPoints,
     /// How lines of sight run over the earth.
     pub earth: EarthParams,
-    /// Frequency of a radio link whose first Fresnel zone is tested too, GHz, 0.001 to 1000; `None` to test the line alone.
+    /// Frequency of a radio link, GHz, 0.001 to 1000, to test its first Fresnel zone too; `None` for the line alone.
     pub frequency_ghz: Option<f64>,
     /// What unproven answers count as; `None` to report them where pulses are known.
     pub unproven: Option<UnprovenAs>,
