@@ -27,6 +27,7 @@ pub(crate) fn exception(error: Error) -> PyErr {
         Error::InvalidParameter { parameter, value, expected } => {
             (keyword(parameter).to_owned(), value, format!("must be {expected}"))
         }
+        Error::NoObserver { who, what } => (format!("{who}s"), "0 left".to_owned(), what),
         Error::LengthMismatch { what, expected, found } => {
             (what.to_owned(), found.to_string(), format!("give {expected} values"))
         }

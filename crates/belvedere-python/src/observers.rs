@@ -1,20 +1,16 @@
 //! Who looks: places of eyes, with or without their height.
 
-use crate::arrays::to_2d;
 use crate::errors::{belvedere_error, wrong};
-use crate::scene::Scene;
-use crate::targets::{ground_cloud, ground_points};
-use crate::work::run;
-use belvedere::apps::ask;
+use crate::targets::ground_cloud;
+use belvedere::apps::ask::{self, Standing};
 use belvedere::apps::eyes::{EyesReport, skip_unfit_eyes};
-use belvedere::apps::targets::{grid_around, set_on_ground, set_on_terrain};
-use belvedere::apps::viewshed::{OBSERVER_HEIGHT, TARGET_HEIGHT};
+use belvedere::apps::targets::{grid_around, set_on_ground};
+use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, GroundPoints};
 use belvedere::query::MedialScene;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
-use std::sync::Arc;
 
 /// Places of eyes in the coordinates of the file; z is NaN where it follows from the ground.
 pub(crate) fn places(array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<[f64; 3]>> {
@@ -46,29 +42,11 @@ pub(crate) fn eyes(
     Ok(eyes)
 }
 
-#[pymethods]
-impl Scene {
-    /// Places in the coordinates of the file, those without a height (NaN) as eyes or targets above the ground.
-    fn on_ground<'py>(
-        &self,
-        py: Python<'py>,
-        array: PyReadonlyArray2<'py, f64>,
-        height: Option<f64>,
-        is_target: bool,
-        ground: Option<&str>,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let rows = places(&array)?;
-        let points = ground_points(ground)?;
-        let height = height.unwrap_or(if is_target { TARGET_HEIGHT } else { OBSERVER_HEIGHT });
-        let inner = Arc::clone(&self.0);
-        let placed = run(py, progress, move |control| {
-            let mut placed = eyes(&inner, &rows, Some(height), points, control)?;
-            set_on_terrain(placed.iter_mut().map(|place| (place, height)), inner.model());
-            Ok(placed.into_iter().map(|place| inner.frame().file_from_local(place)).collect::<Vec<_>>())
-        })?;
-        Ok(to_2d(py, &placed)?.into_any())
-    }
+/// The places, local metres; z is NaN where it follows from the ground. `what` names the argument.
+pub(crate) fn standing(array: &PyReadonlyArray2<'_, f64>, what: &str, scene: &ask::Scene) -> PyResult<Vec<Standing>> {
+    let rows = crate::arrays::fixed_rows(array, what)?;
+    let local = |row| Standing { place: scene.frame().local_from_file(row), height: None };
+    Ok(rows.into_iter().map(local).collect())
 }
 
 /// Makes eyes that cannot look NaN.

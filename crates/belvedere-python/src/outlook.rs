@@ -2,21 +2,20 @@
 
 use crate::arrays::{to_1d, to_2d};
 use crate::errors::{exception, wrong};
-use crate::observers::{eyes, places, skip, skipped};
+use crate::observers::{places, skipped, standing};
 use crate::scene::{Scene, unproven_as};
 use crate::sights::earth;
 use crate::sun::Place;
-use crate::targets::{Cells, Grid, grid_at, grid_of, ground_points};
+use crate::targets::{Cells, Grid, grid_at, grid_of, ground_points, remarks_of};
 use crate::work::run;
+use belvedere::apps::ask::{self, BelowLevel};
 use belvedere::apps::eyes::{EyesReport, fault_of_target, skip_unfit_far_eyes};
-use belvedere::apps::horizon::{HorizonParams, azimuth_count, horizons};
-use belvedere::apps::isovist::{Isovist, IsovistParams, isovist};
 use belvedere::apps::targets::{CellLevel, CellParams, CoveredCells, Targets, set_on_ground, set_on_terrain};
 use belvedere::apps::viewshed::{
     OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, ViewshedParams, box_within_reach, far_viewshed,
     terrain_within_reach, tested_height, viewshed,
 };
-use belvedere::query::{EarthParams, UnprovenAs};
+use belvedere::query::EarthParams;
 use belvedere::results::terrain_georeference;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
@@ -63,8 +62,10 @@ impl Looking {
 
 /// Answers and counts of cells, their grid, and what was skipped.
 type Seen<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Grid, Vec<String>);
-/// An array of the columns of isovists, and what was skipped.
-type Described<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyAny>>, Vec<String>);
+/// Elevations, the number of azimuths, and remarks.
+type Horizons<'py> = (Bound<'py, PyAny>, usize, Vec<Bound<'py, PyDict>>);
+/// Columns of isovists, their panoramas, and remarks.
+type Described<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyAny>>, Vec<Bound<'py, PyDict>>);
 
 #[pymethods]
 impl Scene {
@@ -139,7 +140,8 @@ impl Scene {
         Ok((to_1d(py, answers).into_any(), to_1d(py, seen.counts).into_any(), grid, skipped))
     }
 
-    /// Elevations of the horizon, degrees, a row for each observer and a column for each azimuth; NaN rows for those skipped.
+    /// Elevations of the horizon, degrees, a row for each observer and a column for each azimuth, NaN for those skipped;
+    /// the number of azimuths; and remarks.
     fn horizon<'py>(
         &self,
         py: Python<'py>,
@@ -148,38 +150,30 @@ impl Scene {
         looking: Looking,
         place: Place,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Bound<'py, PyAny>, usize, Vec<String>)> {
-        let earth = looking.earth()?;
-        let usual = HorizonParams::default();
-        let count = match angle_step {
-            Some(step) => azimuth_count(step.to_radians()).map_err(exception)?,
-            None => usual.azimuth_count,
+    ) -> PyResult<Horizons<'py>> {
+        let question = ask::Horizon {
+            observer_height: looking.observer_height,
+            ground: ground_points(looking.ground.as_deref())?,
+            angle_step_deg: angle_step,
+            earth: looking.earth()?,
+            north: place.north(),
+            below: BelowLevel::Keep,
         };
-        let places = places(&observers)?;
-        let points = ground_points(looking.ground.as_deref())?;
-        let inner = Arc::clone(&self.0);
-        let of_work = Arc::clone(&inner);
-        let (found, report) = run(py, progress, move |control| {
-            let inner = of_work;
-            let mut eyes = eyes(&inner, &places, looking.observer_height, points, control)?;
-            let turn = eyes.first().map_or(0.0, |eye| place.grid_north(&inner, [eye[0], eye[1]]));
-            let scene = inner.blockers(UnprovenAs::Visible, control)?;
-            let report = skip(&scene, None, &mut eyes, control)?;
-            let params = HorizonParams::default().with_azimuth_count(count).with_turn(turn).with_earth(earth);
-            let found =
-                control.stage("computing horizons", eyes.len(), || horizons(&scene, &eyes, &params, control))?;
-            Ok((found, report))
-        })?;
-        let skipped = skipped(&inner, "observer", &report)?;
-        let elevation = |skyline: &Vec<belvedere::query::SkylinePoint>, azimuth: usize| {
-            skyline.get(azimuth).map_or(f64::NAN, |point| point.elevation.to_degrees())
-        };
-        let all: Vec<f64> =
-            found.iter().flat_map(|skyline| (0..count).map(move |azimuth| elevation(skyline, azimuth))).collect();
-        Ok((to_1d(py, all).into_any(), count, skipped))
+        let scene = Arc::clone(&self.0);
+        let eyes = ask::Places::Eyes(standing(&observers, "observers", &scene)?);
+        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &eyes, control))?;
+        let found = answers.found;
+        let count = found.azimuth_count;
+        let elevation = |row: &Vec<f64>, azimuth: usize| row.get(azimuth).copied().unwrap_or(f64::NAN);
+        let all: Vec<f64> = found
+            .elevations_deg
+            .iter()
+            .flat_map(|row| (0..count).map(move |azimuth| elevation(row, azimuth)))
+            .collect();
+        Ok((to_1d(py, all).into_any(), count, remarks_of(py, &answers.remarks)?))
     }
 
-    /// Columns of numbers, the panorama of each observer, and what was skipped.
+    /// Columns of numbers, the panorama of each observer, and remarks.
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn isovist<'py>(
         &self,
@@ -191,53 +185,33 @@ impl Scene {
         place: Place,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Described<'py>> {
-        let usual = IsovistParams::default();
-        let params = IsovistParams::default()
-            .with_step(angle_step.map_or(usual.step, f64::to_radians))
-            .with_max_range(looking.max_distance.unwrap_or(usual.max_range))
-            .with_jump(min_jump.unwrap_or(usual.jump));
-        let places = places(&observers)?;
-        let points = ground_points(looking.ground.as_deref())?;
-        let inner = Arc::clone(&self.0);
-        let of_work = Arc::clone(&inner);
-        let (stand, isovists, report) = run(py, progress, move |control| {
-            let inner = of_work;
-            let mut eyes = eyes(&inner, &places, looking.observer_height, points, control)?;
-            let stand = eyes.clone();
-            let scene = inner.blockers(UnprovenAs::Visible, control)?;
-            let report = skip(&scene, None, &mut eyes, control)?;
-            let isovists = control.stage("computing ranges", eyes.len(), || {
-                let look = |eye: &[f64; 3]| {
-                    let found = eye[0].is_finite().then(|| isovist(&scene, *eye, &params, control)).transpose();
-                    control.advance(1);
-                    found
-                };
-                eyes.iter().map(look).collect::<belvedere::Result<Vec<Option<Isovist>>>>()
-            })?;
-            Ok((stand, isovists, report))
-        })?;
-        let skipped = skipped(&inner, "observer", &report)?;
-        let north = place.grid_north_of(&inner);
+        let question = ask::Isovists {
+            observer_height: looking.observer_height,
+            ground: ground_points(looking.ground.as_deref())?,
+            north: place.north(),
+            max_distance: looking.max_distance,
+            angle_step_deg: angle_step,
+            min_jump,
+        };
+        let scene = Arc::clone(&self.0);
+        let eyes = ask::Places::Eyes(standing(&observers, "observers", &scene)?);
+        let of_work = Arc::clone(&scene);
+        let answers = run(py, progress, move |control| ask::ask(&of_work, &question, &eyes, control))?;
+        let found = answers.found;
         let dict = PyDict::new(py);
-        let of_file: Vec<[f64; 3]> = stand.iter().map(|&eye| inner.frame().file_from_local(eye)).collect();
+        let of_file: Vec<[f64; 3]> = found.eyes.places.iter().map(|&eye| scene.frame().file_from_local(eye)).collect();
         dict.set_item("place", to_2d(py, &of_file)?)?;
-        let Some(known) = isovists.iter().flatten().next() else { return Ok((dict, Vec::new(), skipped)) };
-        let rows: Vec<Option<Vec<f64>>> = isovists
-            .iter()
-            .map(|found| Some(found.as_ref()?.figures(north).map(|figure| figure.value).collect()))
-            .collect();
-        for (i, figure) in known.figures(north).enumerate() {
-            let column = rows.iter().map(|row| row.as_ref().and_then(|row| row.get(i)).copied().unwrap_or(f64::NAN));
-            dict.set_item(figure.name, to_1d(py, column.collect()))?;
+        for column in found.columns() {
+            dict.set_item(column.name, to_1d(py, column.values))?;
         }
-        let panoramas = isovists.iter().flatten().map(|found| {
-            let raster = &found.panorama;
+        let panoramas = found.isovists.iter().flatten().map(|isovist| {
+            let raster = &isovist.panorama;
             let array =
                 numpy::ndarray::Array2::from_shape_vec((raster.height(), raster.width()), raster.values().to_vec());
             array.map(|array| numpy::PyArray2::from_owned_array(py, array).into_any())
         });
         let panoramas: Result<Vec<_>, _> = panoramas.collect();
         let panoramas = panoramas.map_err(|error| pyo3::exceptions::PyRuntimeError::new_err(error.to_string()))?;
-        Ok((dict, panoramas, skipped))
+        Ok((dict, panoramas, remarks_of(py, &answers.remarks)?))
     }
 }

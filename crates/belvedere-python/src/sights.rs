@@ -1,19 +1,31 @@
 //! Who sees what: pairs, and many targets of one eye.
 
-use crate::arrays::{Places, to_1d, to_2d};
+use crate::arrays::{to_1d, to_2d};
 use crate::errors::{exception, wrong};
 use crate::mesh::{Faces, rows_of};
+use crate::observers::standing;
 use crate::scene::{Scene, unproven_as};
-use crate::targets::Wanted;
+use crate::targets::{Wanted, ground_points, remarks_of};
 use crate::work::run;
-use belvedere::apps::ask;
-use belvedere::query::{
-    Answer, Blocker, Curvature, EarthParams, MeshTargetParams, RadioWave, SurfacePieces, UnprovenAs, Viewer, seen_faces,
-};
+use belvedere::apps::ask::{self, LinesOfSight};
+use belvedere::query::{Curvature, EarthParams, MeshTargetParams, SurfacePieces, UnprovenAs, Viewer, seen_faces};
 use belvedere::results::FaceRows;
+use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
+
+/// Heights of the ends of lines that have none.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Ends {
+    observer_height: Option<f64>,
+    target_height: Option<f64>,
+    ground: Option<String>,
+}
+
+/// Columns of pairs, where their targets are, and remarks.
+type Sights<'py> = (Bound<'py, PyDict>, Bound<'py, PyAny>, Vec<Bound<'py, PyDict>>);
 
 /// How lines of sight run over the earth; what is not given is the library's default.
 pub(crate) fn earth(curvature: Option<&str>, refraction: Option<f64>) -> PyResult<EarthParams> {
@@ -86,80 +98,62 @@ impl Scene {
         rows_of(py, FaceRows::of_seen(&mesh, &seen))
     }
 
-    /// What is known of the line of sight of each pair.
+    /// What is known of the line of sight of each pair, where its target is, and remarks. Heights that are NaN follow from
+    /// the ground.
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn lines_of_sight<'py>(
         &self,
         py: Python<'py>,
-        observers: Places<'py>,
-        targets: Places<'py>,
+        observers: PyReadonlyArray2<'py, f64>,
+        targets: PyReadonlyArray2<'py, f64>,
+        ends: Ends,
         unproven: &str,
         curvature: Option<&str>,
         refraction: Option<f64>,
         frequency: Option<f64>,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        let unproven = unproven_as(unproven)?;
-        let wave = frequency.map(RadioWave::of_frequency).transpose().map_err(exception)?;
-        let earth = earth(curvature, refraction)?;
-        let [observers, targets] = [observers.rows("observers")?, targets.rows("targets")?];
+    ) -> PyResult<Sights<'py>> {
+        let question = LinesOfSight {
+            observer_height: ends.observer_height,
+            target_height: ends.target_height,
+            ground: ground_points(ends.ground.as_deref())?,
+            earth: earth(curvature, refraction)?,
+            frequency_ghz: frequency,
+            unproven: Some(unproven_as(unproven)?).filter(|unproven| *unproven != UnprovenAs::Reported),
+            profile: None,
+        };
+        let scene = Arc::clone(&self.0);
+        let [observers, targets] = [standing(&observers, "observers", &scene)?, standing(&targets, "targets", &scene)?];
         if observers.len() != targets.len() {
             let value = format!("an array of {} rows", targets.len());
             return Err(wrong("targets", &value, &format!("give a row for each of the {} observers", observers.len())));
         }
-        let inner = Arc::clone(&self.0);
-        let of_work = Arc::clone(&inner);
-        let (sights, fresnel) = run(py, progress, move |control| {
-            let frame = of_work.frame();
-            let local = |place: [f64; 3]| frame.local_from_file(place);
-            let pairs: Vec<[[f64; 3]; 2]> =
-                observers.into_iter().zip(targets).map(|(a, b)| [local(a), local(b)]).collect();
-            let scene = of_work.blockers(unproven, control)?;
-            let sights = control
-                .stage("testing lines of sight", pairs.len(), || scene.lines_of_sight(&pairs, &earth, control))?;
-            let fresnel = match wave {
-                Some(wave) => Some(control.stage("testing Fresnel zones", pairs.len(), || {
-                    scene.fresnel_clearances(&pairs, &sights, wave, &earth, control)
-                })?),
-                None => None,
-            };
-            Ok((sights, fresnel))
-        })?;
+        let pairs = observers.into_iter().zip(targets).map(|(observer, target)| [observer, target]).collect();
+        let of_work = Arc::clone(&scene);
+        let answers =
+            run(py, progress, move |control| ask::ask(&of_work, &question, &ask::Places::Pairs(pairs), control))?;
+        let found = &answers.found;
+        let columns = found.columns(&scene);
         let dict = PyDict::new(py);
-        let answer = |sight: &Option<belvedere::query::LineOfSight>| {
-            sight.map_or(Answer::OutsideView, |sight| unproven.settle(sight.answer)) as u8
-        };
-        dict.set_item("answer", to_1d(py, sights.iter().map(answer).collect()))?;
-        let block = |i: usize| sights[i].and_then(|sight| sight.first_block);
-        let each = || 0..sights.len();
-        dict.set_item(
-            "first_block_range_m",
-            to_1d(py, each().map(|i| block(i).map_or(f64::NAN, |block| block.range)).collect()),
-        )?;
-        if inner.model().pulses().is_some() && unproven != UnprovenAs::Visible {
-            let free = |i: usize| sights[i].filter(|sight| sight.first_block.is_none());
-            dict.set_item(
-                "unproven_m",
-                to_1d(py, each().map(|i| free(i).map_or(f64::NAN, |sight| sight.unproven_length)).collect()),
-            )?;
+        dict.set_item("answer", to_1d(py, found.answers.iter().map(|&answer| answer as u8).collect()))?;
+        dict.set_item("first_block_range_m", to_1d(py, columns.ranges))?;
+        if let Some(lengths) = columns.unproven {
+            dict.set_item("unproven_m", to_1d(py, lengths))?;
         }
-        if let Some(free) = fresnel {
-            let percent = free.into_iter().map(|free| 100.0 * free).collect();
-            dict.set_item("fresnel_free_percent", to_1d::<f64>(py, percent))?;
+        if let Some(percent) = columns.fresnel_free_percent {
+            dict.set_item("fresnel_free_percent", to_1d(py, percent))?;
         }
-        let place = |i: usize| block(i).map_or([f64::NAN; 3], |block| inner.frame().file_from_local(block.place));
-        dict.set_item("block", to_2d(py, &each().map(place).collect::<Vec<_>>())?)?;
-        let ball_of = |i: usize| block(i).and_then(|block| block.blocker.ball());
-        let ball = |i: usize| ball_of(i).map_or(-1, |row| i64::try_from(row).unwrap_or(-1));
-        dict.set_item("block_ball", to_1d(py, each().map(ball).collect()))?;
-        let source = |i: usize| {
-            ball_of(i).and_then(|row| inner.model().balls().source.get(row)).map_or(-1, |&row| i64::from(row))
-        };
-        dict.set_item("block_source", to_1d(py, each().map(source).collect()))?;
-        if inner.model().far_terrain().grid().is_some() {
-            let is_terrain = |i: usize| block(i).is_some_and(|block| block.blocker == Blocker::Terrain);
-            dict.set_item("block_terrain", to_1d(py, each().map(is_terrain).collect()))?;
+        dict.set_item("block", to_2d(py, &columns.places)?)?;
+        let ball = |row: Option<usize>| row.map_or(-1, |row| i64::try_from(row).unwrap_or(-1));
+        dict.set_item("block_ball", to_1d::<i64>(py, columns.balls.into_iter().map(ball).collect()))?;
+        let source = |row: Option<u32>| row.map_or(-1, i64::from);
+        dict.set_item("block_source", to_1d::<i64>(py, columns.sources.into_iter().map(source).collect()))?;
+        if let Some(is_terrain) = columns.is_terrain {
+            let is_terrain = is_terrain.into_iter().map(Option::unwrap_or_default).collect();
+            dict.set_item("block_terrain", to_1d::<bool>(py, is_terrain))?;
         }
-        Ok(dict)
+        let targets: Vec<[f64; 3]> =
+            found.pairs.iter().map(|[_, target]| scene.frame().file_from_local(*target)).collect();
+        Ok((dict, to_2d(py, &targets)?.into_any(), remarks_of(py, &answers.remarks)?))
     }
 }

@@ -59,11 +59,6 @@ impl Place {
     pub(crate) fn grid_north_of(&self, scene: &ask::Scene) -> f64 {
         self.north().of_scene(scene).of_grid
     }
-
-    /// The same at a local place.
-    pub(crate) fn grid_north(&self, scene: &ask::Scene, place: [f64; 2]) -> f64 {
-        self.north().at(scene, place).of_grid
-    }
 }
 
 /// Suns, by direction or by time.

@@ -157,7 +157,7 @@ impl Chosen {
         measures: Vec<Measure>,
         remarks: &[Remark],
     ) -> PyResult<Results<'py>> {
-        let remarks = remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<Vec<_>>>()?;
+        let remarks = remarks_of(py, remarks)?;
         if let (Some(mesh), Some(surface)) = (&self.mesh, targets.surface()) {
             let rows = rows_of(py, FaceRows::of_measures(mesh, surface, &measures))?;
             return Ok((Vec::new(), None, Some(rows), remarks));
@@ -166,6 +166,11 @@ impl Chosen {
         let grid = targets.ground().map(|ground| grid_of(&ground.grid, &targets.frame));
         Ok((measures.into_iter().map(column).collect(), grid, None, remarks))
     }
+}
+
+/// All remarks.
+pub(crate) fn remarks_of<'py>(py: Python<'py>, remarks: &[Remark]) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    remarks.iter().map(|remark| remark_of(py, remark)).collect()
 }
 
 /// A remark: key, severity, text and numbers.

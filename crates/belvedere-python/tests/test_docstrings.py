@@ -24,6 +24,8 @@ EXAMPLES = [test for module in MODULES for test in doctest.DocTestFinder().find(
 PLAIN = {"crs", "shape", "x", "y"}
 
 
+# so small a tile is near its edge almost everywhere
+@pytest.mark.filterwarnings("ignore::belvedere.BelvedereWarning")
 @pytest.mark.parametrize("test", EXAMPLES, ids=lambda test: test.name)
 def test_example_runs(test, cloud, scene, targets, eye, standing, tile, folder):
     test.globs |= {

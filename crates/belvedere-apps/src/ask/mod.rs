@@ -13,8 +13,11 @@
 //! | warnings and notes | [`remark`] |
 //! | figures beside the answer | [`report`] |
 
+mod horizon;
 mod irradiance;
+mod isovist;
 mod light;
+mod line_of_sight;
 pub mod north;
 pub mod observers;
 pub mod places;
@@ -28,8 +31,11 @@ mod sun_hours;
 mod sun_position;
 mod trees;
 
+pub use horizon::{BelowLevel, Horizon, HorizonFound};
 pub use irradiance::{Irradiance, IrradianceFound, Radiation, Roofs, RoofsFound};
+pub use isovist::{IsovistColumn, Isovists, IsovistsFound};
 pub use light::OnTargets;
+pub use line_of_sight::{LinesOfSight, ProfileRows, SightColumns, SightsFound};
 pub use north::North;
 pub use observers::{Eyes, Standing};
 pub use places::{Cells, Places, Turned};
@@ -65,6 +71,12 @@ pub enum Question {
     Irradiance(Irradiance),
     /// Where the sun stands.
     SunPosition(SunPosition),
+    /// Whether observers see targets, pair by pair.
+    LineOfSight(LinesOfSight),
+    /// Above which elevation the sky is free.
+    Horizon(Horizon),
+    /// The space that observers see.
+    Isovist(Isovists),
 }
 
 /// What was found, of any question.
@@ -78,6 +90,12 @@ pub enum Found {
     Irradiance(IrradianceFound),
     /// Of [`Question::SunPosition`].
     SunPosition(Vec<SunStands>),
+    /// Of [`Question::LineOfSight`].
+    LineOfSight(SightsFound),
+    /// Of [`Question::Horizon`].
+    Horizon(HorizonFound),
+    /// Of [`Question::Isovist`].
+    Isovist(IsovistsFound),
 }
 
 /// The answers to a question.
@@ -192,6 +210,9 @@ impl Ask for Question {
             Self::SkyView(question) => question.check(),
             Self::Irradiance(question) => question.check(),
             Self::SunPosition(question) => question.check(),
+            Self::LineOfSight(question) => question.check(),
+            Self::Horizon(question) => question.check(),
+            Self::Isovist(question) => question.check(),
         }
     }
 
@@ -202,6 +223,9 @@ impl Ask for Question {
             Self::SkyView(question) => question.answer(scene, places, context, control)?.map(Found::OnTargets),
             Self::Irradiance(question) => question.answer(scene, places, context, control)?.map(Found::Irradiance),
             Self::SunPosition(question) => question.answer(scene, places, context, control)?.map(Found::SunPosition),
+            Self::LineOfSight(question) => question.answer(scene, places, context, control)?.map(Found::LineOfSight),
+            Self::Horizon(question) => question.answer(scene, places, context, control)?.map(Found::Horizon),
+            Self::Isovist(question) => question.answer(scene, places, context, control)?.map(Found::Isovist),
         })
     }
 }

@@ -1,14 +1,16 @@
 //! Who looks, and what is looked at: places on the ground become eyes, and those that cannot look are skipped and named.
 
+use super::places::Places;
 use super::report::GroundSection;
 use super::scene::Scene;
 use super::{Context, Remark};
 use crate::eyes::{EyeFault, EyesReport, SkippedEye, skip_unfit_eyes, skip_unfit_far_eyes};
 use crate::targets::{grid_around, set_on_ground, set_on_terrain};
+use crate::viewshed::OBSERVER_HEIGHT;
 use belvedere_core::ground::{Ground, GroundPoints};
-use belvedere_core::query::MedialScene;
+use belvedere_core::query::{MedialScene, UnprovenAs};
 use belvedere_data::control::Control;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -35,6 +37,12 @@ pub struct Eyes {
     pub report: EyesReport,
 }
 
+/// Observers who look around themselves, and the balls that block their sight.
+pub(super) struct Observers {
+    pub(super) eyes: Eyes,
+    pub(super) blockers: Arc<MedialScene>,
+}
+
 /// How far lines of sight may run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
@@ -56,6 +64,41 @@ pub struct ObserversSection {
     /// How far that is above the ground.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub above_ground_m: Option<f64>,
+}
+
+impl Observers {
+    /// The observers of `places`, those without a height that far above the ground; those who cannot look are named.
+    pub(super) fn of(
+        places: &Places,
+        (height, points): (Option<f64>, GroundPoints),
+        scene: &Scene,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        let usual = height.unwrap_or(OBSERVER_HEIGHT);
+        let places = stand(places.eyes()?, (usual, points), scene, context, control)?;
+        let blockers = scene.blockers(UnprovenAs::Visible, control)?;
+        let eyes = skip_unfit(places, ("observer", Reach::Cloud), (&blockers, None), (scene, context), control)?;
+        let report = eyes.report.clone();
+        context.report.observers = Some(ObserversSection { eyes: report, ..ObserversSection::default() });
+        note_enclosed(&blockers, &eyes.eyes, "observer", context);
+        Ok(Self { eyes, blockers })
+    }
+}
+
+/// Checks a height above the ground.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for one below it, or that is not finite.
+pub(super) fn check_height(height: Option<f64>) -> Result<()> {
+    match height.filter(|height| !(height.is_finite() && *height >= 0.0)) {
+        Some(height) => Err(Error::InvalidParameter {
+            parameter: Parameter::HeightAboveGround,
+            value: height.to_string(),
+            expected: "0 metres or more",
+        }),
+        None => Ok(()),
+    }
 }
 
 /// The places, local metres: those without a height stand on the ground, or on the terrain beyond the cloud. The height is NaN where neither is known.
@@ -143,9 +186,14 @@ pub(super) fn remark_on_skipped(
 
 /// Notes eyes that are just inside the surface of an obstacle: the balls around them are ignored.
 pub(super) fn note_enclosed(blockers: &MedialScene, eyes: &[[f64; 3]], who: &str, context: &mut Context) {
-    for (number, &eye) in (1_usize..).zip(eyes).filter(|(_, eye)| eye[0].is_finite()).take(MAX_NAMED) {
+    let mut count = 0;
+    for (number, &eye) in (1_usize..).zip(eyes).filter(|(_, eye)| eye[0].is_finite()) {
         let enclosure = blockers.enclosure(eye);
         if enclosure.ball_count == 0 {
+            continue;
+        }
+        count += 1;
+        if count > MAX_NAMED {
             continue;
         }
         let text = format!(
@@ -153,5 +201,9 @@ pub(super) fn note_enclosed(blockers: &MedialScene, eyes: &[[f64; 3]], who: &str
             enclosure.ball_count, enclosure.depth
         );
         context.add(Some(Remark::note("eye-inside-obstacle", text).with("depth_m", enclosure.depth)));
+    }
+    if count > MAX_NAMED {
+        let text = format!("{count} {who}s are inside obstacles, just below their surface");
+        context.add(Some(Remark::note("eyes-inside-obstacle", text).with("count", count as f64)));
     }
 }

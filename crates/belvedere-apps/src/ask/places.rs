@@ -1,5 +1,6 @@
 //! The places that questions are about: from what a user gives to targets, with what has no answer and why.
 
+use super::observers::Standing;
 use super::report::{GroundSection, PlacesReport};
 use super::scene::Scene;
 use super::{Context, Remark};
@@ -13,7 +14,7 @@ use belvedere_data::{Error, Mesh, Parameter, PointCloud, Result};
 use std::sync::Arc;
 
 /// Share of targets near the edge of the cloud from which on it is warned of, percent.
-const EDGE_WARNING_PERCENT: f64 = 1.0;
+pub(super) const EDGE_WARNING_PERCENT: f64 = 1.0;
 const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
 const NEAR_EDGE: &str = "are near the edge of the cloud: objects beyond it, as high as its highest point, could take some of their sun or sky";
 
@@ -35,6 +36,10 @@ pub enum Places {
     Mesh(Arc<Mesh>, MeshParams),
     /// Targets that were made before.
     Targets(Arc<Targets>),
+    /// Observers.
+    Eyes(Vec<Standing>),
+    /// Observers and targets, two by two.
+    Pairs(Vec<[Standing; 2]>),
 }
 
 /// What points are turned to.
@@ -76,6 +81,7 @@ impl Places {
         let mut targets = match self {
             Self::Scene => of_points(Vec::new(), None),
             Self::Targets(targets) => return Ok(Arc::clone(targets)),
+            Self::Eyes(_) | Self::Pairs(_) => return other(Parameter::Targets, "observers", "cells, points or a mesh"),
             Self::Cells(cells) => return Ok(Arc::new(cells.targets(scene, context, control)?)),
             Self::Own(turned) => own_points(scene, *turned)?,
             Self::Points(positions, normals) => of_points(positions.clone(), normals.clone()),
@@ -90,6 +96,27 @@ impl Places {
         context.add(Remark::of_share("targets-outside-cloud", outside, count, "targets", OUTSIDE_CLOUD));
         Ok(Arc::new(targets))
     }
+
+    /// The observers.
+    pub(super) fn eyes(&self) -> Result<&[Standing]> {
+        match self {
+            Self::Eyes(eyes) => Ok(eyes),
+            _ => other(Parameter::Observer, "missing", "given: the question is about observers"),
+        }
+    }
+
+    /// Observers and targets, two by two.
+    pub(super) fn pairs(&self) -> Result<&[[Standing; 2]]> {
+        match self {
+            Self::Pairs(pairs) => Ok(pairs),
+            _ => other(Parameter::Observer, "missing", "given with a target each: the question is about pairs"),
+        }
+    }
+}
+
+/// Refuses places of another kind than a question is about.
+fn other<T>(parameter: Parameter, value: &str, expected: &'static str) -> Result<T> {
+    Err(Error::InvalidParameter { parameter, value: value.to_owned(), expected })
 }
 
 fn own_points(scene: &Scene, turned: Turned) -> Result<Targets> {

@@ -1,5 +1,7 @@
 //! What is known of how answers came about. Sections that a question does not have are left out.
 
+use super::horizon::HorizonsSection;
+use super::line_of_sight::{LineSection, PairsSection};
 use super::north::NorthReport;
 use super::observers::ObserversSection;
 use super::scene::KnownGround;
@@ -46,6 +48,15 @@ pub struct Report {
     /// What blocks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lines_of_sight: Option<LinesSection>,
+    /// A single line of sight.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<LineSection>,
+    /// How high horizons are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub horizons: Option<HorizonsSection>,
+    /// The numbers of a single isovist.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub isovist: Option<Named<f64>>,
     /// What trees let through.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trees: Option<TreesSection>,
@@ -208,6 +219,9 @@ pub struct RoofsSection {
 /// What lines of sight meet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LinesSection {
+    /// Answers of pairs.
+    #[serde(flatten)]
+    pairs: Option<PairsSection>,
     balls: usize,
     depth_bias_m: f64,
     shell_m: f64,
@@ -223,6 +237,7 @@ impl LinesSection {
     pub(super) fn of(blockers: &MedialScene, directions: Option<usize>) -> Self {
         let (rule, proof) = (blockers.params(), blockers.proof());
         Self {
+            pairs: None,
             balls: blockers.ball_count(),
             depth_bias_m: rounded(rule.bias, 4),
             shell_m: rounded(rule.shell, 4),
@@ -230,6 +245,10 @@ impl LinesSection {
             max_unproven_length_m: proof.map(|proof| rounded(proof.tolerance(), 3)),
             directions,
         }
+    }
+
+    pub(super) fn with_pairs(self, pairs: PairsSection) -> Self {
+        Self { pairs: Some(pairs), ..self }
     }
 }
 

@@ -42,6 +42,28 @@ impl Default for IsovistParams {
     }
 }
 
+impl IsovistParams {
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for one outside its range.
+    pub fn validate(&self) -> Result<()> {
+        let invalid = |parameter, value: f64, expected| {
+            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
+        };
+        if !(self.step >= 1e-4 * TAU && self.step <= FRAC_PI_2) {
+            return invalid(Parameter::AngleStep, self.step.to_degrees(), "0.036 to 90");
+        }
+        if !(self.max_range.is_finite() && self.max_range > 0.0) {
+            return invalid(Parameter::MaxDistance, self.max_range, "finite and above zero metres");
+        }
+        if !(self.jump.is_finite() && self.jump > 0.0) {
+            return invalid(Parameter::MinJump, self.jump, "finite and above zero metres");
+        }
+        Ok(())
+    }
+}
+
 /// What an eye sees around itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Isovist {
@@ -131,7 +153,7 @@ pub fn isovist_of(
     params: &IsovistParams,
     control: &Control<'_>,
 ) -> Result<Isovist> {
-    validate(params)?;
+    params.validate()?;
     let reach = params.max_range;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "validated: 4 to 62 832")]
     let width = ((TAU / params.step).round() as usize).next_multiple_of(4);
@@ -185,20 +207,4 @@ pub fn isovist_of(
 /// Unit vector through the middle of a cell of the panorama.
 fn direction(column: usize, row: usize, step: f64) -> [f64; 3] {
     to_sun((column as f64 + 0.5) * step - PI, FRAC_PI_2 - (row as f64 + 0.5) * step)
-}
-
-fn validate(params: &IsovistParams) -> Result<()> {
-    let invalid = |parameter, value: f64, expected| {
-        Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-    };
-    if !(params.step >= 1e-4 * TAU && params.step <= FRAC_PI_2) {
-        return invalid(Parameter::AngleStep, params.step.to_degrees(), "0.036 to 90");
-    }
-    if !(params.max_range.is_finite() && params.max_range > 0.0) {
-        return invalid(Parameter::MaxDistance, params.max_range, "finite and above zero metres");
-    }
-    if !(params.jump.is_finite() && params.jump > 0.0) {
-        return invalid(Parameter::MinJump, params.jump, "finite and above zero metres");
-    }
-    Ok(())
 }

@@ -5,11 +5,9 @@ use crate::pipeline::Scene;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, anyhow};
 use belvedere::apps::ask;
-use belvedere::apps::sun::{
-    Date, DayParams, Period, Refraction, Site, Zone, parse_instant, sun_position_with, zone_of_instant,
-};
+use belvedere::apps::sun::{Date, DayParams, Period, Refraction, Site, Zone, parse_instant, zone_of_instant};
 use belvedere::apps::sun_hours::RuleDays;
-use belvedere::{Bounds, Error, Frame, Parameter};
+use belvedere::{Bounds, Error, Frame};
 
 impl SunPlace {
     /// What was typed, with the north of azimuths.

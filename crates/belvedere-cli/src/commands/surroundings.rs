@@ -1,12 +1,13 @@
 //! Eyes of isovists and horizons: from flags and files to places.
 
 use super::{extension, sights};
-use crate::arguments::{Eyes, GroundChoice};
-use crate::pipeline::Scene;
+use crate::arguments::{Eyes, FarTerrain, GroundChoice, Place, SceneInput};
+use crate::pipeline::{self, Points, Scene};
 use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
+use belvedere::apps::ask::{self, Standing};
 use belvedere::apps::targets::{grid_around, set_on_ground};
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::io::{RowsAre, TextRows, read_observers, read_table};
@@ -16,21 +17,42 @@ use std::path::Path;
 /// Most notes on eyes that are in something solid.
 const MOST_NOTES: usize = 5;
 
+impl Eyes {
+    /// The observers that were typed or are in the file named.
+    pub(super) fn standing(&self, frame: &Frame) -> Result<Vec<Standing>> {
+        let typed = |&Place([x, y], z): &Place| Standing {
+            place: frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]),
+            height: None,
+        };
+        let mut standing: Vec<Standing> = self.eye.iter().map(typed).collect();
+        if let Some(path) = &self.eyes {
+            for row in read_observers(path, &frame.crs, RowsAre::Places)? {
+                let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - frame.origin[i]);
+                let height = row.height;
+                standing.extend(row.corners.iter().map(|corner| Standing { place: place(corner), height }));
+            }
+        }
+        Ok(standing)
+    }
+
+    /// The scene around the observers, before far terrain if there is any.
+    pub(super) fn scene(&self, input: &SceneInput, far: Option<&FarTerrain>, run: &mut Run) -> Result<ask::Scene> {
+        let needs_ground = self.eyes.is_some() || self.eye.iter().any(|place| place.1.is_none());
+        let points = if needs_ground { Points::Keep } else { Points::LetGo };
+        let mut scene = pipeline::scene(input, points, run)?;
+        if let Some(far) = far {
+            far.set(&mut scene, run)?;
+        }
+        scene.into_asked(needs_ground.then_some(&self.ground), None, run)
+    }
+}
+
 /// The eyes that were typed or are in the file named, local metres.
 pub(super) fn eyes(arguments: &Eyes, scene: &mut Scene, run: &mut Run) -> Result<Vec<[f64; 3]>> {
     let usual = arguments.height.unwrap_or(OBSERVER_HEIGHT);
-    let mut rows: Vec<([f64; 3], f64)> = Vec::new();
-    for place in &arguments.eye {
-        let ([x, y], z) = (place.0, place.1);
-        rows.push((scene.cloud.frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]), usual));
-    }
-    if let Some(path) = &arguments.eyes {
-        for row in read_observers(path, &scene.cloud.frame.crs, RowsAre::Places)? {
-            let height = row.height.unwrap_or(usual);
-            let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - scene.cloud.frame.origin[i]);
-            rows.extend(row.corners.iter().map(|corner| (place(corner), height)));
-        }
-    }
+    let standing = arguments.standing(&scene.cloud.frame)?;
+    let mut rows: Vec<([f64; 3], f64)> =
+        standing.into_iter().map(|one| (one.place, one.height.unwrap_or(usual))).collect();
     let coverage = scene.model.coverage();
     // ground is made where there are points: one eye far away would make its cells large for all
     let over = |place: &[f64; 3]| coverage.is_none_or(|coverage| coverage.holds_on_map(*place));
@@ -78,9 +100,4 @@ fn note_enclosed(blockers: &MedialScene, eyes: &[[f64; 3]], summary: &mut Summar
         notes.push(more);
     }
     summary.add("notes", notes);
-}
-
-/// Whether the points of the scene are needed for the ground below eyes.
-pub(super) fn needs_ground(arguments: &Eyes) -> bool {
-    arguments.eyes.is_some() || arguments.eye.iter().any(|place| place.1.is_none())
 }

@@ -161,7 +161,11 @@ fn places_near_the_edge_of_the_cloud_are_counted_and_mapped() {
         "horizon house.laz --scene-config ../tau.json --orient given --observer {},{NORTH},1.7 -o h.csv",
         EAST - 12.0
     );
-    let share = place.summary(&horizon)["horizons"]["azimuths_near_edge_percent"].as_f64().unwrap();
+    let summary = place.summary(&horizon);
+    let share = summary["horizons"]["azimuths_near_edge_percent"].as_f64().unwrap();
     // all but where the house stands before the far edge
     assert!((60.0..100.0).contains(&share), "{share}");
+    let remarks = summary["remarks"].as_array().unwrap();
+    let remark = remarks.iter().find(|remark| remark["key"] == "horizon-near-edge").unwrap();
+    assert_eq!((&remark["severity"], &remark["numbers"]["percent"]), (&"warning".into(), &share.into()));
 }

@@ -127,24 +127,17 @@ class Scene:
     def seen_of_mesh(
         self, eye: Sequence[float], faces: dict[str, Any], unproven: str, progress: _Progress
     ) -> dict[str, Any]: ...
-    def on_ground(
-        self,
-        array: npt.NDArray[np.float64],
-        height: float | None,
-        is_target: bool,
-        ground: str | None,
-        progress: _Progress,
-    ) -> npt.NDArray[np.float64]: ...
     def lines_of_sight(
         self,
-        observers: npt.NDArray[Any],
-        targets: npt.NDArray[Any],
+        observers: npt.NDArray[np.float64],
+        targets: npt.NDArray[np.float64],
+        ends: dict[str, Any],
         unproven: str,
         curvature: str | None,
         refraction: float | None,
         frequency: float | None,
         progress: _Progress,
-    ) -> dict[str, npt.NDArray[Any]]: ...
+    ) -> tuple[dict[str, npt.NDArray[Any]], npt.NDArray[np.float64], list[dict[str, Any]]]: ...
     def shadow(
         self,
         suns: Sequence[Any],
@@ -186,7 +179,7 @@ class Scene:
         looking: dict[str, Any],
         place: dict[str, Any],
         progress: _Progress,
-    ) -> tuple[npt.NDArray[np.float64], int, list[str]]: ...
+    ) -> tuple[npt.NDArray[np.float64], int, list[dict[str, Any]]]: ...
     def isovist(
         self,
         observers: npt.NDArray[np.float64],
@@ -195,7 +188,7 @@ class Scene:
         looking: dict[str, Any],
         place: dict[str, Any],
         progress: _Progress,
-    ) -> tuple[dict[str, npt.NDArray[Any]], list[npt.NDArray[np.float32]], list[str]]: ...
+    ) -> tuple[dict[str, npt.NDArray[Any]], list[npt.NDArray[np.float32]], list[dict[str, Any]]]: ...
     def landmark(
         self,
         landmark: dict[str, Any],

@@ -12,6 +12,7 @@ from . import _core
 from ._errors import BelvedereWarning, wrong
 from ._inputs import Progress, check_finite, map_places, number_pair, place, reporter
 from ._raster import Raster
+from ._remarks import warned
 from ._sunlight import _place
 from ._table import Table
 from ._targets import raster
@@ -256,6 +257,11 @@ class Outlook:
         BelvedereError
             Where no observer is left, and for parameters out of range.
 
+        Warns
+        -----
+        BelvedereWarning
+            Of observers that cannot look, and where much of the horizon is near the edge of the cloud.
+
         Examples
         --------
         >>> azimuths, elevations = scene.horizon(standing)
@@ -265,10 +271,10 @@ class Outlook:
         looking = _looking(observer_height=observer_height, ground=ground, curvature=curvature, refraction=refraction)
         check_finite(angle_step_deg=angle_step_deg)
         places = map_places(observers, "observers", _OBSERVERS)
-        found, count, skipped = self._core.horizon(
+        found, count, given = self._core.horizon(
             places, angle_step_deg, looking, _place(None, grid_north=grid_north), reporter(progress)
         )
-        _warn(skipped)
+        warned(given, stacklevel=3)
         azimuths = 360.0 * np.arange(count) / count
         elevations = found.reshape(len(places), count)
         return azimuths, elevations[0] if np.ndim(observers) == 1 else elevations
@@ -313,6 +319,11 @@ class Outlook:
         BelvedereError
             Where no observer is left, and for parameters out of range.
 
+        Warns
+        -----
+        BelvedereWarning
+            Of observers that cannot look.
+
         References
         ----------
         docs/methods/isovists.md
@@ -325,7 +336,7 @@ class Outlook:
         """
         looking = _looking(observer_height=observer_height, max_distance=max_distance, ground=ground)
         check_finite(angle_step_deg=angle_step_deg, min_jump=min_jump)
-        columns, panoramas, skipped = self._core.isovist(
+        columns, panoramas, given = self._core.isovist(
             map_places(observers, "observers", _OBSERVERS),
             angle_step_deg,
             min_jump,
@@ -333,9 +344,10 @@ class Outlook:
             _place(None, grid_north=grid_north),
             reporter(progress),
         )
-        _warn(skipped)
         places = columns.pop("place")
-        return Table(columns, places=places, crs=self._core.crs.text, panoramas=panoramas)
+        table = Table(columns, places=places, crs=self._core.crs.text, panoramas=panoramas)
+        table.remarks = warned(given, stacklevel=3)
+        return table
 
 
 def _looking(**given: Any) -> dict[str, Any]:

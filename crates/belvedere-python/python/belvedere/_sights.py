@@ -9,8 +9,9 @@ import numpy.typing as npt
 
 from . import _core
 from ._answer import Answer
-from ._inputs import Places, Progress, check_finite, map_places, place, places, reporter
+from ._inputs import Places, Progress, check_finite, map_places, place, reporter
 from ._mesh import Mesh
+from ._remarks import Remark, warned
 from ._table import Table
 from ._targets import Targets, face_table, wanted
 
@@ -32,6 +33,8 @@ class Sight(NamedTuple):
         How much of the radius of the first Fresnel zone is free; NaN without a frequency.
     block_terrain : bool
         Whether it is the terrain of `with_terrain` that blocks first.
+    remarks : tuple of Remark
+        What to know of the answer.
 
     Examples
     --------
@@ -46,6 +49,7 @@ class Sight(NamedTuple):
     block: tuple[float, float, float]
     fresnel_free_percent: float = float("nan")
     block_terrain: bool = False
+    remarks: tuple[Remark, ...] = ()
 
 
 class Sights:
@@ -153,6 +157,11 @@ class Sights:
         BelvedereError
             For places that are not finite, and where there are not as many observers as targets.
 
+        Warns
+        -----
+        BelvedereWarning
+            Of lines with an end outside the cloud, and of ends without known ground.
+
         Examples
         --------
         >>> scene.line_of_sight(eye, targets)
@@ -161,17 +170,22 @@ class Sights:
         check_finite(refraction=refraction, frequency_ghz=frequency_ghz)
         check_finite(observer_height=observer_height, target_height=target_height)
         is_one = np.ndim(observer) == 1 and np.ndim(target) == 1
-        observers = self._ends(observer, "observer", observer_height, ground, progress)
-        targets = self._ends(target, "target", target_height, ground, progress)
+        advice = "give x and y, or x, y and z: shape (2,), (3,), (N, 2) or (N, 3)"
+        observers = map_places(observer, "observer", advice, 0)
+        targets = map_places(target, "target", advice, 0)
         if len(observers) == 1 and len(targets) > 1:
             observers = np.repeat(observers, len(targets), axis=0)
         elif len(targets) == 1 and len(observers) > 1:
             targets = np.repeat(targets, len(observers), axis=0)
-        columns = self._core.lines_of_sight(
-            observers, targets, unproven, curvature, refraction, frequency_ghz, reporter(progress)
+        ends = {"observer_height": observer_height, "target_height": target_height, "ground": ground}
+        columns, standing, given = self._core.lines_of_sight(
+            observers, targets, ends, unproven, curvature, refraction, frequency_ghz, reporter(progress)
         )
+        remarks = warned(given, stacklevel=3)
         if not is_one:
-            return Table(columns, places=np.asarray(targets, np.float64), crs=self._core.crs.text)
+            table = Table(columns, places=np.where(np.isnan(targets), standing, targets), crs=self._core.crs.text)
+            table.remarks = remarks
+            return table
         nan = float("nan")
         block = columns["block"][0]
         return Sight(
@@ -181,13 +195,5 @@ class Sights:
             (float(block[0]), float(block[1]), float(block[2])),
             float(columns["fresnel_free_percent"][0]) if "fresnel_free_percent" in columns else nan,
             bool(columns["block_terrain"][0]) if "block_terrain" in columns else False,
+            remarks,
         )
-
-    def _ends(
-        self, ends: Places, what: str, height: float | None, ground: str | None, progress: Progress
-    ) -> npt.NDArray[Any]:
-        """Ends of lines as rows of x, y, z."""
-        if np.shape(ends)[-1:] == (2,):
-            rows = map_places(ends, what, "give x and y, or x, y and z")
-            return self._core.on_ground(rows, height, what == "target", ground, reporter(progress))
-        return np.array([place(ends, what)]) if np.ndim(ends) == 1 else places(ends, what)

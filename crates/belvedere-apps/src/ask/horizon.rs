@@ -1,0 +1,151 @@
+//! Horizon: above which elevation the sky is free around observers.
+
+use super::observers::{Eyes, Observers, check_height};
+use super::places::EDGE_WARNING_PERCENT;
+use super::report::LinesSection;
+use super::scene::Scene;
+use super::{Answers, Ask, Context, North, Places, Remark};
+use crate::edge::horizon_share_near_edge;
+use crate::horizon::{HorizonParams, azimuth_count, horizons};
+use belvedere_core::ground::GroundPoints;
+use belvedere_core::query::{EarthParams, SkylinePoint};
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use belvedere_data::report::rounded;
+use serde::{Deserialize, Serialize};
+
+/// Above which elevation the sky is free around observers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Horizon {
+    /// Height above the ground of eyes without one, metres, 0 or more; `None` for 1.7.
+    pub observer_height: Option<f64>,
+    /// Which points are ground.
+    pub ground: GroundPoints,
+    /// Angle between azimuths, degrees, a divisor of 360; `None` for 1.
+    pub angle_step_deg: Option<f64>,
+    /// How lines of sight run over the earth.
+    pub earth: EarthParams,
+    /// Which north azimuths count from, at the first observer.
+    pub north: North,
+    /// What elevations below the horizontal plane through the observer become.
+    pub below: BelowLevel,
+}
+
+/// What elevations below the horizontal plane through the observer become.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BelowLevel {
+    /// 0, as tools of photovoltaics expect. Default.
+    #[default]
+    Zero,
+    /// They are kept; -90 degrees where nothing blocks.
+    Keep,
+}
+
+/// Horizons.
+#[derive(Clone, Debug)]
+pub struct HorizonFound {
+    /// Who looks.
+    pub eyes: Eyes,
+    /// Azimuths of each, equally far apart, clockwise from north.
+    pub azimuth_count: usize,
+    /// Elevation at each azimuth, degrees; none for an eye that cannot look.
+    pub elevations_deg: Vec<Vec<f64>>,
+}
+
+/// How high horizons are.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HorizonsSection {
+    azimuths: usize,
+    mean_elevation_deg: f64,
+    max_elevation_deg: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    azimuths_near_edge_percent: Option<f64>,
+}
+
+impl Horizon {
+    fn azimuth_count(&self) -> Result<usize> {
+        match self.angle_step_deg {
+            Some(step) => azimuth_count(step.to_radians()),
+            None => Ok(HorizonParams::default().azimuth_count),
+        }
+    }
+}
+
+impl Ask for Horizon {
+    type Found = HorizonFound;
+
+    fn check(&self) -> Result<()> {
+        check_height(self.observer_height)?;
+        self.earth.validate()?;
+        self.azimuth_count().map(|_| ())
+    }
+
+    fn answer(
+        &self,
+        scene: &Scene,
+        places: &Places,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Answers<HorizonFound>> {
+        let azimuth_count = self.azimuth_count()?;
+        let Observers { eyes, blockers } =
+            Observers::of(places, (self.observer_height, self.ground), scene, context, control)?;
+        context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
+        let north = match eyes.places.first() {
+            Some(&[x, y, _]) => self.north.at(scene, [x, y]),
+            None => self.north.of_scene(scene),
+        };
+        context.north(&north);
+        let params =
+            HorizonParams::default().with_azimuth_count(azimuth_count).with_turn(north.of_grid).with_earth(self.earth);
+        let skylines = control
+            .stage("computing horizons", eyes.eyes.len(), || horizons(&blockers, &eyes.eyes, &params, control))?;
+        let least = if self.below == BelowLevel::Zero { 0.0 } else { -90.0 };
+        let elevations_deg: Vec<Vec<f64>> = skylines
+            .iter()
+            .map(|skyline| skyline.iter().map(|point| point.elevation.to_degrees().max(least)).collect())
+            .collect();
+        let near_edge = near_edge_percent(scene, &eyes, &skylines, -north.of_grid);
+        let section = HorizonsSection::of(&elevations_deg, near_edge);
+        context.report.horizons = Some(section);
+        section.summarise(eyes.eyes.len(), context);
+        Ok(Answers::new(HorizonFound { eyes, azimuth_count, elevations_deg }, Vec::new()))
+    }
+}
+
+/// The mean share of azimuths at which something beyond the edge of the cloud could be the horizon; `None` where the edge
+/// is not known. The first azimuth from grid north is `first`, radians.
+fn near_edge_percent(scene: &Scene, eyes: &Eyes, skylines: &[Vec<SkylinePoint>], first: f64) -> Option<f64> {
+    let coverage = scene.model().coverage()?;
+    let known = || eyes.eyes.iter().zip(skylines).filter(|(eye, _)| eye[0].is_finite());
+    let shares = known().map(|(eye, skyline)| horizon_share_near_edge(&coverage, *eye, skyline, first));
+    Some(rounded(100.0 * (shares.sum::<f64>() / known().count().max(1) as f64), 2))
+}
+
+impl HorizonsSection {
+    fn of(elevations: &[Vec<f64>], azimuths_near_edge_percent: Option<f64>) -> Self {
+        let all = || elevations.iter().flatten().copied();
+        let count = elevations.iter().map(Vec::len).sum::<usize>().max(1);
+        Self {
+            azimuths: elevations.iter().map(Vec::len).max().unwrap_or(0),
+            mean_elevation_deg: rounded(all().sum::<f64>() / count as f64, 3),
+            max_elevation_deg: rounded(all().fold(-90.0, f64::max), 3),
+            azimuths_near_edge_percent,
+        }
+    }
+
+    fn summarise(&self, observers: usize, context: &mut Context) {
+        let Self { azimuths, mean_elevation_deg, max_elevation_deg, .. } = self;
+        let who = if observers == 1 { "1 observer".to_owned() } else { format!("{observers} observers") };
+        context.headline(format!("horizon of {who} at {azimuths} azimuths"));
+        context.headline(format!("elevation: mean {mean_elevation_deg} degrees, at most {max_elevation_deg}"));
+        if let Some(share) = self.azimuths_near_edge_percent.filter(|share| *share >= EDGE_WARNING_PERCENT) {
+            let text = format!(
+                "{share} % of the azimuths are near the edge of the cloud: objects beyond it, as high as its highest point, could stand above the horizon"
+            );
+            context.add(Some(Remark::warning("horizon-near-edge", text).with("percent", share)));
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! Isovist: the space that observers see, in numbers.
+
+use super::observers::{Eyes, Observers, check_height};
+use super::report::{LinesSection, Named};
+use super::scene::Scene;
+use super::{Answers, Ask, Context, North, Places, spread};
+use crate::isovist::{Isovist, IsovistFigure, IsovistParams, isovist};
+use belvedere_core::ground::GroundPoints;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use belvedere_data::report::rounded;
+use serde::{Deserialize, Serialize};
+
+/// The space that observers see, in numbers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Isovists {
+    /// Height above the ground of eyes without one, metres, 0 or more; `None` for 1.7.
+    pub observer_height: Option<f64>,
+    /// Which points are ground.
+    pub ground: GroundPoints,
+    /// Which north azimuths count from, in the middle of the scene.
+    pub north: North,
+    /// Range at which sight ends where nothing blocks, metres, above 0; `None` for 100.
+    pub max_distance: Option<f64>,
+    /// Angle between rays, degrees, 0.036 to 90; `None` for 1.
+    pub angle_step_deg: Option<f64>,
+    /// Smallest jump in range that is an edge of the plan, metres, above 0; `None` for 0.25.
+    pub min_jump: Option<f64>,
+}
+
+/// Isovists.
+#[derive(Clone, Debug)]
+pub struct IsovistsFound {
+    /// Who looks.
+    pub eyes: Eyes,
+    /// What each sees; `None` for an eye that cannot look.
+    pub isovists: Vec<Option<Isovist>>,
+    /// Azimuth of grid north from the north that azimuths count from, radians.
+    pub grid_north: f64,
+}
+
+/// One of the numbers that describe isovists, of each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IsovistColumn {
+    /// Its name, with its unit.
+    pub name: &'static str,
+    /// Decimals in tables.
+    pub decimals: usize,
+    /// The numbers; NaN for eyes that cannot look.
+    pub values: Vec<f64>,
+}
+
+impl Isovists {
+    fn params(&self) -> IsovistParams {
+        let usual = IsovistParams::default();
+        usual
+            .with_step(self.angle_step_deg.map_or(usual.step, f64::to_radians))
+            .with_max_range(self.max_distance.unwrap_or(usual.max_range))
+            .with_jump(self.min_jump.unwrap_or(usual.jump))
+    }
+}
+
+impl Ask for Isovists {
+    type Found = IsovistsFound;
+
+    fn check(&self) -> Result<()> {
+        check_height(self.observer_height)?;
+        self.params().validate()
+    }
+
+    fn answer(
+        &self,
+        scene: &Scene,
+        places: &Places,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Answers<IsovistsFound>> {
+        let params = self.params();
+        let Observers { eyes, blockers } =
+            Observers::of(places, (self.observer_height, self.ground), scene, context, control)?;
+        context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
+        let north = self.north.of_scene(scene);
+        context.north(&north);
+        let isovists = control.stage("computing ranges", eyes.eyes.len(), || {
+            let look = |&eye: &[f64; 3]| {
+                let seen = eye[0].is_finite().then(|| isovist(&blockers, eye, &params, control)).transpose();
+                control.advance(1);
+                seen
+            };
+            eyes.eyes.iter().map(look).collect::<Result<Vec<_>>>()
+        })?;
+        let found = IsovistsFound { eyes, isovists, grid_north: north.of_grid };
+        found.summarise(scene, context);
+        Ok(Answers::new(found, Vec::new()))
+    }
+}
+
+impl IsovistsFound {
+    /// The numbers that describe each; none where nobody looks.
+    #[must_use]
+    pub fn columns(&self) -> Vec<IsovistColumn> {
+        let figures = |isovist: &Isovist| isovist.figures(self.grid_north).collect::<Vec<IsovistFigure>>();
+        let rows: Vec<Option<Vec<IsovistFigure>>> =
+            self.isovists.iter().map(|isovist| isovist.as_ref().map(figures)).collect();
+        let Some(first) = rows.iter().flatten().next() else { return Vec::new() };
+        let value = |row: &Option<Vec<IsovistFigure>>, at: usize| {
+            row.as_ref().and_then(|row| row.get(at)).map_or(f64::NAN, |figure| figure.value)
+        };
+        let column = |(at, figure): (usize, &IsovistFigure)| IsovistColumn {
+            name: figure.name,
+            decimals: figure.decimals,
+            values: rows.iter().map(|row| value(row, at)).collect(),
+        };
+        first.iter().enumerate().map(column).collect()
+    }
+
+    fn summarise(&self, scene: &Scene, context: &mut Context) {
+        let columns = self.columns();
+        if let [place] = &self.eyes.places[..] {
+            let place = scene.frame().file_from_local(*place);
+            let place = ["x", "y", "z"].into_iter().zip(place).map(|(name, v)| (name.to_owned(), rounded(v, 3)));
+            let figure = |column: &IsovistColumn| {
+                let digits = i32::try_from(column.decimals).unwrap_or(4);
+                Some((column.name.to_owned(), rounded(*column.values.first()?, digits)))
+            };
+            context.report.isovist = Some(Named(place.chain(columns.iter().filter_map(figure)).collect()));
+        }
+        let values = |name: &str| -> Vec<f32> {
+            let column = columns.iter().find(|column| column.name == name);
+            #[expect(clippy::cast_possible_truncation, reason = "for people")]
+            column.map_or_else(Vec::new, |column| column.values.iter().map(|&v| v as f32).collect())
+        };
+        let count = self.isovists.len();
+        let who = if count == 1 { "1 observer".to_owned() } else { format!("{count} observers") };
+        context.headline(format!("space seen by {who}: volume {}", spread(&values("volume_m3"), 0, "m³")));
+        context.headline(format!("openness: {}", spread(&values("openness"), 3, "")));
+    }
+}

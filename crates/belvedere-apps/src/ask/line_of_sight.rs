@@ -1,0 +1,374 @@
+//! Lines of sight: whether the observers of pairs see their targets, and what blocks first.
+
+use super::observers::{Standing, check_height, note_enclosed, stand};
+use super::report::{GroundSection, LinesSection};
+use super::scene::Scene;
+use super::{Answers, Ask, Cells, Context, Places, Remark};
+use crate::eyes::skip_unfit_eyes;
+use crate::profile::{SightProfile, sight_profile};
+use crate::viewshed::{OBSERVER_HEIGHT, TARGET_HEIGHT};
+use belvedere_core::ground::GroundPoints;
+use belvedere_core::query::{
+    Answer, AnswerCounts, Block, Blocker, EarthParams, LineOfSight, MedialScene, RadioWave, UnprovenAs,
+};
+use belvedere_data::control::Control;
+use belvedere_data::report::{percent, rounded};
+use belvedere_data::{Error, Parameter, Result};
+use serde::{Deserialize, Serialize};
+
+const OUTSIDE_CLOUD: &str = "have an end outside the cloud, where nothing is known, and no answer";
+const OUTSIDE_CLOUD_AND_TERRAIN: &str =
+    "have an end outside the cloud and the terrain, or below the cloud, where nothing is known, and no answer";
+
+/// Whether the observers of pairs see their targets.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct LinesOfSight {
+    /// Height above the ground of observers without one, metres, 0 or more; `None` for 1.7.
+    pub observer_height: Option<f64>,
+    /// Height above the ground of targets without one, metres, 0 or more; `None` for 0.
+    pub target_height: Option<f64>,
+    /// Which points are ground.
+    pub ground: GroundPoints,
+    /// How lines of sight run over the earth.
+    pub earth: EarthParams,
+    /// Frequency of a radio link, GHz, 0.001 to 1000, to test its first Fresnel zone too; `None` for the line alone.
+    pub frequency_ghz: Option<f64>,
+    /// What unproven answers count as; `None` to report them where pulses are known.
+    pub unproven: Option<UnprovenAs>,
+    /// Also the profile, of a single line.
+    pub profile: Option<ProfileRows>,
+}
+
+/// The rows of a profile.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ProfileRows {
+    /// Distance between rows, metres, above 0; `None` for a thousandth of the line, at least 0.1.
+    pub step: Option<f64>,
+}
+
+/// What is known of the line of sight of each pair.
+#[derive(Clone, Debug)]
+pub struct SightsFound {
+    /// Observer and target of each, local metres; a height is NaN where it is not known.
+    pub pairs: Vec<[[f64; 3]; 2]>,
+    /// The answers, with unproven ones taken for what they are to be.
+    pub answers: Vec<Answer>,
+    /// What is known of each line; `None` where the ends make no line.
+    pub sights: Vec<Option<LineOfSight>>,
+    /// The free share of the first Fresnel zone of each, 0 to 1, for a radio link.
+    pub fresnel: Option<Vec<f64>>,
+    /// Whether pulses were tested.
+    pub is_proof_tested: bool,
+    /// The profile that was wanted.
+    pub profile: Option<SightProfile>,
+}
+
+/// What is known of lines of sight, a column for each thing: what tables hold.
+#[derive(Clone, Debug)]
+pub struct SightColumns<'a> {
+    /// Distance from the observer to what blocks first, metres; NaN where nothing does.
+    pub ranges: Vec<f64>,
+    /// How much of a line that nothing blocks no pulse came near to, metres, where pulses were tested.
+    pub unproven: Option<Vec<f64>>,
+    /// How much of the first Fresnel zone is free, of a radio link.
+    pub fresnel_free_percent: Option<Vec<f64>>,
+    /// Where lines are blocked first, in the coordinates of the file.
+    pub places: Vec<[f64; 3]>,
+    /// The row of the ball that blocks first.
+    pub balls: Vec<Option<usize>>,
+    /// The row of the point that this ball touches.
+    pub sources: Vec<Option<u32>>,
+    /// The name of the mesh that blocks first, empty where none does, where meshes were added.
+    pub meshes: Option<Vec<&'a str>>,
+    /// Whether far terrain blocks first, where there is any; `None` where nothing blocks.
+    pub is_terrain: Option<Vec<Option<bool>>>,
+}
+
+/// How many pairs have which answer.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct PairsSection {
+    pairs: usize,
+    visible: usize,
+    blocked: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unproven: Option<usize>,
+    no_line: usize,
+    outside_cloud: usize,
+    visible_percent: f64,
+    observers_inside_obstacle: usize,
+}
+
+/// A single line.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct LineSection {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    answer: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    first_block_range_m: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    block_position: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    block_ball: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    block_source: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    block_mesh: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    block_terrain: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unproven_m: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fresnel_free_percent: Option<f64>,
+}
+
+impl LinesOfSight {
+    fn wave(&self) -> Result<Option<RadioWave>> {
+        self.frequency_ghz.map(RadioWave::of_frequency).transpose()
+    }
+
+    /// The ends of lines; those without a height stand on the ground or the terrain.
+    fn ends(
+        &self,
+        places: &Places,
+        scene: &Scene,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Vec<[[f64; 3]; 2]>> {
+        let given = places.pairs()?;
+        let pairs: Vec<[[f64; 3]; 2]> = given.iter().map(|ends| ends.map(|end| end.place)).collect();
+        if pairs.iter().flatten().all(|end| !end[2].is_nan()) {
+            return Ok(pairs);
+        }
+        let usual = [self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.target_height.unwrap_or(TARGET_HEIGHT)];
+        let standing = |(end, usual): (&Standing, f64)| Standing { height: end.height.or(Some(usual)), ..*end };
+        let standing: Vec<Standing> = given.iter().flat_map(|ends| ends.iter().zip(usual)).map(standing).collect();
+        let ends = stand(&standing, (OBSERVER_HEIGHT, self.ground), scene, context, control)?;
+        let unknown = ends.iter().filter(|end| end[2].is_nan()).count();
+        let so = "have no height and no known ground below";
+        context.add(Remark::of_share("ends-without-ground", unknown, ends.len(), "ends of lines", so));
+        Ok(ends.as_chunks::<2>().0.to_vec())
+    }
+
+    /// The profile, where it is wanted. A ball file without a cloud shows no ground.
+    fn profile(
+        &self,
+        pairs: &[[[f64; 3]; 2]],
+        (scene, blockers): (&Scene, &MedialScene),
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Option<SightProfile>> {
+        let (Some(rows), &[pair]) = (self.profile, pairs) else { return Ok(None) };
+        let known = match scene.ground_cloud() {
+            Ok(_) => Some(scene.ground(Cells::default().grid(scene)?, self.ground, control)?),
+            Err(_) => None,
+        };
+        if let Some(known) = &known {
+            context.report.ground = Some(GroundSection::of(known));
+        }
+        let ground = known.as_ref().map(|known| &known.ground);
+        let made = control
+            .stage("computing profile", 0, || sight_profile(blockers, ground, pair, &self.earth, rows.step, control))?;
+        Ok(Some(made))
+    }
+
+    /// Refuses a profile of several lines.
+    fn check_count(&self, count: usize) -> Result<()> {
+        if self.profile.is_none() || count == 1 {
+            return Ok(());
+        }
+        Err(Error::InvalidParameter {
+            parameter: Parameter::ProfileLine,
+            value: format!("{count} lines"),
+            expected: "a single line",
+        })
+    }
+}
+
+impl Ask for LinesOfSight {
+    type Found = SightsFound;
+
+    fn check(&self) -> Result<()> {
+        check_height(self.observer_height)?;
+        check_height(self.target_height)?;
+        self.earth.validate()?;
+        if let Some(step) = self.profile.and_then(|rows| rows.step).filter(|step| !(step.is_finite() && *step > 0.0)) {
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::ProfileStep,
+                value: step.to_string(),
+                expected: "finite and above zero metres",
+            });
+        }
+        self.wave().map(|_| ())
+    }
+
+    fn answer(
+        &self,
+        scene: &Scene,
+        places: &Places,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Answers<SightsFound>> {
+        if self.unproven.is_some() {
+            scene.check_proof()?;
+        }
+        self.check_count(places.pairs()?.len())?;
+        let pairs = self.ends(places, scene, context, control)?;
+        let unproven = self.unproven.unwrap_or(UnprovenAs::Reported);
+        let blockers = scene.blockers(unproven, control)?;
+        let sights = control
+            .stage("testing lines of sight", pairs.len(), || blockers.lines_of_sight(&pairs, &self.earth, control))?;
+        let fresnel = match self.wave()? {
+            Some(wave) => Some(control.stage("testing Fresnel zones", pairs.len(), || {
+                blockers.fresnel_clearances(&pairs, &sights, wave, &self.earth, control)
+            })?),
+            None => None,
+        };
+        let settled =
+            |sight: &Option<LineOfSight>| sight.map_or(Answer::OutsideView, |sight| unproven.settle(sight.answer));
+        let answers: Vec<Answer> = sights.iter().map(settled).collect();
+        let mut observers: Vec<[f64; 3]> = pairs.iter().map(|[observer, _]| *observer).collect();
+        let fit = control.stage("testing observers", observers.len(), || {
+            skip_unfit_eyes(&blockers, None, &mut observers, control)
+        })?;
+        let section = PairsSection::of(&answers, unproven, fit.skipped_inside_obstacle);
+        context.report.lines_of_sight = Some(LinesSection::of(&blockers, None).with_pairs(section));
+        let is_outside = match scene.model().far_terrain().grid() {
+            Some(_) => OUTSIDE_CLOUD_AND_TERRAIN,
+            None => OUTSIDE_CLOUD,
+        };
+        let outside = section.outside_cloud;
+        context.add(Remark::of_share("lines-outside-cloud", outside, answers.len(), "lines of sight", is_outside));
+        let profile = self.profile(&pairs, (scene, &blockers), context, control)?;
+        let is_proof_tested = blockers.proof().is_some();
+        let found = SightsFound { pairs, answers, sights, fresnel, is_proof_tested, profile };
+        match &found.pairs[..] {
+            [[observer, _]] => {
+                note_enclosed(&blockers, &[*observer], "observer", context);
+                let line = LineSection::of(&found, scene);
+                line.summarise(context);
+                context.report.line = Some(line);
+            }
+            _ => section.summarise(context),
+        }
+        Ok(Answers::new(found, Vec::new()))
+    }
+}
+
+impl SightsFound {
+    /// What blocks the line of that row first.
+    #[must_use]
+    pub fn block(&self, row: usize) -> Option<Block> {
+        self.sights.get(row).copied().flatten()?.first_block
+    }
+
+    /// All that is known of each line.
+    #[must_use]
+    pub fn columns<'a>(&self, scene: &'a Scene) -> SightColumns<'a> {
+        let (model, frame) = (scene.model(), scene.frame());
+        let blocks = || (0..self.sights.len()).map(|row| self.block(row));
+        let ball = |block: Option<Block>| block.and_then(|block| block.blocker.ball());
+        let unproven = |sight: &Option<LineOfSight>| {
+            sight.filter(|sight| sight.first_block.is_none()).map_or(f64::NAN, |sight| sight.unproven_length)
+        };
+        let is_terrain = |block: Block| block.blocker == Blocker::Terrain;
+        SightColumns {
+            ranges: blocks().map(|block| block.map_or(f64::NAN, |block| block.range)).collect(),
+            unproven: self.is_proof_tested.then(|| self.sights.iter().map(unproven).collect()),
+            fresnel_free_percent: self.fresnel.as_ref().map(|all| all.iter().map(|free| 100.0 * free).collect()),
+            places: blocks()
+                .map(|block| block.map_or([f64::NAN; 3], |block| frame.file_from_local(block.place)))
+                .collect(),
+            balls: blocks().map(ball).collect(),
+            sources: blocks().map(|block| model.balls().source.get(ball(block)?).copied()).collect(),
+            meshes: model.added().map(|_| {
+                blocks().map(|block| mesh_name(scene, block?.blocker)).map(Option::unwrap_or_default).collect()
+            }),
+            is_terrain: model.far_terrain().grid().map(|_| blocks().map(|block| block.map(is_terrain)).collect()),
+        }
+    }
+}
+
+/// The name of an added mesh that blocks.
+fn mesh_name(scene: &Scene, blocker: Blocker) -> Option<&str> {
+    scene.model().added()?.names().get(blocker.mesh()?).map(String::as_str)
+}
+
+fn name_of(answer: Answer) -> &'static str {
+    match answer {
+        Answer::Visible => "visible",
+        Answer::Blocked => "blocked",
+        Answer::Unproven => "unproven",
+        Answer::OutsideCloud => "outside the cloud",
+        _ => "no line",
+    }
+}
+
+impl PairsSection {
+    fn of(answers: &[Answer], unproven: UnprovenAs, observers_inside_obstacle: usize) -> Self {
+        let counts = AnswerCounts::of(answers);
+        Self {
+            pairs: answers.len(),
+            visible: counts.visible,
+            blocked: counts.blocked,
+            unproven: (unproven == UnprovenAs::Reported).then_some(counts.unproven),
+            no_line: counts.outside_view,
+            outside_cloud: counts.outside_cloud,
+            visible_percent: percent(counts.visible, answers.len()),
+            observers_inside_obstacle,
+        }
+    }
+
+    fn summarise(&self, context: &mut Context) {
+        let Self { pairs, visible, blocked, visible_percent, .. } = self;
+        context.headline(format!("{visible} of {pairs} lines of sight ({visible_percent} %) are visible"));
+        let unproven = self.unproven.map_or_else(String::new, |unproven| format!(", {unproven} unproven"));
+        let rest = self.no_line + self.outside_cloud;
+        context.headline(format!("{blocked} are blocked{unproven}, {rest} without an answer"));
+    }
+}
+
+impl LineSection {
+    /// The only line.
+    fn of(found: &SightsFound, scene: &Scene) -> Self {
+        let free = found.fresnel.as_ref().and_then(|all| all.first()).filter(|free| free.is_finite());
+        let fresnel_free_percent = free.map(|free| rounded(100.0 * free, 1));
+        let (Some(&answer), Some(&Some(sight))) = (found.answers.first(), found.sights.first()) else {
+            return Self { fresnel_free_percent, ..Self::default() };
+        };
+        let block = sight.first_block;
+        let ball = block.and_then(|block| block.blocker.ball());
+        let source = |ball: usize| scene.model().balls().source.get(ball).copied().unwrap_or_default();
+        let place = |block: Block| scene.frame().file_from_local(block.place).map(|v| rounded(v, 3));
+        let has_unproven = found.is_proof_tested && sight.answer != Answer::OutsideCloud;
+        Self {
+            answer: Some(name_of(answer)),
+            first_block_range_m: block.map(|block| rounded(block.range, 3)),
+            block_position: block.map(place),
+            block_ball: ball,
+            block_source: ball.map(source),
+            block_mesh: block.and_then(|block| mesh_name(scene, block.blocker)).map(str::to_owned),
+            block_terrain: block.filter(|block| block.blocker == Blocker::Terrain).map(|_| true),
+            unproven_m: has_unproven.then(|| rounded(sight.unproven_length, 3)),
+            fresnel_free_percent,
+        }
+    }
+
+    fn summarise(&self, context: &mut Context) {
+        let answer = self.answer.unwrap_or("no line: the ends are one point, or a height is not known");
+        let by = match (&self.block_mesh, self.block_terrain) {
+            (Some(mesh), _) => format!(" by {mesh}"),
+            (None, Some(true)) => " by the terrain".to_owned(),
+            _ => String::new(),
+        };
+        let after = self.first_block_range_m.map_or_else(String::new, |range| format!(", {range} m from the observer"));
+        context.headline(format!("line of sight: {answer}{by}{after}"));
+        if let Some(length) = self.unproven_m.filter(|_| self.first_block_range_m.is_none()) {
+            context.headline(format!("no pulse came near to {length} m of it"));
+        }
+        if let Some(free) = self.fresnel_free_percent {
+            context.headline(format!("first Fresnel zone: {free} % free"));
+        }
+    }
+}
