@@ -117,8 +117,6 @@ const RARE_IN: &[(&str, &[&str])] = &[
 ];
 /// Options of all commands that `-h` shows.
 const SHOWN_OF_ALL: [&str; 3] = ["json", "verbose", "help"];
-/// Examples that `-h` shows.
-const SHORT_EXAMPLES: usize = 1;
 
 /// What a command does, its input, output, units and limits, and examples that work as printed on the files of the demo.
 const TEXTS: &[(&str, &str)] = &[
@@ -216,7 +214,8 @@ pub(crate) fn examples(text: &str) -> Vec<String> {
 
 fn described(command: Command, text: &'static str) -> Command {
     let (description, examples) = parts(text);
-    let command = command.long_about(description).after_help(first_examples(examples)).after_long_help(examples);
+    let first = first_examples(command.get_name(), examples);
+    let command = command.long_about(description).after_help(first).after_long_help(examples);
     let also = RARE_IN.iter().find(|(name, _)| *name == command.get_name()).map_or(&[][..], |(_, flags)| flags);
     command.mut_args(|argument| {
         let is_named = argument.get_long().is_some_and(|long| RARE.contains(&long) || also.contains(&long));
@@ -225,12 +224,15 @@ fn described(command: Command, text: &'static str) -> Command {
     })
 }
 
-/// The first of several examples.
-fn first_examples(examples: &str) -> String {
-    let mut count = 0;
+/// The examples up to the first one of the command itself.
+fn first_examples(command: &str, examples: &str) -> String {
+    let is_own = |line: &str| line.split_whitespace().skip(1).take(2).any(|word| word == command);
+    let mut has_own = false;
     let is_first = |line: &&str| {
-        count += usize::from(line.starts_with("  belvedere "));
-        count <= SHORT_EXAMPLES
+        let begins = line.starts_with("  belvedere ");
+        let is_next = begins && has_own;
+        has_own |= begins && is_own(line);
+        !is_next
     };
     examples.lines().take_while(is_first).collect::<Vec<_>>().join("\n")
 }
