@@ -24,6 +24,7 @@ pub(crate) fn exception(error: Error) -> PyErr {
         }
         Error::NoPoints { what } => ("points".to_owned(), "0".to_owned(), what),
         Error::NoSurface { count, what } => (format!("points {what}"), count.to_string(), message.clone()),
+        Error::NoObserver { who, what } => (format!("{who}s"), String::new(), what),
         Error::InvalidParameter { parameter, value, expected } => {
             (keyword(parameter).to_owned(), value, format!("must be {expected}"))
         }
@@ -44,6 +45,8 @@ pub(crate) fn exception(error: Error) -> PyErr {
 /// The argument that gives a parameter, or its name where several do or none.
 fn keyword(parameter: Parameter) -> &'static str {
     match parameter {
+        Parameter::Azimuth => "azimuth_range_deg",
+        Parameter::Elevation => "elevation_range_deg",
         Parameter::AngleStep => "angle_step_deg",
         Parameter::DirectionCount => "directions",
         Parameter::FenceHeight => "fence_height",

@@ -25,6 +25,11 @@ pub(crate) fn places(array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<[f64; 3]
     Ok(rows)
 }
 
+/// Where observers stand, as the layer of questions takes it.
+pub(crate) fn standing(scene: &ask::Scene, places: &[[f64; 3]]) -> Vec<ask::Standing> {
+    places.iter().map(|&place| ask::Standing { place: scene.frame().local_from_file(place), height: None }).collect()
+}
+
 /// The eyes, local metres, those without a height that far above the ground.
 pub(crate) fn eyes(
     inner: &ask::Scene,

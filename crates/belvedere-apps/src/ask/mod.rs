@@ -14,6 +14,7 @@
 //! | figures beside the answer | [`report`] |
 
 mod irradiance;
+mod landmark;
 mod light;
 pub mod north;
 pub mod observers;
@@ -27,8 +28,10 @@ pub mod sun;
 mod sun_hours;
 mod sun_position;
 mod trees;
+mod viewshed;
 
 pub use irradiance::{Irradiance, IrradianceFound, Radiation, Roofs, RoofsFound};
+pub use landmark::{Landmark, LandmarkFound, LandmarkSection, LandmarkShape};
 pub use light::OnTargets;
 pub use north::North;
 pub use observers::{Eyes, Standing};
@@ -42,6 +45,7 @@ pub use sun::{Days, NamedSun, SunPlace, Suns};
 pub use sun_hours::{Prepared, SunHours, rules};
 pub use sun_position::{SunPosition, SunStands};
 pub use trees::ThroughTrees;
+pub use viewshed::{FarSeen, SeenSection, StandingObserver, ViewLimits, Viewshed, ViewshedFound, ViewshedTargets};
 
 use crate::targets::Measure;
 use belvedere_data::Result;
@@ -65,6 +69,10 @@ pub enum Question {
     Irradiance(Irradiance),
     /// Where the sun stands.
     SunPosition(SunPosition),
+    /// What observers see, or from where a target is seen.
+    Viewshed(Viewshed),
+    /// From where a landmark is seen, and how much of it.
+    Landmark(Landmark),
 }
 
 /// What was found, of any question.
@@ -78,6 +86,10 @@ pub enum Found {
     Irradiance(IrradianceFound),
     /// Of [`Question::SunPosition`].
     SunPosition(Vec<SunStands>),
+    /// Of [`Question::Viewshed`].
+    Viewshed(ViewshedFound),
+    /// Of [`Question::Landmark`].
+    Landmark(LandmarkFound),
 }
 
 /// The answers to a question.
@@ -186,6 +198,8 @@ impl Ask for Question {
             Self::SkyView(question) => question.check(),
             Self::Irradiance(question) => question.check(),
             Self::SunPosition(question) => question.check(),
+            Self::Viewshed(question) => question.check(),
+            Self::Landmark(question) => question.check(),
         }
     }
 
@@ -196,6 +210,8 @@ impl Ask for Question {
             Self::SkyView(question) => question.answer(scene, places, context, control)?.map(Found::OnTargets),
             Self::Irradiance(question) => question.answer(scene, places, context, control)?.map(Found::Irradiance),
             Self::SunPosition(question) => question.answer(scene, places, context, control)?.map(Found::SunPosition),
+            Self::Viewshed(question) => question.answer(scene, places, context, control)?.map(Found::Viewshed),
+            Self::Landmark(question) => question.answer(scene, places, context, control)?.map(Found::Landmark),
         })
     }
 }

@@ -8,7 +8,7 @@ use crate::targets::{grid_around, set_on_ground, set_on_terrain};
 use belvedere_core::ground::{Ground, GroundPoints};
 use belvedere_core::query::MedialScene;
 use belvedere_data::control::Control;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Parameter, Result};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -56,6 +56,21 @@ pub struct ObserversSection {
     /// How far that is above the ground.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub above_ground_m: Option<f64>,
+}
+
+/// Refuses heights above the ground that nobody can have.
+///
+/// # Errors
+/// [`Error::InvalidParameter`].
+pub(super) fn check_height(height: Option<f64>) -> Result<()> {
+    match height {
+        Some(height) if !(height >= 0.0 && height.is_finite()) => Err(Error::InvalidParameter {
+            parameter: Parameter::HeightAboveGround,
+            value: height.to_string(),
+            expected: "0 metres or more",
+        }),
+        _ => Ok(()),
+    }
 }
 
 /// The places, local metres: those without a height stand on the ground, or on the terrain beyond the cloud. The height is NaN where neither is known.

@@ -17,6 +17,7 @@ use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
@@ -36,7 +37,8 @@ pub struct GroundParams {
 }
 
 /// Which points are ground.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum GroundPoints {
     /// Class 2 where at least one point in a thousand has it, else [`GroundPoints::Found`].
     #[default]

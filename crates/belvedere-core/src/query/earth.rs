@@ -2,6 +2,7 @@
 
 use belvedere_data::vector::{length, sub};
 use belvedere_data::{Error, Parameter, Result};
+use serde::{Deserialize, Serialize};
 
 /// Mean radius of the earth, metres.
 ///
@@ -16,7 +17,8 @@ const CHORD: f64 = 500.0;
 const MOST_CHORDS: f64 = 10_000.0;
 
 /// Which lines of sight follow the curvature of the earth.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Curvature {
     /// Those longer than [`CURVED_FROM`].
     #[default]
@@ -31,7 +33,8 @@ pub enum Curvature {
 ///
 /// In a map with heights above the sea a straight line of sight is a parabola that sags below the straight line between its
 /// ends, by (1 − k) · s · (S − s) / 2R at the horizontal distance s of S, where k is the refraction and R the radius.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct EarthParams {
     /// Which lines are curved. Default: those of more than 2 km.
     pub curvature: Curvature,
