@@ -87,7 +87,7 @@ pub enum Found {
     /// Of [`Question::SunPosition`].
     SunPosition(Vec<SunStands>),
     /// Of [`Question::Viewshed`].
-    Viewshed(ViewshedFound),
+    Viewshed(Box<ViewshedFound>),
     /// Of [`Question::Landmark`].
     Landmark(LandmarkFound),
 }
@@ -210,7 +210,9 @@ impl Ask for Question {
             Self::SkyView(question) => question.answer(scene, places, context, control)?.map(Found::OnTargets),
             Self::Irradiance(question) => question.answer(scene, places, context, control)?.map(Found::Irradiance),
             Self::SunPosition(question) => question.answer(scene, places, context, control)?.map(Found::SunPosition),
-            Self::Viewshed(question) => question.answer(scene, places, context, control)?.map(Found::Viewshed),
+            Self::Viewshed(question) => {
+                question.answer(scene, places, context, control)?.map(|found| Found::Viewshed(Box::new(found)))
+            }
             Self::Landmark(question) => question.answer(scene, places, context, control)?.map(Found::Landmark),
         })
     }
