@@ -29,7 +29,7 @@ pub struct Landmark {
     /// Height of observers above the ground, metres, 0 or more; `None` for 1.7.
     #[serde(default)]
     pub observer_height: Option<f64>,
-    /// Side of the cells that observers stand in, metres, above 0; `None` for 2, doubled until there are at most 40 000.
+    /// Side of the cells that observers stand in, metres, above 0; `None` for 2, doubled up to at most 40 000 cells.
     #[serde(default)]
     pub cell: Option<f64>,
     /// Which points are ground.
@@ -58,7 +58,7 @@ pub enum LandmarkShape {
         /// The mesh; whoever reads a question from text reads it from its file.
         #[serde(skip)]
         mesh: Option<Arc<Mesh>>,
-        /// Longest side of the pieces that it is cut into, metres, above 0; `None` for about 1000 pieces, at least 0.25.
+        /// Longest side of the pieces that it is cut into, metres, above 0; `None` for about 1000 pieces, 0.25 at least.
         spacing: Option<f64>,
         /// Seed of the places on them.
         seed: u64,
@@ -125,11 +125,12 @@ struct Lookers {
 }
 
 impl LandmarkShape {
-    /// The surface of the landmark about the local origin `origin`, metres, with what is known of it. `cloud` are the points of the scene.
+    /// The surface of the landmark about the local origin `origin`, metres, with what is known of it. `cloud` has the
+    /// points of the scene.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a mesh that was not read and for a cloud without points; those of [`SurfacePieces::of_mesh`] and
-    /// [`landmark_points`].
+    /// [`Error::InvalidParameter`] for a mesh that was not read and for a cloud without points; those of
+    /// [`SurfacePieces::of_mesh`] and [`landmark_points`].
     pub fn surface(
         &self,
         cloud: &PointCloud,

@@ -53,7 +53,7 @@ pub struct Viewshed {
     pub targets: Vec<ViewshedTargets>,
     /// Whether to keep which observer sees which cell. Default: counts only.
     pub masks: bool,
-    /// Height above the ground up to which lowest visible heights are computed, metres, 0 or more; `None` for no heights.
+    /// Height above the ground up to which lowest visible heights are computed, metres, 0 or more; `None` for none.
     pub max_height: Option<f64>,
 }
 
@@ -82,7 +82,8 @@ pub struct StandingObserver {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ViewLimits {
-    /// Azimuths from and to, clockwise from the north of the question, degrees: from 300 to 60 runs through north. `None` for all.
+    /// Azimuths from and to, clockwise from the north of the question, degrees; 300 to 60 runs through north. `None`
+    /// for all.
     pub azimuth_range_deg: Option<[f64; 2]>,
     /// Least and greatest angle above the horizon, degrees, -90 to 90. `None` for all.
     pub elevation_range_deg: Option<[f64; 2]>,
@@ -241,7 +242,7 @@ impl Viewshed {
         MapGrid::covering(low, high, self.cell.unwrap_or_else(|| cell_for(low, high)), [x, y])
     }
 
-    /// The given places as eyes. What is seen of a target often is its inside: only the limits of the cloud count for it.
+    /// The given places as eyes. A target often lies inside an obstacle: only the limits of the cloud count for it.
     fn eyes(
         &self,
         (blockers, ground): (&Arc<MedialScene>, &Ground),
