@@ -58,7 +58,7 @@ pub enum LandmarkShape {
         /// The mesh; whoever reads a question from text reads it from its file.
         #[serde(skip)]
         mesh: Option<Arc<Mesh>>,
-        /// Longest side of the pieces that it is cut into, metres, above 0; `None` for about 1000 pieces, 0.25 at least.
+        /// Longest side of the pieces that it is cut into, metres, above 0; `None` for about 1000, 0.25 at least.
         spacing: Option<f64>,
         /// Seed of the places on them.
         seed: u64,
