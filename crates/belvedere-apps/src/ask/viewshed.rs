@@ -1,24 +1,30 @@
 //! Viewshed: what observers see of cells, of points and of far terrain, or from where a target is seen.
 
+mod limits;
+mod sights;
+
+pub use limits::{StandingObserver, ViewLimits};
+pub use sights::{FarSeen, SeenSection};
+
 use super::north::North;
-use super::observers::{Eyes, ObserversSection, Reach, Standing, check_height, note_enclosed, skip_unfit};
-use super::places::OUTSIDE_CLOUD;
+use super::observers::{Eyes, ObserversSection, Reach, check_height, note_enclosed, skip_unfit};
 use super::report::{GroundSection, LinesSection};
 use super::scene::KnownGround;
 use super::{Answers, Ask, Context, Places, Remark, Scene};
 use crate::eyes::{EyesReport, fault_of_target};
-use crate::targets::{CellParams, CoveredCells, Targets, set_on_ground, set_on_terrain};
+use crate::targets::{set_on_ground, set_on_terrain};
 use crate::viewshed::{
-    Masks, OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, box_within_reach,
-    cell_for, far_targets, far_viewshed, least_visible_heights, terrain_within_reach, tested_height, viewshed,
+    OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, box_within_reach,
+    cell_for, far_targets, terrain_within_reach,
 };
 use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
-use belvedere_core::query::{Answer, AnswerCounts, EarthParams, MedialScene, UnprovenAs};
+use belvedere_core::query::{EarthParams, MedialScene, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
-use belvedere_data::report::{percent, rounded};
+use belvedere_data::report::rounded;
 use belvedere_data::{ElevationGrid, Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
+use sights::Sights;
 use std::sync::Arc;
 
 /// Most eyes below the ground that are named one by one.
@@ -69,30 +75,6 @@ pub enum ViewshedTargets {
     FarTerrain,
 }
 
-/// Someone who looks around, or a target.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StandingObserver {
-    /// Where.
-    pub standing: Standing,
-    /// Where it looks. What is `None` follows from the question.
-    pub limits: ViewLimits,
-}
-
-/// Where observers look; what lies outside has no answer.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct ViewLimits {
-    /// Azimuths from and to, clockwise from the north of the question, degrees; 300 to 60 runs through north. `None`
-    /// for all.
-    pub azimuth_range_deg: Option<[f64; 2]>,
-    /// Least and greatest angle above the horizon, degrees, -90 to 90. `None` for all.
-    pub elevation_range_deg: Option<[f64; 2]>,
-    /// Least distance on the map, metres; `None` for 0.
-    pub min_distance: Option<f64>,
-    /// Greatest distance on the map, metres; `None` for no limit.
-    pub max_distance: Option<f64>,
-}
-
 /// What was seen.
 pub struct ViewshedFound {
     /// The eyes of observers, or the target of a reverse viewshed, local metres; NaN for those that are skipped.
@@ -107,33 +89,8 @@ pub struct ViewshedFound {
     pub points: Option<Seen>,
     /// Of far terrain, where it was wanted.
     pub far: Option<FarSeen>,
-    /// Lowest visible heights above the ground, metres, where they were wanted ([`least_visible_heights`]).
+    /// Lowest visible heights above the ground, metres, where they were wanted ([`crate::viewshed::least_visible_heights`]).
     pub heights: Option<Raster<f32>>,
-}
-
-/// What was seen of far terrain.
-pub struct FarSeen {
-    /// An answer for each node.
-    pub seen: Seen,
-    /// The terrain within reach.
-    pub terrain: ElevationGrid,
-}
-
-/// How many targets are seen, for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SeenSection {
-    targets: usize,
-    visible: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    unproven: Option<usize>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    unproven_percent: Option<f64>,
-    blocked: usize,
-    outside_view: usize,
-    outside_cloud: usize,
-    visible_percent: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    visible_m2: Option<f64>,
 }
 
 impl Default for Viewshed {
@@ -153,39 +110,6 @@ impl Default for Viewshed {
             masks: false,
             max_height: None,
         }
-    }
-}
-
-impl ViewLimits {
-    /// Checks the limits.
-    ///
-    /// # Errors
-    /// Those of [`SightLimits::validate`].
-    pub fn check(&self) -> Result<()> {
-        self.sight_limits(0.0).map(|_| ())
-    }
-
-    /// Those of `self`, and of `usual` where it has none.
-    #[must_use]
-    pub fn or(&self, usual: &Self) -> Self {
-        Self {
-            azimuth_range_deg: self.azimuth_range_deg.or(usual.azimuth_range_deg),
-            elevation_range_deg: self.elevation_range_deg.or(usual.elevation_range_deg),
-            min_distance: self.min_distance.or(usual.min_distance),
-            max_distance: self.max_distance.or(usual.max_distance),
-        }
-    }
-
-    /// In radians from grid north, which has the azimuth `grid_north`, radians.
-    fn sight_limits(&self, grid_north: f64) -> Result<SightLimits> {
-        let usual = SightLimits::default();
-        let limits = SightLimits {
-            azimuth: self.azimuth_range_deg.map(|range| range.map(|azimuth| azimuth.to_radians() - grid_north)),
-            elevation: self.elevation_range_deg.map(|range| range.map(f64::to_radians)),
-            distance: [self.min_distance.unwrap_or(usual.distance[0]), self.max_distance.unwrap_or(usual.distance[1])],
-        };
-        limits.validate()?;
-        Ok(limits)
     }
 }
 
@@ -332,51 +256,6 @@ impl Viewshed {
         }
     }
 
-    /// Remarks on observers that see nothing.
-    fn remark_on_blind(&self, observers: &[Observer], seen: &Seen, context: &mut Context) {
-        let is_seen = |answer: &Answer| matches!(answer, Answer::Visible | Answer::Unproven);
-        if observers.len() == 1 && !seen.answers.iter().any(is_seen) {
-            let text = match self.reverse {
-                true => "no cell sees the target: is it below or inside an obstacle?",
-                false => "the observer sees no cell: does it stand below a tree or between obstacles?",
-            };
-            context.add(Some(Remark::warning("nothing-seen", text)));
-        }
-        let is_blind = |(observer, count): &(&Observer, &usize)| **count == 0 && observer.eye[0].is_finite();
-        let blind = observers.iter().zip(&seen.seen_counts).filter(is_blind).count();
-        if observers.len() > 1 {
-            context.add(Remark::of_share("observers-see-nothing", blind, observers.len(), "observers", "see no cell"));
-        }
-    }
-
-    /// How many targets are seen.
-    fn counted(&self, answers: &[Answer], things: &Things, context: &mut Context) -> SeenSection {
-        let counts = AnswerCounts::of(answers);
-        let targets = answers.len() - counts.outside_view - counts.outside_cloud;
-        let unproven = (self.unproven() == UnprovenAs::Reported).then_some(counts.unproven);
-        let section = SeenSection {
-            targets,
-            visible: counts.visible,
-            unproven,
-            unproven_percent: unproven.map(|count| percent(count, targets)),
-            blocked: counts.blocked,
-            outside_view: counts.outside_view,
-            outside_cloud: counts.outside_cloud,
-            visible_percent: percent(counts.visible, targets),
-            visible_m2: things.area.map(|area| rounded(counts.visible as f64 * area, 1)),
-        };
-        let (where_to, name) = (things.where_to, things.name);
-        let mut line = format!("{where_to}visible {} % of {targets} {name}", section.visible_percent);
-        if let Some(area) = section.visible_m2 {
-            line.push_str(&format!(" ({area} m²)"));
-        }
-        if let Some(unproven) = section.unproven_percent {
-            line.push_str(&format!(", unproven {unproven} %"));
-        }
-        context.headline(line);
-        section
-    }
-
     /// The terrain beyond the cloud that observers may see.
     fn far_cells(&self, blockers: &MedialScene, observers: &[Observer]) -> Result<ElevationGrid> {
         let invalid = |value: &str, expected| {
@@ -390,75 +269,6 @@ impl Viewshed {
             return invalid("without heights beyond the cloud within the maximum distance", "of a larger area");
         }
         Ok(cells)
-    }
-}
-
-/// What is counted.
-struct Things {
-    where_to: &'static str,
-    name: &'static str,
-    /// Of each, square metres, where it has one.
-    area: Option<f64>,
-}
-
-/// Observers before what blocks.
-struct Sights<'a> {
-    question: &'a Viewshed,
-    scene: &'a Scene,
-    blockers: &'a MedialScene,
-    observers: &'a [Observer],
-    params: ViewshedParams,
-}
-
-impl Sights<'_> {
-    fn of_cells(&self, ground: &Ground, context: &mut Context, control: &Control<'_>) -> Result<Seen> {
-        let Self { question, scene, blockers, observers, params } = *self;
-        let [_, height] = question.heights();
-        let cells = CellParams::default().with_height(tested_height(height)).with_covered(CoveredCells::Kept);
-        let params = params.with_masks(if question.masks { Masks::Kept } else { Masks::NotKept });
-        let cloud = scene.ground_cloud()?;
-        let seen = control.stage("testing cells", observers.len(), || {
-            let (targets, _) = Targets::of_cells(cloud, ground.clone(), &cells, control)?;
-            viewshed(blockers, observers, &targets.positions, &params, control)
-        })?;
-        let cell = ground.grid.cell;
-        let things = Things { where_to: "", name: "cells", area: Some(cell * cell) };
-        context.report.cells = Some(question.counted(&seen.answers, &things, context));
-        question.remark_on_blind(observers, &seen, context);
-        Ok(seen)
-    }
-
-    fn of_points(&self, context: &mut Context, control: &Control<'_>) -> Result<Seen> {
-        let Self { question, scene, blockers, observers, params } = *self;
-        let positions = &scene.ground_cloud()?.positions;
-        let seen = control
-            .stage("testing points", observers.len(), || viewshed(blockers, observers, positions, &params, control))?;
-        let things = Things { where_to: "", name: "points", area: None };
-        let section = question.counted(&seen.answers, &things, context);
-        let (outside, count) = (section.outside_cloud, seen.answers.len());
-        context.add(Remark::of_share("targets-outside-cloud", outside, count, "points", OUTSIDE_CLOUD));
-        context.report.cloud_points = Some(section);
-        Ok(seen)
-    }
-
-    fn of_terrain(&self, terrain: ElevationGrid, context: &mut Context, control: &Control<'_>) -> Result<FarSeen> {
-        let Self { question, blockers, observers, params, .. } = *self;
-        let [_, height] = question.heights();
-        let seen = control.stage("testing terrain", terrain.heights().height(), || {
-            far_viewshed(blockers, observers, &terrain, height, &params, control)
-        })?;
-        let known: Vec<Answer> = seen.answers.iter().copied().filter(|&one| one != Answer::OutsideCloud).collect();
-        let [width, depth] = terrain.cell();
-        let things = Things { where_to: "beyond the cloud ", name: "cells", area: Some(width * depth) };
-        context.report.far_cells = Some(question.counted(&known, &things, context));
-        Ok(FarSeen { seen, terrain })
-    }
-
-    fn heights(&self, max_height: f64, ground: &Ground, control: &Control<'_>) -> Result<Raster<f32>> {
-        let Self { blockers, observers, params, .. } = *self;
-        control.stage("computing visible heights", observers.len(), || {
-            least_visible_heights(blockers, observers, ground, max_height, &params.earth, control)
-        })
     }
 }
 
@@ -541,16 +351,6 @@ impl Ask for Viewshed {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn limits_of_an_observer_override_those_of_the_question_one_by_one() {
-        let usual =
-            ViewLimits { azimuth_range_deg: Some([300.0, 60.0]), max_distance: Some(500.0), ..ViewLimits::default() };
-        let own = ViewLimits { max_distance: Some(50.0), ..ViewLimits::default() }.or(&usual);
-        let limits = own.sight_limits(0.5).unwrap();
-        assert_eq!(limits.azimuth, Some([300f64.to_radians() - 0.5, 60f64.to_radians() - 0.5]));
-        assert_eq!(limits.distance, [0.0, 50.0]);
-    }
 
     #[test]
     fn what_no_viewshed_can_have_is_refused_before_a_scene_is_known() {
