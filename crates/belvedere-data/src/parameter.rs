@@ -72,6 +72,8 @@ parameters! {
     PathStep => "step along the path",
     /// Height up to which a map or an envelope goes.
     MaxHeight => "maximum height",
+    /// Height above the ground that something must have to be seen.
+    VisibleHeights => "lowest visible height",
     /// Share of the targets that cameras must see.
     Coverage => "coverage",
     /// Cameras that must see each target.

@@ -45,6 +45,8 @@ pub(crate) fn exception(error: Error) -> PyErr {
 /// The argument that gives a parameter, or its name where several do or none.
 fn keyword(parameter: Parameter) -> &'static str {
     match parameter {
+        Parameter::Azimuth => "azimuth_range_deg",
+        Parameter::Elevation => "elevation_range_deg",
         Parameter::AngleStep => "angle_step_deg",
         Parameter::DirectionCount => "directions",
         Parameter::FenceHeight => "fence_height",

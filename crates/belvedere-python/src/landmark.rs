@@ -2,23 +2,20 @@
 
 use crate::arrays::to_1d;
 use crate::mesh::Mesh;
-use crate::observers::{eyes, places, skip, skipped};
+use crate::observers::{eyes, places, skip, skipped, standing_observers};
 use crate::outlook::Looking;
-use crate::scene::{Scene, unproven_as};
-use crate::targets::{Cells, Column, Grid, ground_cloud, ground_points};
+use crate::scene::{Scene, unproven_as, unproven_choice};
+use crate::targets::{Cells, Column, Grid, grid_of, ground_points, remark_of};
 use crate::work::run;
-use belvedere::apps::ask;
-use belvedere::apps::eyes::EyesReport;
-use belvedere::apps::landmark::{
-    LandmarkParams, LandmarkPoints, LandmarkView, MEASURES, landmark_points, landmark_views, observer_cell_for,
-    spacing_for,
-};
+use belvedere::apps::ask::{self, LandmarkShape};
+use belvedere::apps::landmark::LandmarkParams;
 use belvedere::apps::protected_view::protected_view;
-use belvedere::apps::targets::{CellLevel, CellParams, CoveredCells, Targets};
-use belvedere::apps::viewshed::OBSERVER_HEIGHT;
-use belvedere::query::SurfacePieces;
+use belvedere::apps::targets::{CellLevel, Measure};
+use belvedere::control::Control;
+use belvedere::query::{BackFaces, SurfacePieces};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// What the landmark is.
@@ -44,26 +41,27 @@ pub(crate) fn local_ring(inner: &ask::Scene, ring: &[[f64; 2]]) -> Vec<[f64; 2]>
 }
 
 impl Landmark {
-    fn surface(&self, inner: &ask::Scene) -> belvedere::Result<SurfacePieces> {
+    fn shape(&self, scene: &ask::Scene) -> belvedere::Result<LandmarkShape> {
         if let Some(mesh) = &self.mesh {
-            let mesh = mesh.get().objects_in_metres(&self.objects, inner)?;
-            let spacing = self.spacing.unwrap_or_else(|| spacing_for(mesh.area()));
-            return SurfacePieces::of_mesh(&mesh, inner.frame().origin, spacing, self.seed);
+            let mesh = Some(Arc::new(mesh.get().objects_in_metres(&self.objects, scene)?));
+            return Ok(LandmarkShape::Mesh { mesh, spacing: self.spacing, seed: self.seed });
         }
-        let polygons: Vec<Vec<Vec<[f64; 2]>>>;
-        let which = match (self.class, &self.polygon) {
-            (Some(class), _) => LandmarkPoints::Class(class),
+        Ok(match (self.class, &self.polygon) {
+            (Some(class), _) => LandmarkShape::Class(class),
             (None, rings) => {
-                polygons = vec![rings.iter().flatten().map(|ring| local_ring(inner, ring)).collect()];
-                LandmarkPoints::Inside(&polygons)
+                let rings = rings.iter().flatten().map(|ring| local_ring(scene, ring)).collect();
+                LandmarkShape::Inside { polygons: vec![rings] }
             }
-        };
-        Ok(landmark_points(ground_cloud(inner)?, &which)?.1)
+        })
+    }
+
+    fn surface(&self, scene: &ask::Scene, control: &Control<'_>) -> belvedere::Result<SurfacePieces> {
+        Ok(self.shape(scene)?.surface(scene.cloud(), scene.frame().origin, control)?.0)
     }
 }
 
-/// Columns, the grid of observers, their places and what was skipped.
-type Views<'py> = (Vec<Column<'py>>, Option<Grid>, Vec<String>);
+/// Columns, the grid of observers, and remarks.
+type Views<'py> = (Vec<Column<'py>>, Option<Grid>, Vec<Bound<'py, PyDict>>);
 
 #[pymethods]
 impl Scene {
@@ -76,55 +74,29 @@ impl Scene {
         unproven: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Views<'py>> {
-        let unproven = unproven_as(unproven)?;
-        let earth = looking.earth()?;
-        let points = ground_points(looking.ground.as_deref())?;
-        let usual = LandmarkParams::default();
-        let params = usual
-            .with_unproven(unproven)
-            .with_earth(earth)
-            .with_max_range(looking.max_distance.unwrap_or(usual.max_range));
-        let given = observers.as_ref().map(places).transpose()?;
-        let inner = Arc::clone(&self.0);
-        let of_work = Arc::clone(&inner);
-        let (views, grid, report) = run(py, progress, move |control| {
-            let inner = of_work;
-            let surface = control.stage("sampling landmark", 0, || landmark.surface(&inner))?;
-            let scene = inner.blockers(unproven, control)?;
-            let (stand, grid, report): (Vec<[f64; 3]>, Option<Grid>, EyesReport) = match given {
-                Some(places) => {
-                    let mut stand = eyes(&inner, &places, looking.observer_height, points, control)?;
-                    let report = skip(&scene, None, &mut stand, control)?;
-                    (stand, None, report)
-                }
-                None => {
-                    let (low, high) = inner.model().bounds().on_map();
-                    let side = Some(looking.cell.unwrap_or_else(|| observer_cell_for(low, high)));
-                    let cells = Cells { side, height: None, level: CellLevel::Ground, ground: points };
-                    let ground = cells.ground_within(&inner, (low, high), control)?;
-                    let grid = crate::targets::grid_of(&ground.grid, inner.frame());
-                    let height = looking.observer_height.unwrap_or(OBSERVER_HEIGHT);
-                    let cells = CellParams::default().with_height(height).with_covered(CoveredCells::Kept);
-                    let (mut targets, _) = Targets::of_cells(inner.cloud(), ground, &cells, control)?;
-                    targets.leave_out_enclosed(&scene, control)?;
-                    let stand: Vec<[f64; 3]> = targets.positions.iter().map(|eye| eye.map(f64::from)).collect();
-                    let count = stand.len();
-                    (stand, Some(grid), EyesReport::none_skipped(count))
-                }
+        let (unproven, earth) = (unproven_choice(unproven)?, looking.earth()?);
+        let ground = ground_points(looking.ground.as_deref())?;
+        let observers = observers.as_ref().map(|array| standing_observers(array, &self.0)).transpose()?;
+        let is_grid = observers.is_none();
+        let scene = Arc::clone(&self.0);
+        let answers = run(py, progress, move |control| {
+            let question = ask::Landmark {
+                shape: landmark.shape(&scene)?,
+                observers,
+                observer_height: looking.observer_height,
+                cell: looking.cell,
+                ground,
+                max_distance: looking.max_distance,
+                back_faces: BackFaces::default(),
+                earth,
+                unproven,
             };
-            let views = control.stage("testing landmark", stand.len(), || {
-                landmark_views(&scene, &surface, &stand, &params, control)
-            })?;
-            Ok((views, grid, report))
+            ask::ask(&scene, &question, &ask::Places::Scene, control)
         })?;
-        let skipped = skipped(&inner, "observer", &report)?;
-        #[expect(clippy::cast_possible_truncation, reason = "measures are f32")]
-        let of = |value: &dyn Fn(&LandmarkView) -> f64| views.iter().map(|view| value(view) as f32).collect();
-        let columns = MEASURES.iter().map(|measure| {
-            let values = to_1d(py, of(&|view| measure.of(view))).into_any();
-            (measure.name.to_owned(), measure.description, values)
-        });
-        Ok((columns.collect(), grid, skipped))
+        let grid = is_grid.then(|| grid_of(&answers.found.ground.ground.grid, self.0.frame()));
+        let remarks = answers.remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<Vec<_>>>()?;
+        let column = |measure: Measure| (measure.name, measure.description, to_1d(py, measure.values).into_any());
+        Ok((answers.measures.into_iter().map(column).collect(), grid, remarks))
     }
 
     /// Greatest heights above the ground and of the file, their grid, whether anything is protected, and what was skipped.
@@ -146,7 +118,7 @@ impl Scene {
         let of_work = Arc::clone(&inner);
         let (found, above, report) = run(py, progress, move |control| {
             let inner = of_work;
-            let surface = control.stage("sampling landmark", 0, || landmark.surface(&inner))?;
+            let surface = landmark.surface(&inner, control)?;
             let mut stand = eyes(&inner, &places, looking.observer_height, points, control)?;
             let cells = Cells { side: looking.cell, height: None, level: CellLevel::Ground, ground: points };
             let ground = cells.ground_within(&inner, inner.model().bounds().on_map(), control)?;
@@ -171,6 +143,6 @@ impl Scene {
             column("height", "maximum height above the ground", above.values().to_vec()),
             column("top", "maximum height", tops),
         ];
-        Ok((columns, crate::targets::grid_of(&grid, frame), is_protected, skipped))
+        Ok((columns, grid_of(&grid, frame), is_protected, skipped))
     }
 }

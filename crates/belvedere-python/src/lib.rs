@@ -25,6 +25,7 @@ mod sun;
 mod system;
 mod targets;
 mod trees;
+mod viewshed;
 mod windows;
 mod work;
 

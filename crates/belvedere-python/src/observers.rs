@@ -42,6 +42,12 @@ pub(crate) fn eyes(
     Ok(eyes)
 }
 
+/// Where observers stand; at least one.
+pub(crate) fn standing_observers(array: &PyReadonlyArray2<'_, f64>, scene: &ask::Scene) -> PyResult<Vec<Standing>> {
+    let standing = standing(array, "observers", scene)?;
+    if standing.is_empty() { Err(wrong("observers", "empty", "give at least one")) } else { Ok(standing) }
+}
+
 /// The places, local metres; z is NaN where it follows from the ground. `what` names the argument.
 pub(crate) fn standing(array: &PyReadonlyArray2<'_, f64>, what: &str, scene: &ask::Scene) -> PyResult<Vec<Standing>> {
     let rows = crate::arrays::fixed_rows(array, what)?;

@@ -1,22 +1,14 @@
-//! What observers see around themselves: viewsheds, horizons, isovists.
+//! What observers see around themselves: horizons, isovists.
 
 use crate::arrays::{to_1d, to_2d};
-use crate::errors::{exception, wrong};
-use crate::observers::{places, skipped, standing};
-use crate::scene::{Scene, unproven_as};
+use crate::observers::standing_observers;
+use crate::scene::Scene;
 use crate::sights::earth;
 use crate::sun::Place;
-use crate::targets::{Cells, Grid, grid_at, grid_of, ground_points, remarks_of};
+use crate::targets::{ground_points, remarks_of};
 use crate::work::run;
 use belvedere::apps::ask::{self, BelowLevel};
-use belvedere::apps::eyes::{EyesReport, fault_of_target, skip_unfit_far_eyes};
-use belvedere::apps::targets::{CellLevel, CellParams, CoveredCells, Targets, set_on_ground, set_on_terrain};
-use belvedere::apps::viewshed::{
-    OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, ViewshedParams, box_within_reach, far_viewshed,
-    terrain_within_reach, tested_height, viewshed,
-};
 use belvedere::query::EarthParams;
-use belvedere::results::terrain_georeference;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -27,41 +19,28 @@ use std::sync::Arc;
 #[pyo3(from_item_all)]
 pub(crate) struct Looking {
     pub(crate) observer_height: Option<f64>,
-    target_height: Option<f64>,
+    pub(crate) target_height: Option<f64>,
     pub(crate) cell: Option<f64>,
     pub(crate) ground: Option<String>,
     /// Degrees from the north that `Place` says.
-    azimuth_range: Option<[f64; 2]>,
-    elevation_range: Option<[f64; 2]>,
-    min_distance: Option<f64>,
+    pub(crate) azimuth_range: Option<[f64; 2]>,
+    pub(crate) elevation_range: Option<[f64; 2]>,
+    pub(crate) min_distance: Option<f64>,
     pub(crate) max_distance: Option<f64>,
     curvature: Option<String>,
     refraction: Option<f64>,
     /// The one place is a target, and who looks stands in the cells.
-    is_reverse: bool,
+    pub(crate) is_reverse: bool,
     /// Cells are those of the terrain beyond the cloud.
-    is_far: bool,
+    pub(crate) is_far: bool,
 }
 
 impl Looking {
-    fn limits(&self, grid_north: f64) -> PyResult<SightLimits> {
-        let usual = SightLimits::default();
-        let limits = SightLimits {
-            azimuth: self.azimuth_range.map(|range| range.map(|azimuth| azimuth.to_radians() - grid_north)),
-            elevation: self.elevation_range.map(|range| range.map(f64::to_radians)),
-            distance: [self.min_distance.unwrap_or(usual.distance[0]), self.max_distance.unwrap_or(usual.distance[1])],
-        };
-        limits.validate().map_err(exception)?;
-        Ok(limits)
-    }
-
     pub(crate) fn earth(&self) -> PyResult<EarthParams> {
         earth(self.curvature.as_deref(), self.refraction)
     }
 }
 
-/// Answers and counts of cells, their grid, and what was skipped.
-type Seen<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Grid, Vec<String>);
 /// Elevations, the number of azimuths, and remarks.
 type Horizons<'py> = (Bound<'py, PyAny>, usize, Vec<Bound<'py, PyDict>>);
 /// Columns of isovists, their panoramas, and remarks.
@@ -69,77 +48,6 @@ type Described<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyAny>>, Vec<Bound<'py
 
 #[pymethods]
 impl Scene {
-    /// Answers and counts of cells, their grid, and what was skipped.
-    fn viewshed<'py>(
-        &self,
-        py: Python<'py>,
-        observers: PyReadonlyArray2<'py, f64>,
-        looking: Looking,
-        place: Place,
-        unproven: &str,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<Seen<'py>> {
-        let unproven = unproven_as(unproven)?;
-        let earth = looking.earth()?;
-        let inner = Arc::clone(&self.0);
-        let limits = looking.limits(place.grid_north_of(&inner))?;
-        let places = places(&observers)?;
-        let points = ground_points(looking.ground.as_deref())?;
-        if looking.is_far && inner.model().far_terrain().grid().is_none() {
-            return Err(wrong(
-                "far",
-                "True",
-                "give the scene terrain first: scene.with_terrain('dtm.tif').viewshed(...)",
-            ));
-        }
-        let of_work = Arc::clone(&inner);
-        let (seen, grid, report) = run(py, progress, move |control| {
-            let inner = of_work;
-            let mut eyes: Vec<[f64; 3]> = places.iter().map(|&place| inner.frame().local_from_file(place)).collect();
-            let reaches = eyes.iter().map(|eye| ([eye[0], eye[1]], limits.distance[1]));
-            let area = box_within_reach(inner.model().bounds().on_map(), reaches);
-            let cells = Cells { side: looking.cell, height: None, level: CellLevel::Ground, ground: points };
-            let ground = cells.ground_within(&inner, area, control)?;
-            let mut heights =
-                [looking.observer_height.unwrap_or(OBSERVER_HEIGHT), looking.target_height.unwrap_or(TARGET_HEIGHT)];
-            if looking.is_reverse {
-                heights.reverse();
-            }
-            let [height, of_cells] = heights;
-            set_on_ground(eyes.iter_mut().map(|eye| (eye, height)), &ground);
-            set_on_terrain(eyes.iter_mut().map(|eye| (eye, height)), inner.model());
-            let scene = inner.blockers(unproven, control)?;
-            let report = match &eyes[..] {
-                &[target] if looking.is_reverse && fault_of_target(&scene, target).is_none() => {
-                    EyesReport::none_skipped(1)
-                }
-                _ => control.stage("testing observers", eyes.len(), || {
-                    skip_unfit_far_eyes(&scene, Some(&ground), &mut eyes, control)
-                })?,
-            };
-            let observers: Vec<Observer> = eyes.into_iter().map(|eye| Observer { eye, limits }).collect();
-            let params = ViewshedParams::default().with_earth(earth).with_unproven(unproven);
-            if let Some(terrain) = inner.model().far_terrain().grid().filter(|_| looking.is_far) {
-                let terrain = terrain_within_reach(terrain, &observers)?;
-                let size = [terrain.heights().width(), terrain.heights().height()];
-                let seen = control.stage("testing terrain", size[1], || {
-                    far_viewshed(&scene, &observers, &terrain, of_cells, &params, control)
-                })?;
-                return Ok((seen, grid_at(size, &terrain_georeference(&terrain, inner.frame())), report));
-            }
-            let cells = CellParams::default().with_height(tested_height(of_cells)).with_covered(CoveredCells::Kept);
-            let grid = grid_of(&ground.grid, inner.frame());
-            let seen = control.stage("testing cells", observers.len(), || {
-                let (targets, _) = Targets::of_cells(inner.cloud(), ground, &cells, control)?;
-                viewshed(&scene, &observers, &targets.positions, &params, control)
-            })?;
-            Ok((seen, grid, report))
-        })?;
-        let skipped = skipped(&inner, "observer", &report)?;
-        let answers: Vec<u8> = seen.answers.iter().map(|&answer| answer as u8).collect();
-        Ok((to_1d(py, answers).into_any(), to_1d(py, seen.counts).into_any(), grid, skipped))
-    }
-
     /// Elevations of the horizon, degrees, a row for each observer and a column for each azimuth, NaN for those skipped;
     /// the number of azimuths; and remarks.
     fn horizon<'py>(
@@ -160,7 +68,7 @@ impl Scene {
             below: BelowLevel::Keep,
         };
         let scene = Arc::clone(&self.0);
-        let eyes = ask::Places::Eyes(standing(&observers, "observers", &scene)?);
+        let eyes = ask::Places::Eyes(standing_observers(&observers, &scene)?);
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &eyes, control))?;
         let found = answers.found;
         let count = found.azimuth_count;
@@ -194,7 +102,7 @@ impl Scene {
             min_jump,
         };
         let scene = Arc::clone(&self.0);
-        let eyes = ask::Places::Eyes(standing(&observers, "observers", &scene)?);
+        let eyes = ask::Places::Eyes(standing_observers(&observers, &scene)?);
         let of_work = Arc::clone(&scene);
         let answers = run(py, progress, move |control| ask::ask(&of_work, &question, &eyes, control))?;
         let found = answers.found;

@@ -40,6 +40,11 @@ pub(crate) fn unproven_as(text: &str) -> PyResult<UnprovenAs> {
     }
 }
 
+/// The same where to report is what happens anyway: nothing is then known to be wanted.
+pub(crate) fn unproven_choice(text: &str) -> PyResult<Option<UnprovenAs>> {
+    Ok(Some(unproven_as(text)?).filter(|unproven| *unproven != UnprovenAs::Reported))
+}
+
 /// The value of a library's type that has a name.
 fn named<T: Copy>(what: &'static str, name: &str, all: &[T], name_of: fn(T) -> &'static str) -> PyResult<T> {
     all.iter().copied().find(|&value| name_of(value) == name).ok_or_else(|| {

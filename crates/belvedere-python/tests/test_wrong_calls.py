@@ -73,6 +73,8 @@ WRONG = {
         lambda s, c, f: s.line_of_sight((1, 2), (3, 4), observer_height=-0.5), "observer_height", "0 metres"),
     "cells below the ground": (lambda s, c, f: s.sky_view(target_height=-1), "target_height", "0 metres"),
     "far cells without terrain": (lambda s, c, f: s.viewshed((1, 2), far=True), "far", "with_terrain"),
+    "azimuths of a target": (
+        lambda s, c, f: s.viewshed(target=(1, 2), azimuth_range_deg=(0, 90)), "azimuth_range_deg", "one observer"),
     "two targets": (lambda s, c, f: s.viewshed(target=[(1, 2), (3, 4)]), "target", "one"),
     "method": (lambda s, c, f: belvedere.Scene(c, method="best"), "method", "carved"),
     "rule": (lambda s, c, f: belvedere.Scene(c, without="houses"), "without", "crowns"),
@@ -183,5 +185,5 @@ def test_points_left_out_and_observers_skipped_are_warned_of(scene, standing):
     with pytest.warns(belvedere.BelvedereWarning, match="1 of 2 targets are outside the cloud"):
         lit = scene.shadow(sun=(180, 30), targets=[(x, y, 30.0), (0.0, 0.0, 0.0)])
     assert np.isfinite(lit[0]) and np.isnan(lit[1])
-    with pytest.warns(belvedere.BelvedereWarning, match="observer 1 .* is skipped"):
+    with pytest.warns(belvedere.BelvedereWarning, match="observer 2 at .* is skipped"):
         scene.viewshed([(x, y), (0.0, 0.0)], cell=2)

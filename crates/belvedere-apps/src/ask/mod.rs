@@ -16,6 +16,7 @@
 mod horizon;
 mod irradiance;
 mod isovist;
+mod landmark;
 mod light;
 mod line_of_sight;
 pub mod north;
@@ -30,10 +31,12 @@ pub mod sun;
 mod sun_hours;
 mod sun_position;
 mod trees;
+mod viewshed;
 
 pub use horizon::{BelowLevel, Horizon, HorizonFound};
 pub use irradiance::{Irradiance, IrradianceFound, Radiation, Roofs, RoofsFound};
 pub use isovist::{IsovistColumn, Isovists, IsovistsFound};
+pub use landmark::{Landmark, LandmarkFound, LandmarkSection, LandmarkShape};
 pub use light::OnTargets;
 pub use line_of_sight::{LinesOfSight, ProfileRows, SightColumns, SightsFound};
 pub use north::North;
@@ -48,6 +51,7 @@ pub use sun::{Days, NamedSun, SunPlace, Suns};
 pub use sun_hours::{Prepared, SunHours, rules};
 pub use sun_position::{SunPosition, SunStands};
 pub use trees::ThroughTrees;
+pub use viewshed::{FarSeen, SeenSection, StandingObserver, ViewLimits, Viewshed, ViewshedFound, ViewshedTargets};
 
 use crate::targets::Measure;
 use belvedere_data::Result;
@@ -77,6 +81,10 @@ pub enum Question {
     Horizon(Horizon),
     /// The space that observers see.
     Isovist(Isovists),
+    /// What observers see, or from where a target is seen.
+    Viewshed(Viewshed),
+    /// From where a landmark is seen, and how much of it.
+    Landmark(Landmark),
 }
 
 /// What was found, of any question.
@@ -96,6 +104,10 @@ pub enum Found {
     Horizon(HorizonFound),
     /// Of [`Question::Isovist`].
     Isovist(IsovistsFound),
+    /// Of [`Question::Viewshed`].
+    Viewshed(Box<ViewshedFound>),
+    /// Of [`Question::Landmark`].
+    Landmark(LandmarkFound),
 }
 
 /// The answers to a question.
@@ -213,6 +225,8 @@ impl Ask for Question {
             Self::LineOfSight(question) => question.check(),
             Self::Horizon(question) => question.check(),
             Self::Isovist(question) => question.check(),
+            Self::Viewshed(question) => question.check(),
+            Self::Landmark(question) => question.check(),
         }
     }
 
@@ -226,6 +240,10 @@ impl Ask for Question {
             Self::LineOfSight(question) => question.answer(scene, places, context, control)?.map(Found::LineOfSight),
             Self::Horizon(question) => question.answer(scene, places, context, control)?.map(Found::Horizon),
             Self::Isovist(question) => question.answer(scene, places, context, control)?.map(Found::Isovist),
+            Self::Viewshed(question) => {
+                question.answer(scene, places, context, control)?.map(|found| Found::Viewshed(Box::new(found)))
+            }
+            Self::Landmark(question) => question.answer(scene, places, context, control)?.map(Found::Landmark),
         })
     }
 }

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// Share of targets near the edge of the cloud from which on it is warned of, percent.
 pub(super) const EDGE_WARNING_PERCENT: f64 = 1.0;
-const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
+pub(super) const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
 const NEAR_EDGE: &str = "are near the edge of the cloud: objects beyond it, as high as its highest point, could take some of their sun or sky";
 
 /// What a question is about.

@@ -1,11 +1,15 @@
 //! What is known of how answers came about. Sections that a question does not have are left out.
 
 use super::horizon::HorizonsSection;
+use super::landmark::LandmarkSection;
 use super::line_of_sight::{LineSection, PairsSection};
 use super::north::NorthReport;
 use super::observers::ObserversSection;
 use super::scene::KnownGround;
+use super::viewshed::SeenSection;
 use crate::edge::EdgeReport;
+use crate::eyes::EyesReport;
+use crate::landmark::LandmarkReport;
 use crate::sun::{Site, SiteFrom};
 use crate::targets::{Measure, MeasureStatistics, Targets};
 use crate::tree_light::Transmissivity;
@@ -33,6 +37,9 @@ pub struct Report {
     /// What sun and sky send.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radiation: Option<RadiationSection>,
+    /// The landmark.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub landmark: Option<LandmarkSection>,
     /// The ground that cells stand on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ground: Option<GroundSection>,
@@ -45,6 +52,15 @@ pub struct Report {
     /// Who looks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub observers: Option<ObserversSection>,
+    /// What is looked at from all cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub target: Option<ObserversSection>,
+    /// Which of the given observers of a landmark cannot look.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub observers_given: Option<EyesReport>,
+    /// What observers see of a landmark.
+    #[serde(rename = "observers", skip_serializing_if = "Option::is_none")]
+    pub landmark_views: Option<LandmarkReport>,
     /// What blocks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lines_of_sight: Option<LinesSection>,
@@ -57,6 +73,15 @@ pub struct Report {
     /// The numbers of a single isovist.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub isovist: Option<Named<f64>>,
+    /// What is seen of cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cells: Option<SeenSection>,
+    /// What is seen of points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cloud_points: Option<SeenSection>,
+    /// What is seen of the terrain beyond the cloud.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub far_cells: Option<SeenSection>,
     /// What trees let through.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trees: Option<TreesSection>,

@@ -47,6 +47,25 @@ belvedere_data::setters!(LandmarkParams {
     with_max_range(max_range: f64),
 });
 
+impl LandmarkParams {
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for one outside its range.
+    pub fn validate(&self) -> Result<()> {
+        self.earth.validate()?;
+        self.faces.validate()?;
+        if !(self.max_range > 0.0) {
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::MaxDistance,
+                value: self.max_range.to_string(),
+                expected: "above zero metres",
+            });
+        }
+        Ok(())
+    }
+}
+
 impl Default for LandmarkParams {
     fn default() -> Self {
         Self {
@@ -192,15 +211,7 @@ pub fn landmark_views(
     params: &LandmarkParams,
     control: &Control<'_>,
 ) -> Result<Vec<LandmarkView>> {
-    params.earth.validate()?;
-    params.faces.validate()?;
-    if !(params.max_range > 0.0) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::MaxDistance,
-            value: params.max_range.to_string(),
-            expected: "above zero metres",
-        });
-    }
+    params.validate()?;
     if landmark.pieces.is_empty() {
         return Err(Error::NoPoints { what: "the landmark has no surface".to_owned() });
     }

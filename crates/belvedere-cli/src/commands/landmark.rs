@@ -3,83 +3,42 @@
 mod results;
 pub(super) mod what;
 
-use super::sights::{self, ground_cloud, proving_blockers, skip_unfit};
 use super::surroundings::rows_as_given;
 use super::{check_output, extension};
 use crate::arguments::{Global, Landmark, Usage};
-use crate::pipeline::{self, Points, Scene};
+use crate::pipeline::{self, Points};
 use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::PointCloud;
-use belvedere::apps::landmark::{LandmarkParams, LandmarkReport, landmark_views, observer_cell_for};
-use belvedere::apps::targets::{CellParams, CoveredCells, Targets, set_on_ground};
-use belvedere::apps::viewshed::OBSERVER_HEIGHT;
-use belvedere::ground::{Ground, MapGrid};
+use belvedere::Frame;
+use belvedere::apps::ask::{self, LandmarkShape, Places, Standing};
 use belvedere::io::{RowsAre, read_observers};
-use belvedere::query::{BackFaces, MeshTargetParams};
+use belvedere::query::{BackFaces, UnprovenAs};
 
 pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     check_outputs(arguments)?;
-    let earth = arguments.earth.params()?;
+    // refused before a scene is read
+    arguments.earth.params()?;
     let mut run = Run::new(global);
-    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut run)?;
-    let (surface, middle) = what::surface(&arguments.shape, &scene, &mut run)?;
-
-    let grid = grid(arguments, &scene)?;
-    let rows = rows(arguments, &scene.cloud)?;
-    let (cloud, points) = ground_cloud(&arguments.ground, &mut scene, &mut run)?;
-    let ground = sights::ground(&cloud, points, grid, &mut run)?;
-    let profile = scene.profile;
-    let (blockers, unproven) = proving_blockers(&scene, profile, &arguments.giving_way, &mut run)?;
-
-    let height = arguments.observer_height.unwrap_or(OBSERVER_HEIGHT);
-    let places: Vec<[f64; 3]>;
-    let (eyes, inside) = match &rows {
-        Some(rows) => {
-            places = standing(rows, height, &ground);
-            let mut eyes = places.clone();
-            let who = ("observer", &cloud.frame);
-            let report = skip_unfit(&blockers, Some(&ground), who, &mut eyes, &mut run)?;
-            run.summary.add("observers_given", Summary::of(&report));
-            (eyes, report.skipped_inside_obstacle)
-        }
-        None => {
-            let (eyes, inside) = run.stage("testing observers", 0, |control| {
-                let cells = CellParams::default().with_height(height).with_covered(CoveredCells::Kept);
-                let (mut targets, _) = Targets::of_cells(&cloud, ground.clone(), &cells, control)?;
-                let inside = targets.leave_out_enclosed(&blockers, control)?;
-                let eyes: Vec<[f64; 3]> = targets.positions.iter().map(|eye| eye.map(f64::from)).collect();
-                Ok::<_, anyhow::Error>((eyes, inside))
-            })?;
-            places = eyes.clone();
-            (eyes, inside)
-        }
-    };
-    let usual = LandmarkParams::default().faces;
-    let params = LandmarkParams::default()
-        .with_faces(MeshTargetParams {
-            back_faces: arguments.back_faces.map_or(usual.back_faces, BackFaces::from),
-            ..usual
-        })
-        .with_unproven(unproven)
-        .with_earth(earth)
-        .with_max_range(arguments.max_distance.unwrap_or(f64::INFINITY));
-    let views = run.stage("testing landmark", eyes.len(), |progress| {
-        landmark_views(&blockers, &surface, &eyes, &params, progress)
-    })?;
-    run.summary.add("observers", Summary::of(&LandmarkReport::new(&views, &eyes, inside)));
+    let scene = pipeline::scene(&arguments.scene, Points::Keep, &mut run)?;
+    let scene = scene.into_asked(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
+    let shape = what::shape(&arguments.shape, scene.frame(), &mut run)?;
+    let question = question(arguments, shape, scene.frame())?;
+    let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
+    run.answered(&answers);
+    let found = &answers.found;
+    let (views, ground, cloud) = (&found.views[..], &found.ground.ground, scene.ground_cloud()?);
     let given = rows_as_given(arguments.observers.as_deref())?;
     for output in &arguments.output {
         run.stage("writing", 0, |_| match extension(output).as_str() {
-            "csv" => results::write_rows(output, &views, &places, &given, &cloud),
-            "png" => results::write_map(output, &views, &ground, &cloud, middle),
-            _ => results::write_share(output, &views, &ground, &cloud),
+            "csv" => results::write_rows(output, views, &found.places, &given, cloud),
+            "png" => results::write_map(output, views, ground, cloud, found.middle),
+            _ => results::write_share(output, views, ground, cloud),
         })?;
     }
     let mut written: Vec<String> = arguments.output.iter().map(|path| path.display().to_string()).collect();
     if let Some(folder) = &arguments.measures {
-        written.extend(run.stage("writing", 0, |_| results::write_measures(folder, &views, &ground, &cloud))?);
+        written.extend(run.stage("writing", 0, |_| results::write_measures(folder, views, ground, cloud))?);
     }
     run.summary
         .headline("seen from <observers.observers_with_view_percent> % of <observers.count> places (<observers.observers_with_view>)")
@@ -87,6 +46,20 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
         .headline("surface: <landmark.area_m2> m2");
     run.summary.add("written", written);
     Ok(run.finish())
+}
+
+fn question(arguments: &Landmark, shape: LandmarkShape, frame: &Frame) -> Result<ask::Landmark> {
+    Ok(ask::Landmark {
+        shape,
+        observers: observers(arguments, frame)?,
+        observer_height: arguments.observer_height,
+        cell: arguments.cell,
+        ground: arguments.ground.points(),
+        max_distance: arguments.max_distance,
+        back_faces: arguments.back_faces.map_or_else(BackFaces::default, BackFaces::from),
+        earth: arguments.earth.params()?,
+        unproven: arguments.giving_way.unproven.map(UnprovenAs::from),
+    })
 }
 
 fn check_outputs(arguments: &Landmark) -> Result<()> {
@@ -103,41 +76,13 @@ fn check_outputs(arguments: &Landmark) -> Result<()> {
     Ok(())
 }
 
-/// The cells that observers stand in, or that the ground below those of a file is asked on.
-fn grid(arguments: &Landmark, scene: &Scene) -> Result<MapGrid> {
-    let (low, high) = scene.model.bounds().on_map();
-    let cell = match &arguments.observers {
-        Some(_) => belvedere::apps::viewshed::cell_for(low, high),
-        None => arguments.cell.unwrap_or_else(|| observer_cell_for(low, high)),
-    };
-    let origin = [scene.cloud.frame.origin[0], scene.cloud.frame.origin[1]];
-    Ok(MapGrid::covering(low, high, cell, origin)?)
-}
-
-/// Place of an observer, whose height may be NaN, and its height above the ground where a file tells it.
-type Row = ([f64; 3], Option<f64>);
-
 /// Observers of a file, if one was named.
-fn rows(arguments: &Landmark, cloud: &PointCloud) -> Result<Option<Vec<Row>>> {
+fn observers(arguments: &Landmark, frame: &Frame) -> Result<Option<Vec<Standing>>> {
     let Some(path) = &arguments.observers else { return Ok(None) };
-    let mut rows = Vec::new();
-    for row in read_observers(path, &cloud.frame.crs, RowsAre::Places)? {
-        let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - cloud.frame.origin[i]);
-        rows.extend(row.corners.iter().map(|corner| (place(corner), row.height)));
+    let mut observers = Vec::new();
+    for row in read_observers(path, &frame.crs, RowsAre::Places)? {
+        let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - frame.origin[i]);
+        observers.extend(row.corners.iter().map(|corner| Standing { place: place(corner), height: row.height }));
     }
-    Ok(Some(rows))
-}
-
-/// Where observers of a file stand; the height is NaN where no ground is known.
-fn standing(rows: &[Row], height: f64, ground: &Ground) -> Vec<[f64; 3]> {
-    let mut eyes: Vec<[f64; 3]> = rows.iter().map(|row| row.0).collect();
-    let heights = rows.iter().map(|row| row.1.unwrap_or(height));
-    set_on_ground(eyes.iter_mut().zip(heights), ground);
-    eyes
-}
-
-/// Local place on the map of file coordinates.
-fn on_map_of(cloud: &PointCloud, [x, y]: [f64; 2]) -> [f64; 2] {
-    let [x, y, _] = cloud.frame.local_from_file([x, y, 0.0]);
-    [x, y]
+    Ok(Some(observers))
 }

@@ -6,7 +6,7 @@ use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::edge::{EdgeReport, near_edge};
-use belvedere::apps::eyes::{EyeFault, EyesReport, SkippedEye, skip_unfit_eyes, skip_unfit_far_eyes};
+use belvedere::apps::eyes::{EyeFault, EyesReport, SkippedEye, skip_unfit_eyes};
 use belvedere::apps::targets::Targets;
 use belvedere::depth::Profile;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
@@ -163,18 +163,6 @@ pub(crate) fn skip_unfit(
 ) -> Result<EyesReport> {
     let report = run.stage("testing observers", 0, |control| skip_unfit_eyes(blockers, ground, eyes, control))?;
     warn_of_skipped(report, (who, frame), &mut run.summary)
-}
-
-/// The same for observers that may stand on far terrain.
-pub(crate) fn skip_unfit_far(
-    blockers: &MedialScene,
-    ground: Option<&Ground>,
-    who: (&str, &Frame),
-    eyes: &mut [[f64; 3]],
-    run: &mut Run,
-) -> Result<EyesReport> {
-    let report = run.stage("testing observers", 0, |control| skip_unfit_far_eyes(blockers, ground, eyes, control))?;
-    warn_of_skipped(report, who, &mut run.summary)
 }
 
 fn warn_of_skipped(report: EyesReport, (who, frame): (&str, &Frame), summary: &mut Summary) -> Result<EyesReport> {

@@ -55,7 +55,7 @@ fn options_are_refused_before_a_cloud_is_read() {
         ("query junk.laz --panorama 1,1,1 --ball-profile paper-cone --random 5 -o o.csv", ["--ball-profile", "cone"]),
         ("viewshed junk.laz --observer 1,1 --max-distance 5 --min-distance 10 -o o.tif", ["--max-distance", "5"]),
         ("viewshed junk.laz --observer 1,1 --elevation-range 50,20 -o o.tif", ["--elevation-range", "50"]),
-        ("viewshed junk.laz --target 1,1 --azimuth-range 1,2 -o o.tif", ["--azimuth-range", "--target"]),
+        ("viewshed junk.laz --target 1,1 --azimuth-range 1,2 -o o.tif", ["--azimuth-range", "with a target"]),
         ("viewshed junk.laz --observer 1,1 --observer-height -0.01 -o o.tif", ["--observer-height", "0 metres"]),
         ("viewshed junk.laz --observers some.csv --masks o.tif -o p.tif", ["--masks", "40; use .npy"]),
         ("viewshed junk.laz --observers many.csv -o o.tif", ["65534", "65535"]),

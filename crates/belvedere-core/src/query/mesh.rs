@@ -4,9 +4,11 @@ use super::surface::{Piece, Sides, SurfacePieces};
 use super::{Answer, Viewer};
 use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Parameter, Result};
+use serde::{Deserialize, Serialize};
 
 /// What to make of faces that are turned away from the viewer.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum BackFaces {
     /// They count as not visible: shares are those of the whole surface.
     #[default]

@@ -171,7 +171,7 @@ class Scene:
         place: dict[str, Any],
         unproven: str,
         progress: _Progress,
-    ) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint32], _Grid, list[str]]: ...
+    ) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint32], _Grid, list[dict[str, Any]]]: ...
     def horizon(
         self,
         observers: npt.NDArray[np.float64],
@@ -196,7 +196,7 @@ class Scene:
         looking: dict[str, Any],
         unproven: str,
         progress: _Progress,
-    ) -> tuple[_Columns, _Grid | None, list[str]]: ...
+    ) -> tuple[_Columns, _Grid | None, list[dict[str, Any]]]: ...
     def protected_view(
         self,
         landmark: dict[str, Any],

@@ -84,7 +84,7 @@ class Outlook:
         -------
         Raster
             Of one observer uint8: an `Answer`, 255 where there is none. Of several uint16: how many observers see a
-            cell, 65535 where none looks.
+            cell, 65535 where none looks. The attribute `remarks` says what to know.
 
         Raises
         ------
@@ -94,7 +94,8 @@ class Outlook:
         Warns
         -----
         BelvedereWarning
-            Of observers that cannot look: inside an obstacle, below the ground, outside the cloud.
+            Of observers that cannot look (inside an obstacle, below the ground, outside the cloud), and of those that
+            see nothing.
 
         References
         ----------
@@ -129,23 +130,24 @@ class Outlook:
         else:
             if observers is not None:
                 raise wrong("observers and target", "given together", "give one of them")
-            if azimuth_range_deg is not None or elevation_range_deg is not None:
-                raise wrong("azimuth_range_deg and elevation_range_deg", "given with a target", "they limit observers")
             places = map_places(target, "target", "give x and y, or x, y and z")
             if len(places) != 1:
                 raise wrong("target", f"{len(places)} places", "give one")
-        answers, counts, grid, skipped = self._core.viewshed(
+        answers, counts, grid, given = self._core.viewshed(
             places, looking, _place(None, grid_north=grid_north), unproven, reporter(progress)
         )
-        _warn(skipped)
+        remarks = warned(given, stacklevel=3)
         nothing = answers >= 3
         if len(places) == 1:
             text = "1 visible, 0 blocked, 2 unproven, 255 nodata"
             values = np.where(nothing, np.uint8(255), answers)
-            return raster(values, grid, self._core.crs, name="visible", description=text, nodata=255.0)
-        text = "number of observers that see the cell, 65535 nodata"
-        values = np.where(nothing, 65535, np.minimum(counts, 65534)).astype(np.uint16)
-        return raster(values, grid, self._core.crs, name="observers", description=text, nodata=65535.0)
+            seen = raster(values, grid, self._core.crs, name="visible", description=text, nodata=255.0)
+        else:
+            text = "number of observers that see the cell, 65535 nodata"
+            values = np.where(nothing, 65535, np.minimum(counts, 65534)).astype(np.uint16)
+            seen = raster(values, grid, self._core.crs, name="observers", description=text, nodata=65535.0)
+        seen.remarks = remarks
+        return seen
 
     def depth_map(
         self,

@@ -25,6 +25,7 @@ from ._inputs import (
 from ._mesh import Mesh, native_mesh
 from ._outlook import _OBSERVERS, _looking, _warn
 from ._raster import Raster, Rasters
+from ._remarks import warned
 from ._sunlight import _DIRECTION, _days, _place
 from ._table import Table
 from ._targets import RastersOrTable, measures, raster
@@ -84,12 +85,17 @@ class Planning:
         Returns
         -------
         Rasters or Table
-            ``visible_share``, ``visible_area_m2``, ``solid_angle_sr``, angles and ranges.
+            ``visible_share``, ``visible_area_m2``, ``solid_angle_sr``, angles and ranges. `remarks` says what to know.
 
         Raises
         ------
         BelvedereError
-            Unless one landmark is given, and for parameters out of range.
+            Unless one landmark is given, where no observer is left, and for parameters out of range.
+
+        Warns
+        -----
+        BelvedereWarning
+            Of observers that cannot look.
 
         References
         ----------
@@ -113,11 +119,12 @@ class Planning:
         if observers is not None and cell is not None:
             raise wrong("cell", cell, "it applies only to a grid; leave out observers, or leave this out")
         places = None if observers is None else map_places(observers, "observers", _OBSERVERS)
-        columns, grid, skipped = self._core.landmark(what, places, looking, unproven, reporter(progress))
-        _warn(skipped)
-        if places is not None:
-            return Table({name: values for name, _, values in columns}, places=places, crs=self._core.crs.text)
-        return measures((columns, grid, None), self._core.crs, None)
+        columns, grid, given = self._core.landmark(what, places, looking, unproven, reporter(progress))
+        if places is None:
+            return measures((columns, grid, None, given), self._core.crs, None)
+        table = Table({name: values for name, _, values in columns}, places=places, crs=self._core.crs.text)
+        table.remarks = warned(given, stacklevel=3)
+        return table
 
     def protected_view(
         self,

@@ -2,16 +2,38 @@
 
 use crate::arguments::{LandmarkShape, Usage};
 use crate::commands::extension;
-use crate::commands::mesh_targets::mesh_of;
-use crate::pipeline::Scene;
+use crate::pipeline::{Scene, mesh_in};
 use crate::run::Run;
-use crate::summary::{Summary, rounded};
+use crate::summary::Summary;
 use anyhow::{Result, bail};
-use belvedere::Mesh;
-use belvedere::apps::landmark::{LandmarkPoints, landmark_points, spacing_for};
+use belvedere::apps::ask;
 use belvedere::io::{Shape, read_geojson, read_table};
 use belvedere::query::SurfacePieces;
+use belvedere::{Frame, Mesh};
 use std::path::Path;
+use std::sync::Arc;
+
+/// The landmark of the flags, in the frame of a scene.
+pub(in crate::commands) fn shape(
+    arguments: &LandmarkShape,
+    frame: &Frame,
+    run: &mut Run,
+) -> Result<ask::LandmarkShape> {
+    let what = &arguments.what;
+    match (&what.target, what.target_class, &what.target_polygon) {
+        (Some(path), ..) => {
+            let mesh = objects_of(mesh_in(path, &frame.crs, run)?, &arguments.object, path)?;
+            let (mesh, spacing, seed) = (Some(Arc::new(mesh)), arguments.spacing, run.seed);
+            Ok(ask::LandmarkShape::Mesh { mesh, spacing, seed })
+        }
+        (None, Some(class), _) => Ok(ask::LandmarkShape::Class(class)),
+        (None, None, Some(path)) => Ok(ask::LandmarkShape::Inside { polygons: polygons_of(path, frame)? }),
+        (None, None, None) => {
+            let what = "the landmark is missing: give --targets, --target-class or --target-polygon";
+            Err(Usage(what.to_owned()).into())
+        }
+    }
+}
 
 /// The surface of the landmark, and its middle on the map, local metres.
 pub(in crate::commands) fn surface(
@@ -19,39 +41,10 @@ pub(in crate::commands) fn surface(
     scene: &Scene,
     run: &mut Run,
 ) -> Result<(SurfacePieces, [f64; 2])> {
-    let mut section = Summary::default();
-    let surface = if let Some(path) = &arguments.what.target {
-        let mesh = objects_of(mesh_of(path, scene, run)?, &arguments.object, path)?;
-        let spacing = arguments.spacing.unwrap_or_else(|| spacing_for(mesh.area()));
-        section.add("triangles", mesh.triangles.len()).add("spacing_m", rounded(spacing, 3));
-        let surface = run
-            .stage("sampling mesh", 0, |_| SurfacePieces::of_mesh(&mesh, scene.cloud.frame.origin, spacing, run.seed));
-        surface?
-    } else {
-        if scene.cloud.is_empty() {
-            let what = "a ball file has no points for a landmark: give the cloud, or a mesh with --targets";
-            return Err(Usage(what.to_owned()).into());
-        }
-        let polygons;
-        let which = match (arguments.what.target_class, &arguments.what.target_polygon) {
-            (Some(class), _) => LandmarkPoints::Class(class),
-            (None, Some(path)) => {
-                polygons = polygons_of(path, scene)?;
-                LandmarkPoints::Inside(&polygons)
-            }
-            (None, None) => {
-                return Err(Usage(
-                    "the landmark is missing: give --targets, --target-class or --target-polygon".to_owned(),
-                )
-                .into());
-            }
-        };
-        let (rows, surface) = run.stage("selecting landmark", 0, |_| landmark_points(&scene.cloud, &which))?;
-        section.add("points", rows.len());
-        surface
-    };
-    section.add("sample_points", surface.pieces.len()).add("area_m2", rounded(surface.area(), 2));
-    run.summary.add("landmark", section);
+    let frame = &scene.cloud.frame;
+    let shape = shape(arguments, frame, run)?;
+    let (surface, section) = shape.surface(&scene.cloud, frame.origin, &run.control())?;
+    run.summary.add("landmark", Summary::of(&section));
     let middle = surface.middle_on_map();
     Ok((surface, middle))
 }
@@ -73,13 +66,12 @@ pub(in crate::commands) fn objects_of(mesh: Mesh, names: &[String], path: &Path)
     Ok(mesh.of_objects(names))
 }
 
-/// Polygons of a file, each a rim and holes, local metres.
-fn polygons_of(path: &Path, scene: &Scene) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
-    let cloud = &scene.cloud;
+/// Polygons of a file, each an outer ring and holes, local metres.
+fn polygons_of(path: &Path, frame: &Frame) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
     let polygons: Vec<Vec<Vec<[f64; 2]>>> = match extension(path).as_str() {
         "geojson" | "json" | "gpkg" | "shp" => {
-            let place = |corner: &[f64; 3]| [corner[0] - cloud.frame.origin[0], corner[1] - cloud.frame.origin[1]];
-            read_geojson(path, &cloud.frame.crs)?
+            let place = |corner: &[f64; 3]| [corner[0] - frame.origin[0], corner[1] - frame.origin[1]];
+            read_geojson(path, &frame.crs)?
                 .into_iter()
                 .filter_map(|feature| match feature.shape {
                     Shape::Polygon(rings) => Some(rings.iter().map(|ring| ring.iter().map(place).collect()).collect()),
@@ -90,7 +82,11 @@ fn polygons_of(path: &Path, scene: &Scene) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
         "csv" | "txt" => {
             let table = read_table(path)?;
             let (x, y) = (table.full_column(path, "x")?, table.full_column(path, "y")?);
-            let ring: Vec<[f64; 2]> = x.iter().zip(y).map(|(&x, &y)| super::on_map_of(cloud, [x, y])).collect();
+            let on_map = |x: f64, y: f64| {
+                let [x, y, _] = frame.local_from_file([x, y, 0.0]);
+                [x, y]
+            };
+            let ring: Vec<[f64; 2]> = x.iter().zip(y).map(|(&x, &y)| on_map(x, y)).collect();
             if ring.len() < 3 {
                 bail!("{}: a polygon needs at least three corners, but this one has {}", path.display(), ring.len());
             }

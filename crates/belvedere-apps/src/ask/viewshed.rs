@@ -1,0 +1,373 @@
+//! Viewshed: what observers see of cells, of points and of far terrain, or from where a target is seen.
+
+mod limits;
+mod sights;
+
+pub use limits::{StandingObserver, ViewLimits};
+pub use sights::{FarSeen, SeenSection};
+
+use super::north::North;
+use super::observers::{Eyes, ObserversSection, Reach, check_height, note_enclosed, skip_unfit};
+use super::report::{GroundSection, LinesSection};
+use super::scene::KnownGround;
+use super::{Answers, Ask, Context, Places, Remark, Scene};
+use crate::eyes::{EyesReport, fault_of_target};
+use crate::targets::{set_on_ground, set_on_terrain};
+use crate::viewshed::{
+    OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, box_within_reach,
+    cell_for, far_targets, terrain_within_reach,
+};
+use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
+use belvedere_core::query::{EarthParams, MedialScene, UnprovenAs};
+use belvedere_data::control::Control;
+use belvedere_data::raster::Raster;
+use belvedere_data::report::rounded;
+use belvedere_data::{ElevationGrid, Error, Parameter, Result};
+use serde::{Deserialize, Serialize};
+use sights::Sights;
+use std::sync::Arc;
+
+/// Most eyes below the ground that are named one by one.
+const MAX_NAMED: usize = 5;
+
+/// What observers see, or from where a target is seen.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Viewshed {
+    /// Who looks; of a reverse viewshed the one target, which is looked at.
+    #[serde(skip)]
+    pub observers: Vec<StandingObserver>,
+    /// Whether the viewshed is a reverse one: observers stand in all cells, and look at one target. Default: not.
+    pub reverse: bool,
+    /// Height of observers above the ground, metres, 0 or more; `None` for 1.7.
+    pub observer_height: Option<f64>,
+    /// Height of targets above the ground, metres, 0 or more; `None` for 0.
+    pub target_height: Option<f64>,
+    /// Where observers look, unless they have limits of their own. Default: everywhere.
+    pub limits: ViewLimits,
+    /// The north that azimuths count from.
+    pub north: North,
+    /// How lines of sight run over the earth.
+    pub earth: EarthParams,
+    /// What to make of targets whose view pulses do not prove; `None` to report them where pulses are known.
+    pub unproven: Option<UnprovenAs>,
+    /// Side of a cell, metres, above 0; `None` for 0.5, doubled until there are at most 4 million cells.
+    pub cell: Option<f64>,
+    /// Which points are ground.
+    pub ground: GroundPoints,
+    /// What is looked at. Default: cells.
+    pub targets: Vec<ViewshedTargets>,
+    /// Whether to keep which observer sees which cell. Default: counts only.
+    pub masks: bool,
+    /// Height above the ground up to which lowest visible heights are computed, metres, 0 or more; `None` for none.
+    pub max_height: Option<f64>,
+}
+
+/// What a viewshed looks at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ViewshedTargets {
+    /// Cells on the ground.
+    Cells,
+    /// The points that show the ground, which are those of the scene unless its ground comes from another cloud.
+    Points,
+    /// Cells of the terrain beyond the cloud.
+    FarTerrain,
+}
+
+/// What was seen.
+pub struct ViewshedFound {
+    /// The eyes of observers, or the target of a reverse viewshed, local metres; NaN for those that are skipped.
+    pub eyes: Vec<[f64; 3]>,
+    /// Whether the viewshed is a reverse one.
+    pub reverse: bool,
+    /// The ground of the cells.
+    pub ground: Arc<KnownGround>,
+    /// Of the cells on the ground, where they were wanted.
+    pub cells: Option<Seen>,
+    /// Of the points, where they were wanted.
+    pub points: Option<Seen>,
+    /// Of far terrain, where it was wanted.
+    pub far: Option<FarSeen>,
+    /// Lowest visible heights above the ground, metres, where they were wanted ([`crate::viewshed::least_visible_heights`]).
+    pub heights: Option<Raster<f32>>,
+}
+
+impl Default for Viewshed {
+    fn default() -> Self {
+        Self {
+            observers: Vec::new(),
+            reverse: false,
+            observer_height: None,
+            target_height: None,
+            limits: ViewLimits::default(),
+            north: North::default(),
+            earth: EarthParams::default(),
+            unproven: None,
+            cell: None,
+            ground: GroundPoints::default(),
+            targets: vec![ViewshedTargets::Cells],
+            masks: false,
+            max_height: None,
+        }
+    }
+}
+
+impl Viewshed {
+    fn who(&self) -> &'static str {
+        if self.reverse { "target" } else { "observer" }
+    }
+
+    fn wants(&self, targets: ViewshedTargets) -> bool {
+        self.targets.contains(&targets)
+    }
+
+    fn unproven(&self) -> UnprovenAs {
+        self.unproven.unwrap_or(UnprovenAs::Reported)
+    }
+
+    /// Height above the ground of the given places, and of what stands in cells, metres.
+    fn heights(&self) -> [f64; 2] {
+        let [observer, target] =
+            [self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.target_height.unwrap_or(TARGET_HEIGHT)];
+        if self.reverse { [target, observer] } else { [observer, target] }
+    }
+
+    fn check_observers(&self) -> Result<()> {
+        let invalid =
+            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Observer, value, expected });
+        match self.observers.len() {
+            0 => invalid("missing".to_owned(), "given: who looks, or a target"),
+            count @ 2.. if self.reverse => invalid(format!("one of {count} targets"), "the only one"),
+            _ => Ok(()),
+        }
+    }
+
+    /// Where each observer looks, and which north that is counted from.
+    fn sight_limits(&self, scene: &Scene, context: &mut Context) -> Result<Vec<SightLimits>> {
+        let north = self.north.of_scene(scene);
+        let of_one = |one: &StandingObserver| one.limits.or(&self.limits).sight_limits(north.of_grid);
+        let limits = self.observers.iter().map(of_one).collect::<Result<Vec<_>>>()?;
+        if limits.iter().any(|limits| limits.azimuth.is_some()) {
+            context.north(&north);
+        }
+        Ok(limits)
+    }
+
+    /// The cells of the scene that are near enough to any observer.
+    fn grid(&self, scene: &Scene, limits: &[SightLimits]) -> Result<MapGrid> {
+        let reach = |(one, limits): (&StandingObserver, &SightLimits)| {
+            let [x, y, _] = one.standing.place;
+            ([x, y], limits.distance[1])
+        };
+        let reaches = self.observers.iter().zip(limits).map(reach);
+        let (low, high) = box_within_reach(scene.model().bounds().on_map(), reaches);
+        let [x, y, _] = scene.frame().origin;
+        MapGrid::covering(low, high, self.cell.unwrap_or_else(|| cell_for(low, high)), [x, y])
+    }
+
+    /// The given places as eyes. A target often lies inside an obstacle: only the limits of the cloud count for it.
+    fn eyes(
+        &self,
+        (blockers, ground): (&Arc<MedialScene>, &Ground),
+        scene: &Scene,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Eyes> {
+        let [usual, _] = self.heights();
+        let mut places: Vec<[f64; 3]> = self.observers.iter().map(|one| one.standing.place).collect();
+        let heights = || self.observers.iter().map(|one| one.standing.height.unwrap_or(usual));
+        set_on_terrain(places.iter_mut().zip(heights()), scene.model());
+        set_on_ground(places.iter_mut().zip(heights()), ground);
+        if let [place] = places[..]
+            && self.reverse
+            && fault_of_target(blockers, place).is_none()
+        {
+            return Ok(Eyes { eyes: places.clone(), places, report: EyesReport::none_skipped(1) });
+        }
+        let ground = Some(ground);
+        skip_unfit(places, (self.who(), Reach::FarTerrain), (blockers, ground), (scene, context), control)
+    }
+
+    /// Refuses what eyes on far terrain cannot have, and notes where the terrain changes nothing.
+    fn check_far_eyes(&self, eyes: &[[f64; 3]], blockers: &MedialScene, context: &mut Context) -> Result<()> {
+        if blockers.far_terrain().grid().is_none() {
+            return Ok(());
+        }
+        let who = self.who();
+        let far = eyes.iter().position(|&eye| blockers.is_on_far_terrain(eye));
+        if let (Some(row), Some(_)) = (far, self.max_height) {
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::VisibleHeights,
+                value: format!("wanted from {who} {}, on the terrain beyond the cloud", row + 1),
+                expected: "wanted from places in the cloud",
+            });
+        }
+        if far.is_none() && !self.wants(ViewshedTargets::FarTerrain) {
+            let text =
+                format!("the far terrain changes nothing: no {who} is on it, and nothing of it is among the targets");
+            context.add(Some(Remark::note("terrain-changes-nothing", text)));
+        }
+        Ok(())
+    }
+
+    /// Reports on eyes, and notes those that are below the ground or inside the surface of an obstacle.
+    fn report_eyes(&self, eyes: &Eyes, ground: &Ground, blockers: &MedialScene, scene: &Scene, context: &mut Context) {
+        let who = self.who();
+        let level_below = |&eye: &[f64; 3]| {
+            let place = [eye[0], eye[1]];
+            let terrain = blockers.far_terrain().grid().filter(|_| blockers.is_on_far_terrain(eye));
+            terrain.map_or_else(|| ground.height_at(place), |terrain| terrain.height_at(place))
+        };
+        let mut section = ObserversSection { eyes: eyes.report.clone(), ..ObserversSection::default() };
+        if let [eye] = &eyes.eyes[..] {
+            section.eye = Some(scene.frame().file_from_local(*eye).map(|v| rounded(v, 3)));
+            section.above_ground_m = level_below(eye).map(|level| rounded(eye[2] - level, 3));
+        }
+        let below = (1_usize..).zip(&eyes.eyes).filter_map(|(number, eye)| {
+            let depth = level_below(eye)? - eye[2];
+            (depth > 0.0).then_some((number, depth))
+        });
+        for (number, depth) in below.take(MAX_NAMED) {
+            let text = format!("{who} {number} is {depth:.2} m below the ground");
+            context.add(Some(Remark::note("eye-below-ground", text).with("depth_m", depth)));
+        }
+        note_enclosed(blockers, &eyes.eyes, who, context);
+        match self.reverse {
+            true => context.report.target = Some(section),
+            false => context.report.observers = Some(section),
+        }
+    }
+
+    /// Who looks, as the last line of the answer.
+    fn headline_of_eyes(&self, eyes: &EyesReport, context: &mut Context) {
+        let (report, name) = match self.reverse {
+            true => (&context.report.target, "target"),
+            false => (&context.report.observers, "eye"),
+        };
+        let height = report.as_ref().and_then(|section| section.above_ground_m);
+        match (height, eyes.count) {
+            (Some(height), _) => context.headline(format!("{name} {height} m above the ground")),
+            (None, 2..) => {
+                let (count, skipped) = (eyes.count, eyes.skipped);
+                context.headline(format!("observers: {count}, of which {skipped} cannot stand where they are"));
+            }
+            _ => {}
+        }
+    }
+
+    /// The terrain beyond the cloud that observers may see.
+    fn far_cells(&self, blockers: &MedialScene, observers: &[Observer]) -> Result<ElevationGrid> {
+        let invalid = |value: &str, expected| {
+            Err(Error::InvalidParameter { parameter: Parameter::Terrain, value: value.to_owned(), expected })
+        };
+        let Some(terrain) = blockers.far_terrain().grid() else {
+            return invalid("missing", "given, where cells of it are among the targets");
+        };
+        let cells = terrain_within_reach(terrain, observers)?;
+        if far_targets(blockers, &cells).next().is_none() {
+            return invalid("without heights beyond the cloud within the maximum distance", "of a larger area");
+        }
+        Ok(cells)
+    }
+}
+
+impl Ask for Viewshed {
+    type Found = ViewshedFound;
+
+    fn check(&self) -> Result<()> {
+        self.earth.validate()?;
+        self.limits.check()?;
+        for one in &self.observers {
+            one.limits.or(&self.limits).check()?;
+        }
+        let of_view = [
+            (Parameter::Azimuth, self.limits.azimuth_range_deg),
+            (Parameter::Elevation, self.limits.elevation_range_deg),
+        ];
+        if let Some((parameter, _)) = of_view.into_iter().find(|(_, range)| self.reverse && range.is_some()) {
+            return Err(Error::InvalidParameter {
+                parameter,
+                value: "given".to_owned(),
+                expected: "left out with a target: it limits the view of one observer, and here there are many",
+            });
+        }
+        check_height(self.observer_height)?;
+        check_height(self.target_height)?;
+        match self.max_height {
+            Some(height) if !(height >= 0.0) => Err(Error::InvalidParameter {
+                parameter: Parameter::MaxHeight,
+                value: height.to_string(),
+                expected: "0 metres or more",
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    fn answer(
+        &self,
+        scene: &Scene,
+        _: &Places,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Answers<ViewshedFound>> {
+        self.check_observers()?;
+        if self.unproven.is_some_and(|unproven| unproven != UnprovenAs::Visible) {
+            scene.check_proof()?;
+        }
+        let limits = self.sight_limits(scene, context)?;
+        let known = scene.ground(self.grid(scene, &limits)?, self.ground, control)?;
+        context.report.ground = Some(GroundSection::of(&known));
+        let blockers = scene.blockers(self.unproven(), control)?;
+        context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
+        let ground = &known.ground;
+        let eyes = self.eyes((&blockers, ground), scene, context, control)?;
+        self.check_far_eyes(&eyes.eyes, &blockers, context)?;
+        self.report_eyes(&eyes, ground, &blockers, scene, context);
+        let observers: Vec<Observer> =
+            eyes.eyes.iter().zip(limits).map(|(&eye, limits)| Observer { eye, limits }).collect();
+        let terrain = match self.wants(ViewshedTargets::FarTerrain) {
+            true => Some(self.far_cells(&blockers, &observers)?),
+            false => None,
+        };
+        let params = ViewshedParams::default().with_earth(self.earth).with_unproven(self.unproven());
+        let sights = Sights { question: self, scene, blockers: &blockers, observers: &observers, params };
+        let cells = match self.masks || self.wants(ViewshedTargets::Cells) {
+            true => Some(sights.of_cells(ground, context, control)?),
+            false => None,
+        };
+        let points = match self.wants(ViewshedTargets::Points) {
+            true => Some(sights.of_points(context, control)?),
+            false => None,
+        };
+        let far = terrain.map(|terrain| sights.of_terrain(terrain, context, control)).transpose()?;
+        let heights = self.max_height.map(|height| sights.heights(height, ground, control)).transpose()?;
+        self.headline_of_eyes(&eyes.report, context);
+        let (eyes, reverse) = (eyes.eyes, self.reverse);
+        Ok(Answers::new(ViewshedFound { eyes, reverse, ground: known, cells, points, far, heights }, Vec::new()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_no_viewshed_can_have_is_refused_before_a_scene_is_known() {
+        let range = ViewLimits { azimuth_range_deg: Some([0.0, 90.0]), ..ViewLimits::default() };
+        let far = ViewLimits { min_distance: Some(9.0), max_distance: Some(5.0), ..ViewLimits::default() };
+        let usual = Viewshed::default();
+        assert!(usual.check().is_ok());
+        assert!(Viewshed { limits: range, ..usual.clone() }.check().is_ok());
+        for wrong in [
+            Viewshed { limits: range, reverse: true, ..usual.clone() },
+            Viewshed { limits: far, ..usual.clone() },
+            Viewshed { observer_height: Some(-1.0), ..usual.clone() },
+            Viewshed { target_height: Some(f64::NAN), ..usual.clone() },
+            Viewshed { max_height: Some(-1.0), ..usual.clone() },
+            Viewshed { earth: EarthParams { refraction: 1.0, ..EarthParams::default() }, ..usual },
+        ] {
+            assert!(wrong.check().is_err(), "{wrong:?}");
+        }
+    }
+}

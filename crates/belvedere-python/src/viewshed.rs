@@ -1,0 +1,85 @@
+//! What observers see of cells, and from where a target is seen.
+
+use crate::arrays::to_1d;
+use crate::errors::wrong;
+use crate::observers::standing_observers;
+use crate::outlook::Looking;
+use crate::scene::{Scene, unproven_choice};
+use crate::sun::Place;
+use crate::targets::{Grid, grid_at, grid_of, ground_points, remark_of};
+use crate::work::run;
+use belvedere::apps::ask::{self, Places, Standing, StandingObserver, ViewLimits, ViewshedTargets};
+use belvedere::results::terrain_georeference;
+use numpy::PyReadonlyArray2;
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::Arc;
+
+/// Answers and counts of cells, their grid, and remarks.
+type Seen<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Grid, Vec<Bound<'py, PyDict>>);
+
+impl Looking {
+    fn question(&self, observers: Vec<Standing>, place: &Place, unproven: &str) -> PyResult<ask::Viewshed> {
+        let limits = ViewLimits {
+            azimuth_range_deg: self.azimuth_range,
+            elevation_range_deg: self.elevation_range,
+            min_distance: self.min_distance,
+            max_distance: self.max_distance,
+        };
+        let standing = observers.into_iter();
+        Ok(ask::Viewshed {
+            observers: standing.map(|standing| StandingObserver { standing, limits: ViewLimits::default() }).collect(),
+            reverse: self.is_reverse,
+            observer_height: self.observer_height,
+            target_height: self.target_height,
+            limits,
+            north: place.north(),
+            earth: self.earth()?,
+            unproven: unproven_choice(unproven)?,
+            cell: self.cell,
+            ground: ground_points(self.ground.as_deref())?,
+            targets: vec![if self.is_far { ViewshedTargets::FarTerrain } else { ViewshedTargets::Cells }],
+            masks: false,
+            max_height: None,
+        })
+    }
+}
+
+#[pymethods]
+impl Scene {
+    /// Answers and counts of cells, their grid, and remarks.
+    fn viewshed<'py>(
+        &self,
+        py: Python<'py>,
+        observers: PyReadonlyArray2<'py, f64>,
+        looking: Looking,
+        place: Place,
+        unproven: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Seen<'py>> {
+        let question = looking.question(standing_observers(&observers, &self.0)?, &place, unproven)?;
+        if looking.is_far && self.0.model().far_terrain().grid().is_none() {
+            return Err(wrong(
+                "far",
+                "True",
+                "give the scene terrain first: scene.with_terrain('dtm.tif').viewshed(...)",
+            ));
+        }
+        let scene = Arc::clone(&self.0);
+        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &Places::Scene, control))?;
+        let (found, frame) = (answers.found, self.0.frame());
+        let (seen, grid) = match (found.far, found.cells) {
+            (Some(far), _) => {
+                let heights = far.terrain.heights();
+                let size = [heights.width(), heights.height()];
+                (far.seen, grid_at(size, &terrain_georeference(&far.terrain, frame)))
+            }
+            (None, Some(seen)) => (seen, grid_of(&found.ground.ground.grid, frame)),
+            (None, None) => return Err(PyRuntimeError::new_err("there are no cells")),
+        };
+        let remarks = answers.remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<Vec<_>>>()?;
+        let codes: Vec<u8> = seen.answers.iter().map(|&answer| answer as u8).collect();
+        Ok((to_1d(py, codes).into_any(), to_1d(py, seen.counts).into_any(), grid, remarks))
+    }
+}
