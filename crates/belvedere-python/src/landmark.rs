@@ -13,7 +13,7 @@ use belvedere::apps::landmark::{
     spacing_for,
 };
 use belvedere::apps::protected_view::protected_view;
-use belvedere::apps::targets::{CellLevel, CellParams, CoveredCells, Targets};
+use belvedere::apps::targets::{CellLevel, CellParams, Targets};
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::query::SurfacePieces;
 use numpy::PyReadonlyArray2;
@@ -103,8 +103,11 @@ impl Scene {
                     let ground = cells.ground_within(&inner, (low, high), control)?;
                     let grid = crate::targets::grid_of(&ground.grid, inner.frame());
                     let height = looking.observer_height.unwrap_or(OBSERVER_HEIGHT);
-                    let cells = CellParams::default().with_height(height).with_covered(CoveredCells::Kept);
+                    let cells = CellParams::default().with_height(height);
                     let (mut targets, _) = Targets::of_cells(&inner.cloud, ground, &cells, control)?;
+                    if let Some(added) = inner.model.added() {
+                        targets.set_on_added(added, &cells);
+                    }
                     targets.leave_out_enclosed(&scene, control)?;
                     let stand: Vec<[f64; 3]> = targets.positions.iter().map(|eye| eye.map(f64::from)).collect();
                     let count = stand.len();

@@ -11,7 +11,7 @@ use crate::work::run;
 use belvedere::apps::eyes::{EyesReport, fault_of_target, skip_unfit_far_eyes};
 use belvedere::apps::horizon::{HorizonParams, azimuth_count, horizons};
 use belvedere::apps::isovist::{Isovist, IsovistParams, isovist};
-use belvedere::apps::targets::{CellLevel, CellParams, CoveredCells, Targets, set_on_ground, set_on_terrain};
+use belvedere::apps::targets::{CellLevel, CellParams, Targets, set_on_ground, set_on_terrain};
 use belvedere::apps::viewshed::{
     OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, ViewshedParams, box_within_reach, far_viewshed,
     terrain_within_reach, tested_height, viewshed,
@@ -126,10 +126,13 @@ impl Scene {
                 })?;
                 return Ok((seen, grid_at(size, &terrain_georeference(&terrain, inner.frame())), report));
             }
-            let cells = CellParams::default().with_height(tested_height(of_cells)).with_covered(CoveredCells::Kept);
+            let cells = CellParams::default().with_height(tested_height(of_cells));
             let grid = grid_of(&ground.grid, inner.frame());
             let seen = control.stage("testing cells", observers.len(), || {
-                let (targets, _) = Targets::of_cells(&inner.cloud, ground, &cells, control)?;
+                let (mut targets, _) = Targets::of_cells(&inner.cloud, ground, &cells, control)?;
+                if let Some(added) = inner.model.added() {
+                    targets.set_on_added(added, &cells);
+                }
                 viewshed(&scene, &observers, &targets.positions, &params, control)
             })?;
             Ok((seen, grid, report))

@@ -13,7 +13,7 @@ use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::landmark::{LandmarkParams, LandmarkReport, landmark_views, observer_cell_for};
-use belvedere::apps::targets::{CellParams, CoveredCells, Targets, set_on_ground};
+use belvedere::apps::targets::{CellParams, Targets, set_on_ground};
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::io::{RowsAre, read_observers};
@@ -45,13 +45,17 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
             (eyes, report.skipped_inside_obstacle)
         }
         None => {
-            let (eyes, inside) = run.stage("testing observers", 0, |control| {
-                let cells = CellParams::default().with_height(height).with_covered(CoveredCells::Kept);
-                let (mut targets, _) = Targets::of_cells(&cloud, ground.clone(), &cells, control)?;
+            let (eyes, inside, left_out) = run.stage("testing observers", 0, |control| {
+                let cells = CellParams::default().with_height(height);
+                let (mut targets, mut left_out) = Targets::of_cells(&cloud, ground.clone(), &cells, control)?;
+                if let Some(added) = scene.model.added() {
+                    left_out.cells_below_objects_excluded += targets.set_on_added(added, &cells);
+                }
                 let inside = targets.leave_out_enclosed(&blockers, control)?;
                 let eyes: Vec<[f64; 3]> = targets.positions.iter().map(|eye| eye.map(f64::from)).collect();
-                Ok::<_, anyhow::Error>((eyes, inside))
+                Ok::<_, anyhow::Error>((eyes, inside, left_out))
             })?;
+            run.summary.add_report(&left_out);
             places = eyes.clone();
             (eyes, inside)
         }

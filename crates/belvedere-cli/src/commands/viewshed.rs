@@ -13,7 +13,7 @@ use crate::run::Run;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::eyes::{EyesReport, fault_of_target};
-use belvedere::apps::targets::{CellParams, CoveredCells, Targets};
+use belvedere::apps::targets::{CellParams, Targets};
 use belvedere::apps::viewshed::{
     Masks, OBSERVER_HEIGHT, Observer, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, box_within_reach, cell_for,
     far_targets, far_viewshed, least_visible_heights, terrain_within_reach, tested_height, viewshed,
@@ -70,10 +70,13 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     let masks = if arguments.masks.is_some() { Masks::Kept } else { Masks::NotKept };
     let params = ViewshedParams::default().with_earth(earth).with_unproven(unproven).with_masks(masks);
     let is_of_points = |path: &Path| OF_POINTS.contains(&super::extension(path).as_str());
-    if arguments.masks.is_some() || arguments.output.iter().any(|path| !is_of_points(path)) {
-        let cells = CellParams::default().with_height(tested_height(target_height)).with_covered(CoveredCells::Kept);
+    let is_of_cells = arguments.masks.is_some() || arguments.output.iter().any(|path| !is_of_points(path));
+    let targets = match is_of_cells || arguments.heights.is_some() {
+        true => Some(open_cells(&scene, (&cloud, &ground), target_height, &mut run)?),
+        false => None,
+    };
+    if let Some(targets) = targets.as_ref().filter(|_| is_of_cells) {
         let seen = run.stage("testing cells", observers.len(), |control| {
-            let (targets, _) = Targets::of_cells(&cloud, ground.clone(), &cells, control)?;
             viewshed(&blockers, &observers, &targets.positions, &params, control)
         })?;
         run.summary.add("cells", counted(&seen.answers, unproven, Some([grid.cell; 2])));
@@ -115,9 +118,10 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
             run.stage("writing", 0, |_| cells.write(output))?;
         }
     }
-    if let Some(output) = &arguments.heights {
+    let open_ground = targets.as_ref().and_then(Targets::open_ground);
+    if let (Some(output), Some(ground)) = (&arguments.heights, &open_ground) {
         let heights = run.stage("computing visible heights", observers.len(), |progress| {
-            least_visible_heights(&blockers, &observers, &ground, arguments.ceiling, &earth, progress)
+            least_visible_heights(&blockers, &observers, ground, arguments.ceiling, &earth, progress)
         })?;
         run.stage("writing", 0, |_| write_heights(output, &heights, (&ground.grid, &cloud.frame), LEAST_HEIGHTS))?;
     }
@@ -125,6 +129,23 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
         arguments.output.iter().chain(&arguments.far_output).chain(&arguments.heights).chain(&arguments.masks);
     run.summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
     Ok(run.finish())
+}
+
+/// The cells on the ground that are targets: neither under a cover nor inside what was added.
+fn open_cells(
+    scene: &pipeline::Scene,
+    (cloud, ground): (&PointCloud, &Ground),
+    height: f64,
+    run: &mut Run,
+) -> Result<Targets> {
+    let params = CellParams::default().with_height(tested_height(height));
+    let (mut targets, mut report) =
+        run.stage("finding hidden ground", 0, |control| Targets::of_cells(cloud, ground.clone(), &params, control))?;
+    if let Some(added) = scene.model.added() {
+        report.cells_below_objects_excluded += targets.set_on_added(added, &params);
+    }
+    run.summary.add_report(&report);
+    Ok(targets)
 }
 
 fn check_outputs(arguments: &Viewshed) -> Result<()> {
