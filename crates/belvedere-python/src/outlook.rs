@@ -17,7 +17,7 @@ use belvedere::apps::viewshed::{
     terrain_within_reach, tested_height, viewshed,
 };
 use belvedere::query::{EarthParams, UnprovenAs};
-use belvedere::results::terrain_georeference;
+use belvedere::results::{Pixels, ResultRaster, terrain_georeference};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -61,14 +61,14 @@ impl Looking {
     }
 }
 
-/// Answers and counts of cells, their grid, and what was skipped.
-type Seen<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Grid, Vec<String>);
+/// The bands of cells with their names, what they hold and their value for no data, their grid, and what was skipped.
+type Seen<'py> = (Vec<Bound<'py, PyAny>>, Vec<String>, (String, f64), Grid, Vec<String>);
 /// An array of the columns of isovists, and what was skipped.
 type Described<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyAny>>, Vec<String>);
 
 #[pymethods]
 impl Scene {
-    /// Answers and counts of cells, their grid, and what was skipped.
+    /// The bands of cells with their names, what they hold and their value for no data, their grid, and what was skipped.
     fn viewshed<'py>(
         &self,
         py: Python<'py>,
@@ -138,8 +138,14 @@ impl Scene {
             Ok((seen, grid, report))
         })?;
         let skipped = skipped(&inner, "observer", &report)?;
-        let answers: Vec<u8> = seen.answers.iter().map(|&answer| answer as u8).collect();
-        Ok((to_1d(py, answers).into_any(), to_1d(py, seen.counts).into_any(), grid, skipped))
+        let raster = ResultRaster::of_viewshed(&seen, [grid.0, grid.1]).map_err(exception)?;
+        let no_data = raster.pixels.kind().in_gdal().1;
+        let bands = match &raster.pixels {
+            Pixels::Answers(bands) => bands.iter().map(|band| to_1d(py, band.values().to_vec()).into_any()).collect(),
+            Pixels::Counts(bands) => bands.iter().map(|band| to_1d(py, band.values().to_vec()).into_any()).collect(),
+            Pixels::Numbers(bands) => bands.iter().map(|band| to_1d(py, band.values().to_vec()).into_any()).collect(),
+        };
+        Ok((bands, raster.names, (raster.description, no_data), grid, skipped))
     }
 
     /// Elevations of the horizon, degrees, a row for each observer and a column for each azimuth; NaN rows for those skipped.

@@ -8,7 +8,7 @@ use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::rows::Obstacles;
 use belvedere::apps::shadow::{Edges, LIT, scene_shadow};
-use belvedere::apps::targets::Measure;
+use belvedere::apps::targets::{Measure, ResultKind};
 use belvedere::query::UnprovenAs;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -35,7 +35,7 @@ impl Scene {
         let inner = Arc::clone(&self.0);
         let asked = targets.owned(py, &inner)?;
         let suns = suns.suns(&inner, &place)?;
-        let (lit, found) = run(py, progress, move |control| {
+        let (lit, found, kind) = run(py, progress, move |control| {
             let found = asked.targets(&inner, control)?;
             let targets = &found.targets;
             let scene = inner.blockers(UnprovenAs::Visible, control)?;
@@ -44,10 +44,12 @@ impl Scene {
             let looks = targets.len() * obstacles.matrix_count();
             let lit =
                 control.stage("testing sun", looks, || scene_shadow(obstacles, targets, &suns, edges, control))?;
-            Ok((lit, found))
+            let is_answer = edges == Edges::Hard && trees.is_none();
+            let kind = if is_answer { ResultKind::Answer } else { ResultKind::Number };
+            Ok((lit, found, kind))
         })?;
         lit.into_iter()
-            .map(|values| found.results(py, vec![Measure::new("lit", values).with_description(LIT)]))
+            .map(|values| found.results(py, vec![Measure::new("lit", values).with_description(LIT).with_kind(kind)]))
             .collect()
     }
 }

@@ -14,6 +14,7 @@
 mod cells;
 mod measure;
 mod on_ground;
+mod result_kind;
 mod routes;
 mod surfaces;
 mod windows;
@@ -21,6 +22,7 @@ mod windows;
 pub use cells::{CellLevel, CellParams, CellReport};
 pub use measure::{Measure, MeasureStatistics};
 pub use on_ground::{grid_around, set_on_ground, set_on_terrain};
+pub use result_kind::ResultKind;
 pub use routes::Route;
 pub use surfaces::{FaceMeans, Facing, MeshParams, object_areas};
 pub use windows::{Window, objects_of_windows};

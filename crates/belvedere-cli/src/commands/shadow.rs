@@ -16,6 +16,7 @@ use belvedere::apps::tree_light::Season;
 use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, write_apng, write_png};
 use belvedere::io::atomic;
 use belvedere::query::UnprovenAs;
+use belvedere::results::{ResultKind, UNPROVEN_BAND};
 
 const SHADE_COLOR: [u8; 3] = [38, 52, 96];
 const HALF_COLOR: [u8; 3] = [147, 136, 93];
@@ -59,14 +60,16 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
         _ => None,
     };
     let decimals = if edges == Edges::Soft { 4 } else { 2 };
+    let kind = if edges == Edges::Hard && trees.is_none() { ResultKind::Answer } else { ResultKind::Number };
     let of_sun = |(sun, values): (&Sun, &Vec<f32>)| {
         let measure = Measure::new(&sun.column, values.clone()).with_description(LIT);
-        measure.with_decimals(decimals).with_range(Some([0.0, 1.0]))
+        // one raster, a band for each sun
+        measure.with_decimals(decimals).with_range(Some([0.0, 1.0])).with_kind(kind).as_further_band()
     };
     let mut measures: Vec<Measure> = suns.iter().zip(&lit).map(of_sun).collect();
     if let Some(doubts) = &doubts {
-        let measure = Measure::new("unproven", doubts.clone()).with_description("1: lit, but unproven");
-        measures.push(measure.with_decimals(0).with_range(Some([0.0, 1.0])));
+        let measure = Measure::new(UNPROVEN_BAND, doubts.clone()).with_description("1: lit, but unproven");
+        measures.push(measure.with_decimals(0).with_range(Some([0.0, 1.0])).with_kind(kind).as_further_band());
     }
     run.summary.add("shadow", asked.statistics(&measures[..measures.len().min(MOST_TOLD)]));
     let has_parts = lit.iter().flatten().any(|&share| share > 0.0 && share < 1.0);

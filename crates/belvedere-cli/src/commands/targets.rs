@@ -17,15 +17,13 @@ use belvedere::ground::{MapGrid, highest_points};
 use belvedere::io::{Georeference, atomic, write_tif_u8};
 use belvedere::query::AddedMeshes;
 use belvedere::raster::Raster;
-use belvedere::results::{TakenFrom, georeference, measure_map, write_measures, write_raster};
+use belvedere::results::{ResultKind, TakenFrom, georeference, measure_map, write_measures, write_raster};
 use belvedere::{Mesh, PointCloud};
 use std::path::{Path, PathBuf};
 
 /// Share of targets near the edge that is warned of, percent.
 const EDGE_WARNING_PERCENT: f64 = 1.0;
 const NEAR_EDGE: &str = "are near the edge of the cloud: objects beyond it, as high as its highest point, could take some of their sun or sky";
-/// No flag of the edge.
-const NO_FLAG: u8 = 255;
 
 /// Targets and what they were taken from.
 pub(crate) struct Asked {
@@ -223,11 +221,12 @@ impl Asked {
     ) -> Result<()> {
         let flags = report_edge(&self.targets, scene, directions, run)?;
         if let (Some(path), Some(ground)) = (&places.edge_mask, self.targets.ground()) {
-            let values = flags.iter().map(|flag| flag.map_or(NO_FLAG, u8::from)).collect();
+            let values = flags.iter().map(|&flag| ResultKind::answer(flag)).collect();
             let raster = Raster::from_values(ground.grid.width, ground.grid.height, values)?;
             let place = georeference(&ground.grid, &self.targets.frame);
             let what = "1 near the edge of the cloud, 0 not, 255 nodata";
-            run.stage("writing", 0, |_| write_tif_u8(path, &raster, Some(&place), Some(NO_FLAG), Some(what)))?;
+            let nothing = Some(ResultKind::NO_ANSWER);
+            run.stage("writing", 0, |_| write_tif_u8(path, &raster, Some(&place), nothing, Some(what)))?;
             run.summary.add("edge_mask_written", path.display().to_string());
         }
         Ok(())
@@ -258,7 +257,7 @@ impl Asked {
             atomic::make_folder(folder)?;
             for measure in measures {
                 let path = folder.join(format!("{}.tif", measure.name));
-                write_raster(&path, &self.targets, measure)?;
+                write_raster(&path, &self.targets, &[measure])?;
                 written.push(path.display().to_string());
             }
         }

@@ -82,8 +82,8 @@ class Outlook:
         Returns
         -------
         Raster
-            Of one observer uint8: an `Answer`, 255 where there is none. Of several uint16: how many observers see a
-            cell, 65535 where none looks.
+            Of one observer uint8: 1 where nothing blocks the view, 0 blocked, 255 where there is no answer. Of several uint16: from how many
+            nothing blocks a cell, 65535 where none looks. Where pulses were tested, `unproven` says what of it is not proven.
 
         Raises
         ------
@@ -102,7 +102,7 @@ class Outlook:
         Examples
         --------
         >>> seen = scene.viewshed(standing, max_distance=50)
-        >>> seen.values.dtype, bool((seen.values == belvedere.Answer.VISIBLE).any())
+        >>> seen.values.dtype, bool((seen.values == 1).any())
         (dtype('uint8'), True)
         >>> seen_from = scene.viewshed(target=standing, target_height=10, cell=2)
         >>> mountains = scene.with_terrain("dtm.tif").viewshed(standing, far=True)  # doctest: +SKIP
@@ -133,18 +133,14 @@ class Outlook:
             places = map_places(target, "target", "give x and y, or x, y and z")
             if len(places) != 1:
                 raise wrong("target", f"{len(places)} places", "give one")
-        answers, counts, grid, skipped = self._core.viewshed(
+        bands, names, (text, nodata), grid, skipped = self._core.viewshed(
             places, looking, _place(None, grid_north=grid_north), unproven, reporter(progress)
         )
         _warn(skipped)
-        nothing = answers >= 3
-        if len(places) == 1:
-            text = "1 visible, 0 blocked, 2 unproven, 255 nodata"
-            values = np.where(nothing, np.uint8(255), answers)
-            return raster(values, grid, self._core.crs, name="visible", description=text, nodata=255.0)
-        text = "number of observers that see the cell, 65535 nodata"
-        values = np.where(nothing, 65535, np.minimum(counts, 65534)).astype(np.uint16)
-        return raster(values, grid, self._core.crs, name="observers", description=text, nodata=65535.0)
+        of_proof = bands[1].reshape(grid[1], grid[0]) if len(bands) > 1 else None
+        return raster(
+            bands[0], grid, self._core.crs, name=names[0], description=text, nodata=nodata, unproven=of_proof
+        )
 
     def depth_map(
         self,

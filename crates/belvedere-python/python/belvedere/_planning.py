@@ -117,7 +117,7 @@ class Planning:
         _warn(skipped)
         if places is not None:
             return Table({name: values for name, _, values in columns}, places=places, crs=self._core.crs.text)
-        return measures((columns, grid, None), self._core.crs, None)
+        return measures(([(*column, False) for column in columns], grid, None), self._core.crs, None)
 
     def protected_view(
         self,

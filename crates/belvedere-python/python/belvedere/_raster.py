@@ -30,6 +30,9 @@ class Raster:
         The value where there is none; NaN for float32.
     name, description : str
         What the values are.
+    unproven : ndarray of the same shape and type, or None
+        Where proof was tested: 1 where nothing blocks the view but no laser pulse proves it, 0 where it is proven or blocked, and `nodata`
+        where there is no value. Of several observers: for how many of those in `values` the view is not proven.
 
     Examples
     --------
@@ -49,12 +52,16 @@ class Raster:
         nodata: float | None = None,
         name: str = "",
         description: str = "",
+        unproven: npt.NDArray[Any] | None = None,
+        is_answer: bool = False,
     ) -> None:
         self.values = values
         self.transform = transform
         self.nodata = nodata
         self.name = name
         self.description = description
+        self.unproven = unproven
+        self._is_answer = is_answer
         self._crs = crs
 
     @property
@@ -95,7 +102,8 @@ class Raster:
         return np.asarray(north + e * (np.arange(self.shape[0]) + 0.5), np.float64)
 
     def to_geotiff(self, path: str | os.PathLike[str]) -> None:
-        """Writes a GeoTIFF, as the command line does: -9999 where a float raster has no value.
+        """Writes a GeoTIFF, as the command line does: -9999 where a float raster has no value, and answers as bytes with 255. `unproven` is the
+        second band.
 
         Examples
         --------
@@ -105,7 +113,14 @@ class Raster:
         if values.dtype not in (np.float32, np.uint8, np.uint16):
             values = values.astype(np.float32)
         nodata = _core.NO_VALUE if values.dtype == np.float32 else self.nodata
-        _core.write_geotiff(os.fspath(path), values, self.transform, self._crs, nodata, self.description or None)
+        if self._is_answer and values.dtype == np.float32:
+            values, nodata = np.where(np.isnan(values), 255, values > 0).astype(np.uint8), 255.0
+        bands, names = [values], [self.name] if self.name else []
+        if self.unproven is not None:
+            bands.append(np.ascontiguousarray(self.unproven, values.dtype))
+            names = [self.name, "unproven"]
+        text = self.description or None
+        _core.write_geotiff(os.fspath(path), bands, names, self.transform, self._crs, nodata, text)
 
     def to_xarray(self) -> xarray.DataArray:
         """An `xarray.DataArray` by the conventions of rioxarray.
@@ -156,7 +171,7 @@ class Raster:
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.values, self.transform, self._crs.state, self.nodata, self.name, self.description)
-        return _unpickled, state
+        return _unpickled, (*state, self.unproven, self._is_answer)
 
 
 class Rasters(Mapping[str, Raster]):
@@ -210,6 +225,14 @@ def escaped(text: str) -> str:
 
 
 def _unpickled(
-    values: npt.NDArray[Any], transform: Any, system: Any, nodata: float | None, name: str, description: str
+    values: npt.NDArray[Any],
+    transform: Any,
+    system: Any,
+    nodata: float | None,
+    name: str,
+    description: str,
+    unproven: npt.NDArray[Any] | None,
+    is_answer: bool,
 ) -> Raster:
-    return Raster(values, transform, _core.Crs.from_state(system), nodata=nodata, name=name, description=description)
+    named: dict[str, Any] = {"nodata": nodata, "name": name, "description": description}
+    return Raster(values, transform, _core.Crs.from_state(system), **named, unproven=unproven, is_answer=is_answer)
