@@ -1,7 +1,6 @@
 //! What changes between two results on the same cells: before and after a plan.
 
 use crate::viewshed::SEEN;
-use belvedere_core::query::Answer;
 use belvedere_data::report::rounded;
 use belvedere_data::{Error, Result};
 use serde::Serialize;
@@ -71,14 +70,14 @@ impl DifferenceReport {
     }
 }
 
-/// Takes the values of unproven cells away, and returns their number: in rasters of what one observer sees, which `description` names, the code of such cells is no amount.
-pub fn clear_unproven(values: &mut [f32], description: Option<&str>) -> usize {
+/// Takes the values of unproven cells away, and returns their number: in rasters of what one observer sees, which `description` names, they are
+/// neither visible nor hidden. `unproven`, (M), is above 0 where a value is not proven.
+pub fn clear_unproven(values: &mut [f32], unproven: &[f32], description: Option<&str>) -> usize {
     if description != Some(SEEN) {
         return 0;
     }
-    let unproven = f32::from(Answer::Unproven as u8);
-    let of_code = values.iter_mut().filter(|value| **value == unproven);
-    of_code.map(|value| *value = f32::NAN).count()
+    let cells = values.iter_mut().zip(unproven).filter(|(_, unproven)| **unproven > 0.0);
+    cells.map(|(value, _)| *value = f32::NAN).count()
 }
 
 /// The change from `before` to `after`, one value for each cell of `cell_area` m²; NaN for a cell without a value.
@@ -151,8 +150,9 @@ mod tests {
         assert_eq!((report.mean_before, report.mean_after, report.area_loss_m2), (2.75, 2.625, 0.5));
         assert!(difference(&before, &after[1..], 1.0).is_err());
         for (description, count) in [(Some(SEEN), 2), (Some("hours of sun a day"), 0), (None, 0)] {
-            let mut values = [0.0, 2.0, 1.0, f32::NAN, 2.0];
-            assert_eq!(clear_unproven(&mut values, description), count);
+            let mut values = [0.0, 1.0, 1.0, f32::NAN, 1.0];
+            let unproven = [0.0, 1.0, 0.0, f32::NAN, 1.0];
+            assert_eq!(clear_unproven(&mut values, &unproven, description), count);
             assert_eq!(values.iter().filter(|v| v.is_nan()).count(), 1 + count);
         }
         // what f32 rounds is no change

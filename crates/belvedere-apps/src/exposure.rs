@@ -160,7 +160,7 @@ pub fn scene_exposure(
     let mut measures = Vec::new();
     let mut push = |name: &str, description, decimals, mut values: Vec<f32>, whole| {
         targets.clear_unasked(&mut values);
-        measures.push((Measure { name: name.to_owned(), description, decimals, range: None, values }, whole));
+        measures.push((Measure::new(name, values).with_description(description).with_decimals(decimals), whole));
     };
     push("sky_view_factor", "sky view factor, cosine", 4, seen.factors, WholeIs::Mean);
     push("sky_openness", "sky openness, solid angle", 4, seen.openness, WholeIs::Mean);

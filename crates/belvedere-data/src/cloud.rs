@@ -19,6 +19,8 @@ pub struct PointCloud {
     pub attributes: Attributes,
     /// Local positions of the scanner set-ups that [`Attributes::scanner_index`] refers to, (S, 3), metres.
     pub scanner_positions: Vec<[f32; 3]>,
+    /// Places on the map, local metres, that the survey measured and whose points were cleared since, (C, 2): there is no hole in the survey.
+    pub cleared_places: Vec<[f32; 2]>,
 }
 
 /// Attributes of the points of a [`PointCloud`], each with one value per point where present.
@@ -196,6 +198,7 @@ impl PointCloud {
             positions: indices.iter().filter_map(|&i| self.positions.get(i as usize).copied()).collect(),
             attributes: self.attributes.select(indices),
             scanner_positions: self.scanner_positions.clone(),
+            cleared_places: self.cleared_places.clone(),
         }
     }
 
@@ -208,9 +211,15 @@ impl PointCloud {
         let is_silent = self.frame.crs == Crs::default();
         let scale = if is_silent { frame.crs.metres_per_unit_xyz() } else { [1.0; 3] };
         let from = self.frame.origin;
+        let moved = |position: [f32; 3]| {
+            to_local(std::array::from_fn(|i| (f64::from(position[i]) + from[i]) * scale[i]), frame.origin)
+        };
         for position in &mut self.positions {
-            let metres = std::array::from_fn(|i| (f64::from(position[i]) + from[i]) * scale[i]);
-            *position = to_local(metres, frame.origin);
+            *position = moved(*position);
+        }
+        for place in &mut self.cleared_places {
+            let [x, y, _] = moved([place[0], place[1], 0.0]);
+            *place = [x, y];
         }
         self.scanner_positions = Vec::new();
         self.frame = frame.clone();

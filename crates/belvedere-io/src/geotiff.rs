@@ -1,8 +1,9 @@
 //! GeoTIFF rasters.
 
+use std::slice::from_ref;
 use tiff::encoder::colortype::{ColorType, Gray8, Gray16, Gray32, Gray32Float};
 use tiff::encoder::{Compression, DeflateLevel, TiffEncoder, TiffKind, TiffValue};
-use tiff::tags::Tag;
+use tiff::tags::{ExtraSamples, Tag};
 
 use crate::output::Output;
 use belvedere_data::crs::{Crs, text};
@@ -14,6 +15,32 @@ const BIG_FILE_BYTES: usize = 3_900_000_000;
 
 /// The program that a file names as its writer.
 pub(crate) const SOFTWARE: &str = "belvedere";
+
+/// The tag in which GDAL keeps the names of bands.
+pub(crate) const GDAL_METADATA: u16 = 42112;
+
+/// The bands of a raster, on the same cells and of one type, each with the value for no data.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum BandValues<'a> {
+    /// Codes. On a coarser level a pixel has the most frequent of its four.
+    U8(&'a [Raster<u8>], u8),
+    /// Counts. On a coarser level likewise.
+    U16(&'a [Raster<u16>], u16),
+    /// Numbers. On a coarser level a pixel has the mean of those of its four that have a value.
+    F32(&'a [Raster<f32>], f32),
+}
+
+/// The bands of a raster, and what a file says of them.
+#[derive(Clone, Copy, Debug)]
+pub struct Bands<'a> {
+    /// The values, at least one band.
+    pub values: BandValues<'a>,
+    /// Names of the bands, in their order; further bands have none.
+    pub names: &'a [String],
+    /// What the values are.
+    pub description: Option<&'a str>,
+}
 
 /// Where a raster lies.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,14 +70,14 @@ pub fn write_f32<'a>(
     nodata: Option<f32>,
     description: Option<&str>,
 ) -> Result<()> {
-    let marks = Marks { georeference, nodata: nodata.map(|v| v.to_string()), description };
+    let marks = Marks { georeference, nodata: nodata.map(|v| v.to_string()), description, names: &[] };
     match nodata {
         Some(nodata) if raster.values().iter().any(|v| !v.is_finite()) => {
             let values = raster.values().iter().map(|&v| if v.is_finite() { v } else { nodata }).collect();
             let finite = Raster::from_values(raster.width(), raster.height(), values)?;
-            write::<Gray32Float>(output.into(), &finite, &marks)
+            write::<Gray32Float>(output.into(), from_ref(&finite), &marks)
         }
-        _ => write::<Gray32Float>(output.into(), raster, &marks),
+        _ => write::<Gray32Float>(output.into(), from_ref(raster), &marks),
     }
 }
 
@@ -66,7 +93,8 @@ pub fn write_u32<'a>(
     nodata: Option<u32>,
     description: Option<&str>,
 ) -> Result<()> {
-    write::<Gray32>(output.into(), raster, &Marks { georeference, nodata: nodata.map(|v| v.to_string()), description })
+    let marks = Marks { georeference, nodata: nodata.map(|v| v.to_string()), description, names: &[] };
+    write::<Gray32>(output.into(), from_ref(raster), &marks)
 }
 
 /// Writes `raster` as bytes, compressed without loss; `nodata` marks the value that stands for nothing.
@@ -80,7 +108,8 @@ pub fn write_u8<'a>(
     nodata: Option<u8>,
     description: Option<&str>,
 ) -> Result<()> {
-    write::<Gray8>(output.into(), raster, &Marks { georeference, nodata: nodata.map(|v| v.to_string()), description })
+    let marks = Marks { georeference, nodata: nodata.map(|v| v.to_string()), description, names: &[] };
+    write::<Gray8>(output.into(), from_ref(raster), &marks)
 }
 
 /// Writes `raster` as unsigned 16-bit integers, compressed without loss; `nodata` marks the value that stands for nothing.
@@ -94,31 +123,94 @@ pub fn write_u16<'a>(
     nodata: Option<u16>,
     description: Option<&str>,
 ) -> Result<()> {
-    write::<Gray16>(output.into(), raster, &Marks { georeference, nodata: nodata.map(|v| v.to_string()), description })
+    let marks = Marks { georeference, nodata: nodata.map(|v| v.to_string()), description, names: &[] };
+    write::<Gray16>(output.into(), from_ref(raster), &marks)
+}
+
+/// Writes the bands of a raster, compressed without loss, with their names as GDAL reads them. Numbers that are not finite are written as the
+/// value for no data.
+///
+/// # Errors
+/// As [`write_f32`], [`Error::LengthMismatch`] for bands of several sizes.
+pub fn write_bands<'a>(
+    output: impl Into<Output<'a>>,
+    bands: &Bands<'_>,
+    georeference: Option<&Georeference>,
+) -> Result<()> {
+    let (names, description) = (bands.names, bands.description);
+    let marks = |nodata: String| Marks { georeference, nodata: Some(nodata), description, names };
+    match bands.values {
+        BandValues::U8(rasters, nodata) => write::<Gray8>(output.into(), rasters, &marks(nodata.to_string())),
+        BandValues::U16(rasters, nodata) => write::<Gray16>(output.into(), rasters, &marks(nodata.to_string())),
+        BandValues::F32(rasters, nodata) => {
+            let mut finite = rasters.to_vec();
+            for value in finite.iter_mut().flat_map(Raster::values_mut).filter(|value| !value.is_finite()) {
+                *value = nodata;
+            }
+            write::<Gray32Float>(output.into(), &finite, &marks(nodata.to_string()))
+        }
+    }
 }
 
 struct Marks<'a> {
     georeference: Option<&'a Georeference>,
     nodata: Option<String>,
     description: Option<&'a str>,
+    names: &'a [String],
 }
 
-fn write<C: ColorType>(output: Output<'_>, raster: &Raster<C::Inner>, marks: &Marks<'_>) -> Result<()>
+/// The names of bands as GDAL keeps them; `None` without any.
+pub(crate) fn names_in_xml(names: &[String]) -> Option<String> {
+    let in_xml = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    let item = |(band, name): (usize, &String)| {
+        format!("  <Item name=\"DESCRIPTION\" sample=\"{band}\" role=\"description\">{}</Item>\n", in_xml(name))
+    };
+    let items: String = names.iter().enumerate().map(item).collect();
+    (!items.is_empty()).then(|| format!("<GDALMetadata>\n{items}</GDALMetadata>\n"))
+}
+
+/// Width and height of bands.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for bands without pixels, [`Error::LengthMismatch`] for bands of several sizes.
+pub(crate) fn size_of_bands<T: Copy>(rasters: &[Raster<T>]) -> Result<[u32; 2]> {
+    let size = |raster: &Raster<T>| [raster.width(), raster.height()];
+    let [width, height] = rasters.first().map_or([0; 2], size);
+    if let Some(other) = rasters.iter().find(|raster| size(raster) != [width, height]) {
+        let (expected, found) = (width * height, other.values().len());
+        return Err(Error::LengthMismatch { what: "bands of a raster", expected, found });
+    }
+    match [width, height].map(u32::try_from) {
+        [Ok(columns), Ok(rows)] if columns > 0 && rows > 0 => Ok([columns, rows]),
+        _ => Err(invalid_size(width, height)),
+    }
+}
+
+/// Values pixel by pixel, those of all bands of a pixel after each other.
+fn interleaved<T: Copy>(rasters: &[Raster<T>]) -> Vec<T> {
+    let count = rasters.first().map_or(0, |raster| raster.values().len());
+    (0..count).flat_map(|pixel| rasters.iter().filter_map(move |raster| raster.values().get(pixel).copied())).collect()
+}
+
+fn write<C: ColorType>(output: Output<'_>, rasters: &[Raster<C::Inner>], marks: &Marks<'_>) -> Result<()>
 where
     C::Inner: Copy,
     [C::Inner]: TiffValue,
 {
-    let (Ok(width), Ok(height)) = (u32::try_from(raster.width()), u32::try_from(raster.height())) else {
-        return Err(invalid_size(raster.width(), raster.height()));
+    let size = size_of_bands(rasters)?;
+    let together;
+    let values = match rasters {
+        [one] => one.values(),
+        _ => {
+            together = interleaved(rasters);
+            &together
+        }
     };
-    if width == 0 || height == 0 {
-        return Err(invalid_size(raster.width(), raster.height()));
-    }
     output.write(|path, output| {
-        let result = if size_of_val(raster.values()) < BIG_FILE_BYTES {
-            TiffEncoder::new(output).and_then(|e| encode::<C, _, _>(e, width, height, raster.values(), marks))
+        let result = if size_of_val(values) < BIG_FILE_BYTES {
+            TiffEncoder::new(output).and_then(|e| encode::<C, _, _>(e, size, values, marks))
         } else {
-            TiffEncoder::new_big(output).and_then(|e| encode::<C, _, _>(e, width, height, raster.values(), marks))
+            TiffEncoder::new_big(output).and_then(|e| encode::<C, _, _>(e, size, values, marks))
         };
         result.map_err(|e| match e {
             tiff::TiffError::IoError(source) => Error::io(path)(source),
@@ -137,8 +229,7 @@ pub(crate) fn invalid_size(width: usize, height: usize) -> Error {
 
 fn encode<C: ColorType, W: std::io::Write + std::io::Seek, K: TiffKind>(
     encoder: TiffEncoder<W, K>,
-    width: u32,
-    height: u32,
+    [width, height]: [u32; 2],
     values: &[C::Inner],
     marks: &Marks<'_>,
 ) -> tiff::TiffResult<()>
@@ -147,7 +238,14 @@ where
 {
     let mut encoder = encoder.with_compression(Compression::Deflate(DeflateLevel::Balanced));
     let mut image = encoder.new_image::<C>(width, height)?;
+    let band_count = values.len() / (width as usize * height as usize);
+    if band_count > 1 {
+        image.extra_samples(&vec![ExtraSamples::Unspecified; band_count - 1])?;
+    }
     let tags = image.encoder();
+    if let Some(names) = names_in_xml(marks.names) {
+        tags.write_tag(Tag::Unknown(GDAL_METADATA), ascii(&names).as_str())?;
+    }
     tags.write_tag(Tag::Software, SOFTWARE)?;
     if let Some(description) = marks.description {
         tags.write_tag(Tag::ImageDescription, ascii(description).as_str())?;

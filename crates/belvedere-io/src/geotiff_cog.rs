@@ -3,7 +3,7 @@
 //! # Source
 //! TIFF 6.0 (Adobe 1992), OGC GeoTIFF 1.1 (19-008r4), OGC Cloud Optimized GeoTIFF 1.0 (21-026).
 
-use crate::geotiff::{Georeference, ascii, geo_keys, invalid_size};
+use crate::geotiff::{BandValues, Bands, GDAL_METADATA, Georeference, ascii, geo_keys, names_in_xml, size_of_bands};
 use crate::output::Output;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Parameter, Result};
@@ -18,28 +18,12 @@ const TILE: usize = 512;
 /// Compression of the tiles, by its number in TIFF: Deflate.
 const DEFLATE: u16 = 8;
 
-/// The values of a cloud-optimised raster.
-#[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
-pub enum CogValues<'a> {
-    /// Codes and the one for no data: a coarser pixel has the most frequent of its four.
-    U8(&'a Raster<u8>, u8),
-    /// Counts and the one for no data: likewise.
-    U16(&'a Raster<u16>, u16),
-    /// Numbers and the one for no data: a coarser pixel has the mean of those of its four that have a value.
-    F32(&'a Raster<f32>, f32),
-}
-
-/// Writes a raster whose columns run east and whose rows run south as a cloud-optimised GeoTIFF, compressed without loss; `description` says what its values are.
+/// Writes the bands of a raster whose columns run east and whose rows run south as a cloud-optimised GeoTIFF, compressed without loss.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a raster without pixels, a turned one, and one of more than 4 GB compressed; [`Error::Io`].
-pub fn write_cog<'a>(
-    output: impl Into<Output<'a>>,
-    values: CogValues<'_>,
-    place: &Georeference,
-    description: Option<&str>,
-) -> Result<()> {
+/// [`Error::InvalidParameter`] for a raster without pixels, a turned one, and one of more than 4 GB compressed; [`Error::LengthMismatch`] for
+/// bands of several sizes; [`Error::Io`].
+pub fn write_cog<'a>(output: impl Into<Output<'a>>, bands: &Bands<'_>, place: &Georeference) -> Result<()> {
     let ([east, tilt], [turn, south]) = (place.column_step, place.row_step);
     if tilt != 0.0 || turn != 0.0 || !(east > 0.0 && south < 0.0) {
         let value = format!("steps {:?} and {:?}", place.column_step, place.row_step);
@@ -49,13 +33,13 @@ pub fn write_cog<'a>(
             expected: "columns to the east and rows to the south",
         });
     }
-    let (levels, nodata) = match values {
-        CogValues::U8(raster, nodata) => (levels(raster, nodata, most_frequent), nodata.to_string()),
-        CogValues::U16(raster, nodata) => (levels(raster, nodata, most_frequent), nodata.to_string()),
-        CogValues::F32(raster, nodata) => (levels(raster, nodata, mean), nodata.to_string()),
+    let (levels, nodata) = match bands.values {
+        BandValues::U8(rasters, nodata) => (levels(rasters, nodata, most_frequent), nodata.to_string()),
+        BandValues::U16(rasters, nodata) => (levels(rasters, nodata, most_frequent), nodata.to_string()),
+        BandValues::F32(rasters, nodata) => (levels(rasters, nodata, mean), nodata.to_string()),
     };
     let levels = levels?;
-    let bytes = file(&levels, &nodata, place, description)?;
+    let bytes = file(&levels, &nodata, place, bands)?;
     output.into().write(|path, file| bytes.iter().try_for_each(|part| file.write_all(part)).map_err(Error::io(path)))
 }
 
@@ -92,19 +76,17 @@ struct Level {
     width: u32,
     height: u32,
     kind: [u16; 2],
+    band_count: usize,
     /// Compressed, row by row from the north-west.
     tiles: Vec<Vec<u8>>,
 }
 
-fn levels<T: Pixel>(raster: &Raster<T>, nodata: T, pick: impl Fn([T; 4], T) -> T + Sync) -> Result<Vec<Level>> {
-    if raster.width() == 0 || raster.height() == 0 {
-        return Err(invalid_size(raster.width(), raster.height()));
-    }
-    let mut levels = vec![level(raster, nodata)?];
+fn levels<T: Pixel>(bands: &[Raster<T>], nodata: T, pick: impl Fn([T; 4], T) -> T + Sync) -> Result<Vec<Level>> {
+    let mut levels = vec![level(bands, nodata)?];
     let mut coarser;
-    let mut last = raster;
-    while last.width().max(last.height()) > TILE {
-        coarser = halved(last, nodata, &pick)?;
+    let mut last = bands;
+    while last.iter().any(|band| band.width().max(band.height()) > TILE) {
+        coarser = last.iter().map(|band| halved(band, nodata, &pick)).collect::<Result<Vec<_>>>()?;
         levels.push(level(&coarser, nodata)?);
         last = &coarser;
     }
@@ -137,21 +119,21 @@ fn mean(four: [f32; 4], nodata: f32) -> f32 {
     }
 }
 
-fn level<T: Pixel>(raster: &Raster<T>, nodata: T) -> Result<Level> {
-    let (Ok(width), Ok(height)) = (u32::try_from(raster.width()), u32::try_from(raster.height())) else {
-        return Err(invalid_size(raster.width(), raster.height()));
-    };
-    let across = raster.width().div_ceil(TILE);
+fn level<T: Pixel>(bands: &[Raster<T>], nodata: T) -> Result<Level> {
+    let [width, height] = size_of_bands(bands)?;
+    let [across, down] = [width, height].map(|side| (side as usize).div_ceil(TILE));
     let tile = |number: usize| {
         let [left, top] = [number % across * TILE, number / across * TILE];
-        let mut bytes = Vec::with_capacity(TILE * TILE * usize::from(T::KIND[0] / 8));
+        let mut bytes = Vec::with_capacity(TILE * TILE * bands.len() * usize::from(T::KIND[0] / 8));
         for row in top..top + TILE {
-            (left..left + TILE).for_each(|column| raster.get(column, row).unwrap_or(nodata).put(&mut bytes));
+            for column in left..left + TILE {
+                bands.iter().for_each(|band| band.get(column, row).unwrap_or(nodata).put(&mut bytes));
+            }
         }
         compressed(&bytes)
     };
-    let count = across * raster.height().div_ceil(TILE);
-    Ok(Level { width, height, kind: T::KIND, tiles: (0..count).into_par_iter().map(tile).collect::<Result<_>>()? })
+    let tiles = (0..across * down).into_par_iter().map(tile).collect::<Result<_>>()?;
+    Ok(Level { width, height, kind: T::KIND, band_count: bands.len(), tiles })
 }
 
 fn compressed(bytes: &[u8]) -> Result<Vec<u8>> {
@@ -196,12 +178,12 @@ fn file<'a>(
     levels: &'a [Level],
     nodata: &str,
     place: &Georeference,
-    description: Option<&str>,
+    bands: &Bands<'_>,
 ) -> Result<Vec<std::borrow::Cow<'a, [u8]>>> {
     let directory = |number: usize, offsets: &[u32]| {
         let mut tags = tags(&levels[number], offsets, nodata);
         if number == 0 {
-            tags.extend(tags_of_whole(place, description));
+            tags.extend(tags_of_whole(place, bands));
         } else {
             tags.push(Tag::longs(254, &[1]));
         }
@@ -242,28 +224,34 @@ fn file<'a>(
 fn tags(level: &Level, offsets: &[u32], nodata: &str) -> Vec<Tag> {
     #[expect(clippy::cast_possible_truncation, reason = "tiles of a megabyte at most")]
     let sizes: Vec<u32> = level.tiles.iter().map(|tile| tile.len() as u32).collect();
-    let [bits, kind] = level.kind;
-    #[expect(clippy::cast_possible_truncation, reason = "512")]
-    let side = TILE as u16;
-    vec![
+    // one for each band
+    let [bits, kind] = level.kind.map(|value| vec![value; level.band_count]);
+    #[expect(clippy::cast_possible_truncation, reason = "512, and no more bands than measures")]
+    let (side, band_count) = (TILE as u16, level.band_count as u16);
+    let mut tags = vec![
         Tag::longs(256, &[level.width]),
         Tag::longs(257, &[level.height]),
-        Tag::shorts(258, &[bits]),
+        Tag::shorts(258, &bits),
         Tag::shorts(259, &[DEFLATE]),
         Tag::shorts(262, &[1]),
-        Tag::shorts(277, &[1]),
+        Tag::shorts(277, &[band_count]),
         Tag::shorts(284, &[1]),
         Tag::shorts(322, &[side]),
         Tag::shorts(323, &[side]),
         Tag::longs(324, offsets),
         Tag::longs(325, &sizes),
-        Tag::shorts(339, &[kind]),
+        Tag::shorts(339, &kind),
         Tag::text(42113, nodata),
-    ]
+    ];
+    if level.band_count > 1 {
+        // samples beside the first that are no colours
+        tags.push(Tag::shorts(338, &vec![0; level.band_count - 1]));
+    }
+    tags
 }
 
 /// Those of the finest level alone, which is the raster.
-fn tags_of_whole(place: &Georeference, description: Option<&str>) -> Vec<Tag> {
+fn tags_of_whole(place: &Georeference, bands: &Bands<'_>) -> Vec<Tag> {
     let ([x, y], keys) = (place.upper_left, geo_keys(place));
     let mut tags = vec![
         Tag::longs(254, &[0]),
@@ -272,7 +260,8 @@ fn tags_of_whole(place: &Georeference, description: Option<&str>) -> Vec<Tag> {
         Tag::doubles(33922, &[0.0, 0.0, 0.0, x, y, 0.0]),
         Tag::shorts(34735, &keys.directory),
     ];
-    tags.extend(description.map(|description| Tag::text(270, description)));
+    tags.extend(bands.description.map(|description| Tag::text(270, description)));
+    tags.extend(names_in_xml(bands.names).map(|names| Tag::text(GDAL_METADATA, &names)));
     if !keys.text.is_empty() {
         tags.push(Tag::text(34737, &keys.text));
     }
@@ -307,9 +296,10 @@ fn write_directory(head: &mut Vec<u8>, tags: &[Tag], size: usize, is_last: bool)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Source, read_tif, read_tif_f32, read_tif_u8};
+    use crate::{ReadBands, Source, read_tif, read_tif_bands, read_tif_f32, read_tif_u8};
     use belvedere_data::crs::Crs;
     use std::io::Cursor;
+    use std::slice::from_ref;
     use tiff::decoder::Decoder;
     use tiff::tags::Tag as TiffTag;
 
@@ -318,9 +308,10 @@ mod tests {
         Georeference { upper_left: [155_000.0, 463_000.0], column_step: [2.0, 0.0], row_step: [0.0, -2.0], crs }
     }
 
-    fn written(values: CogValues<'_>) -> Vec<u8> {
+    fn written(values: BandValues<'_>, names: &[String]) -> Vec<u8> {
         let mut file = Cursor::new(Vec::new());
-        write_cog(Output::writer("cog.tif", &mut file), values, &place(), Some("height in metres")).unwrap();
+        let bands = Bands { values, names, description: Some("height in metres") };
+        write_cog(Output::writer("cog.tif", &mut file), &bands, &place()).unwrap();
         file.into_inner()
     }
 
@@ -331,7 +322,7 @@ mod tests {
         let mut numbers = Raster::from_values(width, height, numbers).unwrap();
         // a pixel without a value in a block of four
         numbers.values_mut()[1] = -9999.0;
-        let file = written(CogValues::F32(&numbers, -9999.0));
+        let file = written(BandValues::F32(from_ref(&numbers), -9999.0), &[]);
         assert_eq!(read_tif_f32(Source::bytes("cog.tif", &file)).unwrap(), numbers);
         let read = read_tif(Source::bytes("cog.tif", &file)).unwrap();
         assert_eq!(read.description.as_deref(), Some("height in metres"));
@@ -365,10 +356,39 @@ mod tests {
         assert_eq!(most_frequent([255_u8; 4], 255), 255);
         assert_eq!(most_frequent([1_u8, 0, 1, 0], 255), 1);
         let codes = Raster::from_values(3, 1, vec![0_u8, 1, 255]).unwrap();
-        let file = written(CogValues::U8(&codes, 255));
+        let file = written(BandValues::U8(from_ref(&codes), 255), &[]);
         assert_eq!(read_tif_u8(Source::bytes("cog.tif", &file)).unwrap(), codes);
         let turned = Georeference { row_step: [0.0, 2.0], ..place() };
         let mut file = Cursor::new(Vec::new());
-        assert!(write_cog(Output::writer("cog.tif", &mut file), CogValues::U8(&codes, 255), &turned, None).is_err());
+        let bands = Bands { values: BandValues::U8(from_ref(&codes), 255), names: &[], description: None };
+        assert!(write_cog(Output::writer("cog.tif", &mut file), &bands, &turned).is_err());
+    }
+
+    #[test]
+    fn bands_and_their_names_come_back_from_both_writers() {
+        let (width, height) = (700_usize, 20_usize);
+        let band = |shift: usize| {
+            let value = |i: usize| u16::try_from((i * 31 + shift) % 1000).unwrap();
+            Raster::from_values(width, height, (0..width * height).map(value).collect()).unwrap()
+        };
+        let rasters = vec![band(0), band(7), band(400)];
+        let names = ["observers", "un<proven>", "a&b"].map(str::to_owned).to_vec();
+        let bands = Bands { values: BandValues::U16(&rasters, u16::MAX), names: &names, description: Some("counts") };
+        let mut plain = Cursor::new(Vec::new());
+        crate::write_tif_bands(Output::writer("plain.tif", &mut plain), &bands, Some(&place())).unwrap();
+        for file in [plain.into_inner(), written(bands.values, &names)] {
+            let ReadBands::U16(read) = read_tif_bands(Source::bytes("a.tif", &file)).unwrap() else { panic!("type") };
+            assert_eq!(read, rasters);
+            let placed = read_tif(Source::bytes("a.tif", &file)).unwrap();
+            let further: Vec<&str> = placed.further_bands.iter().map(|band| band.name.as_str()).collect();
+            assert_eq!(further, ["un<proven>", "a&b"]);
+            assert_eq!(placed.values.get(3, 2), Some(f32::from(rasters[0].get(3, 2).unwrap())));
+            assert_eq!(placed.further_bands[1].values.get(3, 2), Some(f32::from(rasters[2].get(3, 2).unwrap())));
+        }
+        let small = Raster::filled(3, 3, 1_u16);
+        let uneven = [rasters[0].clone(), small];
+        let bands = Bands { values: BandValues::U16(&uneven, 0), names: &[], description: None };
+        assert!(crate::write_tif_bands(Output::writer("a.tif", &mut Cursor::new(Vec::new())), &bands, None).is_err());
+        assert!(write_cog(Output::writer("a.tif", &mut Cursor::new(Vec::new())), &bands, &place()).is_err());
     }
 }

@@ -1,12 +1,12 @@
 //! Values of GeoTIFF rasters.
 
 use std::io::{self, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{TiffError, TiffFormatError, TiffResult};
 
-use crate::geotiff::{Georeference, SOFTWARE};
+use crate::geotiff::{GDAL_METADATA, Georeference, SOFTWARE};
 use crate::source::{Input, Reader, Source};
 use belvedere_data::crs::Crs;
 use belvedere_data::raster::Raster;
@@ -15,37 +15,90 @@ use belvedere_data::{Error, Result};
 /// Most bytes of values for each byte of a file: LZW comes to 1365, Deflate to 1032.
 const MOST_PACKED: u64 = 1400;
 
-/// The values of a raster of bytes.
+/// All bands of a raster of one of the types that results have.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReadBands {
+    /// Bytes.
+    U8(Vec<Raster<u8>>),
+    /// Unsigned 16-bit integers.
+    U16(Vec<Raster<u16>>),
+    /// 32-bit floats.
+    F32(Vec<Raster<f32>>),
+}
+
+/// The values of all bands of a raster, as they are stored.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::Malformed`] for what is no such raster. More than 256 MB of values are refused, and more than the file can hold.
+pub fn read_bands<'a>(source: impl Into<Source<'a>>) -> Result<ReadBands> {
+    Ok(named_bands(source.into())?.1)
+}
+
+/// The name of a source and its bands.
+fn named_bands(source: Source<'_>) -> Result<(PathBuf, ReadBands)> {
+    let Input { name, reader, size } = source.open()?;
+    let values = decoder(reader, size).and_then(|mut decoder| size_and_values(&mut decoder));
+    let (size, values) = values.map_err(|e| damaged(&name, e))?;
+    let bands = match values {
+        DecodingResult::U8(values) => ReadBands::U8(bands(size, values)?),
+        DecodingResult::U16(values) => ReadBands::U16(bands(size, values)?),
+        DecodingResult::F32(values) => ReadBands::F32(bands(size, values)?),
+        _ => return Err(other_kind(&name)),
+    };
+    Ok((name, bands))
+}
+
+/// The values of the first band of a raster of bytes.
+///
+/// # Errors
+/// Those of [`read_bands`].
 pub fn read_u8<'a>(source: impl Into<Source<'a>>) -> Result<Raster<u8>> {
-    read(source.into(), |values| match values {
-        DecodingResult::U8(values) => Some(values),
+    first(source.into(), |bands| match bands {
+        ReadBands::U8(bands) => Some(bands),
         _ => None,
     })
 }
 
-/// The values of a raster of unsigned 16-bit integers.
+/// The values of the first band of a raster of unsigned 16-bit integers.
 ///
 /// # Errors
-/// Those of [`read_u8`].
+/// Those of [`read_bands`].
 pub fn read_u16<'a>(source: impl Into<Source<'a>>) -> Result<Raster<u16>> {
-    read(source.into(), |values| match values {
-        DecodingResult::U16(values) => Some(values),
+    first(source.into(), |bands| match bands {
+        ReadBands::U16(bands) => Some(bands),
         _ => None,
     })
 }
 
-/// The values of a raster of 32-bit floats.
+/// The values of the first band of a raster of 32-bit floats.
 ///
 /// # Errors
-/// Those of [`read_u8`].
+/// Those of [`read_bands`].
 pub fn read_f32<'a>(source: impl Into<Source<'a>>) -> Result<Raster<f32>> {
-    read(source.into(), |values| match values {
-        DecodingResult::F32(values) => Some(values),
+    first(source.into(), |bands| match bands {
+        ReadBands::F32(bands) => Some(bands),
         _ => None,
     })
+}
+
+fn first<T>(source: Source<'_>, of_kind: impl Fn(ReadBands) -> Option<Vec<Raster<T>>>) -> Result<Raster<T>> {
+    let (name, bands) = named_bands(source)?;
+    of_kind(bands).and_then(|bands| bands.into_iter().next()).ok_or_else(|| other_kind(&name))
+}
+
+fn other_kind(name: &Path) -> Error {
+    Error::malformed(name, "has values of another kind than expected")
+}
+
+/// Bands from values pixel by pixel, or of one band after the other band by band.
+fn bands<T: Copy>([width, height]: [usize; 2], values: Vec<T>) -> Result<Vec<Raster<T>>> {
+    let count = values.len().checked_div(width.saturating_mul(height)).unwrap_or(0);
+    if count <= 1 {
+        return Ok(vec![Raster::from_values(width, height, values)?]);
+    }
+    let band =
+        |band: usize| Raster::from_values(width, height, values.iter().skip(band).step_by(count).copied().collect());
+    (0..count).map(band).collect()
 }
 
 /// A raster with its place on the map.
@@ -57,16 +110,27 @@ pub struct PlacedRaster {
     pub place: Option<Georeference>,
     /// What its values are, if Belvedere wrote the file and said so.
     pub description: Option<String>,
+    /// Bands beside the first, if Belvedere wrote the file.
+    pub further_bands: Vec<NamedBand>,
+}
+
+/// A band of a raster beside the first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedBand {
+    /// Its name; empty where the file says none.
+    pub name: String,
+    /// Its values; NaN where the file says that there is none.
+    pub values: Raster<f32>,
 }
 
 /// A raster of numbers of any kind, with its place on the map.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Malformed`] for what is no raster of one band.
+/// [`Error::Io`], and [`Error::Malformed`] for what is no raster of one band, unless Belvedere wrote it.
 pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
     let Input { name, reader, size } = source.into().open()?;
     let mut decoder = decoder(reader, size).map_err(|e| damaged(&name, e))?;
-    let ([width, height], values) = size_and_values(&mut decoder).map_err(|e| damaged(&name, e))?;
+    let (size, values) = size_and_values(&mut decoder).map_err(|e| damaged(&name, e))?;
     #[expect(clippy::cast_possible_truncation, reason = "values of maps are f32")]
     let values: Vec<f32> = match values {
         DecodingResult::U8(values) => values.into_iter().map(f32::from).collect(),
@@ -77,20 +141,27 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
         DecodingResult::I32(values) => values.into_iter().map(|v| v as f32).collect(),
         DecodingResult::F32(values) => values,
         DecodingResult::F64(values) => values.into_iter().map(|v| v as f32).collect(),
-        _ => return Err(Error::malformed(&name, "has values of another kind than expected")),
+        _ => return Err(other_kind(&name)),
     };
     let nodata = decoder.get_tag_ascii_string(Tag::GdalNodata).ok();
     #[expect(clippy::cast_possible_truncation, reason = "values of maps are f32")]
     let nodata = nodata.and_then(|text| text.trim().parse::<f64>().ok()).map(|nodata| nodata as f32);
     let values = values.into_iter().map(|v| if Some(v) == nodata || !v.is_finite() { f32::NAN } else { v }).collect();
-    let values = Raster::from_values(width, height, values)
-        .map_err(|_| Error::malformed(&name, "has more than one band; take one of them"))?;
+    let of_belvedere = decoder.get_tag_ascii_string(Tag::Software).is_ok_and(|program| program == SOFTWARE);
+    let mut bands = bands(size, values)?;
+    if bands.len() > 1 && !of_belvedere {
+        return Err(Error::malformed(&name, "has more than one band; take one of them"));
+    }
+    let further = bands.split_off(1);
+    let Some(values) = bands.pop() else { return Err(other_kind(&name)) };
+    let names = decoder.get_tag_ascii_string(Tag::Unknown(GDAL_METADATA)).unwrap_or_default();
+    let named = |(band, values)| NamedBand { name: name_of_band(&names, band), values };
+    let further_bands = (1..).zip(further).map(named).collect();
     let keys = decoder.get_tag_u16_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
     // coordinates that count from the middles of pixels instead of their corners (GTRasterTypeGeoKey, PixelIsPoint)
     let of_middles = keys.as_chunks::<4>().0.iter().any(|&[key, _, _, value]| key == 1025 && value == 2);
     let keys: Vec<u8> = keys.into_iter().flat_map(u16::to_le_bytes).collect();
     let crs = Crs::from_geotiff_keys(&keys).unwrap_or_default();
-    let of_belvedere = decoder.get_tag_ascii_string(Tag::Software).is_ok_and(|program| program == SOFTWARE);
     let description = decoder.get_tag_ascii_string(Tag::ImageDescription).ok().filter(|_| of_belvedere);
     let numbers = |decoder: &mut Decoder<_>, tag| decoder.get_tag_f64_vec(tag).unwrap_or_default();
     let [scale, tie, matrix] = [Tag::ModelPixelScaleTag, Tag::ModelTiepointTag, Tag::ModelTransformationTag]
@@ -113,15 +184,14 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
         Georeference { upper_left, ..place }
     };
     let place = if of_middles { place.map(to_corner) } else { place };
-    Ok(PlacedRaster { values, place, description })
+    Ok(PlacedRaster { values, place, description, further_bands })
 }
 
-fn read<T: Copy>(source: Source<'_>, of_kind: impl Fn(DecodingResult) -> Option<Vec<T>>) -> Result<Raster<T>> {
-    let Input { name, reader, size } = source.open()?;
-    let values = decoder(reader, size).and_then(|mut decoder| size_and_values(&mut decoder));
-    let ([width, height], values) = values.map_err(|e| damaged(&name, e))?;
-    let values = of_kind(values).ok_or_else(|| Error::malformed(&name, "has values of another kind than expected"))?;
-    Raster::from_values(width, height, values)
+/// The name of a band, by its number from 0, in what GDAL keeps of it; empty where it has none.
+fn name_of_band(metadata: &str, band: usize) -> String {
+    let item = format!("<Item name=\"DESCRIPTION\" sample=\"{band}\" role=\"description\">");
+    let text = metadata.split_once(&item).and_then(|(_, rest)| rest.split_once("</Item>")).map(|(text, _)| text);
+    text.unwrap_or_default().replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
 }
 
 /// A decoder that allocates no more than a file of `size` bytes can hold.

@@ -106,14 +106,15 @@ pub use geojson::{Area, GeojsonCoordinates, Spot, write_geojson, write_geojson_a
 pub use geojson_read::{GeojsonFeature, Shape, read_geojson};
 #[cfg(feature = "tiff")]
 pub use geotiff::{
-    Georeference, write_f32 as write_tif_f32, write_u8 as write_tif_u8, write_u16 as write_tif_u16,
-    write_u32 as write_tif_u32,
+    BandValues, Bands, Georeference, write_bands as write_tif_bands, write_f32 as write_tif_f32,
+    write_u8 as write_tif_u8, write_u16 as write_tif_u16, write_u32 as write_tif_u32,
 };
 #[cfg(feature = "tiff")]
-pub use geotiff_cog::{CogValues, write_cog};
+pub use geotiff_cog::write_cog;
 #[cfg(feature = "tiff")]
 pub use geotiff_read::{
-    PlacedRaster, read_f32 as read_tif_f32, read_placed as read_tif, read_u8 as read_tif_u8, read_u16 as read_tif_u16,
+    NamedBand, PlacedRaster, ReadBands, read_bands as read_tif_bands, read_f32 as read_tif_f32,
+    read_placed as read_tif, read_u8 as read_tif_u8, read_u16 as read_tif_u16,
 };
 pub use horizon_profile::read_horizon;
 #[cfg(feature = "las")]

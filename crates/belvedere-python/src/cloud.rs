@@ -151,6 +151,8 @@ impl Cloud {
             positions: fixed_rows(&positions, "positions")?,
             attributes: columns(attributes, adjusted_gps_time)?,
             scanner_positions: fixed_rows(&scanner_positions, "scanner positions")?,
+            // only the cloud of a scene has them
+            cleared_places: Vec::new(),
         };
         cloud.validate().map_err(exception)?;
         Ok(Self(Arc::new(cloud)))

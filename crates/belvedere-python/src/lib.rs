@@ -35,7 +35,7 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    module.add("NO_VALUE", belvedere::results::NO_VALUE)?;
+    module.add("NO_VALUE", belvedere::results::ResultKind::NO_NUMBER)?;
     module.add_class::<cloud::Cloud>()?;
     module.add_class::<mesh::Mesh>()?;
     module.add_class::<scene::Scene>()?;

@@ -2,7 +2,7 @@
 
 use crate::errors::{exception, wrong};
 use crate::system::System;
-use belvedere::io::{Georeference, write_tif_f32, write_tif_u8, write_tif_u16};
+use belvedere::io::{BandValues, Bands, Georeference, write_tif_bands, write_tif_f32, write_tif_u8, write_tif_u16};
 use belvedere::raster::Raster;
 use numpy::{Element, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -16,12 +16,14 @@ pub(crate) enum Values<'py> {
     U16(PyReadonlyArray2<'py, u16>),
 }
 
-/// Writes a GeoTIFF with the six numbers of an affine transform.
+/// Writes a GeoTIFF of bands of one type with the six numbers of an affine transform. A raster without a value for no data has one band.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "keywords in Python")]
 pub(crate) fn write_geotiff(
     py: Python<'_>,
     path: PathBuf,
-    values: Values<'_>,
+    bands: Vec<Values<'_>>,
+    names: Vec<String>,
     transform: [f64; 6],
     crs: System,
     nodata: Option<f64>,
@@ -29,28 +31,55 @@ pub(crate) fn write_geotiff(
 ) -> PyResult<()> {
     let [a, b, west, d, e, north] = transform;
     let place = Georeference { upper_left: [west, north], column_step: [a, d], row_step: [b, e], crs: crs.0 };
-    let (place, what) = (Some(&place), description.as_deref());
+    let (place, description) = (Some(&place), description.as_deref());
     let number = |most: u16| match nodata {
         None => Ok(None),
         Some(v) if v >= 0.0 && v <= f64::from(most) && v.fract() == 0.0 => Ok(Some(v)),
         Some(v) => Err(wrong("nodata", &v.to_string(), &format!("give a whole number from 0 to {most}"))),
     };
+    let write = |values: BandValues<'_>| {
+        py.detach(|| write_tif_bands(&path, &Bands { values, names: &names, description }, place))
+    };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the range of the type")]
-    let written = match &values {
-        Values::F32(array) => {
-            let raster = raster(array)?;
-            py.detach(|| write_tif_f32(&path, &raster, place, nodata.map(|v| v as f32), what))
+    let written = match (&bands[..], nodata) {
+        ([Values::U8(one)], None) => {
+            let raster = raster(one)?;
+            py.detach(|| write_tif_u8(&path, &raster, place, None, description))
         }
-        Values::U8(array) => {
-            let (raster, nodata) = (raster(array)?, number(u16::from(u8::MAX))?);
-            py.detach(|| write_tif_u8(&path, &raster, place, nodata.map(|v| v as u8), what))
+        ([Values::U16(one)], None) => {
+            let raster = raster(one)?;
+            py.detach(|| write_tif_u16(&path, &raster, place, None, description))
         }
-        Values::U16(array) => {
-            let (raster, nodata) = (raster(array)?, number(u16::MAX)?);
-            py.detach(|| write_tif_u16(&path, &raster, place, nodata.map(|v| v as u16), what))
+        ([Values::F32(one)], None) => {
+            let raster = raster(one)?;
+            py.detach(|| write_tif_f32(&path, &raster, place, None, description))
+        }
+        ([Values::U8(_), ..], _) => {
+            let of_type = |band: &Values<'_>| if let Values::U8(band) = band { Some(raster(band)) } else { None };
+            let (bands, nodata) = (all(&bands, of_type)?, number(u16::from(u8::MAX))?.unwrap_or(255.0));
+            write(BandValues::U8(&bands, nodata as u8))
+        }
+        ([Values::U16(_), ..], _) => {
+            let of_type = |band: &Values<'_>| if let Values::U16(band) = band { Some(raster(band)) } else { None };
+            let (bands, nodata) = (all(&bands, of_type)?, number(u16::MAX)?.unwrap_or(65_535.0));
+            write(BandValues::U16(&bands, nodata as u16))
+        }
+        _ => {
+            let of_type = |band: &Values<'_>| if let Values::F32(band) = band { Some(raster(band)) } else { None };
+            let (bands, nodata) = (all(&bands, of_type)?, nodata.unwrap_or(-9999.0));
+            write(BandValues::F32(&bands, nodata as f32))
         }
     };
     written.map_err(exception)
+}
+
+/// Bands that all have the type of the first.
+fn all<T>(
+    bands: &[Values<'_>],
+    of_type: impl Fn(&Values<'_>) -> Option<PyResult<Raster<T>>>,
+) -> PyResult<Vec<Raster<T>>> {
+    let other = || Err(wrong("bands", "of several types", "give all the same one"));
+    bands.iter().map(|band| of_type(band).unwrap_or_else(other)).collect()
 }
 
 fn raster<T: Element + Copy>(array: &PyReadonlyArray2<'_, T>) -> PyResult<Raster<T>> {

@@ -5,7 +5,7 @@ use crate::cloud::Cloud;
 use crate::errors::wrong;
 use crate::mesh::{Faces, rows_of};
 use belvedere::apps::ask::{self, Remark, Severity};
-use belvedere::apps::targets::{CellLevel, Measure, Targets};
+use belvedere::apps::targets::{CellLevel, Measure, ResultKind, Targets};
 use belvedere::apps::viewshed::cell_for;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
@@ -143,10 +143,13 @@ pub(crate) fn grid_at([width, height]: [usize; 2], place: &Georeference) -> Grid
     (width, height, [column_step[0], row_step[0], upper_left[0], column_step[1], row_step[1], upper_left[1]])
 }
 
-/// Name, description and values of a measure.
+/// Name, description and values of a measure, and whether it is an answer.
+pub(crate) type MeasureColumn<'py> = (String, &'static str, Bound<'py, PyAny>, bool);
+/// Name, description and values.
 pub(crate) type Column<'py> = (String, &'static str, Bound<'py, PyAny>);
 /// Columns of measures; then the grid where targets are cells; or, where they are the faces of a mesh, only their rows; then remarks.
-pub(crate) type Results<'py> = (Vec<Column<'py>>, Option<Grid>, Option<Bound<'py, PyDict>>, Vec<Bound<'py, PyDict>>);
+pub(crate) type Results<'py> =
+    (Vec<MeasureColumn<'py>>, Option<Grid>, Option<Bound<'py, PyDict>>, Vec<Bound<'py, PyDict>>);
 
 impl Chosen {
     /// Measures of the targets as Python takes them.
@@ -162,7 +165,10 @@ impl Chosen {
             let rows = rows_of(py, FaceRows::of_measures(mesh, surface, &measures))?;
             return Ok((Vec::new(), None, Some(rows), remarks));
         }
-        let column = |measure: Measure| (measure.name, measure.description, to_1d(py, measure.values).into_any());
+        let column = |measure: Measure| {
+            let is_answer = measure.kind == ResultKind::Answer;
+            (measure.name, measure.description, to_1d(py, measure.values).into_any(), is_answer)
+        };
         let grid = targets.ground().map(|ground| grid_of(&ground.grid, &targets.frame));
         Ok((measures.into_iter().map(column).collect(), grid, None, remarks))
     }

@@ -9,7 +9,6 @@ use crate::plan::Plan;
 use crate::planned::Others;
 use crate::question::{Asked, Light, Question};
 use crate::record::{Outcome, Record, Stage, Stamp};
-use crate::values::{UNPROVEN, Values};
 use crate::window;
 use belvedere::apps::eyes::skip_unfit_eyes;
 use belvedere::apps::irradiance::{irradiation_measures, season_irradiation};
@@ -26,7 +25,7 @@ use belvedere::io::atomic;
 use belvedere::medial::MedialBalls;
 use belvedere::query::{AddedMeshes, Answer, MedialScene};
 use belvedere::raster::Raster;
-use belvedere::results::georeference;
+use belvedere::results::{Pixels, ResultKind, ResultRaster, georeference};
 use belvedere::vector::sub;
 use belvedere::{PointCloud, Result};
 use rayon::prelude::*;
@@ -117,7 +116,9 @@ pub(crate) fn answer(
     }
     let place = georeference(&ground.grid, &targets.frame);
     let path = stage.result(run, tile);
-    found.values.write(&path, &place, question.description())?;
+    let names = question.bands(found.values.kind());
+    let raster = ResultRaster { pixels: found.values, names, description: question.description().to_owned() };
+    raster.write(&path, Some(&place))?;
     Ok(Record {
         outcome: Outcome::Done,
         result: Some(Stamp::of(&path)?),
@@ -144,7 +145,7 @@ impl Surface {
 
 /// What was found of the cells of a tile.
 struct Answered {
-    values: Values,
+    values: Pixels,
     unproven_cells: usize,
     skipped_observers: usize,
 }
@@ -181,15 +182,15 @@ fn lit(
     let balls = parts.into_found();
     let is_unknown = unknown_towards(&balls, targets, light.directions());
     let answered =
-        if is_yes_or_no { codes(&numbers, &is_unknown, size)? } else { measured(&numbers, &is_unknown, size)? };
+        if is_yes_or_no { yes_or_no(&numbers, &is_unknown, size)? } else { measured(&numbers, &is_unknown, size)? };
     Ok((answered, balls))
 }
 
 /// Numbers of targets: those that missing balls may change are not known.
-fn measured(numbers: &[f32], is_unknown: &[bool], [width, height]: [usize; 2]) -> Result<Answered> {
+fn measured(numbers: &[f32], is_unknown: &[bool], size: [usize; 2]) -> Result<Answered> {
     let unproven_cells = numbers.iter().zip(is_unknown).filter(|(v, is_unknown)| v.is_finite() && **is_unknown).count();
     let known = numbers.iter().zip(is_unknown).map(|(&v, &is_unknown)| if is_unknown { f32::NAN } else { v });
-    Ok(Answered { values: Values::of_numbers(width, height, known)?, unproven_cells, skipped_observers: 0 })
+    Ok(Answered { values: Pixels::numbers([known.collect()], size)?, unproven_cells, skipped_observers: 0 })
 }
 
 /// The first measure is what a question is named after.
@@ -197,16 +198,14 @@ fn first(measures: Vec<Measure>) -> Vec<f32> {
     measures.into_iter().next().map(|measure| measure.values).unwrap_or_default()
 }
 
-/// Codes of targets that are lit or not: those that missing balls may block are unproven rather than lit.
-fn codes(lit: &[f32], is_unknown: &[bool], [width, height]: [usize; 2]) -> Result<Answered> {
-    let code = |(&lit, &is_unknown): (&f32, &bool)| match lit {
-        lit if lit.is_nan() => None,
-        lit if lit > 0.0 && is_unknown => Some(UNPROVEN),
-        lit => Some(u8::from(lit > 0.0)),
-    };
-    let codes: Vec<Option<u8>> = lit.iter().zip(is_unknown).map(code).collect();
-    let unproven_cells = codes.iter().filter(|&&code| code == Some(UNPROVEN)).count();
-    Ok(Answered { values: Values::of_codes(width, height, codes.into_iter())?, unproven_cells, skipped_observers: 0 })
+/// Answers for targets that are lit or not, and which of the lit are unproven because missing balls may block them.
+fn yes_or_no(lit: &[f32], is_unknown: &[bool], size: [usize; 2]) -> Result<Answered> {
+    let answer = |lit: &f32| (!lit.is_nan()).then_some(*lit > 0.0);
+    let unproven = |(lit, is_unknown): (&f32, &bool)| answer(lit).map(|is_lit| is_lit && *is_unknown);
+    let answers = lit.iter().map(|lit| ResultKind::answer(answer(lit))).collect();
+    let unproven: Vec<u8> = lit.iter().zip(is_unknown).map(|cell| ResultKind::answer(unproven(cell))).collect();
+    let unproven_cells = unproven.iter().filter(|&&pixel| pixel == 1).count();
+    Ok(Answered { values: Pixels::answers([answers, unproven], size)?, unproven_cells, skipped_observers: 0 })
 }
 
 /// Of each target, whether missing balls may block it in any of `directions`.
@@ -252,7 +251,7 @@ impl<'a> Sight<'a> {
     }
 
     /// What is seen past all parts; unproven where missing `balls` may block it.
-    fn answered(self, balls: &Found, [width, height]: [usize; 2]) -> Result<Answered> {
+    fn answered(self, balls: &Found, size: [usize; 2]) -> Result<Answered> {
         let Self { observers, targets, seen } = self;
         let (answers, masks) = seen.map(|seen| (seen.answers, seen.masks)).unwrap_or_default();
         let is_unknown = |target: [f32; 3], eye: [f64; 3]| {
@@ -272,13 +271,13 @@ impl<'a> Sight<'a> {
         let cells = || answers.iter().zip(&counts).map(|(&answer, &counts)| is_asked(answer).then_some(counts));
         let values = match observers.len() {
             1 => {
-                let code = |[seen, unproven]: [usize; 2]| if unproven > 0 { UNPROVEN } else { u8::from(seen > 0) };
-                Values::of_codes(width, height, cells().map(|counts| counts.map(code)))?
+                let band = |i: usize| cells().map(|counts| ResultKind::answer(counts.map(|c| c[i] > 0))).collect();
+                Pixels::answers([band(0), band(1)], size)?
             }
             _ => {
                 #[expect(clippy::cast_possible_truncation, reason = "no more than there are observers")]
-                let proven = |[seen, unproven]: [usize; 2]| (seen - unproven) as u32;
-                Values::of_counts(width, height, cells().map(|counts| counts.map(proven)))?
+                let band = |i: usize| cells().map(|counts| ResultKind::count(counts.map(|c| c[i] as u32))).collect();
+                Pixels::counts([band(0), band(1)], size)?
             }
         };
         Ok(Answered {
@@ -353,7 +352,7 @@ mod tests {
     use belvedere::blocking::BlockRule;
 
     #[test]
-    fn views_that_missing_tiles_may_block_are_unproven_and_never_seen() {
+    fn views_that_missing_tiles_may_block_are_unproven() {
         // a ball of 2 m in the east, and nothing known of a place in the north
         let mut east = MedialBalls::default();
         east.push(0, [10.0, 0.0, 2.0], 2.0, 0);
@@ -381,13 +380,15 @@ mod tests {
         let several = [low, Observer { eye: [0.0, 0.0, 80.0], limits }, Observer { eye: [10.0, 0.0, 2.0], limits }];
         for parts in [[&scene, &nothing], [&nothing, &scene]] {
             let found = see(&[low], parts);
-            let Values::Codes(codes) = &found.values else { panic!("codes of one observer") };
-            assert_eq!(codes.values(), [1, 0, 2, 1, 1, 255, 255]);
+            let Pixels::Answers(bands) = &found.values else { panic!("answers of one observer") };
+            assert_eq!(bands[0].values(), [1, 0, 1, 1, 1, 255, 255]);
+            assert_eq!(bands[1].values(), [0, 0, 1, 0, 0, 255, 255]);
             assert_eq!((found.unproven_cells, found.skipped_observers), (1, 0));
             // another high above, and one inside the ball, which sees nothing
             let found = see(&several, parts);
-            let Values::Counts(counts) = &found.values else { panic!("counts of several observers") };
-            assert_eq!(counts.values(), [2, 1, 1, 2, 2, 65_535, 65_535]);
+            let Pixels::Counts(bands) = &found.values else { panic!("counts of several observers") };
+            assert_eq!(bands[0].values(), [2, 1, 2, 2, 2, 65_535, 65_535]);
+            assert_eq!(bands[1].values(), [0, 0, 1, 0, 0, 65_535, 65_535]);
             assert_eq!((found.unproven_cells, found.skipped_observers), (1, 1));
         }
     }

@@ -33,7 +33,6 @@ mod run;
 mod status;
 mod strips;
 mod survey;
-mod values;
 mod window;
 
 pub use cell_sizes::{CellSizes, Topic};

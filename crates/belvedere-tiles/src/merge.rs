@@ -4,12 +4,11 @@ use crate::grid::TileId;
 use crate::plan::Plan;
 use crate::question::Question;
 use crate::record::{Outcome, Record, Stage};
-use crate::values::Values;
 use belvedere::control::Control;
 use belvedere::crs::text::wkt_line;
 use belvedere::ground::MapGrid;
-use belvedere::io::{Georeference, PlacedRaster, Source, atomic};
-use belvedere::results::georeference;
+use belvedere::io::{Georeference, NamedBand, PlacedRaster, Source, atomic};
+use belvedere::results::{Pixels, ResultRaster, georeference};
 use belvedere::{Error, Parameter, Result};
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -70,7 +69,7 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Resul
     let (tiles, cells) = results(plan, folder, question, &planned)?;
     let frame = plan.frame()?;
     let place = georeference(&cells, &frame);
-    let (kind, no_data) = plan.kind_of(question).in_vrt();
+    let (kind, no_data) = plan.kind_of(question).in_gdal();
     let mut text = format!("<VRTDataset rasterXSize=\"{}\" rasterYSize=\"{}\">\n", cells.width, cells.height);
     if let Some(system) = wkt_line(&frame.crs) {
         let _ = writeln!(text, "  <SRS>{}</SRS>", in_xml(&system));
@@ -81,20 +80,24 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Resul
     // as GDAL calls the description of a TIFF, so that one that is made from the catalogue has it too
     let what = in_xml(question.description());
     let _ = writeln!(text, "  <Metadata>\n    <MDI key=\"TIFFTAG_IMAGEDESCRIPTION\">{what}</MDI>\n  </Metadata>");
-    let _ = writeln!(text, "  <VRTRasterBand dataType=\"{kind}\" band=\"1\">\n    <Description>{what}</Description>");
-    let _ = writeln!(text, "    <NoDataValue>{no_data}</NoDataValue>");
-    for &tile in &tiles {
-        let [column, row, side] = place_of(plan, &cells, tile);
-        let _ = writeln!(
-            text,
-            "    <SimpleSource><SourceFilename relativeToVRT=\"1\">{}/{}.tif</SourceFilename><SourceBand>1</SourceBand>\
-             <SrcRect xOff=\"0\" yOff=\"0\" xSize=\"{side}\" ySize=\"{side}\"/>\
-             <DstRect xOff=\"{column}\" yOff=\"{row}\" xSize=\"{side}\" ySize=\"{side}\"/></SimpleSource>",
-            question.name(),
-            tile.name()
-        );
+    for (band, name) in (1..).zip(question.bands(plan.kind_of(question))) {
+        let name = in_xml(&name);
+        let _ = writeln!(text, "  <VRTRasterBand dataType=\"{kind}\" band=\"{band}\">");
+        let _ = writeln!(text, "    <Description>{name}</Description>\n    <NoDataValue>{no_data}</NoDataValue>");
+        for &tile in &tiles {
+            let [column, row, side] = place_of(plan, &cells, tile);
+            let _ = writeln!(
+                text,
+                "    <SimpleSource><SourceFilename relativeToVRT=\"1\">{}/{}.tif</SourceFilename>\
+                 <SourceBand>{band}</SourceBand><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"{side}\" ySize=\"{side}\"/>\
+                 <DstRect xOff=\"{column}\" yOff=\"{row}\" xSize=\"{side}\" ySize=\"{side}\"/></SimpleSource>",
+                question.name(),
+                tile.name()
+            );
+        }
+        text.push_str("  </VRTRasterBand>\n");
     }
-    text.push_str("  </VRTRasterBand>\n</VRTDataset>\n");
+    text.push_str("</VRTDataset>\n");
     let path = folder.join(format!("{}.vrt", question.name()));
     atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(Error::io(&path)))?;
     Ok(Merged { tiles: tiles.len(), without_result: planned.len() - tiles.len() })
@@ -105,8 +108,9 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Resul
 /// # Errors
 /// [`Error::InvalidParameter`] for more cells than fit into memory; those of reading and writing rasters.
 pub fn merge(plan: &Plan, folder: &Path, question: &Question, output: &Path, control: &Control<'_>) -> Result<Merged> {
-    let (values, place, merged) = gather(plan, folder, question, &plan.tiles_of(question), control)?;
-    values.write_cog(output, &place, question.description())?;
+    let (pixels, place, merged) = gather(plan, folder, question, &plan.tiles_of(question), control)?;
+    let names = question.bands(pixels.kind());
+    ResultRaster { pixels, names, description: question.description().to_owned() }.write_cog(output, &place)?;
     Ok(merged)
 }
 
@@ -127,9 +131,14 @@ pub fn merged_within(
         (0..2).all(|i| core.low[i] < high[i] - origin[i] && core.high[i] > low[i] - origin[i])
     };
     let tiles: Vec<TileId> = plan.tiles_of(question).into_iter().filter(touches).collect();
-    let (values, place, _) = gather(plan, folder, question, &tiles, control)?;
+    let (pixels, place, _) = gather(plan, folder, question, &tiles, control)?;
     let description = Some(question.description().to_owned());
-    Ok(PlacedRaster { values: values.numbers()?, place: Some(place), description })
+    let mut bands = question.bands(pixels.kind()).into_iter().zip(pixels.to_numbers()?);
+    let Some((_, values)) = bands.next() else {
+        return Err(Error::NoPoints { what: "the result has no band".to_owned() });
+    };
+    let further_bands = bands.map(|(name, values)| NamedBand { name, values }).collect();
+    Ok(PlacedRaster { values, place: Some(place), description, further_bands })
 }
 
 /// The results of `tiles` that are there, in one raster around all of them.
@@ -139,7 +148,7 @@ fn gather(
     question: &Question,
     tiles: &[TileId],
     control: &Control<'_>,
-) -> Result<(Values, Georeference, Merged)> {
+) -> Result<(Pixels, Georeference, Merged)> {
     let (with_result, cells) = results(plan, folder, question, tiles)?;
     let (width, height) = (cells.width, cells.height);
     if width.saturating_mul(height) > MOST_CELLS {
@@ -149,13 +158,14 @@ fn gather(
             expected: "at most 268 million cells; open the .vrt, or convert it with gdal_translate",
         });
     }
-    let mut all = plan.kind_of(question).nothing(width, height);
+    let kind = plan.kind_of(question);
+    let mut all = Pixels::nothing(kind, question.bands(kind).len(), [width, height]);
     for &tile in &with_result {
         control.check()?;
         let stage = Stage::Answer(question);
         let Some(record) = Record::read(plan, folder, stage, tile) else { continue };
         let path = stage.result(folder, tile);
-        let values = plan.kind_of(question).read(Source::bytes(&path, &record.read_result(&path)?))?;
+        let values = Pixels::read(Source::bytes(&path, &record.read_result(&path)?))?;
         all.put(&values, place_of(plan, &cells, tile))?;
     }
     let merged = Merged { tiles: with_result.len(), without_result: tiles.len() - with_result.len() };

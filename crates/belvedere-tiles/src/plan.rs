@@ -4,7 +4,7 @@ use crate::cell_sizes::CellSizes;
 use crate::grid::{Area, TileGrid, TileId, block_area};
 use crate::inputs::{Columns, InputFile, NOWHERE, PIECE_ROWS, hash};
 use crate::planned::{Others, SideFile, added_meshes, far_terrain};
-use crate::question::{Question, ValueKind};
+use crate::question::Question;
 use crate::record::Stage;
 use crate::survey::{Block, survey};
 use crate::window;
@@ -16,6 +16,7 @@ use belvedere::ground::{Ground, GroundParams};
 use belvedere::io::{LasHead, atomic, cloud_files};
 use belvedere::model::{ClearedArea, ModelParams, SurveyFacts};
 use belvedere::query::Coverage;
+use belvedere::results::ResultKind;
 use belvedere::{Bounds, Error, Frame, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -436,7 +437,7 @@ impl Plan {
     }
 
     /// What the values of a result are.
-    pub(crate) fn kind_of(&self, question: &Question) -> ValueKind {
+    pub(crate) fn kind_of(&self, question: &Question) -> ResultKind {
         question.kind(self.trees.is_none())
     }
 

@@ -10,9 +10,10 @@ use belvedere::apps::sky_view::{self, SkyDirections};
 use belvedere::apps::sun::Site;
 use belvedere::apps::sun_hours::{self, SunPlan};
 use belvedere::apps::tree_light::{Crowns, Season};
-use belvedere::apps::viewshed::{self, Observer, SightLimits};
+use belvedere::apps::viewshed::{Observer, SightLimits};
 use belvedere::control::Control;
 use belvedere::io::{Source, read_weather};
+use belvedere::results::{ResultKind, UNPROVEN_BAND, viewshed_words};
 use belvedere::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
@@ -89,17 +90,6 @@ pub enum Radiation {
         /// The year.
         year: i16,
     },
-}
-
-/// What the values of a result are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ValueKind {
-    /// Small codes.
-    Codes,
-    /// Numbers of observers.
-    Counts,
-    /// Measured numbers.
-    Numbers,
 }
 
 /// A question with all that follows from its parameters.
@@ -225,20 +215,31 @@ impl Question {
             Self::SunHours { .. } => sun_hours::SUN_HOURS,
             Self::SunRule { .. } => sun_hours::RULE_IS_MET,
             Self::Irradiance { .. } => irradiance::ENERGY,
-            Self::Viewshed { eyes, .. } if eyes.len() == 1 => viewshed::SEEN,
-            Self::Viewshed { .. } => viewshed::SEEN_BY,
+            Self::Viewshed { eyes, .. } => viewshed_words(eyes.len())[1],
         }
     }
 
     /// What its values are, where trees are `opaque` or let light through.
-    pub(crate) fn kind(&self, opaque: bool) -> ValueKind {
+    pub(crate) fn kind(&self, opaque: bool) -> ResultKind {
         match self {
-            Self::Shadow { .. } if !opaque => ValueKind::Numbers,
-            Self::Shadow { .. } | Self::SunRule { .. } => ValueKind::Codes,
-            Self::Viewshed { eyes, .. } if eyes.len() == 1 => ValueKind::Codes,
-            Self::Viewshed { .. } => ValueKind::Counts,
-            Self::SkyView { .. } | Self::SunHours { .. } | Self::Irradiance { .. } => ValueKind::Numbers,
+            Self::Shadow { .. } if !opaque => ResultKind::Number,
+            Self::Shadow { .. } | Self::SunRule { .. } => ResultKind::Answer,
+            Self::Viewshed { eyes, .. } if eyes.len() == 1 => ResultKind::Answer,
+            Self::Viewshed { .. } => ResultKind::Count,
+            Self::SkyView { .. } | Self::SunHours { .. } | Self::Irradiance { .. } => ResultKind::Number,
         }
+    }
+
+    /// Names of the bands of a result of a kind: answers and counts have a second one, of what missing tiles may change.
+    pub(crate) fn bands(&self, kind: ResultKind) -> Vec<String> {
+        let first = match self {
+            Self::Shadow { .. } => "lit",
+            Self::Viewshed { eyes, .. } => viewshed_words(eyes.len())[0],
+            Self::Irradiance { .. } => irradiance::ENERGY_NAME,
+            others => others.name(),
+        };
+        let second = (kind != ResultKind::Number).then_some(UNPROVEN_BAND);
+        [first].into_iter().chain(second).map(str::to_owned).collect()
     }
 
     /// What follows from its parameters, where crowns of trees let light through or not.

@@ -24,9 +24,12 @@ class Ramp:
     high: float | None = None
 
 
-ANSWERS = ((0, BLOCKED, "blocked"), (1, VISIBLE, "visible"), (2, UNPROVEN, "unproven"))
+# the first band of rasters; the second says what of it is unproven
+ANSWERS = ((0, BLOCKED, "blocked"), (1, VISIBLE, "nothing blocks it"))
 SIGHTS = (
-    *((value, "#6e6e73" if value == 0 else color, label) for value, color, label in ANSWERS),
+    (0, "#6e6e73", "blocked"),
+    (1, VISIBLE, "visible"),
+    (2, UNPROVEN, "unproven"),
     (3, OUTSIDE, "no line"),
     (4, OUTSIDE, "outside the cloud"),
 )

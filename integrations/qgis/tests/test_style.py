@@ -20,8 +20,7 @@ def test_answers_have_colours_of_their_own_and_counts_a_ramp():
     entries = parse(style.raster("viewshed", "OUTPUT", 0, 2, is_bytes=True)).findall(".//paletteEntry")
     assert [(entry.get("value"), entry.get("label")) for entry in entries] == [
         ("0", "blocked"),
-        ("1", "visible"),
-        ("2", "unproven"),
+        ("1", "nothing blocks it"),
     ]
     counted = parse(style.raster("viewshed", "OUTPUT", 0, 7, is_bytes=False)).find(".//colorrampshader")
     assert (counted.get("minimumValue"), counted.get("maximumValue")) == ("0.0", "7")

@@ -1,6 +1,7 @@
 //! Landmark: from where one thing is seen, and how much of it.
 
 use super::observers::{Reach, Standing, check_height, skip_unfit};
+use super::places::cells_of;
 use super::report::{GroundSection, LinesSection};
 use super::scene::KnownGround;
 use super::{Answers, Ask, Context, Places, Scene};
@@ -8,7 +9,7 @@ use crate::landmark::{
     LandmarkParams, LandmarkPoints, LandmarkReport, LandmarkView, MEASURES, landmark_points, landmark_views,
     observer_cell_for, spacing_for,
 };
-use crate::targets::{CellParams, CoveredCells, Measure, Targets, set_on_ground};
+use crate::targets::{CellParams, Measure, set_on_ground};
 use crate::viewshed::{OBSERVER_HEIGHT, cell_for};
 use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
 use belvedere_core::query::{BackFaces, EarthParams, MedialScene, MeshTargetParams, SurfacePieces, UnprovenAs};
@@ -222,13 +223,13 @@ impl Landmark {
         &self,
         (blockers, ground): (&MedialScene, &Ground),
         scene: &Scene,
+        context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Lookers> {
         let height = self.observer_height.unwrap_or(OBSERVER_HEIGHT);
-        let cells = CellParams::default().with_height(height).with_covered(CoveredCells::Kept);
-        let cloud = scene.ground_cloud()?;
+        let cells = CellParams::default().with_height(height);
+        let mut targets = cells_of(scene, ground.clone(), &cells, context, control)?;
         control.stage("testing observers", 0, || {
-            let (mut targets, _) = Targets::of_cells(cloud, ground.clone(), &cells, control)?;
             let inside = targets.leave_out_enclosed(blockers, control)?;
             let eyes: Vec<[f64; 3]> = targets.positions.iter().map(|eye| eye.map(f64::from)).collect();
             Ok(Lookers { places: eyes.clone(), eyes, inside })
@@ -264,7 +265,7 @@ impl Ask for Landmark {
         let ground = &known.ground;
         let Lookers { places, eyes, inside } = match &self.observers {
             Some(standing) => self.given(standing, (&blockers, ground), scene, context, control)?,
-            None => self.in_cells((&blockers, ground), scene, control)?,
+            None => self.in_cells((&blockers, ground), scene, context, control)?,
         };
         let params = self.params();
         let views = control

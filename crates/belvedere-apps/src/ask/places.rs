@@ -7,7 +7,7 @@ use super::{Context, Remark};
 use crate::edge::{EdgeReport, near_edge};
 use crate::targets::{CellLevel, CellParams, Layout, MeshParams, Targets};
 use crate::viewshed::cell_for;
-use belvedere_core::ground::{GroundPoints, MapGrid};
+use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
 use belvedere_data::control::Control;
 use belvedere_data::polygon::is_inside;
 use belvedere_data::{Error, Mesh, Parameter, PointCloud, Result};
@@ -157,6 +157,27 @@ pub fn moved(cloud: &PointCloud, scene: &Scene) -> Result<Vec<[f32; 3]>> {
     Ok(bare.moved_to(frame).positions)
 }
 
+/// Cells without those under a cover or inside what was added.
+pub(super) fn cells_of(
+    scene: &Scene,
+    ground: Ground,
+    params: &CellParams,
+    context: &mut Context,
+    control: &Control<'_>,
+) -> Result<Targets> {
+    let name = if params.level == CellLevel::Surface { "finding the surface" } else { "finding hidden ground" };
+    let cloud = scene.ground_cloud()?;
+    let (mut targets, report) = control.stage(name, 0, || Targets::of_cells(cloud, ground, params, control))?;
+    let mut under_cover = report.cells_below_objects_excluded;
+    if let Some(added) = scene.model().added() {
+        under_cover += targets.set_on_added(added, params);
+    }
+    if params.level == CellLevel::Ground {
+        context.report.places.cells_under_cover_left_out = Some(under_cover);
+    }
+    Ok(targets)
+}
+
 impl Cells {
     /// The grid of these cells over all of a scene.
     ///
@@ -182,17 +203,7 @@ impl Cells {
         if let Some(height) = self.height {
             params = params.with_height(height);
         }
-        let name = if self.level == CellLevel::Surface { "finding the surface" } else { "finding hidden ground" };
-        let cloud = scene.ground_cloud()?;
-        let (mut targets, report) =
-            control.stage(name, 0, || Targets::of_cells(cloud, known.ground.clone(), &params, control))?;
-        let mut under_cover = report.cells_below_objects_excluded;
-        if let Some(added) = scene.model().added() {
-            under_cover += targets.set_on_added(added, &params);
-        }
-        if self.level == CellLevel::Ground {
-            context.report.places.cells_under_cover_left_out = Some(under_cover);
-        }
+        let mut targets = cells_of(scene, known.ground.clone(), &params, context, control)?;
         self.keep_within(&mut targets);
         Ok(targets)
     }

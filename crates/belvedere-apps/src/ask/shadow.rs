@@ -5,7 +5,7 @@ use super::report::{MeasuresSection, PlacesReport};
 use super::sun::{MAX_LISTED_SUNS, NamedSun, SunPlace, Suns};
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::shadow::{Edges, LIT, ShadowSun, scene_shadow, sun_directions, unproven_light};
-use crate::targets::Measure;
+use crate::targets::{Measure, ResultKind};
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
 use belvedere_data::report::percent;
@@ -96,14 +96,16 @@ impl Ask for Shadow {
             _ => None,
         };
         let decimals = if self.edges == Edges::Soft { 4 } else { 2 };
+        let kind =
+            if self.edges == Edges::Hard && light.trees.is_none() { ResultKind::Answer } else { ResultKind::Number };
+        // one raster, with a band for each sun
+        let as_band = |measure: Measure| measure.with_range(Some([0.0, 1.0])).with_kind(kind).as_further_band();
         let of_sun = |(sun, values): (&NamedSun, Vec<f32>)| {
-            let measure = Measure::new(&sun.column, values).with_description(LIT);
-            measure.with_decimals(decimals).with_range(Some([0.0, 1.0]))
+            as_band(Measure::new(&sun.column, values).with_description(LIT).with_decimals(decimals))
         };
         let mut measures: Vec<Measure> = suns.iter().zip(lit).map(of_sun).collect();
         measures.extend(doubts.map(|doubts| {
-            let measure = Measure::new(UNPROVEN, doubts).with_description("1: lit, but unproven");
-            measure.with_decimals(0).with_range(Some([0.0, 1.0]))
+            as_band(Measure::new(UNPROVEN, doubts).with_description("1: lit, but unproven").with_decimals(0))
         }));
         let targets = &light.targets;
         let listed = &measures[..measures.len().min(MAX_LISTED_SUNS)];

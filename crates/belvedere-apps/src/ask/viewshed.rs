@@ -12,7 +12,7 @@ use super::report::{GroundSection, LinesSection};
 use super::scene::KnownGround;
 use super::{Answers, Ask, Context, Places, Remark, Scene};
 use crate::eyes::{EyesReport, fault_of_target};
-use crate::targets::{set_on_ground, set_on_terrain};
+use crate::targets::{Targets, set_on_ground, set_on_terrain};
 use crate::viewshed::{
     OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, box_within_reach,
     cell_for, far_targets, terrain_within_reach,
@@ -332,16 +332,25 @@ impl Ask for Viewshed {
         };
         let params = ViewshedParams::default().with_earth(self.earth).with_unproven(self.unproven());
         let sights = Sights { question: self, scene, blockers: &blockers, observers: &observers, params };
-        let cells = match self.masks || self.wants(ViewshedTargets::Cells) {
-            true => Some(sights.of_cells(ground, context, control)?),
+        let is_of_cells = self.masks || self.wants(ViewshedTargets::Cells);
+        let targets = match is_of_cells || self.max_height.is_some() {
+            true => Some(sights.cells(ground, context, control)?),
             false => None,
+        };
+        let cells = match targets.as_ref().filter(|_| is_of_cells) {
+            Some(targets) => Some(sights.of_cells((targets, ground.grid.cell), context, control)?),
+            None => None,
         };
         let points = match self.wants(ViewshedTargets::Points) {
             true => Some(sights.of_points(context, control)?),
             false => None,
         };
         let far = terrain.map(|terrain| sights.of_terrain(terrain, context, control)).transpose()?;
-        let heights = self.max_height.map(|height| sights.heights(height, ground, control)).transpose()?;
+        let open_ground = targets.as_ref().and_then(Targets::open_ground);
+        let heights = match (self.max_height, &open_ground) {
+            (Some(height), Some(ground)) => Some(sights.heights(height, ground, control)?),
+            _ => None,
+        };
         self.headline_of_eyes(&eyes.report, context);
         let (eyes, reverse) = (eyes.eyes, self.reverse);
         Ok(Answers::new(ViewshedFound { eyes, reverse, ground: known, cells, points, far, heights }, Vec::new()))

@@ -20,6 +20,8 @@ pub const MONTH_COLUMNS: [&str; 12] = [
 ];
 /// What a raster of energies says of itself.
 pub const ENERGY: &str = "energy of the period, kWh/m2";
+/// Name of its column and its band.
+pub const ENERGY_NAME: &str = "kwh_m2";
 /// Digits of energies, kWh/m², and of shares.
 const ENERGY_DECIMALS: usize = 2;
 const SHARE_DECIMALS: usize = 4;
@@ -33,22 +35,13 @@ pub fn irradiation_measures(sums: &[Irradiation], group_count: usize) -> Vec<Mea
     #[expect(clippy::cast_possible_truncation, reason = "energies for people")]
     let column =
         |value: &dyn Fn(&Irradiation) -> f64| -> Vec<f32> { whole.iter().map(|sum| value(sum) as f32).collect() };
-    let energy = |name: &str, description, values| Measure {
-        name: name.to_owned(),
-        description,
-        decimals: ENERGY_DECIMALS,
-        range: None,
-        values,
+    let energy = |name: &str, description, values| {
+        Measure::new(name, values).with_description(description).with_decimals(ENERGY_DECIMALS)
     };
+    let loss = Measure::new("loss", column(&Irradiation::loss)).with_description("share lost by shading");
     let mut measures = vec![
-        energy("kwh_m2", ENERGY, column(&Irradiation::total)),
-        Measure {
-            name: "loss".to_owned(),
-            description: "share lost by shading",
-            decimals: SHARE_DECIMALS,
-            range: Some([0.0, 1.0]),
-            values: column(&Irradiation::loss),
-        },
+        energy(ENERGY_NAME, ENERGY, column(&Irradiation::total)),
+        loss.with_decimals(SHARE_DECIMALS).with_range(Some([0.0, 1.0])),
         energy("beam_kwh_m2", "direct, from the sun, kWh/m2", column(&|sum| sum.beam)),
         energy("sky_kwh_m2", "diffuse, from the sky, kWh/m2", column(&|sum| sum.diffuse)),
         energy("ground_kwh_m2", "reflected, kWh/m2", column(&|sum| sum.reflected)),

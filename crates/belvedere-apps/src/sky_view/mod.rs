@@ -40,12 +40,8 @@ impl SkyView {
     /// Both figures as measures.
     #[must_use]
     pub fn into_measures(self) -> Vec<Measure> {
-        let measure = |name: &str, description, values| Measure {
-            name: name.to_owned(),
-            description,
-            decimals: 4,
-            range: Some([0.0, 1.0]),
-            values,
+        let measure = |name: &str, description, values| {
+            Measure::new(name, values).with_description(description).with_range(Some([0.0, 1.0]))
         };
         vec![
             measure("sky_view_factor", SKY_VIEW_FACTOR, self.factors),

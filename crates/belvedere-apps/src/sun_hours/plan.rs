@@ -3,7 +3,7 @@
 use super::{RULE_IS_MET, SUN_HOURS, SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
 use crate::rows::{RowBlock, Surroundings, check_normals, fold_rows, normals_of};
 use crate::sun::{Site, SunSchedule};
-use crate::targets::{Measure, Targets};
+use crate::targets::{Measure, ResultKind, Targets};
 use crate::tree_light::{Crowns, Season};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
@@ -116,12 +116,8 @@ impl SunSums {
         let most = plan.period.days.iter().map(|day| day.possible_hours).fold(0.0, f64::max);
         let hours = Some([0.0, most.max(0.1)]);
         let (clock, share) = (Some([0.0, 24.0]), Some([0.0, 1.0]));
-        let measure = |name: &str, description, range, values| Measure {
-            name: name.to_owned(),
-            description,
-            decimals: 3,
-            range,
-            values,
+        let measure = |name: &str, description, range, values| {
+            Measure::new(name, values).with_description(description).with_decimals(3).with_range(range)
         };
         let day_count = plan.period.days.len();
         #[expect(clippy::cast_precision_loss, reason = "a few thousand days at most")]
@@ -142,7 +138,7 @@ impl SunSums {
         for (planned, found) in plan.rules.iter().zip(self.rules) {
             let days = planned.schedule.days.len();
             let is_met = found.days.iter().map(|&met| if met as usize == days { 1.0 } else { 0.0 }).collect();
-            measures.push(measure(&planned.column, RULE_IS_MET, share, is_met));
+            measures.push(measure(&planned.column, RULE_IS_MET, share, is_met).with_kind(ResultKind::Answer));
         }
         measures.iter_mut().for_each(|measure| targets.clear_unasked(&mut measure.values));
         measures

@@ -19,16 +19,6 @@ pub enum CellLevel {
     Surface,
 }
 
-/// What becomes of cells on the ground that lie under a roof or another cover.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CoveredCells {
-    /// They are not asked about. Default.
-    #[default]
-    LeftOut,
-    /// They are asked about like the others.
-    Kept,
-}
-
 /// How cells become targets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -37,26 +27,23 @@ pub struct CellParams {
     pub level: CellLevel,
     /// Height of the target above that, metres. Default 0.1.
     pub height: f64,
-    /// What becomes of cells under a cover; those on a surface have none.
-    pub covered: CoveredCells,
 }
 
 belvedere_data::setters!(CellParams {
     with_level(level: CellLevel),
     with_height(height: f64),
-    with_covered(covered: CoveredCells),
 });
 
 impl Default for CellParams {
     fn default() -> Self {
-        Self { level: CellLevel::Ground, height: SKY_TARGET_HEIGHT, covered: CoveredCells::LeftOut }
+        Self { level: CellLevel::Ground, height: SKY_TARGET_HEIGHT }
     }
 }
 
 /// What was left out of cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CellReport {
-    /// Cells under a cover that are not asked about.
+    /// Cells on the ground under a roof or another cover, which are no targets.
     #[serde(rename = "cells_under_cover_left_out")]
     pub cells_below_objects_excluded: usize,
 }
@@ -88,7 +75,7 @@ impl Targets {
         Ok(Self::of_cells(cloud, ground, params, &Control::none())?.0)
     }
 
-    /// The cells of `ground`, whose heights come from `cloud`, in the frame of that cloud.
+    /// The cells of `ground`, whose heights come from `cloud`, in the frame of that cloud. Ground under a roof or another cover is left out.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a height that is negative or not finite, those of [`top_surface`], and [`Error::Cancelled`].
@@ -113,7 +100,7 @@ impl Targets {
         }
         let mut positions = cell_targets(&ground, params.height);
         let mut report = CellReport::default();
-        if params.level == CellLevel::Ground && params.covered == CoveredCells::LeftOut {
+        if params.level == CellLevel::Ground {
             let hidden = hidden_ground(&cloud.positions, &ground);
             for (position, _) in positions.iter_mut().zip(hidden).filter(|(_, is_hidden)| *is_hidden) {
                 *position = [f32::NAN; 3];
@@ -124,15 +111,12 @@ impl Targets {
     }
 
     /// Sets cells made with `params` on the meshes that were added: those on a surface on top of what is higher, cloud or mesh. Cells on the
-    /// ground inside a mesh are left out, unless those under a cover are kept; returns how many.
+    /// ground inside a mesh are left out; returns how many.
     pub fn set_on_added(&mut self, added: &AddedMeshes, params: &CellParams) -> usize {
         let Layout::Cells(ground) = &mut self.layout else { return 0 };
         if params.level == CellLevel::Surface {
             added.raise(&mut ground.heights, &ground.grid);
             self.positions = cell_targets(ground, params.height);
-            return 0;
-        }
-        if params.covered == CoveredCells::Kept {
             return 0;
         }
         let mut left_out = 0;

@@ -1,5 +1,6 @@
 //! Values of targets, with what is needed to write and draw them.
 
+use super::ResultKind;
 use belvedere_data::report::rounded;
 use serde::Serialize;
 
@@ -14,6 +15,10 @@ pub struct Measure {
     pub decimals: usize,
     /// What a legend spans; `None` for the span of the values.
     pub range: Option<[f64; 2]>,
+    /// What its values are, which decides the type of its raster. Default: numbers.
+    pub kind: ResultKind,
+    /// Whether it is a band of the raster of the first measure rather than a raster of its own. Default: its own.
+    pub is_further_band: bool,
     /// (M), NaN where there is none.
     pub values: Vec<f32>,
 }
@@ -33,7 +38,8 @@ impl Measure {
     /// Values with the name of their column; four digits in tables, and a legend that spans the values.
     #[must_use]
     pub fn new(name: &str, values: Vec<f32>) -> Self {
-        Self { name: name.to_owned(), description: "", decimals: 4, range: None, values }
+        let (name, kind) = (name.to_owned(), ResultKind::Number);
+        Self { name, description: "", decimals: 4, range: None, kind, is_further_band: false, values }
     }
 
     /// This with another description.
@@ -52,6 +58,18 @@ impl Measure {
     #[must_use]
     pub fn with_range(self, range: Option<[f64; 2]>) -> Self {
         Self { range, ..self }
+    }
+
+    /// This with another kind of values.
+    #[must_use]
+    pub fn with_kind(self, kind: ResultKind) -> Self {
+        Self { kind, ..self }
+    }
+
+    /// This as a band of the raster of the first measure.
+    #[must_use]
+    pub fn as_further_band(self) -> Self {
+        Self { is_further_band: true, ..self }
     }
 
     /// The same measure of no target.
@@ -99,7 +117,7 @@ mod tests {
     use super::*;
 
     fn measure(values: &[f32]) -> Measure {
-        Measure { name: "m".to_owned(), description: "", decimals: 1, range: None, values: values.to_vec() }
+        Measure::new("m", values.to_vec()).with_decimals(1)
     }
 
     #[test]

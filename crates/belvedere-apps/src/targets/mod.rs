@@ -14,13 +14,15 @@
 mod cells;
 mod measure;
 mod on_ground;
+mod result_kind;
 mod routes;
 mod surfaces;
 mod windows;
 
-pub use cells::{CellLevel, CellParams, CellReport, CoveredCells};
+pub use cells::{CellLevel, CellParams, CellReport};
 pub use measure::{Measure, MeasureStatistics};
 pub use on_ground::{grid_around, set_on_ground, set_on_terrain};
+pub use result_kind::ResultKind;
 pub use routes::Route;
 pub use surfaces::{FaceMeans, Facing, MeshParams, object_areas};
 pub use windows::{Window, objects_of_windows};
@@ -112,6 +114,14 @@ impl Targets {
             Layout::Cells(ground) => Some(ground),
             _ => None,
         }
+    }
+
+    /// The ground below cells, without heights in cells that are no targets; `None` where targets are no cells.
+    #[must_use]
+    pub fn open_ground(&self) -> Option<Ground> {
+        let mut ground = self.ground()?.clone();
+        self.clear_unasked(ground.heights.values_mut());
+        Some(ground)
     }
 
     /// Makes the values of targets that are not asked about NaN.

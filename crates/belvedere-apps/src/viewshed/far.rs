@@ -1,6 +1,6 @@
 //! What observers see of the terrain beyond a cloud, and from where there a target is seen.
 
-use super::{Observer, Viewshed, ViewshedParams, box_within_reach, check};
+use super::{Observer, Viewshed, ViewshedParams, box_within_reach, check, tests_proof};
 use belvedere_core::query::{Answer, MedialScene};
 use belvedere_data::control::Control;
 use belvedere_data::{ElevationGrid, Error, Parameter, Result};
@@ -55,12 +55,15 @@ pub fn far_viewshed(
     let width = terrain.heights().width();
     let mut answers = vec![Answer::OutsideCloud; terrain.heights().values().len()];
     let mut counts = vec![0; answers.len()];
-    let rows = answers.par_chunks_mut(width).zip(counts.par_chunks_mut(width)).enumerate();
+    let mut unproven_counts = vec![0; answers.len()];
+    let of_rows = answers.par_chunks_mut(width).zip(counts.par_chunks_mut(width));
+    let rows = of_rows.zip(unproven_counts.par_chunks_mut(width)).enumerate();
     let none_seen = || vec![0; observers.len()];
     let seen_counts = rows
-        .map(|(row, (answers, counts))| {
+        .map(|(row, ((answers, counts), unproven_counts))| {
             let mut seen_counts = none_seen();
-            for (column, (answer, count)) in answers.iter_mut().zip(counts).enumerate() {
+            for (column, ((answer, count), unproven)) in answers.iter_mut().zip(counts).zip(unproven_counts).enumerate()
+            {
                 control.check()?;
                 let Some(node) = terrain.node(column, row).filter(|node| is_beyond(scene, *node)) else { continue };
                 let target = [node[0], node[1], node[2] + height];
@@ -70,7 +73,9 @@ pub fn far_viewshed(
                         continue;
                     }
                     let sight = scene.far_sight_answer(observer.eye, target, &params.earth);
-                    match (params.unproven.settle(sight), *answer) {
+                    let sight = params.unproven.settle(sight);
+                    *unproven += u32::from(sight == Answer::Unproven);
+                    match (sight, *answer) {
                         (Answer::Visible, _) => {
                             *answer = Answer::Visible;
                             *count += 1;
@@ -86,5 +91,8 @@ pub fn far_viewshed(
             Ok(seen_counts)
         })
         .try_reduce(none_seen, |a, b| Ok(a.into_iter().zip(b).map(|(a, b)| a + b).collect()))?;
-    Ok(Viewshed { answers, counts, masks: Vec::new(), seen_counts })
+    if !tests_proof(scene, params) {
+        unproven_counts = Vec::new();
+    }
+    Ok(Viewshed { answers, counts, unproven_counts, masks: Vec::new(), seen_counts })
 }

@@ -59,6 +59,9 @@ pub struct Viewshed {
     pub answers: Vec<Answer>,
     /// How many observers see each target, (M).
     pub counts: Vec<u32>,
+    /// How many more observers have a line of sight to each target that nothing blocks, but that is not proven, (M); empty where proof is not
+    /// tested.
+    pub unproven_counts: Vec<u32>,
     /// Bands of 32 observers: bit i of band b tells whether observer 32 · b + i sees each target, (bands, M); empty where masks are not
     /// kept.
     pub masks: Vec<Vec<u32>>,
@@ -82,9 +85,9 @@ pub fn tested_height(height: f64) -> f64 {
 }
 
 /// What a raster of what one observer sees says of itself.
-pub const SEEN: &str = "1 visible, 0 blocked, 2 unproven, 255 nodata";
+pub const SEEN: &str = "1 nothing blocks it, 0 blocked, 255 nodata";
 /// What a raster of several observers says of itself.
-pub const SEEN_BY: &str = "number of observers that see the cell, 65535 nodata";
+pub const SEEN_BY: &str = "number of observers from which nothing blocks the cell, 65535 nodata";
 
 /// Default side of a cell, metres: what points of usual airborne surveys (0.3 to 0.5 m apart) can tell.
 pub const CELL: f64 = 0.5;
@@ -177,6 +180,7 @@ pub fn viewshed_among(
     let mut result = Viewshed {
         answers: asked.before_anybody_sees(observers),
         counts: vec![0; targets.len()],
+        unproven_counts: if tests_proof(scene, params) { vec![0; targets.len()] } else { Vec::new() },
         masks: Vec::new(),
         seen_counts: Vec::with_capacity(observers.len()),
     };
@@ -194,6 +198,11 @@ pub fn viewshed_among(
         }
     }
     Ok(result)
+}
+
+/// Whether unproven lines of sight have an answer of their own.
+fn tests_proof(scene: &MedialScene, params: &ViewshedParams) -> bool {
+    params.unproven == UnprovenAs::Reported && scene.proof().is_some()
 }
 
 /// Targets of which a band takes little memory: 4 MB.
@@ -222,7 +231,7 @@ enum Threading {
 struct Band {
     /// Bit i: observer i sees the target, (M).
     seen: Vec<u32>,
-    /// Rows of targets that some of them see without proof.
+    /// Rows of targets that one of them sees without proof, once for each that does.
     unproven: Vec<u32>,
     seen_counts: Vec<usize>,
 }
@@ -325,6 +334,9 @@ fn add(result: &mut Viewshed, band: Band, masks: Masks) {
         let answer = &mut result.answers[row as usize];
         if *answer != Answer::Visible {
             *answer = Answer::Unproven;
+        }
+        if let Some(count) = result.unproven_counts.get_mut(row as usize) {
+            *count += 1;
         }
     }
     let targets = result.answers.par_iter_mut().zip(&mut result.counts).zip(&band.seen).with_min_len(CHUNK);

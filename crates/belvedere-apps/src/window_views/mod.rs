@@ -129,7 +129,8 @@ pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
     let mut push = |name: String, description, decimals, range, value: &dyn Fn(&WindowView) -> f64| {
         #[expect(clippy::cast_possible_truncation, reason = "percentages and metres")]
         let values = views.iter().map(|view| value(view) as f32).collect();
-        measures.push(Measure { name, description, decimals, range, values });
+        let measure = Measure::new(&name, values).with_description(description).with_decimals(decimals);
+        measures.push(measure.with_range(range));
     };
     let percent = Some([0.0, 100.0]);
     for (i, seen) in Seen::ALL.into_iter().enumerate() {

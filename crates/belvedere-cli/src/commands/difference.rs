@@ -9,7 +9,7 @@ use belvedere::apps::difference::{clear_unproven, difference};
 use belvedere::figures::write_png;
 use belvedere::io::{Cells, Georeference, PlacedRaster, read_tif, write_table, write_tif_f32};
 use belvedere::raster::Raster;
-use belvedere::results::{NO_VALUE, difference_map};
+use belvedere::results::{ResultKind, UNPROVEN_BAND, difference_map};
 use std::path::Path;
 
 /// Share of a cell by which two rasters may lie apart and still have the same cells.
@@ -37,7 +37,12 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
         );
     }
     for (path, raster) in [(&arguments.before, &mut before), (&arguments.after, &mut after)] {
-        let unproven = clear_unproven(raster.values.values_mut(), raster.description.as_deref());
+        let band = raster.further_bands.iter().find(|band| band.name == UNPROVEN_BAND);
+        let unproven = band.map_or(&[][..], |band| band.values.values());
+        let unproven = clear_unproven(raster.values.values_mut(), unproven, raster.description.as_deref());
+        if raster.further_bands.iter().any(|band| band.name != UNPROVEN_BAND) {
+            run.summary.warn("bands-left-out", format!("{}: only the first band is compared", path.display()));
+        }
         if unproven > 0 {
             run.summary.warn(
                 "unproven-cells-left-out",
@@ -69,7 +74,7 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
                 write_table(output, &columns)
             }
             "png" => write_png(output, &difference_map(&values, cell_area.sqrt(), place, &title)?),
-            _ => write_tif_f32(output, &values, place, Some(NO_VALUE), Some("after less before")),
+            _ => write_tif_f32(output, &values, place, Some(ResultKind::NO_NUMBER), Some("after less before")),
         })?;
     }
     run.summary

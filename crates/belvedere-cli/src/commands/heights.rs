@@ -6,11 +6,8 @@ use belvedere::Frame;
 use belvedere::ground::MapGrid;
 use belvedere::io::{write_npy_f32_2d, write_tif_f32};
 use belvedere::raster::Raster;
-use belvedere::results::georeference;
+use belvedere::results::{ResultKind, georeference};
 use std::path::Path;
-
-/// What stands in a GeoTIFF where there is no height.
-const NO_HEIGHT: f32 = -9999.0;
 
 /// Writes heights of the cells of `grid`, NaN where there is none, as .npy or GeoTIFF; `what` says what they are.
 pub(super) fn write_heights(
@@ -22,5 +19,6 @@ pub(super) fn write_heights(
     if extension(output) == "npy" {
         return Ok(write_npy_f32_2d(output, heights)?);
     }
-    Ok(write_tif_f32(output, heights, Some(&georeference(grid, frame)), Some(NO_HEIGHT), Some(what))?)
+    let (place, nothing) = (georeference(grid, frame), Some(ResultKind::NO_NUMBER));
+    Ok(write_tif_f32(output, heights, Some(&place), nothing, Some(what))?)
 }

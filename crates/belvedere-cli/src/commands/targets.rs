@@ -14,13 +14,10 @@ use belvedere::figures::{Picture, write_png};
 use belvedere::ground::{GroundPoints, highest_points};
 use belvedere::io::{Georeference, atomic, write_tif_u8};
 use belvedere::raster::Raster;
-use belvedere::results::{TakenFrom, georeference, measure_map, write_measures, write_raster};
+use belvedere::results::{ResultKind, TakenFrom, georeference, measure_map, write_measures, write_raster};
 use belvedere::{Mesh, PointCloud};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// No flag of the edge.
-const NO_FLAG: u8 = 255;
 
 /// What targets were taken from.
 pub(crate) enum Source {
@@ -155,11 +152,12 @@ impl<'a> Shown<'a> {
     /// Writes which cells are near the edge of the cloud.
     pub(crate) fn write_edge_mask(&self, path: Option<&Path>, run: &mut Run) -> Result<()> {
         let (Some(path), Some(ground)) = (path, self.on.targets.ground()) else { return Ok(()) };
-        let values = self.on.near_edge.iter().map(|flag| flag.map_or(NO_FLAG, u8::from)).collect();
+        let values = self.on.near_edge.iter().map(|&flag| ResultKind::answer(flag)).collect();
         let raster = Raster::from_values(ground.grid.width, ground.grid.height, values)?;
         let place = georeference(&ground.grid, &self.on.targets.frame);
         let what = "1 near the edge of the cloud, 0 not, 255 nodata";
-        run.stage("writing", 0, |_| write_tif_u8(path, &raster, Some(&place), Some(NO_FLAG), Some(what)))?;
+        let nothing = Some(ResultKind::NO_ANSWER);
+        run.stage("writing", 0, |_| write_tif_u8(path, &raster, Some(&place), nothing, Some(what)))?;
         run.summary.add("edge_mask_written", path.display().to_string());
         Ok(())
     }
@@ -190,7 +188,7 @@ impl<'a> Shown<'a> {
             atomic::make_folder(folder)?;
             for measure in measures {
                 let path = folder.join(format!("{}.tif", measure.name));
-                write_raster(&path, &self.on.targets, measure)?;
+                write_raster(&path, &self.on.targets, &[measure])?;
                 written.push(path.display().to_string());
             }
         }

@@ -295,8 +295,13 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     assert_eq!(what(&format!("{shadow}.tif")), "share of the sun, 0 in shadow");
     assert_eq!(width(shadow), 2 * width("sun_hours"));
     let catalogue = place.text(&format!("run/{shadow}.vrt"));
-    assert!(catalogue.contains("<Description>share of the sun, 0 in shadow</Description>"), "{catalogue}");
-    assert_eq!(what("seen.tif"), "1 visible, 0 blocked, 2 unproven, 255 nodata");
+    assert!(catalogue.contains(">share of the sun, 0 in shadow</MDI>"), "{catalogue}");
+    for (band, name) in [(1, "lit"), (2, "unproven")] {
+        let head = format!("band=\"{band}\">\n    <Description>{name}</Description>");
+        assert!(catalogue.contains(&head), "{catalogue}");
+    }
+    assert_eq!(what("seen.tif"), "1 nothing blocks it, 0 blocked, 255 nodata");
+    assert_eq!(raster("seen").further_bands[0].name, "unproven");
     let tile = std::fs::read_dir(place.path("run/sun_hours")).unwrap().map(|entry| entry.unwrap().path());
     let tile = tile.into_iter().find(|path| path.extension().is_some_and(|extension| extension == "tif")).unwrap();
     let of_tile = belvedere::io::read_tif(tile.as_path()).unwrap().description;

@@ -18,6 +18,7 @@ mod envelopes;
 mod far_terrain;
 mod given_rows;
 mod help_examples;
+mod holes;
 mod implausible;
 mod info;
 mod interrupts;

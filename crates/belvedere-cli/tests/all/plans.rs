@@ -1,8 +1,8 @@
 //! Scenes as planned: meshes added to the house whose shadow is known.
 
 use crate::common::{EAST, NORTH, Workplace, at, column, house};
-use belvedere::io::write_tif_u8;
-use belvedere::raster::Raster;
+use belvedere::apps::viewshed::SEEN;
+use belvedere::results::{Pixels, ResultRaster};
 
 const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json";
 
@@ -167,10 +167,14 @@ fn differences_are_those_of_the_two_results_cell_by_cell() {
 #[test]
 fn cells_that_become_unproven_are_neither_gain_nor_loss() {
     let place = Workplace::new();
-    let seen = Some("1 visible, 0 blocked, 2 unproven, 255 nodata");
-    for (name, values) in [("before.tif", vec![0, 1, 1, 2, 255, 0]), ("after.tif", vec![2, 2, 0, 1, 0, 1])] {
-        let raster = Raster::from_values(3, 2, values).unwrap();
-        write_tif_u8(place.path(name).as_path(), &raster, None, Some(255), seen).unwrap();
+    let names = ["visible", "unproven"].map(str::to_owned).to_vec();
+    for (name, seen, unproven) in [
+        ("before.tif", vec![0, 1, 1, 1, 255, 0], vec![0, 0, 0, 1, 255, 0]),
+        ("after.tif", vec![1, 1, 0, 1, 0, 1], vec![1, 1, 0, 0, 0, 0]),
+    ] {
+        let pixels = Pixels::answers([seen, unproven], [3, 2]).unwrap();
+        let raster = ResultRaster { pixels, names: names.clone(), description: SEEN.to_owned() };
+        raster.write(&place.path(name), None).unwrap();
     }
     let run = place.summary("difference before.tif after.tif -o change.csv");
     let cells = ["cells", "cells_gain", "cells_loss", "cells_only_before", "cells_only_after"];

@@ -7,7 +7,11 @@ const MOST_CELLS: f64 = 1e8;
 /// Cells up to this side may be larger than the area that they divide, metres: a small area still is one cell.
 const LEAST_SIDE: f64 = 100.0;
 
-/// Square cells on the map, rows from the north, columns from the west.
+/// Share of a cell by which a place may lie beyond an edge of a grid and still count as on it: local coordinates are rounded to f32.
+const ON_EDGE: f64 = 1e-3;
+
+/// Square cells on the map, rows from the north, columns from the west. A cell holds its west and south edges, not its east and north ones,
+/// so that each place lies in one cell and the grids of adjoining areas share none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapGrid {
     /// West and north rim, local metres.
@@ -21,8 +25,9 @@ pub struct MapGrid {
 }
 
 impl MapGrid {
-    /// The grid over the box on the map from `low` to `high`, local metres, whose rims lie at whole multiples of `cell` metres counted
-    /// from where `origin`, metres, counts from: grids of neighbouring surveys fit together.
+    /// The grid over the box on the map from `low` to `high`, local metres, whose edges lie at whole multiples of `cell` metres counted
+    /// from where `origin`, metres, counts from: grids of neighbouring surveys fit together. A box that ends at such a multiple gets no
+    /// cells beyond it, so that adjoining boxes share no cell; one without an extent gets one cell.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a cell that is not above zero or longer than the box and than 100 m, a box that is not finite, and more than 100 million cells.
@@ -38,13 +43,14 @@ impl MapGrid {
         if cell > side.max(LEAST_SIDE) {
             return invalid(Parameter::Cell, format!("{cell} m"), "at most as long as the area that it divides");
         }
-        let west = ((low[0] + origin[0]) / cell).floor();
-        let south = ((low[1] + origin[1]) / cell).floor();
-        // a point on the east or north rim has a cell too
-        let (east, north) = (
-            (((high[0] + origin[0]) / cell).floor() + 1.0).max(west + 1.0),
-            (((high[1] + origin[1]) / cell).floor() + 1.0).max(south + 1.0),
-        );
+        let edge = |local: f64, origin: f64, outward: fn(f64) -> f64| {
+            let position = (local + origin) / cell;
+            let rounding = (local.abs() * f64::from(f32::EPSILON) / cell).min(ON_EDGE);
+            if (position - position.round()).abs() <= rounding { position.round() } else { outward(position) }
+        };
+        let [west, south] = [0, 1].map(|axis| edge(low[axis], origin[axis], f64::floor));
+        let east = edge(high[0], origin[0], f64::ceil).max(west + 1.0);
+        let north = edge(high[1], origin[1], f64::ceil).max(south + 1.0);
         let (columns, rows) = (east - west, north - south);
         if !(columns * rows <= MOST_CELLS) {
             return invalid(
@@ -82,22 +88,30 @@ impl MapGrid {
         [self.corner[0] + column as f64 * self.cell, self.corner[1] - row as f64 * self.cell]
     }
 
-    /// Where a local position lies, in columns from the west and rows from the north, fractions counted; `None` outside the grid.
+    /// Where a local position lies, in columns from the west and rows from the north, fractions counted; `None` outside the grid, whose
+    /// outer edges are all inside: what is interpolated between cells has a value on them.
     #[must_use]
     pub fn cell_position(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
-        let position = [(x - self.corner[0]) / self.cell, (self.corner[1] - y) / self.cell];
-        let inside =
-            (0.0..=self.width as f64).contains(&position[0]) && (0.0..=self.height as f64).contains(&position[1]);
-        inside.then_some(position)
+        let on_axis = |position: f64, count: usize| {
+            let last = count as f64;
+            (-ON_EDGE..=last + ON_EDGE).contains(&position).then(|| position.clamp(0.0, last))
+        };
+        let column = on_axis((x - self.corner[0]) / self.cell, self.width)?;
+        let row = on_axis((self.corner[1] - y) / self.cell, self.height)?;
+        Some([column, row])
     }
 
-    /// Column and row of the cell that holds a local position; `None` outside.
+    /// Column and row of the cell that holds a local position; `None` outside, and on the east and north edges of the grid, which belong to
+    /// the cells beyond.
     #[must_use]
     pub fn cell_of(&self, position: [f64; 2]) -> Option<[usize; 2]> {
         let [column, row] = self.cell_position(position)?;
+        if column > self.width as f64 - ON_EDGE || row < ON_EDGE {
+            return None;
+        }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the grid")]
-        let cell = [(column as usize).min(self.width.checked_sub(1)?), (row as usize).min(self.height.checked_sub(1)?)];
-        Some(cell)
+        // rows count from the north: a row holds the edge at its end
+        Some([column as usize, (row.ceil() - 1.0) as usize])
     }
 }
 
@@ -106,7 +120,40 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rims_lie_at_whole_cells_of_the_map_and_every_point_has_a_cell() {
+    fn adjoining_tiles_share_no_cell() {
+        // the edge of two tiles at a whole number of cells, which f32 rounds either way
+        for (cell, edge) in [(0.5, 60.5_f32), (1.0, 33.0), (0.1, 60.3), (0.1, 60.7), (0.3, 30.3)] {
+            let (edge, origin) = (f64::from(edge), [154_999.0, 463_000.0]);
+            let origin = if cell == 0.3 { [0.0; 2] } else { origin };
+            let west = MapGrid::covering([-10.0, -10.0], [edge, edge], cell, origin).unwrap();
+            let east = MapGrid::covering([edge, -10.0], [90.0, edge], cell, origin).unwrap();
+            let north = MapGrid::covering([-10.0, edge], [edge, 90.0], cell, origin).unwrap();
+            let end = west.corner_at([west.width, west.height]);
+            assert!((end[0] - east.corner[0]).abs() < 1e-6, "{cell} {edge}");
+            let low = north.corner_at([north.width, north.height]);
+            assert!((west.corner[1] - low[1]).abs() < 1e-6, "{cell} {edge}");
+            // a point on the shared edges is in one tile only
+            assert_eq!((west.cell_of([edge, 0.0]), east.cell_of([edge, 0.0]).unwrap()[0]), (None, 0));
+            assert_eq!((west.cell_of([0.0, edge]), north.cell_of([0.0, edge]).unwrap()[1]), (None, north.height - 1));
+        }
+    }
+
+    #[test]
+    fn a_cell_holds_its_west_and_south_edges_and_the_grid_ends_with_the_box() {
+        let grid = MapGrid::covering([0.0; 2], [3.0, 2.0], 1.0, [0.0; 2]).unwrap();
+        assert_eq!((grid.width, grid.height, grid.corner), (3, 2, [0.0, 2.0]));
+        assert_eq!(
+            [[0.0, 0.0], [1.0, 1.0], [2.9, 1.9]].map(|place| grid.cell_of(place).unwrap()),
+            [[0, 1], [1, 0], [2, 0]]
+        );
+        assert_eq!([[3.0, 1.0], [1.0, 2.0], [-0.1, 1.0]].map(|place| grid.cell_of(place)), [None; 3]);
+        assert_eq!(grid.cell_position([3.0, 2.0]), Some([3.0, 0.0]));
+        let point = MapGrid::covering([1.0; 2], [1.0; 2], 1.0, [0.0; 2]).unwrap();
+        assert_eq!((point.width, point.height, point.cell_of([1.0; 2])), (1, 1, Some([0, 0])));
+    }
+
+    #[test]
+    fn edges_lie_at_whole_cells_of_the_map_and_every_point_within_has_a_cell() {
         let origin = [1000.3, 2000.7];
         let grid = MapGrid::covering([-1.0, -2.0], [3.0, 2.0], 0.5, origin).unwrap();
         let west = (grid.corner[0] + origin[0]) / 0.5;

@@ -4,12 +4,14 @@ pub mod find;
 pub mod map_grid;
 mod morphology;
 mod relief;
+mod returns;
 mod surface;
 mod triangulate;
 
 pub use find::{FinderParams, find_ground};
 pub use map_grid::MapGrid;
 pub use relief::{hidden_ground, highest_points};
+pub use returns::{MAX_GAP_FROM_RETURNS, cells_near_returns};
 pub use surface::{SurfaceParams, top_surface};
 
 use crate::neighbors::NeighborIndex;
@@ -32,8 +34,12 @@ pub struct GroundParams {
     /// How ground is found.
     pub finder: FinderParams,
     /// How far from the next ground point a height is still given, metres, above 0. Default 60: the middle of large halls has a ground
-    /// below it, the sea beside a survey has none.
+    /// below it.
     pub reach: f64,
+    /// How far on the map the middle of a cell may lie from the nearest return, a point of the cloud of any class, and still have a height,
+    /// metres, above 0. Default 5: a hole in the survey, such as a missing tile or wide water, has no ground. Ground beside and below
+    /// buildings keeps its height, because walls and roofs are returns.
+    pub max_gap_from_returns: f64,
 }
 
 /// Which points are ground.
@@ -51,7 +57,12 @@ pub enum GroundPoints {
 
 impl Default for GroundParams {
     fn default() -> Self {
-        Self { points: GroundPoints::Auto, finder: FinderParams::default(), reach: 60.0 }
+        Self {
+            points: GroundPoints::Auto,
+            finder: FinderParams::default(),
+            reach: 60.0,
+            max_gap_from_returns: MAX_GAP_FROM_RETURNS,
+        }
     }
 }
 
@@ -115,7 +126,8 @@ pub fn ground_points(
 
 impl Ground {
     /// The ground of `cloud` on `grid`: heights of the triangulated ground points at the middles of the cells, and the nearest
-    /// ground point's within 5 m beyond the outermost.
+    /// ground point's within 5 m beyond the outermost. A hole of the survey has none ([`GroundParams::max_gap_from_returns`]); where points
+    /// were cleared ([`PointCloud::cleared_places`]) there is no hole.
     ///
     /// # Errors
     /// Those of [`ground_points`], and [`Error::InvalidParameter`] for a parameter outside its range.
@@ -125,16 +137,22 @@ impl Ground {
         params: &GroundParams,
         control: &Control<'_>,
     ) -> Result<(Self, GroundReport)> {
-        if !(params.reach > 0.0) {
+        if let Some(value) = [params.reach, params.max_gap_from_returns].into_iter().find(|reach| !(*reach > 0.0)) {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::GroundReach,
-                value: params.reach.to_string(),
+                value: value.to_string(),
                 expected: "above zero metres",
             });
         }
         let (rows, from) = ground_points(cloud, params, control)?;
         let points: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
-        let ground = Self::of_points(&points, grid, params.reach, control)?;
+        let mut ground = Self::of_points(&points, grid, params.reach, control)?;
+        let left = cloud.positions.iter().map(|p| [f64::from(p[0]), f64::from(p[1])]);
+        let returns = left.chain(cloud.cleared_places.iter().map(|place| place.map(f64::from)));
+        let near = cells_near_returns(returns, &grid, params.max_gap_from_returns);
+        for (height, _) in ground.heights.values_mut().iter_mut().zip(near).filter(|(_, is_near)| !is_near) {
+            *height = f32::NAN;
+        }
         let cell_count = ground.heights.values().iter().filter(|h| h.is_finite()).count();
         Ok((ground, GroundReport { from, point_count: points.len(), cell_count }))
     }

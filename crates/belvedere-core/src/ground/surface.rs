@@ -1,6 +1,6 @@
 //! The surface of what stands on the ground at the middle of each cell, to ask questions above.
 
-use super::{Ground, highest_points};
+use super::{Ground, MAX_GAP_FROM_RETURNS, cells_near_returns, highest_points};
 use crate::neighbors::{Neighbor, NeighborIndex};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
@@ -29,11 +29,15 @@ pub struct SurfaceParams {
     pub roughness: f64,
     /// How far from the middle a point may lie and still be looked at, metres, above 0. Default: any distance.
     pub farthest: f32,
+    /// How far on the map the middle of a cell without ground may lie from the nearest point and still have a height, metres, above 0.
+    /// Default 5: a hole in the survey has no surface.
+    pub max_gap_from_returns: f64,
 }
 
 impl Default for SurfaceParams {
     fn default() -> Self {
-        Self { neighbors: 12, step: 0.4, roughness: 0.12, farthest: f32::INFINITY }
+        let max_gap_from_returns = MAX_GAP_FROM_RETURNS;
+        Self { neighbors: 12, step: 0.4, roughness: 0.12, farthest: f32::INFINITY, max_gap_from_returns }
     }
 }
 
@@ -69,7 +73,8 @@ impl SurfaceParams {
 ///
 /// The layer on top at the middle is that of the highest point near it. Where its points, five at least, lie on a plane, as on roofs and streets, the
 /// plane's height at the middle is given, never beyond the heights of the points themselves; where they do not, as in crowns, the highest
-/// point of the cell, so that a place above it is outside. Cells far from any point are as in [`highest_points`].
+/// point of the cell, so that a place above it is outside. Cells far from any point are as in [`highest_points`], but for those in a hole of
+/// the survey ([`SurfaceParams::max_gap_from_returns`]), which have no height unless the ground has.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a parameter outside its range or a point that is not finite, [`Error::Cancelled`].
@@ -106,6 +111,13 @@ pub fn top_surface(
             Ok(())
         },
     )?;
+    let returns = positions.iter().map(|p| [f64::from(p[0]), f64::from(p[1])]);
+    let near = cells_near_returns(returns, &grid, params.max_gap_from_returns);
+    for ((height, ground), is_near) in heights.values_mut().iter_mut().zip(ground.heights.values()).zip(near) {
+        if !is_near && ground.is_nan() {
+            *height = f32::NAN;
+        }
+    }
     Ok(heights)
 }
 

@@ -74,7 +74,9 @@ impl SceneModel {
         control.check()?;
         let rows: Vec<u32> =
             (0..).zip(&is_cleared).filter(|(_, is_cleared)| !**is_cleared).map(|(row, _)| row).collect();
-        let kept = cloud.select(&rows);
+        let mut kept = cloud.select(&rows);
+        let cleared = cloud.positions.iter().zip(&is_cleared).filter(|(_, is_cleared)| **is_cleared);
+        kept.cleared_places.extend(cleared.map(|(p, _)| [p[0], p[1]]));
         if report.points_cleared > 0 {
             self.clear_balls(cloud, &is_cleared, &clearing, &mut report);
             self.close_ground(cloud, &is_cleared, &clearing, &mut report, control)?;

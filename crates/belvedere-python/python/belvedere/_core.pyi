@@ -9,7 +9,7 @@ _Progress = Callable[[str, int, int], object] | None
 _Grid = tuple[int, int, Sequence[float]]
 _Columns = list[tuple[str, str, npt.NDArray[Any]]]
 _Remarks = list[dict[str, Any]]
-_Results = tuple[_Columns, _Grid | None, dict[str, Any] | None, _Remarks]
+_Results = tuple[list[tuple[str, str, npt.NDArray[Any], bool]], _Grid | None, dict[str, Any] | None, _Remarks]
 _CrsState = tuple[str | None, int | None, int | None, float, float, int]
 
 __all__ = ["NO_VALUE", "Cloud", "Crs", "Mesh", "Scene", "__version__", "devices", "read", "simulate", "write_geotiff"]
@@ -171,7 +171,7 @@ class Scene:
         place: dict[str, Any],
         unproven: str,
         progress: _Progress,
-    ) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint32], _Grid, list[dict[str, Any]]]: ...
+    ) -> tuple[list[npt.NDArray[Any]], list[str], tuple[str, float], _Grid, list[dict[str, Any]]]: ...
     def horizon(
         self,
         observers: npt.NDArray[np.float64],
@@ -257,7 +257,8 @@ def simulate(preset: str, extent: float | None, density: float | None, seed: int
 def devices() -> list[list[str]]: ...
 def write_geotiff(
     path: str | os.PathLike[str],
-    values: npt.NDArray[Any],
+    bands: Sequence[npt.NDArray[Any]],
+    names: Sequence[str],
     transform: Sequence[float],
     crs: Crs,
     nodata: float | None,

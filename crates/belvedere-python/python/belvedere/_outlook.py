@@ -83,8 +83,9 @@ class Outlook:
         Returns
         -------
         Raster
-            Of one observer uint8: an `Answer`, 255 where there is none. Of several uint16: how many observers see a
-            cell, 65535 where none looks. The attribute `remarks` says what to know.
+            Of one observer uint8: 1 where nothing blocks the view, 0 blocked, 255 where there is no answer. Of several
+            uint16: from how many nothing blocks a cell, 65535 where none looks. Where pulses were tested, the Raster
+            `unproven` says what of it is not proven. The attribute `remarks` says what to know.
 
         Raises
         ------
@@ -104,7 +105,7 @@ class Outlook:
         Examples
         --------
         >>> seen = scene.viewshed(standing, max_distance=50)
-        >>> seen.values.dtype, bool((seen.values == belvedere.Answer.VISIBLE).any())
+        >>> seen.values.dtype, bool((seen.values == 1).any())
         (dtype('uint8'), True)
         >>> seen_from = scene.viewshed(target=standing, target_height=10, cell=2)
         >>> mountains = scene.with_terrain("dtm.tif").viewshed(standing, far=True)  # doctest: +SKIP
@@ -133,20 +134,14 @@ class Outlook:
             places = map_places(target, "target", "give x and y, or x, y and z")
             if len(places) != 1:
                 raise wrong("target", f"{len(places)} places", "give one")
-        answers, counts, grid, given = self._core.viewshed(
+        bands, names, (text, nodata), grid, given = self._core.viewshed(
             places, looking, _place(None, grid_north=grid_north), unproven, reporter(progress)
         )
-        remarks = warned(given, stacklevel=3)
-        nothing = answers >= 3
-        if len(places) == 1:
-            text = "1 visible, 0 blocked, 2 unproven, 255 nodata"
-            values = np.where(nothing, np.uint8(255), answers)
-            seen = raster(values, grid, self._core.crs, name="visible", description=text, nodata=255.0)
-        else:
-            text = "number of observers that see the cell, 65535 nodata"
-            values = np.where(nothing, 65535, np.minimum(counts, 65534)).astype(np.uint16)
-            seen = raster(values, grid, self._core.crs, name="observers", description=text, nodata=65535.0)
-        seen.remarks = remarks
+        made = [raster(band, grid, self._core.crs, name=name, nodata=nodata) for band, name in zip(bands, names)]
+        seen = made[0]
+        seen.description = text
+        seen.unproven = made[1] if len(made) > 1 else None
+        seen.remarks = warned(given, stacklevel=3)
         return seen
 
     def depth_map(

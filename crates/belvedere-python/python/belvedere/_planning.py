@@ -121,7 +121,7 @@ class Planning:
         places = None if observers is None else map_places(observers, "observers", _OBSERVERS)
         columns, grid, given = self._core.landmark(what, places, looking, unproven, reporter(progress))
         if places is None:
-            return measures((columns, grid, None, given), self._core.crs, None)
+            return measures(([(*column, False) for column in columns], grid, None, given), self._core.crs, None)
         table = Table({name: values for name, _, values in columns}, places=places, crs=self._core.crs.text)
         table.remarks = warned(given, stacklevel=3)
         return table

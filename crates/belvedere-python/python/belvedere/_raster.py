@@ -32,7 +32,8 @@ class Raster:
     name, description : str
         What the values are.
     unproven : Raster or None
-        Which values pulses do not prove; None where that was not tested.
+        Where proof was tested: 1 where nothing blocks but no laser pulse proves it, 0 where it is proven or blocked. Of
+        several observers: for how many of those in `values` the view is not proven. It is the second band of files.
     remarks : tuple of Remark
         What to know of the values.
 
@@ -54,14 +55,17 @@ class Raster:
         nodata: float | None = None,
         name: str = "",
         description: str = "",
+        unproven: Raster | None = None,
+        is_answer: bool = False,
     ) -> None:
         self.values = values
         self.transform = transform
         self.nodata = nodata
         self.name = name
         self.description = description
-        self.unproven: Raster | None = None
+        self.unproven = unproven
         self.remarks: tuple[Remark, ...] = ()
+        self._is_answer = is_answer
         self._crs = crs
 
     @property
@@ -102,17 +106,26 @@ class Raster:
         return np.asarray(north + e * (np.arange(self.shape[0]) + 0.5), np.float64)
 
     def to_geotiff(self, path: str | os.PathLike[str]) -> None:
-        """Writes a GeoTIFF, as the command line does: -9999 where a float raster has no value.
+        """Writes a GeoTIFF, as the command line does: -9999 where a float raster has no value, and answers as bytes
+        with 255. `unproven` is the second band.
 
         Examples
         --------
         >>> scene.shadow(sun=(180, 30)).to_geotiff(folder / "shadow.tif")
         """
+        rasters = [self] if self.unproven is None else [self, self.unproven]
+        bands = [raster._pixels() for raster in rasters]
+        names = [raster.name for raster in rasters] if self.name else []
+        nodata = _core.NO_VALUE if bands[0].dtype == np.float32 else 255.0 if self._is_answer else self.nodata
+        text = self.description or None
+        _core.write_geotiff(os.fspath(path), bands, names, self.transform, self._crs, nodata, text)
+
+    def _pixels(self) -> npt.NDArray[Any]:
+        """The values as a file has them."""
         values = np.ascontiguousarray(self.values)
-        if values.dtype not in (np.float32, np.uint8, np.uint16):
-            values = values.astype(np.float32)
-        nodata = _core.NO_VALUE if values.dtype == np.float32 else self.nodata
-        _core.write_geotiff(os.fspath(path), values, self.transform, self._crs, nodata, self.description or None)
+        if self._is_answer and values.dtype == np.float32:
+            return np.where(np.isnan(values), 255, values > 0).astype(np.uint8)
+        return values if values.dtype in (np.float32, np.uint8, np.uint16) else values.astype(np.float32)
 
     def to_xarray(self) -> xarray.DataArray:
         """An `xarray.DataArray` by the conventions of rioxarray.
@@ -163,7 +176,7 @@ class Raster:
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.values, self.transform, self._crs.state, self.nodata, self.name, self.description)
-        return _unpickled, state
+        return _unpickled, (*state, self.unproven, self._is_answer)
 
 
 class Rasters(Mapping[str, Raster]):
@@ -217,6 +230,14 @@ def escaped(text: str) -> str:
 
 
 def _unpickled(
-    values: npt.NDArray[Any], transform: Any, system: Any, nodata: float | None, name: str, description: str
+    values: npt.NDArray[Any],
+    transform: Any,
+    system: Any,
+    nodata: float | None,
+    name: str,
+    description: str,
+    unproven: Raster | None,
+    is_answer: bool,
 ) -> Raster:
-    return Raster(values, transform, _core.Crs.from_state(system), nodata=nodata, name=name, description=description)
+    named: dict[str, Any] = {"nodata": nodata, "name": name, "description": description}
+    return Raster(values, transform, _core.Crs.from_state(system), **named, unproven=unproven, is_answer=is_answer)

@@ -73,7 +73,7 @@ def raster(values: npt.NDArray[Any], grid: Grid, crs: _core.Crs, **named: Any) -
 
 #: Columns of measures, and the grid where targets are cells; for a mesh only the rows of its faces; then remarks.
 Results = tuple[
-    list[tuple[str, str, npt.NDArray[Any]]], Union[Grid, None], Union[dict[str, Any], None], list[dict[str, Any]]
+    list[tuple[str, str, npt.NDArray[Any], bool]], Union[Grid, None], Union[dict[str, Any], None], list[dict[str, Any]]
 ]
 
 
@@ -88,12 +88,13 @@ def measures(results: Results, crs: _core.Crs, targets: Targets) -> RastersOrTab
     if grid is not None:
         nan = float("nan")
         made = {
-            name: raster(values, grid, crs, name=name, description=text, nodata=nan) for name, text, values in columns
+            name: raster(values, grid, crs, name=name, description=text, nodata=nan, is_answer=is_answer)
+            for name, text, values, is_answer in columns
         }
         for one in made.values():
             one.remarks = remarks
         return Rasters(made)
-    table = Table({name: values for name, _, values in columns}, places=coordinates(targets), crs=crs.text)
+    table = Table({name: values for name, _, values, _ in columns}, places=coordinates(targets), crs=crs.text)
     table.remarks = remarks
     return table
 

@@ -5,7 +5,7 @@ use super::places::local;
 use crate::replies::{Answer, Refusal};
 use crate::scene::Inside;
 use crate::scene_text::typed;
-use belvedere::apps::targets::{CellParams, CoveredCells, Targets};
+use belvedere::apps::targets::{CellParams, Targets};
 use belvedere::apps::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, ViewshedParams, tested_height, viewshed};
 use belvedere::query::{AnswerCounts, UnprovenAs};
 use serde::Deserialize;
@@ -26,8 +26,11 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
     let blockers = scene.blockers(UnprovenAs::Reported, control)?;
     scene.check_eye(&blockers, None, place, Inside::Allowed)?;
     let grid = ground.grid;
-    let cells = CellParams::default().with_height(tested_height(OBSERVER_HEIGHT)).with_covered(CoveredCells::Kept);
-    let (targets, _) = Targets::of_cells(cloud, ground.clone(), &cells, control)?;
+    let cells = CellParams::default().with_height(tested_height(OBSERVER_HEIGHT));
+    let (mut targets, _) = Targets::of_cells(cloud, ground.clone(), &cells, control)?;
+    if let Some(added) = blockers.added() {
+        targets.set_on_added(added, &cells);
+    }
     let target = Observer { eye: place, limits: SightLimits::default() };
     let seen = viewshed(&blockers, &[target], &targets.positions, &ViewshedParams::default(), control)?;
     let counts = AnswerCounts::of(&seen.answers);

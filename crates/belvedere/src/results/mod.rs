@@ -2,7 +2,7 @@
 //!
 //! | targets | `.tif` | `.laz` `.las` `.ply` `.csv` |
 //! |---|---|---|
-//! | cells of a grid | the first measure as raster | a point for each cell that is asked about, all measures as columns |
+//! | cells of a grid | the first measure as raster, with its further bands | a point for each cell that is asked about, all measures as columns |
 //! | points | | the points with their attributes, all measures as columns; `.csv` of a table: its rows as they were given |
 //! | faces of a mesh | | `.csv`: a row for each object and face; `.ply`: the mesh coloured by the first measure |
 
@@ -11,24 +11,22 @@ mod difference;
 mod faces;
 #[cfg(feature = "figures")]
 mod map;
+mod raster;
 
 #[cfg(feature = "figures")]
 pub use difference::difference_map;
 pub use faces::FaceRows;
 #[cfg(feature = "figures")]
 pub use map::measure_map;
+pub use raster::{Pixels, ResultRaster, UNPROVEN_BAND, viewshed_words};
+
+pub use crate::apps::targets::ResultKind;
 
 use crate::apps::targets::{Layout, Measure, Targets};
 use crate::ground::{Ground, MapGrid};
-use crate::io::{
-    ExtraColumn, ExtraValues, Georeference, TextRows, WriteReport, write_cloud, write_text_rows, write_tif_f32,
-};
-use crate::raster::Raster;
+use crate::io::{ExtraColumn, ExtraValues, Georeference, TextRows, WriteReport, write_cloud, write_text_rows};
 use crate::{ElevationGrid, Error, Frame, Mesh, PointCloud, Result};
 use std::path::Path;
-
-/// Value of a raster of measures where there is none.
-pub const NO_VALUE: f32 = -9999.0;
 
 /// What targets were taken from, where it is written along with their measures.
 #[derive(Clone, Copy)]
@@ -84,7 +82,11 @@ pub fn write_measures(
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let is_tiff = matches!(extension.as_str(), "tif" | "tiff");
     match (&targets.layout, from) {
-        (Layout::Cells(_), _) if is_tiff => write_raster(path, targets, first).map(|()| WriteReport::default()),
+        (Layout::Cells(_), _) if is_tiff => {
+            let further = measures.iter().skip(1).filter(|measure| measure.is_further_band);
+            let bands: Vec<&Measure> = std::iter::once(first).chain(further).collect();
+            write_raster(path, targets, &bands).map(|()| WriteReport::default())
+        }
         (Layout::Surface(surface), TakenFrom::Mesh(mesh)) => {
             match extension.as_str() {
                 "ply" => faces::write_colored(path, mesh, surface, &targets.frame, first),
@@ -113,18 +115,18 @@ pub fn write_measures(
     }
 }
 
-/// Writes a measure of the cells of a grid as a raster of 32-bit floats, with the reference system of their frame and [`NO_VALUE`] where there
-/// is no value.
+/// Writes measures of the cells of a grid as the bands of a raster, with the reference system of their frame. Their kind decides the type of the
+/// pixels and their value for no data; measures of several kinds are numbers. Cells that are no targets have no value in any band.
 ///
 /// # Errors
 /// [`Error::UnsupportedTargets`] for targets that are no cells, [`Error::LengthMismatch`] unless there is a value for each cell, and those of
-/// [`write_tif_f32`].
-pub fn write_raster(path: &Path, targets: &Targets, measure: &Measure) -> Result<()> {
+/// [`ResultRaster::write`].
+pub fn write_raster(path: &Path, targets: &Targets, measures: &[&Measure]) -> Result<()> {
     let grid = cells(targets)?.grid;
-    let raster = Raster::from_values(grid.width, grid.height, measure.values.clone())?;
     let place = georeference(&grid, &targets.frame);
-    let description = (!measure.description.is_empty()).then_some(measure.description);
-    write_tif_f32(path, &raster, Some(&place), Some(NO_VALUE), description)
+    let mut bands: Vec<Measure> = measures.iter().map(|&measure| measure.clone()).collect();
+    bands.iter_mut().for_each(|band| targets.clear_unasked(&mut band.values));
+    ResultRaster::of_measures(&bands, [grid.width, grid.height])?.write(path, Some(&place))
 }
 
 fn cells(targets: &Targets) -> Result<&Ground> {

@@ -1,9 +1,9 @@
 //! What observers see of each kind of targets, in numbers and words.
 
 use super::Viewshed;
-use crate::ask::places::OUTSIDE_CLOUD;
+use crate::ask::places::{OUTSIDE_CLOUD, cells_of};
 use crate::ask::{Context, Remark, Scene};
-use crate::targets::{CellParams, CoveredCells, Targets};
+use crate::targets::{CellParams, Targets};
 use crate::viewshed::{
     Masks, Observer, Viewshed as Seen, ViewshedParams, far_viewshed, least_visible_heights, tested_height, viewshed,
 };
@@ -58,17 +58,24 @@ pub(super) struct Sights<'a> {
 }
 
 impl Sights<'_> {
-    pub(super) fn of_cells(&self, ground: &Ground, context: &mut Context, control: &Control<'_>) -> Result<Seen> {
-        let Self { question, scene, blockers, observers, params } = *self;
-        let [_, height] = question.heights();
-        let cells = CellParams::default().with_height(tested_height(height)).with_covered(CoveredCells::Kept);
+    /// The cells that are targets: neither under a cover nor inside what was added.
+    pub(super) fn cells(&self, ground: &Ground, context: &mut Context, control: &Control<'_>) -> Result<Targets> {
+        let [_, height] = self.question.heights();
+        let params = CellParams::default().with_height(tested_height(height));
+        cells_of(self.scene, ground.clone(), &params, context, control)
+    }
+
+    pub(super) fn of_cells(
+        &self,
+        (targets, cell): (&Targets, f64),
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Seen> {
+        let Self { question, blockers, observers, params, .. } = *self;
         let params = params.with_masks(if question.masks { Masks::Kept } else { Masks::NotKept });
-        let cloud = scene.ground_cloud()?;
         let seen = control.stage("testing cells", observers.len(), || {
-            let (targets, _) = Targets::of_cells(cloud, ground.clone(), &cells, control)?;
             viewshed(blockers, observers, &targets.positions, &params, control)
         })?;
-        let cell = ground.grid.cell;
         let things = Things { where_to: "", name: "cells", area: Some(cell * cell) };
         context.report.cells = Some(self.counted(&seen.answers, &things, context));
         self.remark_on_blind(&seen, context);

@@ -10,12 +10,10 @@ use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{Area, Cells, Spot, outlines, write_geojson, write_geojson_areas, write_table, write_tif_u16};
 use belvedere::raster::Raster;
 use belvedere::report::rounded;
-use belvedere::results::georeference;
+use belvedere::results::{ResultKind, georeference};
 use serde_json::{Map, Value};
 use std::path::Path;
 
-/// No count.
-const NO_COUNT: u16 = u16::MAX;
 /// Colours of cells with no camera, one, two, three, and more.
 const COLORS: [[u8; 3]; 5] = [[120, 40, 50], [253, 225, 60], [110, 200, 95], [35, 145, 140], [60, 80, 165]];
 
@@ -153,19 +151,19 @@ impl<'a> Found<'a> {
     }
 
     /// The number of cameras of each cell; none where nothing is asked.
-    fn counts(&self) -> impl Iterator<Item = Option<u16>> + '_ {
+    fn counts(&self) -> impl Iterator<Item = Option<u32>> + '_ {
         (0..self.targets.len()).map(|row| {
             let counts = self.targets.is_asked(row) && self.targets.weight(row) > 0.0;
-            counts.then(|| u16::try_from(self.placed.counts[row]).unwrap_or(NO_COUNT).min(NO_COUNT - 1))
+            counts.then(|| self.placed.counts[row])
         })
     }
 
     fn write_counts(&self, output: &Path, ground: &Ground) -> Result<()> {
-        let values = self.counts().map(|count| count.unwrap_or(NO_COUNT)).collect();
+        let values = self.counts().map(ResultKind::count).collect();
         let raster = Raster::from_values(ground.grid.width, ground.grid.height, values)?;
         let place = georeference(&ground.grid, &self.targets.frame);
         let what = "number of cameras that cover the cell, 65535 nodata";
-        Ok(write_tif_u16(output, &raster, Some(&place), Some(NO_COUNT), Some(what))?)
+        Ok(write_tif_u16(output, &raster, Some(&place), Some(ResultKind::NO_COUNT), Some(what))?)
     }
 
     fn write_map(&self, output: &Path, ground: &Ground, cloud: &PointCloud) -> Result<()> {
@@ -176,8 +174,8 @@ impl<'a> Found<'a> {
             Some(MapMark { place, view: Some([pose.heading, pose.width]), label: number.to_string() })
         };
         let marks: Vec<MapMark> = (1..).zip(&self.chosen).filter_map(mark).collect();
-        let most = self.counts().flatten().max().map_or(1, |most| usize::from(most).clamp(1, COLORS.len() - 1));
-        let color = |count: u16| COLORS.get(usize::from(count).min(most)).copied();
+        let most = self.counts().flatten().max().map_or(1, |most| (most as usize).clamp(1, COLORS.len() - 1));
+        let color = |count: u32| COLORS.get((count as usize).min(most)).copied();
         let colors: Vec<Option<[u8; 3]>> = self.counts().map(|count| count.and_then(color)).collect();
         let names = ["no camera", "1 camera", "2 cameras", "3 cameras", "4 cameras or more"];
         let meanings: Vec<([u8; 3], &str)> = COLORS.into_iter().zip(names).take(most + 1).collect();

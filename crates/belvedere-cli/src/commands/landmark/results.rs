@@ -7,11 +7,9 @@ use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, writ
 use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{Cells, TextRows, atomic, with_columns_read, write_table, write_tif_f32};
 use belvedere::raster::Raster;
-use belvedere::results::georeference;
+use belvedere::results::{ResultKind, georeference};
 use std::path::Path;
 
-/// No measure: there is no ground, or the observer would be inside something solid.
-const NO_VALUE: f32 = -9999.0;
 /// Cells from which nothing of the landmark is seen: apart from the dark violet of a little.
 const UNSEEN_COLOR: [u8; 3] = [176, 120, 120];
 
@@ -71,7 +69,7 @@ fn write_measure(
     let values = views.iter().map(|view| measure.of(view) as f32).collect();
     let raster = Raster::from_values(grid.width, grid.height, values)?;
     let place = georeference(&grid, &cloud.frame);
-    Ok(write_tif_f32(output, &raster, Some(&place), Some(NO_VALUE), Some(measure.description))?)
+    Ok(write_tif_f32(output, &raster, Some(&place), Some(ResultKind::NO_NUMBER), Some(measure.description))?)
 }
 
 /// The share seen as a map.

@@ -3,23 +3,18 @@
 use crate::arguments::Usage;
 use crate::commands::extension;
 use anyhow::Result;
-use belvedere::apps::viewshed::{SEEN, SEEN_BY, Viewshed};
+use belvedere::apps::viewshed::Viewshed;
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{
     Area, ExtraColumn, ExtraValues, Georeference, WriteReport, outlines, write_cloud, write_geojson_areas,
-    write_npy_u32_bands, write_tif_u8, write_tif_u16, write_tif_u32,
+    write_npy_u32_bands, write_tif_u32,
 };
 use belvedere::query::Answer;
 use belvedere::raster::Raster;
-use belvedere::results::{georeference, terrain_georeference};
+use belvedere::results::{ResultRaster, georeference, terrain_georeference};
 use belvedere::{ElevationGrid, Frame, PointCloud};
 use std::path::Path;
-
-/// Cells without an answer in a raster of answers.
-const NODATA: u8 = 255;
-/// No count.
-const NO_COUNT: u16 = u16::MAX;
 
 const SEEN_COLOR: [u8; 3] = [255, 176, 0];
 const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
@@ -67,29 +62,11 @@ impl Field<'_> {
 impl SeenCells<'_> {
     /// Writes a raster, a map or areas.
     pub(super) fn write(&self, output: &Path) -> Result<()> {
-        let [width, height] = self.on.size();
         let place = self.on.georeference(self.frame);
         match extension(output).as_str() {
             "geojson" => self.write_areas(output, &place),
             "png" => self.write_map(output),
-            _ if self.is_of_one() => {
-                let code = |answer: &Answer| match answer {
-                    Answer::OutsideView | Answer::OutsideCloud => NODATA,
-                    known => *known as u8,
-                };
-                let values = self.seen.answers.iter().map(code).collect();
-                let raster = Raster::from_values(width, height, values)?;
-                Ok(write_tif_u8(output, &raster, Some(&place), Some(NODATA), Some(SEEN))?)
-            }
-            _ => {
-                let count = |(answer, &count): (&Answer, &u32)| match answer {
-                    Answer::OutsideView | Answer::OutsideCloud => NO_COUNT,
-                    _ => u16::try_from(count).unwrap_or(NO_COUNT).min(NO_COUNT - 1),
-                };
-                let values = self.seen.answers.iter().zip(&self.seen.counts).map(count).collect();
-                let raster = Raster::from_values(width, height, values)?;
-                Ok(write_tif_u16(output, &raster, Some(&place), Some(NO_COUNT), Some(SEEN_BY))?)
-            }
+            _ => Ok(ResultRaster::of_viewshed(self.seen, self.on.size())?.write(output, Some(&place))?),
         }
     }
 

@@ -1,0 +1,256 @@
+//! Results as rasters: bands with names, of one pixel type and one value for no data for each kind of result, whoever writes them.
+
+use crate::apps::targets::{Measure, ResultKind};
+use crate::apps::viewshed::{SEEN, SEEN_BY, Viewshed};
+use crate::io::{BandValues, Bands, Georeference, ReadBands, Source, read_tif_bands, write_cog, write_tif_bands};
+use crate::query::Answer;
+use crate::raster::Raster;
+use crate::{Error, Result};
+use std::path::Path;
+
+/// Name of the band that says where the first is not proven: 1 where it is 1 but no pulses prove it, 0 where it is proven or blocked; of several
+/// observers how many of those that it counts are not proven.
+pub const UNPROVEN_BAND: &str = crate::apps::ask::UNPROVEN;
+
+/// The bands of a result, all of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Pixels {
+    /// Of [`ResultKind::Answer`].
+    Answers(Vec<Raster<u8>>),
+    /// Of [`ResultKind::Count`].
+    Counts(Vec<Raster<u16>>),
+    /// Of [`ResultKind::Number`].
+    Numbers(Vec<Raster<f32>>),
+}
+
+/// A result on the cells of a grid, as files hold it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResultRaster {
+    /// The values.
+    pub pixels: Pixels,
+    /// Names of the bands.
+    pub names: Vec<String>,
+    /// What the values are; empty where nothing is said.
+    pub description: String,
+}
+
+impl Pixels {
+    /// What the values are.
+    #[must_use]
+    pub fn kind(&self) -> ResultKind {
+        match self {
+            Self::Answers(_) => ResultKind::Answer,
+            Self::Counts(_) => ResultKind::Count,
+            Self::Numbers(_) => ResultKind::Number,
+        }
+    }
+
+    /// Bands without any value.
+    #[must_use]
+    pub fn nothing(kind: ResultKind, band_count: usize, [width, height]: [usize; 2]) -> Self {
+        match kind {
+            ResultKind::Answer => Self::Answers(vec![Raster::filled(width, height, ResultKind::NO_ANSWER); band_count]),
+            ResultKind::Count => Self::Counts(vec![Raster::filled(width, height, ResultKind::NO_COUNT); band_count]),
+            ResultKind::Number => Self::Numbers(vec![Raster::filled(width, height, ResultKind::NO_NUMBER); band_count]),
+        }
+    }
+
+    /// A band for each measure; of different kinds all are numbers.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] unless each measure has a value for each cell.
+    pub fn of_measures(measures: &[Measure], [width, height]: [usize; 2]) -> Result<Self> {
+        let kind = measures.first().map_or(ResultKind::Number, |measure| measure.kind);
+        let bands = measures.iter().map(|measure| measure.values.clone());
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
+        let count = |value: f32| ResultKind::count(value.is_finite().then_some(value as u32));
+        let answer = |value: f32| ResultKind::answer(value.is_finite().then_some(value > 0.0));
+        match kind {
+            ResultKind::Answer if measures.iter().all(|measure| measure.kind == kind) => {
+                Self::answers(bands.map(|band| band.into_iter().map(answer).collect()), [width, height])
+            }
+            ResultKind::Count if measures.iter().all(|measure| measure.kind == kind) => {
+                Self::counts(bands.map(|band| band.into_iter().map(count).collect()), [width, height])
+            }
+            _ => Self::numbers(bands, [width, height]),
+        }
+    }
+
+    /// Bands of answers, as [`ResultKind::answer`] makes them.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] unless each band has a value for each cell.
+    pub fn answers(bands: impl IntoIterator<Item = Vec<u8>>, size: [usize; 2]) -> Result<Self> {
+        Ok(Self::Answers(rasters(bands, size)?))
+    }
+
+    /// Bands of counts, as [`ResultKind::count`] makes them.
+    ///
+    /// # Errors
+    /// Those of [`Pixels::answers`].
+    pub fn counts(bands: impl IntoIterator<Item = Vec<u16>>, size: [usize; 2]) -> Result<Self> {
+        Ok(Self::Counts(rasters(bands, size)?))
+    }
+
+    /// Bands of numbers; those that are not finite are none.
+    ///
+    /// # Errors
+    /// Those of [`Pixels::answers`].
+    pub fn numbers(bands: impl IntoIterator<Item = Vec<f32>>, size: [usize; 2]) -> Result<Self> {
+        let stored = |band: Vec<f32>| band.into_iter().map(ResultKind::number).collect();
+        Ok(Self::Numbers(rasters(bands.into_iter().map(stored), size)?))
+    }
+
+    /// Reads the bands of a raster of results.
+    ///
+    /// # Errors
+    /// Those of [`read_tif_bands`].
+    pub fn read(source: Source<'_>) -> Result<Self> {
+        Ok(match read_tif_bands(source)? {
+            ReadBands::U8(bands) => Self::Answers(bands),
+            ReadBands::U16(bands) => Self::Counts(bands),
+            ReadBands::F32(bands) => Self::Numbers(bands),
+        })
+    }
+
+    /// Whether no band has a value.
+    #[must_use]
+    pub fn are_nothing(&self) -> bool {
+        match self {
+            Self::Answers(bands) => are_all(bands, ResultKind::NO_ANSWER),
+            Self::Counts(bands) => are_all(bands, ResultKind::NO_COUNT),
+            Self::Numbers(bands) => are_all(bands, ResultKind::NO_NUMBER),
+        }
+    }
+
+    /// The bands as numbers, NaN where there is no value.
+    ///
+    /// # Errors
+    /// Those of [`Raster::from_values`].
+    pub fn to_numbers(&self) -> Result<Vec<Raster<f32>>> {
+        match self {
+            Self::Answers(bands) => bands.iter().map(|band| in_f32(band, ResultKind::NO_ANSWER)).collect(),
+            Self::Counts(bands) => bands.iter().map(|band| in_f32(band, ResultKind::NO_COUNT)).collect(),
+            Self::Numbers(bands) => bands.iter().map(|band| in_f32(band, ResultKind::NO_NUMBER)).collect(),
+        }
+    }
+
+    /// Puts the values of a square tile at a column and row of these; `side` is that of the tile in cells.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] for a tile of another kind, size or number of bands.
+    pub fn put(&mut self, tile: &Self, [column, row, side]: [usize; 3]) -> Result<()> {
+        match (self, tile) {
+            (Self::Answers(all), Self::Answers(tile)) => put(all, tile, [column, row, side]),
+            (Self::Counts(all), Self::Counts(tile)) => put(all, tile, [column, row, side]),
+            (Self::Numbers(all), Self::Numbers(tile)) => put(all, tile, [column, row, side]),
+            _ => Err(Error::LengthMismatch { what: "values of a tile", expected: side, found: 0 }),
+        }
+    }
+
+    fn band_values(&self) -> BandValues<'_> {
+        match self {
+            Self::Answers(bands) => BandValues::U8(bands, ResultKind::NO_ANSWER),
+            Self::Counts(bands) => BandValues::U16(bands, ResultKind::NO_COUNT),
+            Self::Numbers(bands) => BandValues::F32(bands, ResultKind::NO_NUMBER),
+        }
+    }
+}
+
+impl ResultRaster {
+    /// The measures of cells as bands: the first, and those that are further bands of it.
+    ///
+    /// # Errors
+    /// Those of [`Pixels::of_measures`].
+    pub fn of_measures(measures: &[Measure], size: [usize; 2]) -> Result<Self> {
+        let names = measures.iter().map(|measure| measure.name.clone()).collect();
+        let description = measures.first().map_or("", |measure| measure.description).to_owned();
+        Ok(Self { pixels: Pixels::of_measures(measures, size)?, names, description })
+    }
+
+    /// What observers see of cells. Of one observer 1 where nothing blocks the view, of several their number; where proof was tested, a second
+    /// band says what of it is not proven ([`UNPROVEN_BAND`]).
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] unless there is an answer for each cell.
+    pub fn of_viewshed(seen: &Viewshed, size: [usize; 2]) -> Result<Self> {
+        let is_target = |answer: Answer| !matches!(answer, Answer::OutsideView | Answer::OutsideCloud);
+        let rows = || seen.answers.iter().map(|&answer| is_target(answer)).enumerate();
+        let unproven = |row: usize| seen.unproven_counts.get(row).copied().unwrap_or(0);
+        let free = |row: usize| seen.counts.get(row).map_or(0, |count| count + unproven(row));
+        let is_tested = !seen.unproven_counts.is_empty();
+        let pixels = if seen.seen_counts.len() == 1 {
+            let band = |count: &dyn Fn(usize) -> u32| {
+                rows().map(|(row, is_target)| ResultKind::answer(is_target.then(|| count(row) > 0))).collect()
+            };
+            Pixels::answers([band(&free)].into_iter().chain(is_tested.then(|| band(&unproven))), size)?
+        } else {
+            let band = |count: &dyn Fn(usize) -> u32| {
+                rows().map(|(row, is_target)| ResultKind::count(is_target.then(|| count(row)))).collect()
+            };
+            Pixels::counts([band(&free)].into_iter().chain(is_tested.then(|| band(&unproven))), size)?
+        };
+        let [name, description] = viewshed_words(seen.seen_counts.len());
+        let names = [name].into_iter().chain(is_tested.then_some(UNPROVEN_BAND)).map(str::to_owned).collect();
+        Ok(Self { pixels, names, description: description.to_owned() })
+    }
+
+    /// Writes it as a GeoTIFF.
+    ///
+    /// # Errors
+    /// Those of [`write_tif_bands`].
+    pub fn write(&self, path: &Path, place: Option<&Georeference>) -> Result<()> {
+        write_tif_bands(path, &self.bands(), place)
+    }
+
+    /// Writes it as a cloud-optimised GeoTIFF.
+    ///
+    /// # Errors
+    /// Those of [`write_cog`].
+    pub fn write_cog(&self, path: &Path, place: &Georeference) -> Result<()> {
+        write_cog(path, &self.bands(), place)
+    }
+
+    fn bands(&self) -> Bands<'_> {
+        let description = (!self.description.is_empty()).then_some(self.description.as_str());
+        Bands { values: self.pixels.band_values(), names: &self.names, description }
+    }
+}
+
+/// Name of the first band of what so many observers see, and what its values are.
+#[must_use]
+pub fn viewshed_words(observer_count: usize) -> [&'static str; 2] {
+    if observer_count == 1 { ["visible", SEEN] } else { ["observers", SEEN_BY] }
+}
+
+fn rasters<T: Copy>(bands: impl IntoIterator<Item = Vec<T>>, [width, height]: [usize; 2]) -> Result<Vec<Raster<T>>> {
+    bands.into_iter().map(|band| Raster::from_values(width, height, band)).collect()
+}
+
+fn are_all<T: Copy + PartialEq>(bands: &[Raster<T>], nothing: T) -> bool {
+    bands.iter().flat_map(Raster::values).all(|&value| value == nothing)
+}
+
+fn in_f32<T: Copy + PartialEq + Into<f32>>(raster: &Raster<T>, nothing: T) -> Result<Raster<f32>> {
+    let number = |&value: &T| if value == nothing { f32::NAN } else { value.into() };
+    Raster::from_values(raster.width(), raster.height(), raster.values().iter().map(number).collect())
+}
+
+fn put<T: Copy>(all: &mut [Raster<T>], tile: &[Raster<T>], [column, row, side]: [usize; 3]) -> Result<()> {
+    if all.len() != tile.len() {
+        return Err(Error::LengthMismatch { what: "bands of a tile", expected: all.len(), found: tile.len() });
+    }
+    for (all, tile) in all.iter_mut().zip(tile) {
+        if tile.width() != side || tile.height() != side {
+            return Err(Error::LengthMismatch { what: "columns of a tile", expected: side, found: tile.width() });
+        }
+        let width = all.width();
+        for (number, values) in tile.values().chunks(side.max(1)).enumerate() {
+            let from = (row + number) * width + column;
+            if let Some(place) = all.values_mut().get_mut(from..from + values.len()) {
+                place.copy_from_slice(values);
+            }
+        }
+    }
+    Ok(())
+}
