@@ -267,7 +267,6 @@ fn mesh_name(blockers: &MedialScene, blocker: Blocker) -> Option<&str> {
     blockers.added()?.names().get(blocker.mesh()?).map(String::as_str)
 }
 
-#[expect(clippy::too_many_arguments, reason = "what a run knows, handed on once")]
 fn write_profile(
     output: &Path,
     arguments: &LineOfSight,
