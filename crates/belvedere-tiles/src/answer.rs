@@ -10,6 +10,7 @@ use crate::planned::Others;
 use crate::question::{Asked, Light, Question};
 use crate::record::{Outcome, Record, Stage, Stamp};
 use crate::window;
+use belvedere::apps::edge::near_edge;
 use belvedere::apps::eyes::skip_unfit_eyes;
 use belvedere::apps::irradiance::{irradiation_measures, season_irradiation};
 use belvedere::apps::rows::Surroundings;
@@ -23,7 +24,7 @@ use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid, SurfaceParams, top_surface};
 use belvedere::io::atomic;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{AddedMeshes, Answer, MedialScene};
+use belvedere::query::{AddedMeshes, Answer, Coverage, MedialScene};
 use belvedere::raster::Raster;
 use belvedere::results::{Pixels, ResultKind, ResultRaster, georeference};
 use belvedere::vector::sub;
@@ -111,6 +112,10 @@ pub(crate) fn answer(
         }
         Asked::Light(light) => lit(light, parts, targets, size, control)?,
     };
+    let near_edge_cells = match asked {
+        Asked::Light(light) => Some(near_edge_count(plan, targets, light.directions(), control)?),
+        Asked::Viewshed(_) => None,
+    };
     if found.values.are_nothing() && found.unproven_cells == 0 {
         return Ok(Record { points, damaged: balls.damaged, ..Record::default() });
     }
@@ -128,6 +133,7 @@ pub(crate) fn answer(
         most_balls: balls.most_held,
         cells,
         unproven_cells: found.unproven_cells,
+        near_edge_cells,
         skipped_observers: found.skipped_observers,
         ..Record::default()
     })
@@ -141,6 +147,18 @@ impl Surface {
             control.stage("computing top surface", 0, || cells(plan, (tile, cell), &cloud, added, control))?;
         Ok(Self { cell, points: cloud.len(), targets })
     }
+}
+
+/// How many targets are near the edge of the survey for light from `directions`.
+fn near_edge_count(
+    plan: &Plan,
+    targets: &Targets,
+    directions: &[[f64; 3]],
+    control: &Control<'_>,
+) -> Result<usize> {
+    let Some(coverage) = Coverage::of(plan.bounds()) else { return Ok(0) };
+    let flags = near_edge(&coverage, &targets.positions, directions, control)?;
+    Ok(flags.iter().filter(|flag| **flag == Some(true)).count())
 }
 
 /// What was found of the cells of a tile.

@@ -9,6 +9,7 @@ use crate::plan::Plan;
 use crate::planned::Others;
 use crate::record::{Outcome, Record, Stage};
 use crate::report::write_report;
+use belvedere::apps::ask::{Remark, remark_on_edge};
 use belvedere::control::Control;
 use belvedere::{Error, Parameter, Result};
 use serde::Serialize;
@@ -63,6 +64,10 @@ pub struct RunReport {
     pub already_done: usize,
     /// Cells whose answer is unproven because balls are missing.
     pub unproven_cells: usize,
+    /// Cells whose light is asked about, each counted once for each question about it.
+    pub cells_of_light: usize,
+    /// Of these, cells near the edge of the survey.
+    pub cells_near_edge: usize,
     /// Most balls that were held at a time for an answer.
     pub most_balls: usize,
     /// Observers of viewsheds that stand inside an obstacle, and see nothing.
@@ -72,6 +77,36 @@ pub struct RunReport {
     /// What could not be done, and why.
     pub failed: Vec<String>,
 }
+
+impl RunReport {
+    /// What to know of the answers.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<Remark> {
+        let damaged = self.damaged.iter().take(MAX_NAMED);
+        let damaged = damaged.map(|damage| Remark::warning("result-damaged", format!("{damage}; it was computed again")));
+        let unproven = (self.unproven_cells > 0).then(|| {
+            let text =
+                format!("{} cells are unproven because tiles that may block them are missing", self.unproven_cells);
+            Remark::warning("cells-unproven", text).with("count", self.unproven_cells as f64)
+        });
+        let skipped = (self.skipped_observers > 0).then(|| {
+            let text = format!("{} observers are inside obstacles and see nothing", self.skipped_observers);
+            Remark::warning("observers-skipped", text).with("count", self.skipped_observers as f64)
+        });
+        let edge = remark_on_edge(self.cells_near_edge, self.cells_of_light);
+        damaged.chain(unproven).chain(skipped).chain(edge).collect()
+    }
+
+    fn count_edge(&mut self, record: &Record) {
+        if let Some(near) = record.near_edge_cells {
+            self.cells_near_edge += near;
+            self.cells_of_light += record.cells;
+        }
+    }
+}
+
+/// Most damaged results that are named.
+const MAX_NAMED: usize = 10;
 
 /// Makes the balls and the answers that a run lacks. What fails is named and recorded, and the rest goes on; the next run tries it again.
 ///
@@ -105,8 +140,9 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             }
             // what was unproven for lack of balls may have them now
             let record = work.settled(Stage::Answer(question), tile);
-            if record.is_some_and(|record| record.unproven_cells == 0) {
+            if let Some(record) = record.filter(|record| record.unproven_cells == 0) {
                 work.report.already_done += 1;
+                work.report.count_edge(&record);
                 continue;
             }
             // other shares may not have come to them
@@ -168,6 +204,7 @@ impl Work<'_> {
         let record = self.attempt(stage, tile, || answer(self.plan, self.folder, task, tile, last, self.control))?;
         self.report.answers_made += 1;
         self.report.unproven_cells += record.unproven_cells;
+        self.report.count_edge(&record);
         self.report.damaged.extend(record.damaged);
         self.report.most_balls = self.report.most_balls.max(record.most_balls);
         self.report.skipped_observers = self.report.skipped_observers.max(record.skipped_observers);

@@ -41,7 +41,7 @@ pub use light::OnTargets;
 pub use line_of_sight::{LinesOfSight, ProfileRows, SightColumns, SightsFound};
 pub use north::North;
 pub use observers::{Eyes, Standing};
-pub use places::{Cells, Places, Turned};
+pub use places::{Cells, Places, Turned, remark_on_edge};
 pub use remark::{Remark, Severity};
 pub use report::Report;
 pub use scene::Scene;

@@ -10,6 +10,7 @@ use crate::viewshed::cell_for;
 use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
 use belvedere_data::control::Control;
 use belvedere_data::polygon::is_inside;
+use belvedere_data::report::percent;
 use belvedere_data::{Error, Mesh, Parameter, PointCloud, Result};
 use std::sync::Arc;
 
@@ -237,11 +238,15 @@ pub(super) fn test_edge(
     })?;
     let report = EdgeReport::of(&flags);
     context.report.places.edge = Some(report);
-    if report.targets_near_edge_percent >= EDGE_WARNING_PERCENT {
-        let count = targets.asked_count();
-        context.add(Remark::of_share("targets-near-edge", report.targets_near_edge, count, "targets", NEAR_EDGE));
-    }
+    context.add(remark_on_edge(report.targets_near_edge, targets.asked_count()));
     Ok(flags)
+}
+
+/// A warning that `near` of `count` targets are near the edge of the cloud; `None` where they are few.
+#[must_use]
+pub fn remark_on_edge(near: usize, count: usize) -> Option<Remark> {
+    let is_many = percent(near, count) >= EDGE_WARNING_PERCENT;
+    Remark::of_share("targets-near-edge", near, count, "targets", NEAR_EDGE).filter(|_| is_many)
 }
 
 impl PlacesReport {

@@ -112,21 +112,7 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
         );
     }
     run.summary.add_report(&report);
-    for damage in report.damaged.iter().take(MOST_LISTED) {
-        run.summary.warn("result-damaged", format!("{damage}; it was computed again"));
-    }
-    if report.unproven_cells > 0 {
-        run.summary.warn(
-            "cells-unproven",
-            format!("{} cells are unproven because tiles that may block them are missing", report.unproven_cells),
-        );
-    }
-    if report.skipped_observers > 0 {
-        run.summary.warn(
-            "observers-skipped",
-            format!("{} observers are inside obstacles and see nothing", report.skipped_observers),
-        );
-    }
+    report.remarks().iter().for_each(|remark| run.summary.remark(remark));
     run.summary
         .add("written", arguments.run.display().to_string())
         .headline("balls of <balls_made> tiles made, and <answers_made> tiles of results")
