@@ -74,6 +74,7 @@ fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::UnprovenAs => &["--unproven"],
         Parameter::Targets => &["--targets", "--self"],
         Parameter::LastDay => &["--to"],
+        Parameter::ClassMeaning => &["--class"],
         Parameter::Window => &["--windows"],
         Parameter::RoofLength => &["--panel"],
         Parameter::RoofAngle => &["--min-area"],

@@ -5,20 +5,20 @@ use crate::mesh::Mesh;
 use crate::observers::{eyes, places, skip, skipped};
 use crate::outlook::Looking;
 use crate::scene::{Scene, unproven_as};
-use crate::targets::{Cells, Column, Grid, ground_cloud, ground_points};
+use crate::targets::{Cells, Column, Grid, grid_of, ground_cloud, ground_points, remark_of};
 use crate::work::run;
-use belvedere::apps::ask;
+use belvedere::apps::ask::{self, Shared, Standing};
 use belvedere::apps::eyes::EyesReport;
 use belvedere::apps::landmark::{
     LandmarkParams, LandmarkPoints, LandmarkView, MEASURES, landmark_points, landmark_views, observer_cell_for,
     spacing_for,
 };
-use belvedere::apps::protected_view::protected_view;
 use belvedere::apps::targets::{CellLevel, CellParams, CoveredCells, Targets};
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
-use belvedere::query::SurfacePieces;
+use belvedere::query::{SurfacePieces, UnprovenAs};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// What the landmark is.
@@ -102,7 +102,7 @@ impl Scene {
                     let side = Some(looking.cell.unwrap_or_else(|| observer_cell_for(low, high)));
                     let cells = Cells { side, height: None, level: CellLevel::Ground, ground: points };
                     let ground = cells.ground_within(&inner, (low, high), control)?;
-                    let grid = crate::targets::grid_of(&ground.grid, inner.frame());
+                    let grid = grid_of(&ground.grid, inner.frame());
                     let height = looking.observer_height.unwrap_or(OBSERVER_HEIGHT);
                     let cells = CellParams::default().with_height(height).with_covered(CoveredCells::Kept);
                     let (mut targets, _) = Targets::of_cells(inner.cloud(), ground, &cells, control)?;
@@ -127,7 +127,7 @@ impl Scene {
         Ok((columns.collect(), grid, skipped))
     }
 
-    /// Greatest heights above the ground and of the file, their grid, whether anything is protected, and what was skipped.
+    /// Greatest heights above the ground and of the file, their grid, and remarks.
     fn protected_view<'py>(
         &self,
         py: Python<'py>,
@@ -136,41 +136,37 @@ impl Scene {
         looking: Looking,
         unproven: &str,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Vec<Column<'py>>, Grid, bool, Vec<String>)> {
-        let unproven = unproven_as(unproven)?;
-        let points = ground_points(looking.ground.as_deref())?;
-        let usual = LandmarkParams::default();
-        let params = usual.with_unproven(unproven).with_max_range(looking.max_distance.unwrap_or(usual.max_range));
-        let places = places(&observers)?;
-        let inner = Arc::clone(&self.0);
-        let of_work = Arc::clone(&inner);
-        let (found, above, report) = run(py, progress, move |control| {
-            let inner = of_work;
-            let surface = control.stage("sampling landmark", 0, || landmark.surface(&inner))?;
-            let mut stand = eyes(&inner, &places, looking.observer_height, points, control)?;
-            let cells = Cells { side: looking.cell, height: None, level: CellLevel::Ground, ground: points };
-            let ground = cells.ground_within(&inner, inner.model().bounds().on_map(), control)?;
-            let scene = inner.blockers(unproven, control)?;
-            let report = skip(&scene, None, &mut stand, control)?;
-            let found = control.stage("computing limits", stand.len(), || {
-                protected_view(&scene, &surface, &stand, &ground.grid, &params, control)
-            })?;
-            let above = found.above_ground(&ground)?;
-            Ok(((found, ground.grid), above, report))
+    ) -> PyResult<(Vec<Column<'py>>, Grid, Vec<Bound<'py, PyDict>>)> {
+        let unproven = Some(unproven_as(unproven)?).filter(|&choice| choice != UnprovenAs::Reported);
+        let scene = Arc::clone(&self.0);
+        let stand = |place: [f64; 3]| Standing { place: scene.frame().local_from_file(place), height: None };
+        let usual = ask::ProtectedView::default();
+        let mut question = ask::ProtectedView {
+            observers: places(&observers)?.into_iter().map(stand).collect(),
+            observer_height: looking.observer_height.unwrap_or(usual.observer_height),
+            max_distance: looking.max_distance,
+            unproven,
+            ..usual
+        };
+        let ground = ground_points(looking.ground.as_deref())?;
+        let cells = ask::Places::Cells(ask::Cells { cell: looking.cell, ground, ..ask::Cells::default() });
+        let of_work = Arc::clone(&scene);
+        let answers = run(py, progress, move |control| {
+            ask::Ask::check(&question)?;
+            let surface = control.stage("sampling landmark", 0, || landmark.surface(&of_work))?;
+            question.landmark = Some(Shared::new(surface));
+            ask::ask(&of_work, &question, &cells, control)
         })?;
-        let (found, grid) = found;
-        let skipped = skipped(&inner, "observer", &report)?;
-        let frame = inner.frame();
-        #[expect(clippy::cast_possible_truncation, reason = "a height")]
-        let top = |&limit: &f32| frame.file_from_local([0.0, 0.0, f64::from(limit)])[2] as f32;
-        let tops = found.limits.values().iter().map(top).collect();
-        let is_protected = found.viewpoints.iter().any(|one| one.lines_protected > 0);
-        let column =
-            |name: &str, description, values: Vec<f32>| (name.to_owned(), description, to_1d(py, values).into_any());
+        let found = answers.found;
+        let grid = grid_of(&found.ground.ground.grid, scene.frame());
+        let column = |name: &str, description, values: &[f32]| {
+            (name.to_owned(), description, to_1d(py, values.to_vec()).into_any())
+        };
         let columns = vec![
-            column("height", "maximum height above the ground", above.values().to_vec()),
-            column("top", "maximum height", tops),
+            column("height", "maximum height above the ground", found.heights.values()),
+            column("top", "maximum height", found.tops.values()),
         ];
-        Ok((columns, crate::targets::grid_of(&grid, frame), is_protected, skipped))
+        let remarks = answers.remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<_>>()?;
+        Ok((columns, grid, remarks))
     }
 }

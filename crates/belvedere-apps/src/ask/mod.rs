@@ -18,30 +18,38 @@ mod light;
 pub mod north;
 pub mod observers;
 pub mod places;
+mod protected_view;
 pub mod remark;
 pub mod report;
 pub mod scene;
 mod shadow;
+mod shared;
 mod sky_view;
 pub mod sun;
 mod sun_hours;
 mod sun_position;
 mod trees;
+mod window_views;
+pub mod windows;
 
 pub use irradiance::{Irradiance, IrradianceFound, Radiation, Roofs, RoofsFound};
 pub use light::OnTargets;
 pub use north::North;
 pub use observers::{Eyes, Standing};
 pub use places::{Cells, Places, Turned};
+pub use protected_view::{ProtectedView, ProtectedViewFound};
 pub use remark::{Remark, Severity};
 pub use report::Report;
 pub use scene::Scene;
 pub use shadow::{Shadow, ShadowFound, UNPROVEN};
+pub use shared::Shared;
 pub use sky_view::{SkyParts, SkyView};
 pub use sun::{Days, NamedSun, SunPlace, Suns};
 pub use sun_hours::{Prepared, SunHours, rules};
 pub use sun_position::{SunPosition, SunStands};
 pub use trees::ThroughTrees;
+pub use window_views::{WindowViews, WindowViewsFound};
+pub use windows::{GivenWindow, GivenWindows};
 
 use crate::targets::Measure;
 use belvedere_data::Result;
@@ -65,6 +73,10 @@ pub enum Question {
     Irradiance(Irradiance),
     /// Where the sun stands.
     SunPosition(SunPosition),
+    /// What is seen from windows.
+    WindowViews(WindowViews),
+    /// How high one may build without entering the view of a landmark.
+    ProtectedView(ProtectedView),
 }
 
 /// What was found, of any question.
@@ -78,6 +90,10 @@ pub enum Found {
     Irradiance(IrradianceFound),
     /// Of [`Question::SunPosition`].
     SunPosition(Vec<SunStands>),
+    /// Of [`Question::WindowViews`].
+    WindowViews(WindowViewsFound),
+    /// Of [`Question::ProtectedView`].
+    ProtectedView(ProtectedViewFound),
 }
 
 /// The answers to a question.
@@ -186,6 +202,8 @@ impl Ask for Question {
             Self::SkyView(question) => question.check(),
             Self::Irradiance(question) => question.check(),
             Self::SunPosition(question) => question.check(),
+            Self::WindowViews(question) => question.check(),
+            Self::ProtectedView(question) => question.check(),
         }
     }
 
@@ -196,6 +214,10 @@ impl Ask for Question {
             Self::SkyView(question) => question.answer(scene, places, context, control)?.map(Found::OnTargets),
             Self::Irradiance(question) => question.answer(scene, places, context, control)?.map(Found::Irradiance),
             Self::SunPosition(question) => question.answer(scene, places, context, control)?.map(Found::SunPosition),
+            Self::WindowViews(question) => question.answer(scene, places, context, control)?.map(Found::WindowViews),
+            Self::ProtectedView(question) => {
+                question.answer(scene, places, context, control)?.map(Found::ProtectedView)
+            }
         })
     }
 }

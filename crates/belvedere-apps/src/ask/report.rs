@@ -2,7 +2,9 @@
 
 use super::north::NorthReport;
 use super::observers::ObserversSection;
+use super::protected_view::ProtectedViewSection;
 use super::scene::KnownGround;
+use super::window_views::{ViewsSection, WindowsSection};
 use crate::edge::EdgeReport;
 use crate::sun::{Site, SiteFrom};
 use crate::targets::{Measure, MeasureStatistics, Targets};
@@ -37,6 +39,9 @@ pub struct Report {
     /// Roofs that were found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub roofs: Option<RoofsSection>,
+    /// The windows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub windows: Option<WindowsSection>,
     /// What became of the places.
     #[serde(flatten)]
     pub places: PlacesReport,
@@ -49,6 +54,12 @@ pub struct Report {
     /// What trees let through.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trees: Option<TreesSection>,
+    /// What windows see.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub views: Option<ViewsSection>,
+    /// What views of a landmark protect.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub protected_view: Option<ProtectedViewSection>,
     /// How measures are spread.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measures: Option<MeasuresSection>,
@@ -83,6 +94,9 @@ pub struct PlacesReport {
     /// Targets outside the cloud, which have no answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub targets_outside_cloud: Option<usize>,
+    /// Targets inside an obstacle, which have no answer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub targets_inside_obstacle: Option<usize>,
     /// Targets near its edge.
     #[serde(flatten)]
     pub edge: Option<EdgeReport>,
@@ -178,7 +192,9 @@ pub struct GroundSection {
 }
 
 impl GroundSection {
-    pub(super) fn of(known: &KnownGround) -> Self {
+    /// What is known of it.
+    #[must_use]
+    pub fn of(known: &KnownGround) -> Self {
         let grid = known.ground.grid;
         let source = match known.report.from {
             GroundPoints::Found => "detected points (no class 2)",

@@ -7,6 +7,7 @@ use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
+use belvedere::apps::ask::Standing;
 use belvedere::apps::targets::{grid_around, set_on_ground};
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::io::{RowsAre, TextRows, read_observers, read_table};
@@ -45,6 +46,24 @@ pub(super) fn eyes(arguments: &Eyes, scene: &mut Scene, run: &mut Run) -> Result
         }
     }
     Ok(rows.into_iter().map(|row| row.0).collect())
+}
+
+impl Eyes {
+    /// The eyes that were typed or are in the file named.
+    pub(super) fn standing(&self, frame: &Frame) -> Result<Vec<Standing>> {
+        let typed = self.eye.iter().map(|place| {
+            let ([x, y], z) = (place.0, place.1);
+            Standing { place: frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]), height: None }
+        });
+        let mut standing: Vec<Standing> = typed.collect();
+        if let Some(path) = &self.eyes {
+            for row in read_observers(path, &frame.crs, RowsAre::Places)? {
+                let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - frame.origin[i]);
+                standing.extend(row.corners.iter().map(|c| Standing { place: place(c), height: row.height }));
+            }
+        }
+        Ok(standing)
+    }
 }
 
 /// How many observers there are at least: those typed, or the rows of a table; one for other files.

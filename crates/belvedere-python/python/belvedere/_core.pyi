@@ -210,7 +210,7 @@ class Scene:
         looking: dict[str, Any],
         unproven: str,
         progress: _Progress,
-    ) -> tuple[_Columns, _Grid, bool, list[str]]: ...
+    ) -> tuple[_Columns, _Grid, list[dict[str, Any]]]: ...
     def window_views(
         self, facades: dict[str, Any], place: dict[str, Any], unproven: str, progress: _Progress
     ) -> tuple[
@@ -218,7 +218,7 @@ class Scene:
         npt.NDArray[np.float64],
         list[str],
         tuple[list[str], list[tuple[str, npt.NDArray[Any]]]],
-        tuple[int, int, int, bool],
+        list[dict[str, Any]],
     ]: ...
     def cameras(
         self,
