@@ -86,7 +86,7 @@ fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::ClearedArea => &["--clear"],
         Parameter::Terrain => &["--terrain"],
         Parameter::Horizon => &["--horizon"],
-        Parameter::Cell => &["--cell"],
+        Parameter::Cell => &["--cell", "--on-ground", "--on-roofs"],
         Parameter::GridBox => &["--pairs", "--route", "--observers", "--observer"],
         Parameter::Spacing => &["--spacing", "--simplify"],
         Parameter::PointRadius => &["--spacing"],

@@ -57,10 +57,6 @@ pub(crate) fn ground_points(text: Option<&str>) -> PyResult<GroundPoints> {
 }
 
 impl Wanted<'_> {
-    pub(crate) fn cell(&self) -> Option<f64> {
-        self.cell
-    }
-
     pub(crate) fn height(&self) -> Option<f64> {
         self.height
     }

@@ -13,6 +13,7 @@
 //! | warnings and notes | [`remark`] |
 //! | figures beside the answer | [`report`] |
 
+mod cameras;
 mod irradiance;
 mod light;
 pub mod north;
@@ -32,6 +33,9 @@ mod trees;
 mod window_views;
 pub mod windows;
 
+pub use cameras::{
+    CameraGoal, CameraLens, CameraTargets, Cameras, CamerasFound, Candidates, ChosenCamera, GivenCamera, PrivatePlaces,
+};
 pub use irradiance::{Irradiance, IrradianceFound, Radiation, Roofs, RoofsFound};
 pub use light::OnTargets;
 pub use north::North;
@@ -77,6 +81,8 @@ pub enum Question {
     WindowViews(WindowViews),
     /// How high one may build without entering the view of a landmark.
     ProtectedView(ProtectedView),
+    /// Which of many possible cameras to put up.
+    Cameras(Cameras),
 }
 
 /// What was found, of any question.
@@ -94,6 +100,8 @@ pub enum Found {
     WindowViews(WindowViewsFound),
     /// Of [`Question::ProtectedView`].
     ProtectedView(ProtectedViewFound),
+    /// Of [`Question::Cameras`].
+    Cameras(CamerasFound),
 }
 
 /// The answers to a question.
@@ -204,6 +212,7 @@ impl Ask for Question {
             Self::SunPosition(question) => question.check(),
             Self::WindowViews(question) => question.check(),
             Self::ProtectedView(question) => question.check(),
+            Self::Cameras(question) => question.check(),
         }
     }
 
@@ -218,6 +227,7 @@ impl Ask for Question {
             Self::ProtectedView(question) => {
                 question.answer(scene, places, context, control)?.map(Found::ProtectedView)
             }
+            Self::Cameras(question) => question.answer(scene, places, context, control)?.map(Found::Cameras),
         })
     }
 }

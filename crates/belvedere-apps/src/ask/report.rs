@@ -1,5 +1,6 @@
 //! What is known of how answers came about. Sections that a question does not have are left out.
 
+use super::cameras::CamerasReport;
 use super::north::NorthReport;
 use super::observers::ObserversSection;
 use super::protected_view::ProtectedViewSection;
@@ -60,6 +61,9 @@ pub struct Report {
     /// What views of a landmark protect.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub protected_view: Option<ProtectedViewSection>,
+    /// Which cameras were chosen.
+    #[serde(flatten)]
+    pub cameras: Option<CamerasReport>,
     /// How measures are spread.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measures: Option<MeasuresSection>,
